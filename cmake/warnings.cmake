@@ -1,0 +1,15 @@
+# hsdm_warnings(TARGET): the warnings every target of the project is clean of.
+# Kept PRIVATE, so that a consumer's own flags are untouched.
+function(hsdm_warnings target)
+  target_compile_options(${target} PRIVATE
+    -Wall -Wextra -Wshadow -Wconversion
+    $<$<BOOL:${HSDM_WARNINGS_AS_ERRORS}>:-Werror>)
+endfunction()
+
+# hsdm_includes_openmesh_kernel(SOURCE...): g++ 12 reports -Wmaybe-uninitialized from inside OpenMesh's
+# own headers; that one warning is switched off for the files that include a mesh kernel, nothing else.
+function(hsdm_includes_openmesh_kernel)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS -Wno-maybe-uninitialized)
+  endif()
+endfunction()

@@ -1,0 +1,26 @@
+#pragma once
+// Phase 2a, section 3.2.1: the connectivity graph G, dual to the occupied voxels, as a doubly-connected edge
+// list.
+
+#include "hsdm/octree/octree.hh"
+
+namespace hsdm {
+
+/// Vertices and half-edges. The half-edges out of vertex v are first_edge[v] .. first_edge[v + 1], by
+/// ascending end vertex; a half-edge and its twin join the same two vertices.
+struct ConnectivityGraph {
+    std::vector<Vec3> positions; ///< vertex position, relative to the octree's origin
+    std::vector<Index> first_edge{0};
+    std::vector<Index> end;   ///< per half-edge
+    std::vector<Index> twin;  ///< per half-edge
+    std::vector<Index> voxel; ///< per vertex, its voxel in the level the graph was taken from
+
+    std::size_t vertex_count() const { return positions.size(); }
+    std::size_t half_edge_count() const { return end.size(); }
+    Index start(Index half_edge) const { return end[twin[half_edge]]; }
+};
+
+/// Basic graph (Fig. 4): a vertex per voxel at the centroid of its points, edges by the four-neighbour rule.
+ConnectivityGraph extract_graph(const Octree& octree, const OctreeLevel& level);
+
+} // namespace hsdm

@@ -1,0 +1,201 @@
+#include "hsdm/octree/octree.hh"
+
+#include "hsdm/errors.hh"
+#include "hsdm/octree/radix_sort.hh"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+namespace hsdm {
+namespace {
+
+using Range = tbb::blocked_range<std::size_t>;
+constexpr std::size_t grain = 1 << 14;
+
+Vec3 unit_or_zero(const Vec3& n) {
+    const double length = n.norm();
+    return length > 0 && std::isfinite(length) ? n / length : Vec3(0, 0, 0);
+}
+
+/// Level-21 code of a position relative to the cube; the cube's far faces belong to the last voxel.
+MortonCode code_of(const Vec3& relative, double scale) {
+    constexpr double last = (1 << morton_levels) - 1;
+    std::array<std::uint32_t, 3> c;
+    for (unsigned k = 0; k < 3; ++k)
+        c[k] = static_cast<std::uint32_t>(std::clamp(relative[k] * scale, 0.0, last));
+    return morton_encode(c[0], c[1], c[2]);
+}
+
+/// Runs of equal codes come in the order of the input: sorts each by position, then normal.
+void order_ties(const PointCloud& cloud, std::vector<CodeIndex>& keys) {
+    auto key = [&](Index i) {
+        const Vec3& p = cloud.positions[i];
+        const Vec3 n = cloud.has_normals() ? cloud.normals[i] : Vec3(0, 0, 0);
+        return std::tuple(p[0], p[1], p[2], n[0], n[1], n[2]);
+    };
+    for (std::size_t begin = 0, end = 0; begin < keys.size(); begin = end) {
+        while (end < keys.size() && keys[end].code == keys[begin].code) ++end;
+        if (end - begin < 2) continue;
+        std::sort(keys.begin() + static_cast<std::ptrdiff_t>(begin),
+                  keys.begin() + static_cast<std::ptrdiff_t>(end),
+                  [&](const CodeIndex& a, const CodeIndex& b) {
+                      const auto ka = key(a.index), kb = key(b.index);
+                      return ka != kb ? ka < kb : a.index < b.index;
+                  });
+    }
+}
+
+/// Removes points equal to their predecessor in position and normal; equal points are neighbours by now.
+std::size_t merge_equal(const PointCloud& cloud, std::vector<CodeIndex>& keys) {
+    auto equal = [&](const CodeIndex& a, const CodeIndex& b) {
+        return a.code == b.code && cloud.positions[a.index] == cloud.positions[b.index]
+               && (!cloud.has_normals() || cloud.normals[a.index] == cloud.normals[b.index]);
+    };
+    const auto end = std::unique(keys.begin(), keys.end(), equal);
+    const auto merged = static_cast<std::size_t>(keys.end() - end);
+    keys.erase(end, keys.end());
+    return merged;
+}
+
+} // namespace
+
+Octree build_octree(const PointCloud& cloud, const OctreeOptions& options) {
+    if (cloud.size() == 0) throw Error("the cloud holds no point; nothing can be reconstructed");
+    Octree octree;
+    octree.bounds = cloud.bounds();
+    octree.origin = octree.bounds.lo;
+    octree.extent = octree.bounds.extent();
+    if (!std::isfinite(octree.extent))
+        throw Error("the cloud holds coordinates that are not finite; call drop_nonfinite first");
+    if (octree.extent <= 0) throw Error("all points are equal; a surface needs points that differ");
+
+    const std::size_t n = cloud.size();
+    const double scale = static_cast<double>(1 << morton_levels) / octree.extent;
+    std::vector<CodeIndex> keys(n);
+    tbb::parallel_for(Range(0, n, grain), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i)
+            keys[i] = {code_of(cloud.positions[i] - octree.origin, scale), static_cast<Index>(i)};
+    });
+    radix_sort(keys, 3 * morton_levels);
+    order_ties(cloud, keys);
+    if (options.merge_duplicates) octree.merged_duplicates = merge_equal(cloud, keys);
+
+    octree.codes.resize(keys.size());
+    octree.source.resize(keys.size());
+    octree.positions.resize(keys.size());
+    if (cloud.has_normals()) octree.normals.resize(keys.size());
+    tbb::parallel_for(Range(0, keys.size(), grain), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            const Index source = keys[i].index;
+            octree.codes[i] = keys[i].code;
+            octree.source[i] = source;
+            octree.positions[i] = cloud.positions[source] - octree.origin;
+            if (cloud.has_normals()) octree.normals[i] = unit_or_zero(cloud.normals[source]);
+        }
+    });
+    return octree;
+}
+
+OctreeLevel extract_level(const Octree& octree, int depth) {
+    OctreeLevel level;
+    level.depth = depth;
+    level.voxel_size = octree.voxel_size(depth);
+    const int shift = 3 * (morton_levels - depth);
+    const std::size_t n = octree.size();
+    const std::size_t chunks = (n + grain - 1) / grain;
+
+    // Two passes over fixed chunks: count the voxels that begin in each, then write them at their offset.
+    auto begins = [&](std::size_t i) {
+        return i == 0 || octree.codes[i] >> shift != octree.codes[i - 1] >> shift;
+    };
+    std::vector<std::size_t> offset(chunks + 1, 0);
+    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+        std::size_t count = 0;
+        for (std::size_t i = chunk * grain; i < std::min(n, (chunk + 1) * grain); ++i) count += begins(i);
+        offset[chunk + 1] = count;
+    });
+    std::partial_sum(offset.begin(), offset.end(), offset.begin());
+    level.codes.resize(offset.back());
+    level.first_point.resize(offset.back() + 1);
+    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+        std::size_t voxel = offset[chunk];
+        for (std::size_t i = chunk * grain; i < std::min(n, (chunk + 1) * grain); ++i) {
+            if (!begins(i)) continue;
+            level.codes[voxel] = octree.codes[i] >> shift;
+            level.first_point[voxel++] = static_cast<Index>(i);
+        }
+    });
+    level.first_point.back() = static_cast<Index>(n);
+    level.build_index();
+    return level;
+}
+
+namespace {
+/// Fibonacci hashing: the high bits of the product are well mixed.
+std::size_t slot_of(MortonCode code, std::size_t slots) {
+    return static_cast<std::size_t>((code * 0x9e3779b97f4a7c15ull) >> (64 - std::countr_zero(slots)));
+}
+} // namespace
+
+void OctreeLevel::build_index() {
+    const std::size_t slots = std::bit_ceil(std::max<std::size_t>(2 * codes.size(), 2));
+    slots_.assign(slots, no_index);
+    for (std::size_t voxel = 0; voxel < codes.size(); ++voxel) {
+        std::size_t slot = slot_of(codes[voxel], slots);
+        while (slots_[slot] != no_index) slot = (slot + 1) & (slots - 1);
+        slots_[slot] = static_cast<Index>(voxel);
+    }
+}
+
+Index OctreeLevel::find(MortonCode code) const {
+    if (slots_.empty()) return no_index;
+    std::size_t slot = slot_of(code, slots_.size());
+    while (slots_[slot] != no_index && codes[slots_[slot]] != code) slot = (slot + 1) & (slots_.size() - 1);
+    return slots_[slot];
+}
+
+Index OctreeLevel::find(const VoxelCoord& c) const {
+    const std::int32_t side = std::int32_t{1} << depth;
+    for (std::int32_t x : c)
+        if (x < 0 || x >= side) return no_index;
+    return find(morton_encode(c));
+}
+
+const std::array<VoxelCoord, 26> neighbor_offsets = {{
+    // 6 faces
+    {-1, 0, 0},
+    {1, 0, 0},
+    {0, -1, 0},
+    {0, 1, 0},
+    {0, 0, -1},
+    {0, 0, 1},
+    // 12 edges
+    {-1, -1, 0},
+    {1, -1, 0},
+    {-1, 1, 0},
+    {1, 1, 0},
+    {-1, 0, -1},
+    {1, 0, -1},
+    {-1, 0, 1},
+    {1, 0, 1},
+    {0, -1, -1},
+    {0, 1, -1},
+    {0, -1, 1},
+    {0, 1, 1},
+    // 8 corners
+    {-1, -1, -1},
+    {1, -1, -1},
+    {-1, 1, -1},
+    {1, 1, -1},
+    {-1, -1, 1},
+    {1, -1, 1},
+    {-1, 1, 1},
+    {1, 1, 1},
+}};
+
+} // namespace hsdm

@@ -1,0 +1,66 @@
+#pragma once
+// Phase 1, section 3.1: the Hierarchical Space Decomposition Model (HSDM), a linear octree.
+
+#include "hsdm/octree/morton.hh"
+#include "hsdm/point_cloud.hh"
+
+#include <span>
+
+namespace hsdm {
+
+struct OctreeOptions {
+    bool merge_duplicates = true; ///< points equal in position and normal count once
+};
+
+/// The cloud in Morton order inside its bounding cube (Fig. 3b). One sort serves every level, 0 to 21: the
+/// voxels of a level are the runs of points whose codes agree in their first 3 * level bits.
+struct Octree {
+    Vec3 origin{0, 0, 0}; ///< least corner of the bounding cube; positions below are relative to it
+    double extent = 0;    ///< edge of the bounding cube = longest side of the cloud's box, not padded
+    Box bounds;           ///< box of the cloud, in the cloud's own coordinates
+    std::vector<MortonCode> codes; ///< per point, level 21, ascending
+    std::vector<Vec3> positions;   ///< per point, relative to origin
+    std::vector<Vec3> normals;     ///< per point, unit or (0, 0, 0); empty if the cloud has none
+    std::vector<Index> source;     ///< per point, its index in the cloud (the first of merged duplicates)
+    std::size_t merged_duplicates = 0;
+
+    std::size_t size() const { return codes.size(); }
+    bool has_normals() const { return !normals.empty(); }
+    double voxel_size(int depth) const { return extent / static_cast<double>(1u << depth); }
+};
+
+/// Sorts the cloud into its HSDM. O(n) time and space (radix sort of 63-bit codes), parallel; the result does
+/// not depend on the order of the points, nor on the number of threads. Ties of the code are ordered by
+/// position, then normal, so each voxel's points come in one canonical order. Throws Error if the cloud is
+/// empty, holds a non-finite coordinate, or all its points are equal.
+Octree build_octree(const PointCloud& cloud, const OctreeOptions& options = {});
+
+/// The occupied voxels of one level, in Morton order. Voxel v holds points first_point[v] .. first_point[v +
+/// 1].
+class OctreeLevel {
+public:
+    int depth = 0;
+    double voxel_size = 0;
+    std::vector<MortonCode> codes;     ///< one per voxel, 3 * depth bits, ascending
+    std::vector<Index> first_point{0}; ///< one more than voxels
+
+    std::size_t size() const { return codes.size(); }
+    VoxelCoord coord(Index voxel) const { return morton_decode(codes[voxel]); }
+    /// The voxel at a coordinate, or no_index where none is occupied or the coordinate lies outside. O(1).
+    Index find(const VoxelCoord& c) const;
+    Index find(MortonCode code) const;
+
+    /// To be called once codes are final; find() needs it.
+    void build_index();
+
+private:
+    std::vector<Index> slots_; // open addressing, a power of two, load at most one half
+};
+
+/// The voxels of one level of the HSDM, depth in [0, 21]. O(n), parallel.
+OctreeLevel extract_level(const Octree& octree, int depth);
+
+/// Offsets of the 6 face, 12 edge and 8 corner neighbours: 6-, 18- and 26-adjacency is the first 6, 18, 26.
+extern const std::array<VoxelCoord, 26> neighbor_offsets;
+
+} // namespace hsdm

@@ -1,0 +1,72 @@
+#include "hsdm/point_cloud.hh"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <atomic>
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+bool is_finite(const Vec3& p) {
+    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+}
+
+template <class T>
+void keep_only(std::vector<T>& values, const std::vector<Index>& kept) {
+    if (values.empty()) return;
+    for (std::size_t i = 0; i < kept.size(); ++i) values[i] = values[kept[i]];
+    values.resize(kept.size());
+}
+
+} // namespace
+
+Box PointCloud::bounds() const {
+    return tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, size(), 1 << 16), Box{},
+        [this](const tbb::blocked_range<std::size_t>& range, Box box) {
+            for (std::size_t i = range.begin(); i != range.end(); ++i) box.add(positions[i]);
+            return box;
+        },
+        [](Box a, const Box& b) {
+            a.add(b);
+            return a;
+        });
+}
+
+Dropped drop_nonfinite(PointCloud& cloud) {
+    Dropped dropped;
+    std::atomic<std::size_t> bad_points = 0, bad_normals = 0;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cloud.size(), 1 << 14), [&](const auto& range) {
+        std::size_t points = 0, normals = 0;
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            if (!is_finite(cloud.positions[i])) {
+                ++points;
+            } else if (cloud.has_normals()) {
+                Vec3& n = cloud.normals[i];
+                if (is_finite(n) && n.sqrnorm() > 0) continue;
+                n = Vec3(0, 0, 0);
+                ++normals;
+            }
+        }
+        bad_points += points;
+        bad_normals += normals;
+    });
+    dropped.nonfinite = bad_points;
+    dropped.bad_normals = bad_normals;
+    if (dropped.nonfinite == 0) return dropped;
+
+    std::vector<Index> kept;
+    kept.reserve(cloud.size() - dropped.nonfinite);
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+        if (is_finite(cloud.positions[i])) kept.push_back(static_cast<Index>(i));
+    keep_only(cloud.positions, kept);
+    keep_only(cloud.normals, kept);
+    keep_only(cloud.colors, kept);
+    for (Scalar& scalar : cloud.scalars) keep_only(scalar.values, kept);
+    return dropped;
+}
+
+} // namespace hsdm

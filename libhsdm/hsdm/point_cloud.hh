@@ -1,0 +1,43 @@
+#pragma once
+// The input of every reconstruction: scanned points and what the scanner said of each.
+
+#include "hsdm/types.hh"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hsdm {
+
+/// One more value per point (intensity, quality, label ...), by the name its file gave it.
+struct Scalar {
+    std::string name;
+    std::vector<double> values; ///< one per point
+    bool is_label = false;      ///< integers that must not be averaged: a vertex takes the majority's
+};
+
+/// Points in the cloud's units, structure of arrays. Optional arrays are empty or hold one entry per point.
+struct PointCloud {
+    std::vector<Vec3> positions;
+    std::vector<Vec3> normals; ///< as the file gave them; not required to be unit vectors or outward
+    std::vector<std::array<std::uint8_t, 4>> colors; ///< red, green, blue, alpha
+    std::vector<Scalar> scalars;
+    std::optional<Vec3> sensor; ///< where the scanner stood, if the file says
+
+    std::size_t size() const { return positions.size(); }
+    bool has_normals() const { return !normals.empty(); }
+    Box bounds() const;
+};
+
+/// What `drop_nonfinite` removed.
+struct Dropped {
+    std::size_t nonfinite = 0;   ///< points with NaN or Inf in a coordinate
+    std::size_t bad_normals = 0; ///< points kept whose normal was zero or not finite
+};
+
+/// Removes the points with a NaN or Inf coordinate, in place and in order; normals that are not finite or
+/// zero become (0, 0, 0), which every stage reads as "no normal here". O(n).
+Dropped drop_nonfinite(PointCloud& cloud);
+
+} // namespace hsdm

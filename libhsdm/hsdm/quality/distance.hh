@@ -1,0 +1,43 @@
+#pragma once
+// Section 4: how far the points are from the mesh, exactly.
+
+#include "hsdm/polygon_mesh.hh"
+
+#include <array>
+#include <span>
+
+namespace hsdm {
+
+/// One-sided distance of a set of points to a surface, in the cloud's units.
+struct Distance {
+    double max = 0; ///< one-sided Hausdorff distance
+    double mean = 0;
+    double rms = 0;
+    std::size_t farthest = 0; ///< index of the point at distance max
+};
+
+/// Triangles of a mesh in a bounding volume hierarchy. Polygons are cut as the STL writer cuts them.
+class MeshDistance {
+public:
+    /// O(t log t), parallel. The mesh need not outlive it.
+    explicit MeshDistance(const PolygonMesh& mesh);
+    /// Distance from a point to the nearest triangle; infinity if the mesh has no facet.
+    double operator()(const Vec3& point) const;
+
+private:
+    struct Node {
+        Box box;
+        Index begin,
+            end; // leaf: its triangles; inner node: begin == no_index, end = right child (left is next)
+    };
+    std::vector<std::array<Vec3, 3>> triangles_;
+    std::vector<Node> nodes_;
+};
+
+/// Every point against its nearest triangle, through the tree; parallel, the same bits for any thread count.
+Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh);
+
+/// Points spread evenly over the mesh's area, deterministic: for the other direction of a Hausdorff distance.
+std::vector<Vec3> sample_surface(const PolygonMesh& mesh, std::size_t count);
+
+} // namespace hsdm

@@ -1,0 +1,44 @@
+#pragma once
+// What kind of surface a polygon mesh is, found from its facets alone.
+
+#include "hsdm/polygon_mesh.hh"
+
+namespace hsdm {
+
+struct Topology {
+    std::size_t vertices = 0; ///< used by a facet
+    std::size_t isolated_vertices = 0;
+    std::size_t edges = 0, faces = 0;
+    std::size_t triangles = 0, quads = 0, larger = 0;
+    std::size_t components = 0;
+    std::size_t boundary_edges = 0, boundary_loops = 0;
+    std::size_t nonmanifold_edges = 0;    ///< with three or more facets
+    std::size_t nonmanifold_vertices = 0; ///< whose facets form more than one fan
+    std::size_t misoriented_edges = 0;    ///< whose two facets run along it the same way
+    std::size_t degenerate_facets = 0; ///< fewer than three different vertices, a repeated index, or no area
+    std::size_t duplicate_facets = 0;  ///< over the same vertices as an earlier one
+    long euler = 0;                    ///< V - E + F
+    double signed_volume = 0;          ///< positive if closed and outward
+
+    bool manifold() const { return nonmanifold_edges == 0 && nonmanifold_vertices == 0; }
+    bool closed() const { return faces > 0 && boundary_edges == 0; }
+    /// Sum over components of the closed surface each becomes when its boundary loops are capped.
+    long genus() const {
+        return static_cast<long>(components) - (euler + static_cast<long>(boundary_loops)) / 2;
+    }
+};
+
+/// O(facets), flat arrays and one sort.
+Topology measure_topology(const PolygonMesh& mesh);
+
+/// Shape of the facets (0 worst, 1 a square).
+struct FacetShape {
+    double quad_share = 0; ///< quads / facets
+    double scaled_jacobian_median =
+        0; ///< of quads: the least over its corners of |e1 x e2| / (|e1| |e2|), signed
+    double scaled_jacobian_min = 0;
+    double edge_length_mean = 0;
+};
+FacetShape measure_shape(const PolygonMesh& mesh);
+
+} // namespace hsdm

@@ -1,0 +1,52 @@
+#pragma once
+// The whole method, Figure 1: cloud -> octree -> graph -> facets -> mesh -> features.
+
+#include "hsdm/mesh_types.hh"
+#include "hsdm/point_cloud.hh"
+#include "hsdm/report.hh"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hsdm {
+
+enum class Method {
+    automatic, ///< the best method for the cloud
+    basic,     ///< sections 3.1 to 3.3, positions only
+    extended,  ///< section 3.4, with normals
+};
+enum class NormalSource { automatic, given, estimate };
+enum class Holes { automatic, keep, close };
+
+struct ReconstructOptions {
+    /// Resolution: at most one of the two; by default the depth follows from the spacing of the points.
+    std::optional<int> depth; ///< octree depth over the bounding cube, [1, 16]
+    std::optional<double>
+        voxel_size; ///< edge of a voxel in the cloud's units, > 0; the next finer power of two is taken
+    Method method = Method::automatic;
+    NormalSource normals = NormalSource::automatic;
+    Holes holes = Holes::automatic;
+    double crease_angle =
+        0.61;                 ///< radians, (0, pi): dihedral angle above which an edge is sharp (35 degrees)
+    int normal_smoothing = 3; ///< rounds of anisotropic normal smoothing, >= 0 (section 3.3)
+    int threads = 0;          ///< at most this many; 0: all. The result does not depend on it
+    std::string
+        debug_dir; ///< if set, the phases of Fig. 3 are written there (voxels, graph, facets) as OBJ and OFF
+    std::function<bool(const char* phase, double done)> progress; ///< done in [0, 1]; return false to cancel
+};
+
+struct Reconstruction {
+    PolyMesh mesh; ///< with the `hsdm_...` properties and status bits, in the cloud's coordinates
+    Report report;
+};
+
+/// Throws OptionError for an option out of range, Error for a cloud without a surface in it, Cancelled.
+Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& options = {});
+
+/// One octree, one mesh per level first_depth .. last_depth (section 3.2.3, Fig. 9).
+std::vector<Reconstruction> reconstruct_levels(const PointCloud& cloud, int first_depth, int last_depth,
+                                               const ReconstructOptions& options = {});
+
+} // namespace hsdm

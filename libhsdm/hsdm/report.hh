@@ -1,0 +1,63 @@
+#pragma once
+// What a reconstruction did and how long it took; the keys are the contract that scripts rely on.
+
+#include "hsdm/types.hh"
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace hsdm {
+
+struct Report {
+    std::map<std::string, std::string> options; ///< as given or chosen, by their command-line names
+
+    struct Input {
+        std::string file;
+        std::size_t points = 0, dropped_nonfinite = 0, merged_duplicates = 0;
+        bool has_normals = false;
+        Box bbox;
+        double spacing = 0; ///< mean distance between neighbouring points
+    } input;
+
+    struct Grid {
+        std::string kind = "uniform";
+        int depth = 0;
+        double voxel_size = 0;
+        std::size_t voxels = 0;
+        std::vector<std::size_t> leaves_per_level; ///< index = level
+        std::size_t sets = 0, balance_splits = 0;
+    } grid;
+
+    struct Mesh {
+        std::size_t vertices = 0, edges = 0, faces = 0, triangles = 0, quads = 0, larger = 0;
+        std::size_t components = 0, boundary_loops = 0, boundary_edges = 0;
+        long euler = 0, genus = 0;
+        bool closed = false;
+    } mesh;
+
+    struct Features {
+        std::size_t sharp_edges = 0, smooth_vertices = 0, edge_vertices = 0, corner_vertices = 0;
+    } features;
+
+    struct Error {
+        double points_to_mesh_max = 0, points_to_mesh_mean = 0, points_to_mesh_rms = 0;
+        double normalised_max = 0; ///< max over the diagonal of the bounding box
+    } error;
+
+    std::map<std::string, std::size_t> rejected; ///< by stage: what it refused, mended or split
+
+    struct Seconds {
+        double read = 0, normals = 0, octree = 0, graph = 0, facets = 0, mesh = 0, features = 0, error = 0,
+               write = 0, total = 0;
+    } seconds;
+
+    std::size_t peak_memory_bytes = 0;
+    int threads = 0;
+};
+
+/// The report as JSON text, keys as in the command's contract.
+std::string to_json(const Report& report);
+
+} // namespace hsdm

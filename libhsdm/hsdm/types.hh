@@ -1,0 +1,41 @@
+#pragma once
+// The few types that every stage shares.
+
+#include <OpenMesh/Core/Geometry/VectorT.hh>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+namespace hsdm {
+
+/// A point or a direction, in the cloud's units. OpenMesh's own vector, so nothing is converted at the seam.
+using Vec3 = OpenMesh::Vec3d;
+
+/// Index of a point, voxel, vertex or facet. Clouds and meshes hold fewer than 2^32 - 1 of each.
+using Index = std::uint32_t;
+inline constexpr Index no_index = 0xffffffffu;
+
+/// Axis-aligned box; empty until the first point is added.
+struct Box {
+    static constexpr double inf = std::numeric_limits<double>::infinity();
+    Vec3 lo{inf, inf, inf};
+    Vec3 hi{-inf, -inf, -inf};
+
+    void add(const Vec3& p) {
+        lo.minimize(p);
+        hi.maximize(p);
+    }
+    void add(const Box& b) {
+        lo.minimize(b.lo);
+        hi.maximize(b.hi);
+    }
+    bool empty() const { return lo[0] > hi[0]; }
+    Vec3 size() const { return empty() ? Vec3(0, 0, 0) : hi - lo; }
+    /// Length of the space diagonal: what errors are normalised by (section 4 of the paper).
+    double diagonal() const { return size().norm(); }
+    /// The longest side: the edge of the octree's bounding cube (section 3.1).
+    double extent() const { return size().max(); }
+};
+
+} // namespace hsdm
