@@ -22,9 +22,9 @@ enum class Holes { automatic, keep, close };
 
 struct ReconstructOptions {
     /// Resolution: at most one of the two; by default the depth follows from the spacing of the points.
-    std::optional<int> depth; ///< octree depth over the bounding cube, [1, 16]
-    std::optional<double>
-        voxel_size; ///< edge of a voxel in the cloud's units, > 0; the next finer power of two is taken
+    std::optional<int> depth;         ///< octree depth over the bounding cube, [1, 16]
+    std::optional<double> voxel_size; ///< edge of a voxel in the cloud's units, > 0: kept exactly, the
+                                      ///< bounding cube grows to the next power of two of it
     Method method = Method::automatic;
     NormalSource normals = NormalSource::automatic;
     Holes holes = Holes::automatic;

@@ -10,14 +10,15 @@ namespace hsdm {
 
 struct OctreeOptions {
     bool merge_duplicates = true; ///< points equal in position and normal count once
+    double cube_extent = 0; ///< edge of the bounding cube, at least the cloud's longest side; 0: that side
 };
 
 /// The cloud in Morton order inside its bounding cube (Fig. 3b). One sort serves every level, 0 to 21: the
 /// voxels of a level are the runs of points whose codes agree in their first 3 * level bits.
 struct Octree {
     Vec3 origin{0, 0, 0}; ///< least corner of the bounding cube; positions below are relative to it
-    double extent = 0;    ///< edge of the bounding cube = longest side of the cloud's box, not padded
-    Box bounds;           ///< box of the cloud, in the cloud's own coordinates
+    double extent = 0; ///< edge of the bounding cube: the cloud's longest side, not padded, unless asked for
+    Box bounds;        ///< box of the cloud, in the cloud's own coordinates
     std::vector<MortonCode> codes; ///< per point, level 21, ascending
     std::vector<Vec3> positions;   ///< per point, relative to origin
     std::vector<Vec3> normals;     ///< per point, unit or (0, 0, 0); empty if the cloud has none
@@ -32,7 +33,8 @@ struct Octree {
 /// Sorts the cloud into its HSDM. O(n) time and space (radix sort of 63-bit codes), parallel; the result does
 /// not depend on the order of the points, nor on the number of threads. Ties of the code are ordered by
 /// position, then normal, so each voxel's points come in one canonical order. Throws Error if the cloud is
-/// empty, holds a non-finite coordinate, or all its points are equal.
+/// empty, holds a non-finite coordinate, or all its points are equal;
+/// OptionError if cube_extent is given but smaller than the cloud.
 Octree build_octree(const PointCloud& cloud, const OctreeOptions& options = {});
 
 /// The occupied voxels of one level, in Morton order. Voxel v holds points first_point[v] .. first_point[v +
