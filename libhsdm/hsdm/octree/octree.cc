@@ -5,9 +5,11 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <tuple>
 
@@ -20,6 +22,18 @@ constexpr std::size_t grain = 1 << 14;
 Vec3 unit_or_zero(const Vec3& n) {
     const double length = n.norm();
     return length > 0 && std::isfinite(length) ? n / length : Vec3(0, 0, 0);
+}
+
+/// A sum is finite only if every term is, short of an overflow that no coordinate in use comes near.
+bool all_finite(const PointCloud& cloud) {
+    return tbb::parallel_reduce(
+        Range(0, cloud.size(), grain), true,
+        [&](const Range& range, bool finite) {
+            for (std::size_t i = range.begin(); finite && i != range.end(); ++i)
+                finite = std::isfinite(cloud.positions[i][0] + cloud.positions[i][1] + cloud.positions[i][2]);
+            return finite;
+        },
+        std::logical_and<>());
 }
 
 /// Level-21 code of a position relative to the cube; the cube's far faces belong to the last voxel.
@@ -70,9 +84,15 @@ Octree build_octree(const PointCloud& cloud, const OctreeOptions& options) {
     octree.bounds = cloud.bounds();
     octree.origin = octree.bounds.lo;
     octree.extent = octree.bounds.extent();
-    if (!std::isfinite(octree.extent))
+    if (!all_finite(cloud))
         throw Error("the cloud holds coordinates that are not finite; call drop_nonfinite first");
     if (octree.extent <= 0) throw Error("all points are equal; a surface needs points that differ");
+    if (options.cube_extent != 0) {
+        if (!(options.cube_extent >= octree.extent))
+            throw OptionError("cube_extent " + std::to_string(options.cube_extent)
+                              + ": must be 0 or at least " + std::to_string(octree.extent));
+        octree.extent = options.cube_extent;
+    }
 
     const std::size_t n = cloud.size();
     const double scale = static_cast<double>(1 << morton_levels) / octree.extent;

@@ -1,0 +1,125 @@
+#include "hsdm/errors.hh"
+#include "hsdm/octree/octree.hh"
+
+#include <catch2/catch.hpp>
+#include <tbb/global_control.h>
+
+#include <numeric>
+#include <random>
+#include <set>
+
+using namespace hsdm;
+
+namespace {
+
+PointCloud random_cloud(std::size_t n, unsigned seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> coordinate(-3, 5);
+    PointCloud cloud;
+    for (std::size_t i = 0; i < n; ++i)
+        cloud.positions.emplace_back(coordinate(random), coordinate(random), 0.5 * coordinate(random));
+    return cloud;
+}
+
+} // namespace
+
+TEST_CASE("Morton codes give their coordinates back and order children within parents", "[octree]") {
+    std::mt19937_64 random(1);
+    for (int i = 0; i < 1000; ++i) {
+        const VoxelCoord c{static_cast<int>(random() >> 43), static_cast<int>(random() >> 43),
+                           static_cast<int>(random() >> 43)};
+        CHECK(morton_decode(morton_encode(c)) == c);
+        const VoxelCoord parent{c[0] / 2, c[1] / 2, c[2] / 2};
+        CHECK(morton_encode(c) >> 3 == morton_encode(parent));
+    }
+}
+
+TEST_CASE("every point lies in the voxel that holds it, at every level", "[octree]") {
+    const PointCloud cloud = random_cloud(5000, 2);
+    const Octree octree = build_octree(cloud);
+    REQUIRE(octree.size() == cloud.size());
+    for (int depth : {0, 1, 4, 9, 16}) {
+        const OctreeLevel level = extract_level(octree, depth);
+        CHECK(level.first_point.back() == cloud.size());
+        bool inside = true, found = true;
+        for (Index v = 0; v < level.size(); ++v) {
+            const VoxelCoord c = level.coord(v);
+            found &= level.find(c) == v && level.first_point[v] < level.first_point[v + 1];
+            for (Index p = level.first_point[v]; p < level.first_point[v + 1]; ++p)
+                for (unsigned k = 0; k < 3; ++k) {
+                    const double x = octree.positions[p][k] / level.voxel_size,
+                                 tolerance = 1e-9 * (1 << depth);
+                    inside &= x >= c[k] - tolerance && x <= c[k] + 1 + tolerance;
+                }
+        }
+        CHECK(inside);
+        CHECK(found);
+    }
+}
+
+TEST_CASE("a coordinate without points is not found", "[octree]") {
+    PointCloud cloud;
+    cloud.positions = {Vec3(0, 0, 0), Vec3(1, 1, 1)};
+    const OctreeLevel level = extract_level(build_octree(cloud), 3);
+    REQUIRE(level.size() == 2);
+    CHECK(level.find(VoxelCoord{0, 0, 0}) == 0);
+    CHECK(level.find(VoxelCoord{7, 7, 7}) == 1);
+    CHECK(level.find(VoxelCoord{1, 0, 0}) == no_index);
+    CHECK(level.find(VoxelCoord{-1, 0, 0}) == no_index);
+    CHECK(level.find(VoxelCoord{8, 7, 7}) == no_index);
+}
+
+TEST_CASE("the octree does not depend on the order of the points or on the number of threads", "[octree]") {
+    PointCloud cloud = random_cloud(300000, 3);
+    for (std::size_t i = 0; i < 1000; ++i) cloud.positions[i] = cloud.positions[i + 1000]; // duplicates
+    const Octree octree = build_octree(cloud);
+    CHECK(octree.merged_duplicates == 1000);
+
+    std::shuffle(cloud.positions.begin(), cloud.positions.end(), std::mt19937_64(4));
+    const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+    const Octree shuffled = build_octree(cloud);
+    CHECK(shuffled.codes == octree.codes);
+    CHECK(shuffled.positions == octree.positions);
+}
+
+TEST_CASE("merged duplicates differ in position or normal, never in neither", "[octree]") {
+    PointCloud cloud;
+    cloud.positions = {Vec3(0, 0, 0), Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, 0)};
+    cloud.normals = {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(0, 0, 1), Vec3(0, 0, 1)};
+    const Octree octree = build_octree(cloud);
+    CHECK(octree.size() == 3);
+    CHECK(octree.merged_duplicates == 1);
+    OctreeOptions keep;
+    keep.merge_duplicates = false;
+    CHECK(build_octree(cloud, keep).size() == 4);
+}
+
+TEST_CASE("clouds without extent are refused", "[octree]") {
+    PointCloud cloud;
+    CHECK_THROWS_AS(build_octree(cloud), Error);
+    cloud.positions.assign(10, Vec3(1e7, 2, 3));
+    CHECK_THROWS_AS(build_octree(cloud), Error);
+    cloud.positions.push_back(Vec3(std::numeric_limits<double>::quiet_NaN(), 0, 0));
+    CHECK_THROWS_AS(build_octree(cloud), Error);
+}
+
+TEST_CASE("a larger bounding cube moves no point and a smaller one is refused", "[octree]") {
+    const PointCloud cloud = random_cloud(100, 5);
+    OctreeOptions options;
+    options.cube_extent = 16;
+    const Octree octree = build_octree(cloud, options);
+    CHECK(octree.voxel_size(4) == 1);
+    for (std::size_t i = 0; i < octree.size(); ++i)
+        CHECK((octree.positions[i] + octree.origin - cloud.positions[octree.source[i]]).norm() < 1e-12);
+    options.cube_extent = 1;
+    CHECK_THROWS_AS(build_octree(cloud, options), OptionError);
+}
+
+TEST_CASE("neighbour offsets are 6 faces, 12 edges, 8 corners, each once", "[octree]") {
+    std::set<VoxelCoord> seen(neighbor_offsets.begin(), neighbor_offsets.end());
+    CHECK(seen.size() == 26);
+    for (std::size_t i = 0; i < 26; ++i) {
+        const VoxelCoord& o = neighbor_offsets[i];
+        CHECK(std::abs(o[0]) + std::abs(o[1]) + std::abs(o[2]) == (i < 6 ? 1 : i < 18 ? 2 : 3));
+    }
+}
