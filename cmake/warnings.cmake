@@ -1,9 +1,17 @@
-# hsdm_warnings(TARGET): the warnings every target of the project is clean of.
+# hsdm_warnings(TARGET): the warnings every target of the project is clean of, and the sanitizers of
+# HSDM_SANITIZE (a list for -fsanitize=, e.g. "address,undefined"; empty: none).
 # Kept PRIVATE, so that a consumer's own flags are untouched.
+set(HSDM_SANITIZE "" CACHE STRING "Sanitizers to build the project's own targets with")
+
 function(hsdm_warnings target)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wshadow -Wconversion
     $<$<BOOL:${HSDM_WARNINGS_AS_ERRORS}>:-Werror>)
+  if(HSDM_SANITIZE)
+    target_compile_options(${target} PRIVATE
+      -fsanitize=${HSDM_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_link_options(${target} PRIVATE -fsanitize=${HSDM_SANITIZE})
+  endif()
 endfunction()
 
 # hsdm_includes_openmesh_kernel(SOURCE...): g++ 12 reports -Wmaybe-uninitialized from inside OpenMesh's

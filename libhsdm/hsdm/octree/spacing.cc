@@ -1,0 +1,71 @@
+#include "hsdm/octree/spacing.hh"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdio>
+
+namespace hsdm {
+namespace {
+
+using Counts = std::array<std::size_t, morton_levels + 1>;
+
+/// Faces a surface of one unit of area crosses per voxel face, averaged over all directions.
+constexpr double voxels_per_area = 1.5;
+constexpr double points_per_voxel = 8;
+constexpr double spacings_per_voxel = 3;
+constexpr int deepest = 16;
+
+/// The first level at which two codes lie in different voxels; morton_levels + 1 if equal.
+unsigned split_level(MortonCode a, MortonCode b) {
+    if (a == b) return morton_levels + 1;
+    const int highest_bit = 63 - std::countl_zero(a ^ b);
+    return static_cast<unsigned>(morton_levels - highest_bit / 3);
+}
+
+} // namespace
+
+std::array<std::size_t, morton_levels + 1> count_voxels(const Octree& octree) {
+    // begins[l]: points whose predecessor shares their voxel at level l - 1 but not at level l.
+    using Begins = std::array<std::size_t, morton_levels + 2>;
+    const Begins begins = tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(1, std::max<std::size_t>(octree.size(), 1), 1 << 14), Begins{},
+        [&](const tbb::blocked_range<std::size_t>& range, Begins sum) {
+            for (std::size_t i = range.begin(); i != range.end(); ++i)
+                ++sum[split_level(octree.codes[i - 1], octree.codes[i])];
+            return sum;
+        },
+        [](Begins a, const Begins& b) {
+            for (std::size_t l = 0; l < a.size(); ++l) a[l] += b[l];
+            return a;
+        });
+    Counts counts;
+    std::size_t sum = octree.size() > 0 ? 1 : 0;
+    for (unsigned level = 0; level <= morton_levels; ++level) counts[level] = sum += begins[level];
+    return counts;
+}
+
+double estimate_spacing(const Octree& octree) {
+    const Counts counts = count_voxels(octree);
+    const auto n = static_cast<double>(octree.size());
+    unsigned level = morton_levels;
+    while (level > 0 && n < points_per_voxel * static_cast<double>(counts[level])) --level;
+    const double h = octree.voxel_size(static_cast<int>(level));
+    return h * std::sqrt(static_cast<double>(counts[level]) / (voxels_per_area * n));
+}
+
+DepthChoice choose_depth(const Octree& octree, double spacing) {
+    DepthChoice choice;
+    while (choice.depth < deepest && octree.voxel_size(choice.depth + 1) >= spacings_per_voxel * spacing)
+        ++choice.depth;
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "the finest depth with voxels of at least %g spacings of the points (spacing %.4g)",
+                  spacings_per_voxel, spacing);
+    choice.reason = text;
+    return choice;
+}
+
+} // namespace hsdm

@@ -1,0 +1,29 @@
+#pragma once
+// How densely a cloud samples its surface, read off the octree, and the depth that this density carries.
+
+#include "hsdm/octree/octree.hh"
+
+#include <string>
+
+namespace hsdm {
+
+/// Number of occupied voxels of every level, 0 to 21, in one pass over the sorted codes. O(n), parallel.
+std::array<std::size_t, morton_levels + 1> count_voxels(const Octree& octree);
+
+/// Mean distance between neighbouring points in the cloud's units: the side of the square of surface that
+/// each point stands for. The area is taken from the finest level that still holds 8 points or more per
+/// voxel: a surface in general pose occupies 1.5 A / h^2 voxels of edge h. A few percent off for axis-aligned
+/// planes (which occupy A / h^2); meaningless for points that fill a volume.
+double estimate_spacing(const Octree& octree);
+
+/// A depth and why.
+struct DepthChoice {
+    int depth = 1;
+    std::string reason; ///< one clause for a person
+};
+
+/// The finest depth in [1, 16] whose voxels are at least three spacings wide, so that a surface in general
+/// pose leaves few voxels empty by chance (about six points per voxel).
+DepthChoice choose_depth(const Octree& octree, double spacing);
+
+} // namespace hsdm

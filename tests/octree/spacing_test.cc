@@ -1,0 +1,50 @@
+#include "hsdm/octree/spacing.hh"
+#include "support/sample.hh"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+using namespace hsdm;
+
+namespace {
+Octree sphere_octree(std::size_t points) {
+    support::SampleOptions options;
+    options.points = points;
+    return build_octree(support::sample(support::sphere(1), options));
+}
+} // namespace
+
+TEST_CASE("voxels counted in one pass agree with every extracted level", "[octree]") {
+    const Octree octree = sphere_octree(3000);
+    const auto counts = count_voxels(octree);
+    for (int level = 0; level <= morton_levels; ++level)
+        CHECK(counts[static_cast<unsigned>(level)] == extract_level(octree, level).size());
+}
+
+TEST_CASE("the spacing is the square root of the area per point", "[octree]") {
+    for (std::size_t n : {2000, 20000, 100000}) {
+        const double expected = std::sqrt(4 * std::numbers::pi / static_cast<double>(n));
+        CHECK(estimate_spacing(sphere_octree(n)) == Approx(expected).epsilon(0.15));
+    }
+}
+
+TEST_CASE("the chosen depth has voxels of three to six spacings", "[octree]") {
+    for (std::size_t n : {500, 5000, 50000}) {
+        const Octree octree = sphere_octree(n);
+        const double spacing = estimate_spacing(octree);
+        const DepthChoice choice = choose_depth(octree, spacing);
+        CHECK(octree.voxel_size(choice.depth) >= 3 * spacing);
+        CHECK(octree.voxel_size(choice.depth) < 6 * spacing);
+        CHECK_FALSE(choice.reason.empty());
+    }
+}
+
+TEST_CASE("a cloud of two points still gets a depth", "[octree]") {
+    PointCloud cloud;
+    cloud.positions = {Vec3(0, 0, 0), Vec3(1, 2, 3)};
+    const Octree octree = build_octree(cloud);
+    const double spacing = estimate_spacing(octree);
+    CHECK(spacing > 0);
+    CHECK(choose_depth(octree, spacing).depth == 1);
+}

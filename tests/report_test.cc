@@ -1,0 +1,37 @@
+#include "hsdm/report.hh"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+using namespace hsdm;
+
+TEST_CASE("the report holds every key that scripts rely on, numbers plain", "[report]") {
+    Report report;
+    report.options.emplace("depth", "5");
+    report.input.file = "a \"quoted\" name \xff.xyz"; // not UTF-8
+    report.input.bbox.add(Vec3(1, 2, 3));
+    report.rejected["hit_test"] = 7;
+    const auto json = nlohmann::json::parse(to_json(report));
+    const std::vector<std::pair<const char*, std::vector<const char*>>> expected = {
+        {"input",
+         {"file", "points", "dropped_nonfinite", "merged_duplicates", "has_normals", "bbox_min", "bbox_max",
+          "spacing"}},
+        {"grid", {"kind", "depth", "voxel_size", "voxels", "leaves_per_level", "sets", "balance_splits"}},
+        {"mesh",
+         {"vertices", "edges", "faces", "triangles", "quads", "larger", "components", "boundary_loops",
+          "boundary_edges", "euler", "genus", "closed"}},
+        {"features", {"sharp_edges", "smooth_vertices", "edge_vertices", "corner_vertices"}},
+        {"error", {"points_to_mesh_max", "points_to_mesh_mean", "points_to_mesh_rms", "normalised_max"}},
+        {"seconds",
+         {"read", "normals", "octree", "graph", "facets", "mesh", "features", "error", "write", "total"}}};
+    for (const auto& [section, keys] : expected)
+        for (const char* key : keys) {
+            INFO(section << "." << key);
+            CHECK(json.at(section).contains(key));
+        }
+    for (const char* key : {"version", "options", "rejected", "peak_memory_bytes", "threads"})
+        CHECK(json.contains(key));
+    CHECK(json["input"]["bbox_min"] == nlohmann::json{1, 2, 3});
+    CHECK(json["rejected"]["hit_test"] == 7);
+    CHECK(json["options"]["depth"] == "5");
+}

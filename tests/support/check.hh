@@ -1,0 +1,19 @@
+#pragma once
+// What every mesh the project writes must be, as one sentence per fault.
+
+#include "hsdm/polygon_mesh.hh"
+#include "hsdm/quality/topology.hh"
+#include "support/solid.hh"
+
+#include <string>
+
+namespace hsdm::support {
+
+/// Empty if the mesh is a consistently oriented 2-manifold (possibly with boundary) without degenerate or
+/// duplicate facets and isolated vertices, outward if closed; otherwise what is wrong with it.
+std::string faults(const PolygonMesh& mesh);
+
+/// The largest distance of a vertex from the solid's boundary.
+double farthest_vertex(const PolygonMesh& mesh, const Solid& solid);
+
+} // namespace hsdm::support
