@@ -10,13 +10,21 @@ struct ToMeshResult {
     PolyMesh mesh;
     std::size_t rejected =
         0; ///< facets that would have broken the 2-manifold; 0 for what our own facet stages make
+    std::size_t split_vertices =
+        0; ///< vertices added where facets met in a vertex only: each fan has its own
 };
 
-/// Builds the half-edge mesh. Every facet is checked before add_face sees it, so OpenMesh never prints;
-/// vertex properties become named mesh properties (`hsdm_...`). Isolated vertices are left out.
+/// Builds the half-edge mesh: always an oriented 2-manifold, possibly with boundary. A facet is rejected if
+/// it has fewer than three vertices, one of them twice or one that does not exist, or if it runs along an
+/// edge in the direction an earlier facet already does (so a third facet at an edge, or one turned the wrong
+/// way). A facet's vertices keep their order, vertices keep theirs; isolated vertices are left out, copies of
+/// split vertices come last. Vertex properties become named mesh properties (`hsdm_...`), facets get their
+/// normals. Nothing is printed. O(corners log valence), parallel.
 ToMeshResult to_mesh(const PolygonMesh& facets);
 
-/// The mesh's polygons, and its `hsdm_...` vertex properties of scalar type.
+/// The mesh's polygons without deleted elements and isolated vertices; its vertex normals if it has them; its
+/// named vertex properties of type uint8, int32, float and double. `hsdm_normals` comes as nine of type
+/// float, `hsdm_normals_0_x` to `hsdm_normals_2_z`; to_mesh puts them together again. Parallel, O(corners).
 PolygonMesh to_polygons(const PolyMesh& mesh);
 
 } // namespace hsdm

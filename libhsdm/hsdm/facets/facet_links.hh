@@ -1,0 +1,36 @@
+#pragma once
+// Which sides of facets are twins, and which corners form a fan: the half-edge structure as flat arrays.
+
+#include "hsdm/polygon_mesh.hh"
+
+#include <cstdint>
+#include <vector>
+
+namespace hsdm {
+
+/// Side c of a facet runs from corners[c] to the facet's next corner. Sides of rejected facets take no part.
+struct FacetLinks {
+    std::vector<char> accepted;     ///< per facet
+    std::vector<Index> facet;       ///< per side, its facet
+    std::vector<Index> twin;        ///< per side, the side running the other way, or no_index
+    std::vector<Index> vertex;      ///< per side, its start vertex after splitting and renumbering
+    std::vector<Index> source;      ///< per vertex, its index in the facets' positions
+    std::vector<Index> side_out;    ///< per vertex, a side that starts there
+    std::vector<Index> open_in;     ///< per vertex, the side without twin that ends there, or no_index
+    std::size_t rejected = 0;       ///< facets
+    std::size_t split_vertices = 0; ///< vertices added at the end, copies of earlier ones
+};
+
+/// See to_mesh for what is accepted. Every vertex of the result has exactly one fan of facets, so at most one
+/// side without twin ends in it.
+FacetLinks link_facets(const PolygonMesh& facets);
+
+/// The side after c, and the one before, in c's facet.
+inline Index next_side(const PolygonMesh& facets, Index facet, Index c) {
+    return c + 1 == facets.first[facet + 1] ? facets.first[facet] : c + 1;
+}
+inline Index previous_side(const PolygonMesh& facets, Index facet, Index c) {
+    return c == facets.first[facet] ? facets.first[facet + 1] - 1 : c - 1;
+}
+
+} // namespace hsdm
