@@ -2,8 +2,8 @@
 // Section 4: how far the points are from the mesh, exactly.
 
 #include "hsdm/polygon_mesh.hh"
+#include "hsdm/quality/triangle_tree.hh"
 
-#include <array>
 #include <span>
 
 namespace hsdm {
@@ -23,15 +23,12 @@ public:
     explicit MeshDistance(const PolygonMesh& mesh);
     /// Distance from a point to the nearest triangle; infinity if the mesh has no facet.
     double operator()(const Vec3& point) const;
+    /// All points; parallel, quickest when neighbours in the list are neighbours in space, the same bits for
+    /// any number of threads. Zero for an empty list.
+    Distance operator()(std::span<const Vec3> points) const;
 
 private:
-    struct Node {
-        Box box;
-        Index begin,
-            end; // leaf: its triangles; inner node: begin == no_index, end = right child (left is next)
-    };
-    std::vector<std::array<Vec3, 3>> triangles_;
-    std::vector<Node> nodes_;
+    TriangleTree tree_;
 };
 
 /// Every point against its nearest triangle, through the tree; parallel, the same bits for any thread count.

@@ -1,0 +1,14 @@
+#pragma once
+// The writers behind write_mesh, one per format; each appends a complete document to an open file.
+
+#include "hsdm/io/atomic_file.hh"
+#include "hsdm/polygon_mesh.hh"
+
+namespace hsdm {
+
+void write_off(AtomicFile& file, const PolygonMesh& mesh);
+void write_obj(AtomicFile& file, const PolygonMesh& mesh);
+void write_ply(AtomicFile& file, const PolygonMesh& mesh, bool ascii);
+void write_stl(AtomicFile& file, const PolygonMesh& mesh, bool ascii);
+
+} // namespace hsdm

@@ -1,0 +1,74 @@
+#include "hsdm/facets/triangulate.hh"
+#include "hsdm/io/format_chunks.hh"
+#include "hsdm/io/mesh_writers.hh"
+
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+/// Whether some vertex would move by more than 1e-6 of the mesh's diagonal when stored as float.
+bool too_coarse_for_float(const PolygonMesh& mesh) {
+    Box box;
+    for (const Vec3& p : mesh.positions) box.add(p);
+    const double tolerance = 1e-6 * box.diagonal();
+    for (const Vec3& p : mesh.positions) {
+        Vec3 moved;
+        for (unsigned k = 0; k < 3; ++k) moved[k] = static_cast<double>(static_cast<float>(p[k])) - p[k];
+        if (!(moved.norm() <= tolerance)) return true;
+    }
+    return false;
+}
+
+Vec3 unit_normal(const std::vector<Vec3>& p, const Triangle& t) {
+    const Vec3 n = (p[t[1]] - p[t[0]]) % (p[t[2]] - p[t[0]]);
+    const double length = n.norm();
+    return length > 0 && std::isfinite(length) ? n / length : Vec3(0, 0, 0);
+}
+
+void write_ascii(AtomicFile& file, const PolygonMesh& mesh, const Triangulation& cut) {
+    file.write("solid hsdm\n");
+    write_chunks(file, cut.size(), [&](std::string& out, std::size_t begin, std::size_t end) {
+        auto put = [&](const char* keyword, const Vec3& v) {
+            out += keyword;
+            for (double x : v) append_number(out += ' ', x);
+            out += '\n';
+        };
+        for (std::size_t t = begin; t < end; ++t) {
+            put("facet normal", unit_normal(mesh.positions, cut.triangles[t]));
+            out += "outer loop\n";
+            for (Index v : cut.triangles[t]) put("vertex", mesh.positions[v]);
+            out += "endloop\nendfacet\n";
+        }
+    });
+    file.write("endsolid hsdm\n");
+}
+
+void write_binary(AtomicFile& file, const PolygonMesh& mesh, const Triangulation& cut) {
+    std::string header = "binary STL by hsdm"; // must not begin with "solid": readers take that for text
+    header.resize(80, ' ');
+    append_bytes(header, static_cast<std::uint32_t>(cut.size()));
+    file.write(header);
+    write_chunks(file, cut.size(), [&](std::string& out, std::size_t begin, std::size_t end) {
+        auto put = [&](const Vec3& v) {
+            for (double x : v) append_bytes(out, static_cast<float>(x));
+        };
+        for (std::size_t t = begin; t < end; ++t) {
+            put(unit_normal(mesh.positions, cut.triangles[t]));
+            for (Index v : cut.triangles[t]) put(mesh.positions[v]);
+            append_bytes(out, std::uint16_t{0});
+        }
+    });
+}
+
+} // namespace
+
+void write_stl(AtomicFile& file, const PolygonMesh& mesh, bool ascii) {
+    const Triangulation cut = triangulate(mesh);
+    if (ascii || too_coarse_for_float(mesh))
+        write_ascii(file, mesh, cut);
+    else
+        write_binary(file, mesh, cut);
+}
+
+} // namespace hsdm

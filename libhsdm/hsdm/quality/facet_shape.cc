@@ -1,0 +1,47 @@
+#include "hsdm/quality/topology.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+/// Least over the corners of the sine between the two sides, seen along the quad's area vector.
+double scaled_jacobian(const std::vector<Vec3>& p, std::span<const Index> quad) {
+    Vec3 axis = (p[quad[2]] - p[quad[0]]) % (p[quad[3]] - p[quad[1]]);
+    const double length = axis.norm();
+    if (length > 0) axis /= length;
+    double least = 1;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const Vec3 to_next = p[quad[(k + 1) % 4]] - p[quad[k]], to_last = p[quad[(k + 3) % 4]] - p[quad[k]];
+        const double lengths = to_next.norm() * to_last.norm();
+        least = std::min(least, lengths > 0 ? (axis | (to_next % to_last)) / lengths : 0.0);
+    }
+    return least;
+}
+
+} // namespace
+
+FacetShape measure_shape(const PolygonMesh& mesh) {
+    FacetShape shape;
+    std::vector<double> jacobians;
+    double length = 0, edge_uses = 0;
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+        const auto facet = mesh.facet(f);
+        if (facet.size() == 4) jacobians.push_back(scaled_jacobian(mesh.positions, facet));
+        for (std::size_t i = 0; i < facet.size(); ++i)
+            length +=
+                (mesh.positions[facet[i + 1 == facet.size() ? 0 : i + 1]] - mesh.positions[facet[i]]).norm();
+        edge_uses += static_cast<double>(facet.size());
+    }
+    if (edge_uses > 0) shape.edge_length_mean = length / edge_uses;
+    if (jacobians.empty()) return shape;
+    shape.quad_share = static_cast<double>(jacobians.size()) / static_cast<double>(mesh.facet_count());
+    const auto median = jacobians.begin() + static_cast<std::ptrdiff_t>((jacobians.size() - 1) / 2);
+    std::nth_element(jacobians.begin(), median, jacobians.end());
+    shape.scaled_jacobian_median = *median;
+    shape.scaled_jacobian_min = *std::min_element(jacobians.begin(), median + 1);
+    return shape;
+}
+
+} // namespace hsdm

@@ -1,0 +1,308 @@
+#include "hsdm/quality/topology.hh"
+
+#include "hsdm/facets/triangulate.hh"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace hsdm {
+namespace {
+
+using Range = tbb::blocked_range<std::size_t>;
+constexpr std::size_t chunk = 1 << 12; // of sums: fixed, so that rounding does not depend on threads
+
+/// Disjoint sets over 0 .. n - 1, path halving.
+class DisjointSets {
+public:
+    explicit DisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
+    Index find(Index i) {
+        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+        return i;
+    }
+    /// Returns whether the two were apart. The least member stays the root.
+    bool join(Index a, Index b) {
+        a = find(a);
+        b = find(b);
+        if (a == b) return false;
+        parent_[std::max(a, b)] = std::min(a, b);
+        return true;
+    }
+
+private:
+    std::vector<Index> parent_;
+};
+
+/// The facets as loops without immediate repeats of a vertex; a loop left with fewer than three corners has
+/// collapsed and is no part of the surface. Corner c is also the half-edge from its vertex to the next one.
+struct Loops {
+    std::vector<Index> vertex, next, facet; ///< per corner
+    std::size_t count = 0;                  ///< loops that have not collapsed
+};
+
+Loops clean_loops(const PolygonMesh& mesh) {
+    Loops loops;
+    loops.vertex.reserve(mesh.corners.size());
+    loops.next.reserve(mesh.corners.size());
+    loops.facet.reserve(mesh.corners.size());
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+        const std::size_t begin = loops.vertex.size();
+        for (Index v : mesh.facet(f))
+            if (loops.vertex.size() == begin || loops.vertex.back() != v) loops.vertex.push_back(v);
+        while (loops.vertex.size() > begin + 1 && loops.vertex.back() == loops.vertex[begin])
+            loops.vertex.pop_back();
+        if (loops.vertex.size() < begin + 3) {
+            loops.vertex.resize(begin);
+            continue;
+        }
+        ++loops.count;
+        for (std::size_t c = begin; c < loops.vertex.size(); ++c) {
+            loops.next.push_back(static_cast<Index>(c + 1));
+            loops.facet.push_back(static_cast<Index>(f));
+        }
+        loops.next.back() = static_cast<Index>(begin);
+    }
+    return loops;
+}
+
+/// Half-edges grouped by their edge: one counting sort by the lesser vertex, then each vertex's few by the
+/// greater one.
+struct EdgeGroups {
+    struct HalfEdge {
+        Index greater, corner;
+        auto operator<=>(const HalfEdge&) const = default;
+    };
+    std::vector<HalfEdge> sorted;
+    std::vector<Index> first; ///< edge e is sorted[first[e]] .. sorted[first[e + 1]]
+
+    std::size_t size() const { return first.size() - 1; }
+    Index uses(std::size_t e) const { return first[e + 1] - first[e]; }
+};
+
+EdgeGroups group_edges(const Loops& loops, std::size_t vertices) {
+    const std::size_t corners = loops.vertex.size();
+    auto ends = [&](std::size_t c) { return std::minmax(loops.vertex[c], loops.vertex[loops.next[c]]); };
+    std::vector<Index> bucket(vertices + 1, 0);
+    for (std::size_t c = 0; c < corners; ++c) ++bucket[ends(c).first + 1];
+    std::partial_sum(bucket.begin(), bucket.end(), bucket.begin());
+    std::vector<Index> at(bucket.begin(), bucket.end() - 1);
+
+    EdgeGroups groups;
+    groups.sorted.resize(corners);
+    for (std::size_t c = 0; c < corners; ++c) {
+        const auto [lesser, greater] = ends(c);
+        groups.sorted[at[lesser]++] = {greater, static_cast<Index>(c)};
+    }
+    tbb::parallel_for(Range(0, vertices, chunk), [&](const Range& range) {
+        for (std::size_t v = range.begin(); v != range.end(); ++v)
+            std::sort(groups.sorted.begin() + bucket[v], groups.sorted.begin() + bucket[v + 1]);
+    });
+    groups.first.reserve(corners / 2 + 1);
+    for (std::size_t v = 0; v < vertices; ++v)
+        for (Index i = bucket[v]; i < bucket[v + 1]; ++i)
+            if (i == bucket[v] || groups.sorted[i].greater != groups.sorted[i - 1].greater)
+                groups.first.push_back(i);
+    groups.first.push_back(static_cast<Index>(corners));
+    return groups;
+}
+
+/// Joins the corners of consecutive facets around each vertex (fans) and facets across edges (components),
+/// and counts what edges show.
+struct Fans {
+    DisjointSets corners, facets;
+    std::vector<Index> fans;             ///< per vertex
+    std::vector<unsigned char> branches; ///< per vertex: an edge with three or more facets ends there
+
+    Fans(const Loops& loops, std::size_t vertices, std::size_t facet_count)
+        : corners(loops.vertex.size()), facets(facet_count), fans(vertices, 0), branches(vertices, 0) {
+        for (Index v : loops.vertex) ++fans[v];
+    }
+
+    /// Corner `a` is at one end of an edge, `b` too, in another facet or at another place of the same one.
+    void join_corners(const Loops& loops, Index a, Index b) {
+        if (corners.join(a, b)) --fans[loops.vertex[a]];
+    }
+};
+
+Fans measure_edges(const Loops& loops, const EdgeGroups& groups, std::size_t vertices,
+                   std::size_t facet_count, Topology& topology) {
+    Fans fans(loops, vertices, facet_count);
+    for (std::size_t e = 0; e < groups.size(); ++e) {
+        const Index uses = groups.uses(e), h = groups.sorted[groups.first[e]].corner;
+        topology.boundary_edges += uses == 1;
+        topology.nonmanifold_edges += uses > 2;
+        for (Index i = groups.first[e] + 1; i < groups.first[e + 1]; ++i) {
+            const Index other = groups.sorted[i].corner;
+            const bool same_way = loops.vertex[other] == loops.vertex[h];
+            topology.misoriented_edges += uses == 2 && same_way;
+            fans.join_corners(loops, h, same_way ? other : loops.next[other]);
+            fans.join_corners(loops, loops.next[h], same_way ? loops.next[other] : other);
+            fans.facets.join(loops.facet[h], loops.facet[other]);
+        }
+        if (uses > 2) fans.branches[loops.vertex[h]] = fans.branches[loops.vertex[loops.next[h]]] = 1;
+    }
+    return fans;
+}
+
+/// The two boundary edges of one fan follow each other along a loop.
+std::size_t count_boundary_loops(const Loops& loops, const EdgeGroups& groups, Fans& fans) {
+    std::vector<Index> boundary; // half-edges
+    for (std::size_t e = 0; e < groups.size(); ++e)
+        if (groups.uses(e) == 1) boundary.push_back(groups.sorted[groups.first[e]].corner);
+    std::vector<Index> seen(loops.vertex.size(), no_index); // by fan: the boundary edge met first
+    DisjointSets chains(boundary.size());
+    std::size_t count = boundary.size();
+    for (Index i = 0; i < boundary.size(); ++i)
+        for (Index end : {boundary[i], loops.next[boundary[i]]}) {
+            Index& first = seen[fans.corners.find(end)];
+            if (first == no_index)
+                first = i;
+            else
+                count -= chains.join(first, i);
+        }
+    return count;
+}
+
+double polygon_area(const PolygonMesh& mesh, std::span<const Index> facet) {
+    const std::vector<Vec3>& p = mesh.positions;
+    double twice = 0;
+    for (std::size_t i = 1; i + 1 < facet.size(); ++i)
+        twice += ((p[facet[i]] - p[facet[0]]) % (p[facet[i + 1]] - p[facet[0]])).norm();
+    return twice / 2;
+}
+
+std::vector<Index> sorted_set(std::span<const Index> facet) {
+    std::vector<Index> sorted(facet.begin(), facet.end());
+    std::sort(sorted.begin(), sorted.end());
+    return sorted;
+}
+
+/// Whether a vertex comes twice; without a copy for the facets that there are many of.
+bool repeats_vertex(std::span<const Index> f) {
+    if (f.size() == 3) return f[0] == f[1] || f[1] == f[2] || f[2] == f[0];
+    if (f.size() == 4)
+        return f[0] == f[1] || f[0] == f[2] || f[0] == f[3] || f[1] == f[2] || f[1] == f[3] || f[2] == f[3];
+    const std::vector<Index> sorted = sorted_set(f);
+    return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
+}
+
+bool is_degenerate(const PolygonMesh& mesh, std::span<const Index> facet) {
+    if (facet.size() < 3) return true;
+    double longest = 0;
+    for (std::size_t i = 0; i < facet.size(); ++i) {
+        const Index next = facet[i + 1 == facet.size() ? 0 : i + 1];
+        longest = std::max(longest, (mesh.positions[next] - mesh.positions[facet[i]]).sqrnorm());
+    }
+    if (!(polygon_area(mesh, facet) > 1e-12 * longest)) return true;
+    return repeats_vertex(facet);
+}
+
+std::size_t count_degenerate(const PolygonMesh& mesh) {
+    std::vector<unsigned char> degenerate(mesh.facet_count());
+    tbb::parallel_for(Range(0, degenerate.size(), chunk), [&](const Range& range) {
+        for (std::size_t f = range.begin(); f != range.end(); ++f)
+            degenerate[f] = is_degenerate(mesh, mesh.facet(f));
+    });
+    return static_cast<std::size_t>(std::count(degenerate.begin(), degenerate.end(), 1));
+}
+
+/// Mixes a vertex index well enough that sums of mixed indices tell vertex sets apart (splitmix64).
+std::uint64_t mix(std::uint64_t x) {
+    x += 0x9e3779b97f4a7c15ull;
+    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9ull;
+    x = (x ^ x >> 27) * 0x94d049bb133111ebull;
+    return x ^ x >> 31;
+}
+
+std::size_t count_duplicates(const PolygonMesh& mesh) {
+    struct Key {
+        std::uint64_t set;
+        Index facet;
+        auto operator<=>(const Key&) const = default;
+    };
+    std::vector<Key> keys(mesh.facet_count());
+    tbb::parallel_for(Range(0, keys.size(), chunk), [&](const Range& range) {
+        for (std::size_t f = range.begin(); f != range.end(); ++f) {
+            keys[f] = {mesh.facet(f).size(), static_cast<Index>(f)};
+            for (Index v : mesh.facet(f)) keys[f].set += mix(v);
+        }
+    });
+    tbb::parallel_sort(keys.begin(), keys.end());
+    std::size_t count = 0;
+    for (std::size_t i = 1; i < keys.size(); ++i) {
+        if (keys[i].set != keys[i - 1].set) continue;
+        const auto a = mesh.facet(keys[i - 1].facet), b = mesh.facet(keys[i].facet);
+        count += !a.empty() && sorted_set(a) == sorted_set(b);
+    }
+    return count;
+}
+
+/// Sum of term(i) over 0 .. n - 1, the same bits for any number of threads.
+template <class Term>
+double chunked_sum(std::size_t n, Term term) {
+    std::vector<double> sums((n + chunk - 1) / chunk, 0.0);
+    tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t c) {
+        double sum = 0;
+        for (std::size_t i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) sum += term(i);
+        sums[c] = sum;
+    });
+    return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
+/// About the centre of the box, so that a mesh far from the origin loses no digits.
+double signed_volume(const PolygonMesh& mesh) {
+    Box box;
+    for (Index v : mesh.corners) box.add(mesh.positions[v]);
+    const Vec3 centre = box.empty() ? Vec3(0, 0, 0) : box.lo + box.size() / 2;
+    const Triangulation cut = triangulate(mesh);
+    return chunked_sum(cut.size(), [&](std::size_t t) {
+        const auto& [a, b, c] = cut.triangles[t];
+        return (mesh.positions[a] - centre)
+               | ((mesh.positions[b] - centre) % (mesh.positions[c] - centre)) / 6;
+    });
+}
+
+} // namespace
+
+Topology measure_topology(const PolygonMesh& mesh) {
+    Topology topology;
+    topology.faces = mesh.facet_count();
+    for (std::size_t f = 0; f < topology.faces; ++f) {
+        const std::size_t corners = mesh.facet(f).size();
+        topology.triangles += corners == 3;
+        topology.quads += corners == 4;
+        topology.larger += corners > 4;
+    }
+    const std::size_t vertices = mesh.vertex_count();
+    std::vector<unsigned char> used(vertices, 0);
+    for (Index v : mesh.corners) used[v] = 1;
+    topology.vertices = static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
+    topology.isolated_vertices = vertices - topology.vertices;
+
+    const Loops loops = clean_loops(mesh);
+    const EdgeGroups groups = group_edges(loops, vertices);
+    topology.edges = groups.size();
+    Fans fans = measure_edges(loops, groups, vertices, topology.faces, topology);
+    std::size_t on_surface = 0;
+    for (std::size_t v = 0; v < vertices; ++v) {
+        on_surface += fans.fans[v] > 0;
+        topology.nonmanifold_vertices += fans.fans[v] > 1 || fans.branches[v] != 0;
+    }
+    for (std::size_t c = 0; c < loops.vertex.size(); ++c) {
+        const bool begins_facet = c == 0 || loops.facet[c] != loops.facet[c - 1];
+        topology.components += begins_facet && fans.facets.find(loops.facet[c]) == loops.facet[c];
+    }
+    topology.boundary_loops = count_boundary_loops(loops, groups, fans);
+    topology.euler =
+        static_cast<long>(on_surface) - static_cast<long>(topology.edges) + static_cast<long>(loops.count);
+    topology.degenerate_facets = count_degenerate(mesh);
+    topology.duplicate_facets = count_duplicates(mesh);
+    topology.signed_volume = signed_volume(mesh);
+    return topology;
+}
+
+} // namespace hsdm

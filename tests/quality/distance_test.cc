@@ -1,0 +1,183 @@
+#include "hsdm/quality/distance.hh"
+
+#include <catch2/catch.hpp>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <random>
+
+using namespace hsdm;
+
+namespace {
+
+using Real = long double;
+
+Real segment_squared(const std::array<Real, 3>& p, const std::array<Real, 3>& a,
+                     const std::array<Real, 3>& b) {
+    Real length = 0, along = 0, squared = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        length += (b[k] - a[k]) * (b[k] - a[k]);
+        along += (p[k] - a[k]) * (b[k] - a[k]);
+    }
+    const Real t = length > 0 ? std::clamp<Real>(along / length, 0, 1) : 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Real d = p[k] - a[k] - t * (b[k] - a[k]);
+        squared += d * d;
+    }
+    return squared;
+}
+
+/// Slow and plain: the plane where the foot lies inside all three sides, else the sides.
+Real triangle_distance(const Vec3& point, const Vec3& va, const Vec3& vb, const Vec3& vc) {
+    auto real = [](const Vec3& v) { return std::array<Real, 3>{v[0], v[1], v[2]}; };
+    const std::array<Real, 3> p = real(point), a = real(va), b = real(vb), c = real(vc);
+    Real squared = std::min({segment_squared(p, a, b), segment_squared(p, b, c), segment_squared(p, c, a)});
+    auto minus = [](const auto& x, const auto& y) {
+        return std::array<Real, 3>{x[0] - y[0], x[1] - y[1], x[2] - y[2]};
+    };
+    auto cross = [](const auto& x, const auto& y) {
+        return std::array<Real, 3>{x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2],
+                                   x[0] * y[1] - x[1] * y[0]};
+    };
+    auto dot = [](const auto& x, const auto& y) { return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]; };
+    const auto n = cross(minus(b, a), minus(c, a));
+    const Real nn = dot(n, n);
+    const bool inside = nn > 0 && dot(n, cross(minus(b, a), minus(p, a))) >= 0
+                        && dot(n, cross(minus(c, b), minus(p, b))) >= 0
+                        && dot(n, cross(minus(a, c), minus(p, c))) >= 0;
+    if (inside) squared = std::min(squared, dot(n, minus(p, a)) * dot(n, minus(p, a)) / nn);
+    return std::sqrt(squared);
+}
+
+Real brute_force(const Vec3& point, const PolygonMesh& mesh) {
+    Real least = std::numeric_limits<Real>::infinity();
+    for (const Triangle& t : triangulate(mesh).triangles)
+        least = std::min(least, triangle_distance(point, mesh.positions[t[0]], mesh.positions[t[1]],
+                                                  mesh.positions[t[2]]));
+    return least;
+}
+
+/// Triangles of all sizes and shapes, some of them degenerate, around `centre`.
+PolygonMesh random_triangles(std::size_t n, unsigned seed, const Vec3& centre = {0, 0, 0}) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    auto vector = [&] { return Vec3(unit(random), unit(random), unit(random)); };
+    PolygonMesh mesh;
+    for (std::size_t i = 0; i < n; ++i) {
+        const Vec3 middle = centre + vector();
+        const double size = std::pow(10, 2 * unit(random) - 2);
+        const Vec3 side = size * vector();
+        const Vec3 corners[] = {middle, middle + side,
+                                i % 7 == 0   ? middle + side * unit(random) // on a line
+                                : i % 7 == 1 ? middle                       // two corners equal
+                                             : middle + size * vector()};
+        std::array<Index, 3> facet;
+        for (std::size_t k = 0; k < 3; ++k) {
+            facet[k] = static_cast<Index>(mesh.positions.size());
+            mesh.positions.push_back(corners[k]);
+        }
+        mesh.add_facet(facet);
+    }
+    return mesh;
+}
+
+std::vector<Vec3> random_points(std::size_t n, unsigned seed, double size, const Vec3& centre = {0, 0, 0}) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> coordinate(-size, size);
+    std::vector<Vec3> points;
+    for (std::size_t i = 0; i < n; ++i)
+        points.push_back(centre + Vec3(coordinate(random), coordinate(random), coordinate(random)));
+    return points;
+}
+
+} // namespace
+
+TEST_CASE("the tree finds the same distance as every triangle in turn", "[distance]") {
+    for (std::size_t triangles : {1u, 2u, 5u, 16u, 17u, 70u, 1500u}) {
+        const PolygonMesh mesh = random_triangles(triangles, static_cast<unsigned>(triangles));
+        const MeshDistance distance(mesh);
+        Real worst = 0;
+        for (const Vec3& p : random_points(200, 5, 1.5)) {
+            const Real expected = brute_force(p, mesh);
+            worst = std::max(worst, std::abs(distance(p) - expected) / expected);
+        }
+        CHECK(static_cast<double>(worst) < 1e-12);
+    }
+}
+
+TEST_CASE("points far outside the mesh and points on it are measured exactly", "[distance]") {
+    const PolygonMesh mesh = random_triangles(300, 3);
+    const MeshDistance distance(mesh);
+    for (const Vec3& p : random_points(50, 6, 1e6)) {
+        const Real expected = brute_force(p, mesh);
+        CHECK(std::abs(static_cast<double>((distance(p) - expected) / expected)) < 1e-12);
+    }
+    for (const Vec3& p : mesh.positions) CHECK(distance(p) < 1e-15);
+}
+
+TEST_CASE("a mesh far from the origin keeps its small distances", "[distance]") {
+    const Vec3 far(4e6, -7e6, 1e7);
+    const PolygonMesh mesh = random_triangles(300, 4, far);
+    const MeshDistance distance(mesh);
+    Real worst = 0;
+    for (const Vec3& p : random_points(200, 7, 1.5, far))
+        worst = std::max(worst, std::abs(distance(p) - brute_force(p, mesh)));
+    CHECK(static_cast<double>(worst) < 1e-8); // coordinates of 1e7 are themselves rounded to 2e-9
+}
+
+TEST_CASE("many points give the largest, mean and rms distance and the farthest point", "[distance]") {
+    const PolygonMesh mesh = random_triangles(100, 8);
+    const std::vector<Vec3> points = random_points(5000, 9, 2);
+    const MeshDistance single(mesh);
+    double max = 0, sum = 0, squares = 0;
+    std::size_t farthest = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double d = single(points[i]);
+        sum += d;
+        squares += d * d;
+        if (d > max) max = d, farthest = i;
+    }
+    const Distance distance = points_to_mesh(points, mesh);
+    CHECK(distance.max == max); // a start elsewhere in the tree changes no distance
+    CHECK(distance.farthest == farthest);
+    CHECK(distance.mean == Approx(sum / 5000).epsilon(1e-12));
+    CHECK(distance.rms == Approx(std::sqrt(squares / 5000)).epsilon(1e-12));
+}
+
+TEST_CASE("distances are the same bits with one thread and with many", "[distance]") {
+    const PolygonMesh mesh = random_triangles(20000, 10);
+    const std::vector<Vec3> points = random_points(20000, 11, 2);
+    auto measure = [&](std::size_t threads) {
+        tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        return points_to_mesh(points, mesh);
+    };
+    const Distance one = measure(1), many = measure(4);
+    CHECK(one.max == many.max);
+    CHECK(one.mean == many.mean);
+    CHECK(one.rms == many.rms);
+    CHECK(one.farthest == many.farthest);
+}
+
+TEST_CASE("no facet means infinitely far, no point means zero", "[distance]") {
+    PolygonMesh empty;
+    CHECK(std::isinf(MeshDistance(empty)(Vec3(1, 2, 3))));
+    const std::vector<Vec3> one{{1, 2, 3}};
+    CHECK(std::isinf(points_to_mesh(one, empty).max));
+    CHECK(points_to_mesh({}, random_triangles(3, 1)).max == 0);
+    CHECK(sample_surface(empty, 10).empty());
+}
+
+TEST_CASE("surface samples lie on the mesh, in proportion to its area", "[distance]") {
+    PolygonMesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {4, 0, 0}, {4, 1, 0}};
+    mesh.add_facet(std::array<Index, 4>{0, 1, 2, 3});
+    mesh.add_facet(std::array<Index, 4>{1, 4, 5, 2}); // three times the area of the first
+    const std::vector<Vec3> samples = sample_surface(mesh, 4000);
+    REQUIRE(samples.size() == 4000);
+    const auto first = std::count_if(samples.begin(), samples.end(), [](const Vec3& p) { return p[0] < 1; });
+    CHECK(first == Approx(1000).margin(5));
+    CHECK(points_to_mesh(samples, mesh).max < 1e-15);
+    const auto low = std::count_if(samples.begin(), samples.end(), [](const Vec3& p) { return p[1] < 0.25; });
+    CHECK(low == Approx(1000).margin(60));
+    CHECK(sample_surface(mesh, 4000) == samples);
+}
