@@ -2,6 +2,7 @@
 // Phase 2a, section 3.2.1: the connectivity graph G, dual to the occupied voxels, as a doubly-connected edge
 // list.
 
+#include "hsdm/graph/neighbor_choice.hh"
 #include "hsdm/octree/octree.hh"
 
 namespace hsdm {
@@ -18,9 +19,20 @@ struct ConnectivityGraph {
     std::size_t vertex_count() const { return positions.size(); }
     std::size_t half_edge_count() const { return end.size(); }
     Index start(Index half_edge) const { return end[twin[half_edge]]; }
+    /// The half-edge from one vertex to another, or no_index. O(log of the vertex's edges).
+    Index find(Index from, Index to) const;
+};
+
+struct GraphOptions {
+    NeighborOptions neighbors;
+    /// The paper connects each vertex with the vertices it chose and calls every edge bi-directional: one
+    /// choice makes the edge. True asks for both ends' choice instead.
+    bool mutual = false;
 };
 
 /// Basic graph (Fig. 4): a vertex per voxel at the centroid of its points, edges by the four-neighbour rule.
-ConnectivityGraph extract_graph(const Octree& octree, const OctreeLevel& level);
+/// O(n) time and space, parallel, the same for any number of threads. Throws OptionError.
+ConnectivityGraph extract_graph(const Octree& octree, const OctreeLevel& level,
+                                const GraphOptions& options = {});
 
 } // namespace hsdm
