@@ -1,0 +1,81 @@
+#pragma once
+// Flat views of any OpenMesh mesh that both modules of phase 3 start from.
+
+#include "hsdm/features/facet_normal.hh"
+#include "hsdm/features/sectors.hh"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <vector>
+
+namespace hsdm {
+
+template <class Vector>
+Vec3 to_vec3(const Vector& v) {
+    return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+}
+
+template <class Normal>
+Normal to_normal(const Vec3& v) {
+    using Scalar = typename OpenMesh::vector_traits<Normal>::value_type;
+    return Normal(static_cast<Scalar>(v[0]), static_cast<Scalar>(v[1]), static_cast<Scalar>(v[2]));
+}
+
+/// Calls body(handle) for handles 0 .. count - 1, in parallel; the body tells deleted elements itself.
+template <class Handle, class Body>
+void for_each_handle(std::size_t count, const Body& body) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1 << 12), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) body(Handle(static_cast<int>(i)));
+    });
+}
+
+template <class Handle>
+std::size_t index_of(Handle handle) {
+    return static_cast<std::size_t>(handle.idx());
+}
+
+/// Newell's area vector of every facet, zero for deleted ones. O(corners), parallel.
+template <class Mesh>
+std::vector<Vec3> facet_area_vectors(const Mesh& mesh);
+
+/// The facets around one vertex, gathered again and again in the same memory.
+template <class Mesh>
+class VertexFanT {
+public:
+    /// The mesh must have edge status: its feature bits are what cuts the fan. Normals are per facet.
+    VertexFanT(const Mesh& mesh, const std::vector<Vec3>& facet_normals)
+        : mesh_(mesh), facet_normals_(facet_normals) {}
+
+    void gather(OpenMesh::VertexHandle v);
+
+    std::span<const FanFacet> facets() const { return facets_; }
+    int sharp_edges() const { return sharp_edges_; }
+    /// The angle by which the line turns here, if exactly two sharp edges meet; else 0.
+    double turn() const { return sharp_edges_ == 2 ? angle_between(-sharp_[0], sharp_[1]) : 0; }
+
+private:
+    struct Spoke {
+        Vec3 direction;
+        int facet = -1; ///< between this spoke and the one before; -1 for a gap
+        bool sharp = false;
+    };
+    void gather_spokes(OpenMesh::VertexHandle v);
+
+    const Mesh& mesh_;
+    const std::vector<Vec3>& facet_normals_;
+    std::vector<Spoke> spokes_;
+    std::vector<FanFacet> facets_;
+    std::array<Vec3, 2> sharp_;
+    int sharp_edges_ = 0;
+};
+
+/// Writes the one to three normals of every vertex, from facet normals and the sharp edges' feature bits:
+/// `hsdm_normals`, `hsdm_normal_count`, and if asked the standard normals (the mean of a vertex's normals).
+/// A locked vertex keeps its standard normal. The mesh must have vertex and edge status.
+template <class Mesh>
+void write_vertex_normals(Mesh& mesh, const std::vector<Vec3>& facet_normals, bool standard_normals);
+
+} // namespace hsdm
+
+#include "hsdm/features/VertexFanT_impl.hh"

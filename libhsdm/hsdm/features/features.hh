@@ -1,0 +1,24 @@
+#pragma once
+// Phase 3 on a reconstruction's mesh (section 3.3). For meshes of your own type: FeatureClassifierT,
+// AnisotropicNormalSmootherT.
+
+#include "hsdm/features/feature_options.hh"
+#include "hsdm/mesh_types.hh"
+
+#include <string>
+
+namespace hsdm {
+
+/// Marks sharp edges, classifies vertices and gives each its one to three normals: see FeatureClassifierT.
+FeatureCounts classify_features(PolyMesh& mesh, const FeatureOptions& options = {});
+
+/// Smooths normals within the sharp edges marked, `options.rounds` times, and sets the standard vertex
+/// normals: see AnisotropicNormalSmootherT. Returns the number of facets whose normal still turned.
+std::size_t smooth_normals(PolyMesh& mesh, const NormalSmoothingOptions& options = {});
+
+/// The features as text: a line `x y z x y z` for each sharp edge, then a line `c x y z` for each corner, in
+/// the mesh's order; doubles in the fewest digits that read back to the same bits. Empty before
+/// classify_features.
+std::string feature_lines(const PolyMesh& mesh);
+
+} // namespace hsdm

@@ -1,0 +1,41 @@
+#include "hsdm/features/normal_filter.hh"
+
+#include "hsdm/features/facet_normal.hh"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <cmath>
+
+namespace hsdm {
+
+std::size_t filter_normals(const FacetNeighbours& neighbours, const std::vector<double>& area,
+                           double similarity_angle, double settled_angle, std::vector<Vec3>& normals) {
+    const double steepness = -0.5 / (similarity_angle * similarity_angle);
+    const double settled = 2 * std::sin(settled_angle / 2); // as a chord between unit vectors
+    std::vector<Vec3> next(normals.size());
+    std::atomic<std::size_t> turning = 0;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, normals.size(), 1 << 12), [&](const auto& range) {
+        std::size_t here = 0;
+        for (std::size_t f = range.begin(); f != range.end(); ++f) {
+            next[f] = normals[f];
+            if (neighbours.first[f] == neighbours.first[f + 1]) continue;
+            Vec3 sum = normals[f] * area[f];
+            for (Index i = neighbours.first[f]; i < neighbours.first[f + 1]; ++i) {
+                const Index g = neighbours.neighbour[i];
+                if (g == no_index) continue;
+                const double distance = (normals[g] - normals[f]).sqrnorm();
+                sum += normals[g] * (area[g] * std::exp(steepness * distance));
+            }
+            const Vec3 mean = unit_or_zero(sum);
+            if (mean.sqrnorm() > 0) next[f] = mean;
+            if ((next[f] - normals[f]).sqrnorm() > settled * settled) ++here;
+        }
+        turning += here;
+    });
+    normals.swap(next);
+    return turning;
+}
+
+} // namespace hsdm

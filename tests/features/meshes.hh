@@ -1,0 +1,63 @@
+#pragma once
+// The four kinds of OpenMesh mesh the modules promise to work on, and solids as any of them.
+
+#include "hsdm/polygon_mesh.hh"
+#include "support/random.hh"
+
+#include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
+#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+
+#include <vector>
+
+namespace hsdm::test {
+
+using PolyMeshF = OpenMesh::PolyMesh_ArrayKernelT<OpenMesh::DefaultTraits>;
+using PolyMeshD = OpenMesh::PolyMesh_ArrayKernelT<OpenMesh::DefaultTraitsDouble>;
+using TriMeshF = OpenMesh::TriMesh_ArrayKernelT<OpenMesh::DefaultTraits>;
+using TriMeshD = OpenMesh::TriMesh_ArrayKernelT<OpenMesh::DefaultTraitsDouble>;
+
+/// The polygons as a mesh of any kind (a triangle mesh cuts them), with the status bits results are kept in.
+template <class Mesh>
+Mesh build(const PolygonMesh& polygons) {
+    Mesh mesh;
+    mesh.request_vertex_status();
+    mesh.request_edge_status();
+    mesh.request_face_status();
+    mesh.request_vertex_normals();
+    using Point = typename Mesh::Point;
+    using Scalar = typename Mesh::Scalar;
+    for (const Vec3& p : polygons.positions)
+        mesh.add_vertex(
+            Point(static_cast<Scalar>(p[0]), static_cast<Scalar>(p[1]), static_cast<Scalar>(p[2])));
+    for (std::size_t f = 0; f < polygons.facet_count(); ++f) {
+        std::vector<OpenMesh::VertexHandle> corners;
+        for (const Index v : polygons.facet(f)) corners.emplace_back(static_cast<int>(v));
+        mesh.add_face(corners);
+    }
+    return mesh;
+}
+
+/// The cube [-1, 1]^3, n x n quads on each side, vertices shared along its edges.
+PolygonMesh cube(Index n);
+/// A cylinder of radius 1 and height 2 with m quads around, n up, and caps of m triangles each.
+PolygonMesh capped_cylinder(Index m, Index n);
+/// The cube blown up to the unit sphere.
+PolygonMesh sphere(Index n);
+/// n x n unit quads over z = height(x).
+template <class Height>
+PolygonMesh sheet(Index n, const Height& height) {
+    PolygonMesh mesh;
+    for (Index y = 0; y <= n; ++y)
+        for (Index x = 0; x <= n; ++x) mesh.positions.emplace_back(x, y, height(x, y));
+    for (Index y = 0; y < n; ++y)
+        for (Index x = 0; x < n; ++x) {
+            const Index v = y * (n + 1) + x;
+            mesh.add_facet(std::vector<Index>{v, v + 1, v + n + 2, v + n + 1});
+        }
+    return mesh;
+}
+
+/// Every vertex moved by a Gauss-distributed vector.
+PolygonMesh noisy(PolygonMesh mesh, double sigma);
+
+} // namespace hsdm::test
