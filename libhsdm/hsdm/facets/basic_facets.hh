@@ -1,0 +1,37 @@
+#pragma once
+// Section 3.2.2 put together: connectivity graph -> facets, for points without normals.
+
+#include "hsdm/facets/manifold.hh"
+#include "hsdm/facets/minimal_loop.hh"
+
+namespace hsdm {
+
+struct BasicFacetOptions {
+    /// Longest minimal loop taken as a facet, in edges, in [3, max_loop_edges]. Loops of five and more are
+    /// looked for only where no triangle or quad fits.
+    int max_loop_edges = 6;
+    bool hit_test = true;           ///< reject candidates whose normal runs into a neighbouring voxel
+    bool distance_criterion = true; ///< of several candidates, drop those farther from the close points
+    bool angle_comparison = true;   ///< of several candidates, take the outer one; else the paper's first
+};
+
+struct BasicFacets {
+    PolygonMesh mesh; ///< absolute coordinates; a 2-manifold; closed components outward
+    struct Counts {
+        std::size_t short_loops = 0; ///< triangles and quads in the graph
+        std::size_t hit_test = 0;    ///< candidates each test rejected
+        std::size_t distance_criterion = 0;
+        std::size_t angle_comparison = 0;
+        std::size_t seeds = 0; ///< facets that orientation was propagated from
+        ManifoldCounts manifold;
+    } counts;
+};
+
+/// Facets are laid one by one across the twins of those laid before (Fig. 5, 6), from one seed per component
+/// of the graph, so orientation propagates through twins alone and no two normals are ever compared. A
+/// half-edge carries at most one facet, and no facet covers another's reverse. O(n) time and space.
+/// Throws OptionError.
+BasicFacets reconstruct_facets(const Octree& octree, const OctreeLevel& level, const ConnectivityGraph& graph,
+                               const BasicFacetOptions& options = {});
+
+} // namespace hsdm
