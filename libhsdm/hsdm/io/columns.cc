@@ -1,0 +1,313 @@
+#include "hsdm/io/columns.hh"
+
+#include "hsdm/errors.hh"
+#include "hsdm/io/text.hh"
+
+#include <algorithm>
+#include <array>
+#include <bitset>
+#include <cmath>
+
+namespace hsdm::io {
+namespace {
+
+constexpr std::size_t role_count = 12;
+
+struct Alias {
+    std::string_view name;
+    Role role;
+};
+
+/// Beside the plain letters: PLY files in the wild, CSV headers of point-cloud tools (`points:0` and the like
+/// are how a vector's components are numbered there).
+constexpr Alias aliases[] = {
+    {"x", Role::x},
+    {"y", Role::y},
+    {"z", Role::z},
+    {"pos_x", Role::x},
+    {"pos_y", Role::y},
+    {"pos_z", Role::z},
+    {"position_x", Role::x},
+    {"position_y", Role::y},
+    {"position_z", Role::z},
+    {"points:0", Role::x},
+    {"points:1", Role::y},
+    {"points:2", Role::z},
+    {"points_0", Role::x},
+    {"points_1", Role::y},
+    {"points_2", Role::z},
+    {"nx", Role::nx},
+    {"ny", Role::ny},
+    {"nz", Role::nz},
+    {"n_x", Role::nx},
+    {"n_y", Role::ny},
+    {"n_z", Role::nz},
+    {"normal_x", Role::nx},
+    {"normal_y", Role::ny},
+    {"normal_z", Role::nz},
+    {"normalx", Role::nx},
+    {"normaly", Role::ny},
+    {"normalz", Role::nz},
+    {"normals:0", Role::nx},
+    {"normals:1", Role::ny},
+    {"normals:2", Role::nz},
+    {"normals_0", Role::nx},
+    {"normals_1", Role::ny},
+    {"normals_2", Role::nz},
+    {"r", Role::red},
+    {"g", Role::green},
+    {"b", Role::blue},
+    {"red", Role::red},
+    {"green", Role::green},
+    {"blue", Role::blue},
+    {"rf", Role::red},
+    {"gf", Role::green},
+    {"bf", Role::blue},
+    {"diffuse_red", Role::red},
+    {"diffuse_green", Role::green},
+    {"diffuse_blue", Role::blue},
+    {"a", Role::alpha},
+    {"alpha", Role::alpha},
+    {"diffuse_alpha", Role::alpha},
+    {"_", Role::skip},
+    {"", Role::skip},
+};
+
+constexpr std::string_view label_names[] = {"label",          "labels",    "label_id", "class",
+                                            "classification", "segment",   "segments", "segmentation",
+                                            "object",         "object_id", "instance", "instance_id",
+                                            "cluster",        "category",  "part"};
+constexpr std::string_view scalar_names[] = {"intensity",  "reflectance", "reflectivity", "quality",
+                                             "confidence", "curvature",   "time",         "gps_time"};
+
+template <class Names>
+bool contains(const Names& names, std::string_view name) {
+    return std::find(std::begin(names), std::end(names), name) != std::end(names);
+}
+
+bool is_label_name(std::string_view name) {
+    std::string plain = lower(name);
+    if (plain.starts_with("scalar_")) plain.erase(0, 7);
+    return contains(label_names, plain);
+}
+
+/// A vector or colour that lacks a component, and a name given twice, is a scalar like any other.
+void demote_incomplete(std::vector<Column>& columns) {
+    std::bitset<role_count> present;
+    for (Column& column : columns) {
+        const auto role = static_cast<std::size_t>(column.role);
+        if (column.role < Role::scalar && present[role]) column.role = Role::scalar;
+        present.set(role);
+    }
+    const auto has = [&](Role role) { return present[static_cast<std::size_t>(role)]; };
+    const bool normals = has(Role::nx) && has(Role::ny) && has(Role::nz);
+    const bool colors = has(Role::red) && has(Role::green) && has(Role::blue);
+    for (Column& column : columns) {
+        const bool normal = column.role >= Role::nx && column.role <= Role::nz;
+        const bool color = column.role >= Role::red && column.role <= Role::alpha;
+        if ((normal && !normals) || (color && !colors)) column.role = Role::scalar;
+    }
+}
+
+bool has_position(std::span<const Column> columns) {
+    for (Role role : {Role::x, Role::y, Role::z})
+        if (std::none_of(columns.begin(), columns.end(), [=](const Column& c) { return c.role == role; }))
+            return false;
+    return true;
+}
+
+/// The sample that roles are told from.
+struct Sample {
+    std::span<const double> values;
+    std::size_t columns;
+    std::size_t rows() const { return values.size() / columns; }
+    double at(std::size_t row, std::size_t column) const { return values[row * columns + column]; }
+};
+
+/// True if nearly all vectors that are there (not zero, not NaN) have length 1 within what two decimals of
+/// rounding leave; a few strays among them do not make a colour of a normal.
+bool are_unit_vectors(const Sample& sample, std::size_t first) {
+    std::size_t unit = 0, other = 0;
+    for (std::size_t row = 0; row < sample.rows(); ++row) {
+        const double length =
+            std::hypot(sample.at(row, first), sample.at(row, first + 1), sample.at(row, first + 2));
+        if (std::abs(length - 1) < 0.03)
+            ++unit;
+        else if (length != 0 && std::isfinite(length))
+            ++other;
+    }
+    return unit > 0 && other * 20 <= unit;
+}
+
+bool are_bytes(const Sample& sample, std::size_t column) {
+    for (std::size_t row = 0; row < sample.rows(); ++row) {
+        const double value = sample.at(row, column);
+        if (!(value >= 0 && value <= 255 && value == std::floor(value))) return false;
+    }
+    return true;
+}
+
+struct Range {
+    double min, max;
+};
+
+Range range_of(const Sample& sample, std::size_t column) {
+    Range range{sample.at(0, column), sample.at(0, column)};
+    for (std::size_t row = 1; row < sample.rows(); ++row) {
+        range.min = std::min(range.min, sample.at(row, column));
+        range.max = std::max(range.max, sample.at(row, column));
+    }
+    return range;
+}
+
+/// Gives colour roles to columns first .. end, all bytes: three are red, green, blue. A fourth behind them is
+/// alpha if it is 255 throughout, a class or the like if it stays small while they do not; else the first of
+/// the four is an intensity.
+void assign_colors(std::vector<Column>& columns, const Sample& sample, std::size_t first, std::size_t end,
+                   bool scan) {
+    if (end - first == 4) {
+        const Range last = range_of(sample, first + 3);
+        const bool small = last.max < 32 && range_of(sample, first).max >= 32;
+        if (!scan && last.min == 255)
+            columns[first + 3].role = Role::alpha;
+        else if (scan || !small)
+            columns[first++].name = "intensity";
+    }
+    columns[first].role = Role::red;
+    columns[first + 1].role = Role::green;
+    columns[first + 2].role = Role::blue;
+}
+
+} // namespace
+
+Role role_of(std::string_view name) {
+    const std::string plain = lower(name);
+    for (const Alias& alias : aliases)
+        if (alias.name == plain) return alias.role;
+    return Role::scalar;
+}
+
+std::vector<Column> parse_columns(const std::string& list) {
+    std::vector<Column> columns;
+    std::bitset<role_count> present;
+    for (std::size_t at = 0; at <= list.size();) {
+        const std::size_t comma = std::min(list.find(',', at), list.size());
+        const std::string name(trim(std::string_view(list).substr(at, comma - at)));
+        at = comma + 1;
+        const Role role = role_of(name);
+        const std::string plain = lower(name);
+        if (name.empty() || (role == Role::scalar && !contains(scalar_names, plain) && !is_label_name(plain)))
+            throw OptionError(
+                "columns: " + quoted(name)
+                + " is no column; known are x y z nx ny nz r g b a intensity label, and _ for one "
+                  "to skip, e.g. x,y,z,_,nx,ny,nz");
+        if (role < Role::scalar && present[static_cast<std::size_t>(role)])
+            throw OptionError("columns: " + quoted(name) + " is there twice; name each column once");
+        present.set(static_cast<std::size_t>(role));
+        columns.push_back({role, plain});
+    }
+    if (!has_position(columns)) throw OptionError("columns: x, y and z must all be there, e.g. x,y,z,_");
+    std::vector<Column> complete = columns;
+    demote_incomplete(complete);
+    for (std::size_t i = 0; i < columns.size(); ++i)
+        if (columns[i].role != complete[i].role)
+            throw OptionError("columns: " + quoted(columns[i].name)
+                              + " is not complete; give nx, ny and nz or none, r, g and b or none");
+    return columns;
+}
+
+std::optional<std::vector<Column>> columns_from_names(std::span<const std::string> names) {
+    std::vector<Column> columns;
+    for (const std::string& name : names) columns.push_back({role_of(name), name});
+    if (!has_position(columns)) return std::nullopt;
+    demote_incomplete(columns);
+    return columns;
+}
+
+std::vector<Column> columns_from_values(std::span<const double> rows, std::size_t count, bool scan) {
+    const Sample sample{rows, count};
+    std::vector<Column> columns(count);
+    for (std::size_t i = 0; i < count; ++i) columns[i] = {Role::scalar, "column_" + std::to_string(i + 1)};
+    columns[0].role = Role::x;
+    columns[1].role = Role::y;
+    columns[2].role = Role::z;
+    if (count == 4) columns[3].name = "intensity";
+
+    for (std::size_t i = 3; i + 3 <= count; ++i)
+        if (are_unit_vectors(sample, i)) {
+            columns[i].role = Role::nx;
+            columns[i + 1].role = Role::ny;
+            columns[i + 2].role = Role::nz;
+            break;
+        }
+    for (std::size_t i = 3; i + 3 <= count; ++i) {
+        std::size_t end = i;
+        while (end < count && columns[end].role == Role::scalar && are_bytes(sample, end)) ++end;
+        if (end - i >= 3) {
+            assign_colors(columns, sample, i, end, scan);
+            break;
+        }
+    }
+    return columns;
+}
+
+double color_factor(double max_value, bool fractions) {
+    if (fractions && max_value <= 1) return 255;
+    return max_value <= 255 ? 1 : 1.0 / 257;
+}
+
+CloudColumns::CloudColumns(std::vector<Column> columns, std::size_t points, double factor)
+    : columns_(std::move(columns)), scalar_(columns_.size()), color_factor_(factor) {
+    cloud_.positions.resize(points);
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+        switch (columns_[i].role) {
+        case Role::nx:
+            cloud_.normals.resize(points);
+            break;
+        case Role::red:
+            cloud_.colors.resize(points, {0, 0, 0, 255});
+            break;
+        case Role::scalar:
+            scalar_[i] = cloud_.scalars.size();
+            cloud_.scalars.push_back({columns_[i].name, std::vector<double>(points), false});
+            break;
+        default:
+            break;
+        }
+    }
+}
+
+void CloudColumns::store(std::size_t column, std::size_t first, std::size_t count, const double* values,
+                         std::size_t stride) {
+    const Role role = columns_[column].role;
+    if (role == Role::skip) return;
+    if (role == Role::scalar) {
+        double* out = cloud_.scalars[scalar_[column]].values.data() + first;
+        for (std::size_t i = 0; i < count; ++i) out[i] = values[i * stride];
+    } else if (role <= Role::nz) {
+        const bool position = role <= Role::z;
+        Vec3* out = (position ? cloud_.positions : cloud_.normals).data() + first;
+        const auto axis =
+            static_cast<std::size_t>(role) - static_cast<std::size_t>(position ? Role::x : Role::nx);
+        for (std::size_t i = 0; i < count; ++i) out[i][axis] = values[i * stride];
+    } else {
+        const auto channel = static_cast<std::size_t>(role) - static_cast<std::size_t>(Role::red);
+        for (std::size_t i = 0; i < count; ++i) {
+            const double value = std::round(values[i * stride] * color_factor_);
+            // Written so that NaN becomes 0.
+            cloud_.colors[first + i][channel] =
+                value > 0 ? static_cast<std::uint8_t>(std::min(value, 255.0)) : std::uint8_t(0);
+        }
+    }
+}
+
+PointCloud CloudColumns::finish() {
+    for (Scalar& scalar : cloud_.scalars)
+        scalar.is_label = is_label_name(scalar.name)
+                          && std::all_of(scalar.values.begin(), scalar.values.end(), [](double value) {
+                                 return value == std::floor(value) && std::abs(value) < 9e15;
+                             });
+    return std::move(cloud_);
+}
+
+} // namespace hsdm::io

@@ -1,0 +1,30 @@
+#pragma once
+// The readers behind read_points, one per family of formats. Each throws Error for what it cannot read.
+
+#include "hsdm/io/read_points.hh"
+#include "hsdm/io/text.hh"
+
+namespace hsdm::io {
+
+/// What the file's name or the caller says of a table: decides only what its values leave open.
+enum class TableKind { plain, pts, pwn };
+
+/// XYZ, TXT, ASC, CSV, PTS, PWN: rows of numbers, with or without a header, a count, comments.
+PointFile read_table(const SourceBytes& bytes, TableKind kind, const std::string& columns);
+PointFile read_ply(const SourceBytes& bytes);
+PointFile read_off(const SourceBytes& bytes);
+PointFile read_obj(const SourceBytes& bytes);
+/// Hoppe's point files: lines `p x y z`, others skipped.
+PointFile read_hoppe(const SourceBytes& bytes);
+/// Text or binary; corners at the same position become one point, in order of first appearance.
+PointFile read_stl(const SourceBytes& bytes);
+/// Whether the size is the one that a binary STL header announces.
+bool is_binary_stl(const SourceBytes& bytes);
+bool is_text_stl(const SourceBytes& bytes);
+/// Whether the line is the first of an OFF file: the keyword, perhaps with its letters.
+bool is_off_keyword(std::string_view line);
+
+/// Finds the reader by `options.format`, the name's extension and the content, and runs it.
+PointFile read_points(const SourceBytes& bytes, const ReadOptions& options);
+
+} // namespace hsdm::io

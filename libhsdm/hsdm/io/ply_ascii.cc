@@ -1,0 +1,34 @@
+#include "hsdm/io/ply.hh"
+#include "hsdm/io/rows.hh"
+
+namespace hsdm::io {
+
+PointCloud read_ply_ascii(const Text& text, const PlyHeader& header, std::size_t vertex,
+                          const std::vector<Column>& columns) {
+    const PlyElement& element = header.elements[vertex];
+    const char* at = header.end;
+    for (std::size_t i = 0; i < vertex; ++i)
+        at = after_rows(text.from(at), header.elements[i].count, false,
+                        "lines of element " + header.elements[i].name);
+    Text body = text.from(at);
+    body.end = after_rows(body, element.count, false, "vertices");
+
+    std::uint64_t rows_behind = 0;
+    for (std::size_t i = vertex + 1; i < header.elements.size(); ++i) rows_behind += header.elements[i].count;
+    if (rows_behind == 0 && count_rows(text.from(body.end), false) > 0)
+        text.fail(body.end, "a line behind the last of " + std::to_string(element.count)
+                                + " vertices; the header's count is wrong, correct it");
+
+    RowLayout layout;
+    layout.origin = "the header names " + std::to_string(columns.size()) + " properties";
+    layout.advice = "correct the line or the header";
+    for (const PlyProperty& property : element.properties)
+        layout.cells.push_back(property.is_list ? RowLayout::Cell::list : RowLayout::Cell::number);
+    Rows rows(body, layout);
+    const auto by_type = color_factor_by_type(element, columns);
+    const double factor =
+        by_type ? *by_type : rows.color_factor(columns, has_fractional_color(element, columns));
+    return std::move(rows).to_cloud(columns, factor);
+}
+
+} // namespace hsdm::io

@@ -1,0 +1,45 @@
+#pragma once
+// The header of a PLY file: which elements follow, how many, made of what.
+
+#include "hsdm/io/text.hh"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace hsdm::io {
+
+enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+enum class PlyEncoding : std::uint8_t { ascii, little_endian, big_endian };
+
+/// Bytes of a value.
+std::size_t size_of(PlyType type);
+
+struct PlyProperty {
+    std::string name;
+    PlyType type = PlyType::float32;
+    bool is_list = false;
+    PlyType count_type = PlyType::uint8; ///< of a list's count
+};
+
+struct PlyElement {
+    std::string name;
+    std::uint64_t count =
+        0; ///< as the header says: not to be trusted before it is held against the file's size
+    std::vector<PlyProperty> properties;
+
+    bool has_list() const;
+    /// Bytes of one element, its lists being empty.
+    std::size_t least_size() const;
+};
+
+struct PlyHeader {
+    PlyEncoding encoding = PlyEncoding::ascii;
+    std::vector<PlyElement> elements;
+    const char* end = nullptr; ///< where the data begin
+};
+
+/// Parses the header. Throws Error for the first line that is not as it must be.
+PlyHeader read_ply_header(const Text& text);
+
+} // namespace hsdm::io

@@ -1,0 +1,186 @@
+#include "hsdm/io/read_points.hh"
+
+#include "hsdm/errors.hh"
+#include "hsdm/io/formats.hh"
+
+#include <algorithm>
+#include <array>
+
+namespace hsdm {
+namespace io {
+namespace {
+
+enum class Format { unknown, table, ply, off, obj, hoppe, stl };
+
+struct KnownName {
+    std::string_view name;
+    Format format;
+    TableKind kind = TableKind::plain;
+};
+
+/// Extensions, which are also the values of ReadOptions::format.
+constexpr KnownName known_names[] = {
+    {"ply", Format::ply},
+    {"xyz", Format::table},
+    {"csv", Format::table},
+    {"txt", Format::table},
+    {"asc", Format::table},
+    {"pts", Format::table, TableKind::pts},
+    {"pwn", Format::table, TableKind::pwn},
+    {"off", Format::off},
+    {"obj", Format::obj},
+    {"stl", Format::stl},
+    {"hoppe", Format::hoppe},
+};
+
+struct Magic {
+    std::string_view bytes, name;
+};
+
+/// Formats that are often met and not read here, by how they begin.
+constexpr Magic unread[] = {
+    {"LASF", "a LAS or LAZ file"},
+    {"ASTM-E57", "an E57 file"},
+    {"# .PCD", "a PCD file"},
+    {"\x1f\x8b", "a gzip file"},
+    {"PK\x03\x04", "a ZIP file"},
+    {"glTF", "a glTF file"},
+    {"\xff\xfe", "text in UTF-16"},
+    {"\xfe\xff", "text in UTF-16"},
+    {"\x89PNG", "a PNG picture"},
+    {"\xfd"
+     "7zXZ",
+     "an xz file"},
+    {"BZh", "a bzip2 file"},
+    {"%PDF", "a PDF file"},
+};
+
+std::string extension_of(const std::string& path) {
+    const std::size_t dot = path.find_last_of("./");
+    return dot == std::string::npos || path[dot] == '/' ? "" : lower(std::string_view(path).substr(dot + 1));
+}
+
+const KnownName* find_name(std::string_view name) {
+    const auto* found = std::find_if(std::begin(known_names), std::end(known_names),
+                                     [=](const KnownName& k) { return k.name == name; });
+    return found == std::end(known_names) ? nullptr : found;
+}
+
+/// True if the start holds bytes that no text has.
+bool is_binary(const Text& text) {
+    const std::size_t size = std::min<std::size_t>(4096, static_cast<std::size_t>(text.end - text.begin));
+    return std::any_of(text.begin, text.begin + size, [](char c) {
+        return static_cast<unsigned char>(c) < ' ' && c != '\n' && !is_blank(c) && c != '\x1a';
+    });
+}
+
+bool is_number(std::string_view line) {
+    const auto cells = fields(line);
+    return !cells.empty() && to_number(cells[0]);
+}
+
+/// The format that the first lines are sure signs of.
+Format recognise_lines(const Text& text) {
+    const char* at = text.begin;
+    Format points = Format::unknown; // what `p` lines mean is open until a `v` line is or is not seen
+    for (int lines = 0; lines < 200 && at != text.end;) {
+        const std::string_view line = trim(text.line(at));
+        if (line.empty() || line.front() == '#') continue;
+        if (lines++ == 0 && is_off_keyword(line)) return Format::off;
+        if (line.size() > 2 && is_blank(line[1]) && is_number(line.substr(2))) {
+            if (line[0] == 'v') return Format::obj;
+            if (line[0] == 'p') points = Format::hoppe;
+        }
+    }
+    return points;
+}
+
+/// The format that the content is a sure sign of; unknown if there is none.
+Format recognise(const SourceBytes& bytes) {
+    const Text text(bytes);
+    const std::string_view view(text.begin, static_cast<std::size_t>(text.end - text.begin));
+    if (view.starts_with("ply") && view.size() > 3 && (is_blank(view[3]) || view[3] == '\n'))
+        return Format::ply;
+    if (is_binary_stl(bytes) || is_text_stl(bytes)) return Format::stl;
+    return is_binary(text) ? Format::unknown : recognise_lines(text);
+}
+
+[[noreturn]] void fail_unread(const SourceBytes& bytes) {
+    for (const Magic& magic : unread)
+        if (bytes.view().starts_with(magic.bytes))
+            throw Error(bytes.name(), "is " + std::string(magic.name)
+                                          + ", which is not read; convert it to PLY or XYZ text");
+    throw Error(bytes.name(),
+                "neither text nor a binary format that is known; convert it to PLY or XYZ text");
+}
+
+/// A file whose content says nothing for sure: what its name promises must hold.
+PointFile read_unrecognised(const SourceBytes& bytes, Format promised, TableKind kind,
+                            const std::string& columns) {
+    const Text text(bytes);
+    const bool binary =
+        is_binary(text) || bytes.view().starts_with("\xff\xfe") || bytes.view().starts_with("\xfe\xff");
+    if (promised == Format::stl && binary) return read_stl(bytes);
+    if (binary) fail_unread(bytes);
+    // OFF files may lack the keyword; nothing else that was promised may lack what it is recognised by, and
+    // rows of numbers speak for themselves whatever the file is called.
+    if (promised == Format::off) return read_off(bytes);
+    if (promised != Format::table && promised != Format::unknown) {
+        const char* at = text.begin;
+        while (at != text.end) {
+            const std::string_view line = trim(text.line(at));
+            if (line.empty() || line.front() == '#') continue;
+            if (is_number(line)) break;
+            throw Error(bytes.name(), text.line_of(line.data()),
+                        quoted(line) + " is not how this format begins; check the file's name and content");
+        }
+    }
+    for (const Magic& magic : unread)
+        if (bytes.view().starts_with(magic.bytes)) fail_unread(bytes);
+    return read_table(bytes, kind, columns);
+}
+
+PointFile read_as(const SourceBytes& bytes, Format format, TableKind kind, const std::string& columns) {
+    switch (format) {
+    case Format::ply:
+        return read_ply(bytes);
+    case Format::off:
+        return read_off(bytes);
+    case Format::obj:
+        return read_obj(bytes);
+    case Format::hoppe:
+        return read_hoppe(bytes);
+    case Format::stl:
+        return read_stl(bytes);
+    default:
+        return read_table(bytes, kind, columns);
+    }
+}
+
+} // namespace
+
+PointFile read_points(const SourceBytes& bytes, const ReadOptions& options) {
+    if (bytes.size() == 0) throw Error(bytes.name(), "is empty; expected points");
+    const KnownName* forced = find_name(lower(options.format));
+    if (!options.format.empty() && !forced)
+        throw OptionError("format " + quoted(options.format)
+                          + ": known are ply, xyz, csv, txt, asc, pts, pwn, off, obj, stl, hoppe");
+    const KnownName* named = forced ? forced : find_name(extension_of(bytes.name()));
+    const TableKind kind = named ? named->kind : TableKind::plain;
+    const Format format = forced ? forced->format : recognise(bytes);
+    if (!options.columns.empty() && format != Format::table && format != Format::unknown)
+        throw OptionError("columns: " + bytes.name() + " is no table of numbers; leave the option out");
+    if (forced && !(format == Format::table && is_binary(Text(bytes))))
+        return read_as(bytes, format, kind, options.columns);
+    if (format != Format::unknown && format != Format::table)
+        return read_as(bytes, format, kind, options.columns);
+    return read_unrecognised(bytes, named ? named->format : Format::unknown, kind, options.columns);
+}
+
+} // namespace io
+
+PointFile read_points(const std::string& path, const ReadOptions& options) {
+    return io::read_points(io::SourceBytes::open(path), options);
+}
+
+} // namespace hsdm

@@ -1,0 +1,109 @@
+#include "hsdm/io/text.hh"
+
+#include "hsdm/errors.hh"
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+
+namespace hsdm::io {
+
+Text::Text(const SourceBytes& bytes) : source(&bytes), begin(bytes.begin()), end(bytes.end()) {
+    if (bytes.view().starts_with("\xef\xbb\xbf")) begin += 3;
+    const auto size = static_cast<std::size_t>(end - begin);
+    if (size > 0 && !std::memchr(begin, '\n', size) && std::memchr(begin, '\r', size)) newline = '\r';
+}
+
+std::size_t Text::line_of(const char* at) const {
+    const auto ends = static_cast<std::size_t>(std::count(source->begin(), at, newline));
+    // What goes wrong at the end of the file is the fault of its last line, not of the one that is not there.
+    const bool behind_last = at == source->end() && ends > 0 && at[-1] == newline;
+    return behind_last ? ends : ends + 1;
+}
+
+void Text::fail(const char* at, const std::string& message) const {
+    throw Error(source->name(), line_of(at), message);
+}
+
+const char* Text::find_newline(const char* at) const {
+    const void* found = at == end ? nullptr : std::memchr(at, newline, static_cast<std::size_t>(end - at));
+    return found ? static_cast<const char*>(found) : end;
+}
+
+std::string_view Text::line(const char*& at) const {
+    const char* first = at;
+    const char* last = find_newline(at);
+    at = last == end ? end : last + 1;
+    return {first, static_cast<std::size_t>(last - first)};
+}
+
+std::vector<std::pair<const char*, const char*>> Text::chunks(std::size_t size) const {
+    std::vector<std::pair<const char*, const char*>> pieces;
+    for (const char* at = begin; at != end;) {
+        const char* last = end;
+        if (static_cast<std::size_t>(end - at) > size) {
+            last = find_newline(at + size);
+            if (last != end) ++last;
+        }
+        pieces.emplace_back(at, last);
+        at = last;
+    }
+    return pieces;
+}
+
+std::optional<double> to_number(std::string_view field) {
+    double value;
+    const char* end = field.data() + field.size();
+    if (parse_number(field.data(), end, value) != end) return std::nullopt;
+    return value;
+}
+
+std::optional<std::uint64_t> to_count(std::string_view field) {
+    std::uint64_t value = 0;
+    const char* end = field.data() + field.size();
+    const auto [at, error] = std::from_chars(field.data(), end, value);
+    if (error != std::errc() || at != end) return std::nullopt;
+    return value;
+}
+
+std::string_view trim(std::string_view text) {
+    while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+std::string lower(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return result;
+}
+
+std::string_view without_comment(std::string_view line) {
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const bool starts_field = i == 0 || is_blank(line[i - 1]) || is_separator(line[i - 1]);
+        if (starts_field && (line[i] == '#' || line.substr(i, 2) == "//")) return line.substr(0, i);
+    }
+    return line;
+}
+
+std::vector<std::string_view> fields(std::string_view line) {
+    std::vector<std::string_view> found;
+    for (line = trim(line); !line.empty(); line = trim(line)) {
+        std::size_t length = 0;
+        while (length < line.size() && !is_blank(line[length]) && !is_separator(line[length])) ++length;
+        found.push_back(line.substr(0, length));
+        line = trim(line.substr(length));
+        if (!line.empty() && is_separator(line.front())) line.remove_prefix(1);
+    }
+    return found;
+}
+
+std::string quoted(std::string_view text) {
+    const bool long_text = text.size() > 40;
+    std::string result = "\"";
+    for (char c : text.substr(0, 40)) result += c >= ' ' && c <= '~' ? c : '?';
+    return result + (long_text ? "...\"" : "\"");
+}
+
+} // namespace hsdm::io
