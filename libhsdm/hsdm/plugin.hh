@@ -1,0 +1,91 @@
+#pragma once
+// What a processing module is: a shared library that exports one function, `hsdm_plugin`. A module:
+//
+//     #include <hsdm/plugin.hh>
+//     std::string flip(hsdm::PolyMesh& mesh, const hsdm::PluginOptions& options);
+//     HSDM_PLUGIN("flip", "turns the mesh inside out", "no options", flip)
+
+#include "hsdm/mesh_types.hh"
+#include "hsdm/version.hh"
+
+#include <OpenMesh/Core/System/config.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <string>
+
+namespace hsdm {
+
+/// Version of this interface. The first two members of PluginInfo stay where they are in every version.
+inline constexpr std::uint32_t plugin_abi = 1;
+
+#define HSDM_STRINGIFY_(x) #x
+#define HSDM_STRINGIFY(x) HSDM_STRINGIFY_(x)
+/// What module and loader must have in common to share a mesh: hsdm, compiler, OpenMesh.
+inline std::string plugin_build() {
+    return std::string("hsdm ") + version + ", compiler " + __VERSION__ + ", OpenMesh "
+           + HSDM_STRINGIFY(OM_VERSION);
+}
+
+struct PluginOption {
+    const char* key;
+    const char* value;
+};
+
+/// What the module tells of itself. Everything points to memory that lives as long as the process.
+struct PluginInfo {
+    std::uint32_t abi; ///< plugin_abi
+    const char* build; ///< plugin_build()
+    const char* name;
+    const char* description; ///< one line
+    const char* options;     ///< one line: keys, units, defaults
+    /// Works on the mesh and writes one line, what it did or what was wrong, of at most `capacity` characters
+    /// with the final zero. Returns 0 when done, 2 for a wrong option, 1 for any other failure. Never throws.
+    int (*process)(PolyMesh& mesh, const PluginOption* options, std::size_t count, char* message,
+                   std::size_t capacity);
+};
+
+/// The `key=value` options a module was called with.
+class PluginOptions {
+public:
+    PluginOptions(const PluginOption* options, std::size_t count) : options_(options), count_(count) {}
+
+    /// Throws OptionError for a key that is not among the known, or is given twice.
+    void allow(std::initializer_list<const char*> known) const;
+    bool has(const char* key) const { return find(key) != nullptr; }
+    /// The value, or the fallback where the key is not given. Throws OptionError for what is no number.
+    double number(const char* key, double fallback) const;
+    int integer(const char* key, int fallback) const;
+    std::string text(const char* key, const char* fallback) const;
+
+private:
+    const char* find(const char* key) const;
+
+    const PluginOption* options_;
+    std::size_t count_;
+};
+
+/// Carries a module's C++ function over the C interface: exceptions become the message and the result.
+using PluginFunction = std::string (*)(PolyMesh&, const PluginOptions&);
+int run_plugin(PluginFunction function, PolyMesh& mesh, const PluginOption* options, std::size_t count,
+               char* message, std::size_t capacity) noexcept;
+
+} // namespace hsdm
+
+/// Defines the exported function. Once per module, at namespace scope.
+#define HSDM_PLUGIN(plugin_name, plugin_description, plugin_options, plugin_function)                        \
+    extern "C" __attribute__((visibility("default"))) const hsdm::PluginInfo* hsdm_plugin() {                \
+        static const std::string build = hsdm::plugin_build();                                               \
+        static const hsdm::PluginInfo info{hsdm::plugin_abi,                                                 \
+                                           build.c_str(),                                                    \
+                                           plugin_name,                                                      \
+                                           plugin_description,                                               \
+                                           plugin_options,                                                   \
+                                           [](hsdm::PolyMesh& mesh, const hsdm::PluginOption* options,       \
+                                              std::size_t count, char* message, std::size_t capacity) {      \
+                                               return hsdm::run_plugin(plugin_function, mesh, options,       \
+                                                                       count, message, capacity);            \
+                                           }};                                                               \
+        return &info;                                                                                        \
+    }

@@ -1,0 +1,63 @@
+#pragma once
+// Finding, checking and running the processing modules of plugin.hh.
+
+#include "hsdm/mesh_types.hh"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace hsdm {
+
+struct PluginInfo;
+
+/// A module that was loaded. Modules stay loaded until the process ends: properties they add to a mesh are
+/// objects of their code.
+class Plugin {
+public:
+    /// Loads the shared library and checks it. Throws Error `FILE: what, and what to do` if it cannot be
+    /// loaded, is no module, or was built for another interface, hsdm, compiler or OpenMesh.
+    explicit Plugin(const std::string& path);
+
+    const std::string& path() const { return path_; }
+    std::string name() const;
+    std::string description() const; ///< one line
+    std::string options() const;     ///< one line: keys, units, defaults
+
+    /// Runs the module on the mesh; returns its one-line summary. Throws OptionError for an option the module
+    /// refuses, Error if it fails otherwise; the mesh may then be changed in part.
+    std::string process(PolyMesh& mesh,
+                        const std::vector<std::pair<std::string, std::string>>& options = {}) const;
+
+private:
+    std::string path_;
+    const PluginInfo* info_ = nullptr;
+};
+
+/// Where modules are looked for, in this order: the folders of the environment variable HSDM_PLUGIN_PATH
+/// (separated by ':'), then ../lib/hsdm/plugins beside the running program's folder, installed or built.
+std::vector<std::string> plugin_folders();
+
+/// The module NAME.so of the first folder that has one; a name with a '/' is a path. Throws Error; where
+/// nothing is found, it names the folders and the modules there are.
+Plugin load_plugin(const std::string& name, const std::vector<std::string>& folders = plugin_folders());
+
+/// What a folder offers, one entry per shared library.
+struct PluginListing {
+    std::string path, name, description, options;
+    std::string problem; ///< empty, or why the module cannot be used
+};
+
+/// All modules of the folders, by folder and name; of two with the same file name the first counts. Loads
+/// each.
+std::vector<PluginListing> list_plugins(const std::vector<std::string>& folders = plugin_folders());
+
+/// `name` or `name:key=value,key=value`.
+struct PluginRequest {
+    std::string name;
+    std::vector<std::pair<std::string, std::string>> options;
+};
+/// Throws OptionError for an empty name or key and a part without '='.
+PluginRequest parse_plugin_request(const std::string& text);
+
+} // namespace hsdm
