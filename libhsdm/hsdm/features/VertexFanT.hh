@@ -18,8 +18,8 @@ Vec3 to_vec3(const Vector& v) {
 
 template <class Normal>
 Normal to_normal(const Vec3& v) {
-    using Scalar = typename OpenMesh::vector_traits<Normal>::value_type;
-    return Normal(static_cast<Scalar>(v[0]), static_cast<Scalar>(v[1]), static_cast<Scalar>(v[2]));
+    using Number = typename OpenMesh::vector_traits<Normal>::value_type;
+    return Normal(static_cast<Number>(v[0]), static_cast<Number>(v[1]), static_cast<Number>(v[2]));
 }
 
 /// Calls body(handle) for handles 0 .. count - 1, in parallel; the body tells deleted elements itself.
