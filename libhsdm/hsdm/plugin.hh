@@ -1,7 +1,15 @@
 #pragma once
 // What a processing module is: a shared library that exports one function, `hsdm_plugin`. A module:
 //
-//     #include <hsdm/plugin.hh>
+//     std::string scale(hsdm::PolyMesh& mesh, const hsdm::PluginOptions& options) {
+//         options.allow({"factor"});
+//         const double factor = options.number("factor", 1);
+//         for (const auto v : mesh.vertices()) mesh.set_point(v, factor * mesh.point(v));
+//         return "scaled by " + options.text("factor", "1");
+//     }
+//     HSDM_PLUGIN("scale", "multiplies all coordinates", "factor (1)", scale)
+
+#include <hsdm/plugin.hh>
 //     std::string flip(hsdm::PolyMesh& mesh, const hsdm::PluginOptions& options);
 //     HSDM_PLUGIN("flip", "turns the mesh inside out", "no options", flip)
 

@@ -58,6 +58,13 @@ TEST_CASE("smooth-normals after classify-features leaves a cube's normals alone"
     for (const auto v : mesh.vertices()) CHECK(normals[v][0].max_abs() == Approx(1));
 }
 
+TEST_CASE("the module that the documentation shows works") {
+    PolyMesh mesh = to_mesh(test::cube(1)).mesh;
+    const Plugin scale = load_plugin("scale", {HSDM_EXAMPLE_DIR});
+    CHECK(scale.process(mesh, {{"factor", "25.4"}}) == "scaled by 25.4");
+    for (const auto v : mesh.vertices()) CHECK(mesh.point(v).max_abs() == 25.4);
+}
+
 TEST_CASE("a module's options are checked: unknown, twice, no number, out of range") {
     PolyMesh mesh = to_mesh(test::cube(1)).mesh;
     const Plugin plugin = load_plugin("classify-features", folders);
