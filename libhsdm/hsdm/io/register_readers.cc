@@ -1,0 +1,62 @@
+#include "hsdm/io/register_readers.hh"
+
+#include "hsdm/errors.hh"
+#include "hsdm/io/formats.hh"
+
+#include <OpenMesh/Core/IO/IOManager.hh>
+
+#include <exception>
+
+namespace hsdm {
+namespace {
+
+using OpenMesh::IO::BaseImporter;
+using OpenMesh::IO::Options;
+
+class PointReader : public OpenMesh::IO::BaseReader {
+public:
+    std::string get_description() const override { return "Point clouds as text"; }
+    /// Nothing that OpenMesh reads itself: modules are asked in the order of their addresses.
+    std::string get_extensions() const override { return "xyz xyzn xyzrgb asc txt csv pts pwn"; }
+
+    bool read(const std::string& path, BaseImporter& mesh, Options& options) override {
+        return add_points([&] { return read_points(path); }, mesh, options);
+    }
+    bool read(std::istream& stream, BaseImporter& mesh, Options& options) override {
+        return add_points([&] { return io::read_points(io::SourceBytes::read(stream, "<stream>"), {}); },
+                          mesh, options);
+    }
+
+private:
+    /// OpenMesh's readers report by their return value, so no exception may leave this one.
+    template <class Read>
+    static bool add_points(const Read& read, BaseImporter& mesh, Options& options) {
+        try {
+            const PointCloud cloud = read().cloud;
+            const bool normals = cloud.has_normals() && options.vertex_has_normal();
+            const bool colors = !cloud.colors.empty() && options.vertex_has_color();
+            mesh.reserve(static_cast<unsigned>(cloud.size()), 0, 0);
+            for (std::size_t i = 0; i < cloud.size(); ++i) {
+                const auto vertex = mesh.add_vertex(cloud.positions[i]);
+                if (normals) mesh.set_normal(vertex, cloud.normals[i]);
+                if (colors) mesh.set_color(vertex, OpenMesh::Vec4uc(cloud.colors[i].data()));
+            }
+            options.clear(); // what was asked for becomes what there was
+            if (normals) options += Options::VertexNormal;
+            if (colors) options += Options::VertexColor | Options::ColorAlpha;
+            return true;
+        } catch (const std::exception&) {
+            return false;
+        }
+    }
+};
+
+} // namespace
+
+void register_readers() {
+    static PointReader reader;
+    static const bool registered = OpenMesh::IO::IOManager().register_module(&reader);
+    static_cast<void>(registered);
+}
+
+} // namespace hsdm

@@ -1,0 +1,172 @@
+#include "fuzz/point_files.hh"
+
+#include "hsdm/errors.hh"
+#include "hsdm/io/formats.hh"
+#include "io/temp_file.hh"
+
+#include <algorithm>
+#include <sstream>
+
+namespace hsdm::test {
+namespace {
+
+std::string binary_ply(bool big) {
+    std::string text =
+        "ply\nformat binary_" + std::string(big ? "big" : "little")
+        + "_endian 1.0\nelement camera 1\nproperty list uchar int a\nelement vertex 4\nproperty float x\n"
+          "property double y\nproperty short z\nproperty ushort red\nproperty ushort green\nproperty ushort "
+          "blue\nproperty int label\nelement face 1\nproperty list uchar int v\nend_header\n";
+    text += bytes_of(std::uint8_t(1)) + bytes_of(std::int32_t(7), big);
+    for (int i = 0; i < 4; ++i) {
+        text += bytes_of(static_cast<float>(i), big) + bytes_of(0.5 * i, big)
+                + bytes_of(static_cast<std::int16_t>(i), big);
+        for (int k = 0; k < 3; ++k) text += bytes_of(static_cast<std::uint16_t>(1000 * i), big);
+        text += bytes_of(std::int32_t(i), big);
+    }
+    return text + bytes_of(std::uint8_t(1)) + bytes_of(std::int32_t(0), big);
+}
+
+std::string list_ply() {
+    std::string text =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty list int short "
+        "t\nproperty float y\nproperty float z\nproperty float red\nproperty float green\nproperty float "
+        "blue\nend_header\n";
+    for (int i = 0; i < 3; ++i) {
+        text += bytes_of(1.f) + bytes_of(std::int32_t(i)) + std::string(static_cast<std::size_t>(2 * i), 'a');
+        for (int k = 0; k < 5; ++k) text += bytes_of(0.25f * static_cast<float>(k));
+    }
+    return text;
+}
+
+std::string binary_stl() {
+    std::string text(80, ' ');
+    text += bytes_of(std::uint32_t(2));
+    for (int f = 0; f < 2; ++f) {
+        for (int i = 0; i < 12; ++i) text += bytes_of(static_cast<float>(i * f));
+        text += std::string(2, '\0');
+    }
+    return text;
+}
+
+std::string check(const PointCloud& cloud) {
+    const std::size_t n = cloud.size();
+    if (n == 0) return "a cloud without points";
+    if (!cloud.normals.empty() && cloud.normals.size() != n) return "normals do not fit the points";
+    if (!cloud.colors.empty() && cloud.colors.size() != n) return "colours do not fit the points";
+    for (const Scalar& scalar : cloud.scalars)
+        if (scalar.values.size() != n) return "scalars do not fit the points";
+    return "";
+}
+
+} // namespace
+
+std::vector<NamedContent> valid_point_files() {
+    return {
+        {"a.xyz", "1 2 3\n4 5 6\n7 8 9\n"},
+        {"a.xyz", "# c\n3\n1 2 3 0 0 1\n4 5 6 0 1 0\r\n7 8 9 1 0 0\n"},
+        {"a.csv", "x,y,z,r,g,b,label,nx,ny,nz\n1,2,3,1,2,3,4,0,0,1\n1,2,,1,2,3,4,0,0,1\n"},
+        {"a.txt", "1.5;2;3;255;0;17\n\n4;nan;-inf;0;0;0 // c\n"},
+        {"a.pts", "2\n1 2 3 -7 1 2 3\n4 5 6 8 4 5 6\n1\n7 8 9 1 7 8 9\n"},
+        {"a.pwn", "2\n1 2 3\n4 5 6\n0 0 1\n0 1 0\n"},
+        {"a.off", "CNOFF\n# c\n2 1 0\n1 2 3 0 0 1 255 0 0 255\n4 5 6 0 0 1 0 0 0 255\n3 0 1 1\n"},
+        {"a.obj", "# c\nv 1 2 3 0.5 0.5 1\nvn 0 0 1\nv 4 5 6 0 0 0\nvn 1 0 0\nf 1 2 1\n"},
+        {"a.p", "# c\np 1 2 3\nq\np 4 5 6\n"},
+        {"a.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
+                  "0\nendloop\nendfacet\nendsolid\n"},
+        {"b.stl", binary_stl()},
+        {"a.ply", "ply\nformat ascii 1.0\ncomment c\nelement vertex 2\nproperty float x\nproperty float "
+                  "y\nproperty float z\n"
+                  "property list uchar int t\nproperty uchar red\nproperty uchar green\nproperty uchar "
+                  "blue\nelement face 1\n"
+                  "property list uchar int v\nend_header\n1 2 3 1 9 1 2 3\n4 5 6 0 4 5 6\n3 0 1 1\n"},
+        {"b.ply", binary_ply(false)},
+        {"c.ply", binary_ply(true)},
+        {"d.ply", list_ply()},
+    };
+}
+
+std::string damaged(const std::string& content, support::Random& random) {
+    static const std::string pieces[] = {
+        "4294967295",
+        "18446744073709551616",
+        "-1",
+        "1e400",
+        "nan",
+        "1.#IND",
+        "\n",
+        "\r",
+        "\r\n",
+        ",",
+        ";;",
+        "#",
+        "//",
+        "\xef\xbb\xbf",
+        std::string(1, '\0'),
+        "\xff\xff\xff\xff",
+        "OFF",
+        "ply\n",
+        "solid",
+        "element vertex 9\n",
+        "property list int int q\n",
+        "property double x\n",
+        "p 1 2 3\n",
+        "v 1 2 3\n",
+        " ",
+        "+",
+        "1000000000",
+    };
+    std::string text = content;
+    for (std::size_t changes = 1 + random.below(8); changes > 0; --changes) {
+        const std::size_t at = random.below(text.size() + 1),
+                          length = random.below(std::min<std::size_t>(text.size() - at, 16) + 1);
+        switch (random.below(7)) {
+        case 0:
+            if (at < text.size()) text[at] = static_cast<char>(text[at] ^ (1 << random.below(8)));
+            break;
+        case 1:
+            if (at < text.size()) text[at] = static_cast<char>(random.below(256));
+            break;
+        case 2:
+            text.erase(at, length);
+            break;
+        case 3:
+            text.insert(at, pieces[random.below(std::size(pieces))]);
+            break;
+        case 4:
+            text.replace(at, length, pieces[random.below(std::size(pieces))]);
+            break;
+        case 5:
+            text.insert(random.below(text.size() + 1), text.substr(at, length));
+            break;
+        default:
+            if (random.below(4) == 0) text.resize(at);
+        }
+    }
+    return text;
+}
+
+std::string fuzz_reading(std::uint64_t seed, int rounds) {
+    const auto files = valid_point_files();
+    support::Random random(seed);
+    const std::string columns[] = {"", "", "", "x,y,z", "_,z,y,x,label", "x,y,z,nx,ny,nz,r,g,b"};
+    const std::string formats[] = {"", "", "", "ply", "xyz", "off", "obj", "stl", "pts", "pwn", "hoppe"};
+    for (int round = 0; round < rounds; ++round)
+        for (const NamedContent& file : files) {
+            std::istringstream stream(damaged(file.content, random));
+            const ReadOptions options{formats[random.below(std::size(formats))],
+                                      columns[random.below(std::size(columns))]};
+            std::string fault;
+            try {
+                fault = check(io::read_points(io::SourceBytes::read(stream, file.name), options).cloud);
+            } catch (const Error&) {       // what damage must end in, if it shows
+            } catch (const OptionError&) { // columns of what is no table
+            } catch (const std::exception& error) {
+                fault = error.what();
+            }
+            if (!fault.empty())
+                return file.name + " in round " + std::to_string(round) + ": " + fault + "\n" + stream.str();
+        }
+    return "";
+}
+
+} // namespace hsdm::test
