@@ -123,3 +123,15 @@ TEST_CASE("neighbour offsets are 6 faces, 12 edges, 8 corners, each once", "[oct
         CHECK(std::abs(o[0]) + std::abs(o[1]) + std::abs(o[2]) == (i < 6 ? 1 : i < 18 ? 2 : 3));
     }
 }
+
+TEST_CASE("a centred cube has the cloud's box in its middle and holds every point", "[octree]") {
+    const PointCloud cloud = random_cloud(5000, 12);
+    OctreeOptions options;
+    options.placement = CubePlacement::centred;
+    const Octree octree = build_octree(cloud, options);
+    const Vec3 middle = (octree.bounds.lo + octree.bounds.hi) / 2;
+    CHECK((octree.origin + Vec3(1, 1, 1) * (octree.extent / 2) - middle).norm() < 1e-14);
+    bool inside = true;
+    for (const Vec3& p : octree.positions) inside &= p.min() >= 0 && p.max() <= octree.extent;
+    CHECK(inside);
+}

@@ -267,6 +267,11 @@ BasicFacets reconstruct_facets(const Octree& octree, const OctreeLevel& level, c
     BasicFacets result;
     Propagation(octree, level, graph, options, result).run();
     for (Vec3& p : result.mesh.positions) p += octree.origin;
+    if (options.max_hole_edges > 0) {
+        FillHolesOptions holes;
+        holes.max_edges = options.max_hole_edges;
+        result.counts.holes = fill_holes(result.mesh, holes);
+    }
     result.counts.manifold = make_manifold(result.mesh);
     return result;
 }

@@ -1,6 +1,7 @@
 #pragma once
 // Section 3.2.2 put together: connectivity graph -> facets, for points without normals.
 
+#include "hsdm/facets/fill_holes.hh"
 #include "hsdm/facets/manifold.hh"
 #include "hsdm/facets/minimal_loop.hh"
 
@@ -13,6 +14,8 @@ struct BasicFacetOptions {
     bool hit_test = true;           ///< reject candidates whose normal runs into a neighbouring voxel
     bool distance_criterion = true; ///< of several candidates, drop those farther from the close points
     bool angle_comparison = true;   ///< of several candidates, take the outer one; else the paper's first
+    /// Boundary loops of at most so many edges are closed (hole elimination), >= 3; 0: none.
+    int max_hole_edges = 8;
 };
 
 struct BasicFacets {
@@ -24,6 +27,7 @@ struct BasicFacets {
         std::size_t angle_comparison = 0;
         std::size_t seeds = 0; ///< facets that orientation was propagated from
         ManifoldCounts manifold;
+        FillHolesCounts holes;
     } counts;
 };
 

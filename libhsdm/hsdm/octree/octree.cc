@@ -93,6 +93,13 @@ Octree build_octree(const PointCloud& cloud, const OctreeOptions& options) {
                               + ": must be 0 or at least " + std::to_string(octree.extent));
         octree.extent = options.cube_extent;
     }
+    if (options.placement == CubePlacement::centred) {
+        const double half = octree.extent / 2;
+        // The longest side fills the cube: rounding must not leave its ends a hair outside.
+        for (unsigned k = 0; k < 3; ++k)
+            octree.origin[k] = std::clamp(octree.bounds.lo[k] + octree.bounds.size()[k] / 2 - half,
+                                          octree.bounds.hi[k] - octree.extent, octree.bounds.lo[k]);
+    }
 
     const std::size_t n = cloud.size();
     const double scale = static_cast<double>(1 << morton_levels) / octree.extent;

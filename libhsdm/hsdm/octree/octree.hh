@@ -8,9 +8,16 @@
 
 namespace hsdm {
 
+/// Where the bounding cube lies around a cloud that does not fill it.
+enum class CubePlacement {
+    least_corner, ///< its least corner is that of the cloud's box
+    centred,      ///< its centre is that of the cloud's box: gives the voxel counts that the paper reports
+};
+
 struct OctreeOptions {
     bool merge_duplicates = true; ///< points equal in position and normal count once
     double cube_extent = 0; ///< edge of the bounding cube, at least the cloud's longest side; 0: that side
+    CubePlacement placement = CubePlacement::least_corner;
 };
 
 /// The cloud in Morton order inside its bounding cube (Fig. 3b). One sort serves every level, 0 to 21: the

@@ -1,0 +1,53 @@
+#pragma once
+// Hole elimination (sections 3.2.2 and 3.4.2): short boundary loops are closed by facets over their own
+// vertices.
+
+#include "hsdm/polygon_mesh.hh"
+
+namespace hsdm {
+
+struct FillHolesOptions {
+    int max_edges = 8;              ///< longer loops stay open, >= 3; no_limit closes loops of any length
+    double max_diameter = Box::inf; ///< loops whose box has a longer diagonal stay open, in the mesh's units
+    /// Greatest bend between a new facet and its neighbours, in radians, (0, pi]; a loop that cannot be
+    /// closed with less is left open. pi is a facet folded back onto its neighbour.
+    double max_bend = 2.6;
+    bool quads = true; ///< join triangles to quads where these come out convex
+
+    static constexpr int no_limit = std::numeric_limits<int>::max();
+};
+
+struct FillHolesCounts {
+    std::size_t loops = 0;   ///< boundary loops before
+    std::size_t closed = 0;  ///< of these, closed
+    std::size_t refused = 0; ///< within the limits, but only closed by folding or by an edge used twice
+    std::size_t facets = 0;  ///< added, at the end of the mesh
+};
+
+/// Boundary loops as flat arrays: the vertices of loop i are vertices[begin[i]] .. vertices[begin[i + 1]],
+/// in the direction in which a facet that closes the loop runs. No loop visits a vertex twice.
+struct BoundaryLoops {
+    std::vector<Index> vertices;
+    std::vector<Index> facets; ///< beside each vertex, the facet at the side from it to the next one
+    std::vector<Index> begin{0};
+
+    std::size_t size() const { return begin.size() - 1; }
+    std::span<const Index> operator[](std::size_t i) const {
+        return {vertices.data() + begin[i], vertices.data() + begin[i + 1]};
+    }
+};
+
+/// The loops of facets of which no two run along an edge the same way. At a vertex with several fans each
+/// loop stays in the gap between two fans next to each other, so that closing the loops joins the fans; fans
+/// that face different ways keep their gaps to themselves. O(facets).
+BoundaryLoops boundary_loops(const PolygonMesh& mesh);
+
+/// Closes boundary loops without adding vertices. Each loop is triangulated so that edges are short and
+/// bends small (exactly, by dynamic programming, up to 128 edges; longer ones lose their best ears first),
+/// then triangles are joined to quads. No two facets of the mesh may run along an edge the same way, and none
+/// will: no edge that exists is used again, no facet lies over the vertices of another. Closing holes before
+/// make_manifold mends vertices with several fans; what it cannot mend make_manifold splits.
+/// O(facets + sum of loop length ^ 3, for lengths up to 128).
+FillHolesCounts fill_holes(PolygonMesh& mesh, const FillHolesOptions& options = {});
+
+} // namespace hsdm
