@@ -16,8 +16,17 @@ endfunction()
 
 # hsdm_includes_openmesh_kernel(SOURCE...): g++ 12 reports -Wmaybe-uninitialized from inside OpenMesh's
 # own headers; that one warning is switched off for the files that include a mesh kernel, nothing else.
+# A property of a source file holds in one folder only: it is set where the target that compiles it lives.
 function(hsdm_includes_openmesh_kernel)
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS -Wno-maybe-uninitialized)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    return()
   endif()
+  list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE sources)
+  set_property(SOURCE ${sources} APPEND PROPERTY COMPILE_OPTIONS -Wno-maybe-uninitialized)
+  foreach(target hsdm hsdm_tests)
+    if(TARGET ${target})
+      set_property(SOURCE ${sources} TARGET_DIRECTORY ${target}
+                   APPEND PROPERTY COMPILE_OPTIONS -Wno-maybe-uninitialized)
+    endif()
+  endforeach()
 endfunction()
