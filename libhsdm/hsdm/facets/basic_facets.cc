@@ -260,12 +260,13 @@ private:
 } // namespace
 
 BasicFacets reconstruct_facets(const Octree& octree, const OctreeLevel& level, const ConnectivityGraph& graph,
-                               const BasicFacetOptions& options) {
+                               const BasicFacetOptions& options, std::vector<VertexProperty> properties) {
     if (options.max_loop_edges < 3 || options.max_loop_edges > max_loop_edges)
         throw OptionError("max_loop_edges " + std::to_string(options.max_loop_edges) + ": must lie in [3, "
                           + std::to_string(max_loop_edges) + "]");
     BasicFacets result;
     Propagation(octree, level, graph, options, result).run();
+    result.mesh.properties = std::move(properties);
     for (Vec3& p : result.mesh.positions) p += octree.origin;
     if (options.max_hole_edges > 0) {
         FillHolesOptions holes;

@@ -34,8 +34,9 @@ struct BasicFacets {
 /// Facets are laid one by one across the twins of those laid before (Fig. 5, 6), from one seed per component
 /// of the graph, so orientation propagates through twins alone and no two normals are ever compared. A
 /// half-edge carries at most one facet, and no facet covers another's reverse. O(n) time and space.
-/// Throws OptionError.
+/// `properties` hold a value per vertex of the graph and come out on the mesh's vertices. Throws OptionError.
 BasicFacets reconstruct_facets(const Octree& octree, const OctreeLevel& level, const ConnectivityGraph& graph,
-                               const BasicFacetOptions& options = {});
+                               const BasicFacetOptions& options = {},
+                               std::vector<VertexProperty> properties = {});
 
 } // namespace hsdm

@@ -1,0 +1,69 @@
+#include "command.hh"
+
+#include "interrupt.hh"
+
+#include "hsdm/errors.hh"
+#include "hsdm/version.hh"
+
+#include <iostream>
+#include <new>
+
+namespace hsdm::command {
+namespace {
+
+int guarded(const Run& run) {
+    try {
+        const int status = run();
+        std::cout.flush();
+        if (!std::cout) throw Error("standard output", "could not be written; is the reader still there?");
+        return status;
+    } catch (const UsageError& error) {
+        complain(std::string(error.what()) + "\nRun with --help for more information.");
+        return wrong_usage;
+    } catch (const OptionError& error) {
+        complain(error.what());
+        return wrong_usage;
+    } catch (const Cancelled&) {
+        complain("cancelled; nothing was left behind");
+        return cancelled;
+    } catch (const std::bad_alloc&) {
+        complain("out of memory; use a smaller --depth or a thinned cloud");
+        return failed;
+    } catch (const std::exception& error) {
+        complain(error.what());
+        return failed;
+    }
+}
+
+} // namespace
+
+void complain(const std::string& message) {
+    std::cerr << "hsdm: " << message << std::endl;
+}
+
+int run_command(int argc, char** argv) {
+    CLI::App app("hsdm turns scanned point clouds into CAD-ready meshes.", "hsdm");
+    app.set_version_flag("--version", std::string("hsdm ") + version);
+    app.require_subcommand(1);
+    app.get_formatter()->column_width(34);
+    app.footer("Examples:\n"
+               "  hsdm reconstruct scan.ply -o part.stl\n"
+               "  hsdm reconstruct scan.xyz --depth 6 -o part.off --report part.json\n"
+               "  hsdm info part.stl\n"
+               "  hsdm compare part.off scan.ply\n"
+               "Exit status: 0 all done, 1 an input failed, 2 wrong usage, 130 cancelled.");
+    Run run;
+    add_reconstruct(app, run);
+    add_regress(app, run);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        // Help and version go to standard output with status 0; all else is wrong usage.
+        const int status = app.exit(error, std::cout, std::cerr);
+        return status == 0 ? done : wrong_usage;
+    }
+    handle_interrupts();
+    return guarded(run);
+}
+
+} // namespace hsdm::command

@@ -1,0 +1,36 @@
+#pragma once
+// What the subcommands share: how one is added, and how it ends.
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+#include <iosfwd>
+#include <stdexcept>
+#include <string>
+
+namespace hsdm::command {
+
+enum Exit : int { done = 0, failed = 1, wrong_usage = 2, cancelled = 130 };
+
+/// Wrong usage found after parsing: its message and status 2.
+class UsageError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+/// A subcommand's work, set by the one that was given; returns the exit status.
+using Run = std::function<int()>;
+
+void add_reconstruct(CLI::App& app, Run& run);
+void add_info(CLI::App& app, Run& run);
+void add_compare(CLI::App& app, Run& run);
+void add_process(CLI::App& app, Run& run);
+void add_regress(CLI::App& app, Run& run);
+
+/// Parses and runs; every exception becomes a message on standard error and an exit status.
+int run_command(int argc, char** argv);
+
+/// `hsdm: MESSAGE` on standard error.
+void complain(const std::string& message);
+
+} // namespace hsdm::command

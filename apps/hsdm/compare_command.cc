@@ -1,0 +1,92 @@
+// hsdm compare: how far two surfaces, or a surface and a cloud, are apart.
+
+#include "command.hh"
+#include "load.hh"
+
+#include "hsdm/errors.hh"
+#include "hsdm/quality/compare.hh"
+
+#include <iostream>
+
+namespace hsdm::command {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const Distance& distance, double diagonal) {
+    return {{"max", distance.max},
+            {"mean", distance.mean},
+            {"rms", distance.rms},
+            {"normalised_max", diagonal > 0 ? distance.max / diagonal : 0}};
+}
+
+Json json_of(const std::string& path, const Loaded& loaded) {
+    Json json = {{"file", path}, {"kind", loaded.is_mesh() ? "mesh" : "cloud"}};
+    if (loaded.is_mesh()) {
+        json["mesh"] = topology_json(loaded.mesh);
+    } else {
+        json["points"] = loaded.cloud.size();
+    }
+    return json;
+}
+
+void print(const char* title, const Distance& distance, double diagonal) {
+    std::cout << title << "  max " << distance.max << " ("
+              << (diagonal > 0 ? 100 * distance.max / diagonal : 0) << " % of the diagonal), mean "
+              << distance.mean << ", rms " << distance.rms << '\n';
+}
+
+void print(const char* title, const std::string& path, const Loaded& loaded) {
+    std::cout << title << "         " << path << '\n';
+    if (loaded.is_mesh()) {
+        print_topology(std::cout, loaded.mesh);
+    } else {
+        std::cout << "cloud     " << loaded.cloud.size() << " points\n";
+    }
+}
+
+int run_compare(const std::string& path_a, const std::string& path_b, bool as_json) {
+    const Loaded a = load(path_a), b = load(path_b);
+    if (!a.is_mesh() && !b.is_mesh())
+        throw Error(path_b, "both files hold points without faces; one of the two must be a mesh");
+    const Comparison result = compare(a.mesh, b.mesh);
+    if (as_json) {
+        const Json json = {{"a", json_of(path_a, a)},
+                           {"b", json_of(path_b, b)},
+                           {"a_to_b", json_of(result.a_to_b, result.diagonal)},
+                           {"b_to_a", json_of(result.b_to_a, result.diagonal)},
+                           {"hausdorff", result.hausdorff()},
+                           {"diagonal", result.diagonal}};
+        std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+        return done;
+    }
+    print("a", path_a, a);
+    print("b", path_b, b);
+    print("a to b", result.a_to_b, result.diagonal);
+    print("b to a", result.b_to_a, result.diagonal);
+    return done;
+}
+
+} // namespace
+
+void add_compare(CLI::App& app, Run& run) {
+    CLI::App* const sub =
+        app.add_subcommand("compare", "distances between a mesh and a cloud or another mesh");
+    struct Arguments {
+        std::string a, b;
+        bool json = false;
+    };
+    const auto arguments = std::make_shared<Arguments>();
+    sub->add_option("a", arguments->a, "a mesh or a cloud")->required();
+    sub->add_option("b", arguments->b, "a mesh or a cloud; one of the two is a mesh")->required();
+    sub->add_flag("--json", arguments->json, "as JSON");
+    sub->footer(
+        "Distances of a cloud are taken from every point, those of a mesh from points spread over its area\n"
+        "and from its vertices.\nExamples:\n  hsdm compare part.off scan.ply\n"
+        "  hsdm compare part.off truth.off --json");
+    sub->callback([&run, arguments] {
+        run = [arguments] { return run_compare(arguments->a, arguments->b, arguments->json); };
+    });
+}
+
+} // namespace hsdm::command

@@ -1,0 +1,93 @@
+#include "load.hh"
+
+#include "interrupt.hh"
+#include "summary.hh"
+
+#include "hsdm/errors.hh"
+#include "hsdm/io/read_mesh.hh"
+#include "hsdm/quality/topology.hh"
+
+#include <filesystem>
+#include <ostream>
+
+namespace hsdm::command {
+namespace {
+
+bool may_hold_mesh(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return extension == ".ply" || extension == ".off" || extension == ".obj" || extension == ".stl";
+}
+
+} // namespace
+
+Loaded load(const std::string& path) {
+    const InterruptEndsProcess while_reading;
+    Loaded loaded;
+    if (may_hold_mesh(path)) {
+        loaded.mesh = read_mesh(path);
+        if (loaded.is_mesh()) return loaded;
+    }
+    loaded.cloud = read_points(path).cloud;
+    loaded.dropped = drop_nonfinite(loaded.cloud);
+    if (loaded.cloud.size() == 0) throw Error(path, "no point with finite coordinates; nothing to look at");
+    loaded.mesh = PolygonMesh();
+    loaded.mesh.positions = loaded.cloud.positions;
+    return loaded;
+}
+
+nlohmann::ordered_json topology_json(const PolygonMesh& mesh) {
+    const Topology t = measure_topology(mesh);
+    const FacetShape shape = measure_shape(mesh);
+    return {{"vertices", t.vertices},
+            {"edges", t.edges},
+            {"faces", t.faces},
+            {"triangles", t.triangles},
+            {"quads", t.quads},
+            {"larger", t.larger},
+            {"components", t.components},
+            {"boundary_loops", t.boundary_loops},
+            {"boundary_edges", t.boundary_edges},
+            {"euler", t.euler},
+            {"genus", t.genus()},
+            {"closed", t.closed()},
+            {"manifold", t.manifold()},
+            {"isolated_vertices", t.isolated_vertices},
+            {"nonmanifold_edges", t.nonmanifold_edges},
+            {"nonmanifold_vertices", t.nonmanifold_vertices},
+            {"misoriented_edges", t.misoriented_edges},
+            {"degenerate_facets", t.degenerate_facets},
+            {"duplicate_facets", t.duplicate_facets},
+            {"signed_volume", t.signed_volume},
+            {"quad_share", shape.quad_share},
+            {"scaled_jacobian_median", shape.scaled_jacobian_median},
+            {"scaled_jacobian_min", shape.scaled_jacobian_min},
+            {"edge_length_mean", shape.edge_length_mean}};
+}
+
+void print_topology(std::ostream& out, const PolygonMesh& mesh) {
+    const Topology t = measure_topology(mesh);
+    const FacetShape shape = measure_shape(mesh);
+    Report::Mesh counts;
+    counts.components = t.components;
+    counts.boundary_loops = t.boundary_loops;
+    counts.boundary_edges = t.boundary_edges;
+    counts.genus = t.genus();
+    counts.closed = t.closed();
+    out << "mesh      " << grouped(t.vertices) << " vertices, " << grouped(t.edges) << " edges, "
+        << grouped(t.faces) << " faces (" << grouped(t.quads) << " quads, " << grouped(t.triangles)
+        << " triangles, " << grouped(t.larger) << " larger)\n"
+        << "topology  " << topology_words(counts) << ", Euler characteristic " << t.euler << '\n'
+        << "manifold  " << (t.manifold() && t.misoriented_edges == 0 ? "yes, consistently oriented" : "NO")
+        << ": " << t.nonmanifold_edges << " non-manifold edges, " << t.nonmanifold_vertices
+        << " non-manifold vertices, " << t.misoriented_edges << " edges between opposite facets\n"
+        << "faults    " << t.degenerate_facets << " degenerate, " << t.duplicate_facets
+        << " duplicate facets, " << t.isolated_vertices << " isolated vertices\n"
+        << "shape     quads " << 100 * shape.quad_share << " %, scaled Jacobian of quads: median "
+        << shape.scaled_jacobian_median << ", least " << shape.scaled_jacobian_min << "; mean edge "
+        << shape.edge_length_mean << '\n';
+    if (t.closed())
+        out << "volume    " << t.signed_volume << (t.signed_volume > 0 ? " (outward)" : " (INWARD)") << '\n';
+}
+
+} // namespace hsdm::command

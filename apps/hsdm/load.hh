@@ -1,0 +1,28 @@
+#pragma once
+// A file that may hold a mesh or a cloud.
+
+#include "hsdm/io/read_points.hh"
+#include "hsdm/polygon_mesh.hh"
+
+#include <nlohmann/json.hpp>
+
+namespace hsdm::command {
+
+struct Loaded {
+    PolygonMesh mesh; ///< without facets if the file holds points only
+    PointCloud cloud; ///< filled only then
+    Dropped dropped;  ///< from the cloud
+    bool is_mesh() const { return mesh.facet_count() > 0; }
+};
+
+/// A mesh if the file has faces, otherwise a cloud of finite points, whose positions are the mesh's too.
+/// Throws Error.
+Loaded load(const std::string& path);
+
+/// Counts, topology and shape, in the report's words.
+nlohmann::ordered_json topology_json(const PolygonMesh& mesh);
+
+/// Lines for people, each `name  value`.
+void print_topology(std::ostream& out, const PolygonMesh& mesh);
+
+} // namespace hsdm::command

@@ -1,0 +1,27 @@
+#pragma once
+// One line on standard error that says how far the work is.
+
+#include <chrono>
+#include <string>
+
+namespace hsdm::command {
+
+enum class Progress { automatic, always, never };
+
+class ProgressBar {
+public:
+    /// automatic: only on a terminal, and only once a second has passed.
+    ProgressBar(Progress mode, std::string title);
+    ~ProgressBar(); ///< wipes the line
+
+    void show(const char* phase, double done);
+
+private:
+    using Clock = std::chrono::steady_clock;
+    Progress mode_;
+    std::string title_;
+    Clock::time_point start_, last_{};
+    bool terminal_, drawn_ = false;
+};
+
+} // namespace hsdm::command

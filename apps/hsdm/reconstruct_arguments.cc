@@ -1,0 +1,183 @@
+#include "reconstruct_arguments.hh"
+
+#include <charconv>
+#include <numbers>
+
+namespace hsdm::command {
+namespace {
+
+template <class T>
+using Names = std::vector<std::pair<std::string, T>>;
+
+/// An option with a few named values.
+template <class T>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, T& value, const Names<T>& names,
+                        const std::string& help) {
+    std::string list;
+    std::set<std::string> known;
+    for (const auto& [word, meaning] : names) {
+        list += (list.empty() ? "" : "|") + word;
+        known.insert(word);
+    }
+    return app
+        .add_option_function<std::string>(
+            name,
+            [&value, names](const std::string& given) {
+                for (const auto& [word, meaning] : names)
+                    if (word == given) value = meaning;
+            },
+            help)
+        ->check(CLI::IsMember(known))
+        ->type_name(list);
+}
+
+void refuse(bool given, const std::string& what) {
+    if (given) throw UsageError(what + " is not available yet");
+}
+
+} // namespace
+
+void add_method_options(CLI::App& app, ReconstructArguments& a) {
+    const std::string resolution = "Resolution (default: chosen from the spacing of the points)";
+    const auto depth = app.add_option("--depth", a.depth,
+                                      "octree depth N over the bounding cube, 1 to 16: voxel = "
+                                      "largest extent / 2^N")
+                           ->type_name("N")
+                           ->group(resolution);
+    const auto voxel = app.add_option("--voxel-size", a.voxel_size, "edge of a voxel in the cloud's units")
+                           ->type_name("L")
+                           ->group(resolution);
+    const auto error = app.add_option("--max-error", a.max_error,
+                                      "not available yet: subdivide until the surface is within E")
+                           ->type_name("E")
+                           ->group(resolution);
+    const auto levels = app.add_option("--levels", a.levels,
+                                       "one octree, one mesh per depth A to B: name.dA.off ... name.dB.off")
+                            ->type_name("A:B")
+                            ->group(resolution);
+    const std::vector<CLI::Option*> resolutions{depth, voxel, error, levels};
+    for (CLI::Option* one : resolutions)
+        for (CLI::Option* other : resolutions)
+            if (one != other) one->excludes(other);
+    app.add_option("--grid", a.grid, "uniform, or adaptive (not available yet)")
+        ->check(CLI::IsMember({"uniform", "adaptive"}))
+        ->type_name("uniform|adaptive")
+        ->group(resolution);
+
+    const std::string method = "Method";
+    add_choice<Method>(
+        app, "--method", a.method,
+        {{"auto", Method::automatic}, {"basic", Method::basic}, {"extended", Method::extended}},
+        "basic: from the positions alone; extended: with normals; auto: the best there is")
+        ->group(method);
+    add_choice<NormalSource>(app, "--normals", a.normals,
+                             {{"auto", NormalSource::automatic},
+                              {"given", NormalSource::given},
+                              {"estimate", NormalSource::estimate}},
+                             "where normals come from; auto: the file's, if it has them")
+        ->group(method);
+    add_choice<Holes>(app, "--holes", a.holes,
+                      {{"auto", Holes::automatic}, {"keep", Holes::keep}, {"close", Holes::close}},
+                      "auto: close what is small against the sampling; close: everything; keep: nothing")
+        ->group(method);
+    app.add_option("--crease-degrees", a.crease_degrees, "dihedral angle above which an edge is sharp")
+        ->type_name("D")
+        ->capture_default_str()
+        ->group(method);
+    app.add_option("--smoothing", a.smoothing, "rounds of anisotropic normal smoothing")
+        ->type_name("N")
+        ->capture_default_str()
+        ->group(method);
+    app.add_option("--memory", a.memory, "not available yet: upper bound on memory")
+        ->type_name("SIZE")
+        ->group(method);
+}
+
+void add_text_options(CLI::App& app, ReconstructArguments& a) {
+    const std::string files = "Files";
+    app.add_option("--input-format", a.read.format, "the input's format, where no extension names it")
+        ->check(CLI::IsMember({"ply", "xyz", "csv", "pts", "pwn", "off", "obj", "stl"}))
+        ->type_name("FORMAT")
+        ->group(files);
+    app.add_option("--columns", a.read.columns, "columns of a text file, e.g. x,y,z,nx,ny,nz,r,g,b,_")
+        ->type_name("LIST")
+        ->group(files);
+}
+
+void add_file_options(CLI::App& app, ReconstructArguments& a) {
+    app.add_option("input", a.inputs,
+                   "point files (PLY, XYZ, TXT, ASC, CSV, PTS, PWN; the vertices of OFF, OBJ, "
+                   "STL); - is standard input")
+        ->required()
+        ->type_name("INPUT...");
+    const std::string files = "Files";
+    app.add_option("-o,--output", a.output, "the mesh; its extension names the format; - is standard output")
+        ->type_name("FILE")
+        ->group(files);
+    app.add_option("--out-dir", a.out_dir, "one mesh per input, by the input's name; made if missing")
+        ->type_name("DIR")
+        ->group(files);
+    app.add_option("--format", a.format, "the mesh's format, where no extension names it (default off)")
+        ->check(CLI::IsMember({"off", "stl", "ply", "obj", "om"}))
+        ->type_name("off|stl|ply|obj|om")
+        ->group(files);
+    app.add_flag("--ascii", a.ascii, "text instead of binary STL and PLY")->group(files);
+    app.add_option("--features", a.features, "sharp edges (x y z x y z) and corners (c x y z) as text")
+        ->type_name("FILE")
+        ->group(files);
+    app.add_option("--report", a.report, "counts, errors and times as JSON; - is standard output")
+        ->type_name("FILE")
+        ->group(files);
+    app.add_option("--debug-dir", a.debug_dir, "write the phases (voxels, graph, facets) as files here")
+        ->type_name("DIR")
+        ->group(files);
+
+    add_text_options(app, a);
+
+    const std::string running = "Running";
+    app.add_option("--threads", a.threads, "at most N threads (default all); the result is the same")
+        ->type_name("N")
+        ->group(running);
+    const auto quiet = app.add_flag("--quiet", a.quiet, "no summary, errors only")->group(running);
+    app.add_flag("--verbose", a.verbose, "seconds of every phase, what was rejected")
+        ->excludes(quiet)
+        ->group(running);
+    add_choice<Progress>(
+        app, "--progress", a.progress,
+        {{"auto", Progress::automatic}, {"always", Progress::always}, {"never", Progress::never}},
+        "a bar on standard error; auto: on a terminal, for work over a second")
+        ->group(running);
+}
+
+ReconstructOptions ReconstructArguments::options() const {
+    refuse(!max_error.empty(), "--max-error");
+    refuse(grid == "adaptive", "--grid adaptive");
+    refuse(!memory.empty(), "--memory");
+    refuse(normals == NormalSource::estimate, "--normals estimate");
+    refuse(method == Method::extended, "--method extended");
+    ReconstructOptions o;
+    o.depth = depth;
+    o.voxel_size = voxel_size;
+    o.method = method;
+    o.normals = normals;
+    o.holes = holes;
+    o.crease_angle = crease_degrees * std::numbers::pi / 180;
+    o.normal_smoothing = smoothing;
+    o.threads = threads;
+    o.debug_dir = debug_dir;
+    return o;
+}
+
+std::optional<std::pair<int, int>> ReconstructArguments::level_range() const {
+    if (levels.empty()) return std::nullopt;
+    std::pair<int, int> range;
+    const char* const end = levels.data() + levels.size();
+    const auto first = std::from_chars(levels.data(), end, range.first);
+    if (first.ec == std::errc() && first.ptr != end && *first.ptr == ':') {
+        const auto last = std::from_chars(first.ptr + 1, end, range.second);
+        if (last.ec == std::errc() && last.ptr == end) return range;
+    }
+    throw UsageError("--levels " + levels + ": two depths with a colon between them are wanted, e.g. 4:7");
+}
+
+} // namespace hsdm::command

@@ -1,0 +1,53 @@
+#pragma once
+// The options of `hsdm reconstruct`, as given; `hsdm regress` reads its cases through the same door.
+
+#include "command.hh"
+#include "progress_bar.hh"
+
+#include "hsdm/io/read_points.hh"
+#include "hsdm/io/write_mesh.hh"
+#include "hsdm/reconstruct.hh"
+
+#include <optional>
+#include <vector>
+
+namespace hsdm::command {
+
+struct ReconstructArguments {
+    std::vector<std::string> inputs;
+    ReadOptions read;
+
+    std::optional<int> depth;
+    std::optional<double> voxel_size;
+    std::string max_error;
+    Method method = Method::automatic;
+    NormalSource normals = NormalSource::automatic;
+    Holes holes = Holes::automatic;
+    std::string grid;
+    std::string levels;
+    double crease_degrees = 35;
+    int smoothing = 3;
+    std::string memory;
+    int threads = 0;
+    std::string debug_dir;
+
+    std::string output, out_dir, format;
+    bool ascii = false;
+    std::string features, report;
+    bool quiet = false, verbose = false;
+    Progress progress = Progress::automatic;
+
+    /// Options of the library; set after parsing. Throws UsageError for options that are not there yet.
+    ReconstructOptions options() const;
+    /// First and last depth of --levels A:B; nothing if it was not given. Throws UsageError.
+    std::optional<std::pair<int, int>> level_range() const;
+};
+
+/// What says how a cloud is reconstructed: shared by `reconstruct` and `regress`.
+void add_method_options(CLI::App& app, ReconstructArguments& arguments);
+/// How text files are read: shared too.
+void add_text_options(CLI::App& app, ReconstructArguments& arguments);
+/// Inputs, outputs and messages.
+void add_file_options(CLI::App& app, ReconstructArguments& arguments);
+
+} // namespace hsdm::command

@@ -1,0 +1,203 @@
+// hsdm regress: a list of reconstructions, each with what its report must say. The format is in
+// docs/command.md.
+
+#include "command.hh"
+#include "interrupt.hh"
+#include "reconstruct_arguments.hh"
+
+#include "hsdm/errors.hh"
+
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
+#include <iostream>
+
+namespace hsdm::command {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Case {
+    std::string name, input;
+    std::vector<std::string> arguments;
+    Json expect; ///< report key, with dots between levels -> what it must be
+};
+
+struct Outcome {
+    Json report;
+    std::vector<std::string> misses;
+    double seconds = 0;
+};
+
+Json parse_suite(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw Error(path, "cannot be opened; check the name and its permissions");
+    try {
+        return Json::parse(file);
+    } catch (const Json::parse_error& error) {
+        throw Error(path, std::string("is not JSON: ") + error.what());
+    }
+}
+
+std::vector<Case> read_cases(const std::string& path) {
+    const Json suite = parse_suite(path);
+    std::vector<Case> cases;
+    try {
+        const auto folder = std::filesystem::path(path).parent_path() / suite.value("root", std::string("."));
+        for (const Json& entry : suite.at("cases")) {
+            Case one;
+            one.input = (folder / entry.at("input").get<std::string>()).string();
+            one.name = entry.value("name", entry.at("input").get<std::string>());
+            one.arguments = entry.value("args", std::vector<std::string>());
+            one.expect = entry.value("expect", Json::object());
+            if (!one.expect.is_object()) throw Error(path, "case " + one.name + ": expect must be an object");
+            cases.push_back(std::move(one));
+        }
+    } catch (const Json::exception& error) {
+        throw Error(path, std::string("is not a suite: ") + error.what() + "; see docs/command.md");
+    }
+    return cases;
+}
+
+const Json* find_key(const Json& report, const std::string& dotted) {
+    std::string pointer = "/" + dotted;
+    for (char& c : pointer)
+        if (c == '.') c = '/';
+    const Json::json_pointer where(pointer);
+    return report.contains(where) ? &report.at(where) : nullptr;
+}
+
+/// Empty if the value is as expected, else the reason. A plain value must be equal; an object holds bounds
+/// `min`, `max`, or `value` with `tolerance` (absolute) or `relative`.
+std::string miss(const std::string& key, const Json* value, const Json& expected) {
+    if (value == nullptr) return key + " is not in the report";
+    const std::string found = key + " is " + value->dump();
+    if (!expected.is_object()) return *value == expected ? "" : found + ", expected " + expected.dump();
+    for (const auto& [bound, limit] : expected.items()) {
+        const bool known = bound == "min" || bound == "max" || bound == "value" || bound == "tolerance"
+                           || bound == "relative";
+        if (!known || !limit.is_number()) return key + ": `" + bound + "` is no bound; see docs/command.md";
+    }
+    if (!value->is_number()) return found + ", a number was expected";
+    const double x = value->get<double>();
+    if (expected.contains("min") && !(x >= expected["min"].get<double>()))
+        return found + ", at least " + expected["min"].dump() + " expected";
+    if (expected.contains("max") && !(x <= expected["max"].get<double>()))
+        return found + ", at most " + expected["max"].dump() + " expected";
+    if (expected.contains("value")) {
+        const double target = expected["value"].get<double>();
+        const double slack =
+            expected.value("tolerance", 0.0) + expected.value("relative", 0.0) * std::abs(target);
+        if (!(std::abs(x - target) <= slack))
+            return found + ", expected " + expected["value"].dump() + " within " + Json(slack).dump();
+    }
+    return "";
+}
+
+/// The case's arguments through the same parser as the command line's.
+ReconstructOptions options_of(const Case& one, ReadOptions& read) {
+    CLI::App app;
+    ReconstructArguments arguments;
+    add_method_options(app, arguments);
+    add_text_options(app, arguments);
+    std::vector<std::string> words(one.arguments.rbegin(), one.arguments.rend());
+    try {
+        app.parse(words);
+    } catch (const CLI::ParseError& error) {
+        throw Error(one.name, std::string("args: ") + error.what());
+    }
+    if (!arguments.levels.empty())
+        throw Error(one.name, "args: --levels makes several meshes; give one --depth");
+    read = arguments.read;
+    try {
+        return arguments.options();
+    } catch (const UsageError& error) {
+        throw Error(one.name, error.what());
+    }
+}
+
+Outcome run_case(const Case& one) {
+    Outcome outcome;
+    const auto start = std::chrono::steady_clock::now();
+    try {
+        ReadOptions read;
+        ReconstructOptions options = options_of(one, read);
+        options.progress = [](const char*, double) { return !interrupted(); };
+        const PointFile file = read_points(one.input, read);
+        Reconstruction result = reconstruct(file.cloud, options);
+        result.report.input.file = one.input;
+        outcome.report = Json::parse(to_json(result.report));
+        for (const auto& [key, expected] : one.expect.items()) {
+            const std::string reason = miss(key, find_key(outcome.report, key), expected);
+            if (!reason.empty()) outcome.misses.push_back(reason);
+        }
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const std::exception& error) {
+        outcome.misses.push_back(error.what());
+    }
+    outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return outcome;
+}
+
+void print_row(const Case& one, const Outcome& outcome, int width) {
+    const auto count = [&outcome](const char* key) {
+        const Json* const value = outcome.report.is_null() ? nullptr : find_key(outcome.report, key);
+        return value == nullptr ? std::string("-") : value->dump();
+    };
+    const Json* const error =
+        outcome.report.is_null() ? nullptr : find_key(outcome.report, "error.normalised_max");
+    std::ostringstream percent;
+    if (error != nullptr) percent << std::setprecision(3) << 100 * error->get<double>();
+    std::cout << (outcome.misses.empty() ? "ok    " : "MISS  ") << std::left << std::setw(width) << one.name
+              << std::right << std::setw(10) << count("mesh.faces") << std::setw(8) << count("mesh.closed")
+              << std::setw(7) << count("mesh.genus") << std::setw(10) << percent.str() << std::setw(9)
+              << std::fixed << std::setprecision(2) << outcome.seconds << std::defaultfloat << '\n';
+    for (const std::string& reason : outcome.misses) std::cout << "      " << reason << '\n';
+}
+
+int run_regress(const std::string& path, const std::string& json_path) {
+    const std::vector<Case> cases = read_cases(path);
+    std::size_t width = 4;
+    for (const Case& one : cases) width = std::max(width, one.name.size());
+    std::cout << "      " << std::left << std::setw(static_cast<int>(width)) << "case" << std::right
+              << "     faces  closed  genus   error %  seconds\n";
+    Json results = Json::array();
+    std::size_t missed = 0;
+    for (const Case& one : cases) {
+        const Outcome outcome = run_case(one);
+        missed += !outcome.misses.empty();
+        print_row(one, outcome, static_cast<int>(width));
+        results.push_back({{"name", one.name},
+                           {"ok", outcome.misses.empty()},
+                           {"misses", outcome.misses},
+                           {"seconds", outcome.seconds},
+                           {"report", outcome.report}});
+    }
+    std::cout << cases.size() - missed << " of " << cases.size() << " within tolerance\n";
+    if (!json_path.empty())
+        write_text(json_path, results.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+    return missed == 0 ? done : failed;
+}
+
+} // namespace
+
+void add_regress(CLI::App& app, Run& run) {
+    CLI::App* const sub = app.add_subcommand("regress", "reconstruct a list of clouds and check the reports");
+    const auto suite = std::make_shared<std::string>();
+    const auto json = std::make_shared<std::string>();
+    sub->add_option("suite", *suite, "a JSON file: root, cases [{name, input, args, expect}]")->required();
+    sub->add_option("--json", *json, "write the reports and what missed here")->type_name("FILE");
+    sub->footer(
+        "A case: {\"name\": \"part\", \"input\": \"part.ply\", \"args\": [\"--depth\", \"5\"],\n"
+        "         \"expect\": {\"mesh.closed\": true, \"mesh.faces\": {\"value\": 300, \"tolerance\": 10},\n"
+        "                    \"error.normalised_max\": {\"max\": 0.02}}}\n"
+        "Exit status 1 if any case is out of tolerance.");
+    sub->callback([&run, suite, json] { run = [suite, json] { return run_regress(*suite, *json); }; });
+}
+
+} // namespace hsdm::command

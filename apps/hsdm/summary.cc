@@ -1,0 +1,91 @@
+#include "summary.hh"
+
+#include <iomanip>
+#include <ostream>
+#include <sstream>
+
+namespace hsdm::command {
+namespace {
+
+std::string number(double value, int digits = 4) {
+    std::ostringstream text;
+    text << std::setprecision(digits) << value;
+    return text.str();
+}
+
+std::string plural(std::size_t count, const std::string& one, const std::string& many) {
+    return grouped(count) + " " + (count == 1 ? one : many);
+}
+
+std::string option(const Report& report, const std::string& name) {
+    const auto found = report.options.find(name);
+    return found == report.options.end() ? std::string() : found->second;
+}
+
+std::string seconds(double value) {
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(2) << value << " s";
+    return text.str();
+}
+
+} // namespace
+
+std::string grouped(std::size_t value) {
+    std::string text = std::to_string(value);
+    for (std::size_t i = text.size(); i > 3; i -= 3) text.insert(i - 3, 1, ',');
+    return text;
+}
+
+std::string topology_words(const Report::Mesh& mesh) {
+    std::string text = plural(mesh.components, "component", "components") + ", ";
+    if (mesh.closed) {
+        text += "closed";
+    } else {
+        text += "open: " + plural(mesh.boundary_loops, "boundary loop", "boundary loops") + " of "
+                + plural(mesh.boundary_edges, "edge", "edges");
+    }
+    return text + ", genus " + std::to_string(mesh.genus);
+}
+
+void print_summary(std::ostream& out, const Report& r, const std::string& written) {
+    const Vec3 size = r.input.bbox.size();
+    out << "cloud     " << plural(r.input.points, "point", "points") << ", "
+        << (r.input.has_normals ? "with normals" : "no normals") << ", " << number(size[0]) << " x "
+        << number(size[1]) << " x " << number(size[2]) << ", spacing " << number(r.input.spacing, 3);
+    if (r.input.dropped_nonfinite > 0)
+        out << "; " << grouped(r.input.dropped_nonfinite) << " not finite, dropped";
+    if (r.input.merged_duplicates > 0)
+        out << "; " << grouped(r.input.merged_duplicates) << " duplicates, merged";
+    out << "\nvoxels    " << grouped(r.grid.voxels) << " of edge " << number(r.grid.voxel_size) << ", depth "
+        << r.grid.depth << ": " << option(r, "resolution") << "\nmesh      "
+        << plural(r.mesh.vertices, "vertex", "vertices") << ", " << plural(r.mesh.faces, "face", "faces")
+        << " (" << grouped(r.mesh.quads) << " quads, " << grouped(r.mesh.triangles) << " triangles), "
+        << plural(r.features.sharp_edges, "sharp edge", "sharp edges") << "\ntopology  "
+        << topology_words(r.mesh) << "\nerror     points to mesh: max "
+        << number(r.error.points_to_mesh_max, 3) << " (" << number(100 * r.error.normalised_max, 3)
+        << " % of the diagonal), mean " << number(r.error.points_to_mesh_mean, 3) << "\nwritten   " << written
+        << " in " << seconds(r.seconds.total) << '\n';
+}
+
+void print_details(std::ostream& out, const Report& r) {
+    const Report::Seconds& s = r.seconds;
+    out << "seconds  " << std::fixed << std::setprecision(3) << " read " << s.read << ", octree " << s.octree
+        << ", graph " << s.graph << ", facets " << s.facets << ", mesh " << s.mesh << ", features "
+        << s.features << ", error " << s.error << ", write " << s.write << '\n'
+        << std::defaultfloat << std::setprecision(6);
+    out << "features  " << grouped(r.features.smooth_vertices) << " smooth, "
+        << grouped(r.features.edge_vertices) << " edge, " << grouped(r.features.corner_vertices)
+        << " corner vertices\n";
+    for (const auto& [stage, count] : r.rejected)
+        if (count > 0) out << "rejected  " << stage << ": " << grouped(count) << '\n';
+    out << "memory    " << grouped(r.peak_memory_bytes / 1000000) << " MB at most, " << r.threads
+        << " threads\n";
+}
+
+void print_line(std::ostream& out, const Report& r, const std::string& written) {
+    out << written << ": " << grouped(r.input.points) << " points, depth " << r.grid.depth << ", "
+        << grouped(r.mesh.faces) << " faces, " << topology_words(r.mesh) << ", error "
+        << number(100 * r.error.normalised_max, 3) << " %, " << seconds(r.seconds.total) << '\n';
+}
+
+} // namespace hsdm::command

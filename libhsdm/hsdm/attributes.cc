@@ -1,0 +1,85 @@
+#include "hsdm/attributes.hh"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+/// The most frequent value; sorts its argument.
+double majority(std::vector<double>& values) {
+    std::sort(values.begin(), values.end());
+    double best = values.front();
+    std::size_t most = 0;
+    for (std::size_t begin = 0, end = 0; begin < values.size(); begin = end) {
+        while (end < values.size() && values[end] == values[begin]) ++end;
+        if (end - begin > most) most = end - begin, best = values[begin];
+    }
+    return best;
+}
+
+class VoxelAverages {
+public:
+    VoxelAverages(const Octree& octree, const OctreeLevel& level, std::span<const Index> voxel)
+        : octree_(octree), level_(level), voxel_(voxel) {}
+
+    /// value_of(point) is a point's value by its index in the cloud.
+    template <class ValueOf>
+    VertexProperty operator()(const std::string& name, VertexProperty::Type type, bool is_label,
+                              const ValueOf& value_of) const {
+        VertexProperty property{name, type, std::vector<double>(voxel_.size())};
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, voxel_.size(), 1 << 10), [&](const auto& range) {
+            std::vector<double> values;
+            for (std::size_t v = range.begin(); v != range.end(); ++v) {
+                values.clear();
+                for (Index p = level_.first_point[voxel_[v]]; p < level_.first_point[voxel_[v] + 1]; ++p)
+                    values.push_back(value_of(octree_.source[p]));
+                property.values[v] = is_label ? majority(values) : mean(values);
+            }
+        });
+        return property;
+    }
+
+private:
+    /// Over the finite values, in the voxel's own order; a scanner's "no value" is often NaN.
+    static double mean(const std::vector<double>& values) {
+        double sum = 0;
+        std::size_t count = 0;
+        for (double value : values)
+            if (std::isfinite(value)) sum += value, ++count;
+        return count > 0 ? sum / static_cast<double>(count) : std::numeric_limits<double>::quiet_NaN();
+    }
+
+    const Octree& octree_;
+    const OctreeLevel& level_;
+    std::span<const Index> voxel_;
+};
+
+} // namespace
+
+std::vector<VertexProperty> average_attributes(const PointCloud& cloud, const Octree& octree,
+                                               const OctreeLevel& level, std::span<const Index> voxel) {
+    using Type = VertexProperty::Type;
+    const VoxelAverages averages(octree, level, voxel);
+    std::vector<VertexProperty> properties;
+    if (!cloud.colors.empty()) {
+        constexpr std::array<const char*, 4> names{"red", "green", "blue", "alpha"};
+        for (std::size_t k = 0; k < names.size(); ++k) {
+            VertexProperty channel = averages(names[k], Type::uint8, false, [&](Index p) {
+                return static_cast<double>(cloud.colors[p][k]);
+            });
+            for (double& value : channel.values) value = std::round(value);
+            properties.push_back(std::move(channel));
+        }
+    }
+    for (const Scalar& scalar : cloud.scalars)
+        properties.push_back(averages(scalar.name, scalar.is_label ? Type::int32 : Type::float64,
+                                      scalar.is_label, [&](Index p) { return scalar.values[p]; }));
+    properties.push_back(
+        {"hsdm_level", Type::uint8, std::vector<double>(voxel.size(), static_cast<double>(level.depth))});
+    return properties;
+}
+
+} // namespace hsdm

@@ -1,0 +1,43 @@
+#pragma once
+// The clock and the door for cancelling between the phases of Figure 1; shared by the methods.
+
+#include "hsdm/errors.hh"
+#include "hsdm/reconstruct.hh"
+
+#include <chrono>
+
+namespace hsdm {
+
+/// Times the phases of a reconstruction and asks the caller, before each, whether to go on.
+class Phases {
+public:
+    /// `begin` and `end`: the part of the caller's whole work, in [0, 1], that this one is.
+    Phases(const ReconstructOptions& options, double begin = 0, double end = 1)
+        : options_(options), begin_(begin), end_(end) {}
+
+    /// Runs `work`, adds its time to `seconds` and returns what it returns. `done` in [0, 1] is how far this
+    /// reconstruction is when it starts. Throws Cancelled.
+    template <class Work>
+    auto run(const char* name, double done, double& seconds, const Work& work) const {
+        if (options_.progress && !options_.progress(name, begin_ + (end_ - begin_) * done)) throw Cancelled();
+        const Timer timer(seconds);
+        return work();
+    }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    class Timer {
+    public:
+        explicit Timer(double& seconds) : seconds_(seconds) {}
+        ~Timer() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+    private:
+        double& seconds_;
+        Clock::time_point start_ = Clock::now();
+    };
+
+    const ReconstructOptions& options_;
+    double begin_, end_;
+};
+
+} // namespace hsdm

@@ -1,0 +1,45 @@
+#include "hsdm/quality/compare.hh"
+
+#include "hsdm/errors.hh"
+
+namespace hsdm {
+namespace {
+
+/// A cloud's points as facets without extent: the nearest facet is then the nearest point.
+PolygonMesh as_facets(const PolygonMesh& cloud) {
+    PolygonMesh mesh;
+    mesh.positions = cloud.positions;
+    mesh.corners.reserve(3 * cloud.vertex_count());
+    mesh.first.reserve(cloud.vertex_count() + 1);
+    for (Index v = 0; v < cloud.vertex_count(); ++v) mesh.add_facet(std::array<Index, 3>{v, v, v});
+    return mesh;
+}
+
+MeshDistance distance_to(const PolygonMesh& mesh) {
+    return MeshDistance(mesh.facet_count() > 0 ? mesh : as_facets(mesh));
+}
+
+Distance one_sided(const PolygonMesh& from, const MeshDistance& to, std::size_t samples) {
+    if (from.facet_count() == 0) return to(from.positions);
+    Distance distance = to(sample_surface(from, samples));
+    distance.max = std::max(distance.max, to(from.positions).max);
+    return distance;
+}
+
+} // namespace
+
+Comparison compare(const PolygonMesh& a, const PolygonMesh& b, const CompareOptions& options) {
+    if (a.vertex_count() == 0 || b.vertex_count() == 0)
+        throw Error("nothing to compare: one of the two holds no point");
+    if (options.samples == 0) throw OptionError("samples 0: must be at least 1");
+    Comparison result;
+    result.a_to_b = one_sided(a, distance_to(b), options.samples);
+    result.b_to_a = one_sided(b, distance_to(a), options.samples);
+    Box box;
+    for (const PolygonMesh* mesh : {&a, &b})
+        for (const Vec3& p : mesh->positions) box.add(p);
+    result.diagonal = box.diagonal();
+    return result;
+}
+
+} // namespace hsdm

@@ -1,0 +1,24 @@
+#pragma once
+// Two surfaces, or a surface and the points of one: how far each is from the other.
+
+#include "hsdm/quality/distance.hh"
+
+namespace hsdm {
+
+struct CompareOptions {
+    std::size_t samples = 200000; ///< points spread over the area of a mesh, > 0
+};
+
+struct Comparison {
+    Distance a_to_b, b_to_a; ///< in the units of the two
+    double diagonal = 0;     ///< of the box around both, to normalise by
+    double hausdorff() const { return std::max(a_to_b.max, b_to_a.max); }
+};
+
+/// Either may be a cloud: a mesh without facets, whose positions are the points. A cloud's distances are
+/// taken from every point; a mesh's mean and rms from samples even over its area, its maximum from its
+/// vertices too. `farthest` is an index into the cloud's points or the mesh's samples. Throws Error if either
+/// holds nothing, OptionError. O((a + b) log(a + b)), parallel.
+Comparison compare(const PolygonMesh& a, const PolygonMesh& b, const CompareOptions& options = {});
+
+} // namespace hsdm

@@ -1,0 +1,300 @@
+#include "hsdm/reconstruct.hh"
+
+#include "hsdm/basic_method.hh"
+#include "hsdm/facets/to_mesh.hh"
+#include "hsdm/features/features.hh"
+#include "hsdm/octree/spacing.hh"
+#include "hsdm/quality/distance.hh"
+#include "hsdm/quality/topology.hh"
+
+#include <tbb/task_arena.h>
+
+#include <cmath>
+#include <numbers>
+#include <sys/resource.h>
+
+namespace hsdm {
+namespace {
+
+constexpr int deepest = 16;
+
+void check_depth(const std::string& name, int depth) {
+    if (depth < 1 || depth > deepest)
+        throw OptionError(name + " " + std::to_string(depth) + ": must lie in [1, " + std::to_string(deepest)
+                          + "]");
+}
+
+std::string text_of(double value) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%.10g", value);
+    return digits;
+}
+
+void validate(const ReconstructOptions& o) {
+    if (o.depth && o.voxel_size)
+        throw OptionError("depth and voxel_size: at most one of the two says the resolution");
+    if (o.depth) check_depth("depth", *o.depth);
+    if (o.voxel_size && !(*o.voxel_size > 0 && std::isfinite(*o.voxel_size)))
+        throw OptionError("voxel_size " + text_of(*o.voxel_size) + ": must be a length above 0");
+    if (!(o.crease_angle > 0 && o.crease_angle < std::numbers::pi))
+        throw OptionError("crease_angle " + text_of(o.crease_angle)
+                          + " rad: must lie between 0 and pi (180 degrees)");
+    if (o.normal_smoothing < 0)
+        throw OptionError("normal_smoothing " + std::to_string(o.normal_smoothing) + ": must be 0 or more");
+    if (o.threads < 0)
+        throw OptionError("threads " + std::to_string(o.threads) + ": must be 0 (all) or more");
+    if (o.method == Method::extended) throw OptionError("method extended is not available yet; use basic");
+    if (o.normals == NormalSource::estimate)
+        throw OptionError("normals estimate is not available yet; use given or auto");
+}
+
+/// The cloud without its points that are not finite: the caller's own where it has none.
+class FiniteCloud {
+public:
+    explicit FiniteCloud(const PointCloud& cloud) : cloud_(&cloud) {
+        const bool finite = std::all_of(cloud.positions.begin(), cloud.positions.end(), [](const Vec3& p) {
+            return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+        });
+        if (finite) return;
+        kept_ = cloud;
+        dropped_ = drop_nonfinite(kept_).nonfinite;
+        cloud_ = &kept_;
+        if (2 * dropped_ > cloud.size())
+            throw Error(std::to_string(dropped_) + " of " + std::to_string(cloud.size())
+                        + " points have coordinates that are not finite; check how the file was exported");
+    }
+    const PointCloud& operator*() const { return *cloud_; }
+    std::size_t dropped() const { return dropped_; }
+
+private:
+    const PointCloud* cloud_;
+    PointCloud kept_;
+    std::size_t dropped_ = 0;
+};
+
+/// Throws Error for points that span no surface.
+void check_spread(const Octree& octree) {
+    constexpr std::size_t fewest = 4;
+    constexpr double negligible = 1e-9;
+    if (octree.size() < fewest)
+        throw Error("only " + std::to_string(octree.size())
+                    + " different points; a surface needs 4, and a good one many more");
+    const Vec3& first = octree.positions.front();
+    const Vec3* farthest = &first;
+    for (const Vec3& p : octree.positions)
+        if ((p - first).sqrnorm() > (*farthest - first).sqrnorm()) farthest = &p;
+    const Vec3 along = (*farthest - first).normalized();
+    // Far from the origin the coordinates' own last digit is the larger noise.
+    const double reach = std::max(octree.bounds.lo.max_abs(), octree.bounds.hi.max_abs());
+    const double tolerance = negligible * octree.extent + 4 * std::numeric_limits<double>::epsilon() * reach;
+    for (const Vec3& p : octree.positions)
+        if (((p - first) % along).norm() > tolerance) return;
+    throw Error("all points lie on a line; there is no surface in them");
+}
+
+/// Phase 1 with its report.
+class Decomposition {
+public:
+    Decomposition(const PointCloud& cloud, const ReconstructOptions& options, const Phases& phases) {
+        OctreeOptions octree_options;
+        octree_options.placement = CubePlacement::centred;
+        if (options.voxel_size) octree_options.cube_extent = cube_of(cloud, *options.voxel_size);
+        octree = phases.run("octree", 0, report.seconds.octree,
+                            [&] { return build_octree(cloud, octree_options); });
+        check_spread(octree);
+        report.input.points = cloud.size();
+        report.input.merged_duplicates = octree.merged_duplicates;
+        report.input.has_normals = cloud.has_normals();
+        report.input.bbox = octree.bounds;
+        report.input.spacing = estimate_spacing(octree);
+    }
+
+    /// The depth the options ask for or the spacing suggests; notes it in the report.
+    int choose_resolution(const ReconstructOptions& options) {
+        if (options.depth) {
+            report.options["depth"] = std::to_string(*options.depth);
+            report.options["resolution"] = "as asked by depth";
+            return *options.depth;
+        }
+        if (options.voxel_size) {
+            report.options["voxel-size"] = text_of(*options.voxel_size);
+            report.options["resolution"] = "as asked by voxel size";
+            return voxel_depth_;
+        }
+        const DepthChoice choice = choose_depth(octree, report.input.spacing);
+        report.options["resolution"] = choice.reason;
+        return choice.depth;
+    }
+
+    Octree octree;
+    Report report;
+
+private:
+    /// The smallest cube of 2^N voxels around the cloud, N in [1, 16].
+    double cube_of(const PointCloud& cloud, double voxel_size) {
+        const double extent = cloud.bounds().extent();
+        double cube = 2 * voxel_size;
+        for (voxel_depth_ = 1; cube < extent && voxel_depth_ < deepest; ++voxel_depth_) cube *= 2;
+        if (cube < extent)
+            throw OptionError("voxel_size " + text_of(voxel_size) + ": must be at least "
+                              + text_of(extent / (1 << deepest)) + ", the cloud's extent over 2^16");
+        return cube;
+    }
+
+    int voxel_depth_ = 0;
+};
+
+std::string name_of(Holes holes) {
+    return holes == Holes::keep ? "keep" : holes == Holes::close ? "close" : "auto";
+}
+
+void note_options(const ReconstructOptions& options, Report& report) {
+    report.options["method"] = "basic";
+    report.options["normals"] = options.normals == NormalSource::given ? "given" : "auto";
+    report.options["holes"] = name_of(options.holes);
+    report.options["crease-degrees"] = text_of(options.crease_angle * 180 / std::numbers::pi);
+    report.options["smoothing"] = std::to_string(options.normal_smoothing);
+}
+
+void measure_mesh(const PolygonMesh& facets, Report& report) {
+    const Topology t = measure_topology(facets);
+    Report::Mesh& m = report.mesh;
+    m.vertices = t.vertices;
+    m.edges = t.edges;
+    m.faces = t.faces;
+    m.triangles = t.triangles;
+    m.quads = t.quads;
+    m.larger = t.larger;
+    m.components = t.components;
+    m.boundary_loops = t.boundary_loops;
+    m.boundary_edges = t.boundary_edges;
+    m.euler = t.euler;
+    m.genus = t.genus();
+    m.closed = t.closed();
+}
+
+void measure_error(const Octree& octree, const PolygonMesh& facets, Report& report) {
+    const Distance distance = points_to_mesh(octree.positions, facets);
+    report.error.points_to_mesh_max = distance.max;
+    report.error.points_to_mesh_mean = distance.mean;
+    report.error.points_to_mesh_rms = distance.rms;
+    report.error.normalised_max = distance.max / octree.bounds.diagonal();
+}
+
+/// Phase 3 on the mesh, in the cloud's own coordinates.
+void find_features(PolyMesh& mesh, const ReconstructOptions& options, Report& report) {
+    FeatureOptions feature_options;
+    feature_options.crease_angle = options.crease_angle;
+    const FeatureCounts counts = classify_features(mesh, feature_options);
+    NormalSmoothingOptions smoothing;
+    smoothing.rounds = options.normal_smoothing;
+    smooth_normals(mesh, smoothing);
+    report.features.sharp_edges = counts.sharp_edges;
+    report.features.smooth_vertices = counts.smooth_vertices;
+    report.features.edge_vertices = counts.edge_vertices;
+    report.features.corner_vertices = counts.corner_vertices;
+}
+
+/// Peak of the whole process so far; the kernel counts in KiB.
+std::size_t peak_memory() {
+    rusage usage = {};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+/// Phases 2 and 3 on one level of a decomposition.
+Reconstruction reconstruct_level(const PointCloud& cloud, const Octree& octree, int depth, Report report,
+                                 const ReconstructOptions& options, const Phases& phases) {
+    Report::Seconds& seconds = report.seconds;
+    const OctreeLevel level =
+        phases.run("voxels", 0.15, seconds.octree, [&] { return extract_level(octree, depth); });
+    report.grid.depth = depth;
+    report.grid.voxel_size = level.voxel_size;
+    report.grid.voxels = report.grid.sets = level.size();
+    report.grid.leaves_per_level.assign(static_cast<std::size_t>(depth) + 1, 0);
+    report.grid.leaves_per_level.back() = level.size();
+
+    PolygonMesh facets = basic_method({cloud, octree, level, options, phases}, report);
+    if (facets.facet_count() == 0)
+        throw Error("no facet came out of " + std::to_string(level.size()) + " voxels at depth "
+                    + std::to_string(depth)
+                    + "; try another depth, or check that the points sample a surface");
+    phases.run("error", 0.6, seconds.error, [&] {
+        measure_error(octree, facets, report);
+        measure_mesh(facets, report);
+    });
+
+    Reconstruction result;
+    phases.run("mesh", 0.85, seconds.mesh, [&] {
+        for (Vec3& p : facets.positions) p += octree.origin;
+        ToMeshResult built = to_mesh(facets);
+        result.mesh = std::move(built.mesh);
+        report.rejected["to_mesh"] = built.rejected;
+    });
+    phases.run("features", 0.9, seconds.features, [&] { find_features(result.mesh, options, report); });
+    report.peak_memory_bytes = peak_memory();
+    result.report = std::move(report);
+    return result;
+}
+
+std::vector<Reconstruction> run(const PointCloud& cloud, const ReconstructOptions& options,
+                                std::optional<std::pair<int, int>> range) {
+    const auto start = std::chrono::steady_clock::now();
+    const FiniteCloud finite(cloud);
+    if (options.normals == NormalSource::given && !(*finite).has_normals())
+        throw Error("normals given were asked for, but the cloud has none");
+    Decomposition decomposition(*finite, options, Phases(options, 0, 1));
+    Report& report = decomposition.report;
+    report.input.dropped_nonfinite = finite.dropped();
+    report.threads = tbb::this_task_arena::max_concurrency();
+    note_options(options, report);
+    if (range) {
+        report.options["levels"] = std::to_string(range->first) + ":" + std::to_string(range->second);
+        report.options["resolution"] = "as asked by levels";
+    } else {
+        const int depth = decomposition.choose_resolution(options);
+        range = {depth, depth};
+    }
+    std::vector<Reconstruction> results;
+    const double count = range->second - range->first + 1;
+    for (int depth = range->first; depth <= range->second; ++depth) {
+        const double begin = (depth - range->first) / count;
+        const auto level_start = results.empty() ? start : std::chrono::steady_clock::now();
+        results.push_back(reconstruct_level(*finite, decomposition.octree, depth, report, options,
+                                            Phases(options, begin, begin + 1 / count)));
+        results.back().report.seconds.total =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - level_start).count();
+    }
+    return results;
+}
+
+/// At most options.threads threads, for this call alone.
+std::vector<Reconstruction> run_in_arena(const PointCloud& cloud, const ReconstructOptions& options,
+                                         std::optional<std::pair<int, int>> range) {
+    if (options.threads == 0) return run(cloud, options, range);
+    tbb::task_arena arena(options.threads);
+    return arena.execute([&] { return run(cloud, options, range); });
+}
+
+} // namespace
+
+Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& options) {
+    validate(options);
+    return std::move(run_in_arena(cloud, options, std::nullopt).front());
+}
+
+std::vector<Reconstruction> reconstruct_levels(const PointCloud& cloud, int first_depth, int last_depth,
+                                               const ReconstructOptions& options) {
+    validate(options);
+    if (options.depth || options.voxel_size)
+        throw OptionError(
+            "levels: they are the resolution; depth and voxel_size cannot be given beside them");
+    check_depth("first depth", first_depth);
+    check_depth("last depth", last_depth);
+    if (first_depth > last_depth)
+        throw OptionError("levels " + std::to_string(first_depth) + ":" + std::to_string(last_depth)
+                          + ": the first depth must not be above the last");
+    return run_in_arena(cloud, options, std::pair(first_depth, last_depth));
+}
+
+} // namespace hsdm
