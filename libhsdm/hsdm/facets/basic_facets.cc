@@ -54,10 +54,15 @@ public:
             ++counts_.seeds;
             spread(4);
         }
+        // What is still open then: candidates the hit test rejected, where nothing else is left, so that the
+        // facets of narrow grooves come back; after them longer and longer loops.
+        if (options_.hit_test) {
+            enqueue_open_sides();
+            hit_.assign(hit_.size(), 0);
+            spread(4);
+        }
         for (int length = 5; length <= options_.max_loop_edges; ++length) {
-            // Every open side again, now with longer loops allowed.
-            for (Index h = 0; h < graph_.half_edge_count(); ++h)
-                if (facet_of_[h] == no_index && facet_of_[graph_.twin[h]] != no_index) queue_.push_back(h);
+            enqueue_open_sides();
             spread(length);
         }
         mesh_.positions = graph_.positions;
@@ -207,6 +212,11 @@ private:
             if (options_.hit_test && hits_neighbor_voxel(level_, graph_, facet.corners())) continue;
             choices_.push_back(facet);
         }
+    }
+
+    void enqueue_open_sides() {
+        for (Index h = 0; h < graph_.half_edge_count(); ++h)
+            if (facet_of_[h] == no_index && facet_of_[graph_.twin[h]] != no_index) queue_.push_back(h);
     }
 
     std::size_t choose(Index h) {

@@ -15,7 +15,7 @@ struct BasicFacetOptions {
     bool distance_criterion = true; ///< of several candidates, drop those farther from the close points
     bool angle_comparison = true;   ///< of several candidates, take the outer one; else the paper's first
     /// Boundary loops of at most so many edges are closed (hole elimination), >= 3; 0: none.
-    int max_hole_edges = 8;
+    int max_hole_edges = 16;
 };
 
 struct BasicFacets {

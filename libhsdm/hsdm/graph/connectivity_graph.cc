@@ -117,12 +117,6 @@ void make_half_edges(const Choices& choices, bool mutual, ConnectivityGraph& gra
 
 } // namespace
 
-Index ConnectivityGraph::find(Index from, Index to) const {
-    const auto last = end.begin() + first_edge[from + 1];
-    const auto at = std::lower_bound(end.begin() + first_edge[from], last, to);
-    return at != last && *at == to ? static_cast<Index>(at - end.begin()) : no_index;
-}
-
 ConnectivityGraph extract_graph(const Octree& octree, const OctreeLevel& level, const GraphOptions& options) {
     check(options.neighbors);
     ConnectivityGraph graph;

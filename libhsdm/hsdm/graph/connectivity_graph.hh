@@ -19,8 +19,12 @@ struct ConnectivityGraph {
     std::size_t vertex_count() const { return positions.size(); }
     std::size_t half_edge_count() const { return end.size(); }
     Index start(Index half_edge) const { return end[twin[half_edge]]; }
-    /// The half-edge from one vertex to another, or no_index. O(log of the vertex's edges).
-    Index find(Index from, Index to) const;
+    /// The half-edge from one vertex to another, or no_index. O(rank): ranks are small.
+    Index find(Index from, Index to) const {
+        for (Index h = first_edge[from]; h < first_edge[from + 1]; ++h)
+            if (end[h] == to) return h;
+        return no_index;
+    }
 };
 
 struct GraphOptions {
