@@ -10,10 +10,11 @@ namespace {
 constexpr double degree = std::numbers::pi / 180;
 
 std::string classify_features(hsdm::PolyMesh& mesh, const hsdm::PluginOptions& options) {
-    options.allow({"crease-degrees", "corner-degrees"});
+    options.allow({"crease-degrees", "corner-degrees", "confirmation-rounds"});
     hsdm::FeatureOptions features;
     features.crease_angle = degree * options.number("crease-degrees", features.crease_angle / degree);
     features.corner_angle = degree * options.number("corner-degrees", features.corner_angle / degree);
+    features.confirmation_rounds = options.integer("confirmation-rounds", features.confirmation_rounds);
     const hsdm::FeatureCounts found = hsdm::classify_features(mesh, features);
     return std::to_string(found.sharp_edges) + " sharp edges; vertices: "
            + std::to_string(found.smooth_vertices) + " smooth, " + std::to_string(found.edge_vertices)
@@ -25,5 +26,5 @@ std::string classify_features(hsdm::PolyMesh& mesh, const hsdm::PluginOptions& o
 HSDM_PLUGIN(
     "classify-features", "marks sharp edges and classifies vertices as smooth, edge or corner",
     "crease-degrees (35): dihedral angle above which an edge is sharp; corner-degrees (60): turn of a "
-    "crease that makes a corner",
+    "crease that makes a corner; confirmation-rounds (3): 0 takes every dihedral angle at its word",
     classify_features)

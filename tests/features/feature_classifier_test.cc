@@ -112,6 +112,33 @@ TEST_CASE("the crease angle is the limit: edges just below are smooth, just abov
     for (const auto v : mesh.vertices()) CHECK_FALSE(mesh.status(v).feature());
 }
 
+TEST_CASE("a scan's noise is not taken for creases unless the plain dihedral test is asked for") {
+    constexpr Index n = 24;
+    constexpr double edge = 2.0 / n;
+    const PolygonMesh rough = noisy(cube(n), 0.15 * edge);
+    PolyMesh confirmed = to_mesh(rough).mesh, plain = confirmed;
+    const std::size_t found = classify_features(confirmed).sharp_edges;
+    CHECK(found >= 12 * n);
+    CHECK(found <= 12 * n + 6);
+    CHECK(classify_features(plain, {.confirmation_rounds = 0}).sharp_edges > 18 * n);
+}
+
+TEST_CASE("a crease just above the limit is confirmed") {
+    for (const double degrees : {35.5, 40.0, 50.0, 80.0}) {
+        const double slope = std::tan(degrees * M_PI / 180);
+        PolyMesh mesh =
+            to_mesh(sheet(16, [&](Index x, Index) { return x > 8 ? slope * (x - 8.0) : 0.0; })).mesh;
+        CHECK(classify_features(mesh).sharp_edges == 16);
+    }
+}
+
+TEST_CASE("narrow facets along the rim of a huge side keep their crease") {
+    PolygonMesh fold = sheet(6, [](Index x, Index) { return x > 3 ? 1e4 * (x - 3.0) : 0.0; });
+    for (Vec3& p : fold.positions) p[0] = std::min(p[0], 3.0);
+    PolyMesh mesh = to_mesh(fold).mesh;
+    CHECK(classify_features(mesh).sharp_edges == 6);
+}
+
 TEST_CASE("boundary edges are not sharp; a crease that runs into the boundary ends in an edge vertex") {
     PolyMeshD mesh = build<PolyMeshD>(sheet(4, [](Index x, Index) { return x > 2 ? x - 2.0 : 0.0; }));
     const FeatureCounts counts = classify(mesh);
@@ -219,7 +246,19 @@ TEST_CASE("a run before initialize throws, and so does an angle out of range") {
     CHECK_THROWS_AS(classifier.initialize({.crease_angle = 0}), OptionError);
     CHECK_THROWS_AS(classifier.initialize({.crease_angle = 3.2}), OptionError);
     CHECK_THROWS_AS(classifier.initialize({.corner_angle = std::nan("")}), OptionError);
+    CHECK_THROWS_AS(classifier.initialize({.confirmation_rounds = -1}), OptionError);
     CHECK_THROWS_AS(classifier.classify(), std::logic_error);
+}
+
+TEST_CASE("a bow-tie vertex, where fans meet without an edge, has a normal per fan") {
+    PolyMeshD mesh;
+    mesh.request_edge_status();
+    const auto v = mesh.add_vertex({0, 0, 0});
+    mesh.add_face(v, mesh.add_vertex({1, 0, 0}), mesh.add_vertex({1, 1, 0}));
+    mesh.add_face(v, mesh.add_vertex({-1, 0, 0}), mesh.add_vertex({-1, 0, 1}));
+    classify(mesh);
+    CHECK(class_of(mesh)[v] == 0);
+    CHECK(count_of(mesh)[v] == 2);
 }
 
 TEST_CASE("attributes the mesh does not have are requested and released") {

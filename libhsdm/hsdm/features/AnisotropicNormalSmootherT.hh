@@ -42,7 +42,6 @@ public:
 
 private:
     void read_facets();
-    void read_neighbours();
 
     Mesh& mesh_;
     NormalSmoothingOptions options_;

@@ -29,7 +29,7 @@ void AnisotropicNormalSmootherT<Mesh>::initialize(const NormalSmoothingOptions& 
     validate(options);
     options_ = options;
     read_facets();
-    read_neighbours();
+    neighbours_ = facet_neighbours(mesh_, StatusBits::obey);
     is_initialized_ = true;
 }
 
@@ -41,29 +41,6 @@ void AnisotropicNormalSmootherT<Mesh>::read_facets() {
         Vec3& normal = normals_[index_of(f)];
         area_[index_of(f)] = 0.5 * normal.norm();
         normal = unit_or_zero(normal);
-    });
-}
-
-template <class Mesh>
-void AnisotropicNormalSmootherT<Mesh>::read_neighbours() {
-    // Locked and deleted facets get no neighbours of their own, so their normals stay.
-    const auto is_fixed = [&](OpenMesh::FaceHandle f) {
-        return mesh_.status(f).deleted() || mesh_.status(f).locked();
-    };
-    neighbours_.first.assign(mesh_.n_faces() + 1, 0);
-    for_each_handle<OpenMesh::FaceHandle>(mesh_.n_faces(), [&](OpenMesh::FaceHandle f) {
-        if (!is_fixed(f)) neighbours_.first[index_of(f) + 1] = static_cast<Index>(mesh_.valence(f));
-    });
-    for (std::size_t f = 0; f < mesh_.n_faces(); ++f) neighbours_.first[f + 1] += neighbours_.first[f];
-    neighbours_.neighbour.resize(neighbours_.first.back());
-    for_each_handle<OpenMesh::FaceHandle>(mesh_.n_faces(), [&](OpenMesh::FaceHandle f) {
-        if (is_fixed(f)) return;
-        Index slot = neighbours_.first[index_of(f)];
-        for (const auto h : mesh_.fh_range(f)) {
-            const auto across = mesh_.face_handle(mesh_.opposite_halfedge_handle(h));
-            const bool joined = across.is_valid() && !mesh_.status(mesh_.edge_handle(h)).feature();
-            neighbours_.neighbour[slot++] = joined ? static_cast<Index>(across.idx()) : no_index;
-        }
     });
 }
 

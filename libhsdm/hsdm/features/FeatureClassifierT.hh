@@ -19,7 +19,8 @@ namespace hsdm {
 /// `hsdm_vertex_class`, `hsdm_normal_count` and `hsdm_normals`, which stay on the mesh. The classifier holds
 /// the mesh's vertex, edge and face status while it lives: request edge and vertex status yourself to keep
 /// the bits. Boundary edges have no dihedral angle and are never sharp; nor is an edge at a facet without
-/// area. A locked edge keeps its feature bit and counts as sharp if it is set; a locked vertex keeps its bit.
+/// area. Edges above the crease angle are confirmed on smoothed normals, see FeatureOptions. A locked edge
+/// keeps its feature bit and counts as sharp if it is set; a locked vertex keeps its bit.
 template <class Mesh>
 class FeatureClassifierT {
 public:
@@ -36,7 +37,9 @@ public:
     FeatureCounts classify();
 
 private:
-    std::size_t mark_sharp_edges(const std::vector<Vec3>& facet_normals);
+    void mark_candidates(const std::vector<Vec3>& facet_normals);
+    void confirm(const std::vector<Vec3>& areas, const std::vector<Vec3>& facet_normals);
+    std::size_t count_sharp_edges() const;
     void classify_vertices(const std::vector<Vec3>& facet_normals, FeatureCounts& counts);
 
     Mesh& mesh_;

@@ -32,37 +32,77 @@ void FeatureClassifierT<Mesh>::initialize(const FeatureOptions& options) {
 template <class Mesh>
 FeatureCounts FeatureClassifierT<Mesh>::classify() {
     if (!is_initialized_) throw std::logic_error("FeatureClassifierT: classify() called before initialize()");
-    std::vector<Vec3> normals = facet_area_vectors(mesh_);
+    const std::vector<Vec3> areas = facet_area_vectors(mesh_);
+    std::vector<Vec3> normals(areas.size());
     for_each_handle<OpenMesh::FaceHandle>(normals.size(), [&](OpenMesh::FaceHandle f) {
-        normals[index_of(f)] = unit_or_zero(normals[index_of(f)]);
+        normals[index_of(f)] = unit_or_zero(areas[index_of(f)]);
     });
+    mark_candidates(normals);
+    if (options_.confirmation_rounds > 0) confirm(areas, normals);
     FeatureCounts counts;
-    counts.sharp_edges = mark_sharp_edges(normals);
+    counts.sharp_edges = count_sharp_edges();
     classify_vertices(normals, counts);
     write_vertex_normals(mesh_, normals, false);
     return counts;
 }
 
+namespace detail {
+
+/// Whether the normals on the two sides of an edge differ by more than the angle of this cosine.
 template <class Mesh>
-std::size_t FeatureClassifierT<Mesh>::mark_sharp_edges(const std::vector<Vec3>& facet_normals) {
-    const double limit = std::cos(options_.crease_angle);
-    std::atomic<std::size_t> count = 0;
+bool exceeds(const Mesh& mesh, OpenMesh::EdgeHandle e, const std::vector<Vec3>& facet_normals,
+             double cosine) {
+    const auto f0 = mesh.face_handle(mesh.halfedge_handle(e, 0));
+    const auto f1 = mesh.face_handle(mesh.halfedge_handle(e, 1));
+    if (!f0.is_valid() || !f1.is_valid()) return false;
+    const Vec3& a = facet_normals[index_of(f0)];
+    const Vec3& b = facet_normals[index_of(f1)];
+    return a.sqrnorm() > 0 && b.sqrnorm() > 0 && (a | b) < cosine;
+}
+
+/// Measured on folds of 36 to 90 degrees, noise up to a fifth of the edge length: so smoothed, noise loses
+/// nearly all of its angle, and a crease just above the limit keeps more than this share of it.
+inline constexpr double confirming_similarity = 0.57; ///< similarity angle over crease angle
+inline constexpr double confirmed_share = 0.6;        ///< of the crease angle
+
+} // namespace detail
+
+template <class Mesh>
+void FeatureClassifierT<Mesh>::mark_candidates(const std::vector<Vec3>& facet_normals) {
+    const double cosine = std::cos(options_.crease_angle);
     for_each_handle<OpenMesh::EdgeHandle>(mesh_.n_edges(), [&](OpenMesh::EdgeHandle e) {
         auto& status = mesh_.status(e);
-        if (status.deleted()) return;
-        if (!status.locked()) {
-            const auto f0 = mesh_.face_handle(mesh_.halfedge_handle(e, 0));
-            const auto f1 = mesh_.face_handle(mesh_.halfedge_handle(e, 1));
-            bool sharp = f0.is_valid() && f1.is_valid();
-            if (sharp) {
-                const Vec3& a = facet_normals[index_of(f0)];
-                const Vec3& b = facet_normals[index_of(f1)];
-                sharp = a.sqrnorm() > 0 && b.sqrnorm() > 0 && (a | b) < limit;
-            }
-            status.set_feature(sharp);
-        }
-        if (status.feature()) ++count;
+        if (status.deleted() || status.locked()) return;
+        status.set_feature(detail::exceeds(mesh_, e, facet_normals, cosine));
     });
+}
+
+template <class Mesh>
+void FeatureClassifierT<Mesh>::confirm(const std::vector<Vec3>& areas,
+                                       const std::vector<Vec3>& facet_normals) {
+    const FacetNeighbours neighbours = facet_neighbours(mesh_, StatusBits::ignore);
+    std::vector<double> weights(areas.size());
+    for_each_handle<OpenMesh::FaceHandle>(
+        weights.size(), [&](OpenMesh::FaceHandle f) { weights[index_of(f)] = areas[index_of(f)].norm(); });
+    std::vector<Vec3> smoothed = facet_normals;
+    for (int round = 0; round < options_.confirmation_rounds; ++round)
+        filter_normals(neighbours, weights, detail::confirming_similarity * options_.crease_angle, 0,
+                       smoothed);
+    const double cosine = std::cos(detail::confirmed_share * options_.crease_angle);
+    for_each_handle<OpenMesh::EdgeHandle>(mesh_.n_edges(), [&](OpenMesh::EdgeHandle e) {
+        auto& status = mesh_.status(e);
+        if (status.deleted() || status.locked() || !status.feature()) return;
+        status.set_feature(detail::exceeds(mesh_, e, smoothed, cosine));
+    });
+}
+
+template <class Mesh>
+std::size_t FeatureClassifierT<Mesh>::count_sharp_edges() const {
+    std::size_t count = 0;
+    for (std::size_t e = 0; e < mesh_.n_edges(); ++e) {
+        const auto& status = mesh_.status(OpenMesh::EdgeHandle(static_cast<int>(e)));
+        count += !status.deleted() && status.feature();
+    }
     return count;
 }
 

@@ -2,6 +2,7 @@
 // Flat views of any OpenMesh mesh that both modules of phase 3 start from.
 
 #include "hsdm/features/facet_normal.hh"
+#include "hsdm/features/normal_filter.hh"
 #include "hsdm/features/sectors.hh"
 
 #include <tbb/blocked_range.h>
@@ -38,6 +39,13 @@ std::size_t index_of(Handle handle) {
 /// Newell's area vector of every facet, zero for deleted ones. O(corners), parallel.
 template <class Mesh>
 std::vector<Vec3> facet_area_vectors(const Mesh& mesh);
+
+/// The facets across the edges of each facet, as normal_filter.hh wants them. If the status bits are obeyed,
+/// feature edges part their facets and a locked facet has no neighbours, so that its normal stays. The mesh
+/// must have edge and face status. O(corners), parallel.
+enum class StatusBits { obey, ignore };
+template <class Mesh>
+FacetNeighbours facet_neighbours(const Mesh& mesh, StatusBits bits);
 
 /// The facets around one vertex, gathered again and again in the same memory.
 template <class Mesh>

@@ -17,6 +17,31 @@ std::vector<Vec3> facet_area_vectors(const Mesh& mesh) {
 }
 
 template <class Mesh>
+FacetNeighbours facet_neighbours(const Mesh& mesh, StatusBits bits) {
+    const auto is_fixed = [&](OpenMesh::FaceHandle f) {
+        return mesh.status(f).deleted() || (bits == StatusBits::obey && mesh.status(f).locked());
+    };
+    FacetNeighbours result;
+    result.first.assign(mesh.n_faces() + 1, 0);
+    for_each_handle<OpenMesh::FaceHandle>(mesh.n_faces(), [&](OpenMesh::FaceHandle f) {
+        if (!is_fixed(f)) result.first[index_of(f) + 1] = static_cast<Index>(mesh.valence(f));
+    });
+    for (std::size_t f = 0; f < mesh.n_faces(); ++f) result.first[f + 1] += result.first[f];
+    result.neighbour.resize(result.first.back());
+    for_each_handle<OpenMesh::FaceHandle>(mesh.n_faces(), [&](OpenMesh::FaceHandle f) {
+        if (is_fixed(f)) return;
+        Index slot = result.first[index_of(f)];
+        for (const auto h : mesh.fh_range(f)) {
+            const auto across = mesh.face_handle(mesh.opposite_halfedge_handle(h));
+            const bool parted = bits == StatusBits::obey && mesh.status(mesh.edge_handle(h)).feature();
+            result.neighbour[slot++] =
+                across.is_valid() && !parted ? static_cast<Index>(across.idx()) : no_index;
+        }
+    });
+    return result;
+}
+
+template <class Mesh>
 void VertexFanT<Mesh>::gather_spokes(OpenMesh::VertexHandle v) {
     spokes_.clear();
     const auto first = mesh_.halfedge_handle(v);

@@ -11,6 +11,9 @@ struct FeatureOptions {
     /// Radians, in (0, pi): a vertex where two sharp edges meet is a corner if the line they form turns by
     /// more. 60 degrees.
     double corner_angle = 1.05;
+    /// Rounds of normal smoothing, >= 0, that the angle at a sharp edge has to outlast: departs from the
+    /// paper's plain dihedral test (0 rounds), which takes a scan's noise for creases (docs/features.md).
+    int confirmation_rounds = 3;
 };
 
 /// What the classifier found on the mesh (deleted elements and isolated vertices are not counted).

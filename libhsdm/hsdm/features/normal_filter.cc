@@ -5,10 +5,17 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 
 namespace hsdm {
+namespace {
+
+/// A neighbour counts at most this many times as much as the facet itself.
+constexpr double most_of_own = 2;
+
+} // namespace
 
 std::size_t filter_normals(const FacetNeighbours& neighbours, const std::vector<double>& area,
                            double similarity_angle, double settled_angle, std::vector<Vec3>& normals) {
@@ -26,7 +33,8 @@ std::size_t filter_normals(const FacetNeighbours& neighbours, const std::vector<
                 const Index g = neighbours.neighbour[i];
                 if (g == no_index) continue;
                 const double distance = (normals[g] - normals[f]).sqrnorm();
-                sum += normals[g] * (area[g] * std::exp(steepness * distance));
+                sum +=
+                    normals[g] * (std::min(most_of_own * area[f], area[g]) * std::exp(steepness * distance));
             }
             const Vec3 mean = unit_or_zero(sum);
             if (mean.sqrnorm() > 0) next[f] = mean;

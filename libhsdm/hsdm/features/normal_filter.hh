@@ -14,10 +14,12 @@ struct FacetNeighbours {
     std::vector<Index> neighbour;
 };
 
-/// One round: every normal becomes the mean of itself and its neighbours', each weighted by its area and by
-/// exp(-d^2 / 2 s^2), d the distance of the unit normals and s = `similarity_angle` in radians. Reads the old
-/// normals only (Jacobi), so the order of facets plays no part. A facet without neighbours keeps its normal.
-/// Returns how many normals turned by more than `settled_angle` radians. O(facets), parallel.
+/// One round: every normal becomes the mean of itself and its neighbours', weighted by exp(-d^2 / 2 s^2), d
+/// the distance of the unit normals and s = `similarity_angle` in radians, and by area; a larger neighbour
+/// counts at most twice the facet itself, or a huge side would bend the narrow facets along its rim. Reads
+/// the old normals only (Jacobi), so the order of facets plays no part. A facet without neighbours or area
+/// keeps its normal. Returns how many normals turned by more than `settled_angle` radians. O(facets),
+/// parallel.
 std::size_t filter_normals(const FacetNeighbours& neighbours, const std::vector<double>& area,
                            double similarity_angle, double settled_angle, std::vector<Vec3>& normals);
 
