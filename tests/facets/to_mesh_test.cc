@@ -4,6 +4,7 @@
 #include <OpenMesh/Tools/Utils/MeshCheckerT.hh>
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <sstream>
 
 using namespace hsdm;
@@ -99,6 +100,15 @@ TEST_CASE("a vertex's three normals survive the way to polygons and back") {
         OpenMesh::getProperty<OpenMesh::VertexHandle, VertexNormalsT<PolyMesh>>(again, "hsdm_normals");
     for (const auto v : again.vertices())
         CHECK(normals[v] == VertexNormalsT<PolyMesh>{Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, -1)});
+}
+
+TEST_CASE("property values beyond their type's range become its limits") {
+    PolygonMesh in = make({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
+    in.properties.push_back({"a", VertexProperty::Type::uint8, {300, -4, std::nan("")}});
+    in.properties.push_back({"b", VertexProperty::Type::int32, {1e12, -1e12, 7}});
+    const PolygonMesh out = to_polygons(to_mesh(in).mesh);
+    CHECK(out.properties[0].values == std::vector<double>{255, 0, 0});
+    CHECK(out.properties[1].values == std::vector<double>{2147483647, -2147483648.0, 7});
 }
 
 TEST_CASE("isolated vertices are left out and the others keep their order") {

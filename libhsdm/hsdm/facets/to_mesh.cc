@@ -8,7 +8,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <limits>
 #include <string>
+#include <type_traits>
 
 namespace hsdm {
 namespace {
@@ -103,12 +105,24 @@ void write_geometry(const PolygonMesh& facets, const FacetLinks& links, PolyMesh
     });
 }
 
+/// The value as a T; an integer that cannot hold it takes its nearest limit, 0 for what is not a number.
+template <class T>
+T saturated(double value) {
+    if constexpr (std::is_integral_v<T>) {
+        if (!(value == value)) return 0;
+        constexpr double lowest = std::numeric_limits<T>::lowest(), highest = std::numeric_limits<T>::max();
+        return static_cast<T>(std::clamp(value, lowest, highest));
+    } else {
+        return static_cast<T>(value);
+    }
+}
+
 template <class T>
 void write_property(const VertexProperty& from, const FacetLinks& links, PolyMesh& mesh) {
     auto property = kept_vertex_property<T>(mesh, from.name.c_str());
     auto& values = mesh.property(property.getRawProperty()).data_vector();
     for_each_index(links.source.size(),
-                   [&](Index v) { values[v] = static_cast<T>(from.values[links.source[v]]); });
+                   [&](Index v) { values[v] = saturated<T>(from.values[links.source[v]]); });
 }
 
 std::string normal_component_name(std::size_t i) {
