@@ -83,19 +83,22 @@ demo() {
     cmake --build build/release --target hsdm_command hsdm_generate
     hsdm=build/release/apps/hsdm/hsdm
     mkdir -p demo
-    build/release/tests/support/hsdm_generate part --points 200000 --noise 0.002 --normal-noise 5 --turn \
-        -o demo/scan.ply
-    $hsdm reconstruct demo/scan.ply -o demo/part.off --report demo/part.json --features demo/part.features.txt \
-        >demo/summary.txt
-    $hsdm reconstruct demo/scan.ply -o demo/part.stl --quiet
-    $hsdm reconstruct demo/scan.ply -o demo/part.ply --quiet
-    xvfb-run -a f3d demo/part.ply --output demo/part.png --resolution 1200,800 --edges --quiet \
-        --color 0.75,0.8,0.88 --bg-color 1,1,1 >/dev/null 2>&1 || true
+    build/release/tests/support/hsdm_generate part --points 200000 --noise 0.002 --normal-noise 5 -o demo/scan.ply
+    $hsdm reconstruct demo/scan.ply --depth 5 -o demo/part.off --report demo/part.json \
+        --features demo/part.features.txt >demo/summary.txt
+    $hsdm reconstruct demo/scan.ply --depth 5 -o demo/part.stl --quiet
+    $hsdm reconstruct demo/scan.ply --depth 5 -o demo/part.ply --quiet
+    rm -f demo/part.png
+    xvfb-run -a f3d demo/part.ply --output demo/part.png --resolution 880,460 --quiet \
+        --edges --line-width 1.4 --color 0.9,0.93,1 --roughness 0.5 --tone-mapping --fxaa --bg-color 1,1,1 \
+        --up +X --camera-azimuth-angle 35 --camera-elevation-angle 25 --camera-view-angle 17 \
+        >build/picture.log 2>&1 || true
     cat demo/summary.txt
     echo "scan      demo/scan.ply: 200,000 noisy points of two shafts on a block with crossing holes"
     echo "meshes    demo/part.off (polygons), demo/part.stl (triangles), demo/part.ply (with properties)"
     echo "report    demo/part.json, sharp edges in demo/part.features.txt"
     if [ ! -s demo/part.png ]; then
+        cat build/picture.log >&2
         echo "picture   could not be drawn; try: xvfb-run -a f3d demo/part.ply --output demo/part.png" >&2
         exit 1
     fi
@@ -103,7 +106,11 @@ demo() {
 }
 
 run_tests() {
-    cmake --build build/release
+    cmake --build build/release >build/build.log 2>&1 || {
+        tail -n 60 build/build.log
+        echo "0 passed, 1 failed"
+        exit 1
+    }
     status=0
     ctest --preset release -j "$(nproc)" >build/ctest.log 2>&1 || status=$?
     sh cmake/count_tests.sh build/ctest.log "$status"

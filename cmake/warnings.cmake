@@ -1,17 +1,9 @@
-# hsdm_warnings(TARGET): the warnings every target of the project is clean of, and the sanitizers of
-# HSDM_SANITIZE (a list for -fsanitize=, e.g. "address,undefined"; empty: none).
+# hsdm_warnings(TARGET): the warnings every target of the project is clean of.
 # Kept PRIVATE, so that a consumer's own flags are untouched.
-set(HSDM_SANITIZE "" CACHE STRING "Sanitizers to build the project's own targets with")
-
 function(hsdm_warnings target)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wshadow -Wconversion
     $<$<BOOL:${HSDM_WARNINGS_AS_ERRORS}>:-Werror>)
-  if(HSDM_SANITIZE)
-    target_compile_options(${target} PRIVATE
-      -fsanitize=${HSDM_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
-    target_link_options(${target} PRIVATE -fsanitize=${HSDM_SANITIZE})
-  endif()
 endfunction()
 
 # hsdm_includes_openmesh_kernel(SOURCE...): g++ 12 reports -Wmaybe-uninitialized from inside OpenMesh's
@@ -29,4 +21,20 @@ function(hsdm_includes_openmesh_kernel)
                    APPEND PROPERTY COMPILE_OPTIONS -Wno-maybe-uninitialized)
     endif()
   endforeach()
+endfunction()
+
+# hsdm_sanitize(LIBRARY): builds the library, and all that links it, with the sanitizers of HSDM_SANITIZE (a
+# list for -fsanitize=, e.g. "address,undefined"; empty: none). For the project's own test builds.
+set(HSDM_SANITIZE "" CACHE STRING "Sanitizers to build with")
+function(hsdm_sanitize library)
+  if(NOT HSDM_SANITIZE)
+    return()
+  endif()
+  target_compile_options(${library} PUBLIC
+    -fsanitize=${HSDM_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(${library} PUBLIC -fsanitize=${HSDM_SANITIZE})
+  if(HSDM_SANITIZE STREQUAL "thread")
+    # The installed TBB is not built for the thread sanitizer: see tests/tsan/tbb/stand_in.h.
+    target_include_directories(${library} BEFORE PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/tests/tsan>)
+  endif()
 endfunction()

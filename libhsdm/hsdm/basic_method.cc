@@ -1,8 +1,8 @@
 #include "hsdm/basic_method.hh"
 
 #include "hsdm/attributes.hh"
-#include "hsdm/debug_phases.hh"
 #include "hsdm/facets/basic_facets.hh"
+#include "hsdm/graph/phase_geometry.hh"
 
 namespace hsdm {
 namespace {
@@ -33,17 +33,16 @@ void note_counts(const BasicFacets::Counts& counts, Report& report) {
 } // namespace
 
 PolygonMesh basic_method(const MethodInput& in, Report& report) {
-    const std::string& debug = in.options.debug_dir;
-    if (!debug.empty()) write_debug_voxels(debug, in.octree, in.level);
     const ConnectivityGraph graph =
         in.phases.run("graph", 0.2, report.seconds.graph, [&] { return extract_graph(in.octree, in.level); });
-    if (!debug.empty()) write_debug_graph(debug, in.octree, in.level, graph);
     BasicFacets facets = in.phases.run("facets", 0.3, report.seconds.facets, [&] {
         return reconstruct_facets(in.octree, in.level, graph, facet_options(in.options),
                                   average_attributes(in.cloud, in.octree, in.level, graph.voxel));
     });
     note_counts(facets.counts, report);
-    if (!debug.empty()) write_debug_facets(debug, in.level, facets.mesh);
+    if (!in.options.debug_dir.empty())
+        write_phases(in.options.debug_dir + "/d" + std::to_string(in.level.depth), in.octree, in.level, graph,
+                     facets.mesh);
     for (Vec3& p : facets.mesh.positions) p -= in.octree.origin;
     return std::move(facets.mesh);
 }

@@ -32,8 +32,8 @@ struct ReconstructOptions {
         0.61;                 ///< radians, (0, pi): dihedral angle above which an edge is sharp (35 degrees)
     int normal_smoothing = 3; ///< rounds of anisotropic normal smoothing, >= 0 (section 3.3)
     int threads = 0;          ///< at most this many; 0: all. The result does not depend on it
-    std::string
-        debug_dir; ///< if set, the phases of Fig. 3 are written there (voxels, graph, facets) as OBJ and OFF
+    std::string debug_dir; ///< if set, the phases of Fig. 3 (voxels, graph, facets) are written to dN in it,
+                           ///< N the depth
     std::function<bool(const char* phase, double done)> progress; ///< done in [0, 1]; return false to cancel
 };
 

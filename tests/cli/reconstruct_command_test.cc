@@ -1,0 +1,237 @@
+#include "cli/run.hh"
+#include "cli/scan.hh"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+using namespace hsdm;
+using namespace hsdm::test;
+using Json = nlohmann::json;
+
+TEST_CASE("a scan becomes a mesh, a report and features with one command", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan()));
+    const CommandResult result =
+        run(folder, "reconstruct scan.xyz --depth 4 -o part.off --report part.json --features part.txt");
+    CHECK(result.status == 0);
+    CHECK(result.err == "");
+    for (const char* word : {"cloud", "voxels", "mesh", "topology", "error", "written"})
+        CHECK(result.out.find(word) != std::string::npos);
+    CHECK(std::count(result.out.begin(), result.out.end(), '\n') == 6);
+    CHECK(folder.list() == "part.json\npart.off\npart.txt\nscan.xyz\n");
+    const Json report = Json::parse(read_file(folder / "part.json"));
+    CHECK(report["input"]["file"] == "scan.xyz");
+    CHECK(report["input"]["points"] == 4000);
+    CHECK(report["grid"]["depth"] == 4);
+    CHECK(report["mesh"]["closed"] == true);
+    CHECK(report["mesh"]["euler"] == 2);
+    CHECK(report["seconds"]["total"].get<double>() > 0);
+    CHECK(report["peak_memory_bytes"].get<double>() > 1e6);
+}
+
+TEST_CASE("every format is written under its extension", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan()));
+    for (const char* name : {"a.off", "a.stl", "a.ply", "a.obj"}) {
+        INFO(name);
+        CHECK(run(folder, std::string("reconstruct scan.xyz --depth 4 --quiet -o ") + name).status == 0);
+        CHECK(read_file(folder / name).size() > 1000);
+    }
+    CHECK(run(folder, "reconstruct scan.xyz --depth 4 --ascii -o text.stl").status == 0);
+    CHECK(read_file(folder / "text.stl").starts_with("solid"));
+}
+
+TEST_CASE("the resolution follows the spacing of the points when none is asked for, and says why", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan()));
+    const CommandResult result = run(folder, "reconstruct scan.xyz -o part.off --report -");
+    CHECK(result.status == 0);
+    const Json report = Json::parse(result.out);
+    CHECK(report["options"]["resolution"].get<std::string>().find("spacing") != std::string::npos);
+    CHECK(report["grid"]["voxel_size"].get<double>() >= 3 * report["input"]["spacing"].get<double>());
+    CHECK(result.err.find("voxels") != std::string::npos); // the summary gave way to the report
+}
+
+TEST_CASE("a voxel size is kept exactly", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan()));
+    const CommandResult result =
+        run(folder, "reconstruct scan.xyz --voxel-size 0.17 -o a.off --quiet --report -");
+    CHECK(result.status == 0);
+    CHECK(Json::parse(result.out)["grid"]["voxel_size"].get<double>() == Approx(0.17).epsilon(1e-12));
+}
+
+TEST_CASE("standard input and output carry clouds and meshes, messages go to standard error", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan()));
+    const CommandResult result =
+        run(folder, "reconstruct - --input-format xyz --depth 4 -o - --format off", "cat scan.xyz |");
+    CHECK(result.status == 0);
+    CHECK(result.out.starts_with("OFF"));
+    CHECK(result.err.find("closed") != std::string::npos);
+    CHECK(run(folder, "reconstruct scan.xyz --depth 4 -o part.off --quiet").out == "");
+    CHECK(read_file(folder / "part.off") == result.out);
+}
+
+TEST_CASE("many inputs: one failure does not stop the others", "[cli]") {
+    const Folder folder;
+    folder.write("a.xyz", xyz(sphere_scan(4000)));
+    folder.write("b.xyz", "1 2 3\n4 five 6\n7 8 9\n1 1 1\n");
+    folder.write("c.xyz", xyz(sphere_scan(3500)));
+    const CommandResult result = run(folder, "reconstruct a.xyz b.xyz c.xyz missing.xyz --depth 4 --out-dir "
+                                             "meshes --format stl --report all.json");
+    CHECK(result.status == 1);
+    CHECK(exists(folder / "meshes/a.stl"));
+    CHECK(exists(folder / "meshes/c.stl"));
+    CHECK_FALSE(exists(folder / "meshes/b.stl"));
+    CHECK(result.out.find("meshes/a.stl: 4,000 points") != std::string::npos);
+    CHECK(result.out.find("2 of 4 inputs done, 2 failed") != std::string::npos);
+    CHECK(result.err.find("hsdm: b.xyz:2: ") != std::string::npos);
+    CHECK(result.err.find("missing.xyz") != std::string::npos);
+    const Json reports = Json::parse(read_file(folder / "all.json"));
+    REQUIRE(reports.size() == 4);
+    CHECK(reports[0]["mesh"]["closed"] == true);
+    CHECK(reports[1].contains("failure"));
+}
+
+TEST_CASE("levels give one mesh per depth from one octree, the same as each depth alone", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan()));
+    CHECK(run(folder, "reconstruct scan.xyz --levels 3:4 -o part.off --report levels.json").status == 0);
+    CHECK(folder.list() == "levels.json\npart.d3.off\npart.d4.off\nscan.xyz\n");
+    CHECK(Json::parse(read_file(folder / "levels.json")).size() == 2);
+    CHECK(run(folder, "reconstruct scan.xyz --depth 3 -o alone.off").status == 0);
+    CHECK(read_file(folder / "alone.off") == read_file(folder / "part.d3.off"));
+}
+
+TEST_CASE("wrong usage has status 2, a message, and leaves no file", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan(500)));
+    const std::vector<std::string> wrong = {
+        "",
+        "frobnicate",
+        "reconstruct",
+        "reconstruct scan.xyz",
+        "reconstruct scan.xyz -o a.off --depth 17",
+        "reconstruct scan.xyz -o a.off --depth 0",
+        "reconstruct scan.xyz -o a.off --depth five",
+        "reconstruct scan.xyz -o a.off --voxel-size -1",
+        "reconstruct scan.xyz -o a.off --voxel-size 1e-9",
+        "reconstruct scan.xyz -o a.off --depth 4 --voxel-size 0.1",
+        "reconstruct scan.xyz -o a.off --levels 4",
+        "reconstruct scan.xyz -o a.off --levels 5:3",
+        "reconstruct scan.xyz -o - --levels 3:4",
+        "reconstruct scan.xyz -o a.xyzzy",
+        "reconstruct scan.xyz -o scan.xyz --format off",
+        "reconstruct scan.xyz scan.xyz --out-dir d",
+        "reconstruct scan.xyz other.xyz -o a.off",
+        "reconstruct scan.xyz -o - --report -",
+        "reconstruct scan.xyz -o a.off --method magic",
+        "reconstruct scan.xyz -o a.off --crease-degrees 200",
+        "reconstruct scan.xyz -o a.off --threads -1",
+        "reconstruct scan.xyz -o a.off --unknown",
+    };
+    for (const std::string& arguments : wrong) {
+        INFO("hsdm " << arguments);
+        const CommandResult result = run(folder, arguments);
+        CHECK(result.status == 2);
+        CHECK(result.err != "");
+        CHECK(result.out == "");
+    }
+    CHECK(folder.list() == "scan.xyz\n");
+}
+
+TEST_CASE("options that are not available yet say so instead of being ignored", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan(500)));
+    for (const char* option : {"--max-error 0.1%", "--grid adaptive", "--memory 1G", "--normals estimate"}) {
+        const CommandResult result = run(folder, std::string("reconstruct scan.xyz -o a.off ") + option);
+        INFO(option << ": " << result.err);
+        CHECK(result.status == 2);
+        CHECK(result.err.find("not available yet") != std::string::npos);
+    }
+    CHECK(folder.list() == "scan.xyz\n");
+}
+
+TEST_CASE("bad input has status 1, names the file, and leaves no output", "[cli]") {
+    const Folder folder;
+    folder.write("empty.xyz", "");
+    folder.write("three.xyz", "0 0 0\n1 0 0\n0 1 0\n");
+    folder.write("equal.xyz", "1 2 3\n1 2 3\n1 2 3\n1 2 3\n1 2 3\n");
+    folder.write("line.xyz", "0 0 0\n1 1 1\n2 2 2\n3 3 3\n4 4 4\n5 5 5\n");
+    folder.write("nan.xyz", "nan 0 0\nnan 1 0\nnan 1 1\n0 0 0\n1 0 0\n");
+    const std::string before = folder.list();
+    for (const char* name :
+         {"empty.xyz", "three.xyz", "equal.xyz", "line.xyz", "nan.xyz", "missing.xyz", "."}) {
+        const CommandResult result = run(folder, std::string("reconstruct ") + name + " -o a.off");
+        INFO(name << ": " << result.err);
+        CHECK(result.status == 1);
+        CHECK(result.err.find(name) != std::string::npos);
+        CHECK(result.err.starts_with("hsdm: "));
+    }
+    CHECK(folder.list() == before);
+}
+
+TEST_CASE("an output that cannot be written has status 1 and leaves what was there", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan()));
+    CHECK(run(folder, "reconstruct scan.xyz --depth 4 -o nowhere/a.off").status == 1);
+    CHECK(run(folder, "reconstruct scan.xyz --depth 4 -o .").status != 0);
+    folder.write("old.off", "what was there");
+    CHECK(run(folder, "reconstruct scan.xyz --normals given -o old.off").status == 1);
+    CHECK(read_file(folder / "old.off") == "what was there");
+    CHECK(run(folder, "reconstruct scan.xyz --depth 4 -o - >/dev/full").status == 1);
+}
+
+TEST_CASE("points that are not finite are dropped and counted", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan()) + "nan 0 0\n0 inf 0\n");
+    const CommandResult result = run(folder, "reconstruct scan.xyz --depth 4 -o a.off --quiet --report -");
+    CHECK(result.status == 0);
+    const Json report = Json::parse(result.out);
+    CHECK(report["input"]["dropped_nonfinite"] == 2);
+    CHECK(report["input"]["points"] == 4000);
+}
+
+TEST_CASE("one or two threads and any order of the points write the same bytes", "[cli]") {
+    const Folder folder;
+    PointCloud cloud = support::sample(support::mechanical_part(), {.points = 20000, .normals = false});
+    folder.write("scan.xyz", xyz(cloud));
+    std::shuffle(cloud.positions.begin(), cloud.positions.end(), std::mt19937_64(3));
+    folder.write("shuffled.xyz", xyz(cloud));
+    for (const char* format : {"off", "ply"}) {
+        const std::string tail = std::string(" --depth 5 --quiet -o - --format ") + format;
+        const std::string one = run(folder, "reconstruct scan.xyz --threads 1" + tail).out;
+        CHECK(one.size() > 10000);
+        CHECK((run(folder, "reconstruct scan.xyz --threads 2" + tail).out == one));
+        CHECK((run(folder, "reconstruct shuffled.xyz" + tail).out == one));
+    }
+}
+
+TEST_CASE("an interrupt ends with status 130 and no partial file", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan(2000)));
+    // The pipe stays open, so the command waits for more points when the interrupt comes.
+    const CommandResult result =
+        run(folder,
+            "reconstruct - --input-format xyz -o a.off --progress always <pipe 2>said & command=$!; "
+            "until grep -q read said; do sleep 0.1; done; kill -INT $command; wait $command; echo status $?",
+            "mkfifo pipe; (cat scan.xyz; sleep 4) >pipe &");
+    CHECK(result.out.find("status 130") != std::string::npos);
+    CHECK_FALSE(exists(folder / "a.off"));
+}
+
+TEST_CASE("help and version go to standard output with status 0", "[cli]") {
+    const Folder folder;
+    for (const char* arguments : {"--help", "--version", "reconstruct --help", "info --help",
+                                  "compare --help", "process --help", "regress --help"}) {
+        INFO(arguments);
+        const CommandResult result = run(folder, arguments);
+        CHECK(result.status == 0);
+        CHECK(result.out != "");
+        CHECK(result.err == "");
+    }
+    CHECK(run(folder, "reconstruct --help").out.find("Examples:") != std::string::npos);
+}

@@ -1,0 +1,17 @@
+# Configures, builds and runs the project beside this file in WORK_DIR, with hsdm found by WAY.
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT result EQUAL 0)
+    message(FATAL_ERROR "failed: ${ARGN}\n${output}")
+  endif()
+endfunction()
+
+file(REMOVE_RECURSE ${WORK_DIR})
+if(WAY STREQUAL "find_package")
+  run(${CMAKE_COMMAND} --install ${HSDM_BINARY_DIR} --prefix ${WORK_DIR}/prefix)
+endif()
+run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/project -B ${WORK_DIR}/build -G ${GENERATOR}
+  -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix
+  -D WAY=${WAY} -D HSDM_SOURCE_DIR=${HSDM_SOURCE_DIR})
+run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
+run(${WORK_DIR}/build/consumer)

@@ -1,0 +1,236 @@
+#include "hsdm/errors.hh"
+#include "hsdm/facets/to_mesh.hh"
+#include "hsdm/reconstruct.hh"
+#include "support/check.hh"
+#include "support/sample.hh"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+using namespace hsdm;
+using support::faults;
+
+namespace {
+
+PointCloud scan(const support::Solid& solid, std::size_t points, std::uint64_t seed = 1) {
+    support::SampleOptions options;
+    options.points = points;
+    options.seed = seed;
+    options.normals = false;
+    return support::sample(solid, options);
+}
+
+ReconstructOptions at_depth(int depth) {
+    ReconstructOptions options;
+    options.method = Method::basic;
+    options.depth = depth;
+    return options;
+}
+
+/// A square in the plane z = 2, its points on a jittered grid.
+PointCloud flat_square(int side) {
+    support::Random random(9);
+    PointCloud cloud;
+    for (int i = 0; i < side; ++i)
+        for (int k = 0; k < side; ++k)
+            cloud.positions.emplace_back(i + random.uniform(0, 0.5), k + random.uniform(0, 0.5), 2);
+    return cloud;
+}
+
+} // namespace
+
+TEST_CASE("well-sampled solids come out closed, manifold, outward, of the right genus, near the surface",
+          "[reconstruct]") {
+    struct Example {
+        const char* name;
+        support::Solid solid;
+        std::size_t points;
+        int depth;
+        long genus;
+    };
+    support::Random random(11);
+    const std::vector<Example> examples = {
+        {"sphere", support::sphere(1), 20000, 4, 0},
+        {"torus", support::torus(1, 0.4).placed(support::random_pose(random)), 30000, 5, 1},
+        {"box", support::box(Vec3(1, 1, 1)), 20000, 4, 0},
+        {"mechanical part", support::mechanical_part(), 60000, 5, 3},
+    };
+    for (const Example& example : examples) {
+        INFO(example.name);
+        const PointCloud cloud = scan(example.solid, example.points);
+        const Reconstruction result = reconstruct(cloud, at_depth(example.depth));
+        const PolygonMesh mesh = to_polygons(result.mesh);
+        CHECK(faults(mesh) == "");
+        CHECK(result.report.mesh.closed);
+        CHECK(result.report.mesh.components == 1);
+        CHECK(result.report.mesh.genus == example.genus);
+        CHECK(support::farthest_vertex(mesh, example.solid) < result.report.grid.voxel_size);
+        CHECK(result.report.error.points_to_mesh_max < result.report.grid.voxel_size);
+    }
+}
+
+TEST_CASE("random solids give manifold meshes whatever holes they have", "[reconstruct]") {
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        INFO("seed " << seed);
+        const Reconstruction result =
+            reconstruct(scan(support::random_solid(seed), 15000, seed), at_depth(5));
+        CHECK(faults(to_polygons(result.mesh)) == "");
+        CHECK(result.report.rejected.at("to_mesh") == 0);
+    }
+}
+
+TEST_CASE("the report agrees with the mesh", "[reconstruct]") {
+    const Reconstruction result = reconstruct(scan(support::sphere(1), 5000), at_depth(4));
+    const Report::Mesh& counts = result.report.mesh;
+    CHECK(counts.vertices == result.mesh.n_vertices());
+    CHECK(counts.edges == result.mesh.n_edges());
+    CHECK(counts.faces == result.mesh.n_faces());
+    CHECK(counts.faces == counts.triangles + counts.quads + counts.larger);
+    CHECK(counts.euler == 2);
+    CHECK(result.report.input.points == 5000);
+    CHECK(result.report.grid.leaves_per_level.back() == result.report.grid.voxels);
+    CHECK(result.report.features.smooth_vertices + result.report.features.edge_vertices
+              + result.report.features.corner_vertices
+          == counts.vertices);
+    CHECK(result.report.error.normalised_max
+          == Approx(result.report.error.points_to_mesh_max / result.report.input.bbox.diagonal()));
+}
+
+TEST_CASE("the mesh does not depend on threads or on the order of the points", "[reconstruct]") {
+    PointCloud cloud = scan(support::mechanical_part(), 20000);
+    ReconstructOptions options = at_depth(5);
+    options.threads = 1;
+    const PolygonMesh one = to_polygons(reconstruct(cloud, options).mesh);
+    options.threads = 2;
+    const PolygonMesh two = to_polygons(reconstruct(cloud, options).mesh);
+    std::shuffle(cloud.positions.begin(), cloud.positions.end(), std::mt19937_64(5));
+    const PolygonMesh shuffled = to_polygons(reconstruct(cloud, options).mesh);
+    for (const PolygonMesh* other : {&two, &shuffled}) {
+        CHECK((other->positions == one.positions));
+        CHECK((other->corners == one.corners));
+        CHECK((other->first == one.first));
+        CHECK((other->normals == one.normals));
+    }
+}
+
+TEST_CASE("coordinates far from the origin lose nothing", "[reconstruct]") {
+    const PointCloud near = scan(support::torus(1, 0.4), 20000);
+    PointCloud far = near;
+    const Vec3 shift(1e7, -2e7, 3e6);
+    for (Vec3& p : far.positions) p += shift;
+    const Reconstruction a = reconstruct(near, at_depth(4)), b = reconstruct(far, at_depth(4));
+    CHECK(faults(to_polygons(b.mesh)) == "");
+    CHECK(b.report.mesh.closed == a.report.mesh.closed);
+    CHECK(b.report.mesh.genus == a.report.mesh.genus);
+    CHECK(b.report.error.points_to_mesh_max == Approx(a.report.error.points_to_mesh_max).epsilon(1e-3));
+}
+
+TEST_CASE("points in a plane give a valid open mesh", "[reconstruct]") {
+    const Reconstruction result = reconstruct(flat_square(60), at_depth(4));
+    CHECK(faults(to_polygons(result.mesh)) == "");
+    CHECK_FALSE(result.report.mesh.closed);
+    CHECK(result.report.mesh.components == 1);
+    CHECK(result.report.mesh.genus == 0);
+    for (const auto v : result.mesh.vertices()) CHECK(result.mesh.point(v)[2] == Approx(2));
+}
+
+TEST_CASE("clouds without a surface in them are refused with advice", "[reconstruct]") {
+    PointCloud cloud;
+    CHECK_THROWS_AS(reconstruct(cloud), Error);
+    cloud.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
+    CHECK_THROWS_WITH(reconstruct(cloud), Catch::Contains("needs 4"));
+    cloud.positions.assign(100, Vec3(1e7, 2, 3));
+    CHECK_THROWS_WITH(reconstruct(cloud), Catch::Contains("equal"));
+    cloud.positions.clear();
+    for (int i = 0; i < 100; ++i) cloud.positions.push_back(Vec3(1e6, 0, 5) + Vec3(1, 0.3, -2) * (0.01 * i));
+    CHECK_THROWS_WITH(reconstruct(cloud), Catch::Contains("on a line"));
+    cloud.positions.assign(9, Vec3(std::numeric_limits<double>::quiet_NaN(), 0, 0));
+    cloud.positions.insert(cloud.positions.end(),
+                           {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)});
+    CHECK_THROWS_WITH(reconstruct(cloud), Catch::Contains("9 of 13"));
+}
+
+TEST_CASE("options out of range are refused at the door, by name", "[reconstruct]") {
+    const PointCloud cloud = scan(support::sphere(1), 1000);
+    const auto refused = [&cloud](const std::string& name, auto change) {
+        ReconstructOptions options;
+        change(options);
+        INFO(name);
+        CHECK_THROWS_AS(reconstruct(cloud, options), OptionError);
+        CHECK_THROWS_WITH(reconstruct(cloud, options), Catch::Contains(name));
+    };
+    refused("depth 0", [](auto& o) { o.depth = 0; });
+    refused("depth 17", [](auto& o) { o.depth = 17; });
+    refused("voxel_size", [](auto& o) { o.voxel_size = 0.0; });
+    refused("voxel_size", [](auto& o) { o.voxel_size = 1e-8; });
+    refused("voxel_size", [](auto& o) { o.voxel_size = std::numeric_limits<double>::infinity(); });
+    refused("at most one", [](auto& o) { o.depth = 4, o.voxel_size = 0.1; });
+    refused("crease_angle", [](auto& o) { o.crease_angle = std::numbers::pi; });
+    refused("normal_smoothing", [](auto& o) { o.normal_smoothing = -1; });
+    refused("threads", [](auto& o) { o.threads = -1; });
+    CHECK_THROWS_AS(reconstruct_levels(cloud, 4, 3), OptionError);
+    CHECK_THROWS_AS(reconstruct_levels(cloud, 0, 3), OptionError);
+}
+
+TEST_CASE("a larger voxel than the cloud still has a cube to lie in", "[reconstruct]") {
+    ReconstructOptions options;
+    options.voxel_size = 0.7;
+    const Reconstruction result = reconstruct(scan(support::sphere(1), 5000), options);
+    CHECK(result.report.grid.voxel_size == Approx(0.7));
+    CHECK(faults(to_polygons(result.mesh)) == "");
+}
+
+TEST_CASE("the callback sees work go forward and can stop it between phases", "[reconstruct]") {
+    const PointCloud cloud = scan(support::sphere(1), 3000);
+    ReconstructOptions options = at_depth(4);
+    double last = 0;
+    std::vector<std::string> phases;
+    options.progress = [&](const char* phase, double done) {
+        CHECK(done >= last);
+        CHECK(done <= 1);
+        last = done;
+        phases.emplace_back(phase);
+        return true;
+    };
+    reconstruct_levels(cloud, 3, 4, [&] {
+        ReconstructOptions without_depth = options;
+        without_depth.depth.reset();
+        return without_depth;
+    }());
+    for (const char* phase : {"octree", "graph", "facets", "mesh", "features", "error"})
+        CHECK(std::find(phases.begin(), phases.end(), phase) != phases.end());
+    options.progress = [](const char* phase, double) { return std::string(phase) != "facets"; };
+    CHECK_THROWS_AS(reconstruct(cloud, options), Cancelled);
+}
+
+TEST_CASE("every level of one octree equals the reconstruction at that depth", "[reconstruct]") {
+    const PointCloud cloud = scan(support::torus(1, 0.4), 20000);
+    const std::vector<Reconstruction> levels = reconstruct_levels(cloud, 3, 5);
+    REQUIRE(levels.size() == 3);
+    for (int depth = 3; depth <= 5; ++depth) {
+        const PolygonMesh alone = to_polygons(reconstruct(cloud, at_depth(depth)).mesh);
+        const PolygonMesh level = to_polygons(levels[static_cast<std::size_t>(depth - 3)].mesh);
+        CHECK((level.positions == alone.positions));
+        CHECK((level.corners == alone.corners));
+    }
+}
+
+TEST_CASE("holes kept leave the loops that holes closed by default fill", "[reconstruct]") {
+    const PointCloud cloud = scan(support::mechanical_part(), 6000);
+    ReconstructOptions options = at_depth(5);
+    options.holes = Holes::keep;
+    const std::size_t kept = reconstruct(cloud, options).report.mesh.boundary_edges;
+    options.holes = Holes::automatic;
+    const std::size_t closed = reconstruct(cloud, options).report.mesh.boundary_edges;
+    CHECK(kept > 0);
+    CHECK(closed < kept);
+}
+
+TEST_CASE("given normals that are not there are refused", "[reconstruct]") {
+    ReconstructOptions options = at_depth(3);
+    options.normals = NormalSource::given;
+    CHECK_THROWS_AS(reconstruct(scan(support::sphere(1), 1000), options), Error);
+}
