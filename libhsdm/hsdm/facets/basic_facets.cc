@@ -2,6 +2,7 @@
 
 #include "hsdm/errors.hh"
 #include "hsdm/facets/false_facets.hh"
+#include "hsdm/facets/split_polygon.hh"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -284,6 +285,7 @@ BasicFacets reconstruct_facets(const Octree& octree, const OctreeLevel& level, c
         result.counts.holes = fill_holes(result.mesh, holes);
     }
     result.counts.manifold = make_manifold(result.mesh);
+    if (options.split_large) result.counts.split_facets = split_large_facets(result.mesh);
     return result;
 }
 

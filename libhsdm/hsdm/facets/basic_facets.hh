@@ -10,10 +10,11 @@ namespace hsdm {
 struct BasicFacetOptions {
     /// Longest minimal loop taken as a facet, in edges, in [3, max_loop_edges]. Loops of five and more are
     /// looked for only where no triangle or quad fits.
-    int max_loop_edges = 6;
-    bool hit_test = true;           ///< reject candidates whose normal runs into a neighbouring voxel
-    bool distance_criterion = true; ///< of several candidates, drop those farther from the close points
-    bool angle_comparison = true;   ///< of several candidates, take the outer one; else the paper's first
+    int max_loop_edges = 8;
+    bool hit_test = true;            ///< reject candidates whose normal runs into a neighbouring voxel
+    bool distance_criterion = false; ///< of several candidates, drop those farther from the close points
+    bool angle_comparison = true;    ///< of several candidates, take the outer one; else the paper's first
+    bool split_large = true;        ///< split facets of five and more corners into quads and triangles
     /// Boundary loops of at most so many edges are closed (hole elimination), >= 3; 0: none.
     int max_hole_edges = 16;
 };
@@ -25,7 +26,8 @@ struct BasicFacets {
         std::size_t hit_test = 0;    ///< candidates each test rejected
         std::size_t distance_criterion = 0;
         std::size_t angle_comparison = 0;
-        std::size_t seeds = 0; ///< facets that orientation was propagated from
+        std::size_t seeds = 0;        ///< facets that orientation was propagated from
+        std::size_t split_facets = 0; ///< of five and more corners, split into quads and triangles
         ManifoldCounts manifold;
         FillHolesCounts holes;
     } counts;

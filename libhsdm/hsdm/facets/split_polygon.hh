@@ -1,0 +1,52 @@
+#pragma once
+// Polygons into well-shaped triangles and quads over their own vertices: what closes a hole, and what becomes
+// of a minimal loop of five edges and more.
+
+#include "hsdm/polygon_mesh.hh"
+
+#include <array>
+#include <unordered_set>
+
+namespace hsdm {
+
+/// Edges between marked vertices of a mesh, where no diagonal may be laid again.
+class EdgeSet {
+public:
+    /// Of the mesh's edges those with both ends in `vertices`. A vertex that comes there more than once is
+    /// one that several polygons share. O(facets).
+    EdgeSet(const PolygonMesh& mesh, std::span<const Index> vertices);
+
+    bool contains(Index a, Index b) const;
+    /// Enters the edges of a new facet that other polygons might want too.
+    void add(std::span<const Index> facet);
+
+private:
+    static std::uint64_t key(Index a, Index b);
+
+    std::vector<std::uint64_t> edges_;
+    std::unordered_set<std::uint64_t> added_;
+    std::vector<std::uint8_t> shared_;
+};
+
+struct SplitPolygonOptions {
+    double max_bend = 2.6; ///< greatest bend of an edge inside or on the polygon, in radians, (0, pi]
+    bool quads = true;     ///< join triangles to quads where these come out convex
+};
+
+/// The pieces of a polygon, as facets.
+using Pieces = std::vector<std::vector<Index>>;
+
+/// Splits a polygon over the mesh's vertices so that edges are short and bends small: exactly, by dynamic
+/// programming, up to 128 corners; larger ones lose their best ears first. `side_normals` holds per side
+/// (from corner i to i + 1) the unit normal of the facet beyond it, (0, 0, 0) if there is none. No diagonal
+/// is one of `edges`. Empty if every way to split it bends too much, is flat or needs such an edge. O(corners
+/// ^ 3) up to 128 corners.
+Pieces split_polygon(const PolygonMesh& mesh, std::span<const Index> polygon,
+                     std::span<const Vec3> side_normals, const EdgeSet& edges,
+                     const SplitPolygonOptions& options = {});
+
+/// Splits every facet of more than four corners into quads and triangles; a facet that cannot be split stays.
+/// A 2-manifold remains one. Returns how many were split. O(facets), parallel.
+std::size_t split_large_facets(PolygonMesh& mesh);
+
+} // namespace hsdm
