@@ -1,6 +1,7 @@
 #include "hsdm/io/columns.hh"
 
 #include "hsdm/errors.hh"
+#include "hsdm/io/huge_pages.hh"
 #include "hsdm/io/text.hh"
 
 #include <algorithm>
@@ -178,6 +179,12 @@ void assign_colors(std::vector<Column>& columns, const Sample& sample, std::size
     columns[first + 2].role = Role::blue;
 }
 
+/// Vec3 leaves its memory untouched when it is made, so the first to write it are the threads that fill it.
+void resize_for_writing(std::vector<Vec3>& vectors, std::size_t count) {
+    vectors.resize(count);
+    advise_huge_pages(vectors.data(), count * sizeof(Vec3));
+}
+
 } // namespace
 
 Role role_of(std::string_view name) {
@@ -258,11 +265,11 @@ double color_factor(double max_value, bool fractions) {
 
 CloudColumns::CloudColumns(std::vector<Column> columns, std::size_t points, double factor)
     : columns_(std::move(columns)), scalar_(columns_.size()), color_factor_(factor) {
-    cloud_.positions.resize(points);
+    resize_for_writing(cloud_.positions, points);
     for (std::size_t i = 0; i < columns_.size(); ++i) {
         switch (columns_[i].role) {
         case Role::nx:
-            cloud_.normals.resize(points);
+            resize_for_writing(cloud_.normals, points);
             break;
         case Role::red:
             cloud_.colors.resize(points, {0, 0, 0, 255});

@@ -70,8 +70,7 @@ public:
         layout.origin = "the first vertex has " + std::to_string(layout.cells.size());
         layout.advice = "correct the line, or the count of vertices in the header";
         Rows rows(body, layout);
-        if (rows.size() != vertices_)
-            throw Error(text_.source->name(), "empty vertex lines; export the file again");
+        if (rows.size() != vertices_) throw Error(text_.file(), "empty vertex lines; export the file again");
         const auto columns = columns_of(keyword_, rows);
         if (columns.size() > rows.columns())
             text_.fail(body.begin, "the vertices have " + std::to_string(rows.columns())

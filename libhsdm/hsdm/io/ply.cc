@@ -17,11 +17,19 @@ std::vector<Column> columns_of(const Text& text, const PlyElement& vertex) {
         std::string present;
         for (const PlyProperty& property : vertex.properties)
             present += (present.empty() ? "" : ", ") + property.name;
-        throw Error(text.source->name(), "the vertices have no properties x, y and z"
-                                             + (present.empty() ? "" : ", only " + quoted(present))
-                                             + "; export them as points");
+        throw Error(text.file(), "the vertices have no properties x, y and z"
+                                     + (present.empty() ? "" : ", only " + quoted(present))
+                                     + "; export them as points");
     }
     return *columns;
+}
+
+/// Binary data decide nothing about line ends: the first line does.
+Text with_line_end_of_header(Text text) {
+    const char* end = std::find_if(text.begin, text.end, [](char c) { return c == '\n' || c == '\r'; });
+    const bool only_returns = end != text.end && *end == '\r' && (end + 1 == text.end || end[1] != '\n');
+    text.newline = only_returns ? '\r' : '\n';
+    return text;
 }
 
 } // namespace
@@ -43,30 +51,24 @@ std::optional<double> color_factor_by_type(const PlyElement& vertex, const std::
 }
 
 PointFile read_ply(const SourceBytes& bytes) {
-    const Text text = [&] {
-        Text all(bytes);
-        // Binary data decide nothing about line ends: the header's first line does.
-        const char* end = std::find_if(all.begin, all.end, [](char c) { return c == '\n' || c == '\r'; });
-        const bool only_returns = end != all.end && *end == '\r' && (end + 1 == all.end || end[1] != '\n');
-        all.newline = only_returns ? '\r' : '\n';
-        return all;
-    }();
+    const bool head_suffices = bytes.head().find("end_header") != std::string_view::npos;
+    const Text text = with_line_end_of_header(head_suffices ? Text::head_of(bytes) : Text(bytes));
     const PlyHeader header = read_ply_header(text);
     std::size_t vertex = 0;
     while (vertex < header.elements.size() && header.elements[vertex].name != "vertex") ++vertex;
     if (vertex == header.elements.size())
-        throw Error(text.source->name(), "the header names no element vertex; a point cloud is needed");
+        throw Error(bytes.name(), "the header names no element vertex; a point cloud is needed");
     const PlyElement& element = header.elements[vertex];
-    if (element.count == 0)
-        throw Error(text.source->name(), "holds no points: the header says element vertex 0");
+    if (element.count == 0) throw Error(bytes.name(), "holds no points: the header says element vertex 0");
     if (element.count >= no_index && element.count / 3 <= bytes.size())
-        throw Error(text.source->name(), "holds more points than can be numbered; split the file");
+        throw Error(bytes.name(), "holds more points than can be numbered; split the file");
 
     const auto columns = columns_of(text, element);
     PointFile file;
     file.format = "ply";
-    file.cloud = header.encoding == PlyEncoding::ascii ? read_ply_ascii(text, header, vertex, columns)
-                                                       : read_ply_binary(text, header, vertex, columns);
+    file.cloud = header.encoding == PlyEncoding::ascii
+                     ? read_ply_ascii(with_line_end_of_header(Text(bytes)), header, vertex, columns)
+                     : read_ply_binary(bytes, header, vertex, columns);
     for (const PlyElement& other : header.elements)
         if (other.name == "face") file.faces = static_cast<std::size_t>(other.count);
     return file;

@@ -7,10 +7,11 @@
 namespace hsdm::io {
 
 /// Reads element `vertex` of the header's elements; `columns` has one entry per property of it, lists being
-/// skip. Counts are held against the file before anything is allocated. Throws Error.
+/// skip; `text` is the whole source. Counts are held against the file before anything is allocated. Throws
+/// Error.
 PointCloud read_ply_ascii(const Text& text, const PlyHeader& header, std::size_t vertex,
                           const std::vector<Column>& columns);
-PointCloud read_ply_binary(const Text& text, const PlyHeader& header, std::size_t vertex,
+PointCloud read_ply_binary(const SourceBytes& bytes, const PlyHeader& header, std::size_t vertex,
                            const std::vector<Column>& columns);
 
 /// Whether colours of these columns are fractions of 1 by their type.

@@ -6,7 +6,7 @@ namespace hsdm::io {
 PointCloud read_ply_ascii(const Text& text, const PlyHeader& header, std::size_t vertex,
                           const std::vector<Column>& columns) {
     const PlyElement& element = header.elements[vertex];
-    const char* at = header.end;
+    const char* at = text.origin + header.size;
     for (std::size_t i = 0; i < vertex; ++i)
         at = after_rows(text.from(at), header.elements[i].count, false,
                         "lines of element " + header.elements[i].name);

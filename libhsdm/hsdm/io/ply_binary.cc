@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <memory>
 
 namespace hsdm::io {
 namespace {
@@ -65,15 +66,14 @@ struct Field {
 
 class BinaryBody {
 public:
-    BinaryBody(const Text& text, const PlyHeader& header)
-        : file_(text.source->name()),
-          source_begin_(text.source->begin()),
-          at_(header.end),
-          end_(text.end),
+    BinaryBody(const SourceBytes& bytes, const PlyHeader& header)
+        : bytes_(bytes),
+          at_(header.size),
           swap_((header.encoding == PlyEncoding::big_endian)
                 == (std::endian::native == std::endian::little)) {}
 
-    std::size_t left() const { return static_cast<std::size_t>(end_ - at_); }
+    std::size_t at() const { return at_; }
+    std::size_t left() const { return bytes_.size() - at_; }
 
     std::vector<Field> fields(const PlyElement& element) const {
         std::vector<Field> result;
@@ -91,10 +91,10 @@ public:
     void check_size(const PlyElement& element) const {
         const std::size_t size = element.least_size();
         if (size == 0 || element.count <= left() / size) return;
-        throw Error(file_, "the file ends after " + std::to_string(left() / size) + " of "
-                               + std::to_string(element.count) + " elements " + element.name + " (at byte "
-                               + std::to_string(end_ - source_begin_)
-                               + "); it was cut off, or its header counts wrong");
+        throw Error(bytes_.name(), "the file ends after " + std::to_string(left() / size) + " of "
+                                       + std::to_string(element.count) + " elements " + element.name
+                                       + " (at byte " + std::to_string(bytes_.size())
+                                       + "); it was cut off, or its header counts wrong");
     }
 
     void skip(const PlyElement& element) {
@@ -110,17 +110,17 @@ public:
     /// Moves over one element, and writes its values to `row` (0 for a list) unless that is null.
     void read_element(const std::vector<Field>& layout, const PlyElement& element, std::uint64_t index,
                       double* row) {
+        const char* data = bytes_.view().data();
         for (const Field& field : layout) {
             if (left() < field.size) fail_cut_off(element, index);
             double value;
-            field.gather(at_, 0, 1, &value);
+            field.gather(data + at_, 0, 1, &value);
             at_ += field.size;
             if (field.list_item_size) {
                 if (value < 0)
-                    throw Error(file_, "a list of negative length in element " + element.name + " "
-                                           + std::to_string(index) + " (at byte "
-                                           + std::to_string(at_ - source_begin_)
-                                           + "); export the file again");
+                    throw Error(bytes_.name(), "a list of negative length in element " + element.name + " "
+                                                   + std::to_string(index) + " (at byte "
+                                                   + std::to_string(at_) + "); export the file again");
                 const auto items = static_cast<std::size_t>(value);
                 if (items > left() / field.list_item_size) fail_cut_off(element, index);
                 at_ += items * field.list_item_size;
@@ -130,38 +130,43 @@ public:
         }
     }
 
-    const char* at() const { return at_; }
-    const std::string& file() const { return file_; }
-
 private:
     [[noreturn]] void fail_cut_off(const PlyElement& element, std::uint64_t index) const {
-        throw Error(file_, "the file ends in element " + element.name + " " + std::to_string(index) + " of "
-                               + std::to_string(element.count) + " (at byte "
-                               + std::to_string(end_ - source_begin_)
-                               + "); it was cut off, or its header counts wrong");
+        throw Error(bytes_.name(), "the file ends in element " + element.name + " " + std::to_string(index)
+                                       + " of " + std::to_string(element.count) + " (at byte "
+                                       + std::to_string(bytes_.size())
+                                       + "); it was cut off, or its header counts wrong");
     }
 
-    const std::string& file_;
-    const char* source_begin_;
-    const char* at_;
-    const char* end_;
+    const SourceBytes& bytes_;
+    std::size_t at_; ///< offset in the source
     bool swap_;
 };
 
 constexpr std::size_t block_rows = 1024; // a column of them fits the first-level cache
 
+/// Vertices of one size, as they lie in the source.
+struct FixedVertices {
+    const SourceBytes& bytes;
+    std::size_t offset, stride, count;
+    std::vector<Field> layout;
+};
+
 /// Calls use(column, first, values) for every block of every column that is used, in parallel.
 template <class Use>
-void for_each_block(const char* begin, const std::vector<Field>& layout, std::size_t stride,
-                    std::size_t count, const std::vector<Column>& columns, const Use& use) {
-    const std::size_t blocks = (count + block_rows - 1) / block_rows;
+void for_each_block(const FixedVertices& vertices, const std::vector<Column>& columns, const Use& use) {
+    const std::size_t blocks = (vertices.count + block_rows - 1) / block_rows;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks, 16), [&](const auto& range) {
         std::array<double, block_rows> values;
+        const std::size_t stride = vertices.stride;
+        const std::unique_ptr<char[]> scratch(new char[std::min(block_rows, vertices.count) * stride]);
         for (std::size_t block = range.begin(); block != range.end(); ++block) {
-            const std::size_t first = block * block_rows, rows = std::min(block_rows, count - first);
+            const std::size_t first = block * block_rows, rows = std::min(block_rows, vertices.count - first);
+            const char* bytes =
+                vertices.bytes.piece(vertices.offset + first * stride, rows * stride, scratch.get());
             for (std::size_t c = 0; c < columns.size(); ++c) {
                 if (columns[c].role == Role::skip) continue;
-                layout[c].gather(begin + first * stride + layout[c].offset, stride, rows, values.data());
+                vertices.layout[c].gather(bytes + vertices.layout[c].offset, stride, rows, values.data());
                 use(c, first, std::span<const double>(values.data(), rows));
             }
         }
@@ -178,27 +183,24 @@ bool is_color(const Column& column) {
     return column.role >= Role::red && column.role <= Role::blue;
 }
 
-/// Vertices of one size: columns are gathered block by block.
-PointCloud read_fixed(const BinaryBody& body, const PlyElement& vertex, const std::vector<Column>& columns) {
-    const auto layout = body.fields(vertex);
-    const std::size_t stride = vertex.least_size(), count = static_cast<std::size_t>(vertex.count);
-    auto factor = color_factor_by_type(vertex, columns);
+/// Columns are gathered block by block: the bytes of a block pass through the cache once.
+PointCloud read_fixed(const FixedVertices& vertices, const PlyElement& element,
+                      const std::vector<Column>& columns) {
+    auto factor = color_factor_by_type(element, columns);
     if (!factor) {
         std::vector<Column> colors = columns;
         for (Column& column : colors)
             if (!is_color(column)) column.role = Role::skip;
-        std::vector<double> maxima((count + block_rows - 1) / block_rows, 0);
-        for_each_block(body.at(), layout, stride, count, colors,
-                       [&](std::size_t, std::size_t first, auto values) {
-                           maxima[first / block_rows] = std::max(maxima[first / block_rows], largest(values));
-                       });
-        factor = color_factor(largest(maxima), has_fractional_color(vertex, columns));
+        std::vector<double> maxima((vertices.count + block_rows - 1) / block_rows, 0);
+        for_each_block(vertices, colors, [&](std::size_t, std::size_t first, auto values) {
+            maxima[first / block_rows] = std::max(maxima[first / block_rows], largest(values));
+        });
+        factor = color_factor(largest(maxima), has_fractional_color(element, columns));
     }
-    CloudColumns cloud(columns, count, *factor);
-    for_each_block(body.at(), layout, stride, count, columns,
-                   [&](std::size_t c, std::size_t first, auto values) {
-                       cloud.store(c, first, values.size(), values.data(), 1);
-                   });
+    CloudColumns cloud(columns, vertices.count, *factor);
+    for_each_block(vertices, columns, [&](std::size_t c, std::size_t first, auto values) {
+        cloud.store(c, first, values.size(), values.data(), 1);
+    });
     return cloud.finish();
 }
 
@@ -230,20 +232,22 @@ PointCloud read_varying(BinaryBody& body, const PlyElement& vertex, const std::v
 
 } // namespace
 
-PointCloud read_ply_binary(const Text& text, const PlyHeader& header, std::size_t vertex,
+PointCloud read_ply_binary(const SourceBytes& bytes, const PlyHeader& header, std::size_t vertex,
                            const std::vector<Column>& columns) {
     const PlyElement& element = header.elements[vertex];
-    BinaryBody body(text, header);
+    BinaryBody body(bytes, header);
     for (std::size_t i = 0; i < vertex; ++i) body.skip(header.elements[i]);
     body.check_size(element);
     if (element.has_list()) return read_varying(body, element, columns);
 
     const std::size_t rest = body.left() - static_cast<std::size_t>(element.count) * element.least_size();
     if (vertex + 1 == header.elements.size() && rest >= element.least_size())
-        throw Error(body.file(), std::to_string(rest) + " bytes behind the last of "
-                                     + std::to_string(element.count)
-                                     + " vertices; the header's count is wrong, correct it");
-    return read_fixed(body, element, columns);
+        throw Error(bytes.name(), std::to_string(rest) + " bytes behind the last of "
+                                      + std::to_string(element.count)
+                                      + " vertices; the header's count is wrong, correct it");
+    return read_fixed({bytes, body.at(), element.least_size(), static_cast<std::size_t>(element.count),
+                       body.fields(element)},
+                      element, columns);
 }
 
 } // namespace hsdm::io

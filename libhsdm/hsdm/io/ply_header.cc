@@ -40,7 +40,7 @@ public:
             if (words_.empty() || words_[0] == "comment" || words_[0] == "obj_info") continue;
             if (words_[0] == "end_header") {
                 if (!has_format) fail("the header has no format line; export the file again");
-                header_.end = at;
+                header_.size = static_cast<std::size_t>(at - text_.origin);
                 return header_;
             }
             if (words_[0] == "format") {

@@ -36,7 +36,7 @@ struct PlyElement {
 struct PlyHeader {
     PlyEncoding encoding = PlyEncoding::ascii;
     std::vector<PlyElement> elements;
-    const char* end = nullptr; ///< where the data begin
+    std::size_t size = 0; ///< bytes from the start of the source to the data
 };
 
 /// Parses the header. Throws Error for the first line that is not as it must be.

@@ -97,8 +97,8 @@ Format recognise_lines(const Text& text) {
 
 /// The format that the content is a sure sign of; unknown if there is none.
 Format recognise(const SourceBytes& bytes) {
-    const Text text(bytes);
-    const std::string_view view(text.begin, static_cast<std::size_t>(text.end - text.begin));
+    const Text text = Text::head_of(bytes);
+    const std::string_view view = text.view();
     if (view.starts_with("ply") && view.size() > 3 && (is_blank(view[3]) || view[3] == '\n'))
         return Format::ply;
     if (is_binary_stl(bytes) || is_text_stl(bytes)) return Format::stl;
@@ -107,7 +107,7 @@ Format recognise(const SourceBytes& bytes) {
 
 [[noreturn]] void fail_unread(const SourceBytes& bytes) {
     for (const Magic& magic : unread)
-        if (bytes.view().starts_with(magic.bytes))
+        if (bytes.head().starts_with(magic.bytes))
             throw Error(bytes.name(), "is " + std::string(magic.name)
                                           + ", which is not read; convert it to PLY or XYZ text");
     throw Error(bytes.name(),
@@ -117,9 +117,9 @@ Format recognise(const SourceBytes& bytes) {
 /// A file whose content says nothing for sure: what its name promises must hold.
 PointFile read_unrecognised(const SourceBytes& bytes, Format promised, TableKind kind,
                             const std::string& columns) {
-    const Text text(bytes);
+    const Text text = Text::head_of(bytes);
     const bool binary =
-        is_binary(text) || bytes.view().starts_with("\xff\xfe") || bytes.view().starts_with("\xfe\xff");
+        is_binary(text) || bytes.head().starts_with("\xff\xfe") || bytes.head().starts_with("\xfe\xff");
     if (promised == Format::stl && binary) return read_stl(bytes);
     if (binary) fail_unread(bytes);
     // OFF files may lack the keyword; nothing else that was promised may lack what it is recognised by, and
@@ -136,7 +136,7 @@ PointFile read_unrecognised(const SourceBytes& bytes, Format promised, TableKind
         }
     }
     for (const Magic& magic : unread)
-        if (bytes.view().starts_with(magic.bytes)) fail_unread(bytes);
+        if (bytes.head().starts_with(magic.bytes)) fail_unread(bytes);
     return read_table(bytes, kind, columns);
 }
 
@@ -170,7 +170,7 @@ PointFile read_points(const SourceBytes& bytes, const ReadOptions& options) {
     const Format format = forced ? forced->format : recognise(bytes);
     if (!options.columns.empty() && format != Format::table && format != Format::unknown)
         throw OptionError("columns: " + bytes.name() + " is no table of numbers; leave the option out");
-    if (forced && !(format == Format::table && is_binary(Text(bytes))))
+    if (forced && !(format == Format::table && is_binary(Text::head_of(bytes))))
         return read_as(bytes, format, kind, options.columns);
     if (format != Format::unknown && format != Format::table)
         return read_as(bytes, format, kind, options.columns);

@@ -195,8 +195,7 @@ Rows::Rows(const Text& text, const RowLayout& layout) : columns_(layout.cells.si
         blocks_[i].first_row = size_;
         size_ += blocks_[i].values.size() / columns_;
     }
-    if (size_ >= no_index)
-        throw Error(text.source->name(), "holds more points than can be numbered; split the file");
+    if (size_ >= no_index) throw Error(text.file(), "holds more points than can be numbered; split the file");
 }
 
 const double* Rows::row(std::size_t index) const {

@@ -1,6 +1,7 @@
 #include "hsdm/io/source_bytes.hh"
 
 #include "hsdm/errors.hh"
+#include "hsdm/io/huge_pages.hh"
 
 #include <tbb/parallel_for.h>
 
@@ -9,28 +10,14 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 namespace hsdm::io {
 namespace {
 
 constexpr std::size_t block_size = std::size_t(1) << 22;
-
-class Descriptor {
-public:
-    explicit Descriptor(const std::string& path) : value_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    ~Descriptor() {
-        if (value_ >= 0) ::close(value_);
-    }
-    operator int() const { return value_; }
-
-private:
-    int value_;
-};
 
 [[noreturn]] void fail(const std::string& name, int error) {
     switch (error) {
@@ -45,13 +32,13 @@ private:
     }
 }
 
-/// Reads up to `size` bytes; fewer only at the end of the source. Returns -1 with errno on failure.
-ssize_t read_fully(int descriptor, char* bytes, std::size_t size, off_t offset, bool seekable) {
+/// Calls `read(bytes, count)` until `count` bytes are there or it gives none. Returns -1 with errno on
+/// failure.
+template <class Read>
+ssize_t read_fully(char* bytes, std::size_t count, const Read& read) {
     std::size_t done = 0;
-    while (done < size) {
-        const ssize_t n =
-            seekable ? ::pread(descriptor, bytes + done, size - done, offset + static_cast<off_t>(done))
-                     : ::read(descriptor, bytes + done, size - done);
+    while (done < count) {
+        const ssize_t n = read(bytes + done, count - done, done);
         if (n < 0 && errno == EINTR) continue;
         if (n < 0) return -1;
         if (n == 0) break;
@@ -60,57 +47,101 @@ ssize_t read_fully(int descriptor, char* bytes, std::size_t size, off_t offset, 
     return static_cast<ssize_t>(done);
 }
 
+std::unique_ptr<char[]> uninitialised(std::size_t size) {
+    std::unique_ptr<char[]> bytes(new char[size]);
+    advise_huge_pages(bytes.get(), size);
+    return bytes;
+}
+
 } // namespace
 
-SourceBytes::SourceBytes(std::string name, std::size_t size)
-    : name_(std::move(name)), bytes_(new char[size]), size_(size) {} // left uninitialised: read over at once
+SourceBytes::SourceBytes(std::string name, std::size_t size) : name_(std::move(name)), size_(size) {}
+
+SourceBytes::SourceBytes(SourceBytes&& other) noexcept
+    : name_(std::move(other.name_)),
+      size_(other.size_),
+      bytes_(std::move(other.bytes_)),
+      complete_(other.complete_),
+      descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+SourceBytes::~SourceBytes() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+}
 
 SourceBytes SourceBytes::open(const std::string& path) {
     if (path == "-") return read_stream(STDIN_FILENO, "<stdin>");
-    const Descriptor file(path);
+    SourceBytes source(path, 0);
+    source.descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     struct stat status {};
-    if (file < 0 || ::fstat(file, &status) != 0) fail(path, errno);
+    if (source.descriptor_ < 0 || ::fstat(source.descriptor_, &status) != 0) fail(path, errno);
     if (S_ISDIR(status.st_mode)) fail(path, EISDIR);
     // Pipes and the files of /proc do not know their size.
-    if (!S_ISREG(status.st_mode) || status.st_size == 0) return read_stream(file, path);
+    if (!S_ISREG(status.st_mode) || status.st_size == 0) return read_stream(source.descriptor_, path);
 
-    SourceBytes source(path, static_cast<std::size_t>(status.st_size));
-    std::atomic<int> error = 0;
-    const std::size_t blocks = (source.size_ + block_size - 1) / block_size;
-    tbb::parallel_for(std::size_t(0), blocks, [&](std::size_t block) {
-        const std::size_t offset = block * block_size, size = std::min(block_size, source.size_ - offset);
-        const ssize_t n =
-            read_fully(file, source.bytes_.get() + offset, size, static_cast<off_t>(offset), true);
-        if (n != static_cast<ssize_t>(size)) error = n < 0 ? errno : -1;
-    });
-    if (error < 0) throw Error(path, "became shorter while it was read; read it again when it is complete");
-    if (error > 0) fail(path, error);
+    source.size_ = static_cast<std::size_t>(status.st_size);
+    source.complete_ = source.size_ <= head_size;
+    const std::size_t head = std::min(source.size_, head_size);
+    source.bytes_ = uninitialised(head);
+    source.read_at(source.bytes_.get(), head, 0);
     return source;
 }
 
+void SourceBytes::read_at(char* bytes, std::size_t count, std::size_t offset) const {
+    const ssize_t n = read_fully(bytes, count, [&](char* to, std::size_t size, std::size_t done) {
+        return ::pread(descriptor_, to, size, static_cast<off_t>(offset + done));
+    });
+    if (n < 0) fail(name_, errno);
+    if (static_cast<std::size_t>(n) != count)
+        throw Error(name_, "became shorter while it was read; read it again when it is complete");
+}
+
+std::string_view SourceBytes::view() const {
+    if (!complete_) {
+        auto all = uninitialised(size_);
+        const std::size_t blocks = (size_ + block_size - 1) / block_size;
+        tbb::parallel_for(std::size_t(0), blocks, [&](std::size_t block) {
+            const std::size_t offset = block * block_size;
+            read_at(all.get() + offset, std::min(block_size, size_ - offset), offset);
+        });
+        bytes_ = std::move(all);
+        complete_ = true;
+    }
+    return {bytes_.get(), size_};
+}
+
+const char* SourceBytes::piece(std::size_t offset, std::size_t count, char* scratch) const {
+    if (complete_) return bytes_.get() + offset;
+    read_at(scratch, count, offset);
+    return scratch;
+}
+
 SourceBytes SourceBytes::read_stream(int descriptor, const std::string& name) {
-    SourceBytes source(name, block_size);
-    for (std::size_t filled = 0;;) {
+    auto bytes = uninitialised(block_size);
+    for (std::size_t capacity = block_size, filled = 0;;) {
         const ssize_t n =
-            read_fully(descriptor, source.bytes_.get() + filled, source.size_ - filled, 0, false);
+            read_fully(bytes.get() + filled, capacity - filled,
+                       [&](char* to, std::size_t size, std::size_t) { return ::read(descriptor, to, size); });
         if (n < 0) fail(name, errno);
         filled += static_cast<std::size_t>(n);
-        if (filled < source.size_) {
-            source.size_ = filled;
+        if (filled < capacity) {
+            SourceBytes source(name, filled);
+            source.bytes_ = std::move(bytes);
             return source;
         }
-        SourceBytes larger(name, 2 * source.size_);
-        std::memcpy(larger.bytes_.get(), source.bytes_.get(), filled);
-        source = std::move(larger);
+        capacity *= 2;
+        auto larger = uninitialised(capacity);
+        std::memcpy(larger.get(), bytes.get(), filled);
+        bytes = std::move(larger);
     }
 }
 
 SourceBytes SourceBytes::read(std::istream& stream, const std::string& name) {
     std::string text;
-    for (char buffer[1 << 16]; stream.read(buffer, sizeof buffer) || stream.gcount() > 0;)
+    for (char buffer[1 << 14]; stream.read(buffer, sizeof buffer) || stream.gcount() > 0;)
         text.append(buffer, static_cast<std::size_t>(stream.gcount()));
     if (stream.bad()) throw Error(name, "the stream cannot be read");
     SourceBytes source(name, text.size());
+    source.bytes_ = uninitialised(text.size());
     std::copy(text.begin(), text.end(), source.bytes_.get());
     return source;
 }

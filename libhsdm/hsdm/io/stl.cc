@@ -31,7 +31,7 @@ std::vector<Vec3> read_binary_corners(const SourceBytes& bytes) {
     if (bytes.size() < header_size)
         throw Error(bytes.name(), "too short for an STL file: " + std::to_string(bytes.size())
                                       + " bytes, the header alone has 84; it was cut off");
-    const std::uint64_t count = load_count(bytes.begin() + 80);
+    const std::uint64_t count = load_count(bytes.head().data() + 80);
     const std::uint64_t found = (bytes.size() - header_size) / facet_size;
     if (count == 0) throw Error(bytes.name(), "holds no points: the header says 0 triangles");
     if (found < count)
@@ -43,9 +43,10 @@ std::vector<Vec3> read_binary_corners(const SourceBytes& bytes) {
         throw Error(bytes.name(),
                     "more bytes behind the last of " + std::to_string(count)
                         + " triangles than a triangle has; the header's count is wrong, correct it");
+    const char* data = bytes.view().data();
     std::vector<Vec3> corners(3 * static_cast<std::size_t>(count));
     tbb::parallel_for(std::size_t(0), static_cast<std::size_t>(count), [&](std::size_t f) {
-        const char* at = bytes.begin() + header_size + f * facet_size + 12; // behind the facet's normal
+        const char* at = data + header_size + f * facet_size + 12; // behind the facet's normal
         for (std::size_t i = 0; i < 9; ++i)
             corners[3 * f + i / 3][i % 3] = static_cast<double>(load_float(at + 4 * i));
     });
@@ -96,14 +97,12 @@ std::vector<Vec3> unique_positions(const std::vector<Vec3>& corners) {
 
 bool is_binary_stl(const SourceBytes& bytes) {
     if (bytes.size() < header_size) return false;
-    const std::uint64_t count = load_count(bytes.begin() + 80);
+    const std::uint64_t count = load_count(bytes.head().data() + 80);
     return count > 0 && bytes.size() == header_size + count * facet_size;
 }
 
 bool is_text_stl(const SourceBytes& bytes) {
-    const Text text(bytes);
-    const std::string head = lower(std::string_view(
-        text.begin, std::min<std::size_t>(4096, static_cast<std::size_t>(text.end - text.begin))));
+    const std::string head = lower(Text::head_of(bytes).view().substr(0, 4096));
     const std::size_t first = std::min(head.find_first_not_of(" \t\r\n"), head.size());
     return head.compare(first, 5, "solid") == 0 && head.find('\0') == std::string::npos
            && (head.find("facet") != std::string::npos || head.find("endsolid") != std::string::npos);

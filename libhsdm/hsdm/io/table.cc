@@ -84,7 +84,7 @@ public:
         }
         if (prelude_.count)
             text_.fail(prelude_.count_at, "a count of points and no point after it; the file was cut off");
-        if (!first_text) throw Error(text_.source->name(), "holds no points; expected lines of x y z");
+        if (!first_text) throw Error(text_.file(), "holds no points; expected lines of x y z");
         const char* at = first_text;
         text_.fail(first_text,
                    quoted(trim(text_.line(at))) + " and what follows hold no point; expected lines of x y z");

@@ -119,8 +119,7 @@ void set_colors(PointCloud& cloud, const std::vector<Vec3>& colors) {
 }
 
 [[noreturn]] void fail_without_points(const Text& text, std::string_view tag) {
-    throw Error(text.source->name(),
-                "holds no points: no line begins with " + quoted(tag) + "; check the format");
+    throw Error(text.file(), "holds no points: no line begins with " + quoted(tag) + "; check the format");
 }
 
 } // namespace
@@ -143,7 +142,7 @@ TaggedLines read_tagged(const Text& text, const Tags& tags) {
         chunk = {};
     }
     if (lines.cloud.positions.size() >= no_index)
-        throw Error(text.source->name(), "holds more points than can be numbered; split the file");
+        throw Error(text.file(), "holds more points than can be numbered; split the file");
     if (colors.size() == lines.cloud.positions.size()) set_colors(lines.cloud, colors);
     return lines;
 }

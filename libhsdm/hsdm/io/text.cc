@@ -8,21 +8,22 @@
 
 namespace hsdm::io {
 
-Text::Text(const SourceBytes& bytes) : source(&bytes), begin(bytes.begin()), end(bytes.end()) {
-    if (bytes.view().starts_with("\xef\xbb\xbf")) begin += 3;
-    const auto size = static_cast<std::size_t>(end - begin);
-    if (size > 0 && !std::memchr(begin, '\n', size) && std::memchr(begin, '\r', size)) newline = '\r';
+Text::Text(const SourceBytes& bytes, std::string_view content)
+    : source(&bytes), origin(content.data()), begin(origin), end(origin + content.size()) {
+    if (content.starts_with("\xef\xbb\xbf")) begin += 3;
+    if (view().find('\n') == std::string_view::npos && view().find('\r') != std::string_view::npos)
+        newline = '\r';
 }
 
 std::size_t Text::line_of(const char* at) const {
-    const auto ends = static_cast<std::size_t>(std::count(source->begin(), at, newline));
+    const auto ends = static_cast<std::size_t>(std::count(origin, at, newline));
     // What goes wrong at the end of the file is the fault of its last line, not of the one that is not there.
-    const bool behind_last = at == source->end() && ends > 0 && at[-1] == newline;
+    const bool behind_last = at == end && ends > 0 && at[-1] == newline;
     return behind_last ? ends : ends + 1;
 }
 
 void Text::fail(const char* at, const std::string& message) const {
-    throw Error(source->name(), line_of(at), message);
+    throw Error(file(), line_of(at), message);
 }
 
 const char* Text::find_newline(const char* at) const {

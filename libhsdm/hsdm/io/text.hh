@@ -27,12 +27,18 @@ inline bool is_separator(char c) {
 /// Part of a source that is text.
 struct Text {
     const SourceBytes* source;
+    const char* origin; ///< of the source, where line 1 begins
     const char* begin;
     const char* end;
     char newline = '\n'; ///< '\r' in files that know no other line end
 
     /// The whole source behind its byte-order mark, if it has one.
-    explicit Text(const SourceBytes& bytes);
+    explicit Text(const SourceBytes& bytes) : Text(bytes, bytes.view()) {}
+    /// Its head only, which may end anywhere.
+    static Text head_of(const SourceBytes& bytes) { return {bytes, bytes.head()}; }
+
+    const std::string& file() const { return source->name(); }
+    std::string_view view() const { return {begin, static_cast<std::size_t>(end - begin)}; }
     /// The same text from `at` on.
     Text from(const char* at) const {
         Text rest = *this;
@@ -51,6 +57,9 @@ struct Text {
     std::string_view line(const char*& at) const;
     /// Pieces of about `size` bytes that end at line ends, fixed by the text alone.
     std::vector<std::pair<const char*, const char*>> chunks(std::size_t size = std::size_t(1) << 19) const;
+
+private:
+    Text(const SourceBytes& bytes, std::string_view content);
 };
 
 /// The number at the start of [at, end), as text files spell them: "1e-3", "+.5", "nan", "-inf", "-1.#IND".
