@@ -127,13 +127,14 @@ TEST_CASE("a fourth column is an intensity, a fifth one more scalar", "[io]") {
 
 TEST_CASE("a header line names the columns, in any order and case, also as a comment", "[io]") {
     const char* rows = "0.5,3,2,1,255,0,128,4,0,0,1\n0.25,6,5,4,0,0,0,2,1,0,0\n";
-    const char* headers[] = {"Intensity,Z,Y,X,R,G,B,Classification,Nx,Ny,Nz\n",
-                             "\"intensity\", \"z\", \"y\", \"x\", \"red\", \"green\", \"blue\", \"class\", "
-                             "\"normal_x\", \"normal_y\", \"normal_z\"\r\n",
-                             "//intensity Z Y X R G B label NX NY NZ\n2\n",
-                             "# intensity;z;y;x;r;g;b;segment;n_x;n_y;n_z\n"};
-    for (const char* header : headers) {
-        const auto cloud = read("a.csv", std::string(header) + rows).cloud;
+    const std::string quoted_names =
+        "\"intensity\", \"z\", \"y\", \"x\", \"red\", \"green\", \"blue\", \"class\", "
+        "\"normal_x\", \"normal_y\", \"normal_z\"\r\n";
+    const std::string headers[] = {"Intensity,Z,Y,X,R,G,B,Classification,Nx,Ny,Nz\n", quoted_names,
+                                   "//intensity Z Y X R G B label NX NY NZ\n2\n",
+                                   "# intensity;z;y;x;r;g;b;segment;n_x;n_y;n_z\n"};
+    for (const std::string& header : headers) {
+        const auto cloud = read("a.csv", header + rows).cloud;
         CHECK(cloud.positions == std::vector<Vec3>{Vec3(1, 2, 3), Vec3(4, 5, 6)});
         CHECK(cloud.normals == std::vector<Vec3>{Vec3(0, 0, 1), Vec3(1, 0, 0)});
         CHECK(cloud.colors == std::vector<Color>{{255, 0, 128, 255}, {0, 0, 0, 255}});

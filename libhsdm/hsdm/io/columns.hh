@@ -21,6 +21,8 @@ struct Column {
 /// The role of a column called so (`normal_x`, `diffuse_red`, ...), letter case aside; scalar if the name is
 /// none of the known ones, skip for `_` and the empty name.
 Role role_of(std::string_view name);
+/// Whether a scalar called so is a label, if its values are integers.
+bool is_label_name(std::string_view name);
 
 /// ReadOptions::columns, e.g. "x,y,z,nx,ny,nz,_". Throws OptionError naming what is unknown, double or
 /// missing.

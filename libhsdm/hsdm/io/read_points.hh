@@ -9,21 +9,25 @@
 namespace hsdm {
 
 struct ReadOptions {
-    std::string format; ///< "ply", "xyz", "csv", "pts", "pwn", "off", "obj", "stl"; empty: by extension, then
-                        ///< by content
-    std::string columns; ///< text only, e.g. "x,y,z,nx,ny,nz,r,g,b,_"; empty: told from the data
+    /// "ply", "xyz" (or "txt", "asc", "csv": the same), "pts", "pwn", "off", "obj", "stl", "hoppe"; empty: by
+    /// the content where that is a sure sign, else by the file's extension.
+    std::string format;
+    /// Tables only: what each column is, e.g. "x,y,z,nx,ny,nz,r,g,b,_" (`_` is skipped); empty: told by a
+    /// header line, else from the values. Throws OptionError if it cannot be.
+    std::string columns;
 };
 
 /// What was read, beside the cloud.
 struct PointFile {
     PointCloud cloud;
-    std::string format;    ///< the format found
+    std::string format;    ///< the format found, by the names above
     std::size_t faces = 0; ///< faces in the file, which were skipped
 };
 
 /// Reads the points of a file; "-" is standard input. Coordinates that are not finite are kept (see
 /// drop_nonfinite). Throws Error `FILE:LINE: what, and what to do` if the file cannot be opened, is empty,
-/// truncated or malformed.
+/// truncated or malformed; OptionError for options that no file could satisfy. O(bytes), parallel; binary PLY
+/// files are not held in memory as a whole.
 PointFile read_points(const std::string& path, const ReadOptions& options = {});
 
 } // namespace hsdm
