@@ -1,0 +1,65 @@
+#include "hsdm/graph/phase_geometry.hh"
+
+#include "hsdm/errors.hh"
+#include "hsdm/io/write_mesh.hh"
+
+#include <charconv>
+#include <filesystem>
+
+namespace hsdm {
+namespace {
+
+/// Corner i of a cube lies at x = bit 0, y = bit 1, z = bit 2.
+constexpr std::array<std::array<Index, 4>, 6> cube_faces = {
+    {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
+
+void append(std::string& text, double value) {
+    std::array<char, 32> digits;
+    text.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+}
+
+} // namespace
+
+PolygonMesh voxel_cubes(const Octree& octree, const OctreeLevel& level) {
+    PolygonMesh mesh;
+    for (Index v = 0; v < level.size(); ++v) {
+        const VoxelCoord c = level.coord(v);
+        for (int i = 0; i < 8; ++i)
+            mesh.positions.push_back(octree.origin
+                                     + Vec3(c[0] + (i & 1), c[1] + (i >> 1 & 1), c[2] + (i >> 2))
+                                           * level.voxel_size);
+        for (const auto& face : cube_faces)
+            mesh.add_facet(std::array{8 * v + face[0], 8 * v + face[1], 8 * v + face[2], 8 * v + face[3]});
+    }
+    return mesh;
+}
+
+std::string graph_obj(const Octree& octree, const ConnectivityGraph& graph) {
+    std::string text;
+    for (const Vec3& relative : graph.positions) {
+        const Vec3 p = relative + octree.origin;
+        text += 'v';
+        for (unsigned k = 0; k < 3; ++k) {
+            text += ' ';
+            append(text, p[k]);
+        }
+        text += '\n';
+    }
+    for (Index h = 0; h < graph.half_edge_count(); ++h)
+        if (h < graph.twin[h])
+            text += "l " + std::to_string(graph.start(h) + 1) + ' ' + std::to_string(graph.end[h] + 1) + '\n';
+    return text;
+}
+
+void write_phases(const std::string& folder, const Octree& octree, const OctreeLevel& level,
+                  const ConnectivityGraph& graph, const PolygonMesh& facets) {
+    const std::filesystem::path path(folder);
+    std::error_code error;
+    std::filesystem::create_directories(path, error);
+    if (error) throw Error(folder, "cannot be made a folder (" + error.message() + "); choose another");
+    write_mesh((path / "voxels.obj").string(), voxel_cubes(octree, level), MeshFormat::obj);
+    write_text((path / "graph.obj").string(), graph_obj(octree, graph));
+    write_mesh((path / "facets.off").string(), facets, MeshFormat::off);
+}
+
+} // namespace hsdm
