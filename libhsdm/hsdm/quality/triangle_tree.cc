@@ -12,6 +12,8 @@ namespace {
 
 using Range = tbb::blocked_range<std::size_t>;
 constexpr std::size_t grain = 1 << 10;
+/// Four entries a level of the walk, and 4^15 blocks hold 2^32 triangles.
+constexpr std::size_t stack_size = 4 * 17;
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
 float round_down(double x) {
@@ -70,6 +72,7 @@ TriangleTree::TriangleTree(const std::vector<Vec3>& positions, const std::vector
     for (const Triangle& t : triangles)
         for (Index v : t) box.add(positions[v]);
     centre_ = box.lo + box.size() / 2;
+    rounding_ = 4 * std::numeric_limits<double>::epsilon() * box.diagonal();
     order(positions, triangles);
     fill_blocks(positions, triangles);
 }
@@ -101,16 +104,10 @@ void TriangleTree::fill_blocks(const std::vector<Vec3>& positions, const std::ve
             for (std::size_t lane = 0; b < blocks && lane < width; ++lane) {
                 const std::size_t place = std::min(b * width + lane, triangle_of_.size() - 1);
                 const Triangle& t = triangles[triangle_of_[place]];
-                const Vec3 a = positions[t[0]] - centre_, p = positions[t[1]] - centre_,
-                           q = positions[t[2]] - centre_;
-                for (unsigned k = 0; k < 3; ++k) {
-                    blocks_[b].a[k][lane] = a[k];
-                    blocks_[b].ab[k][lane] = p[k] - a[k];
-                    blocks_[b].ac[k][lane] = q[k] - a[k];
-                }
-                box.add(a);
-                box.add(p);
-                box.add(q);
+                const Vec3 p0 = positions[t[0]] - centre_, p1 = positions[t[1]] - centre_,
+                           p2 = positions[t[2]] - centre_;
+                put(blocks_[b][lane / 2], lane % 2, p0, p1 - p0, p2 - p0);
+                for (const Vec3& p : {p0, p1, p2}) box.add(p);
             }
             for (unsigned k = 0; k < 3; ++k) {
                 boxes[b / width].lo[k][b % width] = round_down(box.lo[k]);
@@ -121,6 +118,20 @@ void TriangleTree::fill_blocks(const std::vector<Vec3>& positions, const std::ve
     build_levels(boxes);
 }
 
+void TriangleTree::put(Pair& pair, std::size_t lane, const Vec3& a, const Vec3& ab, const Vec3& ac) {
+    for (unsigned k = 0; k < 3; ++k) {
+        pair.a[k][lane] = a[k];
+        pair.ab[k][lane] = ab[k];
+        pair.ac[k][lane] = ac[k];
+    }
+    auto reciprocal = [](double x) { return x > std::numeric_limits<double>::min() ? 1 / x : 0; };
+    const double bb = ab.sqrnorm(), cc = ac.sqrnorm(), bc = ab | ac;
+    pair.per_ab[lane] = reciprocal(bb);
+    pair.per_ac[lane] = reciprocal(cc);
+    pair.per_bc[lane] = reciprocal((ac - ab).sqrnorm());
+    pair.per_area[lane] = reciprocal(bb * cc - bc * bc);
+}
+
 void TriangleTree::build_levels(std::vector<Boxes>& level) {
     for (;;) {
         level_first_.push_back(nodes_.size());
@@ -128,61 +139,45 @@ void TriangleTree::build_levels(std::vector<Boxes>& level) {
         if (level.size() == 1) return;
         Boxes empty;
         for (std::size_t k = 0; k < 3; ++k) {
-            empty.lo[k].fill(infinity);
-            empty.hi[k].fill(-infinity);
+            empty.lo[k] = Float4{} + infinity;
+            empty.hi[k] = Float4{} - infinity;
         }
         std::vector<Boxes> parents((level.size() + width - 1) / width, empty);
         for (std::size_t i = 0; i < level.size(); ++i)
             for (std::size_t k = 0; k < 3; ++k) {
-                const auto& [lo, hi] = level[i];
-                parents[i / width].lo[k][i % width] = *std::min_element(lo[k].begin(), lo[k].end());
-                parents[i / width].hi[k][i % width] = *std::max_element(hi[k].begin(), hi[k].end());
+                const Float4 lo = level[i].lo[k], hi = level[i].hi[k];
+                parents[i / width].lo[k][i % width] = std::min({lo[0], lo[1], lo[2], lo[3]});
+                parents[i / width].hi[k][i % width] = std::max({hi[0], hi[1], hi[2], hi[3]});
             }
         level.swap(parents);
     }
 }
 
-/// Least squared distance to the four triangles. For each: the point's foot on the plane if it lies inside,
-/// and the nearest point of each side; all of them are points of the triangle, so their least distance is
-/// right even where a degenerate triangle makes the foot meaningless. No branches: four lanes at once.
-double TriangleTree::nearest_in_block(const Block& block, const Vec3& point) {
-    std::array<double, width> least;
-    for (std::size_t i = 0; i < width; ++i) {
-        const double bx = block.ab[0][i], by = block.ab[1][i], bz = block.ab[2][i];
-        const double cx = block.ac[0][i], cy = block.ac[1][i], cz = block.ac[2][i];
-        const double px = point[0] - block.a[0][i], py = point[1] - block.a[1][i],
-                     pz = point[2] - block.a[2][i];
-        const double ex = cx - bx, ey = cy - by, ez = cz - bz;
-        const double qx = px - bx, qy = py - by, qz = pz - bz;
-        const double bb = bx * bx + by * by + bz * bz, cc = cx * cx + cy * cy + cz * cz;
-        const double bc = bx * cx + by * cy + bz * cz, ee = ex * ex + ey * ey + ez * ez;
-        const double pb = px * bx + py * by + pz * bz, pc = px * cx + py * cy + pz * cz;
-        const double qe = qx * ex + qy * ey + qz * ez;
-        constexpr double tiny = std::numeric_limits<double>::min();
+/// For each triangle: the point's foot on the plane if it lies inside, and the nearest point of each side.
+/// All of them are points of the triangle, so the least of their distances is right even where a degenerate
+/// triangle makes the foot meaningless. No branches: all lanes at once.
+Double2 TriangleTree::squared_distances(const Pair& pair, const std::array<Double2, 3>& point) {
+    const auto& [bx, by, bz] = pair.ab;
+    const auto& [cx, cy, cz] = pair.ac;
+    const Double2 px = point[0] - pair.a[0], py = point[1] - pair.a[1], pz = point[2] - pair.a[2];
+    const Double2 qx = px - bx, qy = py - by, qz = pz - bz;
+    const Double2 ex = cx - bx, ey = cy - by, ez = cz - bz;
+    const Double2 pb = px * bx + py * by + pz * bz, pc = px * cx + py * cy + pz * cz;
 
-        auto clamp01 = [](double t) {
-            t = t > 0.0 ? t : 0.0;
-            return t < 1.0 ? t : 1.0;
-        };
-        const double tb = clamp01(pb / (bb > tiny ? bb : tiny));
-        const double tc = clamp01(pc / (cc > tiny ? cc : tiny));
-        const double te = clamp01(qe / (ee > tiny ? ee : tiny));
-        const double det = bb * cc - bc * bc, safe_det = det > tiny ? det : tiny;
-        const double s = (cc * pb - bc * pc) / safe_det, t = (bb * pc - bc * pb) / safe_det;
+    const Double2 tb = clamp01(pb * pair.per_ab), tc = clamp01(pc * pair.per_ac);
+    const Double2 te = clamp01((qx * ex + qy * ey + qz * ez) * pair.per_bc);
+    const Double2 to_ab = square(px - tb * bx) + square(py - tb * by) + square(pz - tb * bz);
+    const Double2 to_ac = square(px - tc * cx) + square(py - tc * cy) + square(pz - tc * cz);
+    const Double2 to_bc = square(qx - te * ex) + square(qy - te * ey) + square(qz - te * ez);
+    const Double2 to_sides = min_lanes(to_ab, min_lanes(to_ac, to_bc));
 
-        auto squared = [](double x, double y, double z) { return x * x + y * y + z * z; };
-        const double to_b = squared(px - tb * bx, py - tb * by, pz - tb * bz);
-        const double to_c = squared(px - tc * cx, py - tc * cy, pz - tc * cz);
-        const double to_e = squared(qx - te * ex, qy - te * ey, qz - te * ez);
-        const double to_plane = squared(px - s * bx - t * cx, py - s * by - t * cy, pz - s * bz - t * cz);
-        double d = to_b < to_c ? to_b : to_c;
-        d = to_e < d ? to_e : d;
-        const double inside_margin = s < t ? s : t, far_margin = 1 - s - t;
-        const double margin = inside_margin < far_margin ? inside_margin : far_margin;
-        const double inside = margin >= 0 ? to_plane : d;
-        least[i] = inside < d ? inside : d;
-    }
-    return std::min(std::min(least[0], least[1]), std::min(least[2], least[3]));
+    const Double2 bb = bx * bx + by * by + bz * bz, cc = cx * cx + cy * cy + cz * cz;
+    const Double2 bc = bx * cx + by * cy + bz * cz;
+    const Double2 s = (cc * pb - bc * pc) * pair.per_area, t = (bb * pc - bc * pb) * pair.per_area;
+    const Double2 to_foot =
+        square(px - s * bx - t * cx) + square(py - s * by - t * cy) + square(pz - s * bz - t * cz);
+    const Double2 inside = min_lanes(min_lanes(s, t), 1 - s - t);
+    return inside >= 0 ? min_lanes(to_foot, to_sides) : to_sides;
 }
 
 TriangleTree::Nearest TriangleTree::nearest(const Vec3& given, Index hint) const {
@@ -191,12 +186,15 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3& given, Index hint) const
     const Vec3 point = given - centre_;
     const std::array<float, 3> p{static_cast<float>(point[0]), static_cast<float>(point[1]),
                                  static_cast<float>(point[2])};
+    const std::array<Double2, 3> spread{Double2{} + point[0], Double2{} + point[1], Double2{} + point[2]};
     // A box is skipped when even the float point, moved by its rounding error, cannot come below the best.
     double rounding = 0;
     for (unsigned k = 0; k < 3; ++k) rounding += std::abs(point[k] - static_cast<double>(p[k]));
     float limit = infinity;
     auto look_at = [&](Index block) {
-        const double squared = nearest_in_block(blocks_[block], point);
+        const Double2 pairs = min_lanes(squared_distances(blocks_[block][0], spread),
+                                        squared_distances(blocks_[block][1], spread));
+        const double squared = std::min(pairs[0], pairs[1]);
         if (!(squared < best.squared)) return;
         best = {squared, block};
         const double reach = std::sqrt(squared) + rounding;
@@ -209,7 +207,7 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3& given, Index hint) const
         Index child; // index in its level, or block
         int level;   // -1: a block
     };
-    std::array<Entry, 4 * 18> stack; // four entries a level, and 4^17 blocks hold more than 2^32 triangles
+    std::array<Entry, stack_size> stack;
     std::size_t top = 0;
     stack[top++] = {0, 0, static_cast<int>(level_first_.size()) - 1};
     while (top > 0) {
@@ -220,14 +218,9 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3& given, Index hint) const
             continue;
         }
         const Boxes& boxes = nodes_[level_first_[static_cast<std::size_t>(entry.level)] + entry.child];
-        std::array<float, width> squared{};
+        Float4 squared{};
         for (std::size_t k = 0; k < 3; ++k)
-            for (std::size_t i = 0; i < width; ++i) {
-                const float below = boxes.lo[k][i] - p[k], above = p[k] - boxes.hi[k][i];
-                float outside = below > above ? below : above;
-                outside = outside > 0 ? outside : 0;
-                squared[i] += outside * outside;
-            }
+            squared += square(max_lanes(max_lanes(boxes.lo[k] - p[k], p[k] - boxes.hi[k]), Float4{}));
         // Nearest child last, so that it is the next one taken.
         const std::size_t bottom = top;
         for (std::size_t i = 0; i < width; ++i) {
@@ -238,6 +231,69 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3& given, Index hint) const
         }
     }
     return best;
+}
+
+TriangleTree::LaneBoxes TriangleTree::boxes_of(const Pair& pair) const {
+    LaneBoxes boxes;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Double2 b = pair.a[k] + pair.ab[k], c = pair.a[k] + pair.ac[k];
+        boxes.lo[k] = min_lanes(pair.a[k], min_lanes(b, c)) - rounding_;
+        boxes.hi[k] = max_lanes(pair.a[k], max_lanes(b, c)) + rounding_;
+    }
+    return boxes;
+}
+
+void TriangleTree::pair_up(Index block, Index other, std::vector<TrianglePair>& pairs) const {
+    const std::array<LaneBoxes, 2> ours{boxes_of(blocks_[block][0]), boxes_of(blocks_[block][1])};
+    const std::array<LaneBoxes, 2> theirs{boxes_of(blocks_[other][0]), boxes_of(blocks_[other][1])};
+    for (std::size_t i = 0; i < width; ++i) {
+        const std::size_t place = block * width + i;
+        if (place >= triangle_of_.size()) break;
+        const LaneBoxes& one = ours[i / 2];
+        for (std::size_t half = 0; half < 2; ++half) {
+            const LaneBoxes& two = theirs[half];
+            auto apart = one.lo[0][i % 2] > two.hi[0];
+            for (std::size_t k = 0; k < 3; ++k)
+                apart |= (one.lo[k][i % 2] > two.hi[k]) | (two.lo[k] > one.hi[k][i % 2]);
+            for (std::size_t lane = 0; lane < 2; ++lane) {
+                const std::size_t other_place = other * width + 2 * half + lane;
+                if (!apart[lane] && other_place > place && other_place < triangle_of_.size())
+                    pairs.push_back({triangle_of_[place], triangle_of_[other_place]});
+            }
+        }
+    }
+}
+
+void TriangleTree::overlapping(Index block, std::vector<TrianglePair>& pairs) const {
+    pairs.clear();
+    const Boxes& siblings = nodes_[block / width];
+    std::array<float, 3> lo, hi;
+    for (std::size_t k = 0; k < 3; ++k) {
+        lo[k] = siblings.lo[k][block % width];
+        hi[k] = siblings.hi[k][block % width];
+    }
+    struct Entry {
+        Index child;
+        int level; // -1: a block
+    };
+    std::array<Entry, stack_size> stack;
+    std::size_t top = 0;
+    stack[top++] = {0, static_cast<int>(level_first_.size()) - 1};
+    while (top > 0) {
+        const Entry entry = stack[--top];
+        if (entry.level < 0) {
+            pair_up(block, entry.child, pairs);
+            continue;
+        }
+        const Boxes& boxes = nodes_[level_first_[static_cast<std::size_t>(entry.level)] + entry.child];
+        auto apart = boxes.lo[0] > hi[0];
+        for (std::size_t k = 0; k < 3; ++k) apart |= (boxes.lo[k] > hi[k]) | (lo[k] > boxes.hi[k]);
+        for (std::size_t i = 0; i < width; ++i) {
+            const std::size_t child = width * entry.child + i;
+            const bool earlier = (child + 1) << (2 * entry.level) <= block; // ends before the block begins
+            if (!apart[i] && !earlier) stack[top++] = {static_cast<Index>(child), entry.level - 1};
+        }
+    }
 }
 
 } // namespace hsdm

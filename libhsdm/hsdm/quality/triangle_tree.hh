@@ -2,11 +2,14 @@
 // A hierarchy of boxes over triangles: nearest triangle to a point, pairs of triangles that may touch.
 
 #include "hsdm/facets/triangulate.hh"
+#include "hsdm/quality/lanes.hh"
 
 #include <array>
-#include <cstdint>
 
 namespace hsdm {
+
+/// Two triangles by their indices.
+using TrianglePair = std::array<Index, 2>;
 
 /// Implicit 4-ary tree. Triangles are ordered so that every four make a block, every four blocks a node of
 /// level 0, every four nodes of level k a node of level k + 1: children are found by arithmetic, a node is
@@ -26,26 +29,42 @@ public:
     /// for a point nearby), or no_index: it changes the time, never the distance.
     Nearest nearest(const Vec3& point, Index hint = no_index) const;
 
-    std::size_t size() const { return triangle_of_.size(); }
+    /// Replaces `pairs` by all pairs of triangles whose boxes overlap or touch, one of the pair being in
+    /// `block` and the other in it or a later one. Over all blocks every such pair comes once.
+    void overlapping(Index block, std::vector<TrianglePair>& pairs) const;
+
+    std::size_t block_count() const { return blocks_.size(); }
 
 private:
     static constexpr std::size_t width = 4;
 
     /// Boxes of four children; an absent child's box is empty.
     struct Boxes {
-        std::array<std::array<float, width>, 3> lo, hi;
+        std::array<Float4, 3> lo, hi;
     };
-    /// Four triangles, corner a and the sides from it; a block not full repeats its last triangle.
-    struct Block {
-        std::array<std::array<double, width>, 3> a, ab, ac;
+    /// Two triangles: corner a, the sides from it, and reciprocals of the squared lengths of the three sides
+    /// and of the squared doubled area, zero where there is none.
+    struct Pair {
+        std::array<Double2, 3> a, ab, ac;
+        Double2 per_ab, per_ac, per_bc, per_area;
+    };
+    /// Four triangles; a block not full repeats its last one.
+    using Block = std::array<Pair, 2>;
+
+    struct LaneBoxes {
+        std::array<Double2, 3> lo, hi;
     };
 
     void order(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
     void fill_blocks(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
     void build_levels(std::vector<Boxes>& block_boxes);
-    static double nearest_in_block(const Block& block, const Vec3& point);
+    static void put(Pair& pair, std::size_t lane, const Vec3& a, const Vec3& ab, const Vec3& ac);
+    LaneBoxes boxes_of(const Pair& pair) const;
+    void pair_up(Index block, Index other, std::vector<TrianglePair>& pairs) const;
+    static Double2 squared_distances(const Pair& pair, const std::array<Double2, 3>& point);
 
     Vec3 centre_{0, 0, 0};
+    double rounding_ = 0;            // bound on the error of a + ab in a block
     std::vector<Index> triangle_of_; // by place in the order: the triangle's own index
     std::vector<Block> blocks_;
     std::vector<Boxes> nodes_;             // level 0 first, the root last

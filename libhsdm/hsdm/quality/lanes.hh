@@ -1,0 +1,28 @@
+#pragma once
+// Two doubles or four floats at once, in what every 64-bit processor has: GCC's and Clang's vector types.
+
+#include <cstddef>
+
+namespace hsdm {
+
+using Double2 = double __attribute__((vector_size(16)));
+using Float4 = float __attribute__((vector_size(16)));
+
+template <class Lanes>
+inline Lanes min_lanes(Lanes a, Lanes b) {
+    return a < b ? a : b;
+}
+template <class Lanes>
+inline Lanes max_lanes(Lanes a, Lanes b) {
+    return a > b ? a : b;
+}
+template <class Lanes>
+inline Lanes clamp01(Lanes t) {
+    return min_lanes(max_lanes(t, Lanes{}), Lanes{} + 1);
+}
+template <class Lanes>
+inline Lanes square(Lanes t) {
+    return t * t;
+}
+
+} // namespace hsdm
