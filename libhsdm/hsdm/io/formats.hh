@@ -18,6 +18,8 @@ PointFile read_obj(const SourceBytes& bytes);
 PointFile read_hoppe(const SourceBytes& bytes);
 /// Text or binary; corners at the same position become one point, in order of first appearance.
 PointFile read_stl(const SourceBytes& bytes);
+/// The corners of all triangles of an STL file, text or binary, three for each.
+std::vector<Vec3> read_stl_corners(const SourceBytes& bytes);
 /// Whether the size is the one that a binary STL header announces.
 bool is_binary_stl(const SourceBytes& bytes);
 bool is_text_stl(const SourceBytes& bytes);

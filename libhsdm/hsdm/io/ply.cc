@@ -3,8 +3,6 @@
 #include "hsdm/errors.hh"
 #include "hsdm/io/formats.hh"
 
-#include <algorithm>
-
 namespace hsdm::io {
 namespace {
 
@@ -22,14 +20,6 @@ std::vector<Column> columns_of(const Text& text, const PlyElement& vertex) {
                                      + "; export them as points");
     }
     return *columns;
-}
-
-/// Binary data decide nothing about line ends: the first line does.
-Text with_line_end_of_header(Text text) {
-    const char* end = std::find_if(text.begin, text.end, [](char c) { return c == '\n' || c == '\r'; });
-    const bool only_returns = end != text.end && *end == '\r' && (end + 1 == text.end || end[1] != '\n');
-    text.newline = only_returns ? '\r' : '\n';
-    return text;
 }
 
 } // namespace

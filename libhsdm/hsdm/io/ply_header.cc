@@ -127,6 +127,13 @@ std::size_t PlyElement::least_size() const {
     return size;
 }
 
+Text with_line_end_of_header(Text text) {
+    const char* end = std::find_if(text.begin, text.end, [](char c) { return c == '\n' || c == '\r'; });
+    const bool only_returns = end != text.end && *end == '\r' && (end + 1 == text.end || end[1] != '\n');
+    text.newline = only_returns ? '\r' : '\n';
+    return text;
+}
+
 PlyHeader read_ply_header(const Text& text) {
     return HeaderReader(text).read();
 }

@@ -39,6 +39,9 @@ struct PlyHeader {
     std::size_t size = 0; ///< bytes from the start of the source to the data
 };
 
+/// The text of a PLY file with the line ends of its first line: binary data decide nothing about them.
+Text with_line_end_of_header(Text text);
+
 /// Parses the header. Throws Error for the first line that is not as it must be.
 PlyHeader read_ply_header(const Text& text);
 

@@ -1,15 +1,14 @@
 #include "hsdm/errors.hh"
+#include "hsdm/facets/weld.hh"
 #include "hsdm/io/formats.hh"
 #include "hsdm/io/tagged.hh"
 
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
-#include <tuple>
 
 namespace hsdm::io {
 namespace {
@@ -66,33 +65,6 @@ std::vector<Vec3> read_text_corners(const SourceBytes& bytes) {
     return std::move(lines.cloud.positions);
 }
 
-/// A position by its bits, so that equal means the same everywhere, NaN included.
-struct Key {
-    std::array<std::uint64_t, 3> bits;
-    std::uint64_t corner;
-
-    Key(const Vec3& p, std::size_t index) : bits{}, corner(index) {
-        for (std::size_t k = 0; k < 3; ++k) bits[k] = std::bit_cast<std::uint64_t>(p[k] + 0.0); // -0 is 0
-    }
-    bool operator<(const Key& other) const {
-        return std::tie(bits, corner) < std::tie(other.bits, other.corner);
-    }
-};
-
-std::vector<Vec3> unique_positions(const std::vector<Vec3>& corners) {
-    std::vector<Key> keys;
-    keys.reserve(corners.size());
-    for (std::size_t i = 0; i < corners.size(); ++i) keys.emplace_back(corners[i], i);
-    tbb::parallel_sort(keys.begin(), keys.end());
-    std::vector<char> is_first(corners.size(), 0);
-    for (std::size_t i = 0; i < keys.size(); ++i)
-        is_first[keys[i].corner] = i == 0 || keys[i].bits != keys[i - 1].bits;
-    std::vector<Vec3> positions;
-    for (std::size_t i = 0; i < corners.size(); ++i)
-        if (is_first[i]) positions.push_back(corners[i]);
-    return positions;
-}
-
 } // namespace
 
 bool is_binary_stl(const SourceBytes& bytes) {
@@ -108,13 +80,19 @@ bool is_text_stl(const SourceBytes& bytes) {
            && (head.find("facet") != std::string::npos || head.find("endsolid") != std::string::npos);
 }
 
+std::vector<Vec3> read_stl_corners(const SourceBytes& bytes) {
+    return is_text_stl(bytes) && !is_binary_stl(bytes) ? read_text_corners(bytes)
+                                                       : read_binary_corners(bytes);
+}
+
 PointFile read_stl(const SourceBytes& bytes) {
-    const std::vector<Vec3> corners =
-        is_text_stl(bytes) && !is_binary_stl(bytes) ? read_text_corners(bytes) : read_binary_corners(bytes);
+    const std::vector<Vec3> corners = read_stl_corners(bytes);
+    const std::vector<Index> same = weld(corners);
     PointFile file;
     file.format = "stl";
     file.faces = corners.size() / 3;
-    file.cloud.positions = unique_positions(corners);
+    for (std::size_t c = 0; c < corners.size(); ++c)
+        if (same[c] == c) file.cloud.positions.push_back(corners[c]);
     return file;
 }
 

@@ -43,8 +43,7 @@ MeshFormat mesh_format(const std::string& path) {
 void write_mesh(const std::string& path, const PolygonMesh& mesh, MeshFormat format,
                 const WriteOptions& options) {
     check(path, mesh);
-    if (format == MeshFormat::om)
-        throw Error(path, "an .om file holds a half-edge mesh; make one with to_mesh and use write_om");
+    if (format == MeshFormat::om) return write_polygons_om(path, mesh);
     AtomicFile file(path);
     switch (format) {
     case MeshFormat::off:
@@ -60,7 +59,7 @@ void write_mesh(const std::string& path, const PolygonMesh& mesh, MeshFormat for
         write_obj(file, mesh);
         break;
     case MeshFormat::om:
-        break; // refused above
+        break; // done above
     }
     file.commit();
 }
