@@ -7,7 +7,6 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
-#include <bit>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -160,30 +159,6 @@ OctreeLevel extract_level(const Octree& octree, int depth) {
     level.first_point.back() = static_cast<Index>(n);
     level.build_index();
     return level;
-}
-
-namespace {
-/// Fibonacci hashing: the high bits of the product are well mixed.
-std::size_t slot_of(MortonCode code, std::size_t slots) {
-    return static_cast<std::size_t>((code * 0x9e3779b97f4a7c15ull) >> (64 - std::countr_zero(slots)));
-}
-} // namespace
-
-void OctreeLevel::build_index() {
-    const std::size_t slots = std::bit_ceil(std::max<std::size_t>(2 * codes.size(), 2));
-    slots_.assign(slots, no_index);
-    for (std::size_t voxel = 0; voxel < codes.size(); ++voxel) {
-        std::size_t slot = slot_of(codes[voxel], slots);
-        while (slots_[slot] != no_index) slot = (slot + 1) & (slots - 1);
-        slots_[slot] = static_cast<Index>(voxel);
-    }
-}
-
-Index OctreeLevel::find(MortonCode code) const {
-    if (slots_.empty()) return no_index;
-    std::size_t slot = slot_of(code, slots_.size());
-    while (slots_[slot] != no_index && codes[slots_[slot]] != code) slot = (slot + 1) & (slots_.size() - 1);
-    return slots_[slot];
 }
 
 Index OctreeLevel::find(const VoxelCoord& c) const {

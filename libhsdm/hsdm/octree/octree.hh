@@ -1,7 +1,7 @@
 #pragma once
 // Phase 1, section 3.1: the Hierarchical Space Decomposition Model (HSDM), a linear octree.
 
-#include "hsdm/octree/morton.hh"
+#include "hsdm/octree/morton_index.hh"
 #include "hsdm/point_cloud.hh"
 
 #include <span>
@@ -57,13 +57,13 @@ public:
     VoxelCoord coord(Index voxel) const { return morton_decode(codes[voxel]); }
     /// The voxel at a coordinate, or no_index where none is occupied or the coordinate lies outside. O(1).
     Index find(const VoxelCoord& c) const;
-    Index find(MortonCode code) const;
+    Index find(MortonCode code) const { return index_.find(code); }
 
     /// To be called once codes are final; find() needs it.
-    void build_index();
+    void build_index() { index_.build(codes); }
 
 private:
-    std::vector<Index> slots_; // open addressing, a power of two, load at most one half
+    MortonIndex index_;
 };
 
 /// The voxels of one level of the HSDM, depth in [0, 21]. O(n), parallel.

@@ -1,0 +1,44 @@
+#pragma once
+// Fixed chunks: the unit of parallel work. Their size never follows the number of threads, so neither do
+// results.
+
+#include "hsdm/types.hh"
+
+#include <tbb/parallel_for.h>
+
+#include <cstring>
+#include <numeric>
+#include <vector>
+
+namespace hsdm {
+
+inline std::size_t chunk_count(std::size_t n, std::size_t chunk_size) {
+    return (n + chunk_size - 1) / chunk_size;
+}
+
+/// Calls f(begin, end, chunk) for consecutive ranges of [0, n), in parallel.
+template <class F>
+void for_chunks(std::size_t n, std::size_t chunk_size, F&& f) {
+    tbb::parallel_for(std::size_t{0}, chunk_count(n, chunk_size), [&](std::size_t chunk) {
+        f(chunk * chunk_size, std::min(n, (chunk + 1) * chunk_size), chunk);
+    });
+}
+
+/// What the chunks produced, one after the other.
+template <class T>
+std::vector<T> joined(const std::vector<std::vector<T>>& parts) {
+    std::vector<std::size_t> offset(parts.size() + 1, 0);
+    for (std::size_t i = 0; i < parts.size(); ++i) offset[i + 1] = offset[i] + parts[i].size();
+    std::vector<T> whole(offset.back());
+    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
+        std::copy(parts[i].begin(), parts[i].end(), whole.begin() + static_cast<std::ptrdiff_t>(offset[i]));
+    });
+    return whole;
+}
+
+/// Turns counts stored one place to the right, {0, n0, n1, ...}, into first positions {0, n0, n0 + n1, ...}.
+inline void counts_to_first(std::vector<Index>& first) {
+    std::partial_sum(first.begin(), first.end(), first.begin());
+}
+
+} // namespace hsdm

@@ -1,0 +1,56 @@
+#pragma once
+// Section 3.4.1: the points of a voxel sorted into normal-consistent sets, so that two sheets in one voxel
+// stay two.
+
+#include "hsdm/octree/octree.hh"
+
+namespace hsdm {
+
+struct NormalSetOptions {
+    double cluster_angle =
+        0.61;                ///< radians, (0, pi/2): points of a set lie within this angle of its mean normal
+    double sheet_gap = 0.15; ///< voxels, > 0: parallel sheets farther apart than this are two sets
+    int max_sets = 8;        ///< per voxel, [1, 8]; smaller groups join the nearest
+};
+
+/// Second moments of a set of positions about their mean: xx, yy, zz, xy, yz, zx.
+struct Spread {
+    std::array<double, 6> moments{};
+
+    /// Variance along a unit direction.
+    double along(const Vec3& d) const {
+        return moments[0] * d[0] * d[0] + moments[1] * d[1] * d[1] + moments[2] * d[2] * d[2]
+               + 2 * (moments[3] * d[0] * d[1] + moments[4] * d[1] * d[2] + moments[5] * d[2] * d[0]);
+    }
+};
+
+/// One normal-consistent set: the paper's graph vertex for points with normals (section 3.4.2).
+struct NormalSet {
+    Vec3 centroid; ///< mean position, moved along the normal onto the surface (see build_normal_sets)
+    Vec3 normal;   ///< unit mean normal
+    Index count;   ///< points
+    Index voxel;   ///< of the level the sets were made for
+    Spread spread;   ///< of its points about their mean
+};
+
+/// The sets of a level's voxels: those of voxel v are sets[first[v]] .. sets[first[v + 1]], by descending
+/// count.
+struct NormalSets {
+    std::vector<NormalSet> sets;
+    std::vector<Index> first{0};
+    std::vector<Index> of_point; ///< per octree point, its set; no_index for points without a normal
+
+    std::span<const NormalSet> of_voxel(Index v) const {
+        return {sets.data() + first[v], sets.data() + first[v + 1]};
+    }
+};
+
+/// Sorts each voxel's points into sets: by direction (modes of the normals, mean shift), then by offset where
+/// two parallel sheets share a direction. Does not depend on the order of the points. The centroid of points
+/// on a curved patch lies below it by half the mean of (n - mean n) . (p - mean p); that much is added back
+/// along the normal. Voxels whose points have no normals have no set. O(points), parallel. Throws
+/// OptionError.
+NormalSets build_normal_sets(const Octree& octree, const OctreeLevel& level,
+                             const NormalSetOptions& options = {});
+
+} // namespace hsdm

@@ -1,0 +1,207 @@
+#include "hsdm/sheets/extended_facets.hh"
+
+#include "hsdm/chunks.hh"
+
+#include <algorithm>
+
+namespace hsdm {
+namespace {
+
+/// Vertices on mesh edges. Two links across one face whose ends are the same two vertices would make one edge
+/// with four facets; a vertex in the middle of all but the first keeps them apart.
+class Midpoints {
+public:
+    Midpoints(const CornerLattice& lattice, const Crossings& crossings, const Links& links, const Fans& fans,
+              double h, VertexPositions& vertices)
+        : of_side_(crossings.crossings.size() * (links.crowded.empty() ? 0 : 4), no_index), count_(0) {
+        std::vector<std::pair<Index, Index>> seen;
+        for (const Link& end : links.crowded) {
+            if (end.crossing == no_index) {
+                seen.clear();
+                continue;
+            }
+            const Link& other = links.of_crossing[end.crossing][end.face];
+            for (const Link& side : {end, other}) {
+                const std::pair<Index, Index> pair{fans.of_node[4 * side.crossing + Ring::low[side.face]],
+                                                   fans.of_node[4 * side.crossing + Ring::high[side.face]]};
+                const bool repeated = std::find(seen.begin(), seen.end(), pair) != seen.end();
+                if (!repeated) seen.push_back(pair);
+                const bool strip = end.rim && !same_ends(fans, end, other);
+                if (repeated && !(&side != &end && !strip && mid(end) != no_index)) {
+                    const auto vertex = static_cast<Index>(vertices.positions.size());
+                    const Vec3 a = crossing_position(lattice, crossings.crossings[end.crossing], h);
+                    const Vec3 b = crossing_position(lattice, crossings.crossings[other.crossing], h);
+                    vertices.positions.push_back(strip ? (&side == &end ? a : b) : 0.5 * (a + b));
+                    vertices.kinds.push_back(VertexKind::smooth);
+                    vertices.voxel.push_back(no_index);
+                    ++count_;
+                    of_side_[4 * side.crossing + side.face] = vertex;
+                    if (!strip)
+                        of_side_[4 * end.crossing + end.face] = of_side_[4 * other.crossing + other.face] =
+                            vertex;
+                }
+                if (!strip) break;
+            }
+        }
+    }
+
+    Index mid(const Link& side) const {
+        return of_side_.empty() ? no_index : of_side_[4 * side.crossing + side.face];
+    }
+    std::size_t count() const { return count_; }
+
+private:
+    static bool same_ends(const Fans& fans, const Link& a, const Link& b) {
+        return fans.of_node[4 * a.crossing + Ring::low[a.face]]
+                   == fans.of_node[4 * b.crossing + Ring::low[b.face]]
+               && fans.of_node[4 * a.crossing + Ring::high[a.face]]
+                      == fans.of_node[4 * b.crossing + Ring::high[b.face]];
+    }
+    std::vector<Index> of_side_; // per crossing and face of its ring
+    std::size_t count_;
+};
+
+/// Appends facets to a mesh from crossings, links and fans.
+class FacetBuilder {
+public:
+    FacetBuilder(const Crossings& crossings, const Links& links, const Fans& fans, const Midpoints& midpoints,
+                 const VertexPositions& vertices, PolygonMesh& mesh)
+        : crossings_(crossings),
+          links_(links),
+          fans_(fans),
+          midpoints_(midpoints),
+          vertices_(vertices),
+          mesh_(mesh) {}
+
+    void add_facet(Index x) {
+        polygon_.clear();
+        for (std::uint8_t j = 0; j < 4; ++j) {
+            add(fans_.of_node[4 * x + j]);
+            add(midpoints_.mid({x, j}));
+        }
+        if (!crossings_.crossings[x].leaving) std::reverse(polygon_.begin(), polygon_.end());
+        if (polygon_.size() == 4)
+            split_along_crease({polygon_[0], polygon_[1], polygon_[2], polygon_[3]});
+        else
+            mesh_.add_facet(polygon_);
+    }
+
+    /// The strip round a thin part's rim, between the two sides' vertices; once per rim.
+    void add_strips(Index x) {
+        for (std::uint8_t k = 0; k < 4; ++k) {
+            const Link& link = links_.of_crossing[x][k];
+            if (!link.rim || 4 * x + k > 4 * link.crossing + link.face) continue;
+            // The facet of x runs from ring position k to k + 1 if it leaves; the strip runs against it.
+            unsigned from = (k + 1u) % 4, to = k;
+            if (!crossings_.crossings[x].leaving) std::swap(from, to);
+            const Index y = link.crossing;
+            const std::array<Index, 4> ring{fans_.of_node[4 * x + from], fans_.of_node[4 * x + to],
+                                            fans_.of_node[4 * y + Ring::across(to, k, link.face)],
+                                            fans_.of_node[4 * y + Ring::across(from, k, link.face)]};
+            if (ring[0] == ring[3] && ring[1] == ring[2]) continue; // not cut: an ordinary edge
+            polygon_.clear();
+            add(ring[0]);
+            add(midpoints_.mid({x, k}));
+            add(ring[1]);
+            if (ring[2] != ring[1]) add(ring[2]);
+            add(midpoints_.mid(link));
+            if (ring[3] != ring[0]) add(ring[3]);
+            mesh_.add_facet(polygon_);
+        }
+    }
+
+private:
+    void add(Index vertex) {
+        if (vertex != no_index) polygon_.push_back(vertex);
+    }
+
+    Vec3 triangle_normal(Index a, Index b, Index c) const {
+        const auto& p = vertices_.positions;
+        return (p[b] - p[a]) % (p[c] - p[a]);
+    }
+
+    /// Where a crease runs across a quad, corner to corner, the quad is cut there: the paper's refinement
+    /// triangles.
+    void split_along_crease(const std::array<Index, 4>& q) {
+        for (std::size_t d = 0; d < 2; ++d) {
+            const Index a = q[d], b = q[d + 1], c = q[d + 2], e = q[(d + 3) % 4];
+            if (vertices_.kinds[a] == VertexKind::smooth || vertices_.kinds[c] == VertexKind::smooth)
+                continue;
+            const Vec3 n0 = triangle_normal(a, b, c), n1 = triangle_normal(a, c, e);
+            const Vec3 m0 = triangle_normal(b, c, e), m1 = triangle_normal(b, e, a);
+            const double fold = (n0 | n1) / std::max(n0.norm() * n1.norm(), 1e-300);
+            const double other = (m0 | m1) / std::max(m0.norm() * m1.norm(), 1e-300);
+            if (fold > 0.9 || other > 0.95) continue;
+            const std::array<Index, 3> t0{a, b, c}, t1{a, c, e};
+            mesh_.add_facet(t0);
+            mesh_.add_facet(t1);
+            return;
+        }
+        mesh_.add_facet(q);
+    }
+
+    const Crossings& crossings_;
+    const Links& links_;
+    const Fans& fans_;
+    const Midpoints& midpoints_;
+    const VertexPositions& vertices_;
+    PolygonMesh& mesh_;
+    std::vector<Index> polygon_;
+};
+
+/// Kind and voxel travel with the vertices as properties while these are split or dropped.
+void add_properties(const VertexPositions& vertices, PolygonMesh& mesh) {
+    std::vector<double> kinds, voxels;
+    for (VertexKind kind : vertices.kinds) kinds.push_back(static_cast<double>(kind));
+    for (Index voxel : vertices.voxel) voxels.push_back(static_cast<double>(voxel));
+    mesh.properties = {{"hsdm_vertex_class", VertexProperty::Type::uint8, std::move(kinds)},
+                       {"voxel", VertexProperty::Type::float64, std::move(voxels)}};
+}
+
+void take_properties(ExtendedFacets& result) {
+    for (double kind : result.mesh.properties[0].values)
+        result.kinds.push_back(static_cast<VertexKind>(kind));
+    for (double voxel : result.mesh.properties[1].values) result.voxel.push_back(static_cast<Index>(voxel));
+    result.mesh.properties.clear();
+}
+
+} // namespace
+
+ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
+                                    const ExtendedOptions& options) {
+    ExtendedFacets result;
+    const double h = level.voxel_size;
+    const RelationTest related(options.relation, h);
+    CornerLattice lattice = build_corner_lattice(level);
+    LocalSheets local = group_local_sheets(lattice, sets, related, h);
+    extend_lattice(lattice, local, level);
+    Crossings crossings = find_crossings(lattice, local, sets, related, h, options.crossing);
+    Links links = pair_crossings(lattice, crossings, sets, related, h);
+    for (int round = 0; round < 3 && trim_unsupported(crossings, links) > 0; ++round)
+        links = pair_crossings(lattice, crossings, sets, related, h);
+    const Fans fans = build_fans(crossings, links);
+    VertexPositions vertices = place_vertices(octree, level, lattice, sets, related, crossings, fans);
+
+    const Midpoints midpoints(lattice, crossings, links, fans, h, vertices);
+    result.midpoints = midpoints.count();
+    FacetBuilder builder(crossings, links, fans, midpoints, vertices, result.mesh);
+    for (Index x = 0; x < crossings.crossings.size(); ++x) builder.add_facet(x);
+    for (Index x = 0; x < crossings.crossings.size(); ++x) builder.add_strips(x);
+    for (const std::vector<Index>& cap : fans.caps) result.mesh.add_facet(cap);
+
+    result.mesh.positions = std::move(vertices.positions);
+    for (Vec3& p : result.mesh.positions) p += octree.origin;
+    add_properties(vertices, result.mesh);
+    result.manifold = make_manifold(result.mesh);
+    take_properties(result);
+    result.crossings = crossings.crossings.size();
+    result.beyond_crease = crossings.dropped_beyond_crease;
+    result.trimmed = crossings.trimmed;
+    result.open = links.open;
+    result.rims = links.rims;
+    result.cut = fans.cut;
+    result.clamped = vertices.clamped;
+    return result;
+}
+
+} // namespace hsdm

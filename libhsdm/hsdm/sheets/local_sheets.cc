@@ -1,0 +1,332 @@
+#include "hsdm/sheets/local_sheets.hh"
+
+#include "hsdm/chunks.hh"
+#include "hsdm/octree/radix_sort.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t corners_per_chunk = 2048;
+constexpr double surface_error = 0.15; // voxels: how far off its planes a sheet may pass
+constexpr int closure_rounds = 8;
+constexpr double least_closure_cosine = 0.35; // 70 degrees
+constexpr double nearness = 0.5; // voxels: a set's say falls off with its distance from the corner
+
+VoxelCoord octant_offset(unsigned octant) {
+    return {static_cast<int>(octant & 1) - 1, static_cast<int>(octant >> 1 & 1) - 1,
+            static_cast<int>(octant >> 2 & 1) - 1};
+}
+
+/// Every corner of every voxel, sorted, each once.
+std::vector<MortonCode> corner_codes(const OctreeLevel& level) {
+    std::vector<CodeIndex> corners(8 * level.size());
+    for_chunks(level.size(), corners_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t v = begin; v < end; ++v) {
+            const VoxelCoord c = level.coord(static_cast<Index>(v));
+            for (std::size_t k = 0; k < 8; ++k)
+                corners[8 * v + k] = {
+                    CornerLattice::code({c[0] + static_cast<int>(k & 1), c[1] + static_cast<int>(k >> 1 & 1),
+                                         c[2] + static_cast<int>(k >> 2)}),
+                    0};
+        }
+    });
+    radix_sort(corners, 3 * (level.depth + 2));
+    std::vector<MortonCode> codes;
+    codes.reserve(corners.size() / 3);
+    for (const CodeIndex& corner : corners)
+        if (codes.empty() || codes.back() != corner.code) codes.push_back(corner.code);
+    return codes;
+}
+
+/// The sets around one corner and their sheets, on the stack.
+struct Corner {
+    static constexpr std::size_t most = 64; // eight voxels of at most eight sets
+    std::array<SheetMember, most> members;
+    std::array<LocalSheet, most> sheets;
+    std::size_t member_count = 0, sheet_count = 0;
+
+    void gather(const std::array<Index, 8>& voxels, const NormalSets& sets) {
+        member_count = 0;
+        for (std::uint8_t octant = 0; octant < 8; ++octant)
+            if (voxels[octant] != no_index)
+                for (Index s = sets.first[voxels[octant]]; s < sets.first[voxels[octant] + 1]; ++s)
+                    members[member_count++] = {s, octant, 0};
+    }
+
+    /// Connected components of the smooth relation, numbered by their first member.
+    void connect(const NormalSets& sets, const RelationTest& related) {
+        std::array<std::uint8_t, most> pending;
+        constexpr std::uint8_t none = 0xff;
+        for (std::size_t i = 0; i < member_count; ++i) members[i].sheet = none;
+        sheet_count = 0;
+        for (std::size_t i = 0; i < member_count; ++i) {
+            if (members[i].sheet != none) continue;
+            std::size_t waiting = 0;
+            pending[waiting++] = static_cast<std::uint8_t>(i);
+            members[i].sheet = static_cast<std::uint8_t>(sheet_count);
+            while (waiting > 0) {
+                const NormalSet& a = sets.sets[members[pending[--waiting]].set];
+                for (std::size_t j = i + 1; j < member_count; ++j) {
+                    if (members[j].sheet != none || related(a, sets.sets[members[j].set]) != Relation::smooth)
+                        continue;
+                    members[j].sheet = static_cast<std::uint8_t>(sheet_count);
+                    pending[waiting++] = static_cast<std::uint8_t>(j);
+                }
+            }
+            ++sheet_count;
+        }
+    }
+
+    /// Members whose sheets are known; renumbers the sheets without gaps, in order of their first member.
+    void take(std::span<const SheetMember> known) {
+        std::array<std::uint8_t, most> number;
+        number.fill(0xff);
+        member_count = known.size();
+        sheet_count = 0;
+        for (std::size_t i = 0; i < member_count; ++i) {
+            members[i] = known[i];
+            std::uint8_t& n = number[known[i].sheet];
+            if (n == 0xff) n = static_cast<std::uint8_t>(sheet_count++);
+            members[i].sheet = n;
+        }
+    }
+
+    void measure(const Vec3& position, const NormalSets& sets, double voxel_size) {
+        const double falloff = 1 / (nearness * nearness * voxel_size * voxel_size);
+        for (std::size_t k = 0; k < sheet_count; ++k) sheets[k] = {};
+        for (std::size_t i = 0; i < member_count; ++i) {
+            const NormalSet& set = sets.sets[members[i].set];
+            const Vec3 d = position - set.centroid;
+            LocalSheet& sheet = sheets[members[i].sheet];
+            const double weight = std::min<double>(set.count, 8) * std::exp(-d.sqrnorm() * falloff);
+            sheet.weight += weight;
+            sheet.distance += weight * (set.normal | d);
+            sheet.normal += weight * set.normal;
+            const double points = set.count;
+            sheet.points += points;
+            sheet.points_squared += points * points;
+        }
+    }
+
+    /// A sheet within the error of its planes may pass the corner on a side where none of its points lie;
+    /// there is no voxel there to carry it. Then the corner takes the other side's sign.
+    void snap(double voxel_size) {
+        std::array<std::uint8_t, most> octants{};
+        for (std::size_t i = 0; i < member_count; ++i)
+            octants[members[i].sheet] =
+                static_cast<std::uint8_t>(octants[members[i].sheet] | 1u << members[i].octant);
+        for (std::size_t k = 0; k < sheet_count; ++k) {
+            LocalSheet& sheet = sheets[k];
+            if (std::abs(sheet.distance) > surface_error * voxel_size * sheet.weight) continue;
+            const Vec3 toward =
+                sheet.distance < 0 ? sheet.normal : -sheet.normal; // from the corner to the sheet
+            unsigned axis = 0;
+            for (unsigned a : {1u, 2u})
+                if (std::abs(toward[a]) > std::abs(toward[axis])) axis = a;
+            static constexpr std::array<std::uint8_t, 3> upper{0xaa, 0xcc,
+                                                               0xf0}; // octants above the corner, per axis
+            const unsigned beyond = toward[axis] > 0 ? upper[axis] : 0xffu ^ upper[axis];
+            if ((octants[k] & beyond) == 0)
+                sheet.distance = std::copysign(1e-9 * voxel_size * sheet.weight, -sheet.distance);
+        }
+    }
+};
+
+void connect_corner(CornerLattice& lattice, std::size_t i, const OctreeLevel& level) {
+    const VoxelCoord c = lattice.coord(static_cast<Index>(i));
+    for (unsigned octant = 0; octant < 8; ++octant) {
+        const VoxelCoord o = octant_offset(octant);
+        lattice.voxels[i][octant] = level.find(VoxelCoord{c[0] + o[0], c[1] + o[1], c[2] + o[2]});
+    }
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        VoxelCoord n = c;
+        ++n[axis];
+        lattice.next[i][axis] = lattice.index.find(lattice.code(n));
+    }
+}
+
+/// What an edge crossed along an axis from corner c needs: its two ends, and the lower corners of the four
+/// faces beside.
+void add_missing(const CornerLattice& lattice, VoxelCoord c, unsigned axis, int side,
+                 std::vector<MortonCode>& missing) {
+    const auto need = [&](VoxelCoord d) {
+        for (int x : d)
+            if (x < -1 || x > side + 1) return;
+        if (lattice.index.find(lattice.code(d)) == no_index) missing.push_back(lattice.code(d));
+    };
+    need(c);
+    ++c[axis];
+    need(c);
+    --c[axis];
+    for (unsigned other : {(axis + 1) % 3, (axis + 2) % 3}) {
+        --c[other];
+        need(c);
+        ++c[other];
+    }
+}
+
+} // namespace
+
+CornerLattice build_corner_lattice(const OctreeLevel& level) {
+    CornerLattice lattice;
+    lattice.codes = corner_codes(level);
+    lattice.voxels.resize(lattice.size());
+    lattice.next.resize(lattice.size());
+    lattice.index.build(lattice.codes);
+    for_chunks(lattice.size(), corners_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) connect_corner(lattice, i, level);
+    });
+    return lattice;
+}
+
+namespace {
+
+/// Members and their sheets by the smooth relation alone; the sheets are not measured yet.
+LocalSheets connect_members(const CornerLattice& lattice, const NormalSets& sets,
+                            const RelationTest& related) {
+    LocalSheets result;
+    const std::size_t n = lattice.size();
+    result.first_member.assign(n + 1, 0);
+    std::vector<std::vector<SheetMember>> members(chunk_count(n, corners_per_chunk));
+    for_chunks(n, corners_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        Corner corner;
+        for (std::size_t i = begin; i < end; ++i) {
+            corner.gather(lattice.voxels[i], sets);
+            corner.connect(sets, related);
+            const auto last = corner.members.begin() + static_cast<std::ptrdiff_t>(corner.member_count);
+            members[chunk].insert(members[chunk].end(), corner.members.begin(), last);
+            result.first_member[i + 1] = static_cast<Index>(corner.member_count);
+        }
+    });
+    result.members = joined(members);
+    counts_to_first(result.first_member);
+    return result;
+}
+
+/// Are two sets of one sheet at another corner near by?
+bool joined_nearby(const CornerLattice& lattice, const LocalSheets& sheets, const VoxelCoord& c, Index a,
+                   Index b) {
+    for (const VoxelCoord& o : neighbor_offsets) {
+        const Index corner = lattice.index.find(CornerLattice::code({c[0] + o[0], c[1] + o[1], c[2] + o[2]}));
+        if (corner == no_index) continue;
+        int sheet_a = -1, sheet_b = -2;
+        for (const SheetMember& m : sheets.members_at(corner)) {
+            if (m.set == a) sheet_a = m.sheet;
+            if (m.set == b) sheet_b = m.sheet;
+        }
+        if (sheet_a == sheet_b) return true;
+    }
+    return false;
+}
+
+/// Closure: two sets that are one sheet at one corner are one sheet at every corner they share, unless their
+/// normals are so far apart that they only met round the rim of a thin part. Repeats until nothing changes;
+/// only corners with several sheets are looked at, and in rounds, so that the order does not matter.
+void close_sheets(const CornerLattice& lattice, const NormalSets& sets, LocalSheets& sheets) {
+    std::vector<Index> open;
+    for (std::size_t i = 0; i < lattice.size(); ++i) {
+        const auto members = sheets.members_at(static_cast<Index>(i));
+        if (std::any_of(members.begin(), members.end(), [](const SheetMember& m) { return m.sheet > 0; }))
+            open.push_back(static_cast<Index>(i));
+    }
+    struct Merge {
+        Index corner;
+        std::uint8_t kept, merged;
+    };
+    for (int round = 0; round < closure_rounds; ++round) {
+        std::vector<std::vector<Merge>> found(chunk_count(open.size(), 256));
+        for_chunks(open.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+            for (std::size_t k = begin; k < end; ++k) {
+                const auto members = sheets.members_at(open[k]);
+                const VoxelCoord c = lattice.coord(open[k]);
+                for (std::size_t i = 0; i < members.size(); ++i)
+                    for (std::size_t j = i + 1; j < members.size(); ++j) {
+                        if (members[i].sheet == members[j].sheet) continue;
+                        const Index a = members[i].set, b = members[j].set;
+                        if ((sets.sets[a].normal | sets.sets[b].normal) < least_closure_cosine) continue;
+                        if (!joined_nearby(lattice, sheets, c, a, b)) continue;
+                        found[chunk].push_back({open[k], std::min(members[i].sheet, members[j].sheet),
+                                                std::max(members[i].sheet, members[j].sheet)});
+                    }
+            }
+        });
+        bool changed = false;
+        for (const auto& merges : found)
+            for (Merge m : merges) {
+                SheetMember* first = sheets.members.data() + sheets.first_member[m.corner];
+                const std::size_t n = sheets.first_member[m.corner + 1] - sheets.first_member[m.corner];
+                for (std::size_t i = 0; i < n; ++i)
+                    if (first[i].sheet == m.merged) first[i].sheet = m.kept, changed = true;
+            }
+        if (!changed) break;
+    }
+}
+
+} // namespace
+
+LocalSheets group_local_sheets(const CornerLattice& lattice, const NormalSets& sets,
+                               const RelationTest& related, double voxel_size) {
+    LocalSheets result = connect_members(lattice, sets, related);
+    close_sheets(lattice, sets, result);
+    const std::size_t n = lattice.size();
+    result.first_sheet.assign(n + 1, 0);
+    std::vector<std::vector<LocalSheet>> sheets(chunk_count(n, corners_per_chunk));
+    for_chunks(n, corners_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        Corner corner;
+        for (std::size_t i = begin; i < end; ++i) {
+            SheetMember* first = result.members.data() + result.first_member[i];
+            corner.take({first, result.members.data() + result.first_member[i + 1]});
+            const VoxelCoord c = lattice.coord(static_cast<Index>(i));
+            corner.measure(Vec3(c[0], c[1], c[2]) * voxel_size, sets, voxel_size);
+            corner.snap(voxel_size);
+            std::copy_n(corner.members.begin(), corner.member_count, first);
+            const auto last = corner.sheets.begin() + static_cast<std::ptrdiff_t>(corner.sheet_count);
+            sheets[chunk].insert(sheets[chunk].end(), corner.sheets.begin(), last);
+            result.first_sheet[i + 1] = static_cast<Index>(corner.sheet_count);
+        }
+    });
+    result.sheets = joined(sheets);
+    counts_to_first(result.first_sheet);
+    return result;
+}
+
+std::size_t extend_lattice(CornerLattice& lattice, LocalSheets& sheets, const OctreeLevel& level) {
+    const std::size_t n = lattice.size();
+    const int side = 1 << level.depth;
+    std::vector<std::vector<MortonCode>> parts(chunk_count(n, corners_per_chunk));
+    for_chunks(n, corners_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const VoxelCoord c = lattice.coord(static_cast<Index>(i));
+            for (const LocalSheet& sheet : sheets.sheets_at(static_cast<Index>(i)))
+                for (unsigned axis = 0; axis < 3; ++axis) {
+                    const double rise = sheet.normal[axis] * level.voxel_size;
+                    const bool inside = sheet.distance < 0;
+                    if (inside != (sheet.distance + rise < 0))
+                        add_missing(lattice, c, axis, side, parts[chunk]);
+                    if (inside == (sheet.distance - rise < 0)) continue;
+                    VoxelCoord below = c;
+                    --below[axis];
+                    add_missing(lattice, below, axis, side, parts[chunk]);
+                }
+        }
+    });
+    std::vector<MortonCode> missing = joined(parts);
+    if (missing.empty()) return 0;
+    std::sort(missing.begin(), missing.end());
+    missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
+    lattice.codes.insert(lattice.codes.end(), missing.begin(), missing.end());
+    lattice.index.build(lattice.codes);
+    lattice.voxels.resize(lattice.size());
+    lattice.next.resize(lattice.size());
+    for_chunks(lattice.size(), corners_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) connect_corner(lattice, i, level);
+    });
+    sheets.first_member.resize(lattice.size() + 1, sheets.first_member.back());
+    sheets.first_sheet.resize(lattice.size() + 1, sheets.first_sheet.back());
+    return missing.size();
+}
+
+} // namespace hsdm

@@ -1,0 +1,196 @@
+#include "hsdm/sheets/pairing.hh"
+
+#include "hsdm/chunks.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t corners_per_chunk = 2048;
+constexpr double tip_reach = 1.5; // voxels: how far beyond the last crossings the tip of a wedge may lie
+
+/// A crossing on the perimeter of a face.
+struct Stop {
+    Index crossing;
+    std::uint8_t ring_face;
+    Vec3 position; // voxels, relative to the face's lower corner
+};
+
+/// The crossings of one face, sorted by whether the perimeter leaves or enters the solid there.
+class FacePairing {
+public:
+    FacePairing(const CornerLattice& lattice, const Crossings& crossings, const NormalSets& sets,
+                const RelationTest& related, double voxel_size)
+        : lattice_(lattice), crossings_(crossings), sets_(sets), related_(related), h_(voxel_size) {}
+
+    template <class Join>
+    void pair(Index corner, unsigned normal_axis, Join&& join) {
+        exits_.clear();
+        enters_.clear();
+        gather(corner, normal_axis);
+        while (!exits_.empty() && !enters_.empty()) {
+            if (exits_.size() == 1 && enters_.size() == 1) {
+                join(exits_[0], enters_[0], is_rim(exits_[0], enters_[0]));
+                return;
+            }
+            join_best(join);
+        }
+    }
+
+private:
+    void gather(Index corner, unsigned n) {
+        const unsigned u = (n + 1) % 3, v = (n + 2) % 3;
+        const Index pu = lattice_.next[corner][u], pv = lattice_.next[corner][v];
+        add(corner, u, 1, true, 0, v);
+        add(corner, v, 2, false, 0, u);
+        if (pu != no_index) add(pu, v, 0, true, 1, u);
+        if (pv != no_index) add(pv, u, 3, false, 1, v);
+    }
+
+    void add(Index corner, unsigned axis, std::uint8_t ring_face, bool forward, double across,
+             unsigned across_axis) {
+        const Index edge = 3 * corner + axis;
+        for (Index x = crossings_.first[edge]; x < crossings_.first[edge + 1]; ++x) {
+            const Crossing& crossing = crossings_.crossings[x];
+            Vec3 position(0, 0, 0);
+            position[axis] = crossing.t;
+            position[across_axis] = across;
+            (crossing.leaving == forward ? exits_ : enters_).push_back({x, ring_face, position});
+        }
+    }
+
+    const Crossing& of(const Stop& s) const { return crossings_.crossings[s.crossing]; }
+
+    Relation relation(const Stop& a, const Stop& b) const {
+        if (of(a).set == of(b).set) return Relation::smooth;
+        return related_(sets_.sets[of(a).set], sets_.sets[of(b).set]);
+    }
+
+    /// 0 for one sheet, more the less two crossings look like parts of one surface.
+    double cost(const Stop& a, const Stop& b) const {
+        const Crossing &x = of(a), &y = of(b);
+        const Vec3 d = b.position - a.position;
+        const double off_plane = std::abs(x.normal | d) + std::abs(y.normal | d);
+        const Relation r = relation(a, b);
+        return (1 - (x.normal | y.normal)) + off_plane
+               + (r == Relation::smooth ? 0
+                  : r == Relation::none ? 2
+                                        : 1);
+    }
+
+    /// Two opposite sheets that end here without meeting: round the rim of a thin part. Those whose planes
+    /// meet within reach of both crossings make a crease, the tip of a wedge.
+    bool is_rim(const Stop& a, const Stop& b) const {
+        const Vec3 &m = of(a).normal, &n = of(b).normal;
+        const double cosine = m | n;
+        if (cosine > -0.3 || relation(a, b) != Relation::none) return false;
+        const Vec3 d = b.position - a.position;
+        const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+        return std::abs(m | d) > tip_reach * sine || std::abs(n | d) > tip_reach * sine;
+    }
+
+    /// Faces with two or more of each kind are rare: the cheapest pair first, ties by number.
+    template <class Join>
+    void join_best(Join&& join) {
+        double least = std::numeric_limits<double>::infinity();
+        std::size_t best_exit = 0, best_enter = 0;
+        if (exits_.size() == 2 && enters_.size() == 2) { // exactly: the better of the two pairings
+            const double straight = cost(exits_[0], enters_[0]) + cost(exits_[1], enters_[1]);
+            const double swapped = cost(exits_[0], enters_[1]) + cost(exits_[1], enters_[0]);
+            best_enter = straight <= swapped ? 0 : 1;
+        } else {
+            for (std::size_t i = 0; i < exits_.size(); ++i)
+                for (std::size_t j = 0; j < enters_.size(); ++j)
+                    if (const double c = cost(exits_[i], enters_[j]); c < least)
+                        least = c, best_exit = i, best_enter = j;
+        }
+        join(exits_[best_exit], enters_[best_enter], is_rim(exits_[best_exit], enters_[best_enter]));
+        exits_.erase(exits_.begin() + static_cast<std::ptrdiff_t>(best_exit));
+        enters_.erase(enters_.begin() + static_cast<std::ptrdiff_t>(best_enter));
+    }
+
+    const CornerLattice& lattice_;
+    const Crossings& crossings_;
+    const NormalSets& sets_;
+    const RelationTest& related_;
+    double h_;
+    std::vector<Stop> exits_, enters_;
+};
+
+} // namespace
+
+Links pair_crossings(const CornerLattice& lattice, const Crossings& crossings, const NormalSets& sets,
+                     const RelationTest& related, double voxel_size) {
+    Links links;
+    links.of_crossing.resize(crossings.crossings.size());
+    const std::size_t n = lattice.size();
+    std::vector<std::size_t> rims(chunk_count(n, corners_per_chunk), 0), joined_faces(rims);
+    std::vector<std::vector<Link>> crowded(rims.size());
+    for_chunks(n, corners_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        FacePairing face(lattice, crossings, sets, related, voxel_size);
+        std::vector<Link> in_face;
+        auto join = [&](const Stop& a, const Stop& b, bool rim) {
+            links.of_crossing[a.crossing][a.ring_face] = {b.crossing, b.ring_face, rim};
+            links.of_crossing[b.crossing][b.ring_face] = {a.crossing, a.ring_face, rim};
+            rims[chunk] += rim;
+            ++joined_faces[chunk];
+            in_face.push_back({a.crossing, a.ring_face, rim});
+        };
+        for (std::size_t c = begin; c < end; ++c)
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                in_face.clear();
+                face.pair(static_cast<Index>(c), axis, join);
+                if (in_face.size() < 2) continue;
+                crowded[chunk].insert(crowded[chunk].end(), in_face.begin(), in_face.end());
+                crowded[chunk].push_back({});
+            }
+    });
+    links.crowded = joined(crowded);
+    for (std::size_t r : rims) links.rims += r;
+    links.open = 4 * links.of_crossing.size();
+    for (std::size_t j : joined_faces) links.open -= 2 * j;
+    return links;
+}
+
+std::size_t trim_unsupported(Crossings& crossings, const Links& links) {
+    auto& list = crossings.crossings;
+    std::vector<std::uint8_t> removed(list.size(), 0);
+    std::vector<Index> pending;
+    auto reach = [&](Index x) {
+        if (x == no_index || list[x].supported || removed[x]) return;
+        removed[x] = 1;
+        pending.push_back(x);
+    };
+    for (Index x = 0; x < list.size(); ++x) {
+        const auto& around = links.of_crossing[x];
+        if (std::count_if(around.begin(), around.end(), [](const Link& l) { return l.crossing == no_index; })
+            >= 3)
+            list[x].supported = false; // hangs by one side at most
+        if (list[x].supported) continue;
+        for (const Link& link : links.of_crossing[x]) {
+            const bool both_end = link.rim && link.crossing != no_index && !list[link.crossing].supported;
+            if (link.crossing == no_index || both_end) reach(x);
+        }
+    }
+    while (!pending.empty()) {
+        const Index x = pending.back();
+        pending.pop_back();
+        for (const Link& link : links.of_crossing[x]) reach(link.crossing);
+    }
+    std::size_t kept = 0;
+    for (std::size_t e = 0, x = 0; e + 1 < crossings.first.size(); ++e) {
+        const std::size_t end = crossings.first[e + 1];
+        crossings.first[e] = static_cast<Index>(kept);
+        for (; x < end; ++x)
+            if (!removed[x]) list[kept++] = list[x];
+    }
+    crossings.first.back() = static_cast<Index>(kept);
+    const std::size_t count = list.size() - kept;
+    list.resize(kept);
+    crossings.trimmed += count;
+    return count;
+}
+
+} // namespace hsdm

@@ -1,0 +1,268 @@
+#include "hsdm/sheets/vertex_placement.hh"
+
+#include "hsdm/chunks.hh"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t fans_per_chunk = 1024;
+constexpr double margin = 0.01;           // voxels: vertices stay this far from their voxel's faces
+constexpr double least_singular = 0.003;  // eigenvalues below this share of the largest are cut
+constexpr double new_sheet_cosine = 0.77; // normals farther apart than 40 degrees belong to different sheets
+
+struct Plane {
+    Vec3 normal;
+    Vec3 point;
+    double weight;
+};
+
+/// The planes one vertex is placed by, and the box it must stay in.
+struct Problem {
+    std::vector<Plane> planes;
+    Vec3 mean; // of the crossings: inside the box, since they lie on its surface
+    Vec3 lo;   // of the voxel
+    double size = 0;
+};
+
+/// How many sheets the planes belong to, at most three.
+int sheet_count(const std::vector<Plane>& planes) {
+    std::array<Vec3, 3> found;
+    int count = 0;
+    for (const Plane& plane : planes) {
+        bool known = false;
+        for (int i = 0; i < count && !known; ++i)
+            known = (found[static_cast<std::size_t>(i)] | plane.normal) > new_sheet_cosine;
+        if (known) continue;
+        found[static_cast<std::size_t>(count)] = plane.normal;
+        if (++count == 3) break;
+    }
+    return count;
+}
+
+struct Solution {
+    Vec3 position;
+    int rank;  // directions the planes determine
+    Vec3 free; // rank 2: along the crease
+};
+
+/// min sum w (n . (x - p))^2, the least change from the mean in the directions the planes leave open.
+Solution least_squares(const Problem& problem, int most_rank) {
+    Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d b = Eigen::Vector3d::Zero();
+    for (const Plane& plane : problem.planes) {
+        const Eigen::Vector3d n(plane.normal[0], plane.normal[1], plane.normal[2]);
+        a += plane.weight * n * n.transpose();
+        b += plane.weight * (plane.normal | (plane.point - problem.mean)) * n;
+    }
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
+    eigen.computeDirect(a);
+    const Eigen::Vector3d values = eigen.eigenvalues(); // ascending
+    Eigen::Vector3d x = Eigen::Vector3d::Zero();
+    int rank = 0;
+    for (int k = 2; k >= 0 && rank < most_rank; --k) {
+        if (values[k] < least_singular * values[2] || values[k] <= 0) break;
+        const Eigen::Vector3d v = eigen.eigenvectors().col(k);
+        x += v * (v.dot(b) / values[k]);
+        ++rank;
+    }
+    const Eigen::Vector3d free = eigen.eigenvectors().col(0);
+    return {problem.mean + Vec3(x[0], x[1], x[2]), rank, Vec3(free[0], free[1], free[2])};
+}
+
+bool inside(const Vec3& p, const Problem& problem) {
+    const double slack = margin * problem.size;
+    for (unsigned k = 0; k < 3; ++k)
+        if (p[k] < problem.lo[k] + slack || p[k] > problem.lo[k] + problem.size - slack) return false;
+    return true;
+}
+
+Vec3 clamped(Vec3 p, const Problem& problem) {
+    const double slack = margin * problem.size;
+    for (unsigned k = 0; k < 3; ++k)
+        p[k] = std::clamp(p[k], problem.lo[k] + slack, problem.lo[k] + problem.size - slack);
+    return p;
+}
+
+/// Moves a point outside the box along a line into it, as little as possible; false if the line misses the
+/// box.
+bool slide_inside(Vec3& p, const Vec3& direction, const Problem& problem) {
+    double from = -std::numeric_limits<double>::infinity(), to = -from;
+    const double slack = margin * problem.size;
+    for (unsigned k = 0; k < 3; ++k) {
+        const double lo = problem.lo[k] + slack - p[k], hi = problem.lo[k] + problem.size - slack - p[k];
+        if (std::abs(direction[k]) < 1e-9) {
+            if (lo > 0 || hi < 0) return false;
+            continue;
+        }
+        const double s = lo / direction[k], t = hi / direction[k];
+        from = std::max(from, std::min(s, t));
+        to = std::min(to, std::max(s, t));
+    }
+    if (from > to) return false;
+    p += direction * std::clamp(0.0, from, to);
+    return true;
+}
+
+class Placer {
+public:
+    Placer(const OctreeLevel& level, const CornerLattice& lattice, const NormalSets& sets,
+           const RelationTest& related, const Crossings& crossings, const Fans& fans,
+           const std::vector<std::uint8_t>& crosses)
+        : level_(level),
+          lattice_(lattice),
+          sets_(sets),
+          related_(related),
+          crossings_(crossings),
+          fans_(fans),
+          crosses_(crosses) {}
+
+    std::size_t clamped_count = 0;
+
+    void place(Index fan, VertexPositions& result) {
+        gather(fan);
+        result.voxel[fan] = voxel_;
+        const int sheets = sheet_count(problem_.planes);
+        Solution solution = least_squares(problem_, sheets);
+        if (!inside(solution.position, problem_)) solution = kept_inside(solution);
+        result.positions[fan] = solution.position;
+        result.kinds[fan] = sheets == 1 || solution.rank < 2 ? VertexKind::smooth
+                            : solution.rank == 2             ? VertexKind::edge
+                                                             : VertexKind::corner;
+    }
+
+private:
+    void gather(Index fan) {
+        problem_.planes.clear();
+        problem_.size = level_.voxel_size;
+        const auto nodes = fans_.fan(fan);
+        const Crossing& some = crossings_.crossings[nodes[0] / 4];
+        const unsigned octant = Ring::octant(some.edge % 3, nodes[0] % 4);
+        voxel_ = lattice_.voxels[some.edge / 3][octant];
+        const VoxelCoord c = lattice_.coord(some.edge / 3);
+        for (unsigned k = 0; k < 3; ++k)
+            problem_.lo[k] = (c[k] + static_cast<int>(octant >> k & 1u) - 1) * level_.voxel_size;
+        problem_.mean = Vec3(0, 0, 0);
+        for (Node node : nodes) {
+            const Crossing& crossing = crossings_.crossings[node / 4];
+            const Vec3 p = crossing_position(lattice_, crossing, level_.voxel_size);
+            problem_.planes.push_back({crossing.normal, p, 1});
+            problem_.mean += p;
+        }
+        problem_.mean /= static_cast<double>(nodes.size());
+        if (voxel_ != no_index) add_own_sets(nodes);
+    }
+
+    /// The voxel's own sets: those of the fan's sheets, and those in a crease with them that cross no edge of
+    /// the voxel (a narrow rim).
+    void add_own_sets(std::span<const Node> nodes) {
+        near_.clear();
+        for (Node node : nodes) near_.push_back(crossings_.crossings[node / 4].set);
+        std::sort(near_.begin(), near_.end());
+        near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
+        const std::size_t crossing_sets = near_.size();
+        for (Index s = sets_.first[voxel_]; s < sets_.first[voxel_ + 1]; ++s) {
+            const bool same = std::any_of(
+                near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(crossing_sets), [&](Index t) {
+                    return s == t || related_(sets_.sets[s], sets_.sets[t]) == Relation::smooth;
+                });
+            if (!same) continue;
+            add_plane(s);
+            near_.push_back(s);
+        }
+        for (Index s = sets_.first[voxel_]; s < sets_.first[voxel_ + 1]; ++s) {
+            if (crosses_[s] || std::find(near_.begin(), near_.end(), s) != near_.end()) continue;
+            const bool crease = std::any_of(near_.begin(), near_.end(), [&](Index t) {
+                const Relation r = related_(sets_.sets[s], sets_.sets[t]);
+                return r == Relation::convex || r == Relation::concave;
+            });
+            if (crease) add_plane(s);
+        }
+    }
+
+    void add_plane(Index s) {
+        const NormalSet& set = sets_.sets[s];
+        problem_.planes.push_back({set.normal, set.centroid, 0.5 * std::min<double>(set.count, 6)});
+    }
+
+    Solution kept_inside(Solution solution) {
+        if (solution.rank == 3) {
+            const Solution edge = least_squares(problem_, 2);
+            if (inside(edge.position, problem_)
+                && (edge.position - solution.position).norm() < 0.5 * problem_.size)
+                return edge;
+        }
+        Vec3 p = solution.position;
+        if (solution.rank == 2 && slide_inside(p, solution.free, problem_)) {
+            solution.position = p;
+            return solution;
+        }
+        if ((solution.position - clamped(solution.position, problem_)).norm() > 0.5 * problem_.size) {
+            // Planes that meet far away say nothing about this voxel.
+            const Solution plane = least_squares(problem_, 1);
+            solution = inside(plane.position, problem_) ? plane : Solution{problem_.mean, 1, plane.free};
+        }
+        ++clamped_count;
+        solution.position = clamped(solution.position, problem_);
+        return solution;
+    }
+
+    const OctreeLevel& level_;
+    const CornerLattice& lattice_;
+    const NormalSets& sets_;
+    const RelationTest& related_;
+    const Crossings& crossings_;
+    const Fans& fans_;
+    const std::vector<std::uint8_t>& crosses_;
+    Problem problem_;
+    std::vector<Index> near_;
+    Index voxel_ = no_index;
+};
+
+/// Which sets belong to a sheet that crosses an edge of their own voxel.
+std::vector<std::uint8_t> sets_that_cross(const CornerLattice& lattice, const NormalSets& sets,
+                                          const RelationTest& related, const Crossings& crossings,
+                                          const Fans& fans) {
+    std::vector<std::uint8_t> crosses(sets.sets.size(), 0);
+    std::vector<std::vector<Index>> found(chunk_count(fans.size(), fans_per_chunk));
+    for_chunks(fans.size(), fans_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        for (std::size_t v = begin; v < end; ++v)
+            for (Node node : fans.fan(static_cast<Index>(v))) {
+                const Crossing& x = crossings.crossings[node / 4];
+                const Index voxel = lattice.voxels[x.edge / 3][Ring::octant(x.edge % 3, node % 4)];
+                if (voxel == no_index) continue;
+                for (Index s = sets.first[voxel]; s < sets.first[voxel + 1]; ++s)
+                    if (s == x.set || related(sets.sets[s], sets.sets[x.set]) == Relation::smooth)
+                        found[chunk].push_back(s);
+            }
+    });
+    for (const auto& list : found)
+        for (Index s : list) crosses[s] = 1;
+    return crosses;
+}
+
+} // namespace
+
+VertexPositions place_vertices(const Octree&, const OctreeLevel& level, const CornerLattice& lattice,
+                               const NormalSets& sets, const RelationTest& related,
+                               const Crossings& crossings, const Fans& fans) {
+    VertexPositions result;
+    result.positions.resize(fans.size());
+    result.kinds.resize(fans.size());
+    result.voxel.resize(fans.size());
+    const auto crosses = sets_that_cross(lattice, sets, related, crossings, fans);
+    std::vector<std::size_t> clamped_counts(chunk_count(fans.size(), fans_per_chunk));
+    for_chunks(fans.size(), fans_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        Placer placer(level, lattice, sets, related, crossings, fans, crosses);
+        for (std::size_t v = begin; v < end; ++v) placer.place(static_cast<Index>(v), result);
+        clamped_counts[chunk] = placer.clamped_count;
+    });
+    for (std::size_t c : clamped_counts) result.clamped += c;
+    return result;
+}
+
+} // namespace hsdm

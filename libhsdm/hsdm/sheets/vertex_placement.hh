@@ -1,0 +1,25 @@
+#pragma once
+// Section 3.4.2, where a vertex lies: on its sheet, or where the sheets of a crease or a corner meet.
+
+#include "hsdm/sheets/fans.hh"
+
+namespace hsdm {
+
+/// Vertex kinds of section 3.3, known here from the number of sheets that meet.
+enum class VertexKind : std::uint8_t { smooth = 0, edge = 1, corner = 2 };
+
+struct VertexPositions {
+    std::vector<Vec3> positions; ///< per fan, relative to the octree's origin
+    std::vector<VertexKind> kinds;
+    std::vector<Index> voxel; ///< per fan, its voxel, or no_index where no point lies in it
+    std::size_t clamped = 0;  ///< kept in their voxel although their planes meet outside
+};
+
+/// Least squares over the planes of the fan's crossings and of the voxel's own sets, towards their mean
+/// point, with as many directions as sheets meet (one, two, three); kept inside the voxel. O(crossings),
+/// parallel.
+VertexPositions place_vertices(const Octree& octree, const OctreeLevel& level, const CornerLattice& lattice,
+                               const NormalSets& sets, const RelationTest& related,
+                               const Crossings& crossings, const Fans& fans);
+
+} // namespace hsdm
