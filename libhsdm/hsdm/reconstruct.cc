@@ -1,6 +1,6 @@
 #include "hsdm/reconstruct.hh"
 
-#include "hsdm/basic_method.hh"
+#include "hsdm/extended_method.hh"
 #include "hsdm/facets/to_mesh.hh"
 #include "hsdm/features/features.hh"
 #include "hsdm/octree/spacing.hh"
@@ -43,7 +43,6 @@ void validate(const ReconstructOptions& o) {
         throw OptionError("normal_smoothing " + std::to_string(o.normal_smoothing) + ": must be 0 or more");
     if (o.threads < 0)
         throw OptionError("threads " + std::to_string(o.threads) + ": must be 0 (all) or more");
-    if (o.method == Method::extended) throw OptionError("method extended is not available yet; use basic");
     if (o.normals == NormalSource::estimate)
         throw OptionError("normals estimate is not available yet; use given or auto");
 }
@@ -144,12 +143,18 @@ private:
     int voxel_depth_ = 0;
 };
 
+/// Points with normals are worth the extended method; it cannot do without.
+Method method_for(const PointCloud& cloud, const ReconstructOptions& options) {
+    if (options.method != Method::automatic) return options.method;
+    return cloud.has_normals() ? Method::extended : Method::basic;
+}
+
 std::string name_of(Holes holes) {
     return holes == Holes::keep ? "keep" : holes == Holes::close ? "close" : "auto";
 }
 
-void note_options(const ReconstructOptions& options, Report& report) {
-    report.options["method"] = "basic";
+void note_options(const PointCloud& cloud, const ReconstructOptions& options, Report& report) {
+    report.options["method"] = method_for(cloud, options) == Method::extended ? "extended" : "basic";
     report.options["normals"] = options.normals == NormalSource::given ? "given" : "auto";
     report.options["holes"] = name_of(options.holes);
     report.options["crease-degrees"] = text_of(options.crease_angle * 180 / std::numbers::pi);
@@ -214,7 +219,9 @@ Reconstruction reconstruct_level(const PointCloud& cloud, const Octree& octree, 
     report.grid.leaves_per_level.assign(static_cast<std::size_t>(depth) + 1, 0);
     report.grid.leaves_per_level.back() = level.size();
 
-    PolygonMesh facets = basic_method({cloud, octree, level, options, phases}, report);
+    const MethodInput input{cloud, octree, level, options, phases};
+    PolygonMesh facets = method_for(cloud, options) == Method::extended ? extended_method(input, report)
+                                                                        : basic_method(input, report);
     if (facets.facet_count() == 0)
         throw Error("no facet came out of " + std::to_string(level.size()) + " voxels at depth "
                     + std::to_string(depth)
@@ -243,11 +250,13 @@ std::vector<Reconstruction> run(const PointCloud& cloud, const ReconstructOption
     const FiniteCloud finite(cloud);
     if (options.normals == NormalSource::given && !(*finite).has_normals())
         throw Error("normals given were asked for, but the cloud has none");
+    if (options.method == Method::extended && !(*finite).has_normals())
+        throw Error("the extended method needs normals and the cloud has none; use --method basic");
     Decomposition decomposition(*finite, options, Phases(options, 0, 1));
     Report& report = decomposition.report;
     report.input.dropped_nonfinite = finite.dropped();
     report.threads = tbb::this_task_arena::max_concurrency();
-    note_options(options, report);
+    note_options(*finite, options, report);
     if (range) {
         report.options["levels"] = std::to_string(range->first) + ":" + std::to_string(range->second);
         report.options["resolution"] = "as asked by levels";

@@ -11,9 +11,12 @@ namespace {
 /// with four facets; a vertex in the middle of all but the first keeps them apart.
 class Midpoints {
 public:
-    Midpoints(const CornerLattice& lattice, const Crossings& crossings, const Links& links, const Fans& fans,
-              double h, VertexPositions& vertices)
+    Midpoints(const CornerLattice& lattice, const NormalSets& sets, const Crossings& crossings,
+              const Links& links, const Fans& fans, double h, VertexPositions& vertices)
         : of_side_(crossings.crossings.size() * (links.crowded.empty() ? 0 : 4), no_index), count_(0) {
+        const auto voxel_of = [&](const Link& side) {
+            return sets.sets[crossings.crossings[side.crossing].set].voxel;
+        };
         std::vector<std::pair<Index, Index>> seen;
         for (const Link& end : links.crowded) {
             if (end.crossing == no_index) {
@@ -33,7 +36,7 @@ public:
                     const Vec3 b = crossing_position(lattice, crossings.crossings[other.crossing], h);
                     vertices.positions.push_back(strip ? (&side == &end ? a : b) : 0.5 * (a + b));
                     vertices.kinds.push_back(VertexKind::smooth);
-                    vertices.voxel.push_back(no_index);
+                    vertices.voxel.push_back(voxel_of(end));
                     ++count_;
                     of_side_[4 * side.crossing + side.face] = vertex;
                     if (!strip)
@@ -182,7 +185,7 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
     const Fans fans = build_fans(crossings, links);
     VertexPositions vertices = place_vertices(octree, level, lattice, sets, related, crossings, fans);
 
-    const Midpoints midpoints(lattice, crossings, links, fans, h, vertices);
+    const Midpoints midpoints(lattice, sets, crossings, links, fans, h, vertices);
     result.midpoints = midpoints.count();
     FacetBuilder builder(crossings, links, fans, midpoints, vertices, result.mesh);
     for (Index x = 0; x < crossings.crossings.size(); ++x) builder.add_facet(x);
@@ -190,8 +193,12 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
     for (const std::vector<Index>& cap : fans.caps) result.mesh.add_facet(cap);
 
     result.mesh.positions = std::move(vertices.positions);
-    for (Vec3& p : result.mesh.positions) p += octree.origin;
     add_properties(vertices, result.mesh);
+    if (options.fill) {
+        FillHolesOptions holes = options.holes;
+        holes.max_diameter *= h;
+        result.holes = fill_holes(result.mesh, holes);
+    }
     result.manifold = make_manifold(result.mesh);
     take_properties(result);
     result.crossings = crossings.crossings.size();

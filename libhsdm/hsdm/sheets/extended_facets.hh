@@ -1,6 +1,7 @@
 #pragma once
 // Section 3.4.2 as a whole: sets -> local sheets -> crossings -> pairs -> fans -> facets.
 
+#include "hsdm/facets/fill_holes.hh"
 #include "hsdm/facets/manifold.hh"
 #include "hsdm/sheets/vertex_placement.hh"
 
@@ -9,15 +10,18 @@ namespace hsdm {
 struct ExtendedOptions {
     RelationOptions relation;
     CrossingOptions crossing;
+    FillHolesOptions holes; ///< lengths in voxels here
+    bool fill = true;       ///< close small boundary loops
 };
 
 struct ExtendedFacets {
-    PolygonMesh mesh;              ///< in the cloud's coordinates
+    PolygonMesh mesh;              ///< relative to the octree's origin; an oriented 2-manifold
     std::vector<VertexKind> kinds; ///< per vertex
-    std::vector<Index> voxel;      ///< per vertex, its voxel, or no_index
+    std::vector<Index> voxel;      ///< per vertex, the occupied voxel it stands for
     std::size_t crossings = 0, beyond_crease = 0, trimmed = 0, open = 0, rims = 0, cut = 0, clamped = 0;
     std::size_t midpoints = 0; ///< vertices added so that no two mesh edges join the same two vertices
-    ManifoldCounts manifold;   ///< what the last check still had to mend
+    FillHolesCounts holes;
+    ManifoldCounts manifold; ///< what the last check still had to mend
 };
 
 ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,

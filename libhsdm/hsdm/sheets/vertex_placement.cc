@@ -125,7 +125,8 @@ public:
 
     void place(Index fan, VertexPositions& result) {
         gather(fan);
-        result.voxel[fan] = voxel_;
+        const Index nearest = sets_.sets[crossings_.crossings[fans_.fan(fan)[0] / 4].set].voxel;
+        result.voxel[fan] = voxel_ != no_index ? voxel_ : nearest;
         const int sheets = sheet_count(problem_.planes);
         Solution solution = least_squares(problem_, sheets);
         if (!inside(solution.position, problem_)) solution = kept_inside(solution);

@@ -11,7 +11,7 @@ enum class VertexKind : std::uint8_t { smooth = 0, edge = 1, corner = 2 };
 struct VertexPositions {
     std::vector<Vec3> positions; ///< per fan, relative to the octree's origin
     std::vector<VertexKind> kinds;
-    std::vector<Index> voxel; ///< per fan, its voxel, or no_index where no point lies in it
+    std::vector<Index> voxel; ///< per fan, its voxel; where no point lies in it, that of the nearest set
     std::size_t clamped = 0;  ///< kept in their voxel although their planes meet outside
 };
 

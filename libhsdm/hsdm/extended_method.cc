@@ -1,0 +1,58 @@
+#include "hsdm/extended_method.hh"
+
+#include "hsdm/attributes.hh"
+#include "hsdm/debug_phases.hh"
+#include "hsdm/sheets/extended_facets.hh"
+
+namespace hsdm {
+namespace {
+
+/// keep closes nothing, auto the loops that are small against the sampling, close all.
+ExtendedOptions extended_options(const ReconstructOptions& options) {
+    ExtendedOptions result;
+    result.fill = options.holes != Holes::keep;
+    if (options.holes == Holes::close) {
+        result.holes.max_edges = FillHolesOptions::no_limit;
+    } else {
+        result.holes.max_edges = 16;
+        result.holes.max_diameter = 4;
+    }
+    return result;
+}
+
+void note_counts(const ExtendedFacets& facets, Report& report) {
+    report.rejected["crossings_beyond_crease"] = facets.beyond_crease;
+    report.rejected["crossings_beyond_data"] = facets.trimmed;
+    report.rejected["vertices_clamped"] = facets.clamped;
+    report.rejected["edges_halved"] = facets.midpoints;
+    report.rejected["holes_closed"] = facets.holes.closed;
+    report.rejected["holes_refused"] = facets.holes.refused;
+    report.rejected["facets_degenerate"] = facets.manifold.degenerate;
+    report.rejected["facets_cancelled"] = facets.manifold.cancelled;
+    report.rejected["facets_duplicate"] = facets.manifold.duplicates;
+    report.rejected["edges_opened"] = facets.manifold.opened_edges;
+    report.rejected["vertices_split"] = facets.manifold.split_vertices;
+}
+
+} // namespace
+
+PolygonMesh extended_method(const MethodInput& in, Report& report) {
+    const std::string& debug = in.options.debug_dir;
+    if (!debug.empty()) write_debug_voxels(debug, in.octree, in.level);
+    const NormalSets sets = in.phases.run("sets", 0.2, report.seconds.graph,
+                                          [&] { return build_normal_sets(in.octree, in.level); });
+    report.grid.sets = sets.sets.size();
+    ExtendedFacets facets = in.phases.run("facets", 0.3, report.seconds.facets, [&] {
+        return reconstruct_extended(in.octree, in.level, sets, extended_options(in.options));
+    });
+    note_counts(facets, report);
+    facets.mesh.properties = average_attributes(in.cloud, in.octree, in.level, facets.voxel);
+    if (!debug.empty()) {
+        PolygonMesh placed = facets.mesh;
+        for (Vec3& p : placed.positions) p += in.octree.origin;
+        write_debug_facets(debug, in.level, placed);
+    }
+    return std::move(facets.mesh);
+}
+
+} // namespace hsdm
