@@ -77,6 +77,8 @@ public:
           mesh_(mesh) {}
 
     void add_facet(Index x) {
+        if (crossings_.crossings[x].edge != edge_) diagonals_.clear();
+        edge_ = crossings_.crossings[x].edge;
         polygon_.clear();
         for (std::uint8_t j = 0; j < 4; ++j) {
             add(fans_.of_node[4 * x + j]);
@@ -135,6 +137,10 @@ private:
             const double fold = (n0 | n1) / std::max(n0.norm() * n1.norm(), 1e-300);
             const double other = (m0 | m1) / std::max(m0.norm() * m1.norm(), 1e-300);
             if (fold > 0.9 || other > 0.95) continue;
+            // Two sheets crossing one grid edge may fold along the same two vertices; one edge cannot serve both.
+            const std::pair<Index, Index> diagonal = std::minmax(a, c);
+            if (std::find(diagonals_.begin(), diagonals_.end(), diagonal) != diagonals_.end()) continue;
+            diagonals_.push_back(diagonal);
             const std::array<Index, 3> t0{a, b, c}, t1{a, c, e};
             mesh_.add_facet(t0);
             mesh_.add_facet(t1);
@@ -150,6 +156,8 @@ private:
     const VertexPositions& vertices_;
     PolygonMesh& mesh_;
     std::vector<Index> polygon_;
+    Index edge_ = no_index; // of the crossing whose facet was added last
+    std::vector<std::pair<Index, Index>> diagonals_; // that cut facets round that edge
 };
 
 /// Kind and voxel travel with the vertices as properties while these are split or dropped.
