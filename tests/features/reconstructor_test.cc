@@ -30,7 +30,11 @@ TEMPLATE_TEST_CASE("a mesh's vertices become a surface in the same mesh", "", EV
     OpenMesh::VPropHandleT<int> mine;
     mesh.add_property(mine, "mine");
     add_points(mesh, sphere(40));
-    for (const auto v : mesh.vertices()) mesh.property(mine, v) = 7;
+    for (const auto v : mesh.vertices()) {
+        mesh.property(mine, v) = 7;
+        mesh.set_normal(v, to_normal<typename TestType::Normal>(
+                               Vec3(mesh.point(v)[0], mesh.point(v)[1], mesh.point(v)[2])));
+    }
 
     ReconstructorT<TestType> reconstructor(mesh);
     ReconstructOptions options;
