@@ -1,8 +1,9 @@
 #include "hsdm/extended_method.hh"
 
 #include "hsdm/attributes.hh"
-#include "hsdm/debug_phases.hh"
+#include "hsdm/graph/phase_geometry.hh"
 #include "hsdm/sheets/extended_facets.hh"
+#include "hsdm/sheets/extended_graph.hh"
 
 namespace hsdm {
 namespace {
@@ -37,8 +38,6 @@ void note_counts(const ExtendedFacets& facets, Report& report) {
 } // namespace
 
 PolygonMesh extended_method(const MethodInput& in, Report& report) {
-    const std::string& debug = in.options.debug_dir;
-    if (!debug.empty()) write_debug_voxels(debug, in.octree, in.level);
     const NormalSets sets = in.phases.run("sets", 0.2, report.seconds.graph,
                                           [&] { return build_normal_sets(in.octree, in.level); });
     report.grid.sets = sets.sets.size();
@@ -47,10 +46,11 @@ PolygonMesh extended_method(const MethodInput& in, Report& report) {
     });
     note_counts(facets, report);
     facets.mesh.properties = average_attributes(in.cloud, in.octree, in.level, facets.voxel);
-    if (!debug.empty()) {
+    if (!in.options.debug_dir.empty()) {
         PolygonMesh placed = facets.mesh;
         for (Vec3& p : placed.positions) p += in.octree.origin;
-        write_debug_facets(debug, in.level, placed);
+        write_phases(in.options.debug_dir + "/d" + std::to_string(in.level.depth), in.octree, in.level,
+                     extended_graph(facets.mesh, facets.voxel), placed);
     }
     return std::move(facets.mesh);
 }

@@ -137,7 +137,8 @@ private:
             const double fold = (n0 | n1) / std::max(n0.norm() * n1.norm(), 1e-300);
             const double other = (m0 | m1) / std::max(m0.norm() * m1.norm(), 1e-300);
             if (fold > 0.9 || other > 0.95) continue;
-            // Two sheets crossing one grid edge may fold along the same two vertices; one edge cannot serve both.
+            // Two sheets crossing one grid edge may fold along the same two vertices; one edge cannot serve
+            // both.
             const std::pair<Index, Index> diagonal = std::minmax(a, c);
             if (std::find(diagonals_.begin(), diagonals_.end(), diagonal) != diagonals_.end()) continue;
             diagonals_.push_back(diagonal);
@@ -156,7 +157,7 @@ private:
     const VertexPositions& vertices_;
     PolygonMesh& mesh_;
     std::vector<Index> polygon_;
-    Index edge_ = no_index; // of the crossing whose facet was added last
+    Index edge_ = no_index;                          // of the crossing whose facet was added last
     std::vector<std::pair<Index, Index>> diagonals_; // that cut facets round that edge
 };
 
