@@ -54,6 +54,9 @@ int run_command(int argc, char** argv) {
                "Exit status: 0 all done, 1 an input failed, 2 wrong usage, 130 cancelled.");
     Run run;
     add_reconstruct(app, run);
+    add_info(app, run);
+    add_compare(app, run);
+    add_process(app, run);
     add_regress(app, run);
     try {
         app.parse(argc, argv);

@@ -34,7 +34,7 @@ TEST_CASE("a scan becomes a mesh, a report and features with one command", "[cli
 TEST_CASE("every format is written under its extension", "[cli]") {
     const Folder folder;
     folder.write("scan.xyz", xyz(sphere_scan()));
-    for (const char* name : {"a.off", "a.stl", "a.ply", "a.obj"}) {
+    for (const char* name : {"a.off", "a.stl", "a.ply", "a.obj", "a.om"}) {
         INFO(name);
         CHECK(run(folder, std::string("reconstruct scan.xyz --depth 4 --quiet -o ") + name).status == 0);
         CHECK(read_file(folder / name).size() > 1000);
