@@ -119,7 +119,11 @@ std::vector<std::string> plugin_folders() {
     }
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    if (!error) folders.push_back(program.parent_path().parent_path() / "lib" / "hsdm" / "plugins");
+    if (error) return folders;
+    const fs::path above = program.parent_path().parent_path();
+    for (const fs::path& root :
+         {above, above.parent_path()}) // installed, or two folders deep in a build tree
+        folders.push_back(root / "lib" / "hsdm" / "plugins");
     return folders;
 }
 

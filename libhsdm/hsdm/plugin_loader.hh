@@ -35,7 +35,8 @@ private:
 };
 
 /// Where modules are looked for, in this order: the folders of the environment variable HSDM_PLUGIN_PATH
-/// (separated by ':'), then ../lib/hsdm/plugins beside the running program's folder, installed or built.
+/// (separated by ':'), then lib/hsdm/plugins one and two folders above the running program's own: where it is
+/// installed, and where it is built.
 std::vector<std::string> plugin_folders();
 
 /// The module NAME.so of the first folder that has one; a name with a '/' is a path. Throws Error; where

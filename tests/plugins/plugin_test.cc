@@ -118,10 +118,10 @@ TEST_CASE("HSDM_PLUGIN_PATH comes before the program's own folder") {
     setenv("HSDM_PLUGIN_PATH", "/first::/second", 1);
     const auto all = plugin_folders();
     unsetenv("HSDM_PLUGIN_PATH");
-    REQUIRE(all.size() == 3);
+    REQUIRE(all.size() == 4);
     CHECK(all[0] == "/first");
     CHECK(all[1] == "/second");
-    CHECK(plugin_folders().size() == 1);
+    CHECK(plugin_folders().size() == 2);
 }
 
 TEST_CASE("a request reads name:key=value,key=value") {
