@@ -68,7 +68,7 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
     add_choice<Method>(
         app, "--method", a.method,
         {{"auto", Method::automatic}, {"basic", Method::basic}, {"extended", Method::extended}},
-        "basic: from the positions alone; extended: with normals; auto: the best there is")
+        "basic: from the positions alone; extended: with normals; auto: extended where there are normals")
         ->group(method);
     add_choice<NormalSource>(app, "--normals", a.normals,
                              {{"auto", NormalSource::automatic},
@@ -154,7 +154,6 @@ ReconstructOptions ReconstructArguments::options() const {
     refuse(grid == "adaptive", "--grid adaptive");
     refuse(!memory.empty(), "--memory");
     refuse(normals == NormalSource::estimate, "--normals estimate");
-    refuse(method == Method::extended, "--method extended");
     ReconstructOptions o;
     o.depth = depth;
     o.voxel_size = voxel_size;
