@@ -91,6 +91,7 @@ struct ChunkFans {
     std::vector<Node> nodes;
     std::vector<Index> sizes;
     std::vector<std::pair<std::size_t, std::size_t>> caps; // first fan, number of fans
+    std::vector<std::size_t> after_cut;
     std::size_t cut = 0;
 };
 
@@ -110,6 +111,7 @@ Fans build_fans(const Crossings& crossings, const Links& links) {
             const Cut cut = cut_at_rims(chain);
             const std::size_t pieces = cut.first.size() - 1;
             if (pieces > 1) ++chunk.cut;
+            for (std::size_t i = 1; i < pieces; ++i) chunk.after_cut.push_back(chunk.sizes.size() + i);
             if (pieces > 2 && chain.closed) chunk.caps.emplace_back(chunk.sizes.size(), pieces);
             chunk.nodes.insert(chunk.nodes.end(), cut.nodes.begin(), cut.nodes.end());
             for (std::size_t i = 0; i < pieces; ++i)
@@ -122,6 +124,7 @@ Fans build_fans(const Crossings& crossings, const Links& links) {
         fans.cut += chunk.cut;
         fans.nodes.insert(fans.nodes.end(), chunk.nodes.begin(), chunk.nodes.end());
         for (Index size : chunk.sizes) fans.first.push_back(fans.first.back() + size);
+        for (std::size_t fan : chunk.after_cut) fans.after_cut.push_back(base + static_cast<Index>(fan));
         for (const auto& [first, count] : chunk.caps) {
             std::vector<Index> cap;
             for (std::size_t i = 0; i < count; ++i) cap.push_back(base + static_cast<Index>(first + i));

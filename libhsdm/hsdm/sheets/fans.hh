@@ -16,7 +16,8 @@ struct Fans {
     std::vector<Index> of_node; ///< per node, its fan
     /// Voxels where the two sides of a thin part and its rims leave a polygon between three or more fans.
     std::vector<std::vector<Index>> caps;
-    std::size_t cut = 0; ///< chains cut at rims into two or more vertices
+    std::vector<Index> after_cut; ///< fans that were cut off the fan before them, in the same voxel
+    std::size_t cut = 0;          ///< chains cut at rims into two or more vertices
 
     std::size_t size() const { return first.size() - 1; }
     std::span<const Node> fan(Index v) const {

@@ -321,9 +321,15 @@ std::size_t extend_lattice(CornerLattice& lattice, LocalSheets& sheets, const Oc
     lattice.index.build(lattice.codes);
     lattice.voxels.resize(lattice.size());
     lattice.next.resize(lattice.size());
-    for_chunks(lattice.size(), corners_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i) connect_corner(lattice, i, level);
-    });
+    for (std::size_t i = n; i < lattice.size(); ++i) {
+        connect_corner(lattice, i, level);
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            VoxelCoord below = lattice.coord(static_cast<Index>(i));
+            --below[axis];
+            const Index corner = lattice.index.find(CornerLattice::code(below));
+            if (corner != no_index) lattice.next[corner][axis] = static_cast<Index>(i);
+        }
+    }
     sheets.first_member.resize(lattice.size() + 1, sheets.first_member.back());
     sheets.first_sheet.resize(lattice.size() + 1, sheets.first_sheet.back());
     return missing.size();

@@ -13,6 +13,7 @@ namespace {
 constexpr std::size_t fans_per_chunk = 1024;
 constexpr double margin = 0.01;           // voxels: vertices stay this far from their voxel's faces
 constexpr double least_singular = 0.003;  // eigenvalues below this share of the largest are cut
+constexpr double side_gap = 0.02;         // voxels: half the least distance between two sides cut apart
 constexpr double new_sheet_cosine = 0.77; // normals farther apart than 40 degrees belong to different sheets
 
 struct Plane {
@@ -246,6 +247,24 @@ std::vector<std::uint8_t> sets_that_cross(const CornerLattice& lattice, const No
     return crosses;
 }
 
+/// The sides of a thin part cut apart in one voxel may end on the same point, and the facets between them
+/// would have no area: such neighbours move apart, each along its own sheet's normal.
+void separate_sides(const Crossings& crossings, const Fans& fans, double voxel_size,
+                    std::vector<Vec3>& positions) {
+    const auto outward = [&](std::size_t v) {
+        Vec3 sum(0, 0, 0);
+        for (Node node : fans.fan(static_cast<Index>(v))) sum += crossings.crossings[node / 4].normal;
+        const double length = sum.norm();
+        return length > 0 ? sum / length : Vec3(0, 0, 1);
+    };
+    for (std::size_t v : fans.after_cut) {
+        const Vec3 d = positions[v] - positions[v - 1], one = outward(v - 1), other = outward(v);
+        if (std::max(std::abs(d | one), std::abs(d | other)) > 2 * side_gap * voxel_size) continue;
+        positions[v - 1] += one * (side_gap * voxel_size);
+        positions[v] += other * (side_gap * voxel_size);
+    }
+}
+
 } // namespace
 
 VertexPositions place_vertices(const Octree&, const OctreeLevel& level, const CornerLattice& lattice,
@@ -263,6 +282,7 @@ VertexPositions place_vertices(const Octree&, const OctreeLevel& level, const Co
         clamped_counts[chunk] = placer.clamped_count;
     });
     for (std::size_t c : clamped_counts) result.clamped += c;
+    separate_sides(crossings, fans, level.voxel_size, result.positions);
     return result;
 }
 

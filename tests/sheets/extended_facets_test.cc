@@ -1,0 +1,170 @@
+#include "hsdm/sheets/extended_facets.hh"
+#include "hsdm/sheets/extended_graph.hh"
+#include "support/check.hh"
+#include "support/sample.hh"
+
+#include <catch2/catch.hpp>
+#include <tbb/global_control.h>
+
+#include <cmath>
+
+using namespace hsdm;
+using support::faults;
+
+namespace {
+
+PointCloud scan(const support::Solid& solid, std::size_t points, std::uint64_t seed = 1) {
+    support::SampleOptions options;
+    options.points = points;
+    options.seed = seed;
+    return support::sample(solid, options);
+}
+
+ExtendedFacets facets_of(const PointCloud& cloud, double voxel_size, const ExtendedOptions& options = {}) {
+    OctreeOptions octree_options;
+    const double extent = cloud.bounds().extent();
+    int depth = 1;
+    while (voxel_size * (1 << depth) < extent) ++depth;
+    octree_options.cube_extent = voxel_size * (1 << depth);
+    const Octree octree = build_octree(cloud, octree_options);
+    const OctreeLevel level = extract_level(octree, depth);
+    ExtendedFacets facets = reconstruct_extended(octree, level, build_normal_sets(octree, level), options);
+    for (Vec3& p : facets.mesh.positions) p += octree.origin;
+    return facets;
+}
+
+support::Pose pose(std::uint64_t seed) {
+    support::Random random(seed);
+    return support::random_pose(random);
+}
+
+} // namespace
+
+TEST_CASE("smooth and sharp solids in general pose come out closed, of the right genus, near the surface",
+          "[sheets]") {
+    struct Example {
+        const char* name;
+        support::Solid solid;
+        std::size_t points;
+        double voxel;
+        long euler;
+        double tolerance; // voxels
+    };
+    const std::vector<Example> examples = {
+        {"sphere", support::sphere(1), 20000, 0.125, 2, 0.15},
+        {"torus", support::torus(1, 0.35), 40000, 0.1, 0, 0.15},
+        {"box", support::box({1, 1.3, 0.8}), 30000, 0.1, 2, 0.25},
+        {"wedge", support::wedge(0.52, 1, 1), 30000, 0.08, 2, 0.5},
+        {"mechanical part", support::mechanical_part(), 100000, 0.1, -4, 0.3},
+    };
+    for (const Example& e : examples)
+        for (std::uint64_t seed : {1, 2, 3}) {
+            INFO(e.name << ", pose " << seed);
+            const support::Solid solid = e.solid.placed(pose(seed));
+            const ExtendedFacets facets = facets_of(scan(solid, e.points, seed), e.voxel);
+            const Topology t = measure_topology(facets.mesh);
+            CHECK(faults(facets.mesh) == "");
+            CHECK(t.closed());
+            CHECK(t.euler == e.euler);
+            CHECK(t.components == 1);
+            CHECK(support::farthest_vertex(facets.mesh, solid) < e.tolerance * e.voxel);
+            CHECK(static_cast<double>(t.quads) > 0.9 * static_cast<double>(t.faces));
+        }
+}
+
+TEST_CASE("the two sides of a plate in one voxel stay two, and the rim closes them", "[sheets]") {
+    for (double voxel : {0.04, 0.08})
+        for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+            INFO("plate of 0.02, voxel " << voxel << ", pose " << seed);
+            const support::Solid plate = support::box({1, 0.7, 0.02}).placed(pose(seed));
+            const ExtendedFacets facets = facets_of(scan(plate, 60000, seed), voxel);
+            const Topology t = measure_topology(facets.mesh);
+            CHECK(faults(facets.mesh) == "");
+            CHECK(t.closed());
+            CHECK(t.euler == 2);
+        }
+}
+
+TEST_CASE("nested spheres half a voxel apart stay two closed surfaces", "[sheets]") {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        INFO("pose " << seed);
+        const support::Solid shell = support::nested_spheres(1, 0.95).placed(pose(seed));
+        const ExtendedFacets facets = facets_of(scan(shell, 100000, seed), 0.1);
+        const Topology t = measure_topology(facets.mesh);
+        CHECK(faults(facets.mesh) == "");
+        CHECK(t.closed());
+        CHECK(t.components == 2);
+        CHECK(t.euler == 4);
+    }
+}
+
+TEST_CASE("every corner of a box gets a vertex of its own", "[sheets]") {
+    const support::Pose placed = pose(5);
+    const ExtendedFacets facets = facets_of(scan(support::box({1, 1, 1}).placed(placed), 30000), 0.12);
+    for (unsigned k = 0; k < 8; ++k) {
+        const Vec3 corner = placed.to_world(Vec3(k & 1 ? 0.5 : -0.5, k & 2 ? 0.5 : -0.5, k & 4 ? 0.5 : -0.5));
+        double nearest = 1;
+        for (const Vec3& p : facets.mesh.positions) nearest = std::min(nearest, (p - corner).norm());
+        CHECK(nearest < 0.25 * 0.12);
+    }
+}
+
+TEST_CASE("an open sheet keeps its border and does not grow beyond the points by a voxel", "[sheets]") {
+    PointCloud cloud;
+    support::Random random(4);
+    for (int i = 0; i < 20000; ++i) {
+        cloud.positions.emplace_back(random.uniform(0, 1), random.uniform(0, 1),
+                                     0.1 * random.uniform(0, 1e-3));
+        cloud.normals.emplace_back(0, 0, 1);
+    }
+    const double voxel = 0.06;
+    const ExtendedFacets facets = facets_of(cloud, voxel);
+    const Topology t = measure_topology(facets.mesh);
+    CHECK(faults(facets.mesh) == "");
+    CHECK(t.boundary_loops == 1);
+    CHECK(t.euler == 1);
+    const Box box = cloud.bounds();
+    for (const Vec3& p : facets.mesh.positions)
+        for (unsigned k : {0u, 1u}) {
+            CHECK(p[k] > box.lo[k] - voxel);
+            CHECK(p[k] < box.hi[k] + voxel);
+        }
+}
+
+TEST_CASE("whatever the normals, the facets are an oriented 2-manifold", "[sheets]") {
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+        PointCloud cloud = scan(support::random_solid(seed), 8000, seed);
+        support::Random random(seed);
+        for (Vec3& n : cloud.normals)
+            if (random.uniform(0, 1) < 0.1 * static_cast<double>(seed % 5)) n = -n; // some flipped
+        if (seed % 3 == 0)
+            for (Vec3& n : cloud.normals)
+                n = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+        INFO("seed " << seed);
+        const ExtendedFacets facets = facets_of(cloud, 0.1);
+        const Topology t = measure_topology(facets.mesh);
+        CHECK(t.manifold());
+        CHECK(t.misoriented_edges == 0);
+        CHECK(t.degenerate_facets == 0);
+        CHECK(t.duplicate_facets == 0);
+        CHECK(t.isolated_vertices == 0);
+    }
+}
+
+TEST_CASE("the extended facets do not depend on the number of threads", "[sheets]") {
+    const PointCloud cloud = scan(support::mechanical_part(pose(1)), 60000);
+    const ExtendedFacets many = facets_of(cloud, 0.1);
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const ExtendedFacets single = facets_of(cloud, 0.1);
+    CHECK(many.mesh.positions == single.mesh.positions);
+    CHECK(many.mesh.corners == single.mesh.corners);
+    CHECK(many.kinds == single.kinds);
+}
+
+TEST_CASE("the extended graph has the facets' edges, each with its twin", "[sheets]") {
+    const ExtendedFacets facets = facets_of(scan(support::sphere(1), 20000), 0.125);
+    const ConnectivityGraph graph = extended_graph(facets.mesh, facets.voxel);
+    CHECK(graph.vertex_count() == facets.mesh.vertex_count());
+    CHECK(graph.half_edge_count() == 2 * measure_topology(facets.mesh).edges);
+    for (Index h = 0; h < graph.half_edge_count(); ++h) CHECK(graph.twin[graph.twin[h]] == h);
+}
