@@ -122,6 +122,8 @@ void add_file_options(CLI::App& app, ReconstructArguments& a) {
         ->type_name("off|stl|ply|obj|om")
         ->group(files);
     app.add_flag("--ascii", a.ascii, "text instead of binary STL and PLY")->group(files);
+    app.add_flag("--plain", a.plain, "positions and facets only: no normals, no vertex properties")
+        ->group(files);
     app.add_option("--features", a.features, "sharp edges (x y z x y z) and corners (c x y z) as text")
         ->type_name("FILE")
         ->group(files);

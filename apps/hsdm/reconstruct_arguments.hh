@@ -32,7 +32,7 @@ struct ReconstructArguments {
     std::string debug_dir;
 
     std::string output, out_dir, format;
-    bool ascii = false;
+    bool ascii = false, plain = false;
     std::string features, report;
     bool quiet = false, verbose = false;
     Progress progress = Progress::automatic;

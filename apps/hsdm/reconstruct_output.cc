@@ -3,6 +3,7 @@
 #include "hsdm/errors.hh"
 #include "hsdm/facets/to_mesh.hh"
 #include "hsdm/features/features.hh"
+#include "hsdm/io/write_om.hh"
 
 #include <filesystem>
 #include <set>
@@ -117,6 +118,7 @@ MeshTarget OutputPlan::target(const std::string& input, std::optional<int> depth
     MeshTarget result;
     result.format = format_;
     result.ascii = arguments_.ascii;
+    result.plain = arguments_.plain;
     result.mesh = arguments_.output.empty()
                       ? (fs::path(arguments_.out_dir) / (stem(input) + extension(format_))).string()
                       : arguments_.output;
@@ -132,7 +134,16 @@ bool OutputPlan::uses_standard_output() const {
 void write_outputs(const MeshTarget& target, const PolyMesh& mesh) {
     WriteOptions options;
     options.ascii = target.ascii;
-    write_mesh(target.mesh, to_polygons(mesh), target.format, options);
+    if (target.format == MeshFormat::om && target.mesh != "-" && !target.plain) {
+        write_om(target.mesh, mesh); // with status bits and every property
+    } else {
+        PolygonMesh polygons = to_polygons(mesh);
+        if (target.plain) {
+            polygons.normals.clear();
+            polygons.properties.clear();
+        }
+        write_mesh(target.mesh, polygons, target.format, options);
+    }
     if (!target.features.empty()) write_text(target.features, feature_lines(mesh));
 }
 

@@ -10,6 +10,7 @@ struct MeshTarget {
     std::string mesh; ///< "-": standard output
     MeshFormat format = MeshFormat::off;
     bool ascii = false;
+    bool plain = false;   ///< positions and facets only
     std::string features; ///< empty: none
 };
 

@@ -41,6 +41,10 @@ TEST_CASE("every format is written under its extension", "[cli]") {
     }
     CHECK(run(folder, "reconstruct scan.xyz --depth 4 --ascii -o text.stl").status == 0);
     CHECK(read_file(folder / "text.stl").starts_with("solid"));
+    CHECK(run(folder, "reconstruct scan.xyz --depth 4 --plain -o plain.ply").status == 0);
+    CHECK(read_file(folder / "a.ply").find("hsdm_vertex_class") != std::string::npos);
+    CHECK(read_file(folder / "plain.ply").find("hsdm_vertex_class") == std::string::npos);
+    CHECK(read_file(folder / "plain.ply").size() < read_file(folder / "a.ply").size() / 2);
 }
 
 TEST_CASE("the resolution follows the spacing of the points when none is asked for, and says why", "[cli]") {
