@@ -32,13 +32,12 @@ void run(std::size_t count, const Body& body) {
         for (std::size_t i = 0; i < count; ++i) body(i);
         return;
     }
-    std::atomic<std::size_t> next{0};
     std::mutex mutex;
     std::exception_ptr failure;
-    const auto work = [&] {
+    // Dealt out in turn, so that neighbours are always in different threads, however short the bodies are.
+    const auto work = [&](std::size_t first) {
         inside_loop = true;
-        // Relaxed: taking a number must not look like a hand-over between two bodies.
-        for (std::size_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < count;) {
+        for (std::size_t i = first; i < count; i += threads) {
             try {
                 body(i);
             } catch (...) {
@@ -49,8 +48,8 @@ void run(std::size_t count, const Body& body) {
         inside_loop = false;
     };
     std::vector<std::thread> others;
-    for (std::size_t t = 1; t < threads; ++t) others.emplace_back(work);
-    work();
+    for (std::size_t t = 1; t < threads; ++t) others.emplace_back(work, t);
+    work(0);
     for (std::thread& other : others) other.join();
     if (failure) std::rethrow_exception(failure);
 }
