@@ -15,7 +15,8 @@ constexpr double overshoot = 0.3;
 RelationTest::RelationTest(const RelationOptions& options, double voxel_size)
     : cos_smooth_(std::cos(options.smooth_angle)),
       gap_(options.smooth_gap * voxel_size),
-      crease_gap_(options.crease_gap * voxel_size), voxel_size_(voxel_size) {
+      crease_gap_(options.crease_gap * voxel_size),
+      voxel_size_(voxel_size) {
     if (!(options.smooth_angle > 0 && options.smooth_angle < 1.5707963))
         throw OptionError("smooth_angle " + std::to_string(options.smooth_angle) + ": must lie in (0, pi/2)");
     if (!(options.smooth_gap > 0 && options.crease_gap > 0))
@@ -42,9 +43,10 @@ Relation RelationTest::crease(const NormalSet& a, const NormalSet& b, double cos
                : Relation::none;
 }
 
-/// Do the points of a set end at the other plane, which its centroid lies `above`? Points spread evenly reach sqrt(3)
-/// standard deviations; few points reach less far, by about the spacing between them.
-bool RelationTest::ends_at(const NormalSet& set, const Vec3& plane, double above, bool convex, double cosine) const {
+/// Do the points of a set end at the other plane, which its centroid lies `above`? Points spread evenly reach
+/// sqrt(3) standard deviations; few points reach less far, by about the spacing between them.
+bool RelationTest::ends_at(const NormalSet& set, const Vec3& plane, double above, bool convex,
+                           double cosine) const {
     const double short_of = convex ? -above : above;
     const double reach = std::sqrt(3 * std::max(0.0, set.spread.along(plane)));
     const double sine = std::sqrt(1 - cosine * cosine);

@@ -17,7 +17,7 @@ struct RelationOptions {
     double smooth_angle =
         0.70; ///< radians, (0, pi/2): normals closer than this belong to one sheet (40 degrees)
     double smooth_gap = 0.3; ///< voxels: how far two sets of one sheet may lie apart along their mean normal
-    double crease_gap = 0.5;   ///< voxels: how far from the points of both sets the planes of a crease may meet
+    double crease_gap = 0.5; ///< voxels: how far from the points of both sets the planes of a crease may meet
 };
 
 /// The relation of two sets of the same or of adjacent voxels. Symmetric. Smooth: small angle, and the chord

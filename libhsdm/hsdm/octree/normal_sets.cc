@@ -65,7 +65,8 @@ public:
         for_each(k, [&](Index i) {
             const Vec3 d = octree_.positions[i] - position;
             below += (octree_.normals[i] - mean) | d;
-            const std::array<double, 6> products{d[0] * d[0], d[1] * d[1], d[2] * d[2], d[0] * d[1], d[1] * d[2], d[2] * d[0]};
+            const std::array<double, 6> products{d[0] * d[0], d[1] * d[1], d[2] * d[2],
+                                                 d[0] * d[1], d[1] * d[2], d[2] * d[0]};
             for (std::size_t m = 0; m < 6; ++m) spread.moments[m] += products[m] / n;
         });
         const double length = normal.norm();

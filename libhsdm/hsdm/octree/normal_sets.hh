@@ -30,7 +30,7 @@ struct NormalSet {
     Vec3 normal;   ///< unit mean normal
     Index count;   ///< points
     Index voxel;   ///< of the level the sets were made for
-    Spread spread;   ///< of its points about their mean
+    Spread spread; ///< of its points about their mean
 };
 
 /// The sets of a level's voxels: those of voxel v are sets[first[v]] .. sets[first[v + 1]], by descending
