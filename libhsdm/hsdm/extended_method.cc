@@ -32,6 +32,8 @@ void note_counts(const ExtendedFacets& facets, Report& report) {
     report.rejected["facets_cancelled"] = facets.manifold.cancelled;
     report.rejected["facets_duplicate"] = facets.manifold.duplicates;
     report.rejected["edges_opened"] = facets.manifold.opened_edges;
+    report.rejected["intersections_removed"] = facets.intersections.before - facets.intersections.after;
+    report.rejected["intersections_left"] = facets.intersections.after;
     report.rejected["vertices_split"] = facets.manifold.split_vertices;
 }
 

@@ -209,6 +209,10 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
         result.holes = fill_holes(result.mesh, holes);
     }
     result.manifold = make_manifold(result.mesh);
+    UntangleOptions untangle_options = options.untangle;
+    untangle_options.reach *= h;
+    untangle_options.nearby *= h;
+    result.intersections = untangle(result.mesh, untangle_options);
     take_properties(result);
     result.crossings = crossings.crossings.size();
     result.beyond_crease = crossings.dropped_beyond_crease;

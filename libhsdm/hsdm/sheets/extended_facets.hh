@@ -3,6 +3,7 @@
 
 #include "hsdm/facets/fill_holes.hh"
 #include "hsdm/facets/manifold.hh"
+#include "hsdm/facets/untangle.hh"
 #include "hsdm/sheets/vertex_placement.hh"
 
 namespace hsdm {
@@ -10,8 +11,9 @@ namespace hsdm {
 struct ExtendedOptions {
     RelationOptions relation;
     CrossingOptions crossing;
-    FillHolesOptions holes; ///< lengths in voxels here
-    bool fill = true;       ///< close small boundary loops
+    FillHolesOptions holes;                              ///< lengths in voxels here
+    UntangleOptions untangle{.reach = 0.5, .nearby = 1}; ///< lengths in voxels here
+    bool fill = true;                                    ///< close small boundary loops
 };
 
 struct ExtendedFacets {
@@ -21,6 +23,7 @@ struct ExtendedFacets {
     std::size_t crossings = 0, beyond_crease = 0, trimmed = 0, open = 0, rims = 0, cut = 0, clamped = 0;
     std::size_t midpoints = 0; ///< vertices added so that no two mesh edges join the same two vertices
     FillHolesCounts holes;
+    UntangleCounts intersections;
     ManifoldCounts manifold; ///< what the last check still had to mend
 };
 
