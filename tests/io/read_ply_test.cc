@@ -32,7 +32,8 @@ TEST_CASE("PLY scalars of every type and spelling are read in text and in both b
         std::function<std::string(double, bool)> bytes;
     };
     const auto as = [](auto t) {
-        return [t](double v, bool big) { return bytes_of(static_cast<decltype(t)>(v), big); };
+        using T = decltype(t);
+        return [](double v, bool big) { return bytes_of(static_cast<T>(v), big); };
     };
     const Type types[] = {
         {"char", as(std::int8_t())},     {"int8", as(std::int8_t())},     {"uchar", as(std::uint8_t())},

@@ -23,14 +23,14 @@ TEST_CASE("voxels counted in one pass agree with every extracted level", "[octre
 }
 
 TEST_CASE("the spacing is the square root of the area per point", "[octree]") {
-    for (std::size_t n : {2000, 20000, 100000}) {
+    for (std::size_t n : {2000u, 20000u, 100000u}) {
         const double expected = std::sqrt(4 * std::numbers::pi / static_cast<double>(n));
         CHECK(estimate_spacing(sphere_octree(n)) == Approx(expected).epsilon(0.15));
     }
 }
 
 TEST_CASE("the chosen depth has voxels of three to six spacings", "[octree]") {
-    for (std::size_t n : {500, 5000, 50000}) {
+    for (std::size_t n : {500u, 5000u, 50000u}) {
         const Octree octree = sphere_octree(n);
         const double spacing = estimate_spacing(octree);
         const DepthChoice choice = choose_depth(octree, spacing);

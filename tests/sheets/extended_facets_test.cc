@@ -58,7 +58,7 @@ TEST_CASE("smooth and sharp solids in general pose come out closed, of the right
         {"mechanical part", support::mechanical_part(), 100000, 0.1, -4, 0.3},
     };
     for (const Example& e : examples)
-        for (std::uint64_t seed : {1, 2, 3}) {
+        for (std::uint64_t seed : {1u, 2u, 3u}) {
             INFO(e.name << ", pose " << seed);
             const support::Solid solid = e.solid.placed(pose(seed));
             const ExtendedFacets facets = facets_of(scan(solid, e.points, seed), e.voxel);

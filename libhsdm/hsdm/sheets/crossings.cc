@@ -228,7 +228,7 @@ private:
         double density = 0; // of the sampling here: the sheet itself may only be clipped voxels
         for (std::size_t j = 0; j < count_; ++j) density = std::max(density, sheets_[j].density());
         unsigned doubtful = 0;
-        for (unsigned v = 0; v < 4; ++v) doubtful |= (sheet.held[v] < fair_share * density) << v;
+        for (unsigned v = 0; v < 4; ++v) doubtful |= unsigned{sheet.held[v] < fair_share * density} << v;
         if (doubtful == 0) return true;
         std::array<HalfSpace, 16> clips;
         const std::size_t clip_count = partner_half_spaces(i, clips);

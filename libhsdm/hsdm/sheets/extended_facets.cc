@@ -188,9 +188,9 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
     LocalSheets local = group_local_sheets(lattice, sets, related, h);
     extend_lattice(lattice, local, level);
     Crossings crossings = find_crossings(lattice, local, sets, related, h, options.crossing);
-    Links links = pair_crossings(lattice, crossings, sets, related, h);
+    Links links = pair_crossings(lattice, crossings, sets, related);
     for (int round = 0; round < 3 && trim_unsupported(crossings, links) > 0; ++round)
-        links = pair_crossings(lattice, crossings, sets, related, h);
+        links = pair_crossings(lattice, crossings, sets, related);
     const Fans fans = build_fans(crossings, links);
     VertexPositions vertices = place_vertices(octree, level, lattice, sets, related, crossings, fans);
 

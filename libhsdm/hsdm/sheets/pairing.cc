@@ -22,8 +22,8 @@ struct Stop {
 class FacePairing {
 public:
     FacePairing(const CornerLattice& lattice, const Crossings& crossings, const NormalSets& sets,
-                const RelationTest& related, double voxel_size)
-        : lattice_(lattice), crossings_(crossings), sets_(sets), related_(related), h_(voxel_size) {}
+                const RelationTest& related)
+        : lattice_(lattice), crossings_(crossings), sets_(sets), related_(related) {}
 
     template <class Join>
     void pair(Index corner, unsigned normal_axis, Join&& join) {
@@ -115,21 +115,20 @@ private:
     const Crossings& crossings_;
     const NormalSets& sets_;
     const RelationTest& related_;
-    double h_;
     std::vector<Stop> exits_, enters_;
 };
 
 } // namespace
 
 Links pair_crossings(const CornerLattice& lattice, const Crossings& crossings, const NormalSets& sets,
-                     const RelationTest& related, double voxel_size) {
+                     const RelationTest& related) {
     Links links;
     links.of_crossing.resize(crossings.crossings.size());
     const std::size_t n = lattice.size();
     std::vector<std::size_t> rims(chunk_count(n, corners_per_chunk), 0), joined_faces(rims);
     std::vector<std::vector<Link>> crowded(rims.size());
     for_chunks(n, corners_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        FacePairing face(lattice, crossings, sets, related, voxel_size);
+        FacePairing face(lattice, crossings, sets, related);
         std::vector<Link> in_face;
         auto join = [&](const Stop& a, const Stop& b, bool rim) {
             links.of_crossing[a.crossing][a.ring_face] = {b.crossing, b.ring_face, rim};

@@ -44,7 +44,7 @@ struct Links {
 /// it, so that orientation is consistent; among several pairings the one whose sheets agree best. O(corners),
 /// parallel.
 Links pair_crossings(const CornerLattice& lattice, const Crossings& crossings, const NormalSets& sets,
-                     const RelationTest& related, double voxel_size);
+                     const RelationTest& related);
 
 /// Takes back the crossings beyond the end of the data: those not supported that an open side, or the rim of
 /// two sheets that both end, reaches through others of the kind. A closed surface loses none. Returns the
