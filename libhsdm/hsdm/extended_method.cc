@@ -2,8 +2,11 @@
 
 #include "hsdm/attributes.hh"
 #include "hsdm/graph/phase_geometry.hh"
+#include "hsdm/quality/topology.hh"
 #include "hsdm/sheets/extended_facets.hh"
 #include "hsdm/sheets/extended_graph.hh"
+
+#include <algorithm>
 
 namespace hsdm {
 namespace {
@@ -37,6 +40,16 @@ void note_counts(const ExtendedFacets& facets, Report& report) {
     report.rejected["vertices_split"] = facets.manifold.split_vertices;
 }
 
+/// Facets face where the points' normals point. If these point into a closed solid, the whole surface is
+/// turned.
+bool turn_outward(PolygonMesh& mesh) {
+    const Topology topology = measure_topology(mesh);
+    if (!topology.closed() || topology.signed_volume >= 0) return false;
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f)
+        std::reverse(mesh.corners.begin() + mesh.first[f], mesh.corners.begin() + mesh.first[f + 1]);
+    return true;
+}
+
 } // namespace
 
 PolygonMesh extended_method(const MethodInput& in, Report& report) {
@@ -47,6 +60,7 @@ PolygonMesh extended_method(const MethodInput& in, Report& report) {
         return reconstruct_extended(in.octree, in.level, sets, extended_options(in.options));
     });
     note_counts(facets, report);
+    report.rejected["normals_turned"] = turn_outward(facets.mesh) ? in.octree.size() : 0;
     facets.mesh.properties = average_attributes(in.cloud, in.octree, in.level, facets.voxel);
     if (!in.options.debug_dir.empty()) {
         PolygonMesh placed = facets.mesh;

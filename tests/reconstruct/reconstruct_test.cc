@@ -234,3 +234,17 @@ TEST_CASE("given normals that are not there are refused", "[reconstruct]") {
     options.normals = NormalSource::given;
     CHECK_THROWS_AS(reconstruct(scan(support::sphere(1), 1000), options), Error);
 }
+
+TEST_CASE("normals that all point inward give the same solid, facing outward", "[reconstruct]") {
+    support::SampleOptions sampling;
+    sampling.points = 20000;
+    PointCloud cloud = support::sample(support::torus(1, 0.4), sampling);
+    for (Vec3& n : cloud.normals) n = -n;
+    ReconstructOptions options;
+    options.depth = 5;
+    const Reconstruction result = reconstruct(cloud, options);
+    CHECK(result.report.mesh.closed);
+    CHECK(result.report.mesh.genus == 1);
+    CHECK(result.report.rejected.at("normals_turned") == cloud.size());
+    CHECK(measure_topology(to_polygons(result.mesh)).signed_volume > 0);
+}
