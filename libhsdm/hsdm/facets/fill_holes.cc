@@ -1,5 +1,6 @@
 #include "hsdm/facets/fill_holes.hh"
 
+#include "hsdm/facets/area_vector.hh"
 #include "hsdm/facets/facet_links.hh"
 #include "hsdm/facets/split_polygon.hh"
 
@@ -11,19 +12,6 @@
 
 namespace hsdm {
 namespace {
-
-Vec3 area_vector(const PolygonMesh& mesh, std::span<const Index> facet) {
-    const Vec3& origin = mesh.positions[facet[0]];
-    Vec3 sum(0, 0, 0);
-    for (std::size_t i = 1; i + 1 < facet.size(); ++i)
-        sum += (mesh.positions[facet[i]] - origin) % (mesh.positions[facet[i + 1]] - origin);
-    return sum;
-}
-
-Vec3 unit(const Vec3& v) {
-    const double length = v.norm();
-    return length > 0 ? v / length : v;
-}
 
 /// A loop around a single facet: closing it would lay a second facet over the same vertices.
 bool is_lone_facet(const PolygonMesh& mesh, std::span<const Index> facets) {

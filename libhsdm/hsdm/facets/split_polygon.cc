@@ -1,5 +1,6 @@
 #include "hsdm/facets/split_polygon.hh"
 
+#include "hsdm/facets/area_vector.hh"
 #include "hsdm/facets/facet_links.hh"
 
 #include <tbb/blocked_range.h>
@@ -16,19 +17,6 @@ constexpr std::size_t exact_edges = 128;
 constexpr double quad_bend = 1.05;    // two triangles that bend more stay two (60 degrees)
 constexpr double least_quality = 0.2; // of a quad's corners: the sine of the sharpest or bluntest angle
 constexpr double infinite = Box::inf;
-
-Vec3 area_vector(const PolygonMesh& mesh, std::span<const Index> facet) {
-    const Vec3& origin = mesh.positions[facet[0]];
-    Vec3 sum(0, 0, 0);
-    for (std::size_t i = 1; i + 1 < facet.size(); ++i)
-        sum += (mesh.positions[facet[i]] - origin) % (mesh.positions[facet[i + 1]] - origin);
-    return sum;
-}
-
-Vec3 unit(const Vec3& v) {
-    const double length = v.norm();
-    return length > 0 ? v / length : v;
-}
 
 /// One polygon, triangulated. Its corners are numbered 0 .. n - 1, side i runs from corner i to i + 1.
 class Triangulator {

@@ -146,39 +146,7 @@ private:
         return any;
     }
 
-    /// Relation of sheet i to every other sheet here, by the vote of their sets.
-    void relate(std::size_t i) {
-        std::array<int, most> convex{}, concave{};
-        for (unsigned end : {0u, 1u}) {
-            const auto members = local_.members_at(ends_[end]);
-            for (const SheetMember& a : members) {
-                if (number_[offset_[end] + a.sheet] != i) continue;
-                for (const SheetMember& b : members) {
-                    const std::size_t j = number_[offset_[end] + b.sheet];
-                    if (j == i) continue;
-                    const Relation r = related_(sets_.sets[a.set], sets_.sets[b.set]);
-                    convex[j] += r == Relation::convex;
-                    concave[j] += r == Relation::concave;
-                }
-            }
-        }
-        for (std::size_t j = 0; j < count_; ++j)
-            relations_[j] = convex[j] > concave[j]   ? Relation::convex
-                            : concave[j] > convex[j] ? Relation::concave
-                                                     : Relation::none;
-        relations_for_ = i;
-    }
-
-    /// Is sheet j's side at the crossing of i outside? Ties go by number, so that of two sheets that cross at
-    /// the same place the same way exactly one is kept.
-    bool outside_at(std::size_t j, std::size_t i) const {
-        const EdgeSheet& a = sheets_[i];
-        const EdgeSheet& b = sheets_[j];
-        if (!b.crosses) return b.distance[0] >= 0;
-        const bool before = a.t < b.t || (a.t == b.t && i < j);
-        return b.distance[before ? 0 : 1] >= 0;
-    }
-
+    /// Relation of two sheets, by the vote of their sets.
     Relation relation_between(std::size_t j, std::size_t k) const {
         int convex = 0, concave = 0;
         for (unsigned end : {0u, 1u}) {
@@ -194,6 +162,23 @@ private:
             }
         }
         return convex > concave ? Relation::convex : concave > convex ? Relation::concave : Relation::none;
+    }
+
+    /// Relations of sheet i to every other sheet here.
+    void relate(std::size_t i) {
+        for (std::size_t j = 0; j < count_; ++j)
+            relations_[j] = j == i ? Relation::none : relation_between(i, j);
+        relations_for_ = i;
+    }
+
+    /// Is sheet j's side at the crossing of i outside? Ties go by number, so that of two sheets that cross at
+    /// the same place the same way exactly one is kept.
+    bool outside_at(std::size_t j, std::size_t i) const {
+        const EdgeSheet& a = sheets_[i];
+        const EdgeSheet& b = sheets_[j];
+        if (!b.crosses) return b.distance[0] >= 0;
+        const bool before = a.t < b.t || (a.t == b.t && i < j);
+        return b.distance[before ? 0 : 1] >= 0;
     }
 
     /// A crossing counts if it lies on the solid's surface: inside every convex partner, outside every

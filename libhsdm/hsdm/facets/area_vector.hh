@@ -1,0 +1,23 @@
+#pragma once
+// The normal of a polygon, weighted by its area.
+
+#include "hsdm/polygon_mesh.hh"
+
+namespace hsdm {
+
+/// Twice the facet's area along its normal, in the mesh's units; exact for any polygon, flat or not.
+inline Vec3 area_vector(const PolygonMesh& mesh, std::span<const Index> facet) {
+    const Vec3& origin = mesh.positions[facet[0]];
+    Vec3 sum(0, 0, 0);
+    for (std::size_t i = 1; i + 1 < facet.size(); ++i)
+        sum += (mesh.positions[facet[i]] - origin) % (mesh.positions[facet[i + 1]] - origin);
+    return sum;
+}
+
+/// The direction of a vector; zero stays zero.
+inline Vec3 unit(const Vec3& v) {
+    const double length = v.norm();
+    return length > 0 ? v / length : v;
+}
+
+} // namespace hsdm
