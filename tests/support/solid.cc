@@ -1,6 +1,9 @@
 #include "support/solid.hh"
 
 #include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <string>
 
 namespace hsdm::support {
 
@@ -14,6 +17,8 @@ Solid Solid::placed(const Pose& pose) const {
 }
 
 Solid Solid::combine(Operation operation, const Solid& a, const Solid& b) {
+    if (a.leaves_.size() + b.leaves_.size() > most_leaves)
+        throw std::invalid_argument("a solid has at most " + std::to_string(most_leaves) + " primitives");
     Solid result = a;
     result.leaves_.insert(result.leaves_.end(), b.leaves_.begin(), b.leaves_.end());
     for (Step step : b.steps_) {
@@ -25,16 +30,16 @@ Solid Solid::combine(Operation operation, const Solid& a, const Solid& b) {
 }
 
 double Solid::distance(const Vec3& p) const {
-    std::vector<double> stack;
+    std::array<double, most_leaves> stack;
+    std::size_t size = 0;
     for (const Step& step : steps_) {
         if (step.operation == Operation::leaf) {
             const Leaf& leaf = leaves_[step.leaf];
-            stack.push_back(leaf.primitive->distance(leaf.pose.to_local(p)));
+            stack[size++] = leaf.primitive->distance(leaf.pose.to_local(p));
             continue;
         }
-        const double b = stack.back();
-        stack.pop_back();
-        double& a = stack.back();
+        const double b = stack[--size];
+        double& a = stack[size - 1];
         switch (step.operation) {
         case Operation::join:
             a = std::min(a, b);
@@ -46,31 +51,30 @@ double Solid::distance(const Vec3& p) const {
             a = std::max(a, -b);
         }
     }
-    return stack.back();
+    return stack[0];
 }
 
-bool Solid::contains_if(const std::vector<bool>& inside_leaf) const {
-    std::vector<bool> stack;
+bool Solid::contains_if(const std::bitset<most_leaves>& inside_leaf) const {
+    std::bitset<most_leaves> stack;
+    std::size_t size = 0;
     for (const Step& step : steps_) {
         if (step.operation == Operation::leaf) {
-            stack.push_back(inside_leaf[step.leaf]);
+            stack[size++] = inside_leaf[step.leaf];
             continue;
         }
-        const bool b = stack.back();
-        stack.pop_back();
-        const bool a = stack.back();
+        const bool b = stack[--size], a = stack[size - 1];
         switch (step.operation) {
         case Operation::join:
-            stack.back() = a || b;
+            stack[size - 1] = a || b;
             break;
         case Operation::meet:
-            stack.back() = a && b;
+            stack[size - 1] = a && b;
             break;
         default:
-            stack.back() = a && !b;
+            stack[size - 1] = a && !b;
         }
     }
-    return stack.back();
+    return stack[0];
 }
 
 double Solid::primitive_area() const {
@@ -89,7 +93,7 @@ bool Solid::sample(Random& random, SurfacePoint& point) const {
     point.normal = leaves_[chosen].pose.rotate(local.normal);
 
     // On the boundary of the tree if crossing this one surface changes what the tree says.
-    std::vector<bool> inside(leaves_.size());
+    std::bitset<most_leaves> inside;
     for (std::size_t i = 0; i < leaves_.size(); ++i)
         inside[i] = leaves_[i].primitive->distance(leaves_[i].pose.to_local(point.position)) < 0;
     inside[chosen] = true;
@@ -117,28 +121,31 @@ Solid mechanical_part(const Pose& pose) {
 
 namespace {
 
-Solid random_primitive(Random& random, double thinnest) {
+Solid random_primitive(Random& random, double thinnest, double thickest) {
     const double a = random.uniform(0.4, 1.2), b = random.uniform(0.4, 1.2), c = random.uniform(0.4, 1.2);
-    switch (random.below(4)) {
+    const double wall = random.uniform(thinnest, thickest);
+    switch (random.below(5)) {
     case 0:
         return box(Vec3(a, b, c));
     case 1:
         return cylinder(a / 2, b + c);
     case 2:
         return sphere(0.6 * a);
+    case 3: // a tube, open at both ends; half as long again inside
+        return a / 2 > 2 * wall ? cylinder(a / 2, b) - cylinder(a / 2 - wall, 1.5 * b) : cylinder(a / 2, b);
     default:
-        return box(Vec3(a + 0.4, b + 0.4, std::max(thinnest, 0.2 * c)));
+        return box(Vec3(a + 0.4, b + 0.4, wall));
     }
 }
 
 } // namespace
 
-Solid random_solid(std::uint64_t seed, double thinnest) {
+Solid random_solid(std::uint64_t seed, double thinnest, double thickest) {
     Random random(seed);
-    Solid result = random_primitive(random, thinnest).placed(random_pose(random));
+    Solid result = random_primitive(random, thinnest, thickest).placed(random_pose(random));
     const std::size_t further = 1 + random.below(4);
     for (std::size_t i = 0; i < further; ++i) {
-        const Solid next = random_primitive(random, thinnest).placed(random_pose(random, 0.5));
+        const Solid next = random_primitive(random, thinnest, thickest).placed(random_pose(random, 0.5));
         result = random.uniform() < 0.6 ? result | next : result - next;
     }
     return result;

@@ -3,6 +3,7 @@
 
 #include "support/pose.hh"
 
+#include <bitset>
 #include <memory>
 #include <vector>
 
@@ -48,6 +49,7 @@ public:
     friend Solid operator-(const Solid& a, const Solid& b) { return combine(Operation::subtract, a, b); }
 
 private:
+    static constexpr std::size_t most_leaves = 32;
     enum class Operation { leaf, join, meet, subtract };
     struct Leaf {
         std::shared_ptr<const Primitive> primitive;
@@ -61,7 +63,7 @@ private:
 
     Solid() = default;
     static Solid combine(Operation operation, const Solid& a, const Solid& b);
-    bool contains_if(const std::vector<bool>& inside_leaf) const;
+    bool contains_if(const std::bitset<most_leaves>& inside_leaf) const;
 
     std::vector<Leaf> leaves_;
     std::vector<Step> steps_;
@@ -84,8 +86,9 @@ Solid nested_spheres(double outer, double inner);
 /// units long, sharp edges all over, in general pose if `pose` says so.
 Solid mechanical_part(const Pose& pose = {});
 
-/// A random tree of 2 to 5 boxes, cylinders, spheres and plates in random pose, about 2 units across. Nothing
-/// keeps it in one piece. `thinnest` bounds its plates and walls from below.
-Solid random_solid(std::uint64_t seed, double thinnest = 0.05);
+/// A random tree of 2 to 5 boxes, cylinders, spheres, tubes and plates in random pose, unions and
+/// differences, about 2 units across. The walls of its plates and tubes are `thinnest` to `thickest`; nothing
+/// keeps what remains between two primitives from being thinner, nor the whole in one piece.
+Solid random_solid(std::uint64_t seed, double thinnest = 0.05, double thickest = 0.24);
 
 } // namespace hsdm::support
