@@ -26,6 +26,7 @@ ExtendedOptions extended_options(const ReconstructOptions& options) {
 
 void note_counts(const ExtendedFacets& facets, Report& report) {
     report.rejected["crossings_beyond_crease"] = facets.beyond_crease;
+    report.rejected["crossings_settled"] = facets.settled;
     report.rejected["crossings_beyond_data"] = facets.trimmed;
     report.rejected["vertices_clamped"] = facets.clamped;
     report.rejected["edges_halved"] = facets.midpoints;

@@ -31,6 +31,11 @@ struct EdgeSheet {
     double density() const { return points > 0 ? points_squared / points : 0; }
 };
 
+struct Candidate {
+    Crossing crossing;
+    bool standing;
+};
+
 /// What the crossings of one edge are decided from. Reused from edge to edge.
 class EdgeCrossings {
 public:
@@ -45,7 +50,7 @@ public:
 
     std::size_t dropped_beyond_crease = 0;
 
-    void find(Index corner, unsigned axis, std::vector<Crossing>& found) {
+    void find(Index corner, unsigned axis, std::vector<Candidate>& found) {
         ends_[0] = corner, ends_[1] = lattice_.next[corner][axis], axis_ = axis;
         if (ends_[1] == no_index
             || (local_.members_at(ends_[0]).empty() && local_.members_at(ends_[1]).empty()))
@@ -58,16 +63,15 @@ public:
         for (std::size_t i = 0; i < count_; ++i) {
             if (!sheets_[i].crosses) continue;
             if (count_ > 1 && relations_for_ != i) relate(i);
-            if (!visible(i)) {
-                ++dropped_beyond_crease;
-                continue;
-            }
+            const bool on_solid = visible(i);
+            dropped_beyond_crease += !on_solid;
             const bool carried = supported(i);
-            if (carried || sheets_[i].beside()) found.push_back(crossing(i, carried));
+            found.push_back({crossing(i, carried), on_solid && (carried || sheets_[i].beside())});
         }
         std::sort(found.begin() + static_cast<std::ptrdiff_t>(begin), found.end(),
-                  [](const Crossing& a, const Crossing& b) {
-                      return std::pair(a.t, a.set) < std::pair(b.t, b.set);
+                  [](const Candidate& a, const Candidate& b) {
+                      return std::pair(a.crossing.t, a.crossing.set)
+                             < std::pair(b.crossing.t, b.crossing.set);
                   });
     }
 
@@ -284,27 +288,35 @@ private:
 
 } // namespace
 
-Crossings find_crossings(const CornerLattice& lattice, const LocalSheets& local, const NormalSets& sets,
-                         const RelationTest& related, double voxel_size, const CrossingOptions& options) {
-    Crossings result;
+CrossingCandidates find_crossings(const CornerLattice& lattice, const LocalSheets& local,
+                                  const NormalSets& sets, const RelationTest& related, double voxel_size,
+                                  const CrossingOptions& options) {
+    CrossingCandidates result;
     const std::size_t n = lattice.size();
-    result.first.assign(3 * n + 1, 0);
+    result.crossings.first.assign(3 * n + 1, 0);
     const std::size_t chunks = chunk_count(n, corners_per_chunk);
     std::vector<std::vector<Crossing>> found(chunks);
+    std::vector<std::vector<std::uint8_t>> standing(chunks);
     std::vector<std::size_t> dropped(chunks);
     for_chunks(n, corners_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         EdgeCrossings edge(lattice, local, sets, related, voxel_size, options);
+        std::vector<Candidate> on_edge;
         for (std::size_t c = begin; c < end; ++c)
             for (unsigned axis = 0; axis < 3; ++axis) {
-                const std::size_t before = found[chunk].size();
-                edge.find(static_cast<Index>(c), axis, found[chunk]);
-                result.first[3 * c + axis + 1] = static_cast<Index>(found[chunk].size() - before);
+                on_edge.clear();
+                edge.find(static_cast<Index>(c), axis, on_edge);
+                result.crossings.first[3 * c + axis + 1] = static_cast<Index>(on_edge.size());
+                for (const Candidate& candidate : on_edge) {
+                    found[chunk].push_back(candidate.crossing);
+                    standing[chunk].push_back(candidate.standing);
+                }
             }
         dropped[chunk] = edge.dropped_beyond_crease;
     });
-    result.crossings = joined(found);
-    counts_to_first(result.first);
-    for (std::size_t d : dropped) result.dropped_beyond_crease += d;
+    result.crossings.crossings = joined(found);
+    result.standing = joined(standing);
+    counts_to_first(result.crossings.first);
+    for (std::size_t d : dropped) result.crossings.dropped_beyond_crease += d;
     return result;
 }
 

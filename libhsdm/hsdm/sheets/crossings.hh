@@ -29,6 +29,7 @@ struct Crossings {
     std::vector<Crossing> crossings;
     std::vector<Index> first{0};
     std::size_t dropped_beyond_crease = 0; ///< clipped by the sheet's crease partner
+    std::size_t settled = 0;               ///< taken back, brought back or made (settle_crossings)
     std::size_t trimmed = 0;               ///< beyond the end of the data (trim_unsupported)
 
     std::span<const Crossing> on_edge(Index e) const {
@@ -36,8 +37,16 @@ struct Crossings {
     }
 };
 
-Crossings find_crossings(const CornerLattice& lattice, const LocalSheets& sheets, const NormalSets& sets,
-                         const RelationTest& related, double voxel_size, const CrossingOptions& options = {});
+/// Every crossing that some sheet has, and which of them stand: those that no crease partner clips and that
+/// the data carry or lie beside.
+struct CrossingCandidates {
+    Crossings crossings;
+    std::vector<std::uint8_t> standing; ///< per crossing
+};
+
+CrossingCandidates find_crossings(const CornerLattice& lattice, const LocalSheets& sheets,
+                                  const NormalSets& sets, const RelationTest& related, double voxel_size,
+                                  const CrossingOptions& options = {});
 
 /// Where a crossing lies, relative to the octree's origin.
 Vec3 crossing_position(const CornerLattice& lattice, const Crossing& crossing, double voxel_size);

@@ -1,6 +1,7 @@
 #include "hsdm/sheets/extended_facets.hh"
 
 #include "hsdm/chunks.hh"
+#include "hsdm/sheets/settle_crossings.hh"
 
 #include <algorithm>
 
@@ -187,7 +188,8 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
     CornerLattice lattice = build_corner_lattice(level);
     LocalSheets local = group_local_sheets(lattice, sets, related, h);
     extend_lattice(lattice, local, level);
-    Crossings crossings = find_crossings(lattice, local, sets, related, h, options.crossing);
+    Crossings crossings = settle_crossings(
+        lattice, local, sets, find_crossings(lattice, local, sets, related, h, options.crossing), h);
     Links links = pair_crossings(lattice, crossings, sets, related);
     for (int round = 0; round < 3 && trim_unsupported(crossings, links) > 0; ++round)
         links = pair_crossings(lattice, crossings, sets, related);
@@ -216,6 +218,7 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
     take_properties(result);
     result.crossings = crossings.crossings.size();
     result.beyond_crease = crossings.dropped_beyond_crease;
+    result.settled = crossings.settled;
     result.trimmed = crossings.trimmed;
     result.open = links.open;
     result.rims = links.rims;
