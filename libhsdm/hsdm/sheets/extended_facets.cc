@@ -26,8 +26,8 @@ public:
             }
             const Link& other = links.of_crossing[end.crossing][end.face];
             for (const Link& side : {end, other}) {
-                const std::pair<Index, Index> pair{fans.of_node[4 * side.crossing + Ring::low[side.face]],
-                                                   fans.of_node[4 * side.crossing + Ring::high[side.face]]};
+                const std::pair<Index, Index> pair{fans.at(side.crossing, Ring::low[side.face], side.face),
+                                                   fans.at(side.crossing, Ring::high[side.face], side.face)};
                 const bool repeated = std::find(seen.begin(), seen.end(), pair) != seen.end();
                 if (!repeated) seen.push_back(pair);
                 const bool strip = end.rim && !same_ends(fans, end, other);
@@ -56,10 +56,10 @@ public:
 
 private:
     static bool same_ends(const Fans& fans, const Link& a, const Link& b) {
-        return fans.of_node[4 * a.crossing + Ring::low[a.face]]
-                   == fans.of_node[4 * b.crossing + Ring::low[b.face]]
-               && fans.of_node[4 * a.crossing + Ring::high[a.face]]
-                      == fans.of_node[4 * b.crossing + Ring::high[b.face]];
+        return fans.at(a.crossing, Ring::low[a.face], a.face)
+                   == fans.at(b.crossing, Ring::low[b.face], b.face)
+               && fans.at(a.crossing, Ring::high[a.face], a.face)
+                      == fans.at(b.crossing, Ring::high[b.face], b.face);
     }
     std::vector<Index> of_side_; // per crossing and face of its ring
     std::size_t count_;
@@ -82,7 +82,9 @@ public:
         edge_ = crossings_.crossings[x].edge;
         polygon_.clear();
         for (std::uint8_t j = 0; j < 4; ++j) {
-            add(fans_.of_node[4 * x + j]);
+            const Index before = fans_.at(x, j, (j + 3u) % 4), after = fans_.at(x, j, j);
+            add(before);
+            if (after != before) add(after);
             add(midpoints_.mid({x, j}));
         }
         if (!crossings_.crossings[x].leaving) std::reverse(polygon_.begin(), polygon_.end());
@@ -101,9 +103,9 @@ public:
             unsigned from = (k + 1u) % 4, to = k;
             if (!crossings_.crossings[x].leaving) std::swap(from, to);
             const Index y = link.crossing;
-            const std::array<Index, 4> ring{fans_.of_node[4 * x + from], fans_.of_node[4 * x + to],
-                                            fans_.of_node[4 * y + Ring::across(to, k, link.face)],
-                                            fans_.of_node[4 * y + Ring::across(from, k, link.face)]};
+            const std::array<Index, 4> ring{fans_.at(x, from, k), fans_.at(x, to, k),
+                                            fans_.at(y, Ring::across(to, k, link.face), link.face),
+                                            fans_.at(y, Ring::across(from, k, link.face), link.face)};
             if (ring[0] == ring[3] && ring[1] == ring[2]) continue; // not cut: an ordinary edge
             polygon_.clear();
             add(ring[0]);
@@ -193,7 +195,7 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
     Links links = pair_crossings(lattice, crossings, sets, related);
     for (int round = 0; round < 3 && trim_unsupported(crossings, links) > 0; ++round)
         links = pair_crossings(lattice, crossings, sets, related);
-    const Fans fans = build_fans(crossings, links);
+    const Fans fans = build_fans(lattice, crossings, links);
     VertexPositions vertices = place_vertices(octree, level, lattice, sets, related, crossings, fans);
 
     const Midpoints midpoints(lattice, sets, crossings, links, fans, h, vertices);

@@ -9,15 +9,23 @@ namespace hsdm {
 /// facet.
 using Node = std::uint32_t;
 
-/// The vertices: fan v is nodes[first[v]] .. nodes[first[v + 1]], in order around the vertex.
+/// The vertices: fan v is nodes[first[v]] .. nodes[first[v + 1]], in order around the vertex. A node at which
+/// a chain was cut ends one fan and begins the next: its corner of the facet becomes two, with an edge
+/// between.
 struct Fans {
     std::vector<Node> nodes;
     std::vector<Index> first{0};
-    std::vector<Index> of_node; ///< per node, its fan
-    /// Voxels where the two sides of a thin part and its rims leave a polygon between three or more fans.
+    std::vector<Index> of_side; ///< per node two: its fan beside face j - 1 and beside face j of the ring
+    /// Voxels where the two sides of a thin part and its rims leave a polygon between three or more fans; it
+    /// runs the other way than the facets beside it.
     std::vector<std::vector<Index>> caps;
     std::vector<Index> after_cut; ///< fans that were cut off the fan before them, in the same voxel
-    std::size_t cut = 0;          ///< chains cut at rims into two or more vertices
+    std::size_t cut = 0;          ///< chains cut into two or more vertices
+
+    /// The vertex of a crossing at position j of its ring, beside face k (k = j or j - 1).
+    Index at(Index crossing, unsigned j, unsigned k) const {
+        return of_side[8 * std::size_t{crossing} + 2 * j + (k == j)];
+    }
 
     std::size_t size() const { return first.size() - 1; }
     std::span<const Node> fan(Index v) const {
@@ -25,8 +33,8 @@ struct Fans {
     }
 };
 
-/// Walks the chains. A closed chain that goes round the rim of a thin part twice or more is cut there: its
-/// sides keep vertices of their own and the rim gets its own facets. O(crossings), parallel.
-Fans build_fans(const Crossings& crossings, const Links& links);
+/// Walks the chains. One that passes both sides of a thin part is cut between them, at rims and in the facets
+/// of the rim's own face: its sides keep vertices of their own. O(crossings), parallel.
+Fans build_fans(const CornerLattice& lattice, const Crossings& crossings, const Links& links);
 
 } // namespace hsdm

@@ -9,7 +9,6 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t corners_per_chunk = 2048;
-constexpr double tip_reach = 1.5; // voxels: how far beyond the last crossings the tip of a wedge may lie
 
 /// A crossing on the perimeter of a face.
 struct Stop {
@@ -32,7 +31,7 @@ public:
         gather(corner, normal_axis);
         while (!exits_.empty() && !enters_.empty()) {
             if (exits_.size() == 1 && enters_.size() == 1) {
-                join(exits_[0], enters_[0], is_rim(exits_[0], enters_[0]));
+                join(exits_[0], enters_[0], opposed(of(exits_[0]), of(enters_[0])));
                 return;
             }
             join_best(join);
@@ -80,17 +79,6 @@ private:
                                         : 1);
     }
 
-    /// Two opposite sheets that end here without meeting: round the rim of a thin part. Those whose planes
-    /// meet within reach of both crossings make a crease, the tip of a wedge.
-    bool is_rim(const Stop& a, const Stop& b) const {
-        const Vec3 &m = of(a).normal, &n = of(b).normal;
-        const double cosine = m | n;
-        if (cosine > -0.3 || relation(a, b) != Relation::none) return false;
-        const Vec3 d = b.position - a.position;
-        const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-        return std::abs(m | d) > tip_reach * sine || std::abs(n | d) > tip_reach * sine;
-    }
-
     /// Faces with two or more of each kind are rare: the cheapest pair first, ties by number.
     template <class Join>
     void join_best(Join&& join) {
@@ -106,7 +94,8 @@ private:
                     if (const double c = cost(exits_[i], enters_[j]); c < least)
                         least = c, best_exit = i, best_enter = j;
         }
-        join(exits_[best_exit], enters_[best_enter], is_rim(exits_[best_exit], enters_[best_enter]));
+        const Stop &exit = exits_[best_exit], &enter = enters_[best_enter];
+        join(exit, enter, opposed(of(exit), of(enter)));
         exits_.erase(exits_.begin() + static_cast<std::ptrdiff_t>(best_exit));
         enters_.erase(enters_.begin() + static_cast<std::ptrdiff_t>(best_enter));
     }

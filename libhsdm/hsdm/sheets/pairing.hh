@@ -23,12 +23,17 @@ struct Ring {
     static unsigned across(unsigned j, unsigned k, unsigned l) { return j == low[k] ? low[l] : high[l]; }
 };
 
+/// Do two crossings face opposite ways, as the two sides of a thin part or of a wedge?
+inline bool opposed(const Crossing& x, const Crossing& y) {
+    constexpr double most_cosine = -0.3;
+    return (x.normal | y.normal) < most_cosine;
+}
+
 /// Where face k of a crossing's ring leads: to which crossing, and which face of that one's ring it is.
 struct Link {
     Index crossing = no_index; ///< no_index: the surface ends here
     std::uint8_t face = 0;
-    bool rim =
-        false; ///< joins two opposite sheets round the rim of a thin part, not along a sheet or over a crease
+    bool rim = false; ///< joins two opposite sheets, not along a sheet or over a blunt crease
 };
 
 struct Links {
