@@ -11,9 +11,10 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t fans_per_chunk = 1024;
-constexpr double margin = 0.01;           // voxels: vertices stay this far from their voxel's faces
-constexpr double least_singular = 0.003;  // eigenvalues below this share of the largest are cut
-constexpr double side_gap = 0.02;         // voxels: half the least distance between two sides cut apart
+constexpr double margin = 0.01;          // voxels: vertices stay this far from their voxel's faces
+constexpr double least_singular = 0.003; // eigenvalues below this share of the largest are cut
+constexpr double hold = 0.002;    // of the largest eigenvalue: pull to the mean in directions left open
+constexpr double side_gap = 0.02; // voxels: half the least distance between two sides cut apart
 constexpr double new_sheet_cosine = 0.77; // normals farther apart than 40 degrees belong to different sheets
 
 struct Plane {
@@ -47,8 +48,12 @@ int sheet_count(const std::vector<Plane>& planes) {
 
 struct Solution {
     Vec3 position;
-    int rank;  // directions the planes determine
-    Vec3 free; // rank 2: along the crease
+    int rank = 0; // directions the planes determine
+    Vec3 free;    // rank 2: along the crease
+    // The energy x A x - 2 b x that the position minimises, x relative to the mean, open directions held
+    // lightly.
+    Eigen::Matrix3d a;
+    Eigen::Vector3d b;
 };
 
 /// min sum w (n . (x - p))^2, the least change from the mean in the directions the planes leave open.
@@ -63,16 +68,22 @@ Solution least_squares(const Problem& problem, int most_rank) {
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
     eigen.computeDirect(a);
     const Eigen::Vector3d values = eigen.eigenvalues(); // ascending
+    Solution solution;
+    solution.a = hold * values[2] * Eigen::Matrix3d::Identity();
+    solution.b.setZero();
     Eigen::Vector3d x = Eigen::Vector3d::Zero();
-    int rank = 0;
-    for (int k = 2; k >= 0 && rank < most_rank; --k) {
+    for (int k = 2; k >= 0 && solution.rank < most_rank; --k) {
         if (values[k] < least_singular * values[2] || values[k] <= 0) break;
         const Eigen::Vector3d v = eigen.eigenvectors().col(k);
         x += v * (v.dot(b) / values[k]);
-        ++rank;
+        solution.a += values[k] * v * v.transpose();
+        solution.b += v.dot(b) * v;
+        ++solution.rank;
     }
     const Eigen::Vector3d free = eigen.eigenvectors().col(0);
-    return {problem.mean + Vec3(x[0], x[1], x[2]), rank, Vec3(free[0], free[1], free[2])};
+    solution.position = problem.mean + Vec3(x[0], x[1], x[2]);
+    solution.free = Vec3(free[0], free[1], free[2]);
+    return solution;
 }
 
 bool inside(const Vec3& p, const Problem& problem) {
@@ -89,24 +100,36 @@ Vec3 clamped(Vec3 p, const Problem& problem) {
     return p;
 }
 
-/// Moves a point outside the box along a line into it, as little as possible; false if the line misses the
-/// box.
-bool slide_inside(Vec3& p, const Vec3& direction, const Problem& problem) {
-    double from = -std::numeric_limits<double>::infinity(), to = -from;
+/// The point of the box with the least energy: the least of those inside the box, on its faces, edges and
+/// corners, each by a linear system for the coordinates not held at a bound.
+Vec3 least_in_box(const Solution& solution, const Problem& problem) {
     const double slack = margin * problem.size;
+    Eigen::Vector3d lo, hi;
     for (unsigned k = 0; k < 3; ++k) {
-        const double lo = problem.lo[k] + slack - p[k], hi = problem.lo[k] + problem.size - slack - p[k];
-        if (std::abs(direction[k]) < 1e-9) {
-            if (lo > 0 || hi < 0) return false;
-            continue;
-        }
-        const double s = lo / direction[k], t = hi / direction[k];
-        from = std::max(from, std::min(s, t));
-        to = std::min(to, std::max(s, t));
+        lo[k] = problem.lo[k] + slack - problem.mean[k];
+        hi[k] = problem.lo[k] + problem.size - slack - problem.mean[k];
     }
-    if (from > to) return false;
-    p += direction * std::clamp(0.0, from, to);
-    return true;
+    Eigen::Vector3d best = Eigen::Vector3d::Zero();
+    double least = std::numeric_limits<double>::infinity();
+    for (int way = 1; way < 27; ++way) { // per axis: free, at the lower, at the upper bound
+        const std::array<int, 3> held{way % 3, way / 3 % 3, way / 9};
+        Eigen::Matrix3d a = solution.a;
+        Eigen::Vector3d b = solution.b;
+        for (int k = 0; k < 3; ++k) {
+            const auto axis = static_cast<std::size_t>(k);
+            if (held[axis] == 0) continue;
+            a.row(k).setZero();
+            a(k, k) = 1;
+            b[k] = held[axis] == 1 ? lo[k] : hi[k];
+        }
+        Eigen::Vector3d x = a.partialPivLu().solve(b);
+        if (((x - lo).array() < -1e-9 * problem.size).any()
+            || ((hi - x).array() < -1e-9 * problem.size).any())
+            continue;
+        const double energy = x.dot(solution.a * x) - 2 * solution.b.dot(x);
+        if (energy < least) least = energy, best = x;
+    }
+    return clamped(problem.mean + Vec3(best[0], best[1], best[2]), problem);
 }
 
 class Placer {
@@ -192,24 +215,14 @@ private:
     }
 
     Solution kept_inside(Solution solution) {
-        if (solution.rank == 3) {
-            const Solution edge = least_squares(problem_, 2);
-            if (inside(edge.position, problem_)
-                && (edge.position - solution.position).norm() < 0.5 * problem_.size)
-                return edge;
-        }
-        Vec3 p = solution.position;
-        if (solution.rank == 2 && slide_inside(p, solution.free, problem_)) {
-            solution.position = p;
-            return solution;
-        }
-        if ((solution.position - clamped(solution.position, problem_)).norm() > 0.5 * problem_.size) {
+        if ((solution.position - clamped(solution.position, problem_)).norm() > 0.5 * problem_.size
+            && solution.rank > 1) {
             // Planes that meet far away say nothing about this voxel.
-            const Solution plane = least_squares(problem_, 1);
-            solution = inside(plane.position, problem_) ? plane : Solution{problem_.mean, 1, plane.free};
+            solution = least_squares(problem_, 1);
+            if (inside(solution.position, problem_)) return solution;
         }
         ++clamped_count;
-        solution.position = clamped(solution.position, problem_);
+        solution.position = least_in_box(solution, problem_);
         return solution;
     }
 
