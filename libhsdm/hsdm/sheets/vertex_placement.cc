@@ -151,8 +151,12 @@ public:
         gather(fan);
         const Index nearest = sets_.sets[crossings_.crossings[fans_.fan(fan)[0] / 4].set].voxel;
         result.voxel[fan] = voxel_ != no_index ? voxel_ : nearest;
-        const int sheets = sheet_count(problem_.planes);
+        int sheets = sheet_count(problem_.planes);
         Solution solution = least_squares(problem_, sheets);
+        if (sheets == 2 && solution.rank == 2 && add_corner_plane(fan)) {
+            sheets = 3;
+            solution = least_squares(problem_, sheets);
+        }
         if (!inside(solution.position, problem_)) solution = kept_inside(solution);
         result.positions[fan] = solution.position;
         result.kinds[fan] = sheets == 1 || solution.rank < 2 ? VertexKind::smooth
@@ -207,6 +211,39 @@ private:
             });
             if (crease) add_plane(s);
         }
+    }
+
+    /// The tip of a corner may reach into a voxel without a point of one of its sheets: of the sets around
+    /// that make a crease with both of the fan's sheets, the one whose plane cuts their crease in this voxel
+    /// nearest to itself.
+    bool add_corner_plane(Index fan) {
+        const auto nodes = fans_.fan(fan);
+        Index best = no_index;
+        double nearest = std::numeric_limits<double>::infinity();
+        const std::size_t planes = problem_.planes.size();
+        for (Node node : nodes)
+            for (Index voxel : lattice_.voxels[crossings_.crossings[node / 4].edge / 3]) {
+                if (voxel == no_index || voxel == voxel_) continue;
+                for (Index s = sets_.first[voxel]; s < sets_.first[voxel + 1]; ++s) {
+                    if (s == best || !creases_with_all(s, nodes)) continue;
+                    add_plane(s);
+                    const Solution corner = least_squares(problem_, 3);
+                    problem_.planes.resize(planes);
+                    const double d = (corner.position - sets_.sets[s].centroid).sqrnorm();
+                    if (corner.rank == 3 && inside(corner.position, problem_)
+                        && (d < nearest || (d == nearest && s < best)))
+                        nearest = d, best = s;
+                }
+            }
+        if (best != no_index) add_plane(best);
+        return best != no_index;
+    }
+
+    bool creases_with_all(Index s, std::span<const Node> nodes) const {
+        return std::all_of(nodes.begin(), nodes.end(), [&](Node node) {
+            const Relation r = related_(sets_.sets[s], sets_.sets[crossings_.crossings[node / 4].set]);
+            return r == Relation::convex || r == Relation::concave;
+        });
     }
 
     void add_plane(Index s) {
