@@ -77,21 +77,19 @@ public:
           vertices_(vertices),
           mesh_(mesh) {}
 
-    void add_facet(Index x) {
-        if (crossings_.crossings[x].edge != edge_) diagonals_.clear();
-        edge_ = crossings_.crossings[x].edge;
-        polygon_.clear();
-        for (std::uint8_t j = 0; j < 4; ++j) {
-            const Index before = fans_.at(x, j, (j + 3u) % 4), after = fans_.at(x, j, j);
-            add(before);
-            if (after != before) add(after);
-            add(midpoints_.mid({x, j}));
+    /// The facets round one grid edge: crossings first to end.
+    void add_facets(Index first, Index end) {
+        round_.clear();
+        for (Index x = first; x < end; ++x) {
+            gather(x);
+            if (polygon_.size() == 4)
+                round_.push_back({{polygon_[0], polygon_[1], polygon_[2], polygon_[3]}, 2});
+            else
+                mesh_.add_facet(polygon_);
         }
-        if (!crossings_.crossings[x].leaving) std::reverse(polygon_.begin(), polygon_.end());
-        if (polygon_.size() == 4)
-            split_along_crease({polygon_[0], polygon_[1], polygon_[2], polygon_[3]});
-        else
-            mesh_.add_facet(polygon_);
+        for (Quad& quad : round_) quad.cut = crease_diagonal(quad.corners);
+        for (std::size_t i = 0; i < round_.size(); ++i) keep_diagonals_apart(i);
+        for (const Quad& quad : round_) add_quad(quad);
     }
 
     /// The strip round a thin part's rim, between the two sides' vertices; once per rim.
@@ -128,9 +126,25 @@ private:
         return (p[b] - p[a]) % (p[c] - p[a]);
     }
 
+    struct Quad {
+        std::array<Index, 4> corners;
+        std::size_t cut; // along the diagonal from this corner, 0 or 1; 2: not cut
+    };
+
+    void gather(Index x) {
+        polygon_.clear();
+        for (std::uint8_t j = 0; j < 4; ++j) {
+            const Index before = fans_.at(x, j, (j + 3u) % 4), after = fans_.at(x, j, j);
+            add(before);
+            if (after != before) add(after);
+            add(midpoints_.mid({x, j}));
+        }
+        if (!crossings_.crossings[x].leaving) std::reverse(polygon_.begin(), polygon_.end());
+    }
+
     /// Where a crease runs across a quad, corner to corner, the quad is cut there: the paper's refinement
     /// triangles.
-    void split_along_crease(const std::array<Index, 4>& q) {
+    std::size_t crease_diagonal(const std::array<Index, 4>& q) const {
         for (std::size_t d = 0; d < 2; ++d) {
             const Index a = q[d], b = q[d + 1], c = q[d + 2], e = q[(d + 3) % 4];
             if (vertices_.kinds[a] == VertexKind::smooth || vertices_.kinds[c] == VertexKind::smooth)
@@ -139,18 +153,42 @@ private:
             const Vec3 m0 = triangle_normal(b, c, e), m1 = triangle_normal(b, e, a);
             const double fold = (n0 | n1) / std::max(n0.norm() * n1.norm(), 1e-300);
             const double other = (m0 | m1) / std::max(m0.norm() * m1.norm(), 1e-300);
-            if (fold > 0.9 || other > 0.95) continue;
-            // Two sheets crossing one grid edge may fold along the same two vertices; one edge cannot serve
-            // both.
-            const std::pair<Index, Index> diagonal = std::minmax(a, c);
-            if (std::find(diagonals_.begin(), diagonals_.end(), diagonal) != diagonals_.end()) continue;
-            diagonals_.push_back(diagonal);
-            const std::array<Index, 3> t0{a, b, c}, t1{a, c, e};
-            mesh_.add_facet(t0);
-            mesh_.add_facet(t1);
+            if (fold <= 0.9 && other <= 0.95) return d;
+        }
+        return 2;
+    }
+
+    static bool has_diagonal(const std::array<Index, 4>& q, std::size_t d, const std::array<Index, 4>& r) {
+        const auto is = [&](std::size_t i) {
+            return (r[i] == q[d] && r[i + 2] == q[d + 2]) || (r[i] == q[d + 2] && r[i + 2] == q[d]);
+        };
+        return is(0) || is(1);
+    }
+
+    /// Two facets round one grid edge may have two opposite corners in common. One of them is cut along the
+    /// other diagonal, or both would be triangulated along the same: the first that has a crease there keeps
+    /// it.
+    void keep_diagonals_apart(std::size_t i) {
+        for (std::size_t j = 0; j < round_.size(); ++j)
+            for (std::size_t d = 0; d < 2 && j != i; ++d) {
+                if (!has_diagonal(round_[i].corners, d, round_[j].corners)) continue;
+                const bool mine = round_[i].cut == d, first = i < j;
+                const bool theirs =
+                    round_[j].cut < 2 && has_diagonal(round_[j].corners, round_[j].cut, round_[i].corners);
+                if (mine ? theirs && !first : theirs || !first) round_[i].cut = 1 - d;
+            }
+    }
+
+    void add_quad(const Quad& quad) {
+        const auto& q = quad.corners;
+        if (quad.cut == 2) {
+            mesh_.add_facet(q);
             return;
         }
-        mesh_.add_facet(q);
+        const std::size_t d = quad.cut;
+        const std::array<Index, 3> t0{q[d], q[d + 1], q[d + 2]}, t1{q[d], q[d + 2], q[(d + 3) % 4]};
+        mesh_.add_facet(t0);
+        mesh_.add_facet(t1);
     }
 
     const Crossings& crossings_;
@@ -160,8 +198,7 @@ private:
     const VertexPositions& vertices_;
     PolygonMesh& mesh_;
     std::vector<Index> polygon_;
-    Index edge_ = no_index;                          // of the crossing whose facet was added last
-    std::vector<std::pair<Index, Index>> diagonals_; // that cut facets round that edge
+    std::vector<Quad> round_;
 };
 
 /// Kind and voxel travel with the vertices as properties while these are split or dropped.
@@ -201,7 +238,8 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
     const Midpoints midpoints(lattice, sets, crossings, links, fans, h, vertices);
     result.midpoints = midpoints.count();
     FacetBuilder builder(crossings, links, fans, midpoints, vertices, result.mesh);
-    for (Index x = 0; x < crossings.crossings.size(); ++x) builder.add_facet(x);
+    for (std::size_t e = 0; e + 1 < crossings.first.size(); ++e)
+        builder.add_facets(crossings.first[e], crossings.first[e + 1]);
     for (Index x = 0; x < crossings.crossings.size(); ++x) builder.add_strips(x);
     for (const std::vector<Index>& cap : fans.caps) result.mesh.add_facet(cap);
 
