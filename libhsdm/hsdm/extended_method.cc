@@ -18,8 +18,8 @@ ExtendedOptions extended_options(const ReconstructOptions& options) {
     if (options.holes == Holes::close) {
         result.holes.max_edges = FillHolesOptions::no_limit;
     } else {
-        result.holes.max_edges = 16;
-        result.holes.max_diameter = 4;
+        result.holes.max_edges = 24;
+        result.holes.max_diameter = 6;
     }
     return result;
 }
@@ -30,6 +30,7 @@ void note_counts(const ExtendedFacets& facets, Report& report) {
     report.rejected["crossings_beyond_data"] = facets.trimmed;
     report.rejected["vertices_clamped"] = facets.clamped;
     report.rejected["edges_halved"] = facets.midpoints;
+    report.rejected["facets_debris"] = facets.debris;
     report.rejected["holes_closed"] = facets.holes.closed;
     report.rejected["holes_refused"] = facets.holes.refused;
     report.rejected["facets_degenerate"] = facets.manifold.degenerate;

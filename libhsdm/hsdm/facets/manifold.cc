@@ -455,7 +455,9 @@ void FanSplitter::cut_halved_facets() {
     remove_facets(mesh_, cut);
 }
 
-std::size_t remove_isolated(PolygonMesh& mesh) {
+} // namespace
+
+std::size_t remove_isolated_vertices(PolygonMesh& mesh) {
     std::vector<Index> renumbered(mesh.vertex_count(), no_index);
     for (Index v : mesh.corners) renumbered[v] = 0;
     Index count = 0;
@@ -475,14 +477,12 @@ std::size_t remove_isolated(PolygonMesh& mesh) {
     return removed;
 }
 
-} // namespace
-
 ManifoldCounts make_manifold(PolygonMesh& mesh) {
     ManifoldCounts counts;
     keep_simple(mesh, counts);
     remove_duplicates(mesh, counts);
     FanSplitter(mesh, counts).run();
-    counts.isolated_vertices = remove_isolated(mesh);
+    counts.isolated_vertices = remove_isolated_vertices(mesh);
     return counts;
 }
 

@@ -1,5 +1,6 @@
 #include "hsdm/quality/topology.hh"
 
+#include "hsdm/disjoint_sets.hh"
 #include "hsdm/facets/triangulate.hh"
 
 #include <tbb/blocked_range.h>
@@ -8,34 +9,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace hsdm {
 namespace {
 
 using Range = tbb::blocked_range<std::size_t>;
 constexpr std::size_t chunk = 1 << 12; // of sums: fixed, so that rounding does not depend on threads
-
-/// Disjoint sets over 0 .. n - 1, path halving.
-class DisjointSets {
-public:
-    explicit DisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
-    Index find(Index i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    /// Returns whether the two were apart. The least member stays the root.
-    bool join(Index a, Index b) {
-        a = find(a);
-        b = find(b);
-        if (a == b) return false;
-        parent_[std::max(a, b)] = std::min(a, b);
-        return true;
-    }
-
-private:
-    std::vector<Index> parent_;
-};
 
 /// The facets as loops without immediate repeats of a vertex; a loop left with fewer than three corners has
 /// collapsed and is no part of the surface. Corner c is also the half-edge from its vertex to the next one.

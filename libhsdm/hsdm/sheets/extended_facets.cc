@@ -15,9 +15,6 @@ public:
     Midpoints(const CornerLattice& lattice, const NormalSets& sets, const Crossings& crossings,
               const Links& links, const Fans& fans, double h, VertexPositions& vertices)
         : of_side_(crossings.crossings.size() * (links.crowded.empty() ? 0 : 4), no_index), count_(0) {
-        const auto voxel_of = [&](const Link& side) {
-            return sets.sets[crossings.crossings[side.crossing].set].voxel;
-        };
         std::vector<std::pair<Index, Index>> seen;
         for (const Link& end : links.crowded) {
             if (end.crossing == no_index) {
@@ -25,26 +22,24 @@ public:
                 continue;
             }
             const Link& other = links.of_crossing[end.crossing][end.face];
-            for (const Link& side : {end, other}) {
-                const std::pair<Index, Index> pair{fans.at(side.crossing, Ring::low[side.face], side.face),
-                                                   fans.at(side.crossing, Ring::high[side.face], side.face)};
-                const bool repeated = std::find(seen.begin(), seen.end(), pair) != seen.end();
-                if (!repeated) seen.push_back(pair);
-                const bool strip = end.rim && !same_ends(fans, end, other);
-                if (repeated && !(&side != &end && !strip && mid(end) != no_index)) {
-                    const auto vertex = static_cast<Index>(vertices.positions.size());
-                    const Vec3 a = crossing_position(lattice, crossings.crossings[end.crossing], h);
-                    const Vec3 b = crossing_position(lattice, crossings.crossings[other.crossing], h);
-                    vertices.positions.push_back(strip ? (&side == &end ? a : b) : 0.5 * (a + b));
-                    vertices.kinds.push_back(VertexKind::smooth);
-                    vertices.voxel.push_back(voxel_of(end));
-                    ++count_;
-                    of_side_[4 * side.crossing + side.face] = vertex;
-                    if (!strip)
-                        of_side_[4 * end.crossing + end.face] = of_side_[4 * other.crossing + other.face] =
-                            vertex;
-                }
-                if (!strip) break;
+            const bool open = other.crossing == no_index;
+            const bool strip = end.rim && !open && !same_ends(fans, end, other);
+            const auto halve = [&](const Link& side, const Vec3& position) {
+                of_side_[4 * side.crossing + side.face] = static_cast<Index>(vertices.positions.size());
+                vertices.positions.push_back(position);
+                vertices.kinds.push_back(VertexKind::smooth);
+                vertices.voxel.push_back(sets.sets[crossings.crossings[side.crossing].set].voxel);
+                ++count_;
+            };
+            const Vec3 a = crossing_position(lattice, crossings.crossings[end.crossing], h);
+            const bool halved = repeated(fans, end, seen);
+            if (open || strip) {
+                if (halved) halve(end, a);
+                if (strip && repeated(fans, other, seen))
+                    halve(other, crossing_position(lattice, crossings.crossings[other.crossing], h));
+            } else if (halved) {
+                halve(end, 0.5 * (a + crossing_position(lattice, crossings.crossings[other.crossing], h)));
+                of_side_[4 * other.crossing + other.face] = mid(end);
             }
         }
     }
@@ -55,6 +50,16 @@ public:
     std::size_t count() const { return count_; }
 
 private:
+    /// Does an edge seen before join the same two vertices as this side? If not, it counts as seen from now
+    /// on.
+    static bool repeated(const Fans& fans, const Link& side, std::vector<std::pair<Index, Index>>& seen) {
+        const std::pair<Index, Index> pair{fans.at(side.crossing, Ring::low[side.face], side.face),
+                                           fans.at(side.crossing, Ring::high[side.face], side.face)};
+        if (std::find(seen.begin(), seen.end(), pair) != seen.end()) return true;
+        seen.push_back(pair);
+        return false;
+    }
+
     static bool same_ends(const Fans& fans, const Link& a, const Link& b) {
         return fans.at(a.crossing, Ring::low[a.face], a.face)
                    == fans.at(b.crossing, Ring::low[b.face], b.face)
@@ -251,6 +256,8 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
         result.holes = fill_holes(result.mesh, holes);
     }
     result.manifold = make_manifold(result.mesh);
+    result.debris = drop_debris(result.mesh, options.debris);
+    if (result.debris > 0) remove_isolated_vertices(result.mesh);
     UntangleOptions untangle_options = options.untangle;
     untangle_options.reach *= h;
     untangle_options.nearby *= h;

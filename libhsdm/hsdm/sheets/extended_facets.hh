@@ -1,6 +1,7 @@
 #pragma once
 // Section 3.4.2 as a whole: sets -> local sheets -> crossings -> pairs -> fans -> facets.
 
+#include "hsdm/facets/debris.hh"
 #include "hsdm/facets/fill_holes.hh"
 #include "hsdm/facets/manifold.hh"
 #include "hsdm/facets/untangle.hh"
@@ -11,6 +12,7 @@ namespace hsdm {
 struct ExtendedOptions {
     RelationOptions relation;
     CrossingOptions crossing;
+    DebrisOptions debris;
     FillHolesOptions holes;                              ///< lengths in voxels here
     UntangleOptions untangle{.reach = 0.5, .nearby = 1}; ///< lengths in voxels here
     bool fill = true;                                    ///< close small boundary loops
@@ -23,6 +25,7 @@ struct ExtendedFacets {
     std::size_t crossings = 0, beyond_crease = 0, settled = 0, trimmed = 0, open = 0, rims = 0, cut = 0,
                 clamped = 0;
     std::size_t midpoints = 0; ///< vertices added so that no two mesh edges join the same two vertices
+    std::size_t debris = 0;    ///< facets of splinters, removed
     FillHolesCounts holes;
     UntangleCounts intersections;
     ManifoldCounts manifold; ///< what the last check still had to mend

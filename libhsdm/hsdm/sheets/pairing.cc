@@ -24,18 +24,19 @@ public:
                 const RelationTest& related)
         : lattice_(lattice), crossings_(crossings), sets_(sets), related_(related) {}
 
-    template <class Join>
-    void pair(Index corner, unsigned normal_axis, Join&& join) {
+    /// Calls join(exit, enter, opposed) for every pair and left_open(stop) for what finds no partner.
+    template <class Join, class LeftOpen>
+    void pair(Index corner, unsigned normal_axis, Join&& join, LeftOpen&& left_open) {
         exits_.clear();
         enters_.clear();
         gather(corner, normal_axis);
-        while (!exits_.empty() && !enters_.empty()) {
-            if (exits_.size() == 1 && enters_.size() == 1) {
-                join(exits_[0], enters_[0], opposed(of(exits_[0]), of(enters_[0])));
-                return;
-            }
-            join_best(join);
+        if (exits_.size() == 1 && enters_.size() == 1) {
+            join(exits_[0], enters_[0], opposed(of(exits_[0]), of(enters_[0])));
+            return;
         }
+        while (!exits_.empty() && !enters_.empty()) join_best(join);
+        for (const Stop& s : exits_) left_open(s);
+        for (const Stop& s : enters_) left_open(s);
     }
 
 private:
@@ -126,10 +127,11 @@ Links pair_crossings(const CornerLattice& lattice, const Crossings& crossings, c
             ++joined_faces[chunk];
             in_face.push_back({a.crossing, a.ring_face, rim});
         };
+        auto left_open = [&](const Stop& s) { in_face.push_back({s.crossing, s.ring_face, false}); };
         for (std::size_t c = begin; c < end; ++c)
             for (unsigned axis = 0; axis < 3; ++axis) {
                 in_face.clear();
-                face.pair(static_cast<Index>(c), axis, join);
+                face.pair(static_cast<Index>(c), axis, join, left_open);
                 if (in_face.size() < 2) continue;
                 crowded[chunk].insert(crowded[chunk].end(), in_face.begin(), in_face.end());
                 crowded[chunk].push_back({});

@@ -40,8 +40,8 @@ struct Links {
     std::vector<std::array<Link, 4>> of_crossing;
     std::size_t open = 0; ///< crossings' faces left without a partner: boundary half-edges of the mesh
     std::size_t rims = 0;
-    /// The links of faces that hold two or more, one end each, with a default Link after each face's: only
-    /// there can two mesh edges join the same two vertices.
+    /// The links of faces that hold two or more, one end each, open sides included, with a default Link after
+    /// each face's: only there can two mesh edges join the same two vertices.
     std::vector<Link> crowded;
 };
 

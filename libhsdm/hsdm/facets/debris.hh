@@ -1,0 +1,17 @@
+#pragma once
+// Splinters: a few facets on their own beside a surface of many.
+
+#include "hsdm/polygon_mesh.hh"
+
+namespace hsdm {
+
+struct DebrisOptions {
+    std::size_t most_facets = 8; ///< a component with more is a part, not debris
+    double least_ratio = 64;     ///< of the facets of the largest component to those of debris
+};
+
+/// Removes the components (facets joined by shared vertices) that are debris beside the largest one, vertices
+/// stay. Returns the number of facets removed. O(facets).
+std::size_t drop_debris(PolygonMesh& mesh, const DebrisOptions& options = {});
+
+} // namespace hsdm
