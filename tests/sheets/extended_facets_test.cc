@@ -82,6 +82,7 @@ TEST_CASE("the two sides of a plate in one voxel stay two, and the rim closes th
             CHECK(faults(facets.mesh) == "");
             CHECK(t.closed());
             CHECK(t.euler == 2);
+            CHECK(support::farthest_vertex(facets.mesh, plate) < 0.15 * voxel);
         }
 }
 
@@ -131,7 +132,9 @@ TEST_CASE("an open sheet keeps its border and does not grow beyond the points by
         }
 }
 
-TEST_CASE("whatever the normals, the facets are an oriented 2-manifold", "[sheets]") {
+TEST_CASE("whatever the normals, crossings, joins and chains alone make an oriented 2-manifold", "[sheets]") {
+    ExtendedOptions unaided;
+    unaided.fill = false;
     for (std::uint64_t seed = 1; seed <= 12; ++seed) {
         PointCloud cloud = scan(support::random_solid(seed), 8000, seed);
         support::Random random(seed);
@@ -141,8 +144,12 @@ TEST_CASE("whatever the normals, the facets are an oriented 2-manifold", "[sheet
             for (Vec3& n : cloud.normals)
                 n = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
         INFO("seed " << seed);
-        const ExtendedFacets facets = facets_of(cloud, 0.1);
+        const ExtendedFacets facets = facets_of(cloud, 0.1, unaided);
         const Topology t = measure_topology(facets.mesh);
+        const ManifoldCounts& mended = facets.manifold;
+        // Two facets back to back are a bubble, closed in itself, and cancel.
+        CHECK(mended.degenerate + mended.duplicates + mended.complex_edges == 0);
+        CHECK(mended.opened_edges + mended.split_vertices == 0);
         CHECK(t.manifold());
         CHECK(t.misoriented_edges == 0);
         CHECK(t.degenerate_facets == 0);
