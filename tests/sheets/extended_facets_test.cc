@@ -1,3 +1,4 @@
+#include "hsdm/errors.hh"
 #include "hsdm/sheets/extended_facets.hh"
 #include "hsdm/sheets/extended_graph.hh"
 #include "support/check.hh"
@@ -108,6 +109,35 @@ TEST_CASE("every corner of a box gets a vertex of its own", "[sheets]") {
         for (const Vec3& p : facets.mesh.positions) nearest = std::min(nearest, (p - corner).norm());
         CHECK(nearest < 0.25 * 0.12);
     }
+}
+
+TEST_CASE("relaxation leaves facets, voxels and corners alone and comes nearer to the surface", "[sheets]") {
+    const double voxel = 0.12;
+    const support::Solid solid = support::torus(1, 0.4);
+    const PointCloud cloud = scan(solid, 40000);
+    ExtendedOptions as_placed;
+    as_placed.relax.rounds = 0;
+    const ExtendedFacets before = facets_of(cloud, voxel, as_placed), after = facets_of(cloud, voxel);
+    REQUIRE(before.mesh.corners == after.mesh.corners);
+    CHECK(before.kinds == after.kinds);
+    const Vec3 origin = build_octree(cloud).origin;
+    double sum_before = 0, sum_after = 0;
+    std::size_t moved = 0;
+    for (std::size_t v = 0; v < after.mesh.vertex_count(); ++v) {
+        const Vec3 &p = before.mesh.positions[v], &q = after.mesh.positions[v];
+        for (unsigned k = 0; k < 3; ++k)
+            CHECK(std::floor((p[k] - origin[k]) / voxel) == std::floor((q[k] - origin[k]) / voxel));
+        if (before.kinds[v] == VertexKind::corner) CHECK(p == q);
+        moved += p != q;
+        sum_before += std::abs(solid.distance(p));
+        sum_after += std::abs(solid.distance(q));
+    }
+    CHECK(2 * moved > after.mesh.vertex_count());
+    CHECK(sum_after < sum_before);
+    as_placed.relax.rounds = -1;
+    CHECK_THROWS_AS(facets_of(cloud, voxel, as_placed), OptionError);
+    as_placed.relax = {.rounds = 1, .step = 0};
+    CHECK_THROWS_AS(facets_of(cloud, voxel, as_placed), OptionError);
 }
 
 TEST_CASE("an open sheet keeps its border and does not grow beyond the points by a voxel", "[sheets]") {

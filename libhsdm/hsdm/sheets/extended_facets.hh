@@ -5,13 +5,14 @@
 #include "hsdm/facets/fill_holes.hh"
 #include "hsdm/facets/manifold.hh"
 #include "hsdm/facets/untangle.hh"
-#include "hsdm/sheets/vertex_placement.hh"
+#include "hsdm/sheets/relax_vertices.hh"
 
 namespace hsdm {
 
 struct ExtendedOptions {
     RelationOptions relation;
     CrossingOptions crossing;
+    RelaxOptions relax;
     DebrisOptions debris;
     FillHolesOptions holes;                              ///< lengths in voxels here
     UntangleOptions untangle{.reach = 0.5, .nearby = 1}; ///< lengths in voxels here

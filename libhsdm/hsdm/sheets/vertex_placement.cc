@@ -49,6 +49,7 @@ int sheet_count(const std::vector<Plane>& planes) {
 struct Solution {
     Vec3 position;
     int rank = 0; // directions the planes determine
+    Vec3 steep;   // rank 1: the common normal, of either sign
     Vec3 free;    // rank 2: along the crease
     // The energy x A x - 2 b x that the position minimises, x relative to the mean, open directions held
     // lightly.
@@ -82,7 +83,9 @@ Solution least_squares(const Problem& problem, int most_rank) {
     }
     const Eigen::Vector3d free = eigen.eigenvectors().col(0);
     solution.position = problem.mean + Vec3(x[0], x[1], x[2]);
+    const Eigen::Vector3d steep = eigen.eigenvectors().col(2);
     solution.free = Vec3(free[0], free[1], free[2]);
+    solution.steep = Vec3(steep[0], steep[1], steep[2]);
     return solution;
 }
 
@@ -159,6 +162,9 @@ public:
         }
         if (!inside(solution.position, problem_)) solution = kept_inside(solution);
         result.positions[fan] = solution.position;
+        const bool upward = (solution.steep | problem_.planes[0].normal) > 0;
+        result.directions[fan] =
+            solution.rank > 1 && sheets > 1 ? solution.free : solution.steep * (upward ? 1.0 : -1.0);
         result.kinds[fan] = sheets == 1 || solution.rank < 2 ? VertexKind::smooth
                             : solution.rank == 2             ? VertexKind::edge
                                                              : VertexKind::corner;
@@ -297,8 +303,8 @@ std::vector<std::uint8_t> sets_that_cross(const CornerLattice& lattice, const No
     return crosses;
 }
 
-/// The sides of a thin part cut apart in one voxel may end on the same point, and the facets between them
-/// would have no area: such neighbours move apart, each along its own sheet's normal.
+} // namespace
+
 void separate_sides(const Crossings& crossings, const Fans& fans, double voxel_size,
                     std::vector<Vec3>& positions) {
     const auto outward = [&](std::size_t v) {
@@ -315,14 +321,13 @@ void separate_sides(const Crossings& crossings, const Fans& fans, double voxel_s
     }
 }
 
-} // namespace
-
 VertexPositions place_vertices(const Octree&, const OctreeLevel& level, const CornerLattice& lattice,
                                const NormalSets& sets, const RelationTest& related,
                                const Crossings& crossings, const Fans& fans) {
     VertexPositions result;
     result.positions.resize(fans.size());
     result.kinds.resize(fans.size());
+    result.directions.resize(fans.size());
     result.voxel.resize(fans.size());
     const auto crosses = sets_that_cross(lattice, sets, related, crossings, fans);
     std::vector<std::size_t> clamped_counts(chunk_count(fans.size(), fans_per_chunk));
@@ -332,7 +337,6 @@ VertexPositions place_vertices(const Octree&, const OctreeLevel& level, const Co
         clamped_counts[chunk] = placer.clamped_count;
     });
     for (std::size_t c : clamped_counts) result.clamped += c;
-    separate_sides(crossings, fans, level.voxel_size, result.positions);
     return result;
 }
 

@@ -11,6 +11,8 @@ enum class VertexKind : std::uint8_t { smooth = 0, edge = 1, corner = 2 };
 struct VertexPositions {
     std::vector<Vec3> positions; ///< per fan, relative to the octree's origin
     std::vector<VertexKind> kinds;
+    /// Per fan: of a smooth vertex the sheet's unit normal, of an edge vertex a unit vector along the crease.
+    std::vector<Vec3> directions;
     std::vector<Index> voxel; ///< per fan, its voxel; where no point lies in it, that of the nearest set
     std::size_t clamped = 0;  ///< kept in their voxel although their planes meet outside
 };
@@ -21,5 +23,10 @@ struct VertexPositions {
 VertexPositions place_vertices(const Octree& octree, const OctreeLevel& level, const CornerLattice& lattice,
                                const NormalSets& sets, const RelationTest& related,
                                const Crossings& crossings, const Fans& fans);
+
+/// The sides of a thin part cut apart in one voxel may end on the same point, and the facets between them
+/// would have no area: such neighbours move apart, each along its own sheet's normal. O(chains cut).
+void separate_sides(const Crossings& crossings, const Fans& fans, double voxel_size,
+                    std::vector<Vec3>& positions);
 
 } // namespace hsdm

@@ -1,0 +1,154 @@
+#include "hsdm/sheets/relax_vertices.hh"
+
+#include "hsdm/chunks.hh"
+#include "hsdm/errors.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t fans_per_chunk = 1024;
+constexpr double same_sheet_cosine = 0.77; // normals within 40 degrees
+constexpr double along_cosine = 0.8;       // an edge this parallel to a crease lies on it
+constexpr double margin = 0.01;            // voxels: vertices stay this far from their voxel's faces
+constexpr double nearness = 0.01;          // squared voxels: added to squared distances in weights
+
+class Relaxation {
+public:
+    Relaxation(double voxel_size, const CornerLattice& lattice, const Crossings& crossings, const Fans& fans,
+               VertexPositions& vertices)
+        : h_(voxel_size),
+          lattice_(lattice),
+          crossings_(crossings),
+          fans_(fans),
+          vertices_(vertices),
+          placed_(vertices.positions) {
+        list_neighbours();
+    }
+
+    void round(double step) {
+        next_ = vertices_.positions;
+        for_chunks(fans_.size(), fans_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t v = begin; v < end; ++v) {
+                const auto fan = static_cast<Index>(v);
+                if (vertices_.kinds[v] == VertexKind::smooth)
+                    next_[v] = within_voxel(fan, on_sheet(fan, moved_on_sheet(fan, step)));
+                else if (vertices_.kinds[v] == VertexKind::edge)
+                    next_[v] = within_voxel(fan, moved_along_crease(fan, step));
+            }
+        });
+        vertices_.positions.swap(next_);
+    }
+
+private:
+    std::span<const Index> neighbours(Index fan) const {
+        return {neighbours_.data() + first_[fan], neighbours_.data() + first_[fan + 1]};
+    }
+
+    /// The vertices at the other end of the sides of the facets round each vertex: interior edges count
+    /// twice.
+    void list_neighbours() {
+        first_.resize(fans_.size() + 1, 0);
+        for (Index v = 0; v < fans_.size(); ++v)
+            first_[v + 1] = first_[v] + 2 * static_cast<Index>(fans_.fan(v).size());
+        neighbours_.resize(first_.back());
+        for_chunks(fans_.size(), fans_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t v = begin; v < end; ++v) {
+                Index* out = neighbours_.data() + first_[v];
+                for (Node node : fans_.fan(static_cast<Index>(v))) {
+                    const Index x = node / 4;
+                    const unsigned j = node % 4;
+                    *out++ = fans_.at(x, (j + 1) % 4, j);
+                    *out++ = fans_.at(x, (j + 3) % 4, (j + 3) % 4);
+                }
+            }
+        });
+    }
+
+    Vec3 moved_on_sheet(Index fan, double step) const {
+        const Vec3& p = vertices_.positions[fan];
+        Vec3 mean(0, 0, 0);
+        for (Index n : neighbours(fan)) mean += vertices_.positions[n];
+        const Vec3 way = mean / static_cast<double>(neighbours(fan).size()) - p;
+        const Vec3& normal = vertices_.directions[fan];
+        return p + (way - normal * (normal | way)) * step;
+    }
+
+    /// The point of the sheet below or above p: as high as the vertices of the sheet around it were placed.
+    Vec3 on_sheet(Index fan, const Vec3& p) const {
+        const Vec3& own = vertices_.directions[fan];
+        Vec3 normal(0, 0, 0), place(0, 0, 0);
+        double sum = 0;
+        const auto add = [&](Index v, double share) {
+            const double weight = share / ((p - placed_[v]).sqrnorm() / (h_ * h_) + nearness);
+            normal += vertices_.directions[v] * weight;
+            place += placed_[v] * weight;
+            sum += weight;
+        };
+        add(fan, 1);
+        for (Index n : neighbours(fan)) // each comes twice
+            if (vertices_.kinds[n] == VertexKind::smooth
+                && (vertices_.directions[n] | own) > same_sheet_cosine)
+                add(n, 0.5);
+        normal.normalize();
+        return p - normal * (normal | (p - place / sum));
+    }
+
+    /// Towards the middle between the next vertices on the crease, if there is one either way.
+    Vec3 moved_along_crease(Index fan, double step) const {
+        const Vec3& p = vertices_.positions[fan];
+        const Vec3& along = vertices_.directions[fan];
+        double ahead = 0, behind = 0;
+        for (Index n : neighbours(fan)) {
+            if (vertices_.kinds[n] == VertexKind::smooth) continue;
+            const Vec3 way = vertices_.positions[n] - p;
+            const double s = way | along;
+            if (std::abs(s) < along_cosine * way.norm()) continue;
+            (s > 0 ? ahead : behind) = s > 0 ? std::max(ahead, s) : std::min(behind, s);
+        }
+        return ahead > 0 && behind < 0 ? p + along * (0.5 * step * (ahead + behind)) : p;
+    }
+
+    /// As far towards p as the voxel allows.
+    Vec3 within_voxel(Index fan, const Vec3& p) const {
+        const Node node = fans_.fan(fan)[0];
+        const Index edge = crossings_.crossings[node / 4].edge;
+        const unsigned octant = Ring::octant(edge % 3, node % 4);
+        const VoxelCoord corner = lattice_.coord(edge / 3);
+        const Vec3 &from = vertices_.positions[fan], way = p - from;
+        double share = 1;
+        for (unsigned k = 0; k < 3; ++k) {
+            const double lo = (corner[k] + static_cast<int>(octant >> k & 1u) - 1 + margin) * h_;
+            const double hi = lo + (1 - 2 * margin) * h_;
+            if (way[k] > 0 && p[k] > hi) share = std::min(share, (hi - from[k]) / way[k]);
+            if (way[k] < 0 && p[k] < lo) share = std::min(share, (lo - from[k]) / way[k]);
+        }
+        return from + way * std::max(share, 0.0);
+    }
+
+    double h_;
+    const CornerLattice& lattice_;
+    const Crossings& crossings_;
+    const Fans& fans_;
+    VertexPositions& vertices_;
+    const std::vector<Vec3> placed_;
+    std::vector<Vec3> next_;
+    std::vector<Index> first_, neighbours_;
+};
+
+} // namespace
+
+void relax_vertices(const OctreeLevel& level, const CornerLattice& lattice, const Crossings& crossings,
+                    const Fans& fans, const RelaxOptions& options, VertexPositions& vertices) {
+    if (options.rounds < 0)
+        throw OptionError("relaxation rounds " + std::to_string(options.rounds) + ": must be 0 or more");
+    if (!(options.step > 0 && options.step <= 1))
+        throw OptionError("relaxation step " + std::to_string(options.step) + ": must lie in (0, 1]");
+    if (options.rounds == 0) return;
+    Relaxation relaxation(level.voxel_size, lattice, crossings, fans, vertices);
+    for (int round = 0; round < options.rounds; ++round) relaxation.round(options.step);
+}
+
+} // namespace hsdm

@@ -1,0 +1,21 @@
+#pragma once
+// Vertices moved along the surface so that facets come nearer to squares.
+
+#include "hsdm/sheets/vertex_placement.hh"
+
+namespace hsdm {
+
+struct RelaxOptions {
+    int rounds = 3;    ///< >= 0; 0: vertices stay where they were placed
+    double step = 0.7; ///< (0, 1]: share of the way to the mean of the neighbours in a round
+};
+
+/// Moves smooth vertices within their sheet towards the mean of their neighbours, those of a crease along it,
+/// corners not at all, none out of its voxel. The sheet's height at the new place is the mean height of the
+/// vertices around as they were placed; on a curved sheet, where planes through its points lie outside it,
+/// that is nearer to the truth. O(rounds * crossings), parallel; the same for any number of threads. Throws
+/// OptionError.
+void relax_vertices(const OctreeLevel& level, const CornerLattice& lattice, const Crossings& crossings,
+                    const Fans& fans, const RelaxOptions& options, VertexPositions& vertices);
+
+} // namespace hsdm
