@@ -1,6 +1,7 @@
 #include "hsdm/extended_method.hh"
 
 #include "hsdm/attributes.hh"
+#include "hsdm/graph/lonely_sets.hh"
 #include "hsdm/graph/phase_geometry.hh"
 #include "hsdm/quality/topology.hh"
 #include "hsdm/sheets/extended_facets.hh"
@@ -15,12 +16,8 @@ namespace {
 ExtendedOptions extended_options(const ReconstructOptions& options) {
     ExtendedOptions result;
     result.fill = options.holes != Holes::keep;
-    if (options.holes == Holes::close) {
-        result.holes.max_edges = FillHolesOptions::no_limit;
-    } else {
-        result.holes.max_edges = 24;
-        result.holes.max_diameter = 6;
-    }
+    if (options.holes == Holes::close)
+        result.holes = {.max_edges = FillHolesOptions::no_limit, .max_diameter = Box::inf};
     return result;
 }
 
@@ -55,8 +52,12 @@ bool turn_outward(PolygonMesh& mesh) {
 } // namespace
 
 PolygonMesh extended_method(const MethodInput& in, Report& report) {
-    const NormalSets sets = in.phases.run("sets", 0.2, report.seconds.graph,
-                                          [&] { return build_normal_sets(in.octree, in.level); });
+    const NormalSets sets = in.phases.run("sets", 0.2, report.seconds.graph, [&] {
+        NormalSets all = build_normal_sets(in.octree, in.level);
+        const RelationTest related({}, in.level.voxel_size);
+        report.rejected["points_stray"] = drop_lonely_sets(in.level, related, all);
+        return all;
+    });
     report.grid.sets = sets.sets.size();
     ExtendedFacets facets = in.phases.run("facets", 0.3, report.seconds.facets, [&] {
         return reconstruct_extended(in.octree, in.level, sets, extended_options(in.options));

@@ -23,12 +23,12 @@ void add_strip(PolygonMesh& mesh, Index n) {
 
 TEST_CASE("splinters beside a large surface are dropped, small parts are not", "[facets]") {
     PolygonMesh mesh;
-    add_strip(mesh, 8);
-    add_strip(mesh, 600);
-    add_strip(mesh, 9);
+    add_strip(mesh, 12);
+    add_strip(mesh, 800);
+    add_strip(mesh, 13);
     add_strip(mesh, 1);
-    CHECK(drop_debris(mesh) == 9);
-    CHECK(mesh.facet_count() == 609);
+    CHECK(drop_debris(mesh) == 13);
+    CHECK(mesh.facet_count() == 813);
     CHECK(drop_debris(mesh) == 0);
 }
 

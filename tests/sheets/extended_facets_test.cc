@@ -1,4 +1,5 @@
 #include "hsdm/errors.hh"
+#include "hsdm/graph/lonely_sets.hh"
 #include "hsdm/sheets/extended_facets.hh"
 #include "hsdm/sheets/extended_graph.hh"
 #include "support/check.hh"
@@ -29,7 +30,9 @@ ExtendedFacets facets_of(const PointCloud& cloud, double voxel_size, const Exten
     octree_options.cube_extent = voxel_size * (1 << depth);
     const Octree octree = build_octree(cloud, octree_options);
     const OctreeLevel level = extract_level(octree, depth);
-    ExtendedFacets facets = reconstruct_extended(octree, level, build_normal_sets(octree, level), options);
+    NormalSets sets = build_normal_sets(octree, level);
+    drop_lonely_sets(level, RelationTest(options.relation, level.voxel_size), sets);
+    ExtendedFacets facets = reconstruct_extended(octree, level, sets, options);
     for (Vec3& p : facets.mesh.positions) p += octree.origin;
     return facets;
 }
@@ -97,6 +100,28 @@ TEST_CASE("nested spheres half a voxel apart stay two closed surfaces", "[sheets
         CHECK(t.closed());
         CHECK(t.components == 2);
         CHECK(t.euler == 4);
+    }
+}
+
+TEST_CASE("strays all around a sphere leave it one closed surface", "[sheets]") {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        INFO("seed " << seed);
+        const support::Solid solid = support::sphere(1);
+        PointCloud cloud = scan(solid, 20000, seed);
+        support::Random random(seed);
+        const auto anywhere = [&](double r) {
+            return Vec3(random.uniform(-r, r), random.uniform(-r, r), random.uniform(-r, r));
+        };
+        for (int i = 0; i < 1000; ++i) {
+            cloud.positions.push_back(anywhere(1.1));
+            cloud.normals.push_back(anywhere(1).normalized());
+        }
+        const ExtendedFacets facets = facets_of(cloud, 0.14);
+        const Topology t = measure_topology(facets.mesh);
+        CHECK(faults(facets.mesh) == "");
+        CHECK(t.closed());
+        CHECK(t.components == 1);
+        CHECK(t.euler == 2);
     }
 }
 

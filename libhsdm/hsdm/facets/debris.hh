@@ -6,8 +6,8 @@
 namespace hsdm {
 
 struct DebrisOptions {
-    std::size_t most_facets = 8; ///< a component with more is a part, not debris
-    double least_ratio = 64;     ///< of the facets of the largest component to those of debris
+    std::size_t most_facets = 12; ///< six quads round one grid point, cut in two; more are a part
+    double least_ratio = 64;      ///< of the facets of the largest component to those of debris
 };
 
 /// Removes the components (facets joined by shared vertices) that are debris beside the largest one, vertices

@@ -14,9 +14,9 @@ struct ExtendedOptions {
     CrossingOptions crossing;
     RelaxOptions relax;
     DebrisOptions debris;
-    FillHolesOptions holes;                              ///< lengths in voxels here
-    UntangleOptions untangle{.reach = 0.5, .nearby = 1}; ///< lengths in voxels here
-    bool fill = true;                                    ///< close small boundary loops
+    FillHolesOptions holes{.max_edges = 24, .max_diameter = 6}; ///< lengths in voxels here
+    UntangleOptions untangle{.reach = 0.5, .nearby = 1};        ///< lengths in voxels here
+    bool fill = true;                                           ///< close small boundary loops
 };
 
 struct ExtendedFacets {

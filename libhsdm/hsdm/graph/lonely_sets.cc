@@ -1,0 +1,81 @@
+#include "hsdm/graph/lonely_sets.hh"
+
+#include "hsdm/chunks.hh"
+
+#include <algorithm>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t sets_per_chunk = 1024;
+
+/// Points in a set, the mean that a point sees: full voxels count more than clipped ones.
+double typical_count(const NormalSets& sets) {
+    double points = 0, squares = 0;
+    for (const NormalSet& set : sets.sets) {
+        points += set.count;
+        squares += static_cast<double>(set.count) * set.count;
+    }
+    return points > 0 ? squares / points : 0;
+}
+
+/// Is set s a stray? `group` is scratch.
+bool is_stray(const OctreeLevel& level, const RelationTest& related, const NormalSets& sets, double most,
+              std::size_t most_sets, Index s, std::vector<Index>& group) {
+    group.assign(1, s);
+    for (std::size_t i = 0; i < group.size(); ++i) {
+        const NormalSet& set = sets.sets[group[i]];
+        const VoxelCoord at = level.coord(set.voxel);
+        for (const VoxelCoord& offset : neighbor_offsets) {
+            const Index voxel = level.find({at[0] + offset[0], at[1] + offset[1], at[2] + offset[2]});
+            if (voxel == no_index) continue;
+            for (Index t = sets.first[voxel]; t < sets.first[voxel + 1]; ++t) {
+                if (related(set, sets.sets[t]) != Relation::smooth) continue;
+                if (sets.sets[t].count > most) return false;
+                if (std::find(group.begin(), group.end(), t) == group.end()) group.push_back(t);
+            }
+            if (group.size() > most_sets) return false;
+        }
+    }
+    return true;
+}
+
+void remove(const std::vector<std::uint8_t>& lonely, NormalSets& sets) {
+    std::vector<Index> renumbered(sets.sets.size(), no_index);
+    Index kept = 0;
+    for (std::size_t v = 0, s = 0; v + 1 < sets.first.size(); ++v) {
+        const Index end = sets.first[v + 1];
+        sets.first[v] = kept;
+        for (; s < end; ++s)
+            if (!lonely[s]) {
+                renumbered[s] = kept;
+                sets.sets[kept++] = sets.sets[s];
+            }
+    }
+    sets.first.back() = kept;
+    sets.sets.resize(kept);
+    for (Index& s : sets.of_point)
+        if (s != no_index) s = renumbered[s];
+}
+
+} // namespace
+
+std::size_t drop_lonely_sets(const OctreeLevel& level, const RelationTest& related, NormalSets& sets,
+                             const LonelySetOptions& options) {
+    const double most = std::max(1.0, options.most_share * typical_count(sets));
+    std::vector<std::uint8_t> lonely(sets.sets.size(), 0);
+    for_chunks(sets.sets.size(), sets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        std::vector<Index> group;
+        for (std::size_t s = begin; s < end; ++s)
+            lonely[s] =
+                sets.sets[s].count <= most
+                && is_stray(level, related, sets, most, options.most_sets, static_cast<Index>(s), group);
+    });
+    std::size_t points = 0;
+    for (std::size_t s = 0; s < lonely.size(); ++s)
+        if (lonely[s]) points += sets.sets[s].count;
+    if (points > 0) remove(lonely, sets);
+    return points;
+}
+
+} // namespace hsdm
