@@ -17,7 +17,7 @@ ExtendedOptions extended_options(const ReconstructOptions& options) {
     ExtendedOptions result;
     result.fill = options.holes != Holes::keep;
     if (options.holes == Holes::close)
-        result.holes = {.max_edges = FillHolesOptions::no_limit, .max_diameter = Box::inf};
+        result.holes = {.max_edges = FillHolesOptions::no_limit, .max_diameter = Box::inf, .insist = true};
     return result;
 }
 

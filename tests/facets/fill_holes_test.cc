@@ -146,6 +146,25 @@ TEST_CASE("a patch is not folded shut", "[holes]") {
     CHECK(mesh.facet_count() == 2);
 }
 
+TEST_CASE("insisting closes what is refused otherwise", "[holes]") {
+    PolygonMesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 1, 0.1}, {2, 1, 0}};
+    mesh.normals.assign(6, Vec3(0, 0, 1));
+    mesh.properties.push_back({"number", VertexProperty::Type::float64, {0, 1, 2, 3, 4, 5}});
+    mesh.add_facet(std::array<Index, 4>{0, 1, 4, 3});
+    mesh.add_facet(std::array<Index, 4>{1, 2, 5, 4});
+    FillHolesOptions options;
+    options.insist = true;
+    const FillHolesCounts counts = fill_holes(mesh, options);
+    CHECK(counts.refused == 0);
+    CHECK(counts.vertices == 1);
+    CHECK(mesh.vertex_count() == 7);
+    CHECK(mesh.normals.size() == 7);
+    CHECK(mesh.properties[0].values.size() == 7);
+    CHECK(measure_topology(mesh).closed());
+    check_manifold(mesh);
+}
+
 TEST_CASE("an edge that exists is not used a second time", "[holes]") {
     // A fan over corners 0, 1, 2 leaves the loop 0, 1, 2, 3 whose diagonal 0-2 is an edge already.
     PolygonMesh mesh;
@@ -179,6 +198,7 @@ TEST_CASE("holes of random soups leave a manifold", "[holes]") {
         FillHolesOptions options;
         options.max_edges = FillHolesOptions::no_limit;
         options.max_bend = std::numbers::pi;
+        options.insist = round % 2 == 1;
         fill_holes(soup, options);
         const Topology topology = measure_topology(soup);
         CHECK(topology.manifold());

@@ -129,6 +129,26 @@ private:
     std::vector<Index> path_;
 };
 
+/// A new vertex at the mean of a loop's, with their mean normal and the properties of the first.
+Index add_middle(PolygonMesh& mesh, std::span<const Index> loop) {
+    Vec3 position(0, 0, 0), normal(0, 0, 0);
+    for (Index v : loop) position += mesh.positions[v];
+    mesh.positions.push_back(position / static_cast<double>(loop.size()));
+    if (!mesh.normals.empty()) {
+        for (Index v : loop) normal += mesh.normals[v];
+        mesh.normals.push_back(unit(normal));
+    }
+    for (VertexProperty& property : mesh.properties) property.values.push_back(property.values[loop[0]]);
+    return static_cast<Index>(mesh.vertex_count() - 1);
+}
+
+Pieces triangles_around(Index middle, std::span<const Index> loop) {
+    Pieces pieces;
+    for (std::size_t i = 0; i < loop.size(); ++i)
+        pieces.push_back({loop[i], loop[(i + 1) % loop.size()], middle});
+    return pieces;
+}
+
 } // namespace
 
 BoundaryLoops boundary_loops(const PolygonMesh& mesh) {
@@ -153,6 +173,10 @@ FillHolesCounts fill_holes(PolygonMesh& mesh, const FillHolesOptions& options) {
             std::vector<Vec3> normals;
             for (Index f : facets) normals.push_back(unit(area_vector(mesh, mesh.facet(f))));
             pieces = split_polygon(mesh, loop, normals, edges, split);
+        }
+        if (pieces.empty() && options.insist && loop.size() >= 3) {
+            pieces = triangles_around(add_middle(mesh, loop), loop);
+            ++counts.vertices;
         }
         for (const auto& piece : pieces) {
             mesh.add_facet(piece);

@@ -13,15 +13,19 @@ struct FillHolesOptions {
     /// closed with less is left open. pi is a facet folded back onto its neighbour.
     double max_bend = 2.6;
     bool quads = true; ///< join triangles to quads where these come out convex
+    /// Close what cannot be closed otherwise by a vertex at its middle and triangles around it, however these
+    /// come out. Only a loop of two edges stays.
+    bool insist = false;
 
     static constexpr int no_limit = std::numeric_limits<int>::max();
 };
 
 struct FillHolesCounts {
-    std::size_t loops = 0;   ///< boundary loops before
-    std::size_t closed = 0;  ///< of these, closed
-    std::size_t refused = 0; ///< within the limits, but only closed by folding or by an edge used twice
-    std::size_t facets = 0;  ///< added, at the end of the mesh
+    std::size_t loops = 0;    ///< boundary loops before
+    std::size_t closed = 0;   ///< of these, closed
+    std::size_t refused = 0;  ///< within the limits, but only closed by folding or by an edge used twice
+    std::size_t facets = 0;   ///< added, at the end of the mesh
+    std::size_t vertices = 0; ///< added, at the end of the mesh: middles of loops
 };
 
 /// Boundary loops as flat arrays: the vertices of loop i are vertices[begin[i]] .. vertices[begin[i + 1]],
@@ -42,12 +46,12 @@ struct BoundaryLoops {
 /// that face different ways keep their gaps to themselves. O(facets).
 BoundaryLoops boundary_loops(const PolygonMesh& mesh);
 
-/// Closes boundary loops without adding vertices. Each loop is triangulated so that edges are short and
-/// bends small (exactly, by dynamic programming, up to 128 edges; longer ones lose their best ears first),
-/// then triangles are joined to quads. No two facets of the mesh may run along an edge the same way, and none
-/// will: no edge that exists is used again, no facet lies over the vertices of another. Closing holes before
-/// make_manifold mends vertices with several fans; what it cannot mend make_manifold splits.
-/// O(facets + sum of loop length ^ 3, for lengths up to 128).
+/// Closes boundary loops, without adding vertices unless it is to insist. Each loop is triangulated so that
+/// edges are short and bends small (exactly, by dynamic programming, up to 128 edges; longer ones lose their
+/// best ears first), then triangles are joined to quads. No two facets of the mesh may run along an edge the
+/// same way, and none will: no edge that exists is used again, no facet lies over the vertices of another.
+/// Closing holes before make_manifold mends vertices with several fans; what it cannot mend make_manifold
+/// splits. O(facets + sum of loop length ^ 3, for lengths up to 128).
 FillHolesCounts fill_holes(PolygonMesh& mesh, const FillHolesOptions& options = {});
 
 } // namespace hsdm

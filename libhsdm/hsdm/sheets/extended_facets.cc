@@ -252,13 +252,14 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
 
     result.mesh.positions = std::move(vertices.positions);
     add_properties(vertices, result.mesh);
+    result.debris = drop_debris(result.mesh, options.debris);
     if (options.fill) {
         FillHolesOptions holes = options.holes;
         holes.max_diameter *= h;
         result.holes = fill_holes(result.mesh, holes);
     }
     result.manifold = make_manifold(result.mesh);
-    result.debris = drop_debris(result.mesh, options.debris);
+    result.debris += drop_debris(result.mesh, options.debris);
     if (result.debris > 0) remove_isolated_vertices(result.mesh);
     UntangleOptions untangle_options = options.untangle;
     untangle_options.reach *= h;
