@@ -155,7 +155,6 @@ ReconstructOptions ReconstructArguments::options() const {
     refuse(!max_error.empty(), "--max-error");
     refuse(grid == "adaptive", "--grid adaptive");
     refuse(!memory.empty(), "--memory");
-    refuse(normals == NormalSource::estimate, "--normals estimate");
     ReconstructOptions o;
     o.depth = depth;
     o.voxel_size = voxel_size;

@@ -3,6 +3,7 @@
 #include "hsdm/extended_method.hh"
 #include "hsdm/facets/to_mesh.hh"
 #include "hsdm/features/features.hh"
+#include "hsdm/normals/normals.hh"
 #include "hsdm/octree/spacing.hh"
 #include "hsdm/quality/distance.hh"
 #include "hsdm/quality/topology.hh"
@@ -43,8 +44,8 @@ void validate(const ReconstructOptions& o) {
         throw OptionError("normal_smoothing " + std::to_string(o.normal_smoothing) + ": must be 0 or more");
     if (o.threads < 0)
         throw OptionError("threads " + std::to_string(o.threads) + ": must be 0 (all) or more");
-    if (o.normals == NormalSource::estimate)
-        throw OptionError("normals estimate is not available yet; use given or auto");
+    if (o.normals == NormalSource::estimate && o.method == Method::basic)
+        throw OptionError("normals estimate: the basic method uses no normals; use the extended one");
 }
 
 /// The cloud without its points that are not finite: the caller's own where it has none.
@@ -97,6 +98,7 @@ public:
     Decomposition(const PointCloud& cloud, const ReconstructOptions& options, const Phases& phases) {
         OctreeOptions octree_options;
         octree_options.placement = CubePlacement::centred;
+        octree_options.use_normals = options.normals != NormalSource::estimate;
         if (options.voxel_size) octree_options.cube_extent = cube_of(cloud, *options.voxel_size);
         octree = phases.run("octree", 0, report.seconds.octree,
                             [&] { return build_octree(cloud, octree_options); });
@@ -106,6 +108,17 @@ public:
         report.input.has_normals = cloud.has_normals();
         report.input.bbox = octree.bounds;
         report.input.spacing = estimate_spacing(octree);
+    }
+
+    /// Normals, where the method needs some and the cloud has none or they are not wanted.
+    void provide_normals(const PointCloud& cloud, const Phases& phases) {
+        NormalsOptions normals_options;
+        if (cloud.sensor) normals_options.orient.sensor = *cloud.sensor - octree.origin;
+        const NormalsReport made = phases.run("normals", 0.05, report.seconds.normals,
+                                              [&] { return make_normals(octree, normals_options); });
+        report.rejected["normals_refitted"] = made.refitted;
+        report.rejected["normals_missing"] = made.without;
+        report.rejected["normals_by_volume"] = made.orientation.by_volume;
     }
 
     /// The depth the options ask for or the spacing suggests; notes it in the report.
@@ -143,10 +156,14 @@ private:
     int voxel_depth_ = 0;
 };
 
-/// Points with normals are worth the extended method; it cannot do without.
-Method method_for(const PointCloud& cloud, const ReconstructOptions& options) {
-    if (options.method != Method::automatic) return options.method;
-    return cloud.has_normals() ? Method::extended : Method::basic;
+/// The extended method is the better one, with normals given or estimated.
+Method method_for(const ReconstructOptions& options) {
+    return options.method == Method::basic ? Method::basic : Method::extended;
+}
+
+bool must_estimate(const PointCloud& cloud, const ReconstructOptions& options) {
+    if (method_for(options) == Method::basic) return false;
+    return options.normals == NormalSource::estimate || !cloud.has_normals();
 }
 
 std::string name_of(Holes holes) {
@@ -154,8 +171,9 @@ std::string name_of(Holes holes) {
 }
 
 void note_options(const PointCloud& cloud, const ReconstructOptions& options, Report& report) {
-    report.options["method"] = method_for(cloud, options) == Method::extended ? "extended" : "basic";
-    report.options["normals"] = options.normals == NormalSource::given ? "given" : "auto";
+    const bool extended = method_for(options) == Method::extended;
+    report.options["method"] = extended ? "extended" : "basic";
+    report.options["normals"] = must_estimate(cloud, options) ? "estimate" : extended ? "given" : "none";
     report.options["holes"] = name_of(options.holes);
     report.options["crease-degrees"] = text_of(options.crease_angle * 180 / std::numbers::pi);
     report.options["smoothing"] = std::to_string(options.normal_smoothing);
@@ -220,7 +238,7 @@ Reconstruction reconstruct_level(const PointCloud& cloud, const Octree& octree, 
     report.grid.leaves_per_level.back() = level.size();
 
     const MethodInput input{cloud, octree, level, options, phases};
-    PolygonMesh facets = method_for(cloud, options) == Method::extended ? extended_method(input, report)
+    PolygonMesh facets = method_for(options) == Method::extended ? extended_method(input, report)
                                                                         : basic_method(input, report);
     if (facets.facet_count() == 0)
         throw Error("no facet came out of " + std::to_string(level.size()) + " voxels at depth "
@@ -250,13 +268,12 @@ std::vector<Reconstruction> run(const PointCloud& cloud, const ReconstructOption
     const FiniteCloud finite(cloud);
     if (options.normals == NormalSource::given && !(*finite).has_normals())
         throw Error("normals given were asked for, but the cloud has none");
-    if (options.method == Method::extended && !(*finite).has_normals())
-        throw Error("the extended method needs normals and the cloud has none; use --method basic");
     Decomposition decomposition(*finite, options, Phases(options, 0, 1));
     Report& report = decomposition.report;
     report.input.dropped_nonfinite = finite.dropped();
     report.threads = tbb::this_task_arena::max_concurrency();
     note_options(*finite, options, report);
+    if (must_estimate(*finite, options)) decomposition.provide_normals(*finite, Phases(options, 0, 1));
     if (range) {
         report.options["levels"] = std::to_string(range->first) + ":" + std::to_string(range->second);
         report.options["resolution"] = "as asked by levels";

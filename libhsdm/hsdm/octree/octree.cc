@@ -45,10 +45,10 @@ MortonCode code_of(const Vec3& relative, double scale) {
 }
 
 /// Runs of equal codes come in the order of the input: sorts each by position, then normal.
-void order_ties(const PointCloud& cloud, std::vector<CodeIndex>& keys) {
+void order_ties(const PointCloud& cloud, bool with_normals, std::vector<CodeIndex>& keys) {
     auto key = [&](Index i) {
         const Vec3& p = cloud.positions[i];
-        const Vec3 n = cloud.has_normals() ? cloud.normals[i] : Vec3(0, 0, 0);
+        const Vec3 n = with_normals ? cloud.normals[i] : Vec3(0, 0, 0);
         return std::tuple(p[0], p[1], p[2], n[0], n[1], n[2]);
     };
     for (std::size_t begin = 0, end = 0; begin < keys.size(); begin = end) {
@@ -64,10 +64,10 @@ void order_ties(const PointCloud& cloud, std::vector<CodeIndex>& keys) {
 }
 
 /// Removes points equal to their predecessor in position and normal; equal points are neighbours by now.
-std::size_t merge_equal(const PointCloud& cloud, std::vector<CodeIndex>& keys) {
+std::size_t merge_equal(const PointCloud& cloud, bool with_normals, std::vector<CodeIndex>& keys) {
     auto equal = [&](const CodeIndex& a, const CodeIndex& b) {
         return a.code == b.code && cloud.positions[a.index] == cloud.positions[b.index]
-               && (!cloud.has_normals() || cloud.normals[a.index] == cloud.normals[b.index]);
+               && (!with_normals || cloud.normals[a.index] == cloud.normals[b.index]);
     };
     const auto end = std::unique(keys.begin(), keys.end(), equal);
     const auto merged = static_cast<std::size_t>(keys.end() - end);
@@ -101,6 +101,7 @@ Octree build_octree(const PointCloud& cloud, const OctreeOptions& options) {
     }
 
     const std::size_t n = cloud.size();
+    const bool with_normals = options.use_normals && cloud.has_normals();
     const double scale = static_cast<double>(1 << morton_levels) / octree.extent;
     std::vector<CodeIndex> keys(n);
     tbb::parallel_for(Range(0, n, grain), [&](const Range& range) {
@@ -108,20 +109,20 @@ Octree build_octree(const PointCloud& cloud, const OctreeOptions& options) {
             keys[i] = {code_of(cloud.positions[i] - octree.origin, scale), static_cast<Index>(i)};
     });
     radix_sort(keys, 3 * morton_levels);
-    order_ties(cloud, keys);
-    if (options.merge_duplicates) octree.merged_duplicates = merge_equal(cloud, keys);
+    order_ties(cloud, with_normals, keys);
+    if (options.merge_duplicates) octree.merged_duplicates = merge_equal(cloud, with_normals, keys);
 
     octree.codes.resize(keys.size());
     octree.source.resize(keys.size());
     octree.positions.resize(keys.size());
-    if (cloud.has_normals()) octree.normals.resize(keys.size());
+    if (with_normals) octree.normals.resize(keys.size());
     tbb::parallel_for(Range(0, keys.size(), grain), [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
             const Index source = keys[i].index;
             octree.codes[i] = keys[i].code;
             octree.source[i] = source;
             octree.positions[i] = cloud.positions[source] - octree.origin;
-            if (cloud.has_normals()) octree.normals[i] = unit_or_zero(cloud.normals[source]);
+            if (with_normals) octree.normals[i] = unit_or_zero(cloud.normals[source]);
         }
     });
     return octree;

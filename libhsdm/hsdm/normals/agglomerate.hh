@@ -1,0 +1,30 @@
+#pragma once
+// Consistent signs from contradictory evidence: a graph whose edges say "same" or "opposite" and how surely.
+
+#include "hsdm/types.hh"
+
+#include <vector>
+
+namespace hsdm {
+
+struct SignedEdge {
+    Index a, b;   ///< a < b
+    float weight; ///< sum of the evidence: positive for the same sign, negative for opposite signs
+    float total;  ///< sum of its magnitudes: a weight far below it is evidence that contradicts itself
+};
+
+struct Signs {
+    std::vector<std::int8_t> sign; ///< per node, +1 or -1, relative to its component
+    std::vector<Index> component;  ///< per node
+    std::size_t components = 0;
+};
+
+/// Merges edges[start] .. edges.back() that join the same two nodes; they come out sorted.
+void merge_parallel_edges(std::vector<SignedEdge>& edges, std::size_t start);
+
+/// Boruvka's algorithm with sums: in every round each component joins the one that it has the strongest evidence with, summed
+/// along their whole border; the strongest first. O(e log n) at worst, in at most log2 n rounds. The result does not
+/// depend on the order of the edges beyond the last bit of their sums.
+Signs agglomerate(std::size_t nodes, std::vector<SignedEdge> edges);
+
+} // namespace hsdm

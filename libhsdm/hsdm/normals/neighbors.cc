@@ -1,0 +1,175 @@
+#include "hsdm/normals/neighbors.hh"
+
+#include "hsdm/chunks.hh"
+#include "hsdm/errors.hh"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <bit>
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t leaf_points = 12;
+constexpr std::size_t leaves_per_chunk = 256;
+/// So many candidates per neighbour wanted keep the nearest away from the rim of the 27 voxels.
+constexpr std::size_t candidates_per_neighbor = 4;
+
+/// A run of points in one voxel.
+struct Leaf {
+    Index begin, end;
+    int level;
+};
+
+/// The first level at which two codes lie in different voxels; morton_levels + 1 if equal.
+int split_level(MortonCode a, MortonCode b) {
+    if (a == b) return morton_levels + 1;
+    return morton_levels - (63 - std::countl_zero(a ^ b)) / 3;
+}
+
+/// The largest voxels that hold at most leaf_points points (or are as small as voxels get).
+std::vector<Leaf> find_leaves(const std::vector<MortonCode>& codes) {
+    std::vector<Leaf> leaves;
+    leaves.reserve(codes.size() / 4 + 1);
+    for (std::size_t i = 0, end = 0; i < codes.size(); i = end) {
+        int level = i == 0 ? 0 : split_level(codes[i - 1], codes[i]);
+        if (i + leaf_points < codes.size())
+            level = std::max(level, split_level(codes[i], codes[i + leaf_points]));
+        level = std::min(level, morton_levels);
+        const int shift = 3 * (morton_levels - level);
+        for (end = i + 1; end < codes.size() && codes[end] >> shift == codes[i] >> shift;) ++end;
+        leaves.push_back({static_cast<Index>(i), static_cast<Index>(end), level});
+    }
+    return leaves;
+}
+
+/// The candidates of one leaf, relative to its first point: float suffices to rank distances.
+struct Candidates {
+    std::vector<float> x, y, z;
+    std::vector<Index> id;
+    std::vector<float> distance;      ///< squared, of the point at hand
+    std::vector<std::uint64_t> ranked; ///< bits of the squared distance, then the candidate's place
+
+    void clear() {
+        x.clear(), y.clear(), z.clear(), id.clear();
+    }
+    void add(const Octree& octree, Index begin, Index end, const Vec3& base) {
+        for (Index i = begin; i < end; ++i) {
+            const Vec3 p = octree.positions[i] - base;
+            x.push_back(static_cast<float>(p[0]));
+            y.push_back(static_cast<float>(p[1]));
+            z.push_back(static_cast<float>(p[2]));
+            id.push_back(i);
+        }
+    }
+    void measure(float px, float py, float pz) {
+        distance.resize(id.size());
+        for (std::size_t c = 0; c < id.size(); ++c) {
+            const float dx = x[c] - px, dy = y[c] - py, dz = z[c] - pz;
+            distance[c] = dx * dx + dy * dy + dz * dz;
+        }
+    }
+    /// Ranks those closer than the limit; returns how many these are.
+    std::size_t rank_within(float limit) {
+        ranked.resize(id.size());
+        std::size_t n = 0;
+        for (std::size_t c = 0; c < id.size(); ++c) {
+            ranked[n] = std::uint64_t{std::bit_cast<std::uint32_t>(distance[c])} << 32 | c;
+            n += distance[c] <= limit;
+        }
+        ranked.resize(n);
+        return n;
+    }
+};
+
+class Search {
+public:
+    Search(const Octree& octree, Neighbors& result) : octree_(octree), result_(result) {
+        const std::vector<Leaf> leaves = find_leaves(octree.codes);
+        int deepest = 0;
+        for (const Leaf& leaf : leaves) deepest = std::max(deepest, leaf.level);
+        for (int level = 0; level <= deepest; ++level) levels_.push_back(extract_level(octree, level));
+        tbb::enumerable_thread_specific<Candidates> scratch;
+        for_chunks(leaves.size(), leaves_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            Candidates& candidates = scratch.local();
+            for (std::size_t l = begin; l < end; ++l) search_leaf(leaves[l], candidates);
+        });
+        result.leaf_first.reserve(leaves.size() + 1);
+        for (const Leaf& leaf : leaves) result.leaf_first.push_back(leaf.begin);
+        result.leaf_first.push_back(static_cast<Index>(octree.size()));
+    }
+
+private:
+    /// The voxels around the leaf at one level; empty once they hold too few points.
+    std::size_t around(const Leaf& leaf, int level, std::array<Index, 27>& voxels, std::size_t& count) const {
+        const OctreeLevel& grid = levels_[static_cast<std::size_t>(level)];
+        const MortonCode code = octree_.codes[leaf.begin] >> (3 * (morton_levels - level));
+        const VoxelCoord centre = morton_decode(code);
+        std::size_t points = 0;
+        count = 0;
+        for (std::int32_t dz = -1; dz <= 1; ++dz)
+            for (std::int32_t dy = -1; dy <= 1; ++dy)
+                for (std::int32_t dx = -1; dx <= 1; ++dx) {
+                    const Index v = grid.find({centre[0] + dx, centre[1] + dy, centre[2] + dz});
+                    if (v == no_index) continue;
+                    voxels[count++] = v;
+                    points += grid.first_point[v + 1] - grid.first_point[v];
+                }
+        return points;
+    }
+
+    void search_leaf(const Leaf& leaf, Candidates& candidates) const {
+        std::array<Index, 27> voxels;
+        std::size_t count = 0;
+        int level = leaf.level;
+        while (around(leaf, level, voxels, count) < candidates_per_neighbor * result_.count && level > 0) --level;
+        const Vec3 base = octree_.positions[leaf.begin];
+        const OctreeLevel& grid = levels_[static_cast<std::size_t>(level)];
+        candidates.clear();
+        for (std::size_t v = 0; v < count; ++v)
+            candidates.add(octree_, grid.first_point[voxels[v]], grid.first_point[voxels[v] + 1], base);
+        float limit = std::numeric_limits<float>::max();
+        for (Index i = leaf.begin; i < leaf.end; ++i) limit = search_point(i, base, limit, candidates);
+    }
+
+    /// Returns a squared distance within which the next point of the leaf will find enough.
+    float search_point(Index i, const Vec3& base, float limit, Candidates& candidates) const {
+        const Vec3 p = octree_.positions[i] - base;
+        candidates.measure(static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]));
+        const std::size_t wanted = result_.count + 1; // the point itself is among them
+        if (candidates.rank_within(limit) < wanted)
+            candidates.rank_within(std::numeric_limits<float>::infinity());
+        auto& ranked = candidates.ranked;
+        const auto last = ranked.begin() + static_cast<std::ptrdiff_t>(wanted - 1);
+        std::nth_element(ranked.begin(), last, ranked.end());
+        const float farthest = std::bit_cast<float>(static_cast<std::uint32_t>(*last >> 32));
+        Index* out = result_.index.data() + i * result_.count;
+        std::size_t found = 0;
+        for (std::size_t c = 0; c < wanted; ++c) {
+            const Index id = candidates.id[ranked[c] & 0xffffffffu];
+            if (id != i && found < result_.count) out[found++] = id;
+        }
+        result_.reach[i] = std::sqrt(static_cast<double>(farthest));
+        return 1.5f * farthest;
+    }
+
+    const Octree& octree_;
+    Neighbors& result_;
+    std::vector<OctreeLevel> levels_;
+};
+
+} // namespace
+
+Neighbors find_neighbors(const Octree& octree, const NeighborOptions& options) {
+    if (options.count < 3 || options.count > 64)
+        throw OptionError("neighbours " + std::to_string(options.count) + ": must lie in [3, 64]");
+    Neighbors result;
+    result.count = std::min(static_cast<std::size_t>(options.count), octree.size() - 1);
+    result.index.resize(octree.size() * result.count);
+    result.reach.resize(octree.size());
+    const Search search(octree, result);
+    return result;
+}
+
+} // namespace hsdm

@@ -1,0 +1,27 @@
+#pragma once
+// Cloud without normals -> cloud with oriented normals: the whole step.
+
+#include "hsdm/normals/orient_normals.hh"
+
+namespace hsdm {
+
+struct NormalsOptions {
+    NeighborOptions neighbors;
+    EstimateOptions estimate;
+    OrientOptions orient;
+};
+
+struct NormalsReport {
+    double noise = 0;          ///< see EstimatedNormals
+    std::size_t refitted = 0;  ///< points near creases, whose plane was fitted anew
+    std::size_t without = 0;   ///< points left without a normal: their neighbours lie on a line
+    OrientReport orientation;
+};
+
+/// Gives the octree's points normals from their positions alone, each on its own face where faces meet in a
+/// crease, and all of one side: outward on a closed surface. Those the octree has are replaced. Two sides of a thin
+/// part stay apart if they are at least as far from each other as neighbouring points. O(n log n), parallel; the same bits for
+/// every number of threads. Throws OptionError.
+NormalsReport make_normals(Octree& octree, const NormalsOptions& options = {});
+
+} // namespace hsdm

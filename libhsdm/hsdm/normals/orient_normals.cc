@@ -1,0 +1,66 @@
+#include "hsdm/normals/orient_normals.hh"
+
+#include "hsdm/chunks.hh"
+#include "hsdm/normals/outside.hh"
+#include "hsdm/octree/spacing.hh"
+
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t points_per_chunk = 1 << 14;
+/// What a view of the outside weighs, per point of the patch, in pairs of neighbouring points.
+constexpr float vote_weight = 4;
+
+/// Signs of components that no view decided: by the sensor, else by the signed volume about their own centre.
+std::vector<std::int8_t> free_signs(const Patches& patches, const Signs& signs, const OrientOptions& options) {
+    std::vector<Vec3> centre(signs.components, Vec3(0, 0, 0));
+    std::vector<double> points(signs.components, 0), side(signs.components, 0);
+    for (std::size_t p = 0; p < patches.size(); ++p) {
+        centre[signs.component[p]] += patches.centroids[p] * patches.counts[p];
+        points[signs.component[p]] += patches.counts[p];
+    }
+    for (std::size_t p = 0; p < patches.size(); ++p) {
+        const Index c = signs.component[p];
+        const Vec3 from = options.sensor ? *options.sensor - patches.centroids[p] : patches.centroids[p] - centre[c] / points[c];
+        side[c] += (patches.normals[p] | from) * signs.sign[p] * patches.counts[p];
+    }
+    std::vector<std::int8_t> sign(signs.components, 1);
+    for (std::size_t c = 0; c < sign.size(); ++c)
+        if (side[c] < 0) sign[c] = -1;
+    return sign;
+}
+
+} // namespace
+
+OrientReport orient_normals(const Octree& octree, const Neighbors& neighbors, EstimatedNormals& estimate, const OrientOptions& options) {
+    const Patches patches = build_patches(octree, neighbors, estimate);
+    const std::vector<std::int8_t> votes = outside_votes(octree, patches, estimate_spacing(octree));
+    std::vector<SignedEdge> edges = patch_evidence(octree, neighbors, estimate, patches);
+    const auto outside = static_cast<Index>(patches.size());
+    OrientReport report;
+    for (Index p = 0; p < patches.size(); ++p) {
+        if (votes[p] == 0) continue;
+        const float weight = vote_weight * static_cast<float>(patches.counts[p]);
+        edges.push_back({p, outside, votes[p] * weight, weight});
+        report.seen_from_outside += patches.counts[p];
+    }
+    const Signs signs = agglomerate(patches.size() + 1, std::move(edges));
+    std::vector<std::int8_t> turn = free_signs(patches, signs, options);
+    turn[signs.component[outside]] = signs.sign[outside];
+    for_chunks(octree.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Index p = patches.of_point[i];
+            if (p != no_index && patches.sign[i] * signs.sign[p] * turn[signs.component[p]] < 0)
+                estimate.normals[i] = -estimate.normals[i];
+        }
+    });
+    report.patches = patches.size();
+    report.components = signs.components;
+    for (std::size_t p = 0; p < patches.size(); ++p)
+        if (signs.component[p] != signs.component[outside]) report.by_volume += patches.counts[p];
+    return report;
+}
+
+} // namespace hsdm

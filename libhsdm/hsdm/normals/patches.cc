@@ -1,0 +1,135 @@
+#include "hsdm/normals/patches.hh"
+
+#include "hsdm/chunks.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t leaves_per_chunk = 256;
+/// Normals of one patch, neighbour to neighbour (about 32 degrees).
+constexpr double least_cosine = 0.85;
+/// Sine of the angle that the chord between two points of one patch may rise out of their planes.
+constexpr double steepest = 0.3;
+/// Points of a leaf are compared with so many of their successors: more only share a voxel of the deepest level.
+constexpr Index compared = 12;
+
+class PatchBuilder {
+public:
+    PatchBuilder(const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate)
+        : octree_(octree), neighbors_(neighbors), estimate_(estimate) {}
+
+    Patches run() {
+        const std::size_t leaves = neighbors_.leaf_first.size() - 1;
+        result_.of_point.assign(octree_.size(), no_index);
+        result_.sign.assign(octree_.size(), 1);
+        std::vector<Index> first(chunk_count(leaves, leaves_per_chunk) + 1, 0);
+        for_chunks(leaves, leaves_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+            Index count = 0;
+            for (std::size_t l = begin; l < end; ++l) count += join_leaf(l, count);
+            first[chunk + 1] = count;
+        });
+        counts_to_first(first);
+        result_.centroids.assign(first.back(), Vec3(0, 0, 0));
+        result_.normals.assign(first.back(), Vec3(0, 0, 0));
+        result_.counts.assign(first.back(), 0);
+        for_chunks(leaves, leaves_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+            sum_points(neighbors_.leaf_first[begin], neighbors_.leaf_first[end], first[chunk]);
+            for (Index p = first[chunk]; p < first[chunk + 1]; ++p) {
+                result_.centroids[p] /= result_.counts[p];
+                result_.normals[p].normalize();
+            }
+        });
+        return std::move(result_);
+    }
+
+private:
+    bool flat(Index i, Index j, double cosine) const {
+        if (std::abs(cosine) < least_cosine) return false;
+        const Vec3& a = estimate_.normals[i];
+        const Vec3 sum = cosine < 0 ? a - estimate_.normals[j] : a + estimate_.normals[j];
+        const Vec3 d = octree_.positions[j] - octree_.positions[i];
+        const double rise = std::abs(sum | d) / sum.norm();
+        const double length = d.norm();
+        return rise <= std::max(steepest * length, std::min(estimate_.tolerance[i], 0.5 * length));
+    }
+
+    /// Numbers the leaf's patches from `base` on; returns how many there are. A patch's number is taken by its first point.
+    Index join_leaf(std::size_t leaf, Index base) {
+        const Index begin = neighbors_.leaf_first[leaf], end = neighbors_.leaf_first[leaf + 1];
+        Index count = 0;
+        for (Index i = begin; i < end; ++i) {
+            if (estimate_.normals[i].sqrnorm() < 0.5) continue;
+            for (Index j = i - begin > compared ? i - compared : begin; j < i; ++j) {
+                if (result_.of_point[j] == no_index || result_.of_point[j] == result_.of_point[i]) continue;
+                const double cosine = estimate_.normals[i] | estimate_.normals[j];
+                if (!flat(i, j, cosine)) continue;
+                const auto sign = static_cast<std::int8_t>(cosine < 0 ? -result_.sign[j] : result_.sign[j]);
+                if (result_.of_point[i] == no_index) {
+                    result_.of_point[i] = result_.of_point[j];
+                    result_.sign[i] = sign;
+                }
+            }
+            if (result_.of_point[i] == no_index) result_.of_point[i] = base + count++;
+        }
+        return count;
+    }
+
+    void sum_points(Index begin, Index end, Index base) {
+        for (Index i = begin; i < end; ++i) {
+            if (result_.of_point[i] == no_index) continue;
+            const Index p = result_.of_point[i] += base;
+            result_.centroids[p] += octree_.positions[i];
+            result_.normals[p] += estimate_.normals[i] * result_.sign[i];
+            ++result_.counts[p];
+        }
+    }
+
+    const Octree& octree_;
+    const Neighbors& neighbors_;
+    const EstimatedNormals& estimate_;
+    Patches result_;
+};
+
+/// A pair of points nearer to each other than this, in neighbourhood radii, is compared by how far they lie off each other's planes,
+/// not by the angle of their chord: two sides of a plate oppose each other even where the chord is slanted.
+constexpr double near_pair = 0.45;
+
+} // namespace
+
+Patches build_patches(const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate) {
+    return PatchBuilder(octree, neighbors, estimate).run();
+}
+
+std::vector<SignedEdge> patch_evidence(const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate,
+                                       const Patches& patches) {
+    const std::size_t leaves = neighbors.leaf_first.size() - 1;
+    std::vector<std::vector<SignedEdge>> found(chunk_count(leaves, leaves_per_chunk));
+    for_chunks(leaves, leaves_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        std::vector<SignedEdge>& edges = found[chunk];
+        for (std::size_t l = begin; l < end; ++l) {
+            const std::size_t start = edges.size();
+            for (Index i = neighbors.leaf_first[l]; i < neighbors.leaf_first[l + 1]; ++i) {
+                const Index a = patches.of_point[i];
+                if (a == no_index) continue;
+                const Vec3& n = estimate.normals[i];
+                const double span = std::max(near_pair * neighbors.reach[i], 2 * estimate.tolerance[i]);
+                for (Index j : neighbors.of(i)) {
+                    const Index b = patches.of_point[j];
+                    if (b == no_index || a == b) continue;
+                    const Vec3 d = octree.positions[j] - octree.positions[i];
+                    const Vec3& m = estimate.normals[j];
+                    const double mirrored = (n | m) - 2 * (n | d) * (m | d) / std::min(d.sqrnorm(), span * span);
+                    const double w = std::clamp(mirrored, -1.0, 1.0) * patches.sign[i] * patches.sign[j];
+                    edges.push_back({std::min(a, b), std::max(a, b), static_cast<float>(w), static_cast<float>(std::abs(w))});
+                }
+            }
+            merge_parallel_edges(edges, start);
+        }
+    });
+    return joined(found);
+}
+
+} // namespace hsdm
