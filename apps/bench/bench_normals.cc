@@ -80,8 +80,8 @@ int main(int argc, char** argv) {
     app.add_option("--rounds", options.rounds)->capture_default_str();
     app.add_option("--neighbors", count, "per point")->capture_default_str();
     CLI11_PARSE(app, argc, argv);
-    std::printf("%-24s %8s %7s %7s | smooth: %6s %6s | crease: %8s %6s %6s | %8s | %6s %6s %6s\n", "cloud", "points", "noise",
-                "refit%", "deg", ">15%", "points", "deg", ">15%", "flipped%", "knn", "fit", "orient");
+    std::printf("%-24s %8s %7s %7s | smooth: %6s %6s | crease: %8s %6s %6s | %8s | %6s %6s %6s %6s | %7s %4s %6s %6s\n", "cloud", "points", "noise",
+                "refit%", "deg", ">15%", "points", "deg", ">15%", "flipped%", "knn", "fit", "orient", "settle", "patches", "comp", "seen", "volume");
     for (const std::string& input : inputs) {
         const std::size_t colon = input.find(':');
         const PointCloud cloud = read_points(input.substr(0, colon)).cloud;
@@ -96,13 +96,15 @@ int main(int argc, char** argv) {
         const double fitted = now();
         const OrientReport orient = orient_normals(octree, neighbors, estimate);
         const double oriented = now();
+        settle_normals(octree, neighbors, estimate);
+        const double settled = now();
         const Score s = judge(octree, estimate.normals, edges, 2 * h);
         const auto share = [](auto part, std::size_t whole) { return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0; };
-        std::printf("%-24s %8zu %7.4f %7.2f | %14.2f %6.2f | %16zu %6.2f %6.2f | %8.3f | %6.3f %6.3f %6.3f | %7zu %4zu %5.1f%% %5.1f%%\n",
+        std::printf("%-24s %8zu %7.4f %7.2f | %14.2f %6.2f | %16zu %6.2f %6.2f | %8.3f | %6.3f %6.3f %6.3f %6.3f | %7zu %4zu %5.1f%% %5.1f%%\n",
                     std::filesystem::path(input.substr(0, colon)).stem().c_str(), octree.size(), estimate.noise,
-                    100 * share(estimate.refitted, octree.size()), share(s.sum_smooth, s.smooth), 100 * share(s.off_smooth, s.smooth),
+                    100 * share(estimate.bent.size(), octree.size()), share(s.sum_smooth, s.smooth), 100 * share(s.off_smooth, s.smooth),
                     s.near_crease, share(s.sum_crease, s.near_crease), 100 * share(s.off_crease, s.near_crease),
-                    100 * share(s.flipped, octree.size()), found - start, fitted - found, oriented - fitted, orient.patches, orient.components, 100 * share(orient.seen_from_outside, octree.size()), 100 * share(orient.by_volume, octree.size()));
+                    100 * share(s.flipped, octree.size()), found - start, fitted - found, oriented - fitted, settled - oriented, orient.patches, orient.components, 100 * share(orient.seen_from_outside, octree.size()), 100 * share(orient.by_volume, octree.size()));
     }
     return 0;
 }

@@ -116,8 +116,8 @@ public:
         if (cloud.sensor) normals_options.orient.sensor = *cloud.sensor - octree.origin;
         const NormalsReport made = phases.run("normals", 0.05, report.seconds.normals,
                                               [&] { return make_normals(octree, normals_options); });
-        report.rejected["normals_refitted"] = made.refitted;
-        report.rejected["normals_missing"] = made.without;
+        report.rejected["normals_near_creases"] = made.bent;
+        report.rejected["normals_missing"] = made.missing;
         report.rejected["normals_by_volume"] = made.orientation.by_volume;
     }
 

@@ -2,27 +2,28 @@
 
 #include "hsdm/chunks.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/normals/neighborhood.hh"
 #include "hsdm/normals/plane_fit.hh"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 namespace hsdm {
 namespace {
 
-constexpr std::size_t points_per_chunk = 1024;
-
-/// Biweight: 1 on the plane, 0 from the tolerance on.
-double closeness(double residual, double inverse_tolerance) {
-    const double t = residual * inverse_tolerance, u = std::max(0.0, 1 - t * t);
-    return u * u;
-}
+constexpr std::size_t points_per_chunk = 1024, bent_per_chunk = 256;
+/// Tolerances: from this share on, the spread of the neighbours about their plane says that they bend.
+constexpr double bent_spread = 0.45;
+/// A neighbour's plane is taken over if it holds so many times more neighbours. A bent sheet without a crease
+/// gives its tilted planes up to 1.2 times more.
+constexpr double clear_gain = 1.3;
+/// Neighbours whose normals differ less than this are no sign of a crease (23 and 26 degrees).
+constexpr double cos_differing = 0.92, cos_crease = 0.9;
 
 class Estimation {
 public:
     Estimation(const Octree& octree, const Neighbors& neighbors, const EstimateOptions& options)
-        : octree_(octree), neighbors_(neighbors), options_(options), thickness_(octree.size()) {
+        : octree_(octree), neighbors_(neighbors), options_(options), spread_(octree.size()) {
         result_.normals.resize(octree.size());
         result_.tolerance.resize(octree.size());
     }
@@ -30,9 +31,12 @@ public:
     EstimatedNormals run() {
         fit_all();
         measure_noise();
+        choose_tolerance();
         find_bent();
-        choose_planes();
-        for (int round = 0; round < options_.rounds; ++round) refit();
+        for (int round = 0; round < options_.rounds; ++round)
+            renew([this](Index i) { return best_plane(i); });
+        for (int round = 0; round < options_.rounds; ++round)
+            renew([this](Index i) { return averaged(i); });
         return std::move(result_);
     }
 
@@ -45,135 +49,144 @@ private:
                 for (Index j : neighbors_.of(i)) sums.add(octree_.positions[j] - octree_.positions[i], 1);
                 const PlaneFit fit = fit_plane(sums);
                 result_.normals[i] = fit.normal;
-                thickness_[i] = std::sqrt(fit.variance);
+                spread_[i] = std::sqrt(fit.variance);
             }
         });
     }
 
+    /// The lower third, so that creases do not count as noise.
     void measure_noise() {
         constexpr std::size_t samples = 1 << 14;
         std::vector<double> ratios;
         const std::size_t stride = octree_.size() / samples + 1;
         for (std::size_t i = 0; i < octree_.size(); i += stride)
-            if (neighbors_.reach[i] > 0) ratios.push_back(thickness_[i] / neighbors_.reach[i]);
-        if (!ratios.empty()) {
-            const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 3);
-            std::nth_element(ratios.begin(), middle, ratios.end());
-            result_.noise = *middle;
-        }
+            if (neighbors_.reach[i] > 0) ratios.push_back(spread_[i] / neighbors_.reach[i]);
+        if (ratios.empty()) return;
+        const auto lower = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 3);
+        std::nth_element(ratios.begin(), lower, ratios.end());
+        result_.noise = *lower;
+    }
+
+    /// Not below the spread of the flattest neighbour: where the whole neighbourhood is rough, that is no crease.
+    void choose_tolerance() {
         const double relative = std::clamp(options_.noise_tolerance * result_.noise, options_.least_tolerance, 0.5);
-        static const double lf = getenv("LF") ? atof(getenv("LF")) : 1;
         for_chunks(octree_.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t i = begin; i < end; ++i) {
-                double least = thickness_[i];
-                for (Index j : neighbors_.of(i)) least = std::min(least, thickness_[j]);
-                result_.tolerance[i] = std::max(relative * neighbors_.reach[i], lf * least);
+                double least = spread_[i];
+                for (Index j : neighbors_.of(i)) least = std::min(least, spread_[j]);
+                result_.tolerance[i] = std::max(relative * neighbors_.reach[i], least);
             }
         });
     }
 
-    /// The points whose neighbours are not all of the plane through them.
     void find_bent() {
-        static const double bt = getenv("BT") ? atof(getenv("BT")) : 0.45;
         std::vector<std::vector<Index>> found(chunk_count(octree_.size(), points_per_chunk));
         for_chunks(octree_.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
             for (std::size_t i = begin; i < end; ++i)
-                if (thickness_[i] > bt * result_.tolerance[i]) found[chunk].push_back(static_cast<Index>(i));
+                if (spread_[i] > bent_spread * result_.tolerance[i]) found[chunk].push_back(static_cast<Index>(i));
         });
-        bent_ = joined(found);
-        result_.refitted = bent_.size();
+        result_.bent = joined(found);
     }
 
-    /// How many neighbours are of the plane with this normal through point i.
-    double support(const Vec3* offsets, std::size_t count, const Vec3& normal, double inverse) const {
+    /// New normals for the bent points, all from the old ones.
+    template <class NormalOf>
+    void renew(const NormalOf& normal_of) {
+        const std::vector<Index>& bent = result_.bent;
+        std::vector<Vec3> renewed(bent.size());
+        for_chunks(bent.size(), bent_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t b = begin; b < end; ++b) renewed[b] = normal_of(bent[b]);
+        });
+        for (std::size_t b = 0; b < bent.size(); ++b) result_.normals[bent[b]] = renewed[b];
+    }
+
+    bool differs(Index i, double cosine) const {
+        const auto around = neighbors_.of(i);
+        return std::any_of(around.begin(), around.end(),
+                           [&](Index j) { return std::abs(result_.normals[i] | result_.normals[j]) < cosine; });
+    }
+
+    /// How many neighbours the plane with this normal holds that passes through the point.
+    static double support(const Neighborhood& around, const Vec3& normal, double inverse) {
         double sum = 0;
-        for (std::size_t k = 0; k < count; ++k) sum += closeness(normal | offsets[k], inverse);
+        for (std::size_t k = 0; k < around.size(); ++k) sum += closeness(normal | around.offset(k), inverse);
+        return sum;
+    }
+    /// The same for the parallel plane through the centroid, on which a bent sheet lies better.
+    static double centred_support(const Neighborhood& around, const Vec3& normal, double inverse) {
+        double mean = 0;
+        for (std::size_t k = 0; k < around.size(); ++k) mean += normal | around.offset(k);
+        mean /= static_cast<double>(around.size() + 1);
+        double sum = closeness(mean, inverse) - 1;
+        for (std::size_t k = 0; k < around.size(); ++k) sum += closeness((normal | around.offset(k)) - mean, inverse);
         return sum;
     }
 
-    template <class NormalOf>
-    void for_bent(const NormalOf& normal_of) {
-        std::vector<Vec3> chosen(bent_.size());
-        for_chunks(bent_.size(), points_per_chunk / 4, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t b = begin; b < end; ++b) chosen[b] = normal_of(bent_[b]);
-        });
-        for_chunks(bent_.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t b = begin; b < end; ++b) result_.normals[bent_[b]] = chosen[b];
-        });
-    }
-
-    void choose_planes() {
-        for_bent([&](Index i) {
-            std::array<Vec3, 64> offsets;
-            const auto around = neighbors_.of(i);
-            for (std::size_t k = 0; k < around.size(); ++k)
-                offsets[k] = octree_.positions[around[k]] - octree_.positions[i];
-            const double inverse = 1 / result_.tolerance[i];
-            Vec3 best = result_.normals[i];
-            static const double gain = getenv("GAIN") ? atof(getenv("GAIN")) : 1.3;
-            double own = support(offsets.data(), around.size(), best, inverse);
-            double mean = 0;
-            for (std::size_t k = 0; k < around.size(); ++k) mean += best | offsets[k];
-            mean /= static_cast<double>(around.size() + 1);
-            double moved = closeness(mean, inverse) - 1;
-            for (std::size_t k = 0; k < around.size(); ++k) moved += closeness((best | offsets[k]) - mean, inverse);
-            double most = gain * std::max(own, moved);
-            if (most > 0.9 * static_cast<double>(around.size())) return best;
-            bool switched = false;
-            for (Index j : around) {
-                const Vec3& candidate = result_.normals[j];
-                const double s = support(offsets.data(), around.size(), candidate, inverse);
-                if (s > most) most = s, best = candidate, switched = true;
-            }
-            return switched ? reweighted(i, best, false) : best;
-        });
-    }
-
-    void refit() {
-        static const double away = getenv("AWAY") ? atof(getenv("AWAY")) : 0.9;
-        for_bent([&](Index i) {
-            const Vec3& own = result_.normals[i];
-            const auto around = neighbors_.of(i);
-            const bool crease = std::any_of(around.begin(), around.end(), [&](Index j) {
-                return std::abs(own | result_.normals[j]) < away;
-            });
-            return crease ? reweighted(i, own, true) : own;
-        });
-    }
-
-    Vec3 reweighted(Index i, Vec3 normal, bool by_normals) const {
+    Vec3 best_plane(Index i) const {
+        const Vec3& own = result_.normals[i];
+        if (!differs(i, cos_differing)) return own;
+        const Neighborhood around(octree_, neighbors_, i);
         const double inverse = 1 / result_.tolerance[i];
+        double most = clear_gain * std::max(support(around, own, inverse), centred_support(around, own, inverse));
+        const Vec3* best = &own;
+        for (std::size_t k = 0; k < around.size(); ++k) {
+            const Vec3& candidate = result_.normals[around.point(k)];
+            if (const double s = support(around, candidate, inverse); s > most) most = s, best = &candidate;
+        }
+        return best == &own ? own : refitted(around, *best, inverse);
+    }
+
+    /// Fits a plane to the neighbours that it holds, twice.
+    static Vec3 refitted(const Neighborhood& around, Vec3 normal, double inverse) {
+        constexpr double fewest = 3.5; // points, by their weights
         for (int step = 0; step < 2; ++step) {
             PlaneSums sums;
             sums.add(Vec3(0, 0, 0), 1);
-            for (Index j : neighbors_.of(i)) {
-                const Vec3 d = octree_.positions[j] - octree_.positions[i];
-                double w = closeness(normal | d, inverse);
-                if (by_normals && w > 0) {
-                    const double c = normal | result_.normals[j];
-                    w *= std::max(0.0, (c * c - 0.7) / 0.3);
-                }
-                sums.add(d, w);
-            }
-            if (sums.weight < 3.5) return normal;
+            for (std::size_t k = 0; k < around.size(); ++k)
+                sums.add(around.offset(k), closeness(normal | around.offset(k), inverse));
+            if (sums.weight < fewest) return normal;
             const PlaneFit fit = fit_plane(sums);
-            if (fit.normal.sqrnorm() < 0.5) return normal;
+            if (fit.normal.sqrnorm() == 0) return normal;
             normal = fit.normal;
         }
         return normal;
     }
 
+    /// Near a crease, the mean over the neighbours whose planes pass through the point; flat ones count most.
+    Vec3 averaged(Index i) const {
+        const Vec3& own = result_.normals[i];
+        if (!differs(i, cos_crease)) return own;
+        const Neighborhood around(octree_, neighbors_, i);
+        const double inverse = 1 / result_.tolerance[i];
+        Vec3 sum = 0.5 * own;
+        for (std::size_t k = 0; k < around.size(); ++k) {
+            const Vec3& other = result_.normals[around.point(k)];
+            const double cosine = own | other;
+            const double weight = agreement(cosine) * closeness(other | around.offset(k), inverse)
+                                  * closeness(spread_[around.point(k)], inverse);
+            sum += other * (cosine < 0 ? -weight : weight);
+        }
+        return sum.sqrnorm() > 0 ? sum.normalized() : own;
+    }
+
     const Octree& octree_;
     const Neighbors& neighbors_;
     const EstimateOptions& options_;
-    std::vector<double> thickness_;
-    std::vector<Index> bent_;
+    std::vector<double> spread_; // per point: root mean square distance of its neighbours from their plane
     EstimatedNormals result_;
 };
+
+void validate(const EstimateOptions& options) {
+    if (!(options.least_tolerance > 0 && options.least_tolerance < 0.5))
+        throw OptionError("least_tolerance " + std::to_string(options.least_tolerance) + ": must lie in (0, 0.5)");
+    if (!(options.noise_tolerance > 0))
+        throw OptionError("noise_tolerance " + std::to_string(options.noise_tolerance) + ": must be above 0");
+    if (options.rounds < 0) throw OptionError("rounds " + std::to_string(options.rounds) + ": must be 0 or more");
+}
 
 } // namespace
 
 EstimatedNormals estimate_normals(const Octree& octree, const Neighbors& neighbors, const EstimateOptions& options) {
+    validate(options);
     return Estimation(octree, neighbors, options).run();
 }
 

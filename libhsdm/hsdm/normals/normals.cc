@@ -9,10 +9,11 @@ NormalsReport make_normals(Octree& octree, const NormalsOptions& options) {
     EstimatedNormals estimate = estimate_normals(octree, neighbors, options.estimate);
     NormalsReport report;
     report.orientation = orient_normals(octree, neighbors, estimate, options.orient);
+    settle_normals(octree, neighbors, estimate);
     report.noise = estimate.noise;
-    report.refitted = estimate.refitted;
-    report.without = static_cast<std::size_t>(std::count_if(estimate.normals.begin(), estimate.normals.end(),
-                                                            [](const Vec3& n) { return n.sqrnorm() < 0.5; }));
+    report.bent = estimate.bent.size();
+    report.missing = static_cast<std::size_t>(std::count_if(estimate.normals.begin(), estimate.normals.end(),
+                                                            [](const Vec3& n) { return n.sqrnorm() == 0; }));
     octree.normals = std::move(estimate.normals);
     return report;
 }

@@ -13,8 +13,8 @@ struct NormalsOptions {
 
 struct NormalsReport {
     double noise = 0;          ///< see EstimatedNormals
-    std::size_t refitted = 0;  ///< points near creases, whose plane was fitted anew
-    std::size_t without = 0;   ///< points left without a normal: their neighbours lie on a line
+    std::size_t bent = 0;    ///< points whose neighbours are not all of one plane: near creases, mostly
+    std::size_t missing = 0; ///< points left without a normal: their neighbours lie on a line
     OrientReport orientation;
 };
 

@@ -1,0 +1,70 @@
+#include "hsdm/chunks.hh"
+#include "hsdm/normals/estimate_normals.hh"
+#include "hsdm/normals/neighborhood.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t bent_per_chunk = 256;
+/// Neighbours within this angle of the point's own normal leave it as it is (37 degrees).
+constexpr double cos_settled = 0.8;
+/// Another normal must have so many times the support of the point's own, and some more where that has none.
+constexpr double clear_gain = 1.2, least_support = 0.1;
+
+/// The neighbours that lie on one plane with the point and whose normals agree with a given one.
+class Agreement {
+public:
+    Agreement(const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate, Index point)
+        : normals_(estimate.normals), around_(octree, neighbors, point), inverse_(1 / estimate.tolerance[point]) {}
+
+    Vec3 settled(const Vec3& own) const {
+        Vec3 best = own;
+        double most = clear_gain * support(own) + least_support;
+        for (std::size_t k = 0; k < around_.size(); ++k)
+            if (const double s = support(normal(k)); s > most) most = s, best = normal(k);
+        Vec3 sum = best * 0.5;
+        for (std::size_t k = 0; k < around_.size(); ++k) sum += normal(k) * weight(best, k);
+        return sum.sqrnorm() > 0 ? sum.normalized() : own;
+    }
+
+private:
+    const Vec3& normal(std::size_t k) const { return normals_[around_.point(k)]; }
+    double weight(const Vec3& n, std::size_t k) const {
+        const double cosine = n | normal(k);
+        return cosine > 0 ? agreement(cosine) * closeness(n | around_.offset(k), inverse_) : 0;
+    }
+    double support(const Vec3& n) const {
+        double sum = 0;
+        for (std::size_t k = 0; k < around_.size(); ++k) sum += weight(n, k);
+        return sum;
+    }
+
+    const std::vector<Vec3>& normals_;
+    Neighborhood around_;
+    double inverse_;
+};
+
+} // namespace
+
+void settle_normals(const Octree& octree, const Neighbors& neighbors, EstimatedNormals& estimate) {
+    constexpr int rounds = 2;
+    const std::vector<Index>& bent = estimate.bent;
+    std::vector<Vec3> settled(bent.size());
+    for (int round = 0; round < rounds; ++round) {
+        for_chunks(bent.size(), bent_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t b = begin; b < end; ++b) {
+                const Vec3& own = settled[b] = estimate.normals[bent[b]];
+                const auto around = neighbors.of(bent[b]);
+                if (std::any_of(around.begin(), around.end(),
+                                [&](Index j) { return (own | estimate.normals[j]) < cos_settled; }))
+                    settled[b] = Agreement(octree, neighbors, estimate, bent[b]).settled(own);
+            }
+        });
+        for (std::size_t b = 0; b < bent.size(); ++b) estimate.normals[bent[b]] = settled[b];
+    }
+}
+
+} // namespace hsdm
