@@ -30,7 +30,8 @@ std::vector<Segment> read_edges(const std::string& path) {
         std::istringstream words(line);
         std::string kind;
         Segment s;
-        if (words >> kind && kind == "e" && words >> s.from[0] >> s.from[1] >> s.from[2] >> s.to[0] >> s.to[1] >> s.to[2])
+        if (words >> kind && kind == "e"
+            && words >> s.from[0] >> s.from[1] >> s.from[2] >> s.to[0] >> s.to[1] >> s.to[2])
             edges.push_back(s);
     }
     return edges;
@@ -52,13 +53,15 @@ struct Score {
     double sum_smooth = 0, sum_crease = 0;
 };
 
-Score judge(const Octree& octree, const std::vector<Vec3>& normals, const std::vector<Segment>& edges, double reach) {
+Score judge(const Octree& octree, const std::vector<Vec3>& normals, const std::vector<Segment>& edges,
+            double reach) {
     Score score;
     for (std::size_t i = 0; i < octree.size(); ++i) {
         const Vec3 p = octree.positions[i] + octree.origin;
         const double c = normals[i] | octree.normals[i];
         const double angle = std::acos(std::min(1.0, std::abs(c))) * 180 / std::numbers::pi;
-        const bool crease = std::any_of(edges.begin(), edges.end(), [&](const Segment& s) { return distance(p, s) < reach; });
+        const bool crease =
+            std::any_of(edges.begin(), edges.end(), [&](const Segment& s) { return distance(p, s) < reach; });
         score.flipped += c < 0;
         (crease ? score.near_crease : score.smooth) += 1;
         (crease ? score.sum_crease : score.sum_smooth) += angle;
@@ -73,15 +76,18 @@ int main(int argc, char** argv) {
     CLI::App app("Estimates the normals of clouds that have some and compares. Arguments: CLOUD[:EDGES] ...");
     std::vector<std::string> inputs;
     int count = 16;
-    app.add_option("cloud", inputs, "point file with exact normals, then a colon and a file of sharp edges")->required();
+    app.add_option("cloud", inputs, "point file with exact normals, then a colon and a file of sharp edges")
+        ->required();
     EstimateOptions options;
     app.add_option("--tolerance", options.least_tolerance)->capture_default_str();
     app.add_option("--noise-tolerance", options.noise_tolerance)->capture_default_str();
     app.add_option("--rounds", options.rounds)->capture_default_str();
     app.add_option("--neighbors", count, "per point")->capture_default_str();
     CLI11_PARSE(app, argc, argv);
-    std::printf("%-24s %8s %7s %7s | smooth: %6s %6s | crease: %8s %6s %6s | %8s | %6s %6s %6s %6s | %7s %4s %6s %6s\n", "cloud", "points", "noise",
-                "refit%", "deg", ">15%", "points", "deg", ">15%", "flipped%", "knn", "fit", "orient", "settle", "patches", "comp", "seen", "volume");
+    std::printf("%-24s %8s %7s %7s | smooth: %6s %6s | crease: %8s %6s %6s | %8s | %6s %6s %6s %6s | %7s %4s "
+                "%6s %6s\n",
+                "cloud", "points", "noise", "refit%", "deg", ">15%", "points", "deg", ">15%", "flipped%",
+                "knn", "fit", "orient", "settle", "patches", "comp", "seen", "volume");
     for (const std::string& input : inputs) {
         const std::size_t colon = input.find(':');
         const PointCloud cloud = read_points(input.substr(0, colon)).cloud;
@@ -99,12 +105,19 @@ int main(int argc, char** argv) {
         settle_normals(octree, neighbors, estimate);
         const double settled = now();
         const Score s = judge(octree, estimate.normals, edges, 2 * h);
-        const auto share = [](auto part, std::size_t whole) { return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0; };
-        std::printf("%-24s %8zu %7.4f %7.2f | %14.2f %6.2f | %16zu %6.2f %6.2f | %8.3f | %6.3f %6.3f %6.3f %6.3f | %7zu %4zu %5.1f%% %5.1f%%\n",
-                    std::filesystem::path(input.substr(0, colon)).stem().c_str(), octree.size(), estimate.noise,
-                    100 * share(estimate.bent.size(), octree.size()), share(s.sum_smooth, s.smooth), 100 * share(s.off_smooth, s.smooth),
-                    s.near_crease, share(s.sum_crease, s.near_crease), 100 * share(s.off_crease, s.near_crease),
-                    100 * share(s.flipped, octree.size()), found - start, fitted - found, oriented - fitted, settled - oriented, orient.patches, orient.components, 100 * share(orient.seen_from_outside, octree.size()), 100 * share(orient.by_volume, octree.size()));
+        const auto share = [](auto part, std::size_t whole) {
+            return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
+        };
+        std::printf("%-24s %8zu %7.4f %7.2f | %14.2f %6.2f | %16zu %6.2f %6.2f | %8.3f | %6.3f %6.3f %6.3f "
+                    "%6.3f | %7zu %4zu %5.1f%% %5.1f%%\n",
+                    std::filesystem::path(input.substr(0, colon)).stem().c_str(), octree.size(),
+                    estimate.noise, 100 * share(estimate.bent.size(), octree.size()),
+                    share(s.sum_smooth, s.smooth), 100 * share(s.off_smooth, s.smooth), s.near_crease,
+                    share(s.sum_crease, s.near_crease), 100 * share(s.off_crease, s.near_crease),
+                    100 * share(s.flipped, octree.size()), found - start, fitted - found, oriented - fitted,
+                    settled - oriented, orient.patches, orient.components,
+                    100 * share(orient.seen_from_outside, octree.size()),
+                    100 * share(orient.by_volume, octree.size()));
     }
     return 0;
 }

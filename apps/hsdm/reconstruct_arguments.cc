@@ -68,13 +68,13 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
     add_choice<Method>(
         app, "--method", a.method,
         {{"auto", Method::automatic}, {"basic", Method::basic}, {"extended", Method::extended}},
-        "basic: from the positions alone; extended: with normals; auto: extended where there are normals")
+        "basic: from the positions alone; extended: with normals, given or estimated; auto: extended")
         ->group(method);
     add_choice<NormalSource>(app, "--normals", a.normals,
                              {{"auto", NormalSource::automatic},
                               {"given", NormalSource::given},
                               {"estimate", NormalSource::estimate}},
-                             "where normals come from; auto: the file's, if it has them")
+                             "where normals come from; auto: the file's if it has some, else estimated")
         ->group(method);
     add_choice<Holes>(app, "--holes", a.holes,
                       {{"auto", Holes::automatic}, {"keep", Holes::keep}, {"close", Holes::close}},

@@ -22,6 +22,12 @@ std::string option(const Report& report, const std::string& name) {
     return found == report.options.end() ? std::string() : found->second;
 }
 
+std::string normals_words(const Report& report) {
+    const std::string given = report.input.has_normals ? "with normals" : "no normals";
+    if (option(report, "normals") != "estimate") return given;
+    return report.input.has_normals ? "normals estimated anew" : "normals estimated";
+}
+
 std::string seconds(double value) {
     std::ostringstream text;
     text << std::fixed << std::setprecision(2) << value << " s";
@@ -49,9 +55,9 @@ std::string topology_words(const Report::Mesh& mesh) {
 
 void print_summary(std::ostream& out, const Report& r, const std::string& written) {
     const Vec3 size = r.input.bbox.size();
-    out << "cloud     " << plural(r.input.points, "point", "points") << ", "
-        << (r.input.has_normals ? "with normals" : "no normals") << ", " << number(size[0]) << " x "
-        << number(size[1]) << " x " << number(size[2]) << ", spacing " << number(r.input.spacing, 3);
+    out << "cloud     " << plural(r.input.points, "point", "points") << ", " << normals_words(r) << ", "
+        << number(size[0]) << " x " << number(size[1]) << " x " << number(size[2]) << ", spacing "
+        << number(r.input.spacing, 3);
     if (r.input.dropped_nonfinite > 0)
         out << "; " << grouped(r.input.dropped_nonfinite) << " not finite, dropped";
     if (r.input.merged_duplicates > 0)
@@ -70,8 +76,8 @@ void print_summary(std::ostream& out, const Report& r, const std::string& writte
 void print_details(std::ostream& out, const Report& r) {
     const Report::Seconds& s = r.seconds;
     out << "seconds  " << std::fixed << std::setprecision(3) << " read " << s.read << ", octree " << s.octree
-        << ", graph " << s.graph << ", facets " << s.facets << ", mesh " << s.mesh << ", features "
-        << s.features << ", error " << s.error << ", write " << s.write << '\n'
+        << ", normals " << s.normals << ", graph " << s.graph << ", facets " << s.facets << ", mesh "
+        << s.mesh << ", features " << s.features << ", error " << s.error << ", write " << s.write << '\n'
         << std::defaultfloat << std::setprecision(6);
     out << "features  " << grouped(r.features.smooth_vertices) << " smooth, "
         << grouped(r.features.edge_vertices) << " edge, " << grouped(r.features.corner_vertices)

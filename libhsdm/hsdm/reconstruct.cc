@@ -239,7 +239,7 @@ Reconstruction reconstruct_level(const PointCloud& cloud, const Octree& octree, 
 
     const MethodInput input{cloud, octree, level, options, phases};
     PolygonMesh facets = method_for(options) == Method::extended ? extended_method(input, report)
-                                                                        : basic_method(input, report);
+                                                                 : basic_method(input, report);
     if (facets.facet_count() == 0)
         throw Error("no facet came out of " + std::to_string(level.size()) + " voxels at depth "
                     + std::to_string(depth)

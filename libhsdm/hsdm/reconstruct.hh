@@ -13,11 +13,15 @@
 namespace hsdm {
 
 enum class Method {
-    automatic, ///< the best method for the cloud
+    automatic, ///< the better one: extended
     basic,     ///< sections 3.1 to 3.3, positions only
-    extended,  ///< section 3.4, with normals
+    extended,  ///< section 3.4, with normals, given or estimated
 };
-enum class NormalSource { automatic, given, estimate };
+enum class NormalSource {
+    automatic, ///< the cloud's, if it has some, else estimated
+    given,     ///< the cloud's; an error if it has none
+    estimate,  ///< from the positions, whether the cloud has some or not
+};
 enum class Holes { automatic, keep, close };
 
 struct ReconstructOptions {

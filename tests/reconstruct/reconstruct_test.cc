@@ -208,13 +208,18 @@ TEST_CASE("the callback sees work go forward and can stop it between phases", "[
 
 TEST_CASE("every level of one octree equals the reconstruction at that depth", "[reconstruct]") {
     const PointCloud cloud = scan(support::torus(1, 0.4), 20000);
-    const std::vector<Reconstruction> levels = reconstruct_levels(cloud, 3, 5);
-    REQUIRE(levels.size() == 3);
-    for (int depth = 3; depth <= 5; ++depth) {
-        const PolygonMesh alone = to_polygons(reconstruct(cloud, at_depth(depth)).mesh);
-        const PolygonMesh level = to_polygons(levels[static_cast<std::size_t>(depth - 3)].mesh);
-        CHECK((level.positions == alone.positions));
-        CHECK((level.corners == alone.corners));
+    for (Method method : {Method::basic, Method::extended}) {
+        ReconstructOptions options;
+        options.method = method;
+        const std::vector<Reconstruction> levels = reconstruct_levels(cloud, 3, 5, options);
+        REQUIRE(levels.size() == 3);
+        for (int depth = 3; depth <= 5; ++depth) {
+            options.depth = depth;
+            const PolygonMesh alone = to_polygons(reconstruct(cloud, options).mesh);
+            const PolygonMesh level = to_polygons(levels[static_cast<std::size_t>(depth - 3)].mesh);
+            CHECK((level.positions == alone.positions));
+            CHECK((level.corners == alone.corners));
+        }
     }
 }
 
@@ -227,6 +232,39 @@ TEST_CASE("holes kept leave the loops that holes closed by default fill", "[reco
     const std::size_t closed = reconstruct(cloud, options).report.mesh.boundary_edges;
     CHECK(kept > 0);
     CHECK(closed < kept);
+}
+
+TEST_CASE("points without normals come out like points with exact ones", "[reconstruct]") {
+    support::Random random(5);
+    const support::Solid block = support::box(Vec3(1, 1, 1)).placed(support::random_pose(random));
+    PointCloud cloud = support::sample(block, {.points = 8000});
+    ReconstructOptions options;
+    options.depth = 4;
+    const Reconstruction given = reconstruct(cloud, options);
+    CHECK(given.report.options.at("normals") == "given");
+    options.normals = NormalSource::estimate;
+    const Reconstruction replaced = reconstruct(cloud, options);
+    CHECK(replaced.report.options.at("normals") == "estimate");
+    cloud.normals.clear();
+    options.normals = NormalSource::automatic;
+    const Reconstruction estimated = reconstruct(cloud, options);
+    CHECK(estimated.report.options.at("normals") == "estimate");
+    CHECK(estimated.report.options.at("method") == "extended");
+    CHECK(estimated.report.seconds.normals > 0);
+    CHECK(to_polygons(estimated.mesh).positions == to_polygons(replaced.mesh).positions);
+    CHECK(faults(to_polygons(estimated.mesh)) == "");
+    CHECK(estimated.report.mesh.closed);
+    CHECK(estimated.report.mesh.genus == 0);
+    CHECK(estimated.report.features.corner_vertices == given.report.features.corner_vertices);
+    CHECK(support::farthest_vertex(to_polygons(estimated.mesh), block)
+          < 0.1 * estimated.report.grid.voxel_size);
+}
+
+TEST_CASE("the basic method has no use for estimated normals", "[reconstruct]") {
+    ReconstructOptions options = at_depth(3);
+    CHECK(reconstruct(scan(support::sphere(1), 1000), options).report.options.at("normals") == "none");
+    options.normals = NormalSource::estimate;
+    CHECK_THROWS_AS(reconstruct(scan(support::sphere(1), 1000), options), OptionError);
 }
 
 TEST_CASE("given normals that are not there are refused", "[reconstruct]") {

@@ -6,6 +6,7 @@
 #include "hsdm/normals/plane_fit.hh"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hsdm {
@@ -35,8 +36,7 @@ public:
         find_bent();
         for (int round = 0; round < options_.rounds; ++round)
             renew([this](Index i) { return best_plane(i); });
-        for (int round = 0; round < options_.rounds; ++round)
-            renew([this](Index i) { return averaged(i); });
+        for (int round = 0; round < options_.rounds; ++round) renew([this](Index i) { return averaged(i); });
         return std::move(result_);
     }
 
@@ -54,37 +54,63 @@ private:
         });
     }
 
-    /// The lower third, so that creases do not count as noise.
+    /// From the nearest few neighbours, which are of one sheet even where the sheet is one side of a thin
+    /// plate; the lower third, so that creases do not count as noise.
     void measure_noise() {
         constexpr std::size_t samples = 1 << 14;
-        std::vector<double> ratios;
         const std::size_t stride = octree_.size() / samples + 1;
-        for (std::size_t i = 0; i < octree_.size(); i += stride)
-            if (neighbors_.reach[i] > 0) ratios.push_back(spread_[i] / neighbors_.reach[i]);
-        if (ratios.empty()) return;
+        std::vector<double> ratios((octree_.size() + stride - 1) / stride, 0);
+        for_chunks(ratios.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t r = begin; r < end; ++r) {
+                const std::size_t i = r * stride;
+                if (neighbors_.reach[i] > 0) ratios[r] = roughness(i) / neighbors_.reach[i];
+            }
+        });
         const auto lower = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 3);
         std::nth_element(ratios.begin(), lower, ratios.end());
         result_.noise = *lower;
     }
+    double roughness(std::size_t i) const {
+        constexpr std::size_t few = 6;
+        std::array<std::pair<double, Index>, 64> nearest;
+        const auto around = neighbors_.of(i);
+        for (std::size_t k = 0; k < around.size(); ++k)
+            nearest[k] = {(octree_.positions[around[k]] - octree_.positions[i]).sqrnorm(), around[k]};
+        const std::size_t count = std::min(few, around.size());
+        std::partial_sort(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(count),
+                          nearest.begin() + static_cast<std::ptrdiff_t>(around.size()));
+        PlaneSums sums;
+        sums.add(Vec3(0, 0, 0), 1);
+        for (std::size_t k = 0; k < count; ++k)
+            sums.add(octree_.positions[nearest[k].second] - octree_.positions[i], 1);
+        // A plane has three parameters.
+        const double freedom = std::max(1.0, static_cast<double>(count) - 2) / static_cast<double>(count + 1);
+        return std::sqrt(fit_plane(sums).variance / freedom);
+    }
 
-    /// Not below the spread of the flattest neighbour: where the whole neighbourhood is rough, that is no crease.
+    /// Not below the spread of the flattest neighbour: where the whole neighbourhood is rough, that is no
+    /// crease.
     void choose_tolerance() {
-        const double relative = std::clamp(options_.noise_tolerance * result_.noise, options_.least_tolerance, 0.5);
+        const double relative =
+            std::clamp(options_.noise_tolerance * result_.noise, options_.least_tolerance, 0.5);
         for_chunks(octree_.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t i = begin; i < end; ++i) {
                 double least = spread_[i];
                 for (Index j : neighbors_.of(i)) least = std::min(least, spread_[j]);
-                result_.tolerance[i] = std::max(relative * neighbors_.reach[i], least);
+                const double base = relative * neighbors_.reach[i];
+                result_.tolerance[i] = std::clamp(least, base, 2 * base);
             }
         });
     }
 
     void find_bent() {
         std::vector<std::vector<Index>> found(chunk_count(octree_.size(), points_per_chunk));
-        for_chunks(octree_.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-            for (std::size_t i = begin; i < end; ++i)
-                if (spread_[i] > bent_spread * result_.tolerance[i]) found[chunk].push_back(static_cast<Index>(i));
-        });
+        for_chunks(octree_.size(), points_per_chunk,
+                   [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+                       for (std::size_t i = begin; i < end; ++i)
+                           if (spread_[i] > bent_spread * result_.tolerance[i])
+                               found[chunk].push_back(static_cast<Index>(i));
+                   });
         result_.bent = joined(found);
     }
 
@@ -101,8 +127,9 @@ private:
 
     bool differs(Index i, double cosine) const {
         const auto around = neighbors_.of(i);
-        return std::any_of(around.begin(), around.end(),
-                           [&](Index j) { return std::abs(result_.normals[i] | result_.normals[j]) < cosine; });
+        return std::any_of(around.begin(), around.end(), [&](Index j) {
+            return std::abs(result_.normals[i] | result_.normals[j]) < cosine;
+        });
     }
 
     /// How many neighbours the plane with this normal holds that passes through the point.
@@ -117,7 +144,8 @@ private:
         for (std::size_t k = 0; k < around.size(); ++k) mean += normal | around.offset(k);
         mean /= static_cast<double>(around.size() + 1);
         double sum = closeness(mean, inverse) - 1;
-        for (std::size_t k = 0; k < around.size(); ++k) sum += closeness((normal | around.offset(k)) - mean, inverse);
+        for (std::size_t k = 0; k < around.size(); ++k)
+            sum += closeness((normal | around.offset(k)) - mean, inverse);
         return sum;
     }
 
@@ -126,7 +154,8 @@ private:
         if (!differs(i, cos_differing)) return own;
         const Neighborhood around(octree_, neighbors_, i);
         const double inverse = 1 / result_.tolerance[i];
-        double most = clear_gain * std::max(support(around, own, inverse), centred_support(around, own, inverse));
+        double most =
+            clear_gain * std::max(support(around, own, inverse), centred_support(around, own, inverse));
         const Vec3* best = &own;
         for (std::size_t k = 0; k < around.size(); ++k) {
             const Vec3& candidate = result_.normals[around.point(k)];
@@ -177,15 +206,18 @@ private:
 
 void validate(const EstimateOptions& options) {
     if (!(options.least_tolerance > 0 && options.least_tolerance < 0.5))
-        throw OptionError("least_tolerance " + std::to_string(options.least_tolerance) + ": must lie in (0, 0.5)");
+        throw OptionError("least_tolerance " + std::to_string(options.least_tolerance)
+                          + ": must lie in (0, 0.5)");
     if (!(options.noise_tolerance > 0))
         throw OptionError("noise_tolerance " + std::to_string(options.noise_tolerance) + ": must be above 0");
-    if (options.rounds < 0) throw OptionError("rounds " + std::to_string(options.rounds) + ": must be 0 or more");
+    if (options.rounds < 0)
+        throw OptionError("rounds " + std::to_string(options.rounds) + ": must be 0 or more");
 }
 
 } // namespace
 
-EstimatedNormals estimate_normals(const Octree& octree, const Neighbors& neighbors, const EstimateOptions& options) {
+EstimatedNormals estimate_normals(const Octree& octree, const Neighbors& neighbors,
+                                  const EstimateOptions& options) {
     validate(options);
     return Estimation(octree, neighbors, options).run();
 }

@@ -15,20 +15,22 @@ struct EstimateOptions {
 struct EstimatedNormals {
     std::vector<Vec3> normals;     ///< per point, unit; (0, 0, 0) where the neighbours span no plane
     std::vector<double> tolerance; ///< per point: the distance from a plane that was allowed
-    std::vector<Index> bent; ///< ascending: the points whose neighbours are not all of one plane; only theirs differ
-                             ///< from least squares
+    std::vector<Index> bent; ///< ascending: the points whose neighbours are not all of one plane; only theirs
+                             ///< differ from least squares
     double noise = 0; ///< typical distance of a point from the plane of its neighbours, over their reach
 };
 
-/// Normals of either sign. A least-squares plane smears the normals over a whole neighbourhood on both sides of
-/// a crease. So where neighbours disagree, every point looks among its neighbours' planes for the one that, moved
-/// to pass through it, holds clearly more of its neighbours than its own does, takes it over and fits it to those it
-/// holds; then points near a crease average over their neighbours of the same face. O(n), parallel. Throws
-/// OptionError.
-EstimatedNormals estimate_normals(const Octree& octree, const Neighbors& neighbors, const EstimateOptions& options = {});
+/// Normals of either sign. A least-squares plane smears the normals over a whole neighbourhood on both sides
+/// of a crease. So where neighbours disagree, every point looks among its neighbours' planes for the one
+/// that, moved to pass through it, holds clearly more of its neighbours than its own does, takes it over and
+/// fits it to those it holds; then points near a crease average over their neighbours of the same face. O(n),
+/// parallel. Throws OptionError.
+EstimatedNormals estimate_normals(const Octree& octree, const Neighbors& neighbors,
+                                  const EstimateOptions& options = {});
 
-/// For normals that are oriented: each point near a crease, or whose normal stands alone, takes the normal that most of
-/// its neighbours on one plane with it agree on. Turns single points that were oriented wrongly. O(n), parallel.
+/// For normals that are oriented: each point near a crease, or whose normal stands alone, takes the normal
+/// that most of its neighbours on one plane with it agree on. Turns single points that were oriented wrongly.
+/// O(n), parallel.
 void settle_normals(const Octree& octree, const Neighbors& neighbors, EstimatedNormals& estimate);
 
 } // namespace hsdm

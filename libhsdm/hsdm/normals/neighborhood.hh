@@ -1,5 +1,6 @@
 #pragma once
-// What the fits at one point share: its neighbours' positions relative to it, and how well a plane explains them.
+// What the fits at one point share: its neighbours' positions relative to it, and how well a plane explains
+// them.
 
 #include "hsdm/normals/neighbors.hh"
 
@@ -22,7 +23,8 @@ inline double agreement(double cosine) {
 /// The neighbours of one point as seen from it.
 class Neighborhood {
 public:
-    Neighborhood(const Octree& octree, const Neighbors& neighbors, Index point) : around_(neighbors.of(point)) {
+    Neighborhood(const Octree& octree, const Neighbors& neighbors, Index point)
+        : around_(neighbors.of(point)) {
         for (std::size_t k = 0; k < around_.size(); ++k)
             offsets_[k] = octree.positions[around_[k]] - octree.positions[point];
     }

@@ -48,12 +48,10 @@ std::vector<Leaf> find_leaves(const std::vector<MortonCode>& codes) {
 struct Candidates {
     std::vector<float> x, y, z;
     std::vector<Index> id;
-    std::vector<float> distance;      ///< squared, of the point at hand
+    std::vector<float> distance;       ///< squared, of the point at hand
     std::vector<std::uint64_t> ranked; ///< bits of the squared distance, then the candidate's place
 
-    void clear() {
-        x.clear(), y.clear(), z.clear(), id.clear();
-    }
+    void clear() { x.clear(), y.clear(), z.clear(), id.clear(); }
     void add(const Octree& octree, Index begin, Index end, const Vec3& base) {
         for (Index i = begin; i < end; ++i) {
             const Vec3 p = octree.positions[i] - base;
@@ -123,7 +121,8 @@ private:
         std::array<Index, 27> voxels;
         std::size_t count = 0;
         int level = leaf.level;
-        while (around(leaf, level, voxels, count) < candidates_per_neighbor * result_.count && level > 0) --level;
+        while (around(leaf, level, voxels, count) < candidates_per_neighbor * result_.count && level > 0)
+            --level;
         const Vec3 base = octree_.positions[leaf.begin];
         const OctreeLevel& grid = levels_[static_cast<std::size_t>(level)];
         candidates.clear();

@@ -11,9 +11,9 @@ struct NeighborOptions {
 
 /// The neighbours of point i are index[i * count] .. index[(i + 1) * count - 1], in no order, without i.
 struct Neighbors {
-    std::size_t count = 0;     ///< per point: min(options.count, points - 1)
-    std::vector<Index> index;  ///< points x count, octree order
-    std::vector<double> reach; ///< per point: distance of the farthest of them, in the cloud's units
+    std::size_t count = 0;         ///< per point: min(options.count, points - 1)
+    std::vector<Index> index;      ///< points x count, octree order
+    std::vector<double> reach;     ///< per point: distance of the farthest of them, in the cloud's units
     std::vector<Index> leaf_first; ///< the leaves the points were taken in: leaf l holds points leaf_first[l]
                                    ///< .. leaf_first[l + 1] - 1, a dozen at most, of one voxel
 
@@ -22,8 +22,8 @@ struct Neighbors {
 
 /// Nearest neighbours, ties by octree order. Points are taken leaf by leaf (the largest voxels of at most a
 /// dozen points) and searched in the 27 voxels around, at the finest level where these hold enough points
-/// that the nearest are among them: exact on a surface that is sampled about evenly over the neighbourhood, near
-/// enough elsewhere. O(n) time and space, parallel. Throws OptionError.
+/// that the nearest are among them: exact on a surface that is sampled about evenly over the neighbourhood,
+/// near enough elsewhere. O(n) time and space, parallel. Throws OptionError.
 Neighbors find_neighbors(const Octree& octree, const NeighborOptions& options = {});
 
 } // namespace hsdm

@@ -12,16 +12,16 @@ struct NormalsOptions {
 };
 
 struct NormalsReport {
-    double noise = 0;          ///< see EstimatedNormals
+    double noise = 0;        ///< see EstimatedNormals
     std::size_t bent = 0;    ///< points whose neighbours are not all of one plane: near creases, mostly
     std::size_t missing = 0; ///< points left without a normal: their neighbours lie on a line
     OrientReport orientation;
 };
 
 /// Gives the octree's points normals from their positions alone, each on its own face where faces meet in a
-/// crease, and all of one side: outward on a closed surface. Those the octree has are replaced. Two sides of a thin
-/// part stay apart if they are at least as far from each other as neighbouring points. O(n log n), parallel; the same bits for
-/// every number of threads. Throws OptionError.
+/// crease, and all of one side: outward on a closed surface. Those the octree has are replaced. Two sides of
+/// a thin part stay apart if they are at least as far from each other as neighbouring points. O(n log n),
+/// parallel; the same bits for every number of threads. Throws OptionError.
 NormalsReport make_normals(Octree& octree, const NormalsOptions& options = {});
 
 } // namespace hsdm

@@ -10,11 +10,9 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t points_per_chunk = 1 << 14;
-/// What a view of the outside weighs, per point of the patch, in pairs of neighbouring points.
-constexpr float vote_weight = 4;
-
 /// Signs of components that no view decided: by the sensor, else by the signed volume about their own centre.
-std::vector<std::int8_t> free_signs(const Patches& patches, const Signs& signs, const OrientOptions& options) {
+std::vector<std::int8_t> free_signs(const Patches& patches, const Signs& signs,
+                                    const OrientOptions& options) {
     std::vector<Vec3> centre(signs.components, Vec3(0, 0, 0));
     std::vector<double> points(signs.components, 0), side(signs.components, 0);
     for (std::size_t p = 0; p < patches.size(); ++p) {
@@ -23,7 +21,8 @@ std::vector<std::int8_t> free_signs(const Patches& patches, const Signs& signs, 
     }
     for (std::size_t p = 0; p < patches.size(); ++p) {
         const Index c = signs.component[p];
-        const Vec3 from = options.sensor ? *options.sensor - patches.centroids[p] : patches.centroids[p] - centre[c] / points[c];
+        const Vec3 from = options.sensor ? *options.sensor - patches.centroids[p]
+                                         : patches.centroids[p] - centre[c] / points[c];
         side[c] += (patches.normals[p] | from) * signs.sign[p] * patches.counts[p];
     }
     std::vector<std::int8_t> sign(signs.components, 1);
@@ -34,16 +33,18 @@ std::vector<std::int8_t> free_signs(const Patches& patches, const Signs& signs, 
 
 } // namespace
 
-OrientReport orient_normals(const Octree& octree, const Neighbors& neighbors, EstimatedNormals& estimate, const OrientOptions& options) {
+OrientReport orient_normals(const Octree& octree, const Neighbors& neighbors, EstimatedNormals& estimate,
+                            const OrientOptions& options) {
     const Patches patches = build_patches(octree, neighbors, estimate);
-    const std::vector<std::int8_t> votes = outside_votes(octree, patches, estimate_spacing(octree));
+    const OutsideView view = view_outside(octree, patches, estimate_spacing(octree));
     std::vector<SignedEdge> edges = patch_evidence(octree, neighbors, estimate, patches);
     const auto outside = static_cast<Index>(patches.size());
+    edges.insert(edges.end(), view.facing.begin(), view.facing.end());
     OrientReport report;
     for (Index p = 0; p < patches.size(); ++p) {
-        if (votes[p] == 0) continue;
-        const float weight = vote_weight * static_cast<float>(patches.counts[p]);
-        edges.push_back({p, outside, votes[p] * weight, weight});
+        if (view.votes[p] == 0) continue;
+        const auto weight = static_cast<float>(patches.counts[p]);
+        edges.push_back({p, outside, view.votes[p] * weight, weight});
         report.seen_from_outside += patches.counts[p];
     }
     const Signs signs = agglomerate(patches.size() + 1, std::move(edges));

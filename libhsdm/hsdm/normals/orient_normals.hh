@@ -8,20 +8,22 @@
 namespace hsdm {
 
 struct OrientOptions {
-    std::optional<Vec3> sensor; ///< where the scanner stood, in the coordinates of the octree's positions: decides what the
-                                ///< shape leaves open
+    std::optional<Vec3> sensor; ///< where the scanner stood, in the coordinates of the octree's positions:
+                                ///< decides what the shape leaves open
 };
 
 /// What decided; all counts are of points but the first two.
 struct OrientReport {
     std::size_t patches = 0, components = 0;
     std::size_t seen_from_outside = 0; ///< whose patch lies between inside and outside
-    std::size_t by_volume = 0;         ///< whose component only its signed volume (or the sensor) could orient
+    std::size_t by_volume = 0; ///< whose component only its signed volume (or the sensor) could orient
 };
 
-/// Turns the normals, in place. Patches are joined by the evidence of neighbouring points (patch_evidence) and of the empty space around
-/// (outside_votes), the strongest first; a component without a view of the outside is turned towards the sensor, or such that its signed volume
-/// is positive. O(n log n) at worst.
-OrientReport orient_normals(const Octree& octree, const Neighbors& neighbors, EstimatedNormals& estimate, const OrientOptions& options = {});
+/// Turns the normals, in place. Patches are joined by the evidence of neighbouring points (patch_evidence)
+/// and of the empty space around and in between (view_outside), the strongest first; a component without a
+/// view of the outside is turned towards the sensor, or such that its signed volume is positive. O(n log n)
+/// at worst.
+OrientReport orient_normals(const Octree& octree, const Neighbors& neighbors, EstimatedNormals& estimate,
+                            const OrientOptions& options = {});
 
 } // namespace hsdm

@@ -11,11 +11,14 @@ namespace {
 constexpr std::size_t patches_per_chunk = 1024;
 constexpr Index occupied = no_index - 1, unlabelled = no_index;
 
-/// Connected regions of empty voxels in the octree's cube and a margin of one voxel around; region 0 is outside.
+/// Connected regions of empty voxels in the octree's cube and a margin of one voxel around; region 0 is
+/// outside.
 class EmptySpace {
 public:
     explicit EmptySpace(const OctreeLevel& level)
-        : level_(level), side_((std::size_t{1} << level.depth) + 2), label_(side_ * side_ * side_, unlabelled) {
+        : level_(level),
+          side_((std::size_t{1} << level.depth) + 2),
+          label_(side_ * side_ * side_, unlabelled) {
         for (Index v = 0; v < level.size(); ++v) label_[cell(level.coord(v))] = occupied;
         for (std::size_t start = 0; start < label_.size(); ++start)
             if (label_[start] == unlabelled) flood(start);
@@ -46,7 +49,8 @@ private:
             std::size_t begin = seed, end = seed + 1;
             while (begin > row && label_[begin - 1] == unlabelled) --begin;
             while (end < row + side_ && label_[end] == unlabelled) ++end;
-            std::fill(label_.begin() + static_cast<std::ptrdiff_t>(begin), label_.begin() + static_cast<std::ptrdiff_t>(end), region);
+            std::fill(label_.begin() + static_cast<std::ptrdiff_t>(begin),
+                      label_.begin() + static_cast<std::ptrdiff_t>(end), region);
             const std::size_t y = row / side_ % side_, z = row / side_ / side_;
             if (y > 0) push_runs(begin - side_, end - side_);
             if (y + 1 < side_) push_runs(begin + side_, end + side_);
@@ -59,96 +63,139 @@ private:
             if (label_[c] == unlabelled && (c == begin || label_[c - 1] != unlabelled)) stack_.push_back(c);
     }
 
-    const OctreeLevel& level_;
     std::size_t side_;
     std::vector<Index> label_;
     std::vector<std::size_t> stack_;
     std::size_t regions_ = 0;
 };
 
+/// What a patch sees along a direction.
+struct Sight {
+    Index region = no_index; ///< empty space; no_index if there is none near or a sheet comes first
+    Index point = no_index;  ///< of that sheet
+};
+
 /// Looks from a patch along its normal, both ways.
 class View {
 public:
-    View(const Octree& octree, const OctreeLevel& level, const EmptySpace& space) : octree_(octree), level_(level), space_(space) {}
+    View(const Octree& octree, const OctreeLevel& level, const EmptySpace& space, double spacing)
+        : octree_(octree), level_(level), space_(space), spacing_(spacing) {}
 
-    /// The region of empty space, seen at two places, so that a voxel empty by chance does not count; no_index:
-    /// none near, or another sheet is in the way.
-    Index region(const Vec3& from, const Vec3& along) const {
+    /// Empty space counts if it is seen at two places: one voxel may be empty by chance.
+    Sight look(const Vec3& from, const Vec3& along) const {
         constexpr int steps = 5; // of half a voxel
         Index last = occupied;
-        for (int step = 1; step <= steps; ++step) {
+        for (int step = 0; step <= steps; ++step) {
             const VoxelCoord c = voxel_at(from + along * (0.5 * step * level_.voxel_size));
             const Index region = space_.region(c);
-            if (region == occupied && blocked(level_.find(c), from, along)) return no_index;
-            if (region != occupied && region == last) return region;
+            if (region == occupied) {
+                const Index point = sheet_ahead(level_.find(c), from, along);
+                if (point != no_index) return {no_index, point};
+            } else if (region == last) {
+                return {region, no_index};
+            }
             last = region;
         }
-        return no_index;
+        return {};
     }
 
 private:
     VoxelCoord voxel_at(const Vec3& p) const {
         VoxelCoord c;
-        for (unsigned k = 0; k < 3; ++k) c[k] = static_cast<std::int32_t>(std::floor(p[k] / level_.voxel_size));
+        for (unsigned k = 0; k < 3; ++k)
+            c[k] = static_cast<std::int32_t>(std::floor(p[k] / level_.voxel_size));
         return c;
     }
-    /// Does the voxel hold points in front of the patch, off its own plane?
-    bool blocked(Index voxel, const Vec3& from, const Vec3& along) const {
-        constexpr double off_plane = 0.4, aside = 0.6; // voxels
+    /// The first point of the voxel in front of the patch and off its own plane; some of its points are
+    /// looked at.
+    Index sheet_ahead(Index voxel, const Vec3& from, const Vec3& along) const {
+        constexpr double off_plane = 1.6, aside = 2; // spacings
         constexpr Index looked_at = 64;
         const Index begin = level_.first_point[voxel], end = level_.first_point[voxel + 1];
-        const double h = level_.voxel_size;
+        const double h = spacing_;
+        Index first = no_index;
+        double nearest = std::numeric_limits<double>::infinity();
         for (Index i = begin; i < end; i += 1 + (end - begin) / looked_at) {
             const Vec3 d = octree_.positions[i] - from;
             const double ahead = d | along;
-            if (ahead > off_plane * h && d.sqrnorm() - ahead * ahead < aside * aside * h * h) return true;
+            if (ahead > off_plane * h && ahead < nearest
+                && d.sqrnorm() - ahead * ahead < aside * aside * h * h)
+                nearest = ahead, first = i;
         }
-        return false;
+        return first;
     }
 
     const Octree& octree_;
     const OctreeLevel& level_;
     const EmptySpace& space_;
+    double spacing_;
 };
 
+using Sights = std::array<Sight, 2>; // in front of and behind a patch
+
+bool between_regions(const Sights& s) {
+    return s[0].region != no_index && s[1].region != no_index && s[0].region != s[1].region;
+}
+
 /// Per region +1 outside, -1 inside, 0 unknown: regions that many patches lie between are of opposite kinds.
-std::vector<std::int8_t> classify(std::size_t regions, const std::vector<std::array<Index, 2>>& seen, const Patches& patches) {
+std::vector<std::int8_t> classify(std::size_t regions, const std::vector<Sights>& seen,
+                                  const Patches& patches) {
     std::vector<SignedEdge> between;
-    for (Index p = 0; p < seen.size(); ++p) {
-        const auto [front, back] = seen[p];
-        if (front == no_index || back == no_index || front == back) continue;
+    for (std::size_t p = 0; p < seen.size(); ++p) {
+        if (!between_regions(seen[p])) continue;
+        const auto [a, b] = std::minmax(seen[p][0].region, seen[p][1].region);
         const auto weight = static_cast<float>(patches.counts[p]);
-        between.push_back({std::min(front, back), std::max(front, back), -weight, weight});
+        between.push_back({a, b, -weight, weight});
     }
     const Signs signs = agglomerate(regions, std::move(between));
     std::vector<std::int8_t> kind(regions, 0);
     for (std::size_t r = 0; r < regions; ++r)
-        if (signs.component[r] == signs.component[0]) kind[r] = static_cast<std::int8_t>(signs.sign[r] * signs.sign[0]);
+        if (signs.component[r] == signs.component[0])
+            kind[r] = static_cast<std::int8_t>(signs.sign[r] * signs.sign[0]);
     return kind;
+}
+
+/// Sheets in a row along a ray face alternately forward and back.
+std::vector<SignedEdge> facing_patches(const std::vector<Sights>& seen, const Patches& patches) {
+    constexpr double least_cosine = 0.7;
+    std::vector<SignedEdge> edges;
+    for (Index p = 0; p < seen.size(); ++p)
+        for (const Sight& sight : seen[p]) {
+            const Index q = sight.point == no_index ? no_index : patches.of_point[sight.point];
+            if (q == no_index || q == p) continue;
+            const double cosine = patches.normals[p] | patches.normals[q];
+            if (std::abs(cosine) < least_cosine) continue;
+            const auto weight = static_cast<float>(patches.counts[p]);
+            edges.push_back({std::min(p, q), std::max(p, q), cosine < 0 ? weight : -weight, weight});
+        }
+    return edges;
 }
 
 } // namespace
 
-std::vector<std::int8_t> outside_votes(const Octree& octree, const Patches& patches, double spacing, const OutsideOptions& options) {
+OutsideView view_outside(const Octree& octree, const Patches& patches, double spacing,
+                         const OutsideOptions& options) {
     int depth = options.deepest;
     while (depth > 1 && octree.voxel_size(depth) < options.voxel_spacings * spacing) --depth;
     const OctreeLevel level = extract_level(octree, depth);
     const EmptySpace space(level);
-    const View view(octree, level, space);
-    std::vector<std::array<Index, 2>> seen(patches.size());
+    const View view(octree, level, space, spacing);
+    std::vector<Sights> seen(patches.size());
     for_chunks(patches.size(), patches_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t p = begin; p < end; ++p) {
-            const Index front = view.region(patches.centroids[p], patches.normals[p]);
-            seen[p] = {front, front == no_index ? no_index : view.region(patches.centroids[p], -patches.normals[p])};
-        }
+        for (std::size_t p = begin; p < end; ++p)
+            seen[p] = {view.look(patches.centroids[p], patches.normals[p]),
+                       view.look(patches.centroids[p], -patches.normals[p])};
     });
     const std::vector<std::int8_t> kind = classify(space.regions(), seen, patches);
-    std::vector<std::int8_t> votes(patches.size(), 0);
+    OutsideView result;
+    result.votes.assign(patches.size(), 0);
     for (std::size_t p = 0; p < seen.size(); ++p) {
-        const auto [front, back] = seen[p];
-        if (front != no_index && back != no_index && kind[front] * kind[back] == -1) votes[p] = kind[front];
+        if (!between_regions(seen[p])) continue;
+        const std::int8_t front = kind[seen[p][0].region];
+        if (front * kind[seen[p][1].region] == -1) result.votes[p] = front;
     }
-    return votes;
+    result.facing = facing_patches(seen, patches);
+    return result;
 }
 
 } // namespace hsdm

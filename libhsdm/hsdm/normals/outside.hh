@@ -6,15 +6,22 @@
 namespace hsdm {
 
 struct OutsideOptions {
-    double voxel_spacings = 4; ///< > 0: edge of the voxels of the empty space, at least so many spacings, so that
-                               ///< it does not leak through a sampled surface
+    double voxel_spacings = 4; ///< > 0: edge of the voxels of the empty space, at least so many spacings, so
+                               ///< that it does not leak through a sampled surface
     int deepest = 7;           ///< octree depth of these voxels at most, [1, 8]: the space is kept densely
 };
 
-/// The empty voxels' connected regions. One that can be reached from the box's outside is outside; each sheet with a patch that
-/// sees two regions separates them, so what is one sheet further is inside, two further outside again.
-/// Per patch: +1 if its normal points to the outer of two regions, -1 if to the inner, 0 if it does not see two (a thin part, an
-/// open surface, another sheet in between). O(n + 8^deepest).
-std::vector<std::int8_t> outside_votes(const Octree& octree, const Patches& patches, double spacing, const OutsideOptions& options = {});
+struct OutsideView {
+    std::vector<std::int8_t> votes; ///< per patch: +1 if its normal points to the outer of two regions, -1 if
+                                    ///< to the inner, 0 if it does not see two (a thin part, an open surface)
+    std::vector<SignedEdge>
+        facing; ///< patches that see each other across a wall or a gap, and so are of opposite sides
+};
+
+/// The empty voxels' connected regions. One that can be reached from the box's outside is outside; each sheet
+/// with patches that see two regions separates them, so what is one sheet further is inside, two further
+/// outside again. A patch that sees another sheet before any empty space faces that. O(n + 8^deepest).
+OutsideView view_outside(const Octree& octree, const Patches& patches, double spacing,
+                         const OutsideOptions& options = {});
 
 } // namespace hsdm

@@ -13,7 +13,8 @@ constexpr std::size_t leaves_per_chunk = 256;
 constexpr double least_cosine = 0.85;
 /// Sine of the angle that the chord between two points of one patch may rise out of their planes.
 constexpr double steepest = 0.3;
-/// Points of a leaf are compared with so many of their successors: more only share a voxel of the deepest level.
+/// Points of a leaf are compared with so many of their successors: more only share a voxel of the deepest
+/// level.
 constexpr Index compared = 12;
 
 class PatchBuilder {
@@ -56,7 +57,8 @@ private:
         return rise <= std::max(steepest * length, std::min(estimate_.tolerance[i], 0.5 * length));
     }
 
-    /// Numbers the leaf's patches from `base` on; returns how many there are. A patch's number is taken by its first point.
+    /// Numbers the leaf's patches from `base` on; returns how many there are. A patch's number is taken by
+    /// its first point.
     Index join_leaf(std::size_t leaf, Index base) {
         const Index begin = neighbors_.leaf_first[leaf], end = neighbors_.leaf_first[leaf + 1];
         Index count = 0;
@@ -93,8 +95,9 @@ private:
     Patches result_;
 };
 
-/// A pair of points nearer to each other than this, in neighbourhood radii, is compared by how far they lie off each other's planes,
-/// not by the angle of their chord: two sides of a plate oppose each other even where the chord is slanted.
+/// A pair of points nearer to each other than this, in neighbourhood radii, is compared by how far they lie
+/// off each other's planes, not by the angle of their chord: two sides of a plate oppose each other even
+/// where the chord is slanted.
 constexpr double near_pair = 0.45;
 
 } // namespace
@@ -103,8 +106,8 @@ Patches build_patches(const Octree& octree, const Neighbors& neighbors, const Es
     return PatchBuilder(octree, neighbors, estimate).run();
 }
 
-std::vector<SignedEdge> patch_evidence(const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate,
-                                       const Patches& patches) {
+std::vector<SignedEdge> patch_evidence(const Octree& octree, const Neighbors& neighbors,
+                                       const EstimatedNormals& estimate, const Patches& patches) {
     const std::size_t leaves = neighbors.leaf_first.size() - 1;
     std::vector<std::vector<SignedEdge>> found(chunk_count(leaves, leaves_per_chunk));
     for_chunks(leaves, leaves_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
@@ -121,9 +124,11 @@ std::vector<SignedEdge> patch_evidence(const Octree& octree, const Neighbors& ne
                     if (b == no_index || a == b) continue;
                     const Vec3 d = octree.positions[j] - octree.positions[i];
                     const Vec3& m = estimate.normals[j];
-                    const double mirrored = (n | m) - 2 * (n | d) * (m | d) / std::min(d.sqrnorm(), span * span);
+                    const double mirrored =
+                        (n | m) - 2 * (n | d) * (m | d) / std::min(d.sqrnorm(), span * span);
                     const double w = std::clamp(mirrored, -1.0, 1.0) * patches.sign[i] * patches.sign[j];
-                    edges.push_back({std::min(a, b), std::max(a, b), static_cast<float>(w), static_cast<float>(std::abs(w))});
+                    edges.push_back({std::min(a, b), std::max(a, b), static_cast<float>(w),
+                                     static_cast<float>(std::abs(w))});
                 }
             }
             merge_parallel_edges(edges, start);

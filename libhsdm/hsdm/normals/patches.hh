@@ -1,5 +1,6 @@
 #pragma once
-// Small pieces of one sheet, whose normals are surely of one sign relative to each other: what is oriented instead of points.
+// Small pieces of one sheet, whose normals are surely of one sign relative to each other: what is oriented
+// instead of points.
 
 #include "hsdm/normals/agglomerate.hh"
 #include "hsdm/normals/estimate_normals.hh"
@@ -7,11 +8,11 @@
 namespace hsdm {
 
 struct Patches {
-    std::vector<Index> of_point;    ///< per point, its patch; no_index for points without a normal
-    std::vector<std::int8_t> sign;  ///< per point, +1 or -1: its normal relative to its patch's
-    std::vector<Vec3> centroids;    ///< per patch, relative to the octree's origin
-    std::vector<Vec3> normals;      ///< per patch, unit, of either sign
-    std::vector<Index> counts;      ///< per patch, points
+    std::vector<Index> of_point;   ///< per point, its patch; no_index for points without a normal
+    std::vector<std::int8_t> sign; ///< per point, +1 or -1: its normal relative to its patch's
+    std::vector<Vec3> centroids;   ///< per patch, relative to the octree's origin
+    std::vector<Vec3> normals;     ///< per patch, unit, of either sign
+    std::vector<Index> counts;     ///< per patch, points
 
     std::size_t size() const { return counts.size(); }
 };
@@ -21,10 +22,10 @@ Patches build_patches(const Octree& octree, const Neighbors& neighbors, const Es
 
 /// Evidence between patches, from the pairs of neighbouring points: positive where the patches' normals
 /// point to the same side of the surface. For a pair with the chord d between them it is
-/// n_i . n_j - 2 (n_i . d)(n_j . d) / d^2: one normal against the other's mirror image in the plane halfway. That is right on
-/// every circular arc, convex or concave, hence across creases, round rims and between the two sides of a plate or
-/// a slit. O(n), parallel.
-std::vector<SignedEdge> patch_evidence(const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate,
-                                       const Patches& patches);
+/// n_i . n_j - 2 (n_i . d)(n_j . d) / d^2: one normal against the other's mirror image in the plane halfway.
+/// That is right on every circular arc, convex or concave, hence across creases, round rims and between the
+/// two sides of a plate or a slit. O(n), parallel.
+std::vector<SignedEdge> patch_evidence(const Octree& octree, const Neighbors& neighbors,
+                                       const EstimatedNormals& estimate, const Patches& patches);
 
 } // namespace hsdm

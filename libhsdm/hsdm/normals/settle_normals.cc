@@ -18,7 +18,9 @@ constexpr double clear_gain = 1.2, least_support = 0.1;
 class Agreement {
 public:
     Agreement(const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate, Index point)
-        : normals_(estimate.normals), around_(octree, neighbors, point), inverse_(1 / estimate.tolerance[point]) {}
+        : normals_(estimate.normals),
+          around_(octree, neighbors, point),
+          inverse_(1 / estimate.tolerance[point]) {}
 
     Vec3 settled(const Vec3& own) const {
         Vec3 best = own;

@@ -16,7 +16,7 @@ enum class CubePlacement {
 
 struct OctreeOptions {
     bool merge_duplicates = true; ///< points equal in position and normal count once
-    bool use_normals = true; ///< false: the octree has none, whether the cloud has or not
+    bool use_normals = true;      ///< false: the octree has none, whether the cloud has or not
     double cube_extent = 0; ///< edge of the bounding cube, at least the cloud's longest side; 0: that side
     CubePlacement placement = CubePlacement::least_corner;
 };

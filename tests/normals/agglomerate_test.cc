@@ -1,0 +1,72 @@
+#include "hsdm/normals/agglomerate.hh"
+#include "support/random.hh"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+using namespace hsdm;
+
+namespace {
+
+SignedEdge edge(Index a, Index b, float weight) {
+    return {std::min(a, b), std::max(a, b), weight, std::abs(weight)};
+}
+
+/// Edges of a square grid that say what the hidden signs are, a share of them wrongly.
+std::vector<SignedEdge> grid_edges(Index side, const std::vector<int>& hidden, double wrong,
+                                   support::Random& random) {
+    std::vector<SignedEdge> edges;
+    const auto add = [&](Index a, Index b) {
+        const int truth = hidden[a] * hidden[b];
+        const bool lie = random.uniform() < wrong;
+        edges.push_back(edge(
+            a, b,
+            static_cast<float>((lie ? -truth : truth) * random.uniform(lie ? 0.0 : 0.5, lie ? 0.5 : 1.0))));
+    };
+    for (Index y = 0; y < side; ++y)
+        for (Index x = 0; x < side; ++x) {
+            if (x + 1 < side) add(y * side + x, y * side + x + 1);
+            if (y + 1 < side) add(y * side + x, (y + 1) * side + x);
+        }
+    return edges;
+}
+
+} // namespace
+
+TEST_CASE("hidden signs are found although a tenth of the evidence is wrong", "[normals]") {
+    support::Random random(7);
+    const Index side = 60;
+    std::vector<int> hidden;
+    for (Index i = 0; i < side * side; ++i) hidden.push_back(random.uniform() < 0.5 ? -1 : 1);
+    const Signs signs = agglomerate(side * side, grid_edges(side, hidden, 0.1, random));
+    REQUIRE(signs.components == 1);
+    int same = 0;
+    for (Index i = 0; i < side * side; ++i) same += hidden[i] * signs.sign[i] > 0;
+    CHECK(std::max(same, static_cast<int>(side * side) - same) > static_cast<int>(side * side) * 97 / 100);
+}
+
+TEST_CASE("many weak witnesses along a border outweigh one strong one", "[normals]") {
+    // Two rows of ten, sure of themselves; nine steps between them say opposite, one says same, and louder.
+    std::vector<SignedEdge> edges;
+    for (Index i = 0; i + 1 < 10; ++i)
+        edges.push_back(edge(i, i + 1, 5)), edges.push_back(edge(10 + i, 11 + i, 5));
+    for (Index i = 0; i < 10; ++i) edges.push_back(edge(i, 10 + i, i == 4 ? 2.0f : -1.0f));
+    const Signs signs = agglomerate(20, edges);
+    REQUIRE(signs.components == 1);
+    for (Index i = 0; i < 10; ++i) CHECK(signs.sign[i] * signs.sign[10 + i] == -1);
+}
+
+TEST_CASE("what no evidence joins stays apart, and the order of the edges does not matter", "[normals]") {
+    std::vector<SignedEdge> edges{edge(0, 1, 1), edge(1, 2, -1), edge(4, 5, -2), edge(2, 3, 0)};
+    const Signs signs = agglomerate(6, edges);
+    CHECK(signs.components == 3);
+    CHECK(signs.component == std::vector<Index>{0, 0, 0, 1, 2, 2});
+    CHECK(signs.sign[0] * signs.sign[1] == 1);
+    CHECK(signs.sign[0] * signs.sign[2] == -1);
+    CHECK(signs.sign[4] * signs.sign[5] == -1);
+    std::reverse(edges.begin(), edges.end());
+    const Signs again = agglomerate(6, edges);
+    CHECK(again.sign == signs.sign);
+    CHECK(again.component == signs.component);
+}

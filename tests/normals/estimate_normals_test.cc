@@ -1,0 +1,91 @@
+#include "hsdm/errors.hh"
+#include "hsdm/normals/estimate_normals.hh"
+#include "support/sample.hh"
+
+#include <catch2/catch.hpp>
+
+#include <numbers>
+
+using namespace hsdm;
+using support::Solid;
+
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+
+struct Accuracy {
+    double mean_degrees = 0; ///< over all points
+    double off = 0;          ///< share more than 15 degrees off
+};
+
+/// Estimates the normals of a scan and compares, whatever their sign.
+Accuracy accuracy(const Solid& solid, std::size_t points, const EstimateOptions& options = {},
+                  double noise = 0) {
+    const Octree octree = build_octree(support::sample(solid, {.points = points, .position_noise = noise}));
+    const EstimatedNormals estimate = estimate_normals(octree, find_neighbors(octree), options);
+    Accuracy result;
+    for (std::size_t i = 0; i < octree.size(); ++i) {
+        const double angle =
+            std::acos(std::min(1.0, std::abs(estimate.normals[i] | octree.normals[i]))) / degree;
+        result.mean_degrees += angle / static_cast<double>(octree.size());
+        result.off += (angle > 15) / static_cast<double>(octree.size());
+    }
+    return result;
+}
+
+Solid in_general_pose(const Solid& solid) {
+    support::Random random(2);
+    return solid.placed(support::random_pose(random));
+}
+
+} // namespace
+
+TEST_CASE("normals of smooth surfaces are exact to two degrees", "[normals]") {
+    CHECK(accuracy(support::sphere(1), 4000).mean_degrees < 1.5);
+    CHECK(accuracy(in_general_pose(support::torus(1, 0.4)), 8000).mean_degrees < 2);
+}
+
+TEST_CASE("creases stay creases", "[normals]") {
+    const Solid cube = in_general_pose(support::box(Vec3(1, 1, 1)));
+    const Accuracy robust = accuracy(cube, 5000), plain = accuracy(cube, 5000, {.rounds = 0});
+    CHECK(robust.off < 0.03); // of all points: all lie within seven spacings of a crease
+    CHECK(robust.mean_degrees < 2);
+    CHECK(plain.off > 0.1); // what least squares alone would do
+    CHECK(accuracy(in_general_pose(support::wedge(0.5, 1, 0.6)), 8000).off < 0.03);
+}
+
+TEST_CASE("the two sides of a plate do not disturb each other's normals", "[normals]") {
+    const double spacing = std::sqrt(2.0 / 8000);
+    for (double thickness : {2.0, 4.0})
+        CHECK(accuracy(in_general_pose(support::box(Vec3(1, 1, thickness * spacing))), 8000).off < 0.05);
+}
+
+TEST_CASE("noise makes normals worse by what least squares would, not more", "[normals]") {
+    const double spacing = std::sqrt(4 * std::numbers::pi / 4000);
+    const Accuracy robust = accuracy(support::sphere(1), 4000, {}, 0.2 * spacing);
+    const Accuracy plain = accuracy(support::sphere(1), 4000, {.rounds = 0}, 0.2 * spacing);
+    CHECK(robust.mean_degrees < 1.15 * plain.mean_degrees);
+    CHECK(robust.mean_degrees < 8);
+}
+
+TEST_CASE("neighbours on a line give no normal", "[normals]") {
+    PointCloud cloud;
+    for (int i = 0; i < 100; ++i) cloud.positions.emplace_back(0.01 * i, 0, 0);
+    cloud.positions.emplace_back(0, 50, 0);
+    const Octree octree = build_octree(cloud);
+    const EstimatedNormals estimate = estimate_normals(octree, find_neighbors(octree));
+    std::size_t none = 0;
+    for (const Vec3& n : estimate.normals) {
+        CHECK((n.norm() == Approx(1) || n == Vec3(0, 0, 0)));
+        none += n == Vec3(0, 0, 0);
+    }
+    CHECK(none >= 50); // the plane through the line and the lone point is one, too
+}
+
+TEST_CASE("estimate options are held against their ranges", "[normals]") {
+    const Octree octree = build_octree(support::sample(support::sphere(1), {.points = 100}));
+    const Neighbors neighbors = find_neighbors(octree);
+    CHECK_THROWS_AS(estimate_normals(octree, neighbors, {.least_tolerance = 0}), OptionError);
+    CHECK_THROWS_AS(estimate_normals(octree, neighbors, {.noise_tolerance = -1}), OptionError);
+    CHECK_THROWS_AS(estimate_normals(octree, neighbors, {.rounds = -1}), OptionError);
+}

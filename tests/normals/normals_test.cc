@@ -1,0 +1,103 @@
+#include "hsdm/normals/normals.hh"
+#include "support/sample.hh"
+
+#include <catch2/catch.hpp>
+
+#include <tbb/global_control.h>
+
+#include <algorithm>
+
+using namespace hsdm;
+using support::Solid;
+
+namespace {
+
+Octree without_normals(const PointCloud& cloud) {
+    return build_octree(cloud, {.use_normals = false});
+}
+
+/// Share of points whose estimated normal lies on the wrong side.
+double share_flipped(const PointCloud& cloud) {
+    Octree octree = without_normals(cloud);
+    make_normals(octree);
+    std::size_t flipped = 0;
+    for (std::size_t i = 0; i < octree.size(); ++i)
+        flipped += (octree.normals[i] | cloud.normals[octree.source[i]]) < 0;
+    return static_cast<double>(flipped) / static_cast<double>(octree.size());
+}
+
+Solid in_general_pose(const Solid& solid, std::uint64_t seed = 4) {
+    support::Random random(seed);
+    return solid.placed(support::random_pose(random));
+}
+
+} // namespace
+
+TEST_CASE("normals of closed surfaces point outward", "[normals]") {
+    CHECK(share_flipped(support::sample(in_general_pose(support::torus(1, 0.4)), {.points = 5000})) == 0);
+    CHECK(share_flipped(support::sample(in_general_pose(support::box(Vec3(1, 1, 1))), {.points = 5000}))
+          < 0.002);
+    CHECK(share_flipped(support::sample(in_general_pose(support::wedge(0.5, 1, 0.6)), {.points = 8000}))
+          < 0.01);
+    CHECK(share_flipped(support::sample(support::mechanical_part(), {.points = 15000})) < 0.01);
+}
+
+TEST_CASE("the normals of a shell's cavity point into the cavity", "[normals]") {
+    CHECK(share_flipped(support::sample(support::nested_spheres(1, 0.5), {.points = 10000})) == 0);
+    CHECK(share_flipped(support::sample(support::nested_spheres(1, 0.9), {.points = 20000})) == 0);
+}
+
+TEST_CASE("the two sides of a plate face away from each other", "[normals]") {
+    const double spacing = std::sqrt(2.0 / 8000);
+    for (double thickness : {2.0, 3.0, 5.0}) {
+        INFO("thickness " << thickness << " spacings");
+        const Solid plate = in_general_pose(support::box(Vec3(1, 1, thickness * spacing)));
+        CHECK(share_flipped(support::sample(plate, {.points = 8000})) < 0.02);
+    }
+}
+
+TEST_CASE("two objects are oriented each for itself", "[normals]") {
+    const Solid apart = support::sphere(1) | support::box(Vec3(1, 1, 1)).placed({.shift = Vec3(5, 0, 0)});
+    CHECK(share_flipped(support::sample(apart, {.points = 8000})) < 0.002);
+}
+
+TEST_CASE("an open sheet is consistent, and faces the sensor if there is one", "[normals]") {
+    const PointCloud sphere = support::sample(support::sphere(1), {.points = 6000});
+    PointCloud cap;
+    for (const Vec3& p : sphere.positions)
+        if (p[2] > 0.5) cap.positions.push_back(p);
+    for (double side : {-1.0, 1.0}) {
+        Octree octree = without_normals(cap);
+        NormalsOptions options;
+        options.orient.sensor = Vec3(0, 0, side * 10) - octree.origin;
+        make_normals(octree, options);
+        for (const Vec3& n : octree.normals) CHECK(n[2] * side > 0);
+    }
+}
+
+TEST_CASE("normals do not depend on the order of the points, nor on the number of threads", "[normals]") {
+    PointCloud cloud = support::sample(support::mechanical_part(support::turned(Vec3(1, 2, 3), 1)),
+                                       {.points = 6000, .normals = false});
+    Octree octree = without_normals(cloud);
+    make_normals(octree);
+    std::reverse(cloud.positions.begin(), cloud.positions.end());
+    std::rotate(cloud.positions.begin(), cloud.positions.begin() + 1000, cloud.positions.end());
+    const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+    Octree again = without_normals(cloud);
+    make_normals(again);
+    CHECK(octree.positions == again.positions);
+    CHECK(octree.normals == again.normals);
+}
+
+TEST_CASE("the smallest clouds get normals without complaint", "[normals]") {
+    for (std::size_t n : {4u, 5u, 9u}) {
+        PointCloud cloud;
+        for (std::size_t i = 0; i < n; ++i)
+            cloud.positions.emplace_back(static_cast<double>(i % 3), static_cast<double>(i / 3),
+                                         0.1 * static_cast<double>(i % 2));
+        Octree octree = without_normals(cloud);
+        const NormalsReport report = make_normals(octree);
+        CHECK(octree.normals.size() == n);
+        CHECK(report.missing <= n);
+    }
+}
