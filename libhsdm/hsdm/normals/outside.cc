@@ -16,9 +16,7 @@ constexpr Index occupied = no_index - 1, unlabelled = no_index;
 class EmptySpace {
 public:
     explicit EmptySpace(const OctreeLevel& level)
-        : level_(level),
-          side_((std::size_t{1} << level.depth) + 2),
-          label_(side_ * side_ * side_, unlabelled) {
+        : side_((std::size_t{1} << level.depth) + 2), label_(side_ * side_ * side_, unlabelled) {
         for (Index v = 0; v < level.size(); ++v) label_[cell(level.coord(v))] = occupied;
         for (std::size_t start = 0; start < label_.size(); ++start)
             if (label_[start] == unlabelled) flood(start);
