@@ -23,7 +23,10 @@ std::string option(const Report& report, const std::string& name) {
 }
 
 std::string normals_words(const Report& report) {
-    const std::string given = report.input.has_normals ? "with normals" : "no normals";
+    std::string given = report.input.has_normals ? "with normals" : "no normals";
+    const auto mended = report.rejected.find("normals_mended");
+    if (mended != report.rejected.end() && mended->second > 0)
+        given += " (" + grouped(mended->second) + " turned to one side)";
     if (option(report, "normals") != "estimate") return given;
     return report.input.has_normals ? "normals estimated anew" : "normals estimated";
 }

@@ -3,6 +3,7 @@
 #include "hsdm/extended_method.hh"
 #include "hsdm/facets/to_mesh.hh"
 #include "hsdm/features/features.hh"
+#include "hsdm/normals/mend_normals.hh"
 #include "hsdm/normals/normals.hh"
 #include "hsdm/octree/spacing.hh"
 #include "hsdm/quality/distance.hh"
@@ -113,12 +114,20 @@ public:
     /// Normals, where the method needs some and the cloud has none or they are not wanted.
     void provide_normals(const PointCloud& cloud, const Phases& phases) {
         NormalsOptions normals_options;
-        if (cloud.sensor) normals_options.orient.sensor = *cloud.sensor - octree.origin;
+        normals_options.orient.sensor = sensor_of(cloud);
         const NormalsReport made = phases.run("normals", 0.05, report.seconds.normals,
                                               [&] { return make_normals(octree, normals_options); });
         report.rejected["normals_near_creases"] = made.bent;
         report.rejected["normals_missing"] = made.missing;
         report.rejected["normals_by_volume"] = made.orientation.by_volume;
+    }
+
+    /// Turns given normals to one side if their signs contradict each other.
+    void check_given_normals(const PointCloud& cloud, const Phases& phases) {
+        report.rejected["normals_mended"] = phases.run("normals", 0.05, report.seconds.normals, [&] {
+            if (!check_normals(octree).doubtful()) return std::size_t{0};
+            return mend_normals(octree, sensor_of(cloud));
+        });
     }
 
     /// The depth the options ask for or the spacing suggests; notes it in the report.
@@ -142,6 +151,11 @@ public:
     Report report;
 
 private:
+    std::optional<Vec3> sensor_of(const PointCloud& cloud) const {
+        if (!cloud.sensor) return std::nullopt;
+        return *cloud.sensor - octree.origin;
+    }
+
     /// The smallest cube of 2^N voxels around the cloud, N in [1, 16].
     double cube_of(const PointCloud& cloud, double voxel_size) {
         const double extent = cloud.bounds().extent();
@@ -273,7 +287,10 @@ std::vector<Reconstruction> run(const PointCloud& cloud, const ReconstructOption
     report.input.dropped_nonfinite = finite.dropped();
     report.threads = tbb::this_task_arena::max_concurrency();
     note_options(*finite, options, report);
-    if (must_estimate(*finite, options)) decomposition.provide_normals(*finite, Phases(options, 0, 1));
+    if (must_estimate(*finite, options))
+        decomposition.provide_normals(*finite, Phases(options, 0, 1));
+    else if (method_for(options) == Method::extended)
+        decomposition.check_given_normals(*finite, Phases(options, 0, 1));
     if (range) {
         report.options["levels"] = std::to_string(range->first) + ":" + std::to_string(range->second);
         report.options["resolution"] = "as asked by levels";

@@ -260,6 +260,19 @@ TEST_CASE("points without normals come out like points with exact ones", "[recon
           < 0.2 * estimated.report.grid.voxel_size);
 }
 
+TEST_CASE("given normals of mixed signs give the mesh of consistent ones, and are counted", "[reconstruct]") {
+    PointCloud cloud = support::sample(support::torus(1, 0.4), {.points = 8000});
+    ReconstructOptions options;
+    options.depth = 4;
+    const Reconstruction consistent = reconstruct(cloud, options);
+    CHECK(consistent.report.rejected.at("normals_mended") == 0);
+    for (std::size_t i = 0; i < cloud.size(); i += 20) cloud.normals[i] = -cloud.normals[i];
+    const Reconstruction mended = reconstruct(cloud, options);
+    CHECK(mended.report.rejected.at("normals_mended") == 400);
+    CHECK(to_polygons(mended.mesh).positions == to_polygons(consistent.mesh).positions);
+    CHECK(mended.report.mesh.closed);
+}
+
 TEST_CASE("the basic method has no use for estimated normals", "[reconstruct]") {
     ReconstructOptions options = at_depth(3);
     CHECK(reconstruct(scan(support::sphere(1), 1000), options).report.options.at("normals") == "none");

@@ -10,7 +10,8 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t points_per_chunk = 1 << 14;
-/// Signs of components that no view decided: by the sensor, else by the signed volume about their own centre.
+/// Signs of components that no view decided: by the signs that most normals came with if these count, else by
+/// the sensor, else by the signed volume about their own centre.
 std::vector<std::int8_t> free_signs(const Patches& patches, const Signs& signs,
                                     const OrientOptions& options) {
     std::vector<Vec3> centre(signs.components, Vec3(0, 0, 0));
@@ -19,12 +20,15 @@ std::vector<std::int8_t> free_signs(const Patches& patches, const Signs& signs,
         centre[signs.component[p]] += patches.centroids[p] * patches.counts[p];
         points[signs.component[p]] += patches.counts[p];
     }
-    for (std::size_t p = 0; p < patches.size(); ++p) {
+    for (std::size_t p = 0; p < patches.size() && !options.signs_count; ++p) {
         const Index c = signs.component[p];
         const Vec3 from = options.sensor ? *options.sensor - patches.centroids[p]
                                          : patches.centroids[p] - centre[c] / points[c];
         side[c] += (patches.normals[p] | from) * signs.sign[p] * patches.counts[p];
     }
+    for (std::size_t i = 0; i < patches.of_point.size() && options.signs_count; ++i)
+        if (const Index p = patches.of_point[i]; p != no_index)
+            side[signs.component[p]] += patches.sign[i] * signs.sign[p];
     std::vector<std::int8_t> sign(signs.components, 1);
     for (std::size_t c = 0; c < sign.size(); ++c)
         if (side[c] < 0) sign[c] = -1;
@@ -58,7 +62,7 @@ OrientReport orient_normals(const Octree& octree, const Neighbors& neighbors, Es
         }
     });
     report.patches = patches.size();
-    report.components = signs.components;
+    report.components = signs.components; // the outside, seen by nobody, is one
     for (std::size_t p = 0; p < patches.size(); ++p)
         if (signs.component[p] != signs.component[outside]) report.by_volume += patches.counts[p];
     return report;

@@ -8,8 +8,10 @@
 namespace hsdm {
 
 struct OrientOptions {
-    std::optional<Vec3> sensor; ///< where the scanner stood, in the coordinates of the octree's positions:
-                                ///< decides what the shape leaves open
+    std::optional<Vec3> sensor; ///< where the scanner stood, relative to the octree's origin: decides what
+                                ///< the shape leaves open
+    bool signs_count =
+        false; ///< what the shape leaves open is decided by the signs that most of the normals have
 };
 
 /// What decided; all counts are of points but the first two.

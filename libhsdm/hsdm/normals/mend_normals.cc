@@ -1,0 +1,115 @@
+#include "hsdm/normals/mend_normals.hh"
+
+#include "hsdm/chunks.hh"
+#include "hsdm/normals/orient_normals.hh"
+#include "hsdm/octree/spacing.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t points_per_chunk = 1 << 14;
+
+/// How two points next to each other lie.
+struct Pair {
+    enum Kind { unclear, flat, creased } kind = unclear;
+    bool opposed = false;
+    double rise = 0; ///< sine of the angle between the chord and the planes
+};
+
+/// Points far from each other, planes apart and unclear angles say nothing.
+Pair compare(const Octree& octree, std::size_t i, std::size_t j, double farthest) {
+    constexpr double parallel = 0.9, crossing = 0.5, flattest = 0.2, clear = 0.5;
+    const Vec3 &n = octree.normals[i], &m = octree.normals[j];
+    const Vec3 d = octree.positions[j] - octree.positions[i];
+    const double length = d.norm(), cosine = n | m;
+    if (n.sqrnorm() == 0 || m.sqrnorm() == 0 || length == 0 || length > farthest) return {};
+    const double rise_n = (n | d) / length, rise_m = (m | d) / length;
+    const double rise = std::max(std::abs(rise_n), std::abs(rise_m));
+    if (std::abs(cosine) > parallel && rise < flattest) return {Pair::flat, cosine < 0, rise};
+    const double mirrored = cosine - 2 * rise_n * rise_m; // see patch_evidence
+    if (std::abs(cosine) < crossing && std::abs(mirrored) > clear) return {Pair::creased, mirrored < 0, rise};
+    return {};
+}
+
+/// Sums f(pair) over the pairs of all points with their two successors, in one order.
+template <class Sum, class F>
+Sum sum_pairs(const Octree& octree, double farthest, const F& add) {
+    std::vector<Sum> parts(chunk_count(octree.size(), points_per_chunk));
+    for_chunks(octree.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        for (std::size_t i = begin; i < end; ++i)
+            for (std::size_t j = i + 1; j < std::min(octree.size(), i + 3); ++j)
+                add(compare(octree, i, j, farthest), parts[chunk]);
+    });
+    Sum sum;
+    for (const Sum& part : parts) sum += part;
+    return sum;
+}
+
+struct Rise {
+    double sum = 0, pairs = 0;
+    void operator+=(const Rise& other) { sum += other.sum, pairs += other.pairs; }
+};
+
+/// Mean rise of the flat pairs that agree: what curvature and noise make of points on one plane.
+double mean_rise(const Octree& octree, double farthest) {
+    const Rise rise = sum_pairs<Rise>(octree, farthest, [](const Pair& pair, Rise& sum) {
+        if (pair.kind == Pair::flat && !pair.opposed) sum.sum += pair.rise, sum.pairs += 1;
+    });
+    return rise.pairs > 0 ? rise.sum / rise.pairs : 0;
+}
+
+} // namespace
+
+bool NormalConsistency::doubtful() const {
+    constexpr std::size_t fewest = 10;
+    return (flat_opposed >= fewest && 2000 * flat_opposed > flat)
+           || (creased_opposed >= fewest && 100 * creased_opposed > 15 * creased);
+}
+
+double NormalConsistency::contradiction() const {
+    const auto share = [](std::size_t part, std::size_t whole) {
+        return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
+    };
+    return share(flat_opposed, flat) + share(creased_opposed, creased);
+}
+
+void NormalConsistency::operator+=(const NormalConsistency& other) {
+    flat += other.flat, flat_opposed += other.flat_opposed;
+    creased += other.creased, creased_opposed += other.creased_opposed;
+}
+
+NormalConsistency check_normals(const Octree& octree) {
+    if (!octree.has_normals()) return {};
+    // The sides of the thinnest plate are opposed, too, but lie off each other's planes.
+    const double farthest = 2 * estimate_spacing(octree);
+    const double highest = 3 * mean_rise(octree, farthest) + 0.01;
+    return sum_pairs<NormalConsistency>(octree, farthest, [&](const Pair& pair, NormalConsistency& sum) {
+        if (pair.kind == Pair::flat && pair.rise < highest) ++sum.flat, sum.flat_opposed += pair.opposed;
+        if (pair.kind == Pair::creased) ++sum.creased, sum.creased_opposed += pair.opposed;
+    });
+}
+
+std::size_t mend_normals(Octree& octree, const std::optional<Vec3>& sensor) {
+    if (!octree.has_normals() || octree.size() < 2) return 0;
+    const Neighbors neighbors = find_neighbors(octree);
+    EstimatedNormals mended = estimate_normals(octree, neighbors, {.rounds = 0}); // for its tolerances
+    mended.normals = octree.normals;
+    OrientOptions options;
+    options.sensor = sensor;
+    options.signs_count = true;
+    orient_normals(octree, neighbors, mended, options);
+    const double before = check_normals(octree).contradiction();
+    octree.normals.swap(mended.normals);
+    if (2 * check_normals(octree).contradiction() > before) { // noise, no flips
+        octree.normals.swap(mended.normals);
+        return 0;
+    }
+    std::size_t turned = 0;
+    for (std::size_t i = 0; i < octree.size(); ++i) turned += (mended.normals[i] | octree.normals[i]) < 0;
+    return turned;
+}
+
+} // namespace hsdm

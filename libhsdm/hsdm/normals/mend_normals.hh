@@ -1,0 +1,33 @@
+#pragma once
+// Given normals whose signs contradict each other: found, and turned to one side.
+
+#include "hsdm/octree/octree.hh"
+
+#include <optional>
+
+namespace hsdm {
+
+/// Pairs of points next to each other in octree order, as far as they say anything about the signs.
+struct NormalConsistency {
+    std::size_t flat = 0, flat_opposed = 0; ///< on one plane; of these, with opposite normals
+    std::size_t creased = 0,
+                creased_opposed = 0; ///< on two planes that meet; of these, out on one and in on the other
+
+    /// More contradictions than thin parts and strays cause: ten pairs, and over 0.05 % of the flat or 15 %
+    /// of the creased.
+    bool doubtful() const;
+    /// Sum of the two shares.
+    double contradiction() const;
+    void operator+=(const NormalConsistency& other);
+};
+
+/// Looks at two successors of every point. O(n), parallel; a fraction of what finding neighbours costs.
+NormalConsistency check_normals(const Octree& octree);
+
+/// Turns the octree's normals to one side, in place; their directions stay. Evidence is that of
+/// orient_normals; where the shape leaves the side open (a sheet, a thin part), it is the one that most
+/// normals have. Where that leaves more than half of the contradictions, these come from noise, and nothing
+/// is turned. Returns how many normals were turned.
+std::size_t mend_normals(Octree& octree, const std::optional<Vec3>& sensor = std::nullopt);
+
+} // namespace hsdm
