@@ -1,0 +1,179 @@
+#include "hsdm/adaptive/clusters.hh"
+
+#include "hsdm/chunks.hh"
+#include "hsdm/disjoint_sets.hh"
+#include "hsdm/facets/area_vector.hh"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t clusters_per_chunk = 1024;
+constexpr double least_share =
+    0.02; // of the largest eigenvalue: normals spread by less do not fix a position
+
+/// Builds each level of clusters from the one below it. An edge or facet is looked at on the levels where it
+/// joins different clusters, so the lists shrink by a factor of two and more per level.
+class Gathering {
+public:
+    Gathering(const PolygonMesh& mesh, CellTree& tree, double tolerance)
+        : mesh_(mesh),
+          tree_(tree),
+          tolerance_(tolerance),
+          current_(mesh.vertex_count()),
+          euler_(mesh.vertex_count(), 1) {
+        for (Index v = 0; v < current_.size(); ++v) current_[v] = v;
+        for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+            const auto ring = mesh.facet(f);
+            facets_.push_back(static_cast<Index>(f));
+            for (std::size_t i = 0; i < ring.size(); ++i)
+                edges_.emplace_back(std::minmax(ring[i], ring[(i + 1) % ring.size()]));
+        }
+        tbb::parallel_sort(edges_.begin(), edges_.end());
+        edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
+        gather_planes();
+    }
+
+    std::vector<ClusterLevel> run() {
+        std::vector<ClusterLevel> levels(tree_.levels.size());
+        levels.back() = {tree_.of_vertex, {}, mesh_.positions};
+        for (std::size_t level = levels.size() - 1; level-- > 0;)
+            levels[level] = gather(levels[level + 1], level);
+        return levels;
+    }
+
+private:
+    /// Each vertex has the planes of its facets, by their share of the area.
+    void gather_planes() {
+        quadrics_.resize(mesh_.vertex_count());
+        for (std::size_t v = 0; v < quadrics_.size(); ++v) quadrics_[v].add_point(mesh_.positions[v]);
+        for (std::size_t f = 0; f < mesh_.facet_count(); ++f) {
+            const auto ring = mesh_.facet(f);
+            const Vec3 area = area_vector(mesh_, ring);
+            const double length = area.norm();
+            if (!(length > 0)) continue;
+            Vec3 centre(0, 0, 0);
+            for (Index v : ring) centre += mesh_.positions[v];
+            centre /= static_cast<double>(ring.size());
+            for (Index v : ring)
+                quadrics_[v].add_plane(area / length, centre, length / static_cast<double>(ring.size()));
+        }
+    }
+
+    /// Cells whose children are all whole.
+    std::vector<std::uint8_t> eligible_cells(std::size_t level) const {
+        const CellLevel& below = tree_.levels[level + 1];
+        std::vector<std::uint8_t> eligible(tree_.levels[level].codes.size(), 1);
+        for (std::size_t c = 0; c < below.codes.size(); ++c)
+            if (!below.whole[c]) eligible[below.parent[c]] = 0;
+        return eligible;
+    }
+
+    ClusterLevel gather(ClusterLevel& below, std::size_t level) {
+        const std::vector<std::uint8_t> eligible = eligible_cells(level);
+        const auto& parent_cell = tree_.levels[level + 1].parent;
+        const auto cell_of = [&](Index cluster) { return parent_cell[below.cell[cluster]]; };
+        DisjointSets joined(below.size());
+        for (const auto& [a, b] : edges_) {
+            const Index i = current_[a], j = current_[b];
+            if (i != no_index && j != no_index && cell_of(i) == cell_of(j)) joined.join(i, j);
+        }
+        ClusterLevel here;
+        below.parent.assign(below.size(), no_index);
+        for (Index i = 0; i < below.size(); ++i) {
+            if (!eligible[cell_of(i)]) continue;
+            const Index root = joined.find(i);
+            if (root == i) {
+                below.parent[i] = static_cast<Index>(here.cell.size());
+                here.cell.push_back(cell_of(i));
+            } else {
+                below.parent[i] = below.parent[root];
+            }
+        }
+        here.positions.resize(here.cell.size());
+        rise(below, here.cell.size());
+        decide(here, eligible, level);
+        return here;
+    }
+
+    /// Sums up what the clusters below carry, and lets go of edges and facets that lie in one cluster or can
+    /// no more do so.
+    void rise(const ClusterLevel& below, std::size_t count) {
+        std::vector<Quadric> quadrics(count);
+        std::vector<int> euler(count, 0);
+        for (Index i = 0; i < below.size(); ++i)
+            if (const Index p = below.parent[i]; p != no_index) {
+                quadrics[p] += quadrics_[i];
+                euler[p] += euler_[i];
+            }
+        for_chunks(current_.size(), clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t v = begin; v < end; ++v)
+                if (current_[v] != no_index) current_[v] = below.parent[current_[v]];
+        });
+        std::erase_if(edges_, [&](const std::pair<Index, Index>& edge) {
+            const Index i = current_[edge.first], j = current_[edge.second];
+            if (i != no_index && i == j) --euler[i];
+            return i == no_index || j == no_index || i == j;
+        });
+        std::erase_if(facets_, [&](Index f) {
+            const auto ring = mesh_.facet(f);
+            const Index first = current_[ring[0]];
+            bool one = true, any_lost = false;
+            for (Index v : ring) {
+                one = one && current_[v] == first;
+                any_lost = any_lost || current_[v] == no_index;
+            }
+            if (one && !any_lost) ++euler[first];
+            return one || any_lost;
+        });
+        quadrics_ = std::move(quadrics);
+        euler_ = std::move(euler);
+    }
+
+    void decide(ClusterLevel& here, const std::vector<std::uint8_t>& eligible, std::size_t level) {
+        CellLevel& cells = tree_.levels[level];
+        std::vector<std::uint8_t> fits(here.size());
+        for_chunks(here.size(), clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i) {
+                here.positions[i] =
+                    kept_near(quadrics_[i].minimum(least_share), cells.codes[here.cell[i]], level);
+                fits[i] = euler_[i] == 1 && quadrics_[i].rms(here.positions[i]) <= tolerance_;
+            }
+        });
+        cells.whole = eligible;
+        for (std::size_t i = 0; i < here.size(); ++i)
+            if (!fits[i]) cells.whole[here.cell[i]] = 0;
+    }
+
+    /// The position, moved into its cell.
+    Vec3 kept_near(Vec3 p, MortonCode code, std::size_t level) const {
+        const double size = tree_.extent / static_cast<double>(1u << level);
+        const VoxelCoord c = morton_decode(code);
+        for (unsigned k = 0; k < 3; ++k) {
+            const double lo = c[k] * size - tree_.extent; // codes are moved by a cube
+            p[k] = std::clamp(p[k], lo, lo + size);
+        }
+        return p;
+    }
+
+    const PolygonMesh& mesh_;
+    CellTree& tree_;
+    double tolerance_;
+    std::vector<Index> current_; // per vertex, its cluster of the level reached
+    std::vector<std::pair<Index, Index>> edges_;
+    std::vector<Index> facets_;
+    std::vector<Quadric> quadrics_; // per cluster of the level reached
+    std::vector<int> euler_;        // vertices - edges + facets of the surface inside each cluster
+};
+
+} // namespace
+
+std::vector<ClusterLevel> build_clusters(const PolygonMesh& mesh, CellTree& tree, double tolerance) {
+    return Gathering(mesh, tree, tolerance).run();
+}
+
+} // namespace hsdm

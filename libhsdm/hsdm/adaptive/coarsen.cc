@@ -1,0 +1,268 @@
+#include "hsdm/adaptive/coarsen.hh"
+
+#include "hsdm/adaptive/clusters.hh"
+#include "hsdm/adaptive/trouble.hh"
+#include "hsdm/chunks.hh"
+#include "hsdm/errors.hh"
+#include "hsdm/quality/distance.hh"
+#include "hsdm/quality/self_intersections.hh"
+
+#include <algorithm>
+#include <optional>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t vertices_per_chunk = 2048;
+constexpr double planes_share =
+    0.35; // of the error: what planes of a leaf may be missed by, root mean square
+
+/// A cluster: a vertex of the result.
+struct Place {
+    int level = 0;
+    Index cluster = no_index;
+    Index cell = no_index;
+};
+
+class Coarsening {
+public:
+    Coarsening(const PolygonMesh& fine, std::span<const Vec3> points, double extent, int depth,
+               const CoarsenOptions& options)
+        : fine_(fine),
+          points_(points),
+          options_(options),
+          tree_(build_cell_tree(fine.positions, extent, depth)) {
+        clusters_ = build_clusters(fine, tree_, planes_share * options.max_error);
+    }
+
+    AdaptiveMesh run() {
+        for (int round = 0; round < options_.rounds; ++round) {
+            result_.balance_splits += balance(tree_);
+            collapse();
+            // Each only where what comes before it is right.
+            std::size_t splits = split_troubled();
+            result_.topology_splits += splits;
+            if (splits == 0) result_.intersection_splits += splits = split_intersecting();
+            if (splits == 0) result_.error_splits += splits = split_distant();
+            if (splits == 0) break;
+        }
+        count_leaves();
+        return std::move(result_);
+    }
+
+private:
+    /// The leaf and the cluster of every fine vertex.
+    void locate() {
+        places_.resize(fine_.vertex_count());
+        for_chunks(places_.size(), vertices_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t v = begin; v < end; ++v) {
+                Place place{tree_.depth(), static_cast<Index>(v), tree_.of_vertex[v]};
+                while (place.level > 0) {
+                    const auto level = static_cast<std::size_t>(place.level);
+                    const Index up = tree_.levels[level].parent[place.cell];
+                    if (!tree_.levels[level - 1].whole[up]) break;
+                    place.cluster = clusters_[level].parent[place.cluster];
+                    place.cell = up;
+                    --place.level;
+                }
+                places_[v] = place;
+            }
+        });
+    }
+
+    /// The mesh over the leaves: a facet stays while it has three different vertices.
+    void collapse() {
+        locate();
+        std::vector<std::vector<Index>> number(clusters_.size());
+        for (std::size_t level = 0; level < clusters_.size(); ++level)
+            number[level].assign(clusters_[level].size(), no_index);
+        PolygonMesh& mesh = result_.mesh = PolygonMesh();
+        coarse_.clear();
+        vertex_.resize(fine_.vertex_count());
+        for (std::size_t v = 0; v < places_.size(); ++v) {
+            const Place& place = places_[v];
+            Index& n = number[static_cast<std::size_t>(place.level)][place.cluster];
+            if (n == no_index) {
+                n = static_cast<Index>(coarse_.size());
+                coarse_.push_back(place);
+                mesh.positions.push_back(
+                    clusters_[static_cast<std::size_t>(place.level)].positions[place.cluster]);
+            }
+            vertex_[v] = n;
+        }
+        std::vector<Index> ring;
+        for (std::size_t f = 0; f < fine_.facet_count(); ++f) {
+            ring.clear();
+            for (Index v : fine_.facet(f)) ring.push_back(vertex_[v]);
+            add_loops(ring, mesh);
+        }
+    }
+
+    /// The simple loops of three vertices and more that are left of a facet whose vertices coincide in part.
+    static void add_loops(const std::vector<Index>& ring, PolygonMesh& mesh) {
+        std::vector<Index> open;
+        for (Index v : ring) {
+            const auto seen = std::find(open.begin(), open.end(), v);
+            if (seen != open.end()) {
+                if (open.end() - seen >= 3)
+                    mesh.add_facet({&*seen, static_cast<std::size_t>(open.end() - seen)});
+                open.erase(seen, open.end());
+            }
+            open.push_back(v);
+        }
+        if (open.size() >= 3) mesh.add_facet(open);
+    }
+
+    std::size_t split_at(const Place& place) { return tree_.split(place.level, place.cell); }
+
+    std::size_t split_troubled() {
+        std::size_t splits = 0;
+        std::vector<std::uint8_t> due(result_.mesh.vertex_count(), 0);
+        const std::vector<Index> troubled = troubled_vertices(result_.mesh);
+        for (Index v : troubled) splits += split_at(coarse_[v]);
+        if (splits > 0 || troubled.empty()) return splits;
+        // Vertices of the deepest level alone cannot be helped: their neighbours can.
+        for (Index v : troubled) due[v] = 1;
+        for (std::size_t f = 0; f < result_.mesh.facet_count(); ++f) {
+            const auto ring = result_.mesh.facet(f);
+            if (std::none_of(ring.begin(), ring.end(), [&](Index v) { return due[v]; })) continue;
+            for (Index v : ring) splits += split_at(coarse_[v]);
+        }
+        return splits;
+    }
+
+    std::size_t split_intersecting() {
+        const SelfIntersections found = find_self_intersections(result_.mesh);
+        std::size_t splits = 0;
+        for (const auto& pair : found.facet_pairs)
+            for (Index f : pair)
+                for (Index v : result_.mesh.facet(f)) splits += split_at(coarse_[v]);
+        return splits;
+    }
+
+    /// Per position, is it farther than max_error from the mesh?
+    std::vector<std::uint8_t> beyond(std::span<const Vec3> positions, const MeshDistance& distance) const {
+        std::vector<std::uint8_t> far(positions.size());
+        for_chunks(positions.size(), vertices_per_chunk,
+                   [&](std::size_t begin, std::size_t end, std::size_t) {
+                       for (std::size_t i = begin; i < end; ++i)
+                           far[i] = distance(positions[i]) > options_.max_error;
+                   });
+        return far;
+    }
+
+    std::size_t split_distant() {
+        const MeshDistance to_result(result_.mesh);
+        std::size_t splits = 0;
+        const auto far = beyond(fine_.positions, to_result);
+        for (std::size_t v = 0; v < far.size(); ++v)
+            if (far[v]) splits += split_at(places_[v]);
+        splits += split_far_facets();
+        return splits > 0 ? splits : split_for_points(to_result);
+    }
+
+    /// Middles of facets and of their sides, against the fine mesh.
+    std::size_t split_far_facets() {
+        const PolygonMesh& mesh = result_.mesh;
+        std::vector<Vec3> middles;
+        std::vector<Index> facet;
+        for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+            const auto ring = mesh.facet(f);
+            if (std::all_of(ring.begin(), ring.end(),
+                            [&](Index v) { return coarse_[v].level == tree_.depth(); }))
+                continue;
+            Vec3 sum(0, 0, 0);
+            for (std::size_t i = 0; i < ring.size(); ++i) {
+                const Vec3 &a = mesh.positions[ring[i]], &b = mesh.positions[ring[(i + 1) % ring.size()]];
+                sum += a;
+                if (ring[i] > ring[(i + 1) % ring.size()]) continue; // the other facet has it
+                middles.push_back(0.5 * (a + b));
+                facet.push_back(static_cast<Index>(f));
+            }
+            middles.push_back(sum / static_cast<double>(ring.size()));
+            facet.push_back(static_cast<Index>(f));
+        }
+        if (!to_fine_) to_fine_.emplace(fine_);
+        const auto far = beyond(middles, *to_fine_);
+        std::size_t splits = 0;
+        for (std::size_t i = 0; i < far.size(); ++i)
+            if (far[i])
+                for (Index v : mesh.facet(facet[i])) splits += split_at(coarse_[v]);
+        return splits;
+    }
+
+    std::size_t split_for_points(const MeshDistance& to_result) {
+        const auto far = beyond(points_, to_result);
+        std::size_t splits = 0;
+        result_.points_beyond = result_.unreachable = 0;
+        for (std::size_t p = 0; p < far.size(); ++p) {
+            if (!far[p]) continue;
+            ++result_.points_beyond;
+            if ((*to_fine_)(points_[p]) > options_.max_error)
+                ++result_.unreachable;
+            else
+                splits += split_around(points_[p]);
+        }
+        return splits;
+    }
+
+    /// The leaf that holds a point, or else those around it.
+    std::size_t split_around(const Vec3& point) {
+        const MortonCode code = tree_.code_at(point);
+        std::size_t splits = 0;
+        for (int level = tree_.depth() - 1; level >= 0; --level)
+            if (const Index cell = tree_.find(level, code >> 3 * (tree_.depth() - level)); cell != no_index)
+                splits += tree_.split(level, cell);
+        for (int level = tree_.depth() - 1; level >= 0 && splits == 0; --level) {
+            const VoxelCoord at = morton_decode(code >> 3 * (tree_.depth() - level));
+            for (int k = 0; k < 27; ++k) {
+                const VoxelCoord n{at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1};
+                if (n[0] < 0 || n[1] < 0 || n[2] < 0) continue;
+                if (const Index cell = tree_.find(level, morton_encode(n)); cell != no_index)
+                    splits += tree_.split(level, cell);
+            }
+        }
+        return splits;
+    }
+
+    void count_leaves() {
+        result_.leaves_per_level.assign(tree_.levels.size(), 0);
+        for (int level = 0; level <= tree_.depth(); ++level)
+            for (Index c = 0; c < tree_.levels[static_cast<std::size_t>(level)].codes.size(); ++c)
+                result_.leaves_per_level[static_cast<std::size_t>(level)] += tree_.is_leaf(level, c);
+        result_.level.clear();
+        for (const Place& place : coarse_) result_.level.push_back(static_cast<std::uint8_t>(place.level));
+        result_.source.assign(coarse_.size(), no_index);
+        const auto off = [&](std::size_t v) {
+            return (fine_.positions[v] - result_.mesh.positions[vertex_[v]]).sqrnorm();
+        };
+        for (std::size_t v = 0; v < vertex_.size(); ++v) {
+            Index& source = result_.source[vertex_[v]];
+            if (source == no_index || off(v) < off(source)) source = static_cast<Index>(v);
+        }
+    }
+
+    const PolygonMesh& fine_;
+    std::span<const Vec3> points_;
+    const CoarsenOptions& options_;
+    CellTree tree_;
+    std::vector<ClusterLevel> clusters_;
+    std::vector<Place> places_; // per fine vertex
+    std::vector<Index> vertex_; // per fine vertex, the vertex of the result
+    std::vector<Place> coarse_; // per vertex of the result
+    std::optional<MeshDistance> to_fine_;
+    AdaptiveMesh result_;
+};
+
+} // namespace
+
+AdaptiveMesh coarsen(const PolygonMesh& fine, std::span<const Vec3> points, double extent, int depth,
+                     const CoarsenOptions& options) {
+    if (!(options.max_error > 0))
+        throw OptionError("max_error " + std::to_string(options.max_error) + ": must be positive");
+    if (options.rounds < 1)
+        throw OptionError("rounds " + std::to_string(options.rounds) + ": must be 1 or more");
+    return Coarsening(fine, points, extent, depth, options).run();
+}
+
+} // namespace hsdm

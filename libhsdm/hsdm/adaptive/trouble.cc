@@ -1,0 +1,69 @@
+#include "hsdm/adaptive/trouble.hh"
+
+#include "hsdm/disjoint_sets.hh"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <tuple>
+
+namespace hsdm {
+namespace {
+
+/// A side of a facet: corner `side` starts it, `next` ends it.
+struct Side {
+    Index low, high, corner, next;
+    bool forward; // from low to high
+    bool operator<(const Side& o) const {
+        return std::tie(low, high, corner) < std::tie(o.low, o.high, o.corner);
+    }
+};
+
+std::vector<Side> sorted_sides(const PolygonMesh& mesh) {
+    std::vector<Side> sides;
+    sides.reserve(mesh.corners.size());
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+        const Index begin = mesh.first[f], end = mesh.first[f + 1];
+        for (Index c = begin; c < end; ++c) {
+            const Index next = c + 1 == end ? begin : c + 1;
+            const Index a = mesh.corners[c], b = mesh.corners[next];
+            sides.push_back({std::min(a, b), std::max(a, b), c, next, a < b});
+        }
+    }
+    tbb::parallel_sort(sides.begin(), sides.end());
+    return sides;
+}
+
+} // namespace
+
+std::vector<Index> troubled_vertices(const PolygonMesh& mesh) {
+    const std::vector<Side> sides = sorted_sides(mesh);
+    std::vector<std::uint8_t> troubled(mesh.vertex_count(), 0), border(mesh.vertex_count(), 0);
+    DisjointSets fans(mesh.corners.size());
+    for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+        const Side& a = sides[begin];
+        while (end < sides.size() && sides[end].low == a.low && sides[end].high == a.high) ++end;
+        if (end - begin == 1) {
+            border[a.low] = border[a.high] = 1;
+        } else if (const Side& b = sides[begin + 1]; end - begin == 2 && a.forward != b.forward) {
+            fans.join(a.corner, b.next);
+            fans.join(a.next, b.corner);
+        } else {
+            troubled[a.low] = troubled[a.high] = 1;
+        }
+    }
+    std::vector<Index> root(mesh.vertex_count(), no_index), facets(mesh.vertex_count(), 0);
+    for (Index c = 0; c < mesh.corners.size(); ++c) {
+        const Index v = mesh.corners[c];
+        const Index r = fans.find(c);
+        if (root[v] != no_index && root[v] != r) troubled[v] = 1;
+        root[v] = r;
+        ++facets[v];
+    }
+    std::vector<Index> result;
+    for (Index v = 0; v < troubled.size(); ++v)
+        if (troubled[v] || (facets[v] > 0 && facets[v] < 3 && !border[v])) result.push_back(v);
+    return result;
+}
+
+} // namespace hsdm

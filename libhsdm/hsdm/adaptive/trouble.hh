@@ -1,0 +1,13 @@
+#pragma once
+// Where a mesh that came from collapsing vertices is no proper 2-manifold.
+
+#include "hsdm/polygon_mesh.hh"
+
+namespace hsdm {
+
+/// The vertices, ascending, at which facets do not make one proper fan: ends of edges with more than two
+/// facets or two that run the same way, vertices with several fans, inner vertices of only two facets. Empty
+/// for a mesh without such. O(corners log corners), parallel.
+std::vector<Index> troubled_vertices(const PolygonMesh& mesh);
+
+} // namespace hsdm
