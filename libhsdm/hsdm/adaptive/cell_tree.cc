@@ -35,15 +35,6 @@ bool CellTree::is_leaf(int level, Index cell) const {
            && (level == 0 || !levels[static_cast<std::size_t>(level) - 1].whole[here.parent[cell]]);
 }
 
-int CellTree::leaf_level(Index cell) const {
-    int level = depth();
-    for (; level > 0; --level) {
-        cell = levels[static_cast<std::size_t>(level)].parent[cell];
-        if (!levels[static_cast<std::size_t>(level) - 1].whole[cell]) break;
-    }
-    return level;
-}
-
 bool CellTree::split(int level, Index cell) {
     if (level == depth() || !is_leaf(level, cell)) return false;
     levels[static_cast<std::size_t>(level)].whole[cell] = 0;
@@ -89,9 +80,9 @@ std::size_t balance(CellTree& tree) {
             for (int k = 0; k < 27; ++k) {
                 const VoxelCoord n{at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1};
                 if (n[0] < 0 || n[1] < 0 || n[2] < 0) continue;
-                const Index cell = tree.find(level, morton_encode(n));
-                if (cell == no_index || !above.whole[here.parent[cell]]) continue;
-                above.whole[here.parent[cell]] = 0;
+                const Index cell = tree.find(level - 1, morton_encode(n) >> 3);
+                if (cell == no_index || !above.whole[cell]) continue;
+                above.whole[cell] = 0;
                 splits += k != 13; // the cell's own parent was subdivided with it
             }
         }

@@ -31,8 +31,6 @@ struct CellTree {
     /// The cell of a level with this code, or no_index. O(log cells).
     Index find(int level, MortonCode code) const;
     bool is_leaf(int level, Index cell) const;
-    /// The level of the leaf that holds a cell of the deepest level.
-    int leaf_level(Index cell) const;
     /// Subdivides a leaf: it and the cells above are no longer whole. False if it is none, or of the deepest
     /// level.
     bool split(int level, Index cell);
@@ -41,9 +39,9 @@ struct CellTree {
 /// All cells whole. O(vertices log vertices), parallel.
 CellTree build_cell_tree(std::span<const Vec3> positions, double extent, int depth);
 
-/// Subdivides leaves until two that touch, at a face, an edge or a corner, differ by one level at most: a
-/// cell is subdivided only if the cells around its parent exist. One pass from the deepest level up, 27
-/// look-ups a cell. Returns the number of cells subdivided.
+/// Subdivides leaves until none touches, at a face, an edge or a corner, a cell of half its size that is
+/// subdivided itself. One pass from the deepest level up, 27 look-ups a cell. Returns the number of cells
+/// subdivided.
 std::size_t balance(CellTree& tree);
 
 } // namespace hsdm

@@ -1,6 +1,7 @@
 #include "hsdm/adaptive/trouble.hh"
 
 #include "hsdm/disjoint_sets.hh"
+#include "hsdm/facets/area_vector.hh"
 
 #include <tbb/parallel_sort.h>
 
@@ -9,6 +10,8 @@
 
 namespace hsdm {
 namespace {
+
+constexpr double flat = 1e-6; // twice a facet's area over its squared length: less is no area
 
 /// A side of a facet: corner `side` starts it, `next` ends it.
 struct Side {
@@ -59,6 +62,14 @@ std::vector<Index> troubled_vertices(const PolygonMesh& mesh) {
         if (root[v] != no_index && root[v] != r) troubled[v] = 1;
         root[v] = r;
         ++facets[v];
+    }
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+        const auto ring = mesh.facet(f);
+        double longest = 0;
+        for (std::size_t i = 1; i < ring.size(); ++i)
+            longest = std::max(longest, (mesh.positions[ring[i]] - mesh.positions[ring[0]]).sqrnorm());
+        if (area_vector(mesh, ring).norm() <= flat * longest)
+            for (Index v : ring) troubled[v] = 1;
     }
     std::vector<Index> result;
     for (Index v = 0; v < troubled.size(); ++v)

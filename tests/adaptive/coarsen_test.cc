@@ -1,0 +1,122 @@
+#include "hsdm/adaptive/coarsen.hh"
+#include "hsdm/errors.hh"
+#include "hsdm/quality/distance.hh"
+#include "hsdm/quality/self_intersections.hh"
+#include "hsdm/sheets/extended_facets.hh"
+#include "support/check.hh"
+#include "support/sample.hh"
+
+#include <catch2/catch.hpp>
+#include <tbb/global_control.h>
+
+using namespace hsdm;
+using support::faults;
+
+namespace {
+
+struct Fine {
+    Octree octree;
+    PolygonMesh mesh; // relative to the octree's origin
+    int depth;
+};
+
+Fine fine_mesh(const support::Solid& solid, std::size_t points, int depth) {
+    support::SampleOptions options;
+    options.points = points;
+    Fine fine{build_octree(support::sample(solid, options)), {}, depth};
+    const OctreeLevel level = extract_level(fine.octree, depth);
+    fine.mesh = reconstruct_extended(fine.octree, level, build_normal_sets(fine.octree, level)).mesh;
+    return fine;
+}
+
+AdaptiveMesh coarse(const Fine& fine, double max_error) {
+    return coarsen(fine.mesh, fine.octree.positions, fine.octree.extent, fine.depth,
+                   {.max_error = max_error});
+}
+
+support::Pose pose(std::uint64_t seed) {
+    support::Random random(seed);
+    return support::random_pose(random);
+}
+
+} // namespace
+
+TEST_CASE("coarse meshes are closed 2-manifolds of the fine one's topology within the error", "[adaptive]") {
+    struct Example {
+        const char* name;
+        support::Solid solid;
+        int depth;
+        double most_faces; // of the fine mesh's
+    };
+    const std::vector<Example> examples = {
+        {"sphere", support::sphere(1), 5, 0.3},
+        {"torus", support::torus(1, 0.35), 5, 0.6},
+        {"box", support::box({1, 1.3, 0.8}).placed(pose(3)), 5, 0.3},
+        {"plate", support::box({1, 0.7, 0.03}).placed(pose(4)), 5, 0.7},
+        {"mechanical part", support::mechanical_part(pose(5)), 5, 0.5},
+    };
+    for (const Example& e : examples) {
+        const Fine fine = fine_mesh(e.solid, 40000, e.depth);
+        const Topology before = measure_topology(fine.mesh);
+        for (double share : {0.002, 0.01}) {
+            INFO(e.name << ", error " << share << " of the extent");
+            const double error = share * fine.octree.extent;
+            const AdaptiveMesh result = coarse(fine, error);
+            const Topology after = measure_topology(result.mesh);
+            CHECK(faults(result.mesh) == "");
+            CHECK(after.closed());
+            CHECK(after.euler == before.euler);
+            CHECK(after.components == before.components);
+            CHECK(find_self_intersections(result.mesh).triangle_pairs
+                  <= find_self_intersections(fine.mesh).triangle_pairs);
+            CHECK(result.points_beyond == result.unreachable);
+            CHECK(points_to_mesh(fine.mesh.positions, result.mesh).max <= error);
+            CHECK(points_to_mesh(result.mesh.positions, fine.mesh).max <= error);
+            if (share == 0.01)
+                CHECK(static_cast<double>(after.faces) <= e.most_faces * static_cast<double>(before.faces));
+        }
+    }
+}
+
+TEST_CASE("leaves, levels and sources belong to the mesh", "[adaptive]") {
+    const Fine fine = fine_mesh(support::mechanical_part(), 40000, 5);
+    const AdaptiveMesh result = coarse(fine, 0.005 * fine.octree.extent);
+    REQUIRE(result.source.size() == result.mesh.vertex_count());
+    REQUIRE(result.level.size() == result.mesh.vertex_count());
+    REQUIRE(result.leaves_per_level.size() == 6);
+    std::size_t leaves = 0;
+    for (std::size_t n : result.leaves_per_level) leaves += n;
+    CHECK(leaves <= result.mesh.vertex_count());
+    std::vector<std::uint8_t> seen(fine.mesh.vertex_count(), 0);
+    for (std::size_t v = 0; v < result.source.size(); ++v) {
+        REQUIRE(result.source[v] < fine.mesh.vertex_count());
+        CHECK_FALSE(seen[result.source[v]]);
+        seen[result.source[v]] = 1;
+        const double leaf = fine.octree.extent / static_cast<double>(1u << result.level[v]);
+        CHECK((result.mesh.positions[v] - fine.mesh.positions[result.source[v]]).norm() < 2 * leaf);
+    }
+}
+
+TEST_CASE("an axis-parallel box becomes as few quads as its corners allow", "[adaptive]") {
+    const Fine fine = fine_mesh(support::box({1, 1, 1}), 30000, 4);
+    const AdaptiveMesh result = coarse(fine, 0.02 * fine.octree.extent);
+    CHECK(result.mesh.facet_count() <= 24);
+    CHECK(measure_topology(result.mesh).euler == 2);
+}
+
+TEST_CASE("coarsening does not depend on the number of threads", "[adaptive]") {
+    const Fine fine = fine_mesh(support::mechanical_part(pose(2)), 40000, 5);
+    const AdaptiveMesh many = coarse(fine, 0.003 * fine.octree.extent);
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const AdaptiveMesh single = coarse(fine, 0.003 * fine.octree.extent);
+    CHECK(many.mesh.positions == single.mesh.positions);
+    CHECK(many.mesh.corners == single.mesh.corners);
+    CHECK(many.source == single.source);
+}
+
+TEST_CASE("errors and rounds out of range are refused", "[adaptive]") {
+    const PolygonMesh none;
+    CHECK_THROWS_AS(coarsen(none, {}, 1, 4, {.max_error = 0}), OptionError);
+    CHECK_THROWS_AS(coarsen(none, {}, 1, 4, {.max_error = 1, .rounds = 0}), OptionError);
+    CHECK(coarsen(none, {}, 1, 4, {.max_error = 1}).mesh.facet_count() == 0);
+}
