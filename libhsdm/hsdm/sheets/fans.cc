@@ -196,7 +196,7 @@ private:
 struct ChunkFans {
     std::vector<Node> nodes;
     std::vector<Index> sizes;
-    std::vector<std::uint8_t> shared;
+    std::vector<std::uint8_t> shared, open;
     std::vector<std::pair<std::size_t, std::size_t>> caps; // first fan, number of fans
     std::vector<std::size_t> after_cut;
     std::size_t cut = 0;
@@ -211,6 +211,7 @@ struct ChunkFans {
                          cut_chain.nodes.begin() + static_cast<std::ptrdiff_t>(piece.end));
             sizes.push_back(static_cast<Index>(piece.end - piece.first));
             shared.push_back(piece.shared);
+            open.push_back(!closed);
         }
     }
 };
@@ -219,6 +220,7 @@ void append(const ChunkFans& chunk, Fans& fans) {
     const auto base = static_cast<Index>(fans.size());
     fans.cut += chunk.cut;
     fans.nodes.insert(fans.nodes.end(), chunk.nodes.begin(), chunk.nodes.end());
+    fans.open.insert(fans.open.end(), chunk.open.begin(), chunk.open.end());
     for (Index size : chunk.sizes) fans.first.push_back(fans.first.back() + size);
     for (std::size_t fan : chunk.after_cut) fans.after_cut.push_back(base + static_cast<Index>(fan));
     for (const auto& [first, count] : chunk.caps) {

@@ -19,8 +19,9 @@ struct Fans {
     /// Voxels where the two sides of a thin part and its rims leave a polygon between three or more fans; it
     /// runs the other way than the facets beside it.
     std::vector<std::vector<Index>> caps;
-    std::vector<Index> after_cut; ///< fans that were cut off the fan before them, in the same voxel
-    std::size_t cut = 0;          ///< chains cut into two or more vertices
+    std::vector<std::uint8_t> open; ///< per fan, does its chain end where the surface does?
+    std::vector<Index> after_cut;   ///< fans that were cut off the fan before them, in the same voxel
+    std::size_t cut = 0;            ///< chains cut into two or more vertices
 
     /// The vertex of a crossing at position j of its ring, beside face k (k = j or j - 1).
     Index at(Index crossing, unsigned j, unsigned k) const {

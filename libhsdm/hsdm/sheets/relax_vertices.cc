@@ -2,6 +2,7 @@
 
 #include "hsdm/chunks.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/facets/area_vector.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +15,24 @@ constexpr double same_sheet_cosine = 0.77; // normals within 40 degrees
 constexpr double along_cosine = 0.8;       // an edge this parallel to a crease lies on it
 constexpr double margin = 0.01;            // voxels: vertices stay this far from their voxel's faces
 constexpr double nearness = 0.01;          // squared voxels: added to squared distances in weights
+
+/// As far from one position of a fan's vertex towards another as its voxel allows.
+Vec3 within_voxel(const CornerLattice& lattice, const Crossings& crossings, const Fans& fans, Index fan,
+                  double h, const Vec3& from, const Vec3& to) {
+    const Node node = fans.fan(fan)[0];
+    const Index edge = crossings.crossings[node / 4].edge;
+    const unsigned octant = Ring::octant(edge % 3, node % 4);
+    const VoxelCoord corner = lattice.coord(edge / 3);
+    const Vec3 way = to - from;
+    double share = 1;
+    for (unsigned k = 0; k < 3; ++k) {
+        const double lo = (corner[k] + static_cast<int>(octant >> k & 1u) - 1 + margin) * h;
+        const double hi = lo + (1 - 2 * margin) * h;
+        if (way[k] > 0 && to[k] > hi) share = std::min(share, (hi - from[k]) / way[k]);
+        if (way[k] < 0 && to[k] < lo) share = std::min(share, (lo - from[k]) / way[k]);
+    }
+    return from + way * std::max(share, 0.0);
+}
 
 class Relaxation {
 public:
@@ -33,10 +52,11 @@ public:
         for_chunks(fans_.size(), fans_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t v = begin; v < end; ++v) {
                 const auto fan = static_cast<Index>(v);
+                if (fans_.open[v]) continue;
                 if (vertices_.kinds[v] == VertexKind::smooth)
-                    next_[v] = within_voxel(fan, on_sheet(fan, moved_on_sheet(fan, step)));
+                    next_[v] = kept_in(fan, on_sheet(fan, moved_on_sheet(fan, step)));
                 else if (vertices_.kinds[v] == VertexKind::edge)
-                    next_[v] = within_voxel(fan, moved_along_crease(fan, step));
+                    next_[v] = kept_in(fan, moved_along_crease(fan, step));
             }
         });
         vertices_.positions.swap(next_);
@@ -111,21 +131,8 @@ private:
         return ahead > 0 && behind < 0 ? p + along * (0.5 * step * (ahead + behind)) : p;
     }
 
-    /// As far towards p as the voxel allows.
-    Vec3 within_voxel(Index fan, const Vec3& p) const {
-        const Node node = fans_.fan(fan)[0];
-        const Index edge = crossings_.crossings[node / 4].edge;
-        const unsigned octant = Ring::octant(edge % 3, node % 4);
-        const VoxelCoord corner = lattice_.coord(edge / 3);
-        const Vec3 &from = vertices_.positions[fan], way = p - from;
-        double share = 1;
-        for (unsigned k = 0; k < 3; ++k) {
-            const double lo = (corner[k] + static_cast<int>(octant >> k & 1u) - 1 + margin) * h_;
-            const double hi = lo + (1 - 2 * margin) * h_;
-            if (way[k] > 0 && p[k] > hi) share = std::min(share, (hi - from[k]) / way[k]);
-            if (way[k] < 0 && p[k] < lo) share = std::min(share, (lo - from[k]) / way[k]);
-        }
-        return from + way * std::max(share, 0.0);
+    Vec3 kept_in(Index fan, const Vec3& p) const {
+        return within_voxel(lattice_, crossings_, fans_, fan, h_, vertices_.positions[fan], p);
     }
 
     double h_;
@@ -138,7 +145,48 @@ private:
     std::vector<Index> first_, neighbours_;
 };
 
+/// The voxel's own set that a smooth vertex belongs to, or null.
+const NormalSet* own_set(const NormalSets& sets, Index voxel, const Vec3& normal) {
+    const NormalSet* best = nullptr;
+    for (const NormalSet& set : sets.of_voxel(voxel))
+        if ((set.normal | normal) > same_sheet_cosine && (!best || set.count > best->count)) best = &set;
+    return best;
+}
+
 } // namespace
+
+void extend_borders(const OctreeLevel& level, const CornerLattice& lattice, const NormalSets& sets,
+                    const Crossings& crossings, const Fans& fans, VertexPositions& vertices) {
+    const std::vector<Vec3> placed = vertices.positions;
+    const double h = level.voxel_size;
+    for_chunks(fans.size(), fans_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t v = begin; v < end; ++v) {
+            if (!fans.open[v] || vertices.kinds[v] != VertexKind::smooth) continue;
+            const auto fan = static_cast<Index>(v);
+            const NormalSet* set = own_set(sets, vertices.voxel[v], vertices.directions[v]);
+            if (!set) continue;
+            // The facets lie inwards; along the border the first and the last neighbour lead on.
+            const auto nodes = fans.fan(fan);
+            const auto beside = [&](Node node, bool enters) {
+                const unsigned j = node % 4;
+                const bool lower = crossings.crossings[node / 4].leaving == enters;
+                return placed[fans.at(node / 4, lower ? (j + 3) % 4 : (j + 1) % 4, lower ? (j + 3) % 4 : j)];
+            };
+            const Vec3 first = beside(nodes.front(), true), last = beside(nodes.back(), false);
+            Vec3 inner(0, 0, 0);
+            for (Node node : nodes) inner += placed[fans.at(node / 4, (node + 2) % 4, (node + 2) % 4)];
+            const Vec3 along = unit(last - first);
+            Vec3 outward = placed[v] - inner / static_cast<double>(nodes.size());
+            outward -= along * (along | outward);
+            outward = unit(outward - set->normal * (set->normal | outward));
+            const double reach = (outward | (set->centroid - placed[v]))
+                                 + std::sqrt(3 * std::max(0.0, set->spread.along(outward)));
+            if (!(reach > 0)) continue;
+            const Vec3 to = placed[v] + outward * reach;
+            vertices.positions[v] = within_voxel(lattice, crossings, fans, fan, h, placed[v], to);
+        }
+    });
+}
 
 void relax_vertices(const OctreeLevel& level, const CornerLattice& lattice, const Crossings& crossings,
                     const Fans& fans, const RelaxOptions& options, VertexPositions& vertices) {

@@ -11,11 +11,16 @@ struct RelaxOptions {
 };
 
 /// Moves smooth vertices within their sheet towards the mean of their neighbours, those of a crease along it,
-/// corners not at all, none out of its voxel. The sheet's height at the new place is the mean height of the
-/// vertices around as they were placed; on a curved sheet, where planes through its points lie outside it,
-/// that is nearer to the truth. O(rounds * crossings), parallel; the same for any number of threads. Throws
-/// OptionError.
+/// corners and borders not at all, none out of its voxel. The sheet's height at the new place is the mean
+/// height of the vertices around as they were placed; on a curved sheet, where planes through its points lie
+/// outside it, that is nearer to the truth. O(rounds * crossings), parallel; the same for any number of
+/// threads. Throws OptionError.
 void relax_vertices(const OctreeLevel& level, const CornerLattice& lattice, const Crossings& crossings,
                     const Fans& fans, const RelaxOptions& options, VertexPositions& vertices);
+
+/// Moves the vertices of borders outwards within their sheet and voxel, to where the points of the voxel's
+/// own set end: evenly spread, they reach sqrt(3) standard deviations from their mean. O(fans), parallel.
+void extend_borders(const OctreeLevel& level, const CornerLattice& lattice, const NormalSets& sets,
+                    const Crossings& crossings, const Fans& fans, VertexPositions& vertices);
 
 } // namespace hsdm
