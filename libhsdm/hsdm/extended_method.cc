@@ -12,9 +12,14 @@
 namespace hsdm {
 namespace {
 
+// auto: loops up to so wide are small against the sampling
+constexpr double widest_hole = 20;       // spacings of the points
+constexpr double widest_hole_voxels = 6; // where voxels are wide against the spacing
+
 /// keep closes nothing, auto the loops that are small against the sampling, close all.
-ExtendedOptions extended_options(const ReconstructOptions& options) {
+ExtendedOptions extended_options(const ReconstructOptions& options, double spacing_in_voxels) {
     ExtendedOptions result;
+    result.holes.max_diameter = std::max(widest_hole * spacing_in_voxels, widest_hole_voxels);
     result.fill = options.holes != Holes::keep;
     if (options.holes == Holes::close)
         result.holes = {.max_edges = FillHolesOptions::no_limit, .max_diameter = Box::inf, .insist = true};
@@ -27,6 +32,7 @@ void note_counts(const ExtendedFacets& facets, Report& report) {
     report.rejected["crossings_beyond_data"] = facets.trimmed;
     report.rejected["vertices_clamped"] = facets.clamped;
     report.rejected["edges_halved"] = facets.midpoints;
+    report.rejected["doublets_merged"] = facets.doublets;
     report.rejected["facets_debris"] = facets.debris;
     report.rejected["holes_closed"] = facets.holes.closed;
     report.rejected["holes_refused"] = facets.holes.refused;
@@ -60,7 +66,8 @@ PolygonMesh extended_method(const MethodInput& in, Report& report) {
     });
     report.grid.sets = sets.sets.size();
     ExtendedFacets facets = in.phases.run("facets", 0.3, report.seconds.facets, [&] {
-        return reconstruct_extended(in.octree, in.level, sets, extended_options(in.options));
+        const double spacing = report.input.spacing / in.level.voxel_size;
+        return reconstruct_extended(in.octree, in.level, sets, extended_options(in.options, spacing));
     });
     note_counts(facets, report);
     report.rejected["normals_turned"] = turn_outward(facets.mesh) ? in.octree.size() : 0;

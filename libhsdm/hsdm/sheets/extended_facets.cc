@@ -1,6 +1,7 @@
 #include "hsdm/sheets/extended_facets.hh"
 
 #include "hsdm/chunks.hh"
+#include "hsdm/facets/doublets.hh"
 #include "hsdm/sheets/settle_crossings.hh"
 
 #include <algorithm>
@@ -259,6 +260,8 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
         holes.max_diameter *= h;
         result.holes = fill_holes(result.mesh, holes);
     }
+    const std::vector<double>& kind = result.mesh.properties[0].values;
+    result.doublets = merge_doublets(result.mesh, [&](Index v) { return kind[v] == 0; });
     result.manifold = make_manifold(result.mesh);
     result.debris += drop_debris(result.mesh, options.debris);
     if (result.debris > 0) remove_isolated_vertices(result.mesh);
