@@ -6,6 +6,7 @@
 #include "hsdm/quality/topology.hh"
 #include "hsdm/sheets/extended_facets.hh"
 #include "hsdm/sheets/extended_graph.hh"
+#include "hsdm/sheets/sheet_features.hh"
 
 #include <algorithm>
 
@@ -57,7 +58,7 @@ bool turn_outward(PolygonMesh& mesh) {
 
 } // namespace
 
-PolygonMesh extended_method(const MethodInput& in, Report& report) {
+PolygonMesh extended_method(const MethodInput& in, Report& report, FeatureHints& hints) {
     const NormalSets sets = in.phases.run("sets", 0.2, report.seconds.graph, [&] {
         NormalSets all = build_normal_sets(in.octree, in.level);
         const RelationTest related({}, in.level.voxel_size);
@@ -70,7 +71,15 @@ PolygonMesh extended_method(const MethodInput& in, Report& report) {
         return reconstruct_extended(in.octree, in.level, sets, extended_options(in.options, spacing));
     });
     note_counts(facets, report);
-    report.rejected["normals_turned"] = turn_outward(facets.mesh) ? in.octree.size() : 0;
+    const bool turned = turn_outward(facets.mesh);
+    report.rejected["normals_turned"] = turned ? in.octree.size() : 0;
+    SheetFeatures features = in.phases.run("sheet features", 0.5, report.seconds.features, [&] {
+        return sheet_features(in.octree, in.level, sets, facets.mesh, facets.voxel, in.options.crease_angle,
+                              turned);
+    });
+    report.rejected["edges_bent"] = features.smooth;
+    report.rejected["edges_doubtful"] = features.doubtful;
+    hints = std::move(features.hints);
     facets.mesh.properties = average_attributes(in.cloud, in.octree, in.level, facets.voxel);
     if (!in.options.debug_dir.empty()) {
         PolygonMesh placed = facets.mesh;

@@ -2,12 +2,13 @@
 // Phase 2 by the extended method, section 3.4.2: graph and facets from normal-consistent sets.
 
 #include "hsdm/basic_method.hh"
+#include "hsdm/features/feature_hints.hh"
 
 namespace hsdm {
 
 /// Facets relative to the octree's origin, an oriented 2-manifold with the vertices' properties. The octree
 /// must have normals. Adds its seconds (graph, facets) and what each stage counted to the report. Throws
 /// Cancelled.
-PolygonMesh extended_method(const MethodInput& input, Report& report);
+PolygonMesh extended_method(const MethodInput& input, Report& report, FeatureHints& hints);
 
 } // namespace hsdm

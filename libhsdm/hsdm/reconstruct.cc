@@ -219,10 +219,11 @@ void measure_error(const Octree& octree, const PolygonMesh& facets, Report& repo
 }
 
 /// Phase 3 on the mesh, in the cloud's own coordinates.
-void find_features(PolyMesh& mesh, const ReconstructOptions& options, Report& report) {
+void find_features(PolyMesh& mesh, const ReconstructOptions& options, const FeatureHints& hints,
+                   Report& report) {
     FeatureOptions feature_options;
     feature_options.crease_angle = options.crease_angle;
-    const FeatureCounts counts = classify_features(mesh, feature_options);
+    const FeatureCounts counts = classify_features(mesh, feature_options, hints);
     NormalSmoothingOptions smoothing;
     smoothing.rounds = options.normal_smoothing;
     smooth_normals(mesh, smoothing);
@@ -252,7 +253,8 @@ Reconstruction reconstruct_level(const PointCloud& cloud, const Octree& octree, 
     report.grid.leaves_per_level.back() = level.size();
 
     const MethodInput input{cloud, octree, level, options, phases};
-    PolygonMesh facets = method_for(options) == Method::extended ? extended_method(input, report)
+    FeatureHints hints;
+    PolygonMesh facets = method_for(options) == Method::extended ? extended_method(input, report, hints)
                                                                  : basic_method(input, report);
     if (facets.facet_count() == 0)
         throw Error("no facet came out of " + std::to_string(level.size()) + " voxels at depth "
@@ -269,8 +271,10 @@ Reconstruction reconstruct_level(const PointCloud& cloud, const Octree& octree, 
         ToMeshResult built = to_mesh(facets);
         result.mesh = std::move(built.mesh);
         report.rejected["to_mesh"] = built.rejected;
+        if (built.rejected > 0) hints = {}; // they are counted by facets
     });
-    phases.run("features", 0.9, seconds.features, [&] { find_features(result.mesh, options, report); });
+    phases.run("features", 0.9, seconds.features,
+               [&] { find_features(result.mesh, options, hints, report); });
     report.peak_memory_bytes = peak_memory();
     result.report = std::move(report);
     return result;

@@ -340,3 +340,41 @@ TEST_CASE("classes, normals and feature bits are kept in .om files") {
         CHECK(read.status(v).feature() == mesh.status(v).feature());
     }
 }
+
+TEST_CASE("hints overrule the dihedral test, except at locked edges, and leave no locks") {
+    const PolygonMesh shape = cube(2);
+    const auto hinted = [&](EdgeHint hint) { return FeatureHints{{shape.corners.size(), hint}}; };
+    PolyMesh mesh = to_mesh(shape).mesh;
+    const std::size_t by_angle = classify_features(mesh).sharp_edges;
+    CHECK(by_angle == 24);
+    CHECK(classify_features(mesh, {}, hinted(EdgeHint::none)).sharp_edges == by_angle);
+    CHECK(classify_features(mesh, {}, hinted(EdgeHint::sharp)).sharp_edges == mesh.n_edges());
+    CHECK(classify_features(mesh, {}, hinted(EdgeHint::smooth)).sharp_edges == 0);
+    for (const auto e : mesh.edges()) CHECK(!mesh.status(e).locked());
+
+    const OpenMesh::EdgeHandle mine(0);
+    mesh.status(mine).set_feature(true);
+    mesh.status(mine).set_locked(true);
+    CHECK(classify_features(mesh, {}, hinted(EdgeHint::smooth)).sharp_edges == 1);
+    CHECK(mesh.status(mine).locked());
+}
+
+TEST_CASE("a hint is for the side of the facet it is listed at, and hints of another mesh are refused") {
+    const PolygonMesh shape = cube(3);
+    PolyMesh mesh = to_mesh(shape).mesh;
+    for (const std::size_t side : {std::size_t{0}, std::size_t{17}, shape.corners.size() - 1}) {
+        FeatureHints hints{{shape.corners.size(), EdgeHint::smooth}};
+        const std::size_t facet = side / 4;
+        const Index a = shape.corners[side], b = shape.facet(facet)[(side + 1) % 4];
+        hints.sides[side] = EdgeHint::sharp;
+        for (std::size_t c = 0; c < shape.corners.size(); ++c) // the twin says the same
+            if (shape.corners[c] == b && shape.facet(c / 4)[(c + 1) % 4] == a)
+                hints.sides[c] = EdgeHint::sharp;
+        CHECK(classify_features(mesh, {}, hints).sharp_edges == 1);
+        const auto h = mesh.find_halfedge(OpenMesh::SmartVertexHandle(static_cast<int>(a), &mesh),
+                                          OpenMesh::SmartVertexHandle(static_cast<int>(b), &mesh));
+        REQUIRE(h.is_valid());
+        CHECK(mesh.status(mesh.edge_handle(h)).feature());
+    }
+    CHECK_THROWS_AS(classify_features(mesh, {}, FeatureHints{{5, EdgeHint::sharp}}), Error);
+}

@@ -1,5 +1,6 @@
 #include "hsdm/features/features.hh"
 
+#include "hsdm/errors.hh"
 #include "hsdm/features/AnisotropicNormalSmootherT.hh"
 #include "hsdm/features/FeatureClassifierT.hh"
 
@@ -10,10 +11,43 @@ namespace hsdm {
 template class FeatureClassifierT<PolyMesh>;
 template class AnisotropicNormalSmootherT<PolyMesh>;
 
-FeatureCounts classify_features(PolyMesh& mesh, const FeatureOptions& options) {
+namespace {
+
+/// Marks and locks the edges of which something is known; returns those locked here.
+std::vector<OpenMesh::EdgeHandle> lock_known_edges(PolyMesh& mesh, const std::vector<EdgeHint>& sides) {
+    std::vector<OpenMesh::EdgeHandle> locked;
+    if (sides.empty()) return locked;
+    std::size_t side = 0;
+    for (const auto f : mesh.faces()) side += f.valence();
+    if (side != sides.size())
+        throw Error("hints for " + std::to_string(sides.size()) + " sides of facets, but the mesh has "
+                    + std::to_string(side) + "; give those of this mesh");
+    side = 0;
+    for (std::size_t f = 0; f < mesh.n_faces(); ++f) {
+        const auto last = mesh.halfedge_handle(OpenMesh::FaceHandle(static_cast<int>(f)));
+        auto h = last;
+        do {
+            h = mesh.next_halfedge_handle(h);
+            const EdgeHint hint = sides[side++];
+            const auto e = mesh.edge_handle(h);
+            if (hint == EdgeHint::none || mesh.status(e).locked()) continue;
+            mesh.status(e).set_feature(hint == EdgeHint::sharp);
+            mesh.status(e).set_locked(true);
+            locked.push_back(e);
+        } while (h != last);
+    }
+    return locked;
+}
+
+} // namespace
+
+FeatureCounts classify_features(PolyMesh& mesh, const FeatureOptions& options, const FeatureHints& hints) {
     FeatureClassifierT<PolyMesh> classifier(mesh);
     classifier.initialize(options);
-    return classifier.classify();
+    const auto locked = lock_known_edges(mesh, hints.sides);
+    const FeatureCounts counts = classifier.classify();
+    for (const auto e : locked) mesh.status(e).set_locked(false);
+    return counts;
 }
 
 std::size_t smooth_normals(PolyMesh& mesh, const NormalSmoothingOptions& options) {

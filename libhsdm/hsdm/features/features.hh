@@ -2,6 +2,7 @@
 // Phase 3 on a reconstruction's mesh (section 3.3). For meshes of your own type: FeatureClassifierT,
 // AnisotropicNormalSmootherT.
 
+#include "hsdm/features/feature_hints.hh"
 #include "hsdm/features/feature_options.hh"
 #include "hsdm/mesh_types.hh"
 
@@ -10,7 +11,10 @@
 namespace hsdm {
 
 /// Marks sharp edges, classifies vertices and gives each its one to three normals: see FeatureClassifierT.
-FeatureCounts classify_features(PolyMesh& mesh, const FeatureOptions& options = {});
+/// Hints overrule the dihedral test where they say something, except at locked edges. Throws OptionError,
+/// Error if the hints are not one per side of the mesh's facets.
+FeatureCounts classify_features(PolyMesh& mesh, const FeatureOptions& options = {},
+                                const FeatureHints& hints = {});
 
 /// Smooths normals within the sharp edges marked, `options.rounds` times, and sets the standard vertex
 /// normals: see AnisotropicNormalSmootherT. Returns the number of facets whose normal still turned.
