@@ -104,3 +104,16 @@ TEST_CASE("settled crossings do not depend on the number of threads", "[sheets]"
             many.crossings[i].t == single.crossings[i].t && many.crossings[i].set == single.crossings[i].set;
     CHECK(same);
 }
+
+TEST_CASE("a box whose faces lie on grid planes keeps its corners", "[sheets]") {
+    const support::Solid cube = support::box({1, 1, 1});
+    const Found found(cube, 3000, 3);
+    const Crossings crossings = found.settled();
+    CHECK(found.open_sides(crossings) == 0);
+    double farthest = 0;
+    for (const Crossing& x : crossings.crossings)
+        farthest = std::max(farthest,
+                            std::abs(cube.distance(crossing_position(found.lattice, x, found.level.voxel_size)
+                                                   + found.octree.origin)));
+    CHECK(farthest < 0.15 * found.level.voxel_size);
+}

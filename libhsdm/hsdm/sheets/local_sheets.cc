@@ -148,7 +148,7 @@ void connect_corner(CornerLattice& lattice, std::size_t i, const OctreeLevel& le
     }
 }
 
-/// What an edge crossed along an axis from corner c needs: its two ends, and the lower corners of the four
+/// What an edge crossed along an axis from corner c needs: its two ends, and the other corners of the four
 /// faces beside.
 void add_missing(const CornerLattice& lattice, VoxelCoord c, unsigned axis, int side,
                  std::vector<MortonCode>& missing) {
@@ -157,14 +157,15 @@ void add_missing(const CornerLattice& lattice, VoxelCoord c, unsigned axis, int 
             if (x < -1 || x > side + 1) return;
         if (lattice.index.find(lattice.code(d)) == no_index) missing.push_back(lattice.code(d));
     };
-    need(c);
-    ++c[axis];
-    need(c);
-    --c[axis];
-    for (unsigned other : {(axis + 1) % 3, (axis + 2) % 3}) {
-        --c[other];
+    for (int end : {0, 1}) {
         need(c);
-        ++c[other];
+        for (unsigned other : {(axis + 1) % 3, (axis + 2) % 3})
+            for (int beside : {-1, 1}) {
+                VoxelCoord d = c;
+                d[other] += beside;
+                need(d);
+            }
+        if (end == 0) ++c[axis];
     }
 }
 

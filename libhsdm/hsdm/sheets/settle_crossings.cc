@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace hsdm {
 namespace {
@@ -12,9 +13,12 @@ constexpr std::size_t corners_per_chunk = 2048;
 constexpr int rounds = 8;
 
 // What it costs to contradict the evidence, in crossings taken back.
-constexpr double cost_of_weak = 0.5;    // taking back a crossing that the data do not carry
+constexpr double cost_of_weak = 0.25;   // taking back a crossing that the data do not carry
 constexpr double cost_of_return = 0.75; // bringing back one beyond a crease or beyond the data
 constexpr double cost_of_invention = 2; // a crossing where no sheet has one
+constexpr double cost_of_a_leak = 8;    // a crossing that leaves a side open
+constexpr double most_belief = 1;       // a side against all sheets around a grid point
+constexpr double surface_error = 0.15;  // voxels: how far off its planes a sheet may pass
 constexpr double impossible = 1e30;
 
 using Side = std::uint8_t;
@@ -91,6 +95,7 @@ public:
           choice_(candidates),
           h_(voxel_size),
           side_(lattice.size(), unknown),
+          belief_(lattice.size(), 0),
           below_(lattice.size(), {no_index, no_index, no_index}) {
         for_corners([&](Index c) {
             for (unsigned a = 0; a < 3; ++a)
@@ -99,8 +104,9 @@ public:
     }
 
     Crossings run() {
-        vote();
-        for (int ring = 0; ring < 2; ++ring) spread();
+        believe();
+        vote(true);
+        for (int ring = 0; ring < 3; ++ring) vote(false, ring < 2);
         settle();
         return chosen();
     }
@@ -121,51 +127,77 @@ private:
                 if (n != no_index) f(n);
     }
 
-    /// What the standing crossing nearest to the lower end of an edge says about it, or nearest to its upper
-    /// end about that one: positive outside.
-    double vote(Index edge, bool upper) const {
+    /// The standing crossing of an edge nearest to one of its ends, or no_index.
+    Index nearest_standing(Index edge, bool upper) const {
         const Index n = list_.first[edge + 1] - list_.first[edge];
         for (Index k = 0; k < n; ++k) {
             const Index x = upper ? list_.first[edge + 1] - 1 - k : list_.first[edge] + k;
-            if (!standing_[x]) continue;
-            return list_.crossings[x].leaving == upper ? choice_.weight(x) : -choice_.weight(x);
+            if (standing_[x]) return x;
         }
-        return 0;
+        return no_index;
     }
 
-    /// The crossings next to a corner say on which side it lies.
-    void vote() {
+    /// What an edge says about one of its ends: positive outside. Without a standing crossing, what is known
+    /// about its other end.
+    double vote(Index edge, bool upper, Side other, bool carried_only) const {
+        const Index x = nearest_standing(edge, upper);
+        if (x == no_index) return carried_only || other == unknown ? 0 : other == outside ? 1 : -1;
+        if (carried_only && !list_.crossings[x].supported) return 0;
+        return list_.crossings[x].leaving == upper ? choice_.weight(x) : -choice_.weight(x);
+    }
+
+    /// What the sheets around a corner say of it by themselves: the mean of its distances to them, by
+    /// nearness, over the mean of their sizes; 1 outside of all, -1 inside of all. Where a sheet passes too
+    /// near for its error, nothing.
+    void believe() {
         for_corners([&](Index c) {
-            double sum = 0;
-            for (unsigned a = 0; a < 3; ++a) {
-                sum += vote(3 * c + a, false);
-                if (below_[c][a] != no_index) sum += vote(3 * below_[c][a] + a, true);
+            double sum = 0, size = 0;
+            for (const LocalSheet& sheet : sheets_.sheets_at(c)) {
+                if (std::abs(sheet.distance) < surface_error * h_ * sheet.weight) return;
+                sum += sheet.distance;
+                size += std::abs(sheet.distance);
             }
-            if (sum != 0) side_[c] = sum > 0 ? outside : inside;
+            if (size > 0) belief_[c] = most_belief * sum / size;
         });
     }
 
-    /// Corners without a crossing beside them lie on the side of their neighbours.
-    void spread() {
+    /// The edges of a corner say on which side it lies: at first by the crossings that the data carry alone.
+    /// Farther off, where sheets are only continued, the side of the neighbours says more.
+    void vote(bool carried_only, bool undecided = true) {
         std::vector<Side> next = side_;
         for_corners([&](Index c) {
             if (side_[c] != unknown) return;
-            int sum = 0;
-            for_neighbors(c, [&](Index n) {
-                if (side_[n] != unknown) sum += side_[n] == outside ? 1 : -1;
-            });
-            if (sum != 0) next[c] = sum > 0 ? outside : inside;
+            double sum = belief_[c];
+            for (unsigned a = 0; a < 3; ++a) {
+                const Index up = lattice_.next[c][a], down = below_[c][a];
+                if (up != no_index) sum += vote(3 * c + a, false, side_[up], carried_only);
+                if (down != no_index) sum += vote(3 * down + a, true, side_[down], carried_only);
+            }
+            if (sum != 0 || !undecided) next[c] = sum < 0 ? inside : outside;
         });
         side_ = std::move(next);
+    }
+
+    /// Would a crossing here leave a side open: is a face beside the edge not all there, or no set near?
+    bool leaks(Index edge) const {
+        const Index lower = edge / 3, upper = lattice_.next[lower][edge % 3];
+        for (unsigned a : {(edge + 1) % 3, (edge + 2) % 3})
+            for (Index end : {lower, upper})
+                if (lattice_.next[end][a] == no_index || below_[end][a] == no_index) return true;
+        return sheets_.members_at(lower).empty() && sheets_.members_at(upper).empty();
+    }
+
+    double edge_cost(Index edge, Side low, Side high) const {
+        if (low == unknown || high == unknown) return 0;
+        return choice_.cost(edge, low, high) + (low != high && leaks(edge) ? cost_of_a_leak : 0);
     }
 
     double corner_cost(Index c, Side side) const {
         double sum = 0;
         for (unsigned a = 0; a < 3; ++a) {
             const Index up = lattice_.next[c][a], down = below_[c][a];
-            if (up != no_index && side_[up] != unknown) sum += choice_.cost(3 * c + a, side, side_[up]);
-            if (down != no_index && side_[down] != unknown)
-                sum += choice_.cost(3 * down + a, side_[down], side);
+            if (up != no_index) sum += edge_cost(3 * c + a, side, side_[up]);
+            if (down != no_index) sum += edge_cost(3 * down + a, side_[down], side);
         }
         return sum;
     }
@@ -201,7 +233,8 @@ private:
                         const VoxelCoord v = lattice_.coord(c);
                         if (((v[0] + v[1] + v[2]) & 1) != colour) continue;
                         const Side other = 1 - side_[c];
-                        if (corner_cost(c, other) + 1e-9 >= corner_cost(c, side_[c])) continue;
+                        const double gain = (other == outside ? 1 : -1) * belief_[c];
+                        if (corner_cost(c, other) + 1e-9 >= corner_cost(c, side_[c]) + gain) continue;
                         side_[c] = other;
                         changed[k] = 1;
                     }
@@ -227,30 +260,39 @@ private:
         if (reached != high && invent(edge, reached == inside, out)) ++changes;
     }
 
-    /// A crossing where the plane of the nearest set comes nearest to crossing the edge.
-    bool invent(Index edge, bool leaving, std::vector<Crossing>& out) const {
-        const unsigned axis = edge % 3;
-        const Index ends[2] = {edge / 3, lattice_.next[edge / 3][axis]};
-        const VoxelCoord c = lattice_.coord(ends[0]);
-        const Vec3 low = Vec3(c[0], c[1], c[2]) * h_;
-        Vec3 middle = low;
-        middle[axis] += 0.5 * h_;
-        double nearest = impossible;
-        Index set = no_index;
-        for (Index end : ends)
+    /// The set seen from an edge's ends that lies nearest to its middle, one whose normal agrees with the
+    /// crossing's direction if there is any; no_index if neither end sees a set.
+    Index set_near(Index edge, bool leaving, const Vec3& middle) const {
+        std::tuple<bool, double, Index> best{true, impossible, no_index};
+        for (Index end : {edge / 3, lattice_.next[edge / 3][edge % 3]})
             for (const SheetMember& m : sheets_.members_at(end)) {
                 const NormalSet& s = sets_.sets[m.set];
-                if ((s.normal[axis] > 0) != leaving) continue;
-                const double d = (s.centroid - middle).sqrnorm();
-                if (d < nearest || (d == nearest && m.set < set)) nearest = d, set = m.set;
+                best = std::min(
+                    best, {(s.normal[edge % 3] > 0) != leaving, (s.centroid - middle).sqrnorm(), m.set});
             }
+        return std::get<2>(best);
+    }
+
+    /// A crossing where the plane of the nearest set crosses the edge, or as near to that as it can be.
+    bool invent(Index edge, bool leaving, std::vector<Crossing>& out) const {
+        const unsigned axis = edge % 3;
+        const VoxelCoord c = lattice_.coord(edge / 3);
+        Vec3 middle = Vec3(c[0], c[1], c[2]) * h_;
+        middle[axis] += 0.5 * h_;
+        const Index set = set_near(edge, leaving, middle);
         if (set == no_index) return false;
         const NormalSet& s = sets_.sets[set];
-        const double rise = s.normal[axis] * h_;
-        double t = rise == 0 ? 0.5 : (s.normal | (s.centroid - low)) / rise;
-        t = std::clamp(t, 0.01, 0.99);
-        if (!out.empty() && out.back().edge == edge) t = std::max(t, out.back().t);
-        out.push_back({t, s.normal, edge, set, leaving, false});
+        Crossing crossing{0.5, s.normal, edge, set, leaving, false};
+        if ((s.normal[axis] > 0) == leaving) {
+            const double rise = s.normal[axis] * h_;
+            crossing.t = rise == 0 ? 0.5 : 0.5 + (s.normal | (s.centroid - middle)) / rise;
+        } else {
+            crossing.normal = Vec3(0, 0, 0);
+            crossing.normal[axis] = leaving ? 1 : -1;
+        }
+        crossing.t = std::clamp(crossing.t, 0.01, 0.99);
+        if (!out.empty() && out.back().edge == edge) crossing.t = std::max(crossing.t, out.back().t);
+        out.push_back(crossing);
         return true;
     }
 
@@ -282,6 +324,7 @@ private:
     EdgeChoice choice_;
     double h_;
     std::vector<Side> side_;
+    std::vector<double> belief_;
     std::vector<std::array<Index, 3>> below_;
 };
 
