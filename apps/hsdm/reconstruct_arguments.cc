@@ -35,6 +35,19 @@ void refuse(bool given, const std::string& what) {
     if (given) throw UsageError(what + " is not available yet");
 }
 
+/// A length, or with % a share of the bounding box's diagonal.
+MaxError error_of(const std::string& text) {
+    MaxError error;
+    const char* const end = text.data() + text.size();
+    const auto read = std::from_chars(text.data(), end, error.value);
+    error.of_diagonal = read.ptr != end && *read.ptr == '%';
+    if (error.of_diagonal) error.value /= 100;
+    if (read.ec != std::errc() || read.ptr + error.of_diagonal != end || !(error.value > 0))
+        throw UsageError("--max-error " + text
+                         + ": a length above 0 or a percentage is wanted, e.g. 0.2 or 0.1%");
+    return error;
+}
+
 } // namespace
 
 void add_method_options(CLI::App& app, ReconstructArguments& a) {
@@ -48,7 +61,8 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
                            ->type_name("L")
                            ->group(resolution);
     const auto error = app.add_option("--max-error", a.max_error,
-                                      "not available yet: subdivide until the surface is within E")
+                                      "adaptive: subdivide until the surface is within E of the points (the "
+                                      "cloud's units; 0.1% is of the bounding box's diagonal)")
                            ->type_name("E")
                            ->group(resolution);
     const auto levels = app.add_option("--levels", a.levels,
@@ -59,9 +73,9 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
     for (CLI::Option* one : resolutions)
         for (CLI::Option* other : resolutions)
             if (one != other) one->excludes(other);
-    app.add_option("--grid", a.grid, "uniform, or adaptive (not available yet)")
-        ->check(CLI::IsMember({"uniform", "adaptive"}))
-        ->type_name("uniform|adaptive")
+    add_choice<Grid>(
+        app, "--grid", a.grid, {{"uniform", Grid::uniform}, {"adaptive", Grid::adaptive}},
+        "default uniform, with --max-error adaptive; adaptive without it keeps a tenth of a voxel")
         ->group(resolution);
 
     const std::string method = "Method";
@@ -152,12 +166,12 @@ void add_file_options(CLI::App& app, ReconstructArguments& a) {
 }
 
 ReconstructOptions ReconstructArguments::options() const {
-    refuse(!max_error.empty(), "--max-error");
-    refuse(grid == "adaptive", "--grid adaptive");
     refuse(!memory.empty(), "--memory");
     ReconstructOptions o;
     o.depth = depth;
     o.voxel_size = voxel_size;
+    if (!max_error.empty()) o.max_error = error_of(max_error);
+    o.grid = grid;
     o.method = method;
     o.normals = normals;
     o.holes = holes;

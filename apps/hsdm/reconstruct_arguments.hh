@@ -23,7 +23,7 @@ struct ReconstructArguments {
     Method method = Method::automatic;
     NormalSource normals = NormalSource::automatic;
     Holes holes = Holes::automatic;
-    std::string grid;
+    Grid grid = Grid::automatic;
     std::string levels;
     double crease_degrees = 35;
     int smoothing = 3;

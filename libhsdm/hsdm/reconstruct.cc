@@ -1,5 +1,6 @@
 #include "hsdm/reconstruct.hh"
 
+#include "hsdm/adaptive/adaptive_grid.hh"
 #include "hsdm/extended_method.hh"
 #include "hsdm/facets/to_mesh.hh"
 #include "hsdm/features/features.hh"
@@ -33,8 +34,12 @@ std::string text_of(double value) {
 }
 
 void validate(const ReconstructOptions& o) {
-    if (o.depth && o.voxel_size)
-        throw OptionError("depth and voxel_size: at most one of the two says the resolution");
+    if (!!o.depth + !!o.voxel_size + !!o.max_error > 1)
+        throw OptionError("depth, voxel_size and max_error: at most one of the three says the resolution");
+    if (o.max_error && !(o.max_error->value > 0 && std::isfinite(o.max_error->value)))
+        throw OptionError("max_error " + text_of(o.max_error->value) + ": must be above 0");
+    if (o.max_error && o.grid == Grid::uniform)
+        throw OptionError("max_error: a uniform grid has no bound to keep; use the adaptive one");
     if (o.depth) check_depth("depth", *o.depth);
     if (o.voxel_size && !(*o.voxel_size > 0 && std::isfinite(*o.voxel_size)))
         throw OptionError("voxel_size " + text_of(*o.voxel_size) + ": must be a length above 0");
@@ -188,6 +193,11 @@ void note_options(const PointCloud& cloud, const ReconstructOptions& options, Re
     const bool extended = method_for(options) == Method::extended;
     report.options["method"] = extended ? "extended" : "basic";
     report.options["normals"] = must_estimate(cloud, options) ? "estimate" : extended ? "given" : "none";
+    report.options["grid"] = wants_adaptive(options) ? "adaptive" : "uniform";
+    if (options.max_error)
+        report.options["max-error"] = options.max_error->of_diagonal
+                                          ? text_of(100 * options.max_error->value) + "%"
+                                          : text_of(options.max_error->value);
     report.options["holes"] = name_of(options.holes);
     report.options["crease-degrees"] = text_of(options.crease_angle * 180 / std::numbers::pi);
     report.options["smoothing"] = std::to_string(options.normal_smoothing);
@@ -256,6 +266,9 @@ Reconstruction reconstruct_level(const PointCloud& cloud, const Octree& octree, 
     FeatureHints hints;
     PolygonMesh facets = method_for(options) == Method::extended ? extended_method(input, report, hints)
                                                                  : basic_method(input, report);
+    if (wants_adaptive(options) && facets.facet_count() > 0)
+        facets =
+            phases.run("adaptive", 0.5, seconds.facets, [&] { return adaptive_grid(input, facets, report); });
     if (facets.facet_count() == 0)
         throw Error("no facet came out of " + std::to_string(level.size()) + " voxels at depth "
                     + std::to_string(depth)
@@ -333,9 +346,9 @@ Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& op
 std::vector<Reconstruction> reconstruct_levels(const PointCloud& cloud, int first_depth, int last_depth,
                                                const ReconstructOptions& options) {
     validate(options);
-    if (options.depth || options.voxel_size)
+    if (options.depth || options.voxel_size || options.max_error)
         throw OptionError(
-            "levels: they are the resolution; depth and voxel_size cannot be given beside them");
+            "levels: they are the resolution; depth, voxel_size and max_error cannot be given beside them");
     check_depth("first depth", first_depth);
     check_depth("last depth", last_depth);
     if (first_depth > last_depth)

@@ -23,12 +23,28 @@ enum class NormalSource {
     estimate,  ///< from the positions, whether the cloud has some or not
 };
 enum class Holes { automatic, keep, close };
+enum class Grid {
+    automatic, ///< adaptive with max_error, else uniform
+    uniform,   ///< one vertex per voxel and sheet
+    adaptive,  ///< leaves of a balanced octree as large as the error allows
+};
+
+/// A bound on the distance between surface and points.
+struct MaxError {
+    double value = 0;         ///< > 0
+    bool of_diagonal = false; ///< a share of the bounding box's diagonal, else the cloud's units
+};
 
 struct ReconstructOptions {
-    /// Resolution: at most one of the two; by default the depth follows from the spacing of the points.
+    /// Resolution: at most one of the three; by default the depth follows from the spacing of the points.
     std::optional<int> depth;         ///< octree depth over the bounding cube, [1, 16]
     std::optional<double> voxel_size; ///< edge of a voxel in the cloud's units, > 0: kept exactly, the
                                       ///< bounding cube grows to the next power of two of it
+    /// Adaptive: the octree goes as deep as the points' spacing carries and is subdivided only where the
+    /// surface would be farther than this from the points. Without it an adaptive grid keeps a tenth of a
+    /// voxel.
+    std::optional<MaxError> max_error;
+    Grid grid = Grid::automatic;
     Method method = Method::automatic;
     NormalSource normals = NormalSource::automatic;
     Holes holes = Holes::automatic;

@@ -31,7 +31,9 @@ Json to_json(const Report::Grid& grid) {
             {"voxels", grid.voxels},
             {"leaves_per_level", grid.leaves_per_level},
             {"sets", grid.sets},
-            {"balance_splits", grid.balance_splits}};
+            {"balance_splits", grid.balance_splits},
+            {"max_error", grid.max_error},
+            {"points_beyond", grid.points_beyond}};
 }
 
 Json to_json(const Report::Mesh& mesh) {
