@@ -147,7 +147,8 @@ public:
             report.options["resolution"] = "as asked by voxel size";
             return voxel_depth_;
         }
-        const DepthChoice choice = choose_depth(octree, report.input.spacing);
+        // An adaptive grid is as fine as two spacings only where the error needs it.
+        const DepthChoice choice = choose_depth(octree, report.input.spacing, options.max_error ? 2 : 3);
         report.options["resolution"] = choice.reason;
         return choice.depth;
     }

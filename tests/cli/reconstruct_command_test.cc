@@ -151,13 +151,44 @@ TEST_CASE("wrong usage has status 2, a message, and leaves no file", "[cli]") {
 TEST_CASE("options that are not available yet say so instead of being ignored", "[cli]") {
     const Folder folder;
     folder.write("scan.xyz", xyz(sphere_scan(500)));
-    for (const char* option : {"--max-error 0.1%", "--grid adaptive", "--memory 1G"}) {
+    for (const char* option : {"--memory 1G"}) {
         const CommandResult result = run(folder, std::string("reconstruct scan.xyz -o a.off ") + option);
         INFO(option << ": " << result.err);
         CHECK(result.status == 2);
         CHECK(result.err.find("not available yet") != std::string::npos);
     }
     CHECK(folder.list() == "scan.xyz\n");
+}
+
+TEST_CASE("an error is kept with fewer facets, as a length or as a share of the diagonal", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan(20000)));
+    REQUIRE(run(folder, "reconstruct scan.xyz --quiet -o fine.off --report fine.json").status == 0);
+    const Json fine = Json::parse(read_file(folder / "fine.json"));
+    std::size_t fewer = fine["mesh"]["faces"];
+    for (const char* error : {"0.5%", "2%"}) {
+        INFO(error);
+        const CommandResult result =
+            run(folder,
+                std::string("reconstruct scan.xyz --quiet -o a.off --report a.json --max-error ") + error);
+        CHECK(result.status == 0);
+        const Json report = Json::parse(read_file(folder / "a.json"));
+        CHECK(report["grid"]["kind"] == "adaptive");
+        CHECK(report["mesh"]["closed"] == true);
+        CHECK(report["mesh"]["euler"] == 2);
+        CHECK(report["mesh"]["faces"] < fewer);
+        CHECK(report["error"]["points_to_mesh_max"] <= report["grid"]["max_error"]);
+        CHECK(report["options"]["max-error"] == error);
+        fewer = report["mesh"]["faces"];
+    }
+    CHECK(run(folder, "reconstruct scan.xyz --quiet -o b.off --max-error 0.05").status == 0);
+    CHECK(run(folder, "reconstruct scan.xyz --quiet -o b.off --depth 5 --grid adaptive").status == 0);
+    CHECK(run(folder, "reconstruct scan.xyz --quiet -o l.off --levels 4:5 --grid adaptive").status == 0);
+    for (const char* wrong : {"--max-error 0", "--max-error -1%", "--max-error few", "--max-error 1%%",
+                              "--max-error 0.1% --depth 5", "--max-error 0.1% --grid uniform"}) {
+        INFO(wrong);
+        CHECK(run(folder, std::string("reconstruct scan.xyz -o c.off ") + wrong).status == 2);
+    }
 }
 
 TEST_CASE("bad input has status 1, names the file, and leaves no output", "[cli]") {

@@ -15,7 +15,6 @@ using Counts = std::array<std::size_t, morton_levels + 1>;
 /// Faces a surface of one unit of area crosses per voxel face, averaged over all directions.
 constexpr double voxels_per_area = 1.5;
 constexpr double points_per_voxel = 8;
-constexpr double spacings_per_voxel = 3;
 constexpr int deepest = 16;
 
 /// The first level at which two codes lie in different voxels; morton_levels + 1 if equal.
@@ -56,7 +55,7 @@ double estimate_spacing(const Octree& octree) {
     return h * std::sqrt(static_cast<double>(counts[level]) / (voxels_per_area * n));
 }
 
-DepthChoice choose_depth(const Octree& octree, double spacing) {
+DepthChoice choose_depth(const Octree& octree, double spacing, double spacings_per_voxel) {
     DepthChoice choice;
     while (choice.depth < deepest && octree.voxel_size(choice.depth + 1) >= spacings_per_voxel * spacing)
         ++choice.depth;

@@ -22,8 +22,8 @@ struct DepthChoice {
     std::string reason; ///< one clause for a person
 };
 
-/// The finest depth in [1, 16] whose voxels are at least three spacings wide, so that a surface in general
+/// The finest depth in [1, 16] whose voxels are at least so many spacings wide. At three a surface in general
 /// pose leaves few voxels empty by chance (about six points per voxel).
-DepthChoice choose_depth(const Octree& octree, double spacing);
+DepthChoice choose_depth(const Octree& octree, double spacing, double spacings_per_voxel = 3);
 
 } // namespace hsdm
