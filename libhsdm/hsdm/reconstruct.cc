@@ -267,9 +267,11 @@ Reconstruction reconstruct_level(const PointCloud& cloud, const Octree& octree, 
     FeatureHints hints;
     PolygonMesh facets = method_for(options) == Method::extended ? extended_method(input, report, hints)
                                                                  : basic_method(input, report);
-    if (wants_adaptive(options) && facets.facet_count() > 0)
+    if (wants_adaptive(options) && facets.facet_count() > 0) {
         facets =
             phases.run("adaptive", 0.5, seconds.facets, [&] { return adaptive_grid(input, facets, report); });
+        hints = {}; // they are those of the fine facets
+    }
     if (facets.facet_count() == 0)
         throw Error("no facet came out of " + std::to_string(level.size()) + " voxels at depth "
                     + std::to_string(depth)
