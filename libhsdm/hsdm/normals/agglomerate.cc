@@ -112,23 +112,6 @@ void contract(std::vector<SignedEdge>& edges, SignedForest& forest) {
 
 } // namespace
 
-void merge_parallel_edges(std::vector<SignedEdge>& edges, std::size_t start) {
-    const auto begin = edges.begin() + static_cast<std::ptrdiff_t>(start);
-    std::stable_sort(begin, edges.end(), [](const SignedEdge& x, const SignedEdge& y) {
-        return x.a != y.a ? x.a < y.a : x.b < y.b;
-    });
-    std::size_t kept = start;
-    for (std::size_t e = start; e < edges.size(); ++e) {
-        if (kept > start && edges[kept - 1].a == edges[e].a && edges[kept - 1].b == edges[e].b) {
-            edges[kept - 1].weight += edges[e].weight;
-            edges[kept - 1].total += edges[e].total;
-        } else {
-            edges[kept++] = edges[e];
-        }
-    }
-    edges.resize(kept);
-}
-
 Signs agglomerate(std::size_t nodes, std::vector<SignedEdge> edges) {
     SignedForest forest(nodes);
     while (!edges.empty()) {

@@ -19,9 +19,6 @@ struct Signs {
     std::size_t components = 0;
 };
 
-/// Merges edges[start] .. edges.back() that join the same two nodes; they come out sorted.
-void merge_parallel_edges(std::vector<SignedEdge>& edges, std::size_t start);
-
 /// Boruvka's algorithm with sums: in every round each component joins the one that it has the strongest
 /// evidence with, summed along their whole border; the strongest first. O(e log n) at worst, in at most log2
 /// n rounds. The result does not depend on the order of the edges beyond the last bit of their sums.

@@ -34,12 +34,14 @@ Pair compare(const Octree& octree, std::size_t i, std::size_t j, double farthest
     return {};
 }
 
-/// Sums f(pair) over the pairs of all points with their two successors, in one order.
+/// Sums over the pairs of points with their two successors, in one order; of large clouds, a sample.
 template <class Sum, class F>
 Sum sum_pairs(const Octree& octree, double farthest, const F& add) {
     std::vector<Sum> parts(chunk_count(octree.size(), points_per_chunk));
+    constexpr std::size_t samples = 1 << 17;
+    const std::size_t stride = octree.size() / samples + 1;
     for_chunks(octree.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        for (std::size_t i = begin; i < end; ++i)
+        for (std::size_t i = begin; i < end; i += stride)
             for (std::size_t j = i + 1; j < std::min(octree.size(), i + 3); ++j)
                 add(compare(octree, i, j, farthest), parts[chunk]);
     });

@@ -16,6 +16,9 @@ constexpr std::size_t leaves_per_chunk = 256;
 /// So many candidates per neighbour wanted keep the nearest away from the rim of the 27 voxels.
 constexpr std::size_t candidates_per_neighbor = 4;
 
+/// Stands for voxels outside the cube; no code has this bit.
+constexpr MortonCode beyond = MortonCode{1} << 63;
+
 /// A run of points in one voxel.
 struct Leaf {
     Index begin, end;
@@ -70,13 +73,12 @@ struct Candidates {
     }
     /// Ranks those closer than the limit; returns how many these are.
     std::size_t rank_within(float limit) {
-        ranked.resize(id.size());
+        if (ranked.size() < id.size()) ranked.resize(id.size());
         std::size_t n = 0;
         for (std::size_t c = 0; c < id.size(); ++c) {
             ranked[n] = std::uint64_t{std::bit_cast<std::uint32_t>(distance[c])} << 32 | c;
             n += distance[c] <= limit;
         }
-        ranked.resize(n);
         return n;
     }
 };
@@ -99,17 +101,26 @@ public:
     }
 
 private:
-    /// The voxels around the leaf at one level; empty once they hold too few points.
+    /// The voxels around the leaf at one level; returns how many points they hold.
     std::size_t around(const Leaf& leaf, int level, std::array<Index, 27>& voxels, std::size_t& count) const {
         const OctreeLevel& grid = levels_[static_cast<std::size_t>(level)];
         const MortonCode code = octree_.codes[leaf.begin] >> (3 * (morton_levels - level));
         const VoxelCoord centre = morton_decode(code);
+        const std::int32_t side = std::int32_t{1} << level;
+        std::array<std::array<MortonCode, 3>, 3> part; // per axis and step, its bits of the code
+        for (unsigned axis = 0; axis < 3; ++axis)
+            for (std::int32_t step = -1; step <= 1; ++step) {
+                const std::int32_t c = centre[axis] + step;
+                part[axis][static_cast<std::size_t>(step + 1)] =
+                    c < 0 || c >= side ? beyond : detail::spread_bits(static_cast<std::uint64_t>(c)) << axis;
+            }
         std::size_t points = 0;
         count = 0;
-        for (std::int32_t dz = -1; dz <= 1; ++dz)
-            for (std::int32_t dy = -1; dy <= 1; ++dy)
-                for (std::int32_t dx = -1; dx <= 1; ++dx) {
-                    const Index v = grid.find({centre[0] + dx, centre[1] + dy, centre[2] + dz});
+        for (MortonCode z : part[2])
+            for (MortonCode y : part[1])
+                for (MortonCode x : part[0]) {
+                    const MortonCode neighbor = x | y | z;
+                    const Index v = neighbor < beyond ? grid.find(neighbor) : no_index;
                     if (v == no_index) continue;
                     voxels[count++] = v;
                     points += grid.first_point[v + 1] - grid.first_point[v];
@@ -137,11 +148,11 @@ private:
         const Vec3 p = octree_.positions[i] - base;
         candidates.measure(static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]));
         const std::size_t wanted = result_.count + 1; // the point itself is among them
-        if (candidates.rank_within(limit) < wanted)
-            candidates.rank_within(std::numeric_limits<float>::infinity());
+        std::size_t within = candidates.rank_within(limit);
+        if (within < wanted) within = candidates.rank_within(std::numeric_limits<float>::infinity());
         auto& ranked = candidates.ranked;
         const auto last = ranked.begin() + static_cast<std::ptrdiff_t>(wanted - 1);
-        std::nth_element(ranked.begin(), last, ranked.end());
+        std::nth_element(ranked.begin(), last, ranked.begin() + static_cast<std::ptrdiff_t>(within));
         const float farthest = std::bit_cast<float>(static_cast<std::uint32_t>(*last >> 32));
         Index* out = result_.index.data() + i * result_.count;
         std::size_t found = 0;

@@ -100,6 +100,21 @@ private:
 /// where the chord is slanted.
 constexpr double near_pair = 0.45;
 
+/// Adds to one of the latest edges, where the same two patches mostly are, or appends.
+void add_edge(std::vector<SignedEdge>& edges, Index a, Index b, double weight) {
+    constexpr std::size_t latest = 32;
+    if (b < a) std::swap(a, b);
+    const auto w = static_cast<float>(weight);
+    for (std::size_t e = edges.size(); e > 0 && e + latest > edges.size(); --e) {
+        SignedEdge& edge = edges[e - 1];
+        if (edge.a != a || edge.b != b) continue;
+        edge.weight += w;
+        edge.total += std::abs(w);
+        return;
+    }
+    edges.push_back({a, b, w, std::abs(w)});
+}
+
 } // namespace
 
 Patches build_patches(const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate) {
@@ -111,27 +126,21 @@ std::vector<SignedEdge> patch_evidence(const Octree& octree, const Neighbors& ne
     const std::size_t leaves = neighbors.leaf_first.size() - 1;
     std::vector<std::vector<SignedEdge>> found(chunk_count(leaves, leaves_per_chunk));
     for_chunks(leaves, leaves_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        std::vector<SignedEdge>& edges = found[chunk];
-        for (std::size_t l = begin; l < end; ++l) {
-            const std::size_t start = edges.size();
-            for (Index i = neighbors.leaf_first[l]; i < neighbors.leaf_first[l + 1]; ++i) {
-                const Index a = patches.of_point[i];
-                if (a == no_index) continue;
-                const Vec3& n = estimate.normals[i];
-                const double span = std::max(near_pair * neighbors.reach[i], 2 * estimate.tolerance[i]);
-                for (Index j : neighbors.of(i)) {
-                    const Index b = patches.of_point[j];
-                    if (b == no_index || a == b) continue;
-                    const Vec3 d = octree.positions[j] - octree.positions[i];
-                    const Vec3& m = estimate.normals[j];
-                    const double mirrored =
-                        (n | m) - 2 * (n | d) * (m | d) / std::min(d.sqrnorm(), span * span);
-                    const double w = std::clamp(mirrored, -1.0, 1.0) * patches.sign[i] * patches.sign[j];
-                    edges.push_back({std::min(a, b), std::max(a, b), static_cast<float>(w),
-                                     static_cast<float>(std::abs(w))});
-                }
+        for (Index i = neighbors.leaf_first[begin]; i < neighbors.leaf_first[end]; ++i) {
+            const Index a = patches.of_point[i];
+            if (a == no_index) continue;
+            const Vec3& n = estimate.normals[i];
+            const double span = std::max(near_pair * neighbors.reach[i], 2 * estimate.tolerance[i]);
+            const auto around = neighbors.of(i);
+            for (std::size_t k = 0; k < around.size(); k += 2) { // half of the pairs say enough
+                const Index j = around[k], b = patches.of_point[j];
+                if (b == no_index || a == b) continue;
+                const Vec3 d = octree.positions[j] - octree.positions[i];
+                const Vec3& m = estimate.normals[j];
+                const double mirrored = (n | m) - 2 * (n | d) * (m | d) / std::min(d.sqrnorm(), span * span);
+                add_edge(found[chunk], a, b,
+                         std::clamp(mirrored, -1.0, 1.0) * patches.sign[i] * patches.sign[j]);
             }
-            merge_parallel_edges(edges, start);
         }
     });
     return joined(found);
