@@ -3,10 +3,10 @@
 #include "hsdm/chunks.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/normals/neighborhood.hh"
+#include "hsdm/normals/noise.hh"
 #include "hsdm/normals/plane_fit.hh"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace hsdm {
@@ -31,7 +31,7 @@ public:
 
     EstimatedNormals run() {
         fit_all();
-        measure_noise();
+        result_.noise = estimate_noise(octree_, neighbors_);
         choose_tolerance();
         find_bent();
         for (int round = 0; round < options_.rounds; ++round)
@@ -52,40 +52,6 @@ private:
                 spread_[i] = std::sqrt(fit.variance);
             }
         });
-    }
-
-    /// From the nearest few neighbours, which are of one sheet even where the sheet is one side of a thin
-    /// plate; the lower third, so that creases do not count as noise.
-    void measure_noise() {
-        constexpr std::size_t samples = 1 << 14;
-        const std::size_t stride = octree_.size() / samples + 1;
-        std::vector<double> ratios((octree_.size() + stride - 1) / stride, 0);
-        for_chunks(ratios.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t r = begin; r < end; ++r) {
-                const std::size_t i = r * stride;
-                if (neighbors_.reach[i] > 0) ratios[r] = roughness(i) / neighbors_.reach[i];
-            }
-        });
-        const auto lower = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 3);
-        std::nth_element(ratios.begin(), lower, ratios.end());
-        result_.noise = *lower;
-    }
-    double roughness(std::size_t i) const {
-        constexpr std::size_t few = 6;
-        std::array<std::pair<double, Index>, 64> nearest;
-        const auto around = neighbors_.of(i);
-        for (std::size_t k = 0; k < around.size(); ++k)
-            nearest[k] = {(octree_.positions[around[k]] - octree_.positions[i]).sqrnorm(), around[k]};
-        const std::size_t count = std::min(few, around.size());
-        std::partial_sort(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(count),
-                          nearest.begin() + static_cast<std::ptrdiff_t>(around.size()));
-        PlaneSums sums;
-        sums.add(Vec3(0, 0, 0), 1);
-        for (std::size_t k = 0; k < count; ++k)
-            sums.add(octree_.positions[nearest[k].second] - octree_.positions[i], 1);
-        // A plane has three parameters.
-        const double freedom = std::max(1.0, static_cast<double>(count) - 2) / static_cast<double>(count + 1);
-        return std::sqrt(fit_plane(sums).variance / freedom);
     }
 
     /// Not below the spread of the flattest neighbour: where the whole neighbourhood is rough, that is no

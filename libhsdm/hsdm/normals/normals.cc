@@ -1,11 +1,25 @@
 #include "hsdm/normals/normals.hh"
 
+#include "hsdm/normals/noise.hh"
+
 #include <algorithm>
 
 namespace hsdm {
 
+namespace {
+
+/// As many as asked for, or as the noise calls for.
+Neighbors choose_neighbors(const Octree& octree, int count) {
+    if (count != 0) return find_neighbors(octree, {.count = count});
+    Neighbors neighbors = find_neighbors(octree);
+    const int wanted = neighbors_for_noise(estimate_noise(octree, neighbors));
+    return wanted > 16 ? find_neighbors(octree, {.count = wanted}) : std::move(neighbors);
+}
+
+} // namespace
+
 NormalsReport make_normals(Octree& octree, const NormalsOptions& options) {
-    const Neighbors neighbors = find_neighbors(octree, options.neighbors);
+    const Neighbors neighbors = choose_neighbors(octree, options.neighbors);
     EstimatedNormals estimate = estimate_normals(octree, neighbors, options.estimate);
     NormalsReport report;
     report.orientation = orient_normals(octree, neighbors, estimate, options.orient);

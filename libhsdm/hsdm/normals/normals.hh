@@ -6,7 +6,7 @@
 namespace hsdm {
 
 struct NormalsOptions {
-    NeighborOptions neighbors;
+    int neighbors = 0; ///< per point, [3, 64]; 0: 16, more where the points are noisy (neighbors_for_noise)
     EstimateOptions estimate;
     OrientOptions orient;
 };

@@ -1,0 +1,17 @@
+#pragma once
+// How rough a sampled surface is at the scale of its neighbourhoods.
+
+#include "hsdm/normals/neighbors.hh"
+
+namespace hsdm {
+
+/// Typical distance of a point from the plane of its six nearest neighbours, over the neighbourhood's reach:
+/// 0 for clean planes, below 0.01 for well-sampled smooth surfaces, 0.1 where noise is half the spacing of
+/// the points. Six are of one sheet even where the sheet is one side of a thin plate. The lower third of a
+/// sample, so that creases do not count. O(1) beyond the first 16,384 points.
+double estimate_noise(const Octree& octree, const Neighbors& neighbors);
+
+/// Neighbours per point that such noise, measured with 16 of them, calls for: 16, 32 or 64.
+int neighbors_for_noise(double noise);
+
+} // namespace hsdm

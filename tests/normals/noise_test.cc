@@ -1,0 +1,39 @@
+#include "hsdm/normals/noise.hh"
+#include "support/sample.hh"
+
+#include <catch2/catch.hpp>
+
+#include <numbers>
+
+using namespace hsdm;
+
+namespace {
+
+double noise_of(const support::Solid& solid, std::size_t points, double noise = 0) {
+    const Octree octree =
+        build_octree(support::sample(solid, {.points = points, .normals = false, .position_noise = noise}));
+    return estimate_noise(octree, find_neighbors(octree));
+}
+
+} // namespace
+
+TEST_CASE("noise is told from creases, curvature and thin parts", "[normals]") {
+    const double spacing = std::sqrt(4 * std::numbers::pi / 5000);
+    CHECK(noise_of(support::sphere(1), 5000) < 0.01);
+    CHECK(noise_of(support::box(Vec3(1, 1, 1)), 3000) < 1e-6);
+    CHECK(noise_of(support::box(Vec3(1, 1, 2 * std::sqrt(2.0 / 5000))), 5000) < 1e-6);
+    double last = 0.01;
+    for (double sigma : {0.1, 0.2, 0.5, 1.0}) {
+        const double noise = noise_of(support::sphere(1), 5000, sigma * spacing);
+        CHECK(noise > last);
+        last = noise;
+    }
+}
+
+TEST_CASE("clean clouds are seen through 16 neighbours, noisy ones through more", "[normals]") {
+    const double spacing = std::sqrt(4 * std::numbers::pi / 5000);
+    CHECK(neighbors_for_noise(noise_of(support::sphere(1), 5000)) == 16);
+    CHECK(neighbors_for_noise(noise_of(support::sphere(1), 5000, 0.1 * spacing)) == 16);
+    CHECK(neighbors_for_noise(noise_of(support::sphere(1), 5000, 0.5 * spacing)) == 32);
+    CHECK(neighbors_for_noise(noise_of(support::sphere(1), 5000, 3 * spacing)) == 64);
+}
