@@ -1,0 +1,117 @@
+// Where does topology break? Three solids, faults of growing strength, normals given and estimated; prints
+// the table of docs/robustness.md.
+
+#include "hsdm/errors.hh"
+#include "hsdm/octree/spacing.hh"
+#include "hsdm/reconstruct.hh"
+#include "support/pose.hh"
+#include "support/random.hh"
+#include "support/sample.hh"
+
+#include <cstdio>
+#include <string>
+
+using namespace hsdm;
+
+namespace {
+
+constexpr double voxel = 0.1;
+constexpr double per_voxel = 8; // points per squared voxel
+
+struct Shape {
+    const char* name;
+    support::Solid solid;
+    std::size_t points; // so that there are `per_voxel` on a squared voxel
+    long euler;
+};
+
+struct Fault {
+    const char* name;
+    std::vector<double> strengths;
+};
+
+const std::vector<Fault> faults = {
+    {"position noise, voxels", {0, 0.1, 0.25, 0.5, 1}},
+    {"normal noise, degrees", {0, 5, 10, 20, 30}},
+    {"outliers, %", {0, 1, 2, 5, 10}},
+    {"densest to sparsest", {1, 2, 5, 10, 20}},
+    {"normals flipped, %", {0, 5, 10, 20, 50}},
+    {"points per voxel", {8, 4, 2, 1.5, 1}},
+};
+
+/// Points left out at random, the more the farther along x.
+void thin_out(PointCloud& cloud, double ratio, support::Random& random) {
+    const Box box = cloud.bounds();
+    PointCloud kept;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+        const double along = (cloud.positions[i][0] - box.lo[0]) / (box.hi[0] - box.lo[0]);
+        if (random.uniform(0, 1) > 1 / (1 + along * (ratio - 1))) continue;
+        kept.positions.push_back(cloud.positions[i]);
+        kept.normals.push_back(cloud.normals[i]);
+    }
+    cloud = std::move(kept);
+}
+
+PointCloud scan(const Shape& shape, std::size_t fault, double strength) {
+    support::SampleOptions options;
+    options.points = shape.points;
+    options.seed = 7;
+    if (fault == 0) options.position_noise = strength * voxel;
+    if (fault == 1) options.normal_noise = strength * 0.0174533;
+    if (fault == 2) options.outliers = strength / 100;
+    // The dense end gets more points, so that the sparse one has as many per voxel as half of the others.
+    if (fault == 3)
+        options.points = static_cast<std::size_t>(static_cast<double>(shape.points) * (1 + strength) / 2);
+    if (fault == 5)
+        options.points = static_cast<std::size_t>(static_cast<double>(shape.points) * strength / per_voxel);
+    PointCloud cloud = support::sample(shape.solid, options);
+    support::Random random(11);
+    if (fault == 3) thin_out(cloud, strength, random);
+    if (fault == 4)
+        for (Vec3& n : cloud.normals)
+            if (random.uniform(0, 1) < strength / 100) n = -n;
+    return cloud;
+}
+
+std::string outcome(const Shape& shape, const PointCloud& cloud, NormalSource normals, bool choose) {
+    ReconstructOptions options;
+    if (!choose) options.voxel_size = voxel;
+    options.normals = normals;
+    try {
+        const Report report = reconstruct(cloud, options).report;
+        const Report::Mesh& m = report.mesh;
+        if (m.closed && m.components == 1 && m.euler == shape.euler) return "right";
+        if (!m.closed) return std::to_string(m.boundary_loops) + " holes";
+        return m.components != 1 ? std::to_string(m.components) + " parts"
+                                 : "genus " + std::to_string(m.genus);
+    } catch (const Error& error) {
+        return "refused";
+    }
+}
+
+} // namespace
+
+int main() {
+    support::Random random(3);
+    const support::Pose pose = support::random_pose(random);
+    const std::vector<Shape> shapes = {
+        {"mechanical part", support::mechanical_part(pose), 40000, -4},
+        {"torus", support::torus(1, 0.4).placed(pose), 12600, 0},
+        {"box", support::box({1.4, 1.1, 0.5}).placed(pose), 4500, 2},
+    };
+    for (bool choose : {false, true}) {
+        std::printf("\n%s\n", choose ? "voxel chosen from the cloud" : "voxel fixed");
+        for (std::size_t f = 0; f < faults.size(); ++f)
+            for (const Shape& shape : shapes)
+                for (NormalSource normals : {NormalSource::given, NormalSource::estimate}) {
+                    std::printf("| %-24s | %-16s | %-8s |", faults[f].name, shape.name,
+                                normals == NormalSource::given ? "given" : "none");
+                    for (double strength : faults[f].strengths)
+                        std::printf(" %g: %s |", strength,
+                                    outcome(shape, scan(shape, f, strength), normals, choose).c_str());
+                    std::printf("\n");
+                    std::fflush(stdout);
+                }
+    }
+    return 0;
+}
