@@ -21,6 +21,7 @@ constexpr double widest_hole_voxels = 6; // where voxels are wide against the sp
 ExtendedOptions extended_options(const ReconstructOptions& options, double spacing_in_voxels) {
     ExtendedOptions result;
     result.holes.max_diameter = std::max(widest_hole * spacing_in_voxels, widest_hole_voxels);
+    result.holes.insist = true;
     result.fill = options.holes != Holes::keep;
     if (options.holes == Holes::close)
         result.holes = {.max_edges = FillHolesOptions::no_limit, .max_diameter = Box::inf, .insist = true};

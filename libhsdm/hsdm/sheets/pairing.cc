@@ -9,6 +9,8 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t corners_per_chunk = 2048;
+constexpr std::size_t longest_defect =
+    16; // sides: a shorter boundary loop is a defect to close, not a border
 
 /// A crossing on the perimeter of a face.
 struct Stop {
@@ -144,30 +146,84 @@ Links pair_crossings(const CornerLattice& lattice, const Crossings& crossings, c
     return links;
 }
 
+namespace {
+
+/// Per side (4 * crossing + face), does it lie on a boundary loop too long for a mere defect?
+std::vector<std::uint8_t> on_borders(const Crossings& crossings, const Links& links) {
+    const auto open = [&](std::size_t side) {
+        return links.of_crossing[side / 4][side % 4].crossing == no_index;
+    };
+    // From an open side round the vertex at its end, face by face, to the next open one.
+    const auto next = [&](std::size_t side) {
+        auto k = static_cast<unsigned>(side % 4);
+        auto x = static_cast<Index>(side / 4);
+        unsigned j = crossings.crossings[x].leaving ? (k + 1) % 4 : k; // where the side ends
+        for (;;) {
+            k = k == j ? (j + 3) % 4 : j;
+            const Link& link = links.of_crossing[x][k];
+            if (link.crossing == no_index) return 4 * std::size_t{x} + k;
+            j = Ring::across(j, k, link.face);
+            x = link.crossing;
+            k = link.face;
+        }
+    };
+    std::vector<std::uint8_t> on_border(4 * links.of_crossing.size(), 0), seen(on_border);
+    std::vector<std::size_t> loop;
+    for (std::size_t start = 0; start < on_border.size(); ++start) {
+        if (!open(start) || seen[start]) continue;
+        loop.clear();
+        for (std::size_t side = start; !seen[side]; side = next(side)) {
+            seen[side] = 1;
+            loop.push_back(side);
+        }
+        if (loop.size() > longest_defect)
+            for (std::size_t side : loop) on_border[side] = 1;
+    }
+    return on_border;
+}
+
+/// Is a connected patch of crossings that the data do not carry to be taken back? Beyond a border always;
+/// beside a mere defect only if the boundary gets shorter, as it does for a fin or a splinter.
+bool ends_beyond(const Crossings& crossings, const Links& links, std::span<const Index> patch,
+                 std::span<const std::uint8_t> on_border) {
+    std::size_t open = 0, bordering = 0;
+    for (Index x : patch)
+        for (std::size_t k = 0; k < 4; ++k) {
+            if (on_border[4 * std::size_t{x} + k]) return true;
+            const Index other = links.of_crossing[x][k].crossing;
+            open += other == no_index;
+            bordering += other != no_index && crossings.crossings[other].supported;
+        }
+    return bordering < open;
+}
+
+} // namespace
+
 std::size_t trim_unsupported(Crossings& crossings, const Links& links) {
     auto& list = crossings.crossings;
-    std::vector<std::uint8_t> removed(list.size(), 0);
-    std::vector<Index> pending;
-    auto reach = [&](Index x) {
-        if (x == no_index || list[x].supported || removed[x]) return;
-        removed[x] = 1;
-        pending.push_back(x);
-    };
+    const auto is_open = [](const Link& link) { return link.crossing == no_index; };
     for (Index x = 0; x < list.size(); ++x) {
         const auto& around = links.of_crossing[x];
-        if (std::count_if(around.begin(), around.end(), [](const Link& l) { return l.crossing == no_index; })
-            >= 3)
-            list[x].supported = false; // hangs by one side at most
-        if (list[x].supported) continue;
-        for (const Link& link : links.of_crossing[x]) {
-            const bool both_end = link.rim && link.crossing != no_index && !list[link.crossing].supported;
-            if (link.crossing == no_index || both_end) reach(x);
-        }
+        // Hangs by one side at most.
+        if (std::count_if(around.begin(), around.end(), is_open) >= 3) list[x].supported = false;
     }
-    while (!pending.empty()) {
-        const Index x = pending.back();
-        pending.pop_back();
-        for (const Link& link : links.of_crossing[x]) reach(link.crossing);
+    const std::vector<std::uint8_t> on_border = on_borders(crossings, links);
+    std::vector<std::uint8_t> seen(list.size(), 0), removed(list.size(), 0);
+    std::vector<Index> patch;
+    for (Index start = 0; start < list.size(); ++start) {
+        const auto& around = links.of_crossing[start];
+        if (list[start].supported || seen[start] || std::none_of(around.begin(), around.end(), is_open))
+            continue;
+        patch.assign(1, start);
+        seen[start] = 1;
+        for (std::size_t i = 0; i < patch.size(); ++i)
+            for (const Link& link : links.of_crossing[patch[i]]) {
+                if (is_open(link) || list[link.crossing].supported || seen[link.crossing]) continue;
+                seen[link.crossing] = 1;
+                patch.push_back(link.crossing);
+            }
+        if (!ends_beyond(crossings, links, patch, on_border)) continue;
+        for (Index x : patch) removed[x] = 1;
     }
     std::size_t kept = 0;
     for (std::size_t e = 0, x = 0; e + 1 < crossings.first.size(); ++e) {

@@ -51,9 +51,10 @@ struct Links {
 Links pair_crossings(const CornerLattice& lattice, const Crossings& crossings, const NormalSets& sets,
                      const RelationTest& related);
 
-/// Takes back the crossings beyond the end of the data: those not supported that an open side, or the rim of
-/// two sheets that both end, reaches through others of the kind. A closed surface loses none. Returns the
-/// number removed; if it is not 0 the crossings must be paired again. O(unsupported).
+/// Takes back the crossings beyond the end of the data: patches of those not supported that a border reaches.
+/// A boundary loop of up to 16 sides is a defect and no border; beside it a patch goes only if that makes the
+/// boundary shorter. A closed surface loses none. Returns the number removed; if it is not 0 the crossings
+/// must be paired again. O(crossings).
 std::size_t trim_unsupported(Crossings& crossings, const Links& links);
 
 } // namespace hsdm
