@@ -2,7 +2,36 @@
 
 #include "hsdm/disjoint_sets.hh"
 
+#include <array>
+#include <iterator>
+
 namespace hsdm {
+
+namespace {
+
+/// Of the components of no more facets than `most`: do they have a border?
+std::vector<std::uint8_t> open_components(const PolygonMesh& mesh, DisjointSets& components,
+                                          const std::vector<std::size_t>& sizes, std::size_t most) {
+    std::vector<std::array<Index, 2>> sides, reverse;
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+        const auto ring = mesh.facet(f);
+        if (sizes[components.find(ring[0])] > most) continue;
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            sides.push_back({ring[i], ring[(i + 1) % ring.size()]});
+            reverse.push_back({ring[(i + 1) % ring.size()], ring[i]});
+        }
+    }
+    std::sort(sides.begin(), sides.end());
+    std::sort(reverse.begin(), reverse.end());
+    std::vector<std::array<Index, 2>> alone;
+    std::set_difference(sides.begin(), sides.end(), reverse.begin(), reverse.end(),
+                        std::back_inserter(alone));
+    std::vector<std::uint8_t> open(sizes.size(), 0);
+    for (const auto& side : alone) open[components.find(side[0])] = 1;
+    return open;
+}
+
+} // namespace
 
 std::size_t drop_debris(PolygonMesh& mesh, const DebrisOptions& options) {
     if (mesh.facet_count() == 0) return 0;
@@ -12,14 +41,15 @@ std::size_t drop_debris(PolygonMesh& mesh, const DebrisOptions& options) {
     std::vector<std::size_t> sizes(mesh.vertex_count(), 0);
     for (std::size_t f = 0; f < mesh.facet_count(); ++f) ++sizes[components.find(mesh.facet(f)[0])];
     const auto largest = static_cast<double>(*std::max_element(sizes.begin(), sizes.end()));
-    const auto is_debris = [&](std::size_t facets) {
-        return facets <= options.most_facets && static_cast<double>(facets) * options.least_ratio <= largest;
-    };
-    if (std::none_of(sizes.begin(), sizes.end(), [&](std::size_t n) { return n > 0 && is_debris(n); }))
-        return 0;
+    const std::vector<std::uint8_t> open = open_components(mesh, components, sizes, options.most_open);
+    std::vector<std::uint8_t> debris(sizes.size(), 0);
+    for (std::size_t c = 0; c < sizes.size(); ++c)
+        debris[c] = sizes[c] > 0 && sizes[c] <= (open[c] ? options.most_open : options.most_facets)
+                    && static_cast<double>(sizes[c]) * options.least_ratio <= largest;
+    if (std::none_of(debris.begin(), debris.end(), [](std::uint8_t d) { return d; })) return 0;
     PolygonMesh kept;
     for (std::size_t f = 0; f < mesh.facet_count(); ++f)
-        if (!is_debris(sizes[components.find(mesh.facet(f)[0])])) kept.add_facet(mesh.facet(f));
+        if (!debris[components.find(mesh.facet(f)[0])]) kept.add_facet(mesh.facet(f));
     const std::size_t removed = mesh.facet_count() - kept.facet_count();
     mesh.corners = std::move(kept.corners);
     mesh.first = std::move(kept.first);

@@ -6,8 +6,9 @@
 namespace hsdm {
 
 struct DebrisOptions {
-    std::size_t most_facets = 12; ///< six quads round one grid point, cut in two; more are a part
-    double least_ratio = 64;      ///< of the facets of the largest component to those of debris
+    std::size_t most_facets = 20; ///< ten quads round two grid points, cut in two; more are a part
+    std::size_t most_open = 32;   ///< of a component with a border; more are a piece of the surface
+    double least_ratio = 32;      ///< of the facets of the largest component to those of debris
 };
 
 /// Removes the components (facets joined by shared vertices) that are debris beside the largest one, vertices
