@@ -18,11 +18,12 @@ struct Outcome {
     FeatureSize size = FeatureSize::ill_posed;
     std::string faults;
     bool closed = false, right_euler = false;
+    std::string adaptive_faults; ///< of the mesh over an adaptive grid; another topology is one too
 };
 
 Outcome outcome_of(std::uint64_t seed, const support::TrialOptions& options) {
     const support::Trial trial = support::make_trial(seed, options);
-    Outcome outcome{seed, trial.size, {}, false, false};
+    Outcome outcome{seed, trial.size, {}, false, false, {}};
     if (trial.size == FeatureSize::ill_posed) return outcome;
     ReconstructOptions how;
     how.method = Method::extended;
@@ -31,6 +32,12 @@ Outcome outcome_of(std::uint64_t seed, const support::TrialOptions& options) {
     outcome.faults = support::faults(to_polygons(result.mesh));
     outcome.closed = result.report.mesh.closed;
     outcome.right_euler = result.report.mesh.euler == trial.euler;
+    how.grid = Grid::adaptive;
+    const Reconstruction adaptive = reconstruct(trial.cloud, how);
+    outcome.adaptive_faults = support::faults(to_polygons(adaptive.mesh));
+    const Report::Mesh &one = result.report.mesh, &other = adaptive.report.mesh;
+    if (one.closed != other.closed || one.euler != other.euler || one.components != other.components)
+        outcome.adaptive_faults += "another topology than on the uniform grid";
     return outcome;
 }
 
@@ -69,6 +76,10 @@ TEST_CASE("random solids come out closed, those with large features with the rig
     INFO(family);
     CHECK(seeds_of(outcomes, [](const Outcome& o) { return !o.faults.empty(); }) == "");
     CHECK(seeds_of(outcomes, [](const Outcome& o) { return !o.closed; }) == "");
+    for (const Outcome& o : outcomes) {
+        INFO("seed " << o.seed << " on an adaptive grid");
+        CHECK(o.adaptive_faults == "");
+    }
     const auto large = std::count_if(outcomes.begin(), outcomes.end(),
                                      [](const Outcome& o) { return o.size == FeatureSize::large; });
     const auto right = std::count_if(outcomes.begin(), outcomes.end(), [](const Outcome& o) {
