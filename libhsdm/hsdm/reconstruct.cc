@@ -122,6 +122,7 @@ public:
         normals_options.orient.sensor = sensor_of(cloud);
         const NormalsReport made = phases.run("normals", 0.05, report.seconds.normals,
                                               [&] { return make_normals(octree, normals_options); });
+        report.rejected["points_outlying"] = made.outliers;
         report.rejected["normals_near_creases"] = made.bent;
         report.rejected["normals_missing"] = made.missing;
         report.rejected["normals_by_volume"] = made.orientation.by_volume;

@@ -9,9 +9,8 @@ namespace hsdm {
 namespace {
 
 /// As many as asked for, or as the noise calls for.
-Neighbors choose_neighbors(const Octree& octree, int count) {
+Neighbors choose_neighbors(const Octree& octree, int count, Neighbors neighbors) {
     if (count != 0) return find_neighbors(octree, {.count = count});
-    Neighbors neighbors = find_neighbors(octree);
     const int wanted = neighbors_for_noise(estimate_noise(octree, neighbors));
     return wanted > 16 ? find_neighbors(octree, {.count = wanted}) : std::move(neighbors);
 }
@@ -19,9 +18,12 @@ Neighbors choose_neighbors(const Octree& octree, int count) {
 } // namespace
 
 NormalsReport make_normals(Octree& octree, const NormalsOptions& options) {
-    const Neighbors neighbors = choose_neighbors(octree, options.neighbors);
-    EstimatedNormals estimate = estimate_normals(octree, neighbors, options.estimate);
     NormalsReport report;
+    Neighbors nearest = find_neighbors(octree);
+    report.outliers = drop_outliers(octree, nearest, options.outliers);
+    if (report.outliers > 0) nearest = find_neighbors(octree);
+    const Neighbors neighbors = choose_neighbors(octree, options.neighbors, std::move(nearest));
+    EstimatedNormals estimate = estimate_normals(octree, neighbors, options.estimate);
     report.orientation = orient_normals(octree, neighbors, estimate, options.orient);
     settle_normals(octree, neighbors, estimate);
     report.noise = estimate.noise;
