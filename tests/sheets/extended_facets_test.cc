@@ -76,7 +76,7 @@ TEST_CASE("smooth and sharp solids in general pose come out closed, of the right
         }
 }
 
-TEST_CASE("the two sides of a plate in one voxel stay two, and the rim closes them", "[sheets]") {
+TEST_CASE("the two sides of a plate in one voxel stay two, and the rim closes them", "[sheets][slow]") {
     for (double voxel : {0.04, 0.08})
         for (std::uint64_t seed = 1; seed <= 20; ++seed) {
             INFO("plate of 0.02, voxel " << voxel << ", pose " << seed);
@@ -90,7 +90,7 @@ TEST_CASE("the two sides of a plate in one voxel stay two, and the rim closes th
         }
 }
 
-TEST_CASE("nested spheres half a voxel apart stay two closed surfaces", "[sheets]") {
+TEST_CASE("nested spheres half a voxel apart stay two closed surfaces", "[sheets][slow]") {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         INFO("pose " << seed);
         const support::Solid shell = support::nested_spheres(1, 0.95).placed(pose(seed));

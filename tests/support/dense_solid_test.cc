@@ -58,7 +58,7 @@ TEST_CASE("the sides of a wall face each other, those of an edge only if it is s
     CHECK(facing(wedge(0.35, 1, 1), 0.2) < 0.05);
 }
 
-TEST_CASE("a trial says how large its features are and repeats itself", "[support]") {
+TEST_CASE("a trial says how large its features are and repeats itself", "[support][slow]") {
     TrialOptions sparse;
     sparse.points_per_voxel = 1;
     std::array<int, 3> of_size{0, 0, 0};
