@@ -47,6 +47,7 @@ void print_json(const std::string& path, const Loaded& loaded) {
                          {"has_colors", !loaded.cloud.colors.empty()},
                          {"scalars", scalars},
                          {"spacing", spacing(loaded.cloud)}};
+        if (loaded.cloud.sensor) json["cloud"]["sensor"] = list(*loaded.cloud.sensor);
     }
     std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
 }
@@ -60,6 +61,7 @@ void print_cloud(const Loaded& loaded) {
     std::cout << '\n';
     if (loaded.dropped.nonfinite > 0)
         std::cout << "dropped   " << grouped(loaded.dropped.nonfinite) << " points that are not finite\n";
+    if (cloud.sensor) std::cout << "sensor    " << *cloud.sensor << '\n';
     if (!cloud.colors.empty()) std::cout << "colours   yes\n";
     for (const Scalar& scalar : cloud.scalars)
         std::cout << "scalar    " << scalar.name << (scalar.is_label ? " (labels)" : "") << '\n';

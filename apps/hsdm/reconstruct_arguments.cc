@@ -35,6 +35,20 @@ void refuse(bool given, const std::string& what) {
     if (given) throw UsageError(what + " is not available yet");
 }
 
+/// A number of facets, or with % a share of the largest component.
+MinComponent min_component_of(const std::string& text) {
+    MinComponent least;
+    const char* const end = text.data() + text.size();
+    const auto read = std::from_chars(text.data(), end, least.value);
+    least.of_largest = read.ptr != end && *read.ptr == '%';
+    if (least.of_largest) least.value /= 100;
+    if (read.ec != std::errc() || read.ptr + least.of_largest != end || !(least.value >= 0)
+        || (least.of_largest && least.value > 1))
+        throw UsageError("--min-component " + text
+                         + ": a number of facets or a percentage up to 100% is wanted, e.g. 200 or 1%");
+    return least;
+}
+
 /// A length, or with % a share of the bounding box's diagonal.
 MaxError error_of(const std::string& text) {
     MaxError error;
@@ -94,6 +108,11 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
                       {{"auto", Holes::automatic}, {"keep", Holes::keep}, {"close", Holes::close}},
                       "auto: close what is small against the sampling; close: everything; keep: nothing")
         ->group(method);
+    app.add_option("--min-component", a.min_component,
+                   "drop components of fewer facets than SIZE (1% is of the largest one's area; 100% keeps "
+                   "the largest alone); default: none is dropped")
+        ->type_name("SIZE")
+        ->group(method);
     app.add_option("--crease-degrees", a.crease_degrees, "dihedral angle above which an edge is sharp")
         ->type_name("D")
         ->capture_default_str()
@@ -110,7 +129,7 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
 void add_text_options(CLI::App& app, ReconstructArguments& a) {
     const std::string files = "Files";
     app.add_option("--input-format", a.read.format, "the input's format, where no extension names it")
-        ->check(CLI::IsMember({"ply", "xyz", "csv", "pts", "pwn", "off", "obj", "stl"}))
+        ->check(CLI::IsMember({"ply", "xyz", "csv", "pts", "ptx", "pwn", "off", "obj", "stl"}))
         ->type_name("FORMAT")
         ->group(files);
     app.add_option("--columns", a.read.columns, "columns of a text file, e.g. x,y,z,nx,ny,nz,r,g,b,_")
@@ -120,7 +139,7 @@ void add_text_options(CLI::App& app, ReconstructArguments& a) {
 
 void add_file_options(CLI::App& app, ReconstructArguments& a) {
     app.add_option("input", a.inputs,
-                   "point files (PLY, XYZ, TXT, ASC, CSV, PTS, PWN; the vertices of OFF, OBJ, "
+                   "point files (PLY, XYZ, TXT, ASC, CSV, PTS, PTX, PWN; the vertices of OFF, OBJ, "
                    "STL); - is standard input")
         ->required()
         ->type_name("INPUT...");
@@ -175,6 +194,7 @@ ReconstructOptions ReconstructArguments::options() const {
     o.method = method;
     o.normals = normals;
     o.holes = holes;
+    if (!min_component.empty()) o.min_component = min_component_of(min_component);
     o.crease_angle = crease_degrees * std::numbers::pi / 180;
     o.normal_smoothing = smoothing;
     o.threads = threads;

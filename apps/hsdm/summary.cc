@@ -31,6 +31,12 @@ std::string normals_words(const Report& report) {
     return report.input.has_normals ? "normals estimated anew" : "normals estimated";
 }
 
+std::string islands_words(const Report& report) {
+    const auto dropped = report.rejected.find("components_small");
+    if (dropped == report.rejected.end() || dropped->second == 0) return "";
+    return "; " + plural(dropped->second, "small component", "small components") + " dropped";
+}
+
 std::string seconds(double value) {
     std::ostringstream text;
     text << std::fixed << std::setprecision(2) << value << " s";
@@ -70,7 +76,7 @@ void print_summary(std::ostream& out, const Report& r, const std::string& writte
         << plural(r.mesh.vertices, "vertex", "vertices") << ", " << plural(r.mesh.faces, "face", "faces")
         << " (" << grouped(r.mesh.quads) << " quads, " << grouped(r.mesh.triangles) << " triangles), "
         << plural(r.features.sharp_edges, "sharp edge", "sharp edges") << "\ntopology  "
-        << topology_words(r.mesh) << "\nerror     points to mesh: max "
+        << topology_words(r.mesh) << islands_words(r) << "\nerror     points to mesh: max "
         << number(r.error.points_to_mesh_max, 3) << " (" << number(100 * r.error.normalised_max, 3)
         << " % of the diagonal), mean " << number(r.error.points_to_mesh_mean, 3) << "\nwritten   " << written
         << " in " << seconds(r.seconds.total) << '\n';
@@ -93,7 +99,7 @@ void print_details(std::ostream& out, const Report& r) {
 
 void print_line(std::ostream& out, const Report& r, const std::string& written) {
     out << written << ": " << grouped(r.input.points) << " points, depth " << r.grid.depth << ", "
-        << grouped(r.mesh.faces) << " faces, " << topology_words(r.mesh) << ", error "
+        << grouped(r.mesh.faces) << " faces, " << topology_words(r.mesh) << islands_words(r) << ", error "
         << number(100 * r.error.normalised_max, 3) << " %, " << seconds(r.seconds.total) << '\n';
 }
 

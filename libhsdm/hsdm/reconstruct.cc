@@ -43,6 +43,11 @@ void validate(const ReconstructOptions& o) {
     if (o.depth) check_depth("depth", *o.depth);
     if (o.voxel_size && !(*o.voxel_size > 0 && std::isfinite(*o.voxel_size)))
         throw OptionError("voxel_size " + text_of(*o.voxel_size) + ": must be a length above 0");
+    if (o.min_component
+        && !(o.min_component->value >= 0 && std::isfinite(o.min_component->value)
+             && !(o.min_component->of_largest && o.min_component->value > 1)))
+        throw OptionError("min_component " + text_of(o.min_component->value)
+                          + ": must be a number of facets, or a share of the largest of 1 (100 %) at most");
     if (!(o.crease_angle > 0 && o.crease_angle < std::numbers::pi))
         throw OptionError("crease_angle " + text_of(o.crease_angle)
                           + " rad: must lie between 0 and pi (180 degrees)");
@@ -122,7 +127,7 @@ public:
         normals_options.orient.sensor = sensor_of(cloud);
         const NormalsReport made = phases.run("normals", 0.05, report.seconds.normals,
                                               [&] { return make_normals(octree, normals_options); });
-        report.rejected["points_outlying"] = made.outliers;
+        note_outliers(made.outliers);
         report.rejected["normals_near_creases"] = made.bent;
         report.rejected["normals_missing"] = made.missing;
         report.rejected["normals_by_volume"] = made.orientation.by_volume;
@@ -134,6 +139,8 @@ public:
             if (!check_normals(octree).doubtful()) return std::size_t{0};
             return mend_normals(octree, sensor_of(cloud));
         });
+        note_outliers(
+            phases.run("strays", 0.08, report.seconds.normals, [&] { return drop_strays(octree); }));
     }
 
     /// The depth the options ask for or the spacing suggests; notes it in the report.
@@ -158,6 +165,12 @@ public:
     Report report;
 
 private:
+    /// Outliers make a cloud look sparser than its surface is.
+    void note_outliers(std::size_t count) {
+        report.rejected["points_outlying"] = count;
+        if (count > 0) report.input.spacing = estimate_spacing(octree);
+    }
+
     std::optional<Vec3> sensor_of(const PointCloud& cloud) const {
         if (!cloud.sensor) return std::nullopt;
         return *cloud.sensor - octree.origin;
@@ -201,8 +214,17 @@ void note_options(const PointCloud& cloud, const ReconstructOptions& options, Re
                                           ? text_of(100 * options.max_error->value) + "%"
                                           : text_of(options.max_error->value);
     report.options["holes"] = name_of(options.holes);
+    if (options.min_component)
+        report.options["min-component"] = options.min_component->of_largest
+                                              ? text_of(100 * options.min_component->value) + "%"
+                                              : text_of(options.min_component->value);
     report.options["crease-degrees"] = text_of(options.crease_angle * 180 / std::numbers::pi);
     report.options["smoothing"] = std::to_string(options.normal_smoothing);
+}
+
+void note_islands(const Islands& islands, Report& report) {
+    report.rejected["components_small"] = islands.components;
+    report.rejected["facets_of_small_components"] = islands.facets;
 }
 
 void measure_mesh(const PolygonMesh& facets, Report& report) {
@@ -273,6 +295,7 @@ Reconstruction reconstruct_level(const PointCloud& cloud, const Octree& octree, 
             phases.run("adaptive", 0.5, seconds.facets, [&] { return adaptive_grid(input, facets, report); });
         hints = {}; // they are those of the fine facets
     }
+    if (options.min_component) note_islands(drop_islands(facets, hints, *options.min_component), report);
     if (facets.facet_count() == 0)
         throw Error("no facet came out of " + std::to_string(level.size()) + " voxels at depth "
                     + std::to_string(depth)

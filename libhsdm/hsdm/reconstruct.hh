@@ -1,6 +1,7 @@
 #pragma once
 // The whole method, Figure 1: cloud -> octree -> graph -> facets -> mesh -> features.
 
+#include "hsdm/facets/islands.hh"
 #include "hsdm/mesh_types.hh"
 #include "hsdm/point_cloud.hh"
 #include "hsdm/report.hh"
@@ -48,6 +49,8 @@ struct ReconstructOptions {
     Method method = Method::automatic;
     NormalSource normals = NormalSource::automatic;
     Holes holes = Holes::automatic;
+    /// Components smaller than this are dropped; by default none is, however small.
+    std::optional<MinComponent> min_component;
     double crease_angle =
         0.61;                 ///< radians, (0, pi): dihedral angle above which an edge is sharp (35 degrees)
     int normal_smoothing = 3; ///< rounds of anisotropic normal smoothing, >= 0 (section 3.3)

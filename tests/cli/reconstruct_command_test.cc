@@ -271,3 +271,52 @@ TEST_CASE("help and version go to standard output with status 0", "[cli]") {
     }
     CHECK(run(folder, "reconstruct --help").out.find("Examples:") != std::string::npos);
 }
+
+TEST_CASE("small components are dropped when asked, and said", "[cli]") {
+    const Folder folder;
+    PointCloud two = sphere_scan();
+    for (const Vec3& p : sphere_scan(1000).positions) two.positions.push_back(0.4 * p + Vec3(3, 0, 0));
+    folder.write("scan.xyz", xyz(two));
+    const auto components = [&](const std::string& options) {
+        const CommandResult result =
+            run(folder, "reconstruct scan.xyz --voxel-size 0.15 -o a.off --report a.json " + options);
+        CHECK(result.status == 0);
+        CHECK((result.out.find("1 small component dropped") != std::string::npos) == !options.empty());
+        return Json::parse(read_file(folder / "a.json"))["mesh"]["components"].get<int>();
+    };
+    CHECK(components("") == 2);
+    CHECK(components("--min-component 20%") == 1);
+    CHECK(components("--min-component 100%") == 1);
+    CHECK(components("--min-component 300") == 1);
+    for (const char* bad : {"x", "-1", "101%", "5 %", "nan", ""})
+        CHECK(run(folder, std::string("reconstruct scan.xyz -o a.off --min-component '") + bad + "'").status
+              == (*bad == '\0' ? 0 : 2));
+}
+
+TEST_CASE("an open surface faces the scanner where the file says its place", "[cli]") {
+    const Folder folder;
+    for (const double side : {-5.0, 5.0}) {
+        // A sheet that is nowhere seen from two regions: z = 0.2 x^2 over a square.
+        std::string body, z = std::to_string(side);
+        for (int i = 0; i < 60; ++i)
+            for (int j = 0; j < 60; ++j) {
+                const double x = i / 30.0 - 1, y = j / 30.0 - 1;
+                body +=
+                    std::to_string(x) + ' ' + std::to_string(y) + ' ' + std::to_string(0.2 * x * x) + '\n';
+            }
+        folder.write("scan.ply", "ply\nformat ascii 1.0\nelement camera 1\nproperty float view_px\n"
+                                 "property float view_py\nproperty float view_pz\nelement vertex 3600\n"
+                                 "property float x\nproperty float y\nproperty float z\nend_header\n0 0 "
+                                     + z + '\n' + body);
+        REQUIRE(run(folder, "reconstruct scan.ply --ascii -o a.stl --quiet").status == 0);
+        const std::string mesh = read_file(folder / "a.stl");
+        double sum = 0;
+        for (std::size_t at = mesh.find("normal"); at != std::string::npos;
+             at = mesh.find("normal", at + 1)) {
+            double x, y, nz;
+            REQUIRE(std::sscanf(mesh.c_str() + at, "normal %lf %lf %lf", &x, &y, &nz) == 3);
+            sum += nz;
+        }
+        CHECK(sum * side > 0);
+    }
+}

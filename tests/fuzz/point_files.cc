@@ -66,6 +66,8 @@ std::vector<NamedContent> valid_point_files() {
         {"a.xyz", "# c\n3\n1 2 3 0 0 1\n4 5 6 0 1 0\r\n7 8 9 1 0 0\n"},
         {"a.csv", "x,y,z,r,g,b,label,nx,ny,nz\n1,2,3,1,2,3,4,0,0,1\n1,2,,1,2,3,4,0,0,1\n"},
         {"a.txt", "1.5;2;3;255;0;17\n\n4;nan;-inf;0;0;0 // c\n"},
+        {"a.ptx",
+         "2\n1\n5 6 7\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n5 6 7 1\n1 2 3 0.5\n4 5 6 0.5\n"},
         {"a.pts", "2\n1 2 3 -7 1 2 3\n4 5 6 8 4 5 6\n1\n7 8 9 1 7 8 9\n"},
         {"a.pwn", "2\n1 2 3\n4 5 6\n0 0 1\n0 1 0\n"},
         {"a.off", "CNOFF\n# c\n2 1 0\n1 2 3 0 0 1 255 0 0 255\n4 5 6 0 0 1 0 0 0 255\n3 0 1 1\n"},
@@ -149,7 +151,8 @@ std::string fuzz_reading(std::uint64_t seed, int rounds) {
     const auto files = valid_point_files();
     support::Random random(seed);
     const std::string columns[] = {"", "", "", "x,y,z", "_,z,y,x,label", "x,y,z,nx,ny,nz,r,g,b"};
-    const std::string formats[] = {"", "", "", "ply", "xyz", "off", "obj", "stl", "pts", "pwn", "hoppe"};
+    const std::string formats[] = {"",    "",    "",    "ply", "xyz", "off",
+                                   "obj", "stl", "pts", "ptx", "pwn", "hoppe"};
     for (int round = 0; round < rounds; ++round)
         for (const NamedContent& file : files) {
             std::istringstream stream(damaged(file.content, random));

@@ -279,3 +279,33 @@ TEST_CASE("NaN in a binary PLY is kept for drop_nonfinite to count", "[io]") {
     CHECK(cloud.size() == 3);
     CHECK(drop_nonfinite(cloud).nonfinite == 2);
 }
+
+TEST_CASE("the sensor is where the PLY file's camera stood, before or behind the vertices", "[io]") {
+    const std::string camera = "element camera 1\nproperty float view_px\nproperty float view_py\n"
+                               "property float view_pz\nproperty uchar flag\n";
+    const std::string vertex = "element vertex 2\n" + std::string(xyz);
+    const std::string faces = "element face 1\nproperty list uchar int vertex_indices\n";
+    const auto sensor = [](const std::string& format, const std::string& header, const std::string& body) {
+        return read("a.ply", ply(format, header, body)).cloud.sensor;
+    };
+    const std::string at = "1.5 -2 30 7\n", points = "0 0 0\n1 1 1\n", face = "3 0 1 0\n";
+    CHECK(sensor("ascii", camera + vertex, at + points) == Vec3(1.5, -2, 30));
+    CHECK(sensor("ascii", vertex + faces + camera, points + face + at) == Vec3(1.5, -2, 30));
+    for (const bool big : {false, true}) {
+        const std::string format = big ? "binary_big_endian" : "binary_little_endian";
+        const std::string view = float_point(1.5f, -2, 30, big) + "\7";
+        const std::string two = float_point(0, 0, 0, big) + float_point(1, 1, 1, big);
+        std::string triangle = "\3";
+        for (int v : {0, 1, 0}) triangle += bytes_of(v, big);
+        CHECK(sensor(format, camera + vertex, view + two) == Vec3(1.5, -2, 30));
+        CHECK(sensor(format, vertex + faces + camera, two + triangle + view) == Vec3(1.5, -2, 30));
+        CHECK(error_of("a.ply", ply(format, vertex + camera, two + view.substr(1))).find("camera")
+              != std::string::npos);
+    }
+    // Zeros stand for an unknown camera; several cameras are no single sensor.
+    CHECK_FALSE(sensor("ascii", camera + vertex, "0 0 0 7\n" + points));
+    CHECK_FALSE(sensor("ascii", camera + vertex, "nan 0 0 7\n" + points));
+    CHECK_FALSE(sensor("ascii", "element camera 2" + camera.substr(16) + vertex, at + at + points));
+    CHECK_FALSE(sensor("ascii", "element camera 1\nproperty int view_px\n" + vertex, "1\n" + points));
+    CHECK_FALSE(sensor("ascii", vertex, points));
+}

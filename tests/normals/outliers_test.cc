@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 using namespace hsdm;
 
@@ -35,7 +36,8 @@ TEST_CASE("strays are removed, a surface of uneven density keeps its points", "[
         const PointCloud cloud = scan(strays);
         Octree octree = build_octree(cloud);
         const std::size_t before = octree.size();
-        const std::size_t dropped = drop_outliers(octree, find_neighbors(octree));
+        Neighbors neighbors = find_neighbors(octree);
+        const std::size_t dropped = drop_outliers(octree, neighbors);
         CHECK(dropped == static_cast<std::size_t>(strays));
         CHECK(octree.size() == before - dropped);
         CHECK(octree.codes.size() == octree.size());
@@ -47,6 +49,110 @@ TEST_CASE("strays are removed, a surface of uneven density keeps its points", "[
             CHECK(std::abs(p.norm() - 1) < 1e-9);
             CHECK((cloud.positions[octree.source[i]] - p).norm() < 1e-9);
         }
-        CHECK(drop_outliers(octree, find_neighbors(octree)) == 0);
+        CHECK(neighbors.index == find_neighbors(octree).index);
+        CHECK(drop_outliers(octree, neighbors) == 0);
     }
+}
+
+namespace {
+
+/// A unit sphere of 20,000 points, a share of them anywhere in its box.
+PointCloud spoilt_sphere(double outliers) {
+    support::SampleOptions options;
+    options.points = 20000;
+    options.outliers = outliers;
+    return support::sample(support::sphere(1), options);
+}
+
+struct Left {
+    std::size_t surface = 0, strays = 0;
+};
+
+/// Strays are those farther from the sphere than three spacings; nearer ones are not told from noise.
+Left count(const std::vector<Vec3>& positions, const Vec3& origin) {
+    constexpr double spacing = 0.025;
+    Left left;
+    for (const Vec3& p : positions) {
+        const double off = std::abs((p + origin).norm() - 1);
+        left.surface += off < 1e-9;
+        left.strays += off > 3 * spacing;
+    }
+    return left;
+}
+
+/// A rod of two spacings across, a wire of single points, a disc, and a sphere whose density falls to a
+/// twentieth; one unit is ten spacings of the densest.
+PointCloud frail_parts() {
+    PointCloud cloud;
+    support::Random random(9);
+    const auto add = [&](const Vec3& p, const Vec3& n) {
+        cloud.positions.push_back(p);
+        cloud.normals.push_back(n);
+    };
+    for (int i = 0; i < 2500; ++i) { // 0.1 around
+        const double turn = random.uniform(0, 6.283185), z = random.uniform(-20, 20);
+        const Vec3 n(std::cos(turn), std::sin(turn), 0);
+        add(Vec3(12, 0, z) + 0.1 * n, n);
+    }
+    for (int i = 0; i < 400; ++i) add(Vec3(16, 0, 0.1 * i - 20), Vec3(1, 0, 0));
+    for (int i = 0; i < 8000; ++i) {
+        const Vec3 p(random.uniform(-5, 5), random.uniform(-5, 5), -14);
+        if (p[0] * p[0] + p[1] * p[1] < 25) add(p, Vec3(0, 0, 1));
+    }
+    for (int i = 0; i < 126000; ++i) {
+        const Vec3 n = random.direction();
+        if (random.uniform(0, 1) < 1 / (1 + 9.5 * (n[2] + 1))) add(10 * n, n);
+    }
+    return cloud;
+}
+
+} // namespace
+
+TEST_CASE("strays go though they are a tenth of all points, the surface stays", "[normals]") {
+    for (const double share : {0.02, 0.1}) {
+        INFO(share);
+        const PointCloud cloud = spoilt_sphere(share);
+        const Left before = count(cloud.positions, Vec3(0, 0, 0));
+        REQUIRE(static_cast<double>(before.strays) > 0.5 * share * 20000);
+        Octree by_position = build_octree(cloud), by_normal = by_position;
+        Neighbors neighbors = find_neighbors(by_position);
+        drop_outliers(by_position, neighbors);
+        drop_strays(by_normal);
+        for (const Octree* octree : {&by_position, &by_normal}) {
+            const Left after = count(octree->positions, octree->origin);
+            CHECK(after.surface + 2 >= before.surface);
+            CHECK(static_cast<double>(after.strays) < 0.15 * static_cast<double>(before.strays));
+            CHECK(octree->normals.size() == octree->size());
+            CHECK(std::is_sorted(octree->codes.begin(), octree->codes.end()));
+        }
+    }
+}
+
+TEST_CASE("rods, wires, borders and sparse parts are no strays", "[normals]") {
+    const PointCloud cloud = frail_parts();
+    const auto fewest = cloud.size() - cloud.size() / 2000;
+    Octree octree = build_octree(cloud);
+    CHECK(drop_strays(octree) == 0);
+    Neighbors neighbors = find_neighbors(octree);
+    drop_outliers(octree, neighbors);
+    CHECK(octree.size() >= fewest);
+    std::size_t wire = 0;
+    for (const Vec3& p : octree.positions) wire += (p + octree.origin)[0] > 15;
+    CHECK(wire == 400);
+}
+
+TEST_CASE("neighbours of a few points are those found among all", "[normals]") {
+    const Octree octree = build_octree(spoilt_sphere(0.05));
+    std::vector<std::uint8_t> marked(octree.size(), 0);
+    for (std::size_t i = 0; i < marked.size(); i += 97) marked[i] = 1;
+    const Neighbors all = find_neighbors(octree), some = find_neighbors_of(octree, marked);
+    for (std::size_t i = 0; i < marked.size(); i += 97) {
+        std::vector<Index> a(all.of(i).begin(), all.of(i).end()), b(some.of(i).begin(), some.of(i).end());
+        std::sort(a.begin(), a.end());
+        std::sort(b.begin(), b.end());
+        CHECK(a == b);
+        CHECK(all.reach[i] == some.reach[i]);
+    }
+    CHECK(find_neighbors_of(octree, std::vector<std::uint8_t>(octree.size(), 0)).reach.size()
+          == octree.size());
 }

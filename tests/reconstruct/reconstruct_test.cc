@@ -299,3 +299,46 @@ TEST_CASE("normals that all point inward give the same solid, facing outward", "
     CHECK(result.report.rejected.at("normals_turned") == cloud.size());
     CHECK(measure_topology(to_polygons(result.mesh)).signed_volume > 0);
 }
+
+TEST_CASE("a tenth of stray points changes neither the topology nor the resolution", "[reconstruct]") {
+    for (const NormalSource normals : {NormalSource::given, NormalSource::estimate}) {
+        INFO((normals == NormalSource::given ? "given" : "estimated"));
+        support::SampleOptions sampling;
+        sampling.points = 12600;
+        sampling.seed = 7;
+        ReconstructOptions options;
+        options.normals = normals;
+        const support::Solid torus = support::torus(1, 0.4);
+        const Report clean = reconstruct(support::sample(torus, sampling), options).report;
+        sampling.outliers = 0.1;
+        const Report spoilt = reconstruct(support::sample(torus, sampling), options).report;
+        for (const Report* report : {&clean, &spoilt}) {
+            CHECK(report->mesh.closed);
+            CHECK(report->mesh.components == 1);
+            CHECK(report->mesh.euler == 0);
+        }
+        CHECK(spoilt.rejected.at("points_outlying") > 600);
+        CHECK(clean.rejected.at("points_outlying") == 0);
+        CHECK(spoilt.input.spacing == Approx(clean.input.spacing).epsilon(0.15));
+    }
+}
+
+TEST_CASE("a minimal size of components is checked, and the largest is kept", "[reconstruct]") {
+    PointCloud two = scan(support::sphere(1), 4000);
+    for (const Vec3& p : scan(support::sphere(0.3), 800).positions)
+        two.positions.push_back(p + Vec3(2, 0, 0));
+    ReconstructOptions options;
+    options.voxel_size = 0.12;
+    CHECK(reconstruct(two, options).report.mesh.components == 2);
+    options.min_component = MinComponent{1, true};
+    const Reconstruction one = reconstruct(two, options);
+    CHECK(one.report.mesh.components == 1);
+    CHECK(one.report.mesh.euler == 2);
+    CHECK(one.report.rejected.at("components_small") == 1);
+    CHECK(one.mesh.n_vertices() == one.report.mesh.vertices);
+    for (const MinComponent wrong : {MinComponent{-1, false}, MinComponent{1.5, true},
+                                     MinComponent{std::numeric_limits<double>::quiet_NaN(), false}}) {
+        options.min_component = wrong;
+        CHECK_THROWS_AS(reconstruct(two, options), OptionError);
+    }
+}

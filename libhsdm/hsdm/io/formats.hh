@@ -12,6 +12,11 @@ enum class TableKind { plain, pts, pwn };
 /// XYZ, TXT, ASC, CSV, PTS, PWN: rows of numbers, with or without a header, a count, comments.
 PointFile read_table(const SourceBytes& bytes, TableKind kind, const std::string& columns);
 PointFile read_ply(const SourceBytes& bytes);
+/// A terrestrial scanner's grids, each with its matrix to world coordinates, in which the points are given;
+/// rays without a hit are left out. The sensor is set if there is one scan only.
+PointFile read_ptx(const SourceBytes& bytes);
+/// Whether the text begins with the ten header lines of a PTX scan.
+bool is_ptx(const Text& text);
 PointFile read_off(const SourceBytes& bytes);
 PointFile read_obj(const SourceBytes& bytes);
 /// Hoppe's point files: lines `p x y z`, others skipped.

@@ -56,9 +56,15 @@ PointFile read_ply(const SourceBytes& bytes) {
     const auto columns = columns_of(text, element);
     PointFile file;
     file.format = "ply";
-    file.cloud = header.encoding == PlyEncoding::ascii
-                     ? read_ply_ascii(with_line_end_of_header(Text(bytes)), header, vertex, columns)
-                     : read_ply_binary(bytes, header, vertex, columns);
+    const auto camera = find_camera(header);
+    if (header.encoding == PlyEncoding::ascii) {
+        const Text whole = with_line_end_of_header(Text(bytes));
+        file.cloud = read_ply_ascii(whole, header, vertex, columns);
+        if (camera) file.cloud.sensor = read_ply_sensor_ascii(whole, header, *camera);
+    } else {
+        file.cloud = read_ply_binary(bytes, header, vertex, columns);
+        if (camera) file.cloud.sensor = read_ply_sensor_binary(bytes, header, *camera);
+    }
     for (const PlyElement& other : header.elements)
         if (other.name == "face") file.faces = static_cast<std::size_t>(other.count);
     return file;

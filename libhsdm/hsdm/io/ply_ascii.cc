@@ -31,4 +31,22 @@ PointCloud read_ply_ascii(const Text& text, const PlyHeader& header, std::size_t
     return std::move(rows).to_cloud(columns, factor);
 }
 
+std::optional<Vec3> read_ply_sensor_ascii(const Text& text, const PlyHeader& header,
+                                          const PlyCamera& camera) {
+    Text body = text.from(text.origin + header.size);
+    for (std::size_t i = 0; i <= camera.element; ++i) {
+        const PlyElement& element = header.elements[i];
+        const char* end = after_rows(body, element.count, false, "lines of element " + element.name);
+        if (i == camera.element)
+            body.end = end;
+        else
+            body.begin = end;
+    }
+    RowLayout layout;
+    layout.cells.assign(header.elements[camera.element].properties.size(), RowLayout::Cell::number);
+    layout.origin = "the header names " + std::to_string(layout.cells.size()) + " properties";
+    layout.advice = "correct the line or the header";
+    return sensor_of_camera(camera, Rows(body, layout).sample(1));
+}
+
 } // namespace hsdm::io

@@ -130,6 +130,18 @@ public:
         }
     }
 
+    /// The values of the next element, which has no list.
+    std::vector<double> row(const PlyElement& element) const {
+        check_size(element);
+        std::vector<char> scratch(element.least_size());
+        const char* data = bytes_.piece(at_, scratch.size(), scratch.data());
+        std::vector<double> values(element.properties.size());
+        const std::vector<Field> layout = fields(element);
+        for (std::size_t i = 0; i < values.size(); ++i)
+            layout[i].gather(data + layout[i].offset, 0, 1, &values[i]);
+        return values;
+    }
+
 private:
     [[noreturn]] void fail_cut_off(const PlyElement& element, std::uint64_t index) const {
         throw Error(bytes_.name(), "the file ends in element " + element.name + " " + std::to_string(index)
@@ -248,6 +260,13 @@ PointCloud read_ply_binary(const SourceBytes& bytes, const PlyHeader& header, st
     return read_fixed({bytes, body.at(), element.least_size(), static_cast<std::size_t>(element.count),
                        body.fields(element)},
                       element, columns);
+}
+
+std::optional<Vec3> read_ply_sensor_binary(const SourceBytes& bytes, const PlyHeader& header,
+                                           const PlyCamera& camera) {
+    BinaryBody body(bytes, header);
+    for (std::size_t i = 0; i < camera.element; ++i) body.skip(header.elements[i]);
+    return sensor_of_camera(camera, body.row(header.elements[camera.element]));
 }
 
 } // namespace hsdm::io

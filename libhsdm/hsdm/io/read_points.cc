@@ -10,7 +10,7 @@ namespace hsdm {
 namespace io {
 namespace {
 
-enum class Format { unknown, table, ply, off, obj, hoppe, stl };
+enum class Format { unknown, table, ply, ptx, off, obj, hoppe, stl };
 
 struct KnownName {
     std::string_view name;
@@ -27,6 +27,7 @@ constexpr KnownName known_names[] = {
     {"asc", Format::table},
     {"pts", Format::table, TableKind::pts},
     {"pwn", Format::table, TableKind::pwn},
+    {"ptx", Format::ptx},
     {"off", Format::off},
     {"obj", Format::obj},
     {"stl", Format::stl},
@@ -102,7 +103,8 @@ Format recognise(const SourceBytes& bytes) {
     if (view.starts_with("ply") && view.size() > 3 && (is_blank(view[3]) || view[3] == '\n'))
         return Format::ply;
     if (is_binary_stl(bytes) || is_text_stl(bytes)) return Format::stl;
-    return is_binary(text) ? Format::unknown : recognise_lines(text);
+    if (is_binary(text)) return Format::unknown;
+    return is_ptx(text) ? Format::ptx : recognise_lines(text);
 }
 
 [[noreturn]] void fail_unread(const SourceBytes& bytes) {
@@ -144,6 +146,8 @@ PointFile read_as(const SourceBytes& bytes, Format format, TableKind kind, const
     switch (format) {
     case Format::ply:
         return read_ply(bytes);
+    case Format::ptx:
+        return read_ptx(bytes);
     case Format::off:
         return read_off(bytes);
     case Format::obj:
@@ -164,7 +168,7 @@ PointFile read_points(const SourceBytes& bytes, const ReadOptions& options) {
     const KnownName* forced = find_name(lower(options.format));
     if (!options.format.empty() && !forced)
         throw OptionError("format " + quoted(options.format)
-                          + ": known are ply, xyz, csv, txt, asc, pts, pwn, off, obj, stl, hoppe");
+                          + ": known are ply, xyz, csv, txt, asc, pts, ptx, pwn, off, obj, stl, hoppe");
     const KnownName* named = forced ? forced : find_name(extension_of(bytes.name()));
     const TableKind kind = named ? named->kind : TableKind::plain;
     const Format format = forced ? forced->format : recognise(bytes);

@@ -1,6 +1,6 @@
 #pragma once
-// Point files -> PointCloud. PLY, XYZ / TXT / ASC / CSV, PTS, PWN, Hoppe's `p x y z`, vertices of OFF, OBJ,
-// STL.
+// Point files -> PointCloud. PLY, XYZ / TXT / ASC / CSV, PTS, PTX, PWN, Hoppe's `p x y z`, vertices of OFF,
+// OBJ, STL.
 
 #include "hsdm/point_cloud.hh"
 
@@ -9,8 +9,8 @@
 namespace hsdm {
 
 struct ReadOptions {
-    /// "ply", "xyz" (or "txt", "asc", "csv": the same), "pts", "pwn", "off", "obj", "stl", "hoppe"; empty: by
-    /// the content where that is a sure sign, else by the file's extension.
+    /// "ply", "xyz" (or "txt", "asc", "csv": the same), "pts", "ptx", "pwn", "off", "obj", "stl", "hoppe";
+    /// empty: by the content where that is a sure sign, else by the file's extension.
     std::string format;
     /// Tables only: what each column is, e.g. "x,y,z,nx,ny,nz,r,g,b,_" (`_` is skipped); empty: told by a
     /// header line, else from the values. Throws OptionError if it cannot be.

@@ -85,8 +85,16 @@ struct Candidates {
 
 class Search {
 public:
-    Search(const Octree& octree, Neighbors& result) : octree_(octree), result_(result) {
-        const std::vector<Leaf> leaves = find_leaves(octree.codes);
+    /// `marked` is empty, or says whose neighbours are wanted.
+    Search(const Octree& octree, const std::vector<std::uint8_t>& marked, Neighbors& result)
+        : octree_(octree), marked_(marked), result_(result) {
+        std::vector<Leaf> leaves = find_leaves(octree.codes);
+        if (!marked.empty())
+            std::erase_if(leaves, [&](const Leaf& leaf) {
+                return std::none_of(marked.begin() + leaf.begin, marked.begin() + leaf.end,
+                                    [](std::uint8_t m) { return m; });
+            });
+        if (leaves.empty()) return;
         int deepest = 0;
         for (const Leaf& leaf : leaves) deepest = std::max(deepest, leaf.level);
         for (int level = 0; level <= deepest; ++level) levels_.push_back(extract_level(octree, level));
@@ -140,7 +148,8 @@ private:
         for (std::size_t v = 0; v < count; ++v)
             candidates.add(octree_, grid.first_point[voxels[v]], grid.first_point[voxels[v] + 1], base);
         float limit = std::numeric_limits<float>::max();
-        for (Index i = leaf.begin; i < leaf.end; ++i) limit = search_point(i, base, limit, candidates);
+        for (Index i = leaf.begin; i < leaf.end; ++i)
+            if (marked_.empty() || marked_[i]) limit = search_point(i, base, limit, candidates);
     }
 
     /// Returns a squared distance within which the next point of the leaf will find enough.
@@ -165,6 +174,7 @@ private:
     }
 
     const Octree& octree_;
+    const std::vector<std::uint8_t>& marked_;
     Neighbors& result_;
     std::vector<OctreeLevel> levels_;
 };
@@ -172,13 +182,18 @@ private:
 } // namespace
 
 Neighbors find_neighbors(const Octree& octree, const NeighborOptions& options) {
+    return find_neighbors_of(octree, {}, options);
+}
+
+Neighbors find_neighbors_of(const Octree& octree, const std::vector<std::uint8_t>& marked,
+                            const NeighborOptions& options) {
     if (options.count < 3 || options.count > 64)
         throw OptionError("neighbours " + std::to_string(options.count) + ": must lie in [3, 64]");
     Neighbors result;
     result.count = std::min(static_cast<std::size_t>(options.count), octree.size() - 1);
     result.index.resize(octree.size() * result.count);
     result.reach.resize(octree.size());
-    const Search search(octree, result);
+    const Search search(octree, marked, result);
     return result;
 }
 

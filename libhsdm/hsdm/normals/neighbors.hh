@@ -26,4 +26,8 @@ struct Neighbors {
 /// near enough elsewhere. O(n) time and space, parallel. Throws OptionError.
 Neighbors find_neighbors(const Octree& octree, const NeighborOptions& options = {});
 
+/// The same for the points marked alone; the others' neighbours are not to be used.
+Neighbors find_neighbors_of(const Octree& octree, const std::vector<std::uint8_t>& marked,
+                            const NeighborOptions& options = {});
+
 } // namespace hsdm

@@ -21,7 +21,6 @@ NormalsReport make_normals(Octree& octree, const NormalsOptions& options) {
     NormalsReport report;
     Neighbors nearest = find_neighbors(octree);
     report.outliers = drop_outliers(octree, nearest, options.outliers);
-    if (report.outliers > 0) nearest = find_neighbors(octree);
     const Neighbors neighbors = choose_neighbors(octree, options.neighbors, std::move(nearest));
     EstimatedNormals estimate = estimate_normals(octree, neighbors, options.estimate);
     report.orientation = orient_normals(octree, neighbors, estimate, options.orient);

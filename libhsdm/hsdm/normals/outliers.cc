@@ -1,8 +1,11 @@
 #include "hsdm/normals/outliers.hh"
 
 #include "hsdm/chunks.hh"
+#include "hsdm/normals/plane_fit.hh"
+#include "hsdm/octree/spacing.hh"
 
 #include <algorithm>
+#include <cmath>
 
 namespace hsdm {
 namespace {
@@ -24,22 +27,8 @@ void keep(std::vector<T>& values, const std::vector<std::uint8_t>& dropped) {
     values.resize(kept);
 }
 
-} // namespace
-
-std::size_t drop_outliers(Octree& octree, const Neighbors& neighbors, const OutlierOptions& options) {
-    if (neighbors.count == 0) return 0;
-    std::vector<double> all = neighbors.reach;
-    const double far = options.most_sparseness * median(all);
-    std::vector<std::uint8_t> dropped(octree.size(), 0);
-    for_chunks(octree.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        std::vector<double> around;
-        for (std::size_t i = begin; i < end; ++i) {
-            const double reach = neighbors.reach[i];
-            around.clear();
-            for (Index n : neighbors.of(i)) around.push_back(neighbors.reach[n]);
-            dropped[i] = reach > far || reach > options.most_stretch * median(around);
-        }
-    });
+/// Returns how many went.
+std::size_t remove(Octree& octree, const std::vector<std::uint8_t>& dropped) {
     const auto count = static_cast<std::size_t>(std::count(dropped.begin(), dropped.end(), 1));
     if (count == 0) return 0;
     keep(octree.codes, dropped);
@@ -47,6 +36,103 @@ std::size_t drop_outliers(Octree& octree, const Neighbors& neighbors, const Outl
     keep(octree.normals, dropped);
     keep(octree.source, dropped);
     return count;
+}
+
+/// Do the neighbours, of which the point is none, fill a volume, or lie on a plane that the point is not of?
+bool is_off_surface(const Octree& octree, const Neighbors& neighbors, std::size_t i,
+                    const OutlierOptions& options) {
+    PlaneSums sums;
+    for (Index n : neighbors.of(i)) sums.add(octree.positions[n] - octree.positions[i], 1);
+    const PlaneFit plane = fit_plane(sums);
+    const double deviation = std::sqrt(std::max(0.0, plane.variance)), reach = neighbors.reach[i];
+    if (deviation > options.least_volume * reach) return true;
+    const double height = std::abs(plane.normal | plane.centroid);
+    return height > options.least_height * reach && height > 3 * deviation;
+}
+
+std::vector<std::uint8_t> find_outliers(const Octree& octree, const Neighbors& neighbors,
+                                        const OutlierOptions& options) {
+    std::vector<double> all = neighbors.reach;
+    const double typical = median(all);
+    std::vector<std::uint8_t> found(octree.size(), 0);
+    for_chunks(octree.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        std::vector<double> around;
+        for (std::size_t i = begin; i < end; ++i) {
+            const double reach = neighbors.reach[i];
+            around.clear();
+            for (Index n : neighbors.of(i)) around.push_back(neighbors.reach[n]);
+            const double stretch = reach / median(around), sparseness = reach / typical;
+            if (stretch > options.most_stretch || sparseness > options.most_sparseness)
+                found[i] = 1;
+            else if (stretch > options.doubtful_stretch || sparseness > options.doubtful_sparseness)
+                found[i] = is_off_surface(octree, neighbors, i, options);
+        }
+    });
+    return found;
+}
+
+/// The finest level on which a typical point shares its voxel with so many.
+OctreeLevel level_of_density(const Octree& octree, double points_per_voxel, double& typical) {
+    const auto counts = count_voxels(octree);
+    int depth = morton_levels; // the typical count is above the mean, but not much
+    while (depth > 0
+           && static_cast<double>(octree.size())
+                  < 0.25 * points_per_voxel * static_cast<double>(counts[static_cast<std::size_t>(depth)]))
+        --depth;
+    for (;; --depth) {
+        OctreeLevel level = extract_level(octree, depth);
+        double squares = 0;
+        for (std::size_t v = 0; v < level.size(); ++v) {
+            const auto count = static_cast<double>(level.first_point[v + 1] - level.first_point[v]);
+            squares += count * count;
+        }
+        typical = squares / static_cast<double>(octree.size());
+        if (typical >= points_per_voxel || depth == 0) return level;
+    }
+}
+
+/// Of the neighbours, how many continue the point's plane with a normal like its own.
+int support(const Octree& octree, const Neighbors& neighbors, std::size_t i, const StrayOptions& options) {
+    const double least_cosine = std::cos(options.most_angle);
+    int count = 0;
+    for (Index n : neighbors.of(i)) {
+        const Vec3 d = octree.positions[n] - octree.positions[i];
+        const Vec3& normal = octree.normals[i];
+        count += (normal | octree.normals[n]) > least_cosine
+                 && std::abs(normal | d) <= options.most_rise * d.norm();
+    }
+    return count;
+}
+
+} // namespace
+
+std::size_t drop_outliers(Octree& octree, Neighbors& neighbors, const OutlierOptions& options) {
+    std::size_t total = 0;
+    for (int round = 0; round < options.rounds && neighbors.count > 0; ++round) {
+        const std::size_t count = remove(octree, find_outliers(octree, neighbors, options));
+        if (count == 0) break;
+        total += count;
+        neighbors = find_neighbors(octree, {.count = static_cast<int>(neighbors.count)});
+        if (count < octree.size() / 1000) break; // too few to have hidden others
+    }
+    return total;
+}
+
+std::size_t drop_strays(Octree& octree, const StrayOptions& options) {
+    double typical = 0;
+    const OctreeLevel level = level_of_density(octree, options.points_per_voxel, typical);
+    const auto most = static_cast<Index>(std::max(1.0, options.most_share * typical));
+    std::vector<std::uint8_t> sparse(octree.size(), 0);
+    for (std::size_t v = 0; v < level.size(); ++v)
+        if (level.first_point[v + 1] - level.first_point[v] <= most)
+            std::fill(sparse.begin() + level.first_point[v], sparse.begin() + level.first_point[v + 1],
+                      std::uint8_t{1});
+    const Neighbors neighbors = find_neighbors_of(octree, sparse, {.count = options.neighbors});
+    for_chunks(octree.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i)
+            if (sparse[i]) sparse[i] = support(octree, neighbors, i, options) < options.least_support;
+    });
+    return remove(octree, sparse);
 }
 
 } // namespace hsdm

@@ -1,5 +1,5 @@
 #pragma once
-// Points far from all others.
+// Points that are of no surface: strays between and around the surfaces.
 
 #include "hsdm/normals/neighbors.hh"
 
@@ -8,12 +8,33 @@ namespace hsdm {
 struct OutlierOptions {
     double most_stretch = 4;     ///< of a point's reach against the median reach of its neighbours
     double most_sparseness = 10; ///< of a point's reach against the median of the cloud
+    /// From these on a point is looked at more closely: it goes if its neighbours fill a volume, or if they
+    /// lie on a plane that it is far from.
+    double doubtful_stretch = 1.25, doubtful_sparseness = 1.5;
+    double least_volume = 0.2;  ///< neighbours' deviation from their plane that is a volume's, in reaches
+    double least_height = 0.45; ///< distance from the neighbours' plane, in reaches, and more than three of
+                                ///< their deviations
+    int rounds = 3;             ///< the fewer strays there are, the more those left stand out
 };
 
-/// Removes the points that are far from their neighbours while these are near each other, or far from all:
-/// strays around a surface. The reach of a point is the distance of the farthest of its neighbours, which
-/// changes slowly along a sampled surface. Returns how many; the neighbours are out of date if that is not 0.
-/// O(n), parallel.
-std::size_t drop_outliers(Octree& octree, const Neighbors& neighbors, const OutlierOptions& options = {});
+/// Removes the points that are far from their neighbours while these are near each other, or far from all;
+/// less far ones if their neighbours do not lie beside them on a plane. The reach of a point is the distance
+/// of the farthest of its neighbours, which changes slowly along a sampled surface, as does its plane however
+/// sparse it is. Returns how many; the neighbours are those of the points left. O(n) per round, parallel.
+std::size_t drop_outliers(Octree& octree, Neighbors& neighbors, const OutlierOptions& options = {});
+
+struct StrayOptions {
+    double points_per_voxel = 8; ///< of a typical point's voxel: on such a level sparse voxels are looked for
+    double most_share = 0.125;   ///< of those points in a sparse voxel
+    int neighbors = 16;          ///< per point of a sparse voxel, [3, 64]
+    int least_support = 3;       ///< of them must continue the point's own plane
+    double most_angle = 0.79;    ///< radians: between normals of one plane (45 degrees)
+    double most_rise = 0.35;     ///< of a neighbour over the point's plane, in distances between the two
+};
+
+/// The same where normals are known: among the points in sparse voxels, those that too few neighbours agree
+/// with. O(n), parallel; little more than the points are read once where hardly any voxel is sparse. Throws
+/// OptionError.
+std::size_t drop_strays(Octree& octree, const StrayOptions& options = {});
 
 } // namespace hsdm

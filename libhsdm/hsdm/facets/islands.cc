@@ -1,0 +1,63 @@
+#include "hsdm/facets/islands.hh"
+
+#include "hsdm/disjoint_sets.hh"
+#include "hsdm/facets/area_vector.hh"
+#include "hsdm/facets/manifold.hh"
+
+namespace hsdm {
+namespace {
+
+/// By component, at the index of its first vertex.
+struct Sizes {
+    std::vector<std::size_t> facets;
+    std::vector<double> area;
+};
+
+Sizes measure(const PolygonMesh& mesh, DisjointSets& components) {
+    Sizes sizes{std::vector<std::size_t>(mesh.vertex_count(), 0),
+                std::vector<double>(mesh.vertex_count(), 0)};
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+        const Index c = components.find(mesh.facet(f)[0]);
+        ++sizes.facets[c];
+        sizes.area[c] += area_vector(mesh, mesh.facet(f)).norm();
+    }
+    return sizes;
+}
+
+} // namespace
+
+Islands drop_islands(PolygonMesh& mesh, FeatureHints& hints, const MinComponent& least) {
+    Islands removed;
+    if (mesh.facet_count() == 0) return removed;
+    DisjointSets components(mesh.vertex_count());
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f)
+        for (Index v : mesh.facet(f)) components.join(mesh.facet(f)[0], v);
+    const Sizes sizes = measure(mesh, components);
+    const auto largest =
+        static_cast<std::size_t>(std::max_element(sizes.area.begin(), sizes.area.end()) - sizes.area.begin());
+    std::vector<std::uint8_t> dropped(mesh.vertex_count(), 0);
+    for (std::size_t c = 0; c < dropped.size(); ++c) {
+        if (sizes.facets[c] == 0 || c == largest) continue;
+        dropped[c] = least.of_largest ? least.value >= 1 || sizes.area[c] < least.value * sizes.area[largest]
+                                      : static_cast<double>(sizes.facets[c]) < least.value;
+        removed.components += dropped[c];
+    }
+    if (removed.components == 0) return removed;
+    PolygonMesh kept;
+    std::vector<EdgeHint> sides;
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+        if (dropped[components.find(mesh.facet(f)[0])]) continue;
+        kept.add_facet(mesh.facet(f));
+        if (!hints.sides.empty())
+            sides.insert(sides.end(), hints.sides.begin() + mesh.first[f],
+                         hints.sides.begin() + mesh.first[f + 1]);
+    }
+    removed.facets = mesh.facet_count() - kept.facet_count();
+    mesh.corners = std::move(kept.corners);
+    mesh.first = std::move(kept.first);
+    hints.sides = std::move(sides);
+    remove_isolated_vertices(mesh);
+    return removed;
+}
+
+} // namespace hsdm
