@@ -8,6 +8,7 @@
 #include "support/random.hh"
 #include "support/sample.hh"
 
+#include <cmath>
 #include <cstdio>
 #include <string>
 
@@ -37,6 +38,8 @@ const std::vector<Fault> faults = {
     {"densest to sparsest", {1, 2, 5, 10, 20}},
     {"normals flipped, %", {0, 5, 10, 20, 50}},
     {"points per voxel", {8, 4, 2, 1.5, 1}},
+    {"blobs of 12 strays", {1, 5, 20, 50, 100}},
+    {"two scans apart, voxels", {0.1, 0.2, 0.3, 0.5, 1}},
 };
 
 /// Points left out at random, the more the farther along x.
@@ -50,6 +53,28 @@ void thin_out(PointCloud& cloud, double ratio, support::Random& random) {
         kept.normals.push_back(cloud.normals[i]);
     }
     cloud = std::move(kept);
+}
+
+/// Blobs a spacing wide, anywhere in the box; their normals are any.
+void add_blobs(PointCloud& cloud, double count, support::Random& random) {
+    const Box box = cloud.bounds();
+    for (double blob = 0; blob < count; ++blob) {
+        Vec3 at;
+        for (unsigned k = 0; k < 3; ++k) at[k] = random.uniform(box.lo[k], box.hi[k]);
+        for (int i = 0; i < 12; ++i) {
+            cloud.positions.push_back(at + random.direction() * (voxel / std::sqrt(per_voxel)));
+            cloud.normals.push_back(random.direction());
+        }
+    }
+}
+
+/// The same solid scanned again, the second scan moved rigidly.
+void add_moved_scan(PointCloud& cloud, const Shape& shape, support::SampleOptions options, double apart) {
+    options.seed += 1;
+    const PointCloud second = support::sample(shape.solid, options);
+    const Vec3 shift = Vec3(0.6, 0.5, 0.62).normalized() * apart;
+    for (const Vec3& p : second.positions) cloud.positions.push_back(p + shift);
+    cloud.normals.insert(cloud.normals.end(), second.normals.begin(), second.normals.end());
 }
 
 PointCloud scan(const Shape& shape, std::size_t fault, double strength) {
@@ -67,6 +92,8 @@ PointCloud scan(const Shape& shape, std::size_t fault, double strength) {
     PointCloud cloud = support::sample(shape.solid, options);
     support::Random random(11);
     if (fault == 3) thin_out(cloud, strength, random);
+    if (fault == 6) add_blobs(cloud, strength, random);
+    if (fault == 7) add_moved_scan(cloud, shape, options, strength * voxel);
     if (fault == 4)
         for (Vec3& n : cloud.normals)
             if (random.uniform(0, 1) < strength / 100) n = -n;
@@ -91,7 +118,8 @@ std::string outcome(const Shape& shape, const PointCloud& cloud, NormalSource no
 
 } // namespace
 
-int main() {
+/// An argument names the faults that are wanted by a part of their names.
+int main(int argc, char** argv) {
     support::Random random(3);
     const support::Pose pose = support::random_pose(random);
     const std::vector<Shape> shapes = {
@@ -101,7 +129,8 @@ int main() {
     };
     for (bool choose : {false, true}) {
         std::printf("\n%s\n", choose ? "voxel chosen from the cloud" : "voxel fixed");
-        for (std::size_t f = 0; f < faults.size(); ++f)
+        for (std::size_t f = 0; f < faults.size(); ++f) {
+            if (argc > 1 && std::string(faults[f].name).find(argv[1]) == std::string::npos) continue;
             for (const Shape& shape : shapes)
                 for (NormalSource normals : {NormalSource::given, NormalSource::estimate}) {
                     std::printf("| %-24s | %-16s | %-8s |", faults[f].name, shape.name,
@@ -112,6 +141,7 @@ int main() {
                     std::printf("\n");
                     std::fflush(stdout);
                 }
+        }
     }
     return 0;
 }

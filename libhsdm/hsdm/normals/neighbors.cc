@@ -23,6 +23,7 @@ constexpr MortonCode beyond = MortonCode{1} << 63;
 struct Leaf {
     Index begin, end;
     int level;
+    Index slot; ///< where its first point's neighbours go
 };
 
 /// The first level at which two codes lie in different voxels; morton_levels + 1 if equal.
@@ -42,7 +43,7 @@ std::vector<Leaf> find_leaves(const std::vector<MortonCode>& codes) {
         level = std::min(level, morton_levels);
         const int shift = 3 * (morton_levels - level);
         for (end = i + 1; end < codes.size() && codes[end] >> shift == codes[i] >> shift;) ++end;
-        leaves.push_back({static_cast<Index>(i), static_cast<Index>(end), level});
+        leaves.push_back({static_cast<Index>(i), static_cast<Index>(end), level, static_cast<Index>(i)});
     }
     return leaves;
 }
@@ -85,15 +86,11 @@ struct Candidates {
 
 class Search {
 public:
-    /// `marked` is empty, or says whose neighbours are wanted.
-    Search(const Octree& octree, const std::vector<std::uint8_t>& marked, Neighbors& result)
-        : octree_(octree), marked_(marked), result_(result) {
+    /// The neighbours of `points`, or of all if that is null.
+    Search(const Octree& octree, const std::vector<Index>* points, Neighbors& result)
+        : octree_(octree), points_(points), result_(result) {
         std::vector<Leaf> leaves = find_leaves(octree.codes);
-        if (!marked.empty())
-            std::erase_if(leaves, [&](const Leaf& leaf) {
-                return std::none_of(marked.begin() + leaf.begin, marked.begin() + leaf.end,
-                                    [](std::uint8_t m) { return m; });
-            });
+        if (points) keep_leaves_of(*points, leaves);
         if (leaves.empty()) return;
         int deepest = 0;
         for (const Leaf& leaf : leaves) deepest = std::max(deepest, leaf.level);
@@ -109,6 +106,17 @@ public:
     }
 
 private:
+    static void keep_leaves_of(const std::vector<Index>& points, std::vector<Leaf>& leaves) {
+        std::size_t kept = 0;
+        Index slot = 0;
+        for (Leaf leaf : leaves) {
+            leaf.slot = slot;
+            while (slot < points.size() && points[slot] < leaf.end) ++slot;
+            if (slot > leaf.slot) leaves[kept++] = leaf;
+        }
+        leaves.resize(kept);
+    }
+
     /// The voxels around the leaf at one level; returns how many points they hold.
     std::size_t around(const Leaf& leaf, int level, std::array<Index, 27>& voxels, std::size_t& count) const {
         const OctreeLevel& grid = levels_[static_cast<std::size_t>(level)];
@@ -148,12 +156,15 @@ private:
         for (std::size_t v = 0; v < count; ++v)
             candidates.add(octree_, grid.first_point[voxels[v]], grid.first_point[voxels[v] + 1], base);
         float limit = std::numeric_limits<float>::max();
-        for (Index i = leaf.begin; i < leaf.end; ++i)
-            if (marked_.empty() || marked_[i]) limit = search_point(i, base, limit, candidates);
+        if (points_)
+            for (Index slot = leaf.slot; slot < points_->size() && (*points_)[slot] < leaf.end; ++slot)
+                limit = search_point((*points_)[slot], slot, base, limit, candidates);
+        else
+            for (Index i = leaf.begin; i < leaf.end; ++i) limit = search_point(i, i, base, limit, candidates);
     }
 
     /// Returns a squared distance within which the next point of the leaf will find enough.
-    float search_point(Index i, const Vec3& base, float limit, Candidates& candidates) const {
+    float search_point(Index i, Index slot, const Vec3& base, float limit, Candidates& candidates) const {
         const Vec3 p = octree_.positions[i] - base;
         candidates.measure(static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]));
         const std::size_t wanted = result_.count + 1; // the point itself is among them
@@ -163,38 +174,47 @@ private:
         const auto last = ranked.begin() + static_cast<std::ptrdiff_t>(wanted - 1);
         std::nth_element(ranked.begin(), last, ranked.begin() + static_cast<std::ptrdiff_t>(within));
         const float farthest = std::bit_cast<float>(static_cast<std::uint32_t>(*last >> 32));
-        Index* out = result_.index.data() + i * result_.count;
+        Index* out = result_.index.data() + slot * result_.count;
         std::size_t found = 0;
         for (std::size_t c = 0; c < wanted; ++c) {
             const Index id = candidates.id[ranked[c] & 0xffffffffu];
             if (id != i && found < result_.count) out[found++] = id;
         }
-        result_.reach[i] = std::sqrt(static_cast<double>(farthest));
+        result_.reach[slot] = std::sqrt(static_cast<double>(farthest));
         return 1.5f * farthest;
     }
 
     const Octree& octree_;
-    const std::vector<std::uint8_t>& marked_;
+    const std::vector<Index>* points_;
     Neighbors& result_;
     std::vector<OctreeLevel> levels_;
 };
 
 } // namespace
 
-Neighbors find_neighbors(const Octree& octree, const NeighborOptions& options) {
-    return find_neighbors_of(octree, {}, options);
-}
+namespace {
 
-Neighbors find_neighbors_of(const Octree& octree, const std::vector<std::uint8_t>& marked,
-                            const NeighborOptions& options) {
+Neighbors search(const Octree& octree, const std::vector<Index>* points, const NeighborOptions& options) {
     if (options.count < 3 || options.count > 64)
         throw OptionError("neighbours " + std::to_string(options.count) + ": must lie in [3, 64]");
     Neighbors result;
     result.count = std::min(static_cast<std::size_t>(options.count), octree.size() - 1);
-    result.index.resize(octree.size() * result.count);
-    result.reach.resize(octree.size());
-    const Search search(octree, marked, result);
+    const std::size_t size = points ? points->size() : octree.size();
+    result.index.resize(size * result.count);
+    result.reach.resize(size);
+    const Search done(octree, points, result);
     return result;
+}
+
+} // namespace
+
+Neighbors find_neighbors(const Octree& octree, const NeighborOptions& options) {
+    return search(octree, nullptr, options);
+}
+
+Neighbors find_neighbors_of(const Octree& octree, const std::vector<Index>& points,
+                            const NeighborOptions& options) {
+    return search(octree, &points, options);
 }
 
 } // namespace hsdm

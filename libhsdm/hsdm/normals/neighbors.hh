@@ -26,8 +26,8 @@ struct Neighbors {
 /// near enough elsewhere. O(n) time and space, parallel. Throws OptionError.
 Neighbors find_neighbors(const Octree& octree, const NeighborOptions& options = {});
 
-/// The same for the points marked alone; the others' neighbours are not to be used.
-Neighbors find_neighbors_of(const Octree& octree, const std::vector<std::uint8_t>& marked,
+/// The same for the given points alone (ascending), in their order: `of(k)` and `reach[k]` are of points[k].
+Neighbors find_neighbors_of(const Octree& octree, const std::vector<Index>& points,
                             const NeighborOptions& options = {});
 
 } // namespace hsdm

@@ -92,10 +92,10 @@ OctreeLevel level_of_density(const Octree& octree, double points_per_voxel, doub
 }
 
 /// Of the neighbours, how many continue the point's plane with a normal like its own.
-int support(const Octree& octree, const Neighbors& neighbors, std::size_t i, const StrayOptions& options) {
+int support(const Octree& octree, Index i, std::span<const Index> neighbors, const StrayOptions& options) {
     const double least_cosine = std::cos(options.most_angle);
     int count = 0;
-    for (Index n : neighbors.of(i)) {
+    for (Index n : neighbors) {
         const Vec3 d = octree.positions[n] - octree.positions[i];
         const Vec3& normal = octree.normals[i];
         count += (normal | octree.normals[n]) > least_cosine
@@ -122,17 +122,17 @@ std::size_t drop_strays(Octree& octree, const StrayOptions& options) {
     double typical = 0;
     const OctreeLevel level = level_of_density(octree, options.points_per_voxel, typical);
     const auto most = static_cast<Index>(std::max(1.0, options.most_share * typical));
-    std::vector<std::uint8_t> sparse(octree.size(), 0);
+    std::vector<Index> sparse;
     for (std::size_t v = 0; v < level.size(); ++v)
         if (level.first_point[v + 1] - level.first_point[v] <= most)
-            std::fill(sparse.begin() + level.first_point[v], sparse.begin() + level.first_point[v + 1],
-                      std::uint8_t{1});
+            for (Index i = level.first_point[v]; i < level.first_point[v + 1]; ++i) sparse.push_back(i);
     const Neighbors neighbors = find_neighbors_of(octree, sparse, {.count = options.neighbors});
-    for_chunks(octree.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i)
-            if (sparse[i]) sparse[i] = support(octree, neighbors, i, options) < options.least_support;
+    std::vector<std::uint8_t> stray(octree.size(), 0);
+    for_chunks(sparse.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t k = begin; k < end; ++k)
+            stray[sparse[k]] = support(octree, sparse[k], neighbors.of(k), options) < options.least_support;
     });
-    return remove(octree, sparse);
+    return remove(octree, stray);
 }
 
 } // namespace hsdm
