@@ -1,5 +1,6 @@
 #include "hsdm/adaptive/clusters.hh"
 
+#include "hsdm/adaptive/parts.hh"
 #include "hsdm/chunks.hh"
 #include "hsdm/disjoint_sets.hh"
 #include "hsdm/facets/area_vector.hh"
@@ -13,8 +14,6 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t clusters_per_chunk = 1024;
-constexpr double least_share =
-    0.02; // of the largest eigenvalue: normals spread by less do not fix a position
 
 /// Builds each level of clusters from the one below it. An edge or facet is looked at on the levels where it
 /// joins different clusters, so the lists shrink by a factor of two and more per level.
@@ -82,22 +81,100 @@ private:
             const Index i = current_[a], j = current_[b];
             if (i != no_index && j != no_index && cell_of(i) == cell_of(j)) joined.join(i, j);
         }
+        const std::vector<Index> part = divide(joined, below, eligible, level);
         ClusterLevel here;
         below.parent.assign(below.size(), no_index);
         for (Index i = 0; i < below.size(); ++i) {
             if (!eligible[cell_of(i)]) continue;
-            const Index root = joined.find(i);
-            if (root == i) {
+            if (part[i] == i) {
                 below.parent[i] = static_cast<Index>(here.cell.size());
                 here.cell.push_back(cell_of(i));
             } else {
-                below.parent[i] = below.parent[root];
+                below.parent[i] = below.parent[part[i]];
             }
         }
         here.positions.resize(here.cell.size());
         rise(below, here.cell.size());
         decide(here, eligible, level);
         return here;
+    }
+
+    /// Per cluster below, the least one that goes the same way: all that the surface connects in the cell, or,
+    /// where their planes miss each other, those of the same planes.
+    std::vector<Index> divide(DisjointSets& joined, const ClusterLevel& below,
+                              const std::vector<std::uint8_t>& eligible, std::size_t level) {
+        const auto& parent_cell = tree_.levels[level + 1].parent;
+        std::vector<Index> part(below.size());
+        std::vector<Quadric> planes(below.size());
+        for (Index i = 0; i < below.size(); ++i) {
+            part[i] = joined.find(i);
+            if (eligible[parent_cell[below.cell[i]]]) planes[part[i]] += quadrics_[i];
+        }
+        std::vector<std::uint8_t> missed(below.size(), 0);
+        for_chunks(below.size(), clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const Index cell = parent_cell[below.cell[i]];
+                if (part[i] == i && eligible[cell])
+                    missed[i] = planes[i].rms(place_in(planes[i], box_of(cell, level))) > tolerance_;
+            }
+        });
+        divide_missed(missed, below, level, part);
+        return part;
+    }
+
+    void divide_missed(const std::vector<std::uint8_t>& missed, const ClusterLevel& below, std::size_t level,
+                       std::vector<Index>& part) {
+        std::vector<std::pair<Index, Index>> members; // by the piece's least
+        for (Index i = 0; i < part.size(); ++i)
+            if (missed[part[i]]) members.emplace_back(part[i], i);
+        tbb::parallel_sort(members.begin(), members.end());
+        std::vector<std::array<Index, 3>> sides; // piece, and two of its members that touch
+        for (const auto& [a, b] : edges_) {
+            const Index i = current_[a], j = current_[b];
+            if (i != no_index && j != no_index && i != j && part[i] == part[j] && missed[part[i]])
+                sides.push_back({part[i], std::min(i, j), std::max(i, j)});
+        }
+        tbb::parallel_sort(sides.begin(), sides.end());
+        sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
+        std::vector<std::array<std::size_t, 2>> pieces; // where each begins in the two lists
+        for (std::size_t m = 0, s = 0; m < members.size(); ++m) {
+            if (m > 0 && members[m].first == members[m - 1].first) continue;
+            while (s < sides.size() && sides[s][0] < members[m].first) ++s;
+            pieces.push_back({m, s});
+        }
+        const auto& parent_cell = tree_.levels[level + 1].parent;
+        for_chunks(pieces.size(), 64, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t p = begin; p < end; ++p) {
+                const auto [first, side] = pieces[p];
+                const Index piece = members[first].first;
+                divide_piece(std::span(members).subspan(first), std::span(sides).subspan(side),
+                             box_of(parent_cell[below.cell[piece]], level), part);
+            }
+        });
+    }
+
+    /// The lists begin with the piece's own entries.
+    void divide_piece(std::span<const std::pair<Index, Index>> members,
+                      std::span<const std::array<Index, 3>> sides, const Box& box,
+                      std::vector<Index>& part) const {
+        const Index piece = members.front().first;
+        std::vector<Index> own;
+        std::vector<Quadric> planes;
+        for (const auto& [of, member] : members) {
+            if (of != piece) break;
+            own.push_back(member);
+            planes.push_back(quadrics_[member]);
+        }
+        const auto local = [&](Index i) {
+            return static_cast<Index>(std::lower_bound(own.begin(), own.end(), i) - own.begin());
+        };
+        std::vector<std::pair<Index, Index>> adjacent;
+        for (const auto& [of, i, j] : sides) {
+            if (of != piece) break;
+            adjacent.emplace_back(local(i), local(j));
+        }
+        const std::vector<Index> parts = divide_by_planes(planes, adjacent, box, tolerance_);
+        for (std::size_t k = 0; k < parts.size(); ++k) part[own[k]] = own[parts[k]];
     }
 
     /// Sums up what the clusters below carry, and lets go of edges and facets that lie in one cluster or can
@@ -139,8 +216,7 @@ private:
         std::vector<std::uint8_t> fits(here.size());
         for_chunks(here.size(), clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t i = begin; i < end; ++i) {
-                here.positions[i] =
-                    kept_near(quadrics_[i].minimum(least_share), cells.codes[here.cell[i]], level);
+                here.positions[i] = place_in(quadrics_[i], box_of(here.cell[i], level));
                 fits[i] = euler_[i] == 1 && quadrics_[i].rms(here.positions[i]) <= tolerance_;
             }
         });
@@ -149,15 +225,15 @@ private:
             if (!fits[i]) cells.whole[here.cell[i]] = 0;
     }
 
-    /// The position, moved into its cell.
-    Vec3 kept_near(Vec3 p, MortonCode code, std::size_t level) const {
+    Box box_of(Index cell, std::size_t level) const {
         const double size = tree_.extent / static_cast<double>(1u << level);
-        const VoxelCoord c = morton_decode(code);
+        const VoxelCoord c = morton_decode(tree_.levels[level].codes[cell]);
+        Box box;
         for (unsigned k = 0; k < 3; ++k) {
-            const double lo = c[k] * size - tree_.extent; // codes are moved by a cube
-            p[k] = std::clamp(p[k], lo, lo + size);
+            box.lo[k] = c[k] * size - tree_.extent; // codes are moved by a cube
+            box.hi[k] = box.lo[k] + size;
         }
-        return p;
+        return box;
     }
 
     const PolygonMesh& mesh_;
