@@ -99,8 +99,8 @@ private:
         return here;
     }
 
-    /// Per cluster below, the least one that goes the same way: all that the surface connects in the cell, or,
-    /// where their planes miss each other, those of the same planes.
+    /// Per cluster below, the least one that goes the same way: all that the surface connects in the cell,
+    /// or, where their planes miss each other, those of the same planes.
     std::vector<Index> divide(DisjointSets& joined, const ClusterLevel& below,
                               const std::vector<std::uint8_t>& eligible, std::size_t level) {
         const auto& parent_cell = tree_.levels[level + 1].parent;

@@ -1,6 +1,7 @@
 #include "hsdm/adaptive/coarsen.hh"
 
 #include "hsdm/adaptive/clusters.hh"
+#include "hsdm/adaptive/tidy.hh"
 #include "hsdm/adaptive/trouble.hh"
 #include "hsdm/chunks.hh"
 #include "hsdm/errors.hh"
@@ -42,8 +43,13 @@ public:
             // Each only where what comes before it is right.
             std::size_t splits = split_troubled();
             result_.topology_splits += splits;
-            if (splits == 0) result_.intersection_splits += splits = split_intersecting();
-            if (splits == 0) result_.error_splits += splits = split_distant();
+            if (splits == 0) tidy();
+            if (splits == 0) {
+                const std::size_t crossing = split_intersecting(), distant = split_distant(crossing == 0);
+                result_.intersection_splits += crossing;
+                result_.error_splits += distant;
+                splits = crossing + distant;
+            }
             if (splits == 0) break;
         }
         count_leaves();
@@ -98,6 +104,12 @@ private:
         }
     }
 
+    void tidy() {
+        if (!to_fine_) to_fine_.emplace(fine_);
+        tidy_facets(result_.mesh, *to_fine_, planes_share * options_.max_error,
+                    [&](Index v) { return coarse_[v].level == tree_.depth(); });
+    }
+
     /// The simple loops of three vertices and more that are left of a facet whose vertices coincide in part.
     static void add_loops(const std::vector<Index>& ring, PolygonMesh& mesh) {
         std::vector<Index> open;
@@ -140,25 +152,15 @@ private:
         return splits;
     }
 
-    /// Per position, is it farther than max_error from the mesh?
-    std::vector<std::uint8_t> beyond(std::span<const Vec3> positions, const MeshDistance& distance) const {
-        std::vector<std::uint8_t> far(positions.size());
-        for_chunks(positions.size(), vertices_per_chunk,
-                   [&](std::size_t begin, std::size_t end, std::size_t) {
-                       for (std::size_t i = begin; i < end; ++i)
-                           far[i] = distance(positions[i]) > options_.max_error;
-                   });
-        return far;
-    }
-
-    std::size_t split_distant() {
+    /// The points last, as there are most of them.
+    std::size_t split_distant(bool with_points) {
         const MeshDistance to_result(result_.mesh);
         std::size_t splits = 0;
-        const auto far = beyond(fine_.positions, to_result);
+        const auto far = to_result.beyond(fine_.positions, options_.max_error);
         for (std::size_t v = 0; v < far.size(); ++v)
             if (far[v]) splits += split_at(places_[v]);
         splits += split_far_facets();
-        return splits > 0 ? splits : split_for_points(to_result);
+        return splits > 0 || !with_points ? splits : split_for_points(to_result);
     }
 
     /// Middles of facets and of their sides, against the fine mesh.
@@ -183,7 +185,7 @@ private:
             facet.push_back(static_cast<Index>(f));
         }
         if (!to_fine_) to_fine_.emplace(fine_);
-        const auto far = beyond(middles, *to_fine_);
+        const auto far = to_fine_->beyond(middles, options_.max_error);
         std::size_t splits = 0;
         for (std::size_t i = 0; i < far.size(); ++i)
             if (far[i])
@@ -192,17 +194,25 @@ private:
     }
 
     std::size_t split_for_points(const MeshDistance& to_result) {
-        const auto far = beyond(points_, to_result);
+        const auto far = to_result.beyond(points_, options_.max_error);
+        std::vector<std::size_t> missed; // by the fine mesh already
         std::size_t splits = 0;
-        result_.points_beyond = result_.unreachable = 0;
+        double farthest = 0;
+        result_.points_beyond = 0;
         for (std::size_t p = 0; p < far.size(); ++p) {
             if (!far[p]) continue;
             ++result_.points_beyond;
-            if ((*to_fine_)(points_[p]) > options_.max_error)
-                ++result_.unreachable;
-            else
+            if (const double off = (*to_fine_)(points_[p]); off > options_.max_error) {
+                missed.push_back(p);
+                farthest = std::max(farthest, off);
+            } else {
                 splits += split_around(points_[p]);
+            }
         }
+        result_.unreachable = missed.size();
+        // The largest distance of all is the fine mesh's, if that is beyond the bound.
+        for (std::size_t p : missed)
+            if (to_result(points_[p]) > farthest) splits += split_around(points_[p]);
         return splits;
     }
 

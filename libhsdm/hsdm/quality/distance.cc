@@ -52,6 +52,19 @@ Distance MeshDistance::operator()(std::span<const Vec3> points) const {
     return {total.max, total.sum / n, std::sqrt(total.squares / n), total.farthest};
 }
 
+std::vector<std::uint8_t> MeshDistance::beyond(std::span<const Vec3> points, double bound) const {
+    std::vector<std::uint8_t> far(points.size());
+    tbb::parallel_for(std::size_t{0}, (points.size() + chunk - 1) / chunk, [&](std::size_t c) {
+        Index hint = no_index;
+        for (std::size_t i = c * chunk; i < std::min(points.size(), (c + 1) * chunk); ++i) {
+            const TriangleTree::Nearest nearest = tree_.nearest(points[i], hint, bound * bound);
+            hint = nearest.block;
+            far[i] = std::sqrt(nearest.squared) > bound;
+        }
+    });
+    return far;
+}
+
 Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh) {
     return MeshDistance(mesh)(points);
 }

@@ -26,6 +26,9 @@ public:
     /// All points; parallel, quickest when neighbours in the list are neighbours in space, the same bits for
     /// any number of threads. Zero for an empty list.
     Distance operator()(std::span<const Vec3> points) const;
+    /// Per point, is it farther than `bound` from every triangle? Several times quicker than distances where
+    /// few are.
+    std::vector<std::uint8_t> beyond(std::span<const Vec3> points, double bound) const;
 
 private:
     TriangleTree tree_;

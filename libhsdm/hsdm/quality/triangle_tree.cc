@@ -180,7 +180,7 @@ Double2 TriangleTree::squared_distances(const Pair& pair, const std::array<Doubl
     return inside >= 0 ? min_lanes(to_foot, to_sides) : to_sides;
 }
 
-TriangleTree::Nearest TriangleTree::nearest(const Vec3& given, Index hint) const {
+TriangleTree::Nearest TriangleTree::nearest(const Vec3& given, Index hint, double enough) const {
     Nearest best;
     if (blocks_.empty()) return best;
     const Vec3 point = given - centre_;
@@ -210,7 +210,7 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3& given, Index hint) const
     std::array<Entry, stack_size> stack;
     std::size_t top = 0;
     stack[top++] = {0, 0, static_cast<int>(level_first_.size()) - 1};
-    while (top > 0) {
+    while (top > 0 && best.squared > enough) {
         const Entry entry = stack[--top];
         if (entry.squared > limit) continue;
         if (entry.level < 0) {

@@ -26,8 +26,9 @@ public:
         Index block = no_index;
     };
     /// Nearest triangle to a point in the mesh's own coordinates. `hint` is a block to begin with (the answer
-    /// for a point nearby), or no_index: it changes the time, never the distance.
-    Nearest nearest(const Vec3& point, Index hint = no_index) const;
+    /// for a point nearby), or no_index: it changes the time, never the distance. Any triangle whose squared
+    /// distance is no more than `enough` will do.
+    Nearest nearest(const Vec3& point, Index hint = no_index, double enough = 0) const;
 
     /// Replaces `pairs` by all pairs of triangles whose boxes overlap or touch, one of the pair being in
     /// `block` and the other in it or a later one. Over all blocks every such pair comes once.

@@ -1,0 +1,285 @@
+#include "hsdm/adaptive/tidy.hh"
+
+#include "hsdm/facets/area_vector.hh"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <tuple>
+
+namespace hsdm {
+namespace {
+
+constexpr int sweeps = 4;
+constexpr double better_shape = 1.1; // a flip for shape gains at least this factor
+constexpr double least_shape = 0.02; // of an equilateral triangle's: no flip makes one thinner
+constexpr double flip_cosine = 0.94; // for shape: normals up to 20 degrees apart
+constexpr double join_cosine = 0.77; // normals of a quad's halves up to 40 degrees apart
+constexpr double least_corner = 0.2; // of a quad's corners: the sine of the sharpest or bluntest angle
+constexpr double was_quad = 0.3;     // added to the corner's sine of what was a quad before
+
+Vec3 normal(const Vec3& a, const Vec3& b, const Vec3& c) {
+    return (b - a) % (c - a);
+}
+
+/// 1 for an equilateral triangle, 0 for a flat one.
+double shape(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const double sides = (b - a).sqrnorm() + (c - b).sqrnorm() + (a - c).sqrnorm();
+    return sides > 0 ? 2 * std::sqrt(3.0) * normal(a, b, c).norm() / sides : 0;
+}
+
+class Tidying {
+public:
+    Tidying(PolygonMesh& mesh, const MeshDistance& to_fine, double tolerance,
+            const std::function<bool(Index)>& settled)
+        : mesh_(mesh), to_fine_(to_fine), tolerance_(tolerance), facets_(mesh.vertex_count(), 0) {
+        std::vector<std::uint8_t> whole(mesh.facet_count());
+        for (std::size_t f = 0; f < whole.size(); ++f) {
+            const auto ring = mesh.facet(f);
+            whole[f] = ring.size() > 4 || std::all_of(ring.begin(), ring.end(), settled);
+        }
+        // A diagonal may be an edge already: such quads are not cut.
+        do cut_all(whole);
+        while (keep_whole(whole));
+        for (Index v : corners_) ++facets_[v];
+        for (Index v : kept_.corners) ++facets_[v];
+    }
+
+    TidyCounts run() {
+        TidyCounts counts;
+        for (int sweep = 0; sweep < sweeps; ++sweep) {
+            std::size_t flipped = 0;
+            for (Index s = 0; s < corners_.size(); ++s)
+                flipped += twin_[s] != no_index && s < twin_[s] && flip(s);
+            counts.flipped += flipped;
+            if (flipped == 0) break;
+        }
+        counts.joined = join();
+        mesh_.corners = std::move(kept_.corners);
+        mesh_.first = std::move(kept_.first);
+        return counts;
+    }
+
+private:
+    const Vec3& at(Index v) const { return mesh_.positions[v]; }
+    static Index next(Index s) { return s % 3 == 2 ? s - 2 : s + 1; }
+    static Index previous(Index s) { return s % 3 == 0 ? s + 2 : s - 1; }
+
+    double off_surface(Index a, Index b) const { return to_fine_(0.5 * (at(a) + at(b))); }
+
+    /// How far the lines a-b and c-d miss each other: what a quad with these diagonals is off a plane.
+    double warp(Index a, Index b, Index c, Index d) const {
+        const Vec3 across = (at(b) - at(a)) % (at(d) - at(c));
+        const double length = across.norm();
+        return length > 0 ? std::abs(across | (at(c) - at(a))) / length : 0;
+    }
+
+    void add(Index a, Index b, Index c, bool half) {
+        corners_.insert(corners_.end(), {a, b, c});
+        half_.push_back(half);
+    }
+
+    void cut_all(const std::vector<std::uint8_t>& whole) {
+        kept_ = {};
+        corners_.clear();
+        half_.clear();
+        facet_.clear();
+        for (std::size_t f = 0; f < whole.size(); ++f) {
+            if (whole[f])
+                kept_.add_facet(mesh_.facet(f));
+            else
+                cut(mesh_.facet(f));
+            facet_.resize(half_.size(), static_cast<Index>(f));
+        }
+        link();
+    }
+
+    /// Marks the quads whose diagonals are not theirs alone; false if there is none.
+    bool keep_whole(std::vector<std::uint8_t>& whole) const {
+        bool any = false;
+        for (Index s = 0; s < corners_.size(); s += 3)
+            if (half_[s / 3] && (twin_[s] == no_index || facet_[twin_[s] / 3] != facet_[s / 3])) {
+                whole[facet_[s / 3]] = 1;
+                any = true;
+            }
+        return any;
+    }
+
+    void cut(std::span<const Index> f) {
+        if (f.size() == 3) return add(f[0], f[1], f[2], false);
+        const double shape02 =
+            std::min(shape(at(f[0]), at(f[1]), at(f[2])), shape(at(f[0]), at(f[2]), at(f[3])));
+        const double shape13 =
+            std::min(shape(at(f[0]), at(f[1]), at(f[3])), shape(at(f[1]), at(f[2]), at(f[3])));
+        if (shape02 >= shape13) {
+            add(f[2], f[0], f[1], true); // the diagonal is side 0 of either half
+            add(f[0], f[2], f[3], true);
+        } else {
+            add(f[1], f[3], f[0], true);
+            add(f[3], f[1], f[2], true);
+        }
+    }
+
+    /// Side s runs from corner s to next(s). Sides that not just two triangles share stay alone.
+    void link() {
+        struct Side {
+            Index low, high, side;
+            bool operator<(const Side& o) const {
+                return std::tie(low, high, side) < std::tie(o.low, o.high, o.side);
+            }
+        };
+        std::vector<Side> sides(corners_.size());
+        for (Index s = 0; s < sides.size(); ++s) {
+            const auto [low, high] = std::minmax(corners_[s], corners_[next(s)]);
+            sides[s] = {low, high, s};
+        }
+        tbb::parallel_sort(sides.begin(), sides.end());
+        twin_.assign(corners_.size(), no_index);
+        for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+            while (end < sides.size() && sides[end].low == sides[begin].low
+                   && sides[end].high == sides[begin].high)
+                ++end;
+            const Index s = sides[begin].side, t = sides[end - 1].side;
+            if (end - begin != 2 || corners_[s] == corners_[t]) continue;
+            twin_[s] = t;
+            twin_[t] = s;
+        }
+    }
+
+    /// Whether two vertices, the first at this corner, are known to share no edge: its fan must be whole.
+    bool apart(Index corner, Index other) const {
+        Index s = corner;
+        do {
+            if (corners_[next(s)] == other || corners_[previous(s)] == other) return false;
+            s = twin_[s] == no_index ? no_index : next(twin_[s]);
+        } while (s != no_index && s != corner);
+        return s == corner;
+    }
+
+    /// Lays the diagonal of the two triangles at side s the other way if that is better.
+    bool flip(Index s) {
+        const Index t = twin_[s], a = corners_[s], b = corners_[next(s)], c = corners_[previous(s)],
+                    d = corners_[previous(t)];
+        if (c == d || facets_[a] < 4 || facets_[b] < 4) return false;
+        const double old_shape = std::min(shape(at(a), at(b), at(c)), shape(at(b), at(a), at(d)));
+        const double new_shape = std::min(shape(at(c), at(a), at(d)), shape(at(d), at(b), at(c)));
+        if (new_shape < std::min(least_shape, old_shape)) return false;
+        const Vec3 first = normal(at(c), at(a), at(d)), second = normal(at(d), at(b), at(c)),
+                   sum = first + second;
+        if ((first | sum) <= 0 || (second | sum) <= 0) return false;
+        const bool flat = warp(a, b, c, d) <= tolerance_;
+        const double was = flat ? 0 : off_surface(a, b);
+        if (was > tolerance_) {
+            if (off_surface(c, d) > 0.5 * was) return false;
+        } else {
+            const Vec3 old1 = normal(at(a), at(b), at(c)), old2 = normal(at(b), at(a), at(d));
+            if (new_shape < better_shape * old_shape) return false;
+            if ((first | second) < flip_cosine * first.norm() * second.norm()) return false;
+            if ((old1 | old2) < flip_cosine * old1.norm() * old2.norm() && old_shape > least_shape)
+                return false;
+            if (!flat && off_surface(c, d) > tolerance_) return false;
+        }
+        if (!apart(previous(s), d) && !apart(previous(t), c)) return false;
+        turn(s, t);
+        return true;
+    }
+
+    void turn(Index s, Index t) {
+        const Index a = corners_[s], b = corners_[t], c = corners_[previous(s)], d = corners_[previous(t)];
+        const Index ca = twin_[previous(s)], bc = twin_[next(s)], ad = twin_[next(t)],
+                    db = twin_[previous(t)];
+        const Index one = s - s % 3, two = t - t % 3;
+        const auto place = [&](Index from, std::array<Index, 3> corners) {
+            for (Index k = 0; k < 3; ++k) corners_[from + k] = corners[k];
+        };
+        place(one, {d, c, a}); // the diagonal is side 0 of either
+        place(two, {c, d, b});
+        half_[one / 3] = half_[two / 3] = 0;
+        const auto tie = [&](Index x, Index y) {
+            twin_[x] = y;
+            if (y != no_index) twin_[y] = x;
+        };
+        tie(one, two);
+        tie(one + 1, ca);
+        tie(one + 2, ad);
+        tie(two + 1, db);
+        tie(two + 2, bc);
+        --facets_[a], --facets_[b], ++facets_[c], ++facets_[d];
+    }
+
+    struct Quad {
+        double score;
+        Index side;
+    };
+
+    std::optional<Quad> quad_across(Index s) const {
+        const Index t = twin_[s], a = corners_[s], b = corners_[t], c = corners_[previous(s)],
+                    d = corners_[previous(t)];
+        const Vec3 one = normal(at(a), at(b), at(c)), two = normal(at(b), at(a), at(d));
+        if (c == d || (one | two) < join_cosine * one.norm() * two.norm()) return std::nullopt;
+        const std::array<Index, 4> ring{a, d, b, c};
+        const Vec3 up = (one + two).normalized();
+        double sine = 1;
+        for (std::size_t i = 0; i < 4; ++i) {
+            const Vec3 &p = at(ring[i]), &q = at(ring[(i + 1) % 4]), &r = at(ring[(i + 3) % 4]);
+            sine = std::min(sine, (((q - p) % (r - p)) | up) / ((q - p).norm() * (r - p).norm()));
+        }
+        // Whoever cuts the quad takes the shorter diagonal: it must be the one that is there, or do no harm.
+        const bool shorter = (at(b) - at(a)).sqrnorm() <= (at(d) - at(c)).sqrnorm();
+        if (!(sine >= least_corner) || (!shorter && warp(a, b, c, d) > tolerance_)) return std::nullopt;
+        const bool whole = half_[s / 3] && half_[t / 3] && s % 3 == 0 && t % 3 == 0;
+        return Quad{sine + (whole ? was_quad : 0), s};
+    }
+
+    std::size_t join() {
+        std::vector<Quad> quads;
+        for (Index s = 0; s < corners_.size(); ++s)
+            if (twin_[s] != no_index && s < twin_[s])
+                if (const auto quad = quad_across(s)) quads.push_back(*quad);
+        tbb::parallel_sort(quads.begin(), quads.end(), [](const Quad& p, const Quad& q) {
+            return p.score != q.score ? p.score > q.score : p.side < q.side;
+        });
+        std::vector<Index> partner(half_.size(), no_index); // per triangle, the side that goes
+        std::size_t joined = 0;
+        for (const Quad& quad : quads) {
+            const Index s = quad.side, t = twin_[s], a = corners_[s], b = corners_[t];
+            if (partner[s / 3] != no_index || partner[t / 3] != no_index) continue;
+            if (facets_[a] < 4 || facets_[b] < 4) continue; // a vertex keeps three facets
+            --facets_[a], --facets_[b];
+            partner[s / 3] = s;
+            partner[t / 3] = t;
+            ++joined;
+        }
+        for (Index f = 0; f < half_.size(); ++f) {
+            const Index s = partner[f];
+            if (s == no_index)
+                kept_.add_facet(std::array{corners_[3 * f], corners_[3 * f + 1], corners_[3 * f + 2]});
+            else if (s < twin_[s])
+                kept_.add_facet(std::array{corners_[s], corners_[previous(twin_[s])], corners_[next(s)],
+                                           corners_[previous(s)]});
+        }
+        return joined;
+    }
+
+    PolygonMesh& mesh_;
+    const MeshDistance& to_fine_;
+    double tolerance_;
+    PolygonMesh kept_;               // facets that are done
+    std::vector<Index> corners_;     // three per triangle
+    std::vector<std::uint8_t> half_; // per triangle, is it half of a former quad, the diagonal its side 0?
+    std::vector<Index> facet_;       // per triangle, the facet it was cut from
+    std::vector<Index> twin_;        // per side of a triangle
+    std::vector<Index> facets_;      // per vertex
+};
+
+} // namespace
+
+TidyCounts tidy_facets(PolygonMesh& mesh, const MeshDistance& to_fine, double tolerance,
+                       const std::function<bool(Index)>& settled) {
+    return Tidying(mesh, to_fine, tolerance, settled).run();
+}
+
+} // namespace hsdm

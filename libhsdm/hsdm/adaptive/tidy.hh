@@ -1,0 +1,23 @@
+#pragma once
+// Facets over leaves of different size, cut and joined anew over the same vertices.
+
+#include "hsdm/quality/distance.hh"
+
+#include <functional>
+
+namespace hsdm {
+
+struct TidyCounts {
+    std::size_t flipped = 0; ///< diagonals laid the other way
+    std::size_t joined = 0;  ///< pairs of triangles that became quads
+};
+
+/// Cuts quads into triangles, lays diagonals where they are near the fine surface (so along creases) and
+/// otherwise so that triangles are well shaped, and joins flat pairs of triangles to convex quads, those
+/// first that are nearest to rectangles. What is no more than `tolerance` (the mesh's units) off the fine
+/// surface, or off a plane, counts as on it. A 2-manifold remains one with the same vertices; facets of which
+/// all vertices are `settled`, and those of more than four corners, stay. O(corners log corners).
+TidyCounts tidy_facets(PolygonMesh& mesh, const MeshDistance& to_fine, double tolerance,
+                       const std::function<bool(Index)>& settled);
+
+} // namespace hsdm
