@@ -130,7 +130,8 @@ private:
     std::size_t split_troubled() {
         std::size_t splits = 0;
         std::vector<std::uint8_t> due(result_.mesh.vertex_count(), 0);
-        const std::vector<Index> troubled = troubled_vertices(result_.mesh);
+        std::vector<Index> troubled = troubled_vertices(result_.mesh);
+        add_lost(troubled);
         for (Index v : troubled) splits += split_at(coarse_[v]);
         if (splits > 0 || troubled.empty()) return splits;
         // Vertices of the deepest level alone cannot be helped: their neighbours can.
@@ -141,6 +142,15 @@ private:
             for (Index v : ring) splits += split_at(coarse_[v]);
         }
         return splits;
+    }
+
+    /// Vertices whose facets have all gone: a piece of the surface as small as a leaf.
+    void add_lost(std::vector<Index>& troubled) const {
+        std::vector<std::uint8_t> lost(coarse_.size(), 0);
+        for (Index v : fine_.corners) lost[vertex_[v]] = 1;
+        for (Index v : result_.mesh.corners) lost[v] = 0;
+        for (Index v = 0; v < lost.size(); ++v)
+            if (lost[v]) troubled.push_back(v);
     }
 
     std::size_t split_intersecting() {

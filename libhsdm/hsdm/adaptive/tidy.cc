@@ -1,6 +1,6 @@
 #include "hsdm/adaptive/tidy.hh"
 
-#include "hsdm/facets/area_vector.hh"
+#include "hsdm/chunks.hh"
 
 #include <tbb/parallel_sort.h>
 
@@ -14,6 +14,8 @@ namespace hsdm {
 namespace {
 
 constexpr int sweeps = 4;
+constexpr std::size_t sides_per_chunk = 3 * 1024; // whole triangles, and the same hints for any thread count
+
 constexpr double better_shape = 1.1; // a flip for shape gains at least this factor
 constexpr double least_shape = 0.02; // of an equilateral triangle's: no flip makes one thinner
 constexpr double flip_cosine = 0.94; // for shape: normals up to 20 degrees apart
@@ -41,7 +43,7 @@ public:
             const auto ring = mesh.facet(f);
             whole[f] = ring.size() > 4 || std::all_of(ring.begin(), ring.end(), settled);
         }
-        // A diagonal may be an edge already: such quads are not cut.
+        // A diagonal may be an edge of other facets already: such quads are not cut.
         do cut_all(whole);
         while (keep_whole(whole));
         for (Index v : corners_) ++facets_[v];
@@ -50,11 +52,16 @@ public:
 
     TidyCounts run() {
         TidyCounts counts;
+        look_at_edges();
+        std::vector<std::uint8_t> turned(half_.size(), 1);
         for (int sweep = 0; sweep < sweeps; ++sweep) {
+            turned_.assign(half_.size(), 0);
             std::size_t flipped = 0;
             for (Index s = 0; s < corners_.size(); ++s)
-                flipped += twin_[s] != no_index && s < twin_[s] && flip(s);
+                if (twin_[s] != no_index && s < twin_[s] && (turned[s / 3] || turned[twin_[s] / 3]))
+                    flipped += flip(s);
             counts.flipped += flipped;
+            turned.swap(turned_);
             if (flipped == 0) break;
         }
         counts.joined = join();
@@ -68,13 +75,40 @@ private:
     static Index next(Index s) { return s % 3 == 2 ? s - 2 : s + 1; }
     static Index previous(Index s) { return s % 3 == 0 ? s + 2 : s - 1; }
 
-    double off_surface(Index a, Index b) const { return to_fine_(0.5 * (at(a) + at(b))); }
+    Vec3 middle(Index a, Index b) const { return 0.5 * (at(a) + at(b)); }
 
     /// How far the lines a-b and c-d miss each other: what a quad with these diagonals is off a plane.
     double warp(Index a, Index b, Index c, Index d) const {
         const Vec3 across = (at(b) - at(a)) % (at(d) - at(c));
         const double length = across.norm();
         return length > 0 ? std::abs(across | (at(c) - at(a))) / length : 0;
+    }
+
+    /// Notes which edges that bend are off the fine surface.
+    void look_at_edges() {
+        look_.assign(corners_.size(), Look::none);
+        for_chunks(corners_.size(), sides_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            Index hint = no_index;
+            for (std::size_t i = begin; i < end; ++i) {
+                const auto s = static_cast<Index>(i);
+                const Index t = twin_[s];
+                if (t == no_index || t < s) continue;
+                const Index a = corners_[s], b = corners_[t];
+                if (warp(a, b, corners_[previous(s)], corners_[previous(t)]) > tolerance_)
+                    look_[s] = look_[t] = look(a, b, hint);
+            }
+        });
+    }
+
+    enum class Look : std::uint8_t { none, on, off };
+    Look look(Index a, Index b, Index& hint) const {
+        return to_fine_.is_beyond(middle(a, b), tolerance_, hint) ? Look::off : Look::on;
+    }
+
+    bool is_off(Index s) {
+        const Index t = twin_[s];
+        if (look_[s] == Look::none) look_[s] = look_[t] = look(corners_[s], corners_[t], hint_);
+        return look_[s] == Look::off;
     }
 
     void add(Index a, Index b, Index c, bool half) {
@@ -97,15 +131,25 @@ private:
         link();
     }
 
-    /// Marks the quads whose diagonals are not theirs alone; false if there is none.
+    /// Marks the quads whose diagonals are, or might be, not theirs alone; false if there is none.
     bool keep_whole(std::vector<std::uint8_t>& whole) const {
         bool any = false;
-        for (Index s = 0; s < corners_.size(); s += 3)
-            if (half_[s / 3] && (twin_[s] == no_index || facet_[twin_[s] / 3] != facet_[s / 3])) {
-                whole[facet_[s / 3]] = 1;
-                any = true;
-            }
+        for (Index s = 0; s < corners_.size(); s += 3) {
+            if (!half_[s / 3]) continue;
+            const bool own = twin_[s] != no_index && facet_[twin_[s] / 3] == facet_[s / 3];
+            if (own && (is_whole_fan(s) || is_whole_fan(next(s)))) continue;
+            whole[facet_[s / 3]] = 1;
+            any = true;
+        }
         return any;
+    }
+
+    /// Do triangles alone surround the vertex at this corner?
+    bool is_whole_fan(Index corner) const {
+        Index s = corner;
+        do s = twin_[s] == no_index ? no_index : next(twin_[s]);
+        while (s != no_index && s != corner);
+        return s == corner;
     }
 
     void cut(std::span<const Index> f) {
@@ -171,42 +215,51 @@ private:
                    sum = first + second;
         if ((first | sum) <= 0 || (second | sum) <= 0) return false;
         const bool flat = warp(a, b, c, d) <= tolerance_;
-        const double was = flat ? 0 : off_surface(a, b);
-        if (was > tolerance_) {
-            if (off_surface(c, d) > 0.5 * was) return false;
+        Look now = Look::on;
+        if (!flat && is_off(s)) {
+            const double was = to_fine_(middle(a, b));
+            if (to_fine_.is_beyond(middle(c, d), 0.5 * was, hint_)) return false;
+            now = Look::none;
         } else {
             const Vec3 old1 = normal(at(a), at(b), at(c)), old2 = normal(at(b), at(a), at(d));
             if (new_shape < better_shape * old_shape) return false;
             if ((first | second) < flip_cosine * first.norm() * second.norm()) return false;
             if ((old1 | old2) < flip_cosine * old1.norm() * old2.norm() && old_shape > least_shape)
                 return false;
-            if (!flat && off_surface(c, d) > tolerance_) return false;
+            if (flat)
+                now = look_[s];
+            else if (look(c, d, hint_) == Look::off)
+                return false;
         }
         if (!apart(previous(s), d) && !apart(previous(t), c)) return false;
-        turn(s, t);
+        turn(s, t, now);
         return true;
     }
 
-    void turn(Index s, Index t) {
+    void turn(Index s, Index t, Look now) {
         const Index a = corners_[s], b = corners_[t], c = corners_[previous(s)], d = corners_[previous(t)];
         const Index ca = twin_[previous(s)], bc = twin_[next(s)], ad = twin_[next(t)],
                     db = twin_[previous(t)];
+        const Look look_ca = look_[previous(s)], look_bc = look_[next(s)], look_ad = look_[next(t)],
+                   look_db = look_[previous(t)];
         const Index one = s - s % 3, two = t - t % 3;
+        turned_[one / 3] = turned_[two / 3] = 1;
         const auto place = [&](Index from, std::array<Index, 3> corners) {
             for (Index k = 0; k < 3; ++k) corners_[from + k] = corners[k];
         };
         place(one, {d, c, a}); // the diagonal is side 0 of either
         place(two, {c, d, b});
         half_[one / 3] = half_[two / 3] = 0;
-        const auto tie = [&](Index x, Index y) {
+        const auto tie = [&](Index x, Index y, Look look) {
             twin_[x] = y;
-            if (y != no_index) twin_[y] = x;
+            look_[x] = look;
+            if (y != no_index) twin_[y] = x, look_[y] = look;
         };
-        tie(one, two);
-        tie(one + 1, ca);
-        tie(one + 2, ad);
-        tie(two + 1, db);
-        tie(two + 2, bc);
+        tie(one, two, now);
+        tie(one + 1, ca, look_ca);
+        tie(one + 2, ad, look_ad);
+        tie(two + 1, db, look_db);
+        tie(two + 2, bc, look_bc);
         --facets_[a], --facets_[b], ++facets_[c], ++facets_[d];
     }
 
@@ -267,12 +320,15 @@ private:
     PolygonMesh& mesh_;
     const MeshDistance& to_fine_;
     double tolerance_;
-    PolygonMesh kept_;               // facets that are done
-    std::vector<Index> corners_;     // three per triangle
-    std::vector<std::uint8_t> half_; // per triangle, is it half of a former quad, the diagonal its side 0?
-    std::vector<Index> facet_;       // per triangle, the facet it was cut from
-    std::vector<Index> twin_;        // per side of a triangle
-    std::vector<Index> facets_;      // per vertex
+    PolygonMesh kept_;                 // facets that are done
+    std::vector<Index> corners_;       // three per triangle
+    std::vector<std::uint8_t> half_;   // per triangle, is it half of a former quad, the diagonal its side 0?
+    std::vector<Index> facet_;         // per triangle, the facet it was cut from
+    std::vector<Index> twin_;          // per side of a triangle
+    std::vector<Look> look_;           // per side
+    std::vector<std::uint8_t> turned_; // per triangle, in this sweep
+    Index hint_ = no_index;
+    std::vector<Index> facets_; // per vertex
 };
 
 } // namespace

@@ -52,15 +52,18 @@ Distance MeshDistance::operator()(std::span<const Vec3> points) const {
     return {total.max, total.sum / n, std::sqrt(total.squares / n), total.farthest};
 }
 
+bool MeshDistance::is_beyond(const Vec3& point, double bound, Index& hint) const {
+    const TriangleTree::Nearest nearest = tree_.nearest(point, hint, bound * bound);
+    hint = nearest.block;
+    return std::sqrt(nearest.squared) > bound;
+}
+
 std::vector<std::uint8_t> MeshDistance::beyond(std::span<const Vec3> points, double bound) const {
     std::vector<std::uint8_t> far(points.size());
     tbb::parallel_for(std::size_t{0}, (points.size() + chunk - 1) / chunk, [&](std::size_t c) {
         Index hint = no_index;
-        for (std::size_t i = c * chunk; i < std::min(points.size(), (c + 1) * chunk); ++i) {
-            const TriangleTree::Nearest nearest = tree_.nearest(points[i], hint, bound * bound);
-            hint = nearest.block;
-            far[i] = std::sqrt(nearest.squared) > bound;
-        }
+        for (std::size_t i = c * chunk; i < std::min(points.size(), (c + 1) * chunk); ++i)
+            far[i] = is_beyond(points[i], bound, hint);
     });
     return far;
 }

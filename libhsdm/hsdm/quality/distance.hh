@@ -29,6 +29,8 @@ public:
     /// Per point, is it farther than `bound` from every triangle? Several times quicker than distances where
     /// few are.
     std::vector<std::uint8_t> beyond(std::span<const Vec3> points, double bound) const;
+    /// One point; `hint` is no_index or what the call for a point nearby left there.
+    bool is_beyond(const Vec3& point, double bound, Index& hint) const;
 
 private:
     TriangleTree tree_;
