@@ -37,6 +37,15 @@ std::string islands_words(const Report& report) {
     return "; " + plural(dropped->second, "small component", "small components") + " dropped";
 }
 
+/// What became of the bound that an adaptive grid was to keep.
+std::string bound_words(const Report& report) {
+    if (report.grid.max_error == 0) return {};
+    const std::string bound = "\nbound     " + number(report.grid.max_error, 3) + ": ";
+    if (report.grid.points_beyond == 0) return bound + "kept by all points";
+    return bound + "not met at " + plural(report.grid.points_beyond, "point", "points")
+           + ", which the finest surface misses already";
+}
+
 std::string seconds(double value) {
     std::ostringstream text;
     text << std::fixed << std::setprecision(2) << value << " s";
@@ -78,8 +87,8 @@ void print_summary(std::ostream& out, const Report& r, const std::string& writte
         << plural(r.features.sharp_edges, "sharp edge", "sharp edges") << "\ntopology  "
         << topology_words(r.mesh) << islands_words(r) << "\nerror     points to mesh: max "
         << number(r.error.points_to_mesh_max, 3) << " (" << number(100 * r.error.normalised_max, 3)
-        << " % of the diagonal), mean " << number(r.error.points_to_mesh_mean, 3) << "\nwritten   " << written
-        << " in " << seconds(r.seconds.total) << '\n';
+        << " % of the diagonal), mean " << number(r.error.points_to_mesh_mean, 3) << bound_words(r)
+        << "\nwritten   " << written << " in " << seconds(r.seconds.total) << '\n';
 }
 
 void print_details(std::ostream& out, const Report& r) {

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <numeric>
 
 namespace hsdm {
 namespace {
@@ -18,6 +19,15 @@ double majority(std::vector<double>& values) {
         if (end - begin > most) most = end - begin, best = values[begin];
     }
     return best;
+}
+
+/// Over the finite values, in their own order; a scanner's "no value" is often NaN.
+double mean(const std::vector<double>& values) {
+    double sum = 0;
+    std::size_t count = 0;
+    for (double value : values)
+        if (std::isfinite(value)) sum += value, ++count;
+    return count > 0 ? sum / static_cast<double>(count) : std::numeric_limits<double>::quiet_NaN();
 }
 
 class VoxelAverages {
@@ -43,15 +53,6 @@ public:
     }
 
 private:
-    /// Over the finite values, in the voxel's own order; a scanner's "no value" is often NaN.
-    static double mean(const std::vector<double>& values) {
-        double sum = 0;
-        std::size_t count = 0;
-        for (double value : values)
-            if (std::isfinite(value)) sum += value, ++count;
-        return count > 0 ? sum / static_cast<double>(count) : std::numeric_limits<double>::quiet_NaN();
-    }
-
     const Octree& octree_;
     const OctreeLevel& level_;
     std::span<const Index> voxel_;
@@ -80,6 +81,32 @@ std::vector<VertexProperty> average_attributes(const PointCloud& cloud, const Oc
     properties.push_back(
         {"hsdm_level", Type::uint8, std::vector<double>(voxel.size(), static_cast<double>(level.depth))});
     return properties;
+}
+
+std::vector<VertexProperty> merge_attributes(std::span<const VertexProperty> properties,
+                                             std::span<const Index> into, std::size_t count) {
+    using Type = VertexProperty::Type;
+    std::vector<Index> first(count + 1, 0), members(into.size());
+    for (Index v : into) ++first[v + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<Index> next(first.begin(), first.end() - 1);
+    for (Index v = 0; v < into.size(); ++v) members[next[into[v]]++] = v;
+    std::vector<VertexProperty> result;
+    for (const VertexProperty& property : properties) {
+        VertexProperty merged{property.name, property.type, std::vector<double>(count)};
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1 << 10), [&](const auto& range) {
+            std::vector<double> values;
+            for (std::size_t v = range.begin(); v != range.end(); ++v) {
+                values.clear();
+                for (Index m = first[v]; m < first[v + 1]; ++m) values.push_back(property.values[members[m]]);
+                double& value = merged.values[v];
+                value = property.type == Type::int32 ? majority(values) : mean(values);
+                if (property.type == Type::uint8) value = std::round(value);
+            }
+        });
+        result.push_back(std::move(merged));
+    }
+    return result;
 }
 
 } // namespace hsdm

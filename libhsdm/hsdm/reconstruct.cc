@@ -304,6 +304,7 @@ Reconstruction reconstruct_level(const PointCloud& cloud, const Octree& octree, 
         measure_error(octree, facets, report);
         measure_mesh(facets, report);
     });
+    check_error_kept(report);
 
     Reconstruction result;
     phases.run("mesh", 0.85, seconds.mesh, [&] {

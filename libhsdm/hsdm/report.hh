@@ -46,6 +46,8 @@ struct Report {
     struct Error {
         double points_to_mesh_max = 0, points_to_mesh_mean = 0, points_to_mesh_rms = 0;
         double normalised_max = 0; ///< max over the diagonal of the bounding box
+        /// Of an adaptive grid: the mesh from the surface on the finest grid; 0 for a uniform one.
+        double mesh_to_surface_max = 0, mesh_to_surface_mean = 0;
     } error;
 
     std::map<std::string, std::size_t> rejected; ///< by stage: what it refused, mended or split

@@ -1,6 +1,7 @@
 #include "hsdm/adaptive/adaptive_grid.hh"
 
 #include "hsdm/adaptive/coarsen.hh"
+#include "hsdm/attributes.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/reconstruct.hh"
 
@@ -17,16 +18,12 @@ double error_bound(const MethodInput& in) {
     return asked.of_diagonal ? asked.value * in.octree.bounds.diagonal() : asked.value;
 }
 
-/// Properties of the fine vertices that the coarse ones stand for; levels are their own.
+/// Of the fine vertices that the coarse ones stand for; levels are their own.
 std::vector<VertexProperty> properties_of(const PolygonMesh& fine, const AdaptiveMesh& coarse) {
-    std::vector<VertexProperty> result = fine.properties;
-    for (VertexProperty& property : result) {
-        std::vector<double> values;
-        for (std::size_t v = 0; v < coarse.source.size(); ++v)
-            values.push_back(property.name == "hsdm_level" ? coarse.level[v]
-                                                           : property.values[coarse.source[v]]);
-        property.values = std::move(values);
-    }
+    std::vector<VertexProperty> result =
+        merge_attributes(fine.properties, coarse.vertex, coarse.mesh.vertex_count());
+    for (VertexProperty& property : result)
+        if (property.name == "hsdm_level") property.values.assign(coarse.level.begin(), coarse.level.end());
     return result;
 }
 
@@ -48,15 +45,21 @@ PolygonMesh adaptive_grid(const MethodInput& in, const PolygonMesh& fine, Report
     report.rejected["leaves_split_for_topology"] = coarse.topology_splits;
     report.rejected["leaves_split_for_error"] = coarse.error_splits;
     report.rejected["leaves_split_for_intersections"] = coarse.intersection_splits;
-    if (coarse.points_beyond > coarse.unreachable) {
-        char text[160];
-        std::snprintf(text, sizeof text,
-                      "max_error %.6g: not kept for %zu points; ask for a larger one, or for a uniform grid",
-                      bound, coarse.points_beyond - coarse.unreachable);
-        throw Error(text);
-    }
+    report.error.mesh_to_surface_max = coarse.to_fine.max;
+    report.error.mesh_to_surface_mean = coarse.to_fine.mean;
     coarse.mesh.properties = properties_of(fine, coarse);
     return std::move(coarse.mesh);
+}
+
+void check_error_kept(const Report& report) {
+    if (report.grid.max_error == 0 || report.grid.points_beyond > 0) return;
+    if (report.error.points_to_mesh_max <= report.grid.max_error) return;
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "max_error %.6g: not kept, a point is %.6g from the mesh; ask for a larger one, or for a "
+                  "uniform grid",
+                  report.grid.max_error, report.error.points_to_mesh_max);
+    throw Error(text);
 }
 
 } // namespace hsdm

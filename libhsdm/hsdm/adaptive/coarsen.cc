@@ -15,6 +15,7 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t vertices_per_chunk = 2048;
+constexpr std::size_t fewest_samples = 10000, most_samples = 100000;
 constexpr double planes_share =
     0.35; // of the error: what planes of a leaf may be missed by, root mean square
 
@@ -37,26 +38,38 @@ public:
     }
 
     AdaptiveMesh run() {
-        for (int round = 0; round < options_.rounds; ++round) {
-            result_.balance_splits += balance(tree_);
-            collapse();
-            // Each only where what comes before it is right.
-            std::size_t splits = split_troubled();
-            result_.topology_splits += splits;
-            if (splits == 0) tidy();
-            if (splits == 0) {
-                const std::size_t crossing = split_intersecting(), distant = split_distant(crossing == 0);
-                result_.intersection_splits += crossing;
-                result_.error_splits += distant;
-                splits = crossing + distant;
-            }
-            if (splits == 0) break;
-        }
+        int round = 0;
+        while (round < options_.rounds && split_what_is_wrong() > 0) ++round;
+        if (round == options_.rounds) settle_for_fine();
         count_leaves();
+        const std::size_t samples = std::clamp(2 * result_.mesh.facet_count(), fewest_samples, most_samples);
+        if (to_fine_) result_.to_fine = (*to_fine_)(sample_surface(result_.mesh, samples));
+        result_.vertex = std::move(vertex_);
         return std::move(result_);
     }
 
 private:
+    /// One mesh over the leaves as they are; returns how many leaves have to be smaller.
+    std::size_t split_what_is_wrong() {
+        result_.balance_splits += balance(tree_);
+        collapse();
+        const std::size_t troubled = split_troubled();
+        result_.topology_splits += troubled;
+        if (troubled > 0) return troubled; // all else needs a 2-manifold
+        tidy();
+        const std::size_t crossing = split_intersecting(), distant = split_distant(crossing == 0);
+        result_.intersection_splits += crossing;
+        result_.error_splits += distant;
+        return crossing + distant;
+    }
+
+    void settle_for_fine() {
+        for (CellLevel& level : tree_.levels)
+            if (&level != &tree_.levels.back()) level.whole.assign(level.whole.size(), 0);
+        collapse();
+        split_distant(true);
+    }
+
     /// The leaf and the cluster of every fine vertex.
     void locate() {
         places_.resize(fine_.vertex_count());
@@ -173,7 +186,7 @@ private:
         return splits > 0 || !with_points ? splits : split_for_points(to_result);
     }
 
-    /// Middles of facets and of their sides, against the fine mesh.
+    /// Middles of facets, of their sides, and between middle and corners, against the fine mesh.
     std::size_t split_far_facets() {
         const PolygonMesh& mesh = result_.mesh;
         std::vector<Vec3> middles;
@@ -184,14 +197,17 @@ private:
                             [&](Index v) { return coarse_[v].level == tree_.depth(); }))
                 continue;
             Vec3 sum(0, 0, 0);
+            for (Index v : ring) sum += mesh.positions[v];
+            const Vec3 centre = sum / static_cast<double>(ring.size());
             for (std::size_t i = 0; i < ring.size(); ++i) {
                 const Vec3 &a = mesh.positions[ring[i]], &b = mesh.positions[ring[(i + 1) % ring.size()]];
-                sum += a;
+                middles.push_back(0.5 * (a + centre));
+                facet.push_back(static_cast<Index>(f));
                 if (ring[i] > ring[(i + 1) % ring.size()]) continue; // the other facet has it
                 middles.push_back(0.5 * (a + b));
                 facet.push_back(static_cast<Index>(f));
             }
-            middles.push_back(sum / static_cast<double>(ring.size()));
+            middles.push_back(centre);
             facet.push_back(static_cast<Index>(f));
         }
         if (!to_fine_) to_fine_.emplace(fine_);
@@ -252,14 +268,6 @@ private:
                 result_.leaves_per_level[static_cast<std::size_t>(level)] += tree_.is_leaf(level, c);
         result_.level.clear();
         for (const Place& place : coarse_) result_.level.push_back(static_cast<std::uint8_t>(place.level));
-        result_.source.assign(coarse_.size(), no_index);
-        const auto off = [&](std::size_t v) {
-            return (fine_.positions[v] - result_.mesh.positions[vertex_[v]]).sqrnorm();
-        };
-        for (std::size_t v = 0; v < vertex_.size(); ++v) {
-            Index& source = result_.source[vertex_[v]];
-            if (source == no_index || off(v) < off(source)) source = static_cast<Index>(v);
-        }
     }
 
     const PolygonMesh& fine_;

@@ -3,7 +3,7 @@
 // keeps an error. See docs/adaptive.md.
 
 #include "hsdm/adaptive/cell_tree.hh"
-#include "hsdm/polygon_mesh.hh"
+#include "hsdm/quality/distance.hh"
 
 namespace hsdm {
 
@@ -14,9 +14,9 @@ struct CoarsenOptions {
 };
 
 struct AdaptiveMesh {
-    PolygonMesh mesh;                ///< an oriented 2-manifold with the fine one's topology
-    std::vector<Index> source;       ///< per vertex, the fine vertex nearest to it among those it stands for
-    std::vector<std::uint8_t> level; ///< per vertex, the level of its leaf
+    PolygonMesh mesh;                          ///< an oriented 2-manifold with the fine one's topology
+    std::vector<Index> vertex;                 ///< per fine vertex, the vertex that stands for it
+    std::vector<std::uint8_t> level;           ///< per vertex, the level of its leaf
     std::vector<std::size_t> leaves_per_level; ///< 0 to depth
     std::size_t balance_splits = 0;            ///< cells subdivided to balance the octree
     std::size_t topology_splits = 0;           ///< ... because the surface would not have been a 2-manifold
@@ -24,14 +24,16 @@ struct AdaptiveMesh {
     std::size_t intersection_splits = 0;       ///< ... because facets intersected
     std::size_t points_beyond = 0;             ///< points farther than max_error from the result
     std::size_t unreachable = 0;               ///< of these, so far from the fine mesh already
+    Distance to_fine;                          ///< of points spread over the mesh, from the fine one
 };
 
 /// Puts one vertex for each piece of a fine mesh in each leaf of a balanced octree. Edges between cells stay
 /// edges, so where leaves of different size meet there are neither cracks nor T-vertices. The octree is
 /// subdivided until nothing is wrong: facets a 2-manifold, no intersections the fine mesh has not, points and
-/// fine vertices within max_error of the result and it of the fine mesh. `points` and the mesh are relative
-/// to the least corner of the cube, `extent` is its edge, `depth` the level of the fine mesh. O(n log n).
-/// Throws OptionError.
+/// fine vertices within max_error of the result and it of the fine mesh. Facets are cut and joined anew where
+/// that suits their shape. If `rounds` do not suffice the fine mesh itself comes out. `points` and the mesh
+/// are relative to the least corner of the cube, `extent` is its edge, `depth` the level of the fine mesh.
+/// O(n log n). Throws OptionError.
 AdaptiveMesh coarsen(const PolygonMesh& fine, std::span<const Vec3> points, double extent, int depth,
                      const CoarsenOptions& options);
 
