@@ -105,6 +105,38 @@ TEST_CASE("an axis-parallel box becomes as few quads as its corners allow", "[ad
     CHECK(measure_topology(result.mesh).euler == 2);
 }
 
+TEST_CASE("rims of plates, edges of wedges and rods in general pose take few facets", "[adaptive]") {
+    struct Example {
+        const char* name;
+        support::Solid solid;
+        std::size_t most_faces;
+    };
+    const std::vector<Example> examples = {
+        {"plate of a twentieth", support::box({1, 1, 0.05}).placed(pose(6)), 500},
+        {"plate of a fiftieth", support::box({1, 1, 0.02}).placed(pose(7)), 500},
+        {"rod", support::box({1, 0.06, 0.06}).placed(pose(8)), 250},
+        {"wedge", support::wedge(0.5, 1, 1).placed(pose(9)), 600},
+    };
+    for (const Example& e : examples) {
+        INFO(e.name);
+        const Fine fine = fine_mesh(e.solid, 40000, 6);
+        const AdaptiveMesh result = coarse(fine, 0.003 * fine.octree.extent);
+        CHECK(faults(result.mesh) == "");
+        CHECK(measure_topology(result.mesh).euler == measure_topology(fine.mesh).euler);
+        CHECK(result.mesh.facet_count() <= e.most_faces);
+        CHECK(fine.mesh.facet_count() > 5 * e.most_faces);
+    }
+}
+
+TEST_CASE("if the rounds do not suffice the fine mesh comes out", "[adaptive]") {
+    const Fine fine = fine_mesh(support::mechanical_part(pose(2)), 40000, 5);
+    const AdaptiveMesh result = coarsen(fine.mesh, fine.octree.positions, fine.octree.extent, fine.depth,
+                                        {.max_error = 0.002 * fine.octree.extent, .rounds = 1});
+    CHECK(result.mesh.facet_count() == fine.mesh.facet_count());
+    CHECK(faults(result.mesh) == "");
+    CHECK(result.points_beyond == result.unreachable);
+}
+
 TEST_CASE("coarsening does not depend on the number of threads", "[adaptive]") {
     const Fine fine = fine_mesh(support::mechanical_part(pose(2)), 40000, 5);
     const AdaptiveMesh many = coarse(fine, 0.003 * fine.octree.extent);

@@ -181,7 +181,12 @@ TEST_CASE("an error is kept with fewer facets, as a length or as a share of the 
         CHECK(report["options"]["max-error"] == error);
         fewer = report["mesh"]["faces"];
     }
-    CHECK(run(folder, "reconstruct scan.xyz --quiet -o b.off --max-error 0.05").status == 0);
+    const CommandResult kept = run(folder, "reconstruct scan.xyz -o b.off --max-error 0.05");
+    CHECK(kept.status == 0);
+    CHECK(kept.out.find("bound     0.05: kept by all points") != std::string::npos);
+    const CommandResult missed = run(folder, "reconstruct scan.xyz -o b.off --max-error 1e-5");
+    CHECK(missed.status == 0); // announced: the finest surface is no nearer
+    CHECK(missed.out.find("points, which the finest surface misses already") != std::string::npos);
     CHECK(run(folder, "reconstruct scan.xyz --quiet -o b.off --depth 5 --grid adaptive").status == 0);
     CHECK(run(folder, "reconstruct scan.xyz --quiet -o l.off --levels 4:5 --grid adaptive").status == 0);
     for (const char* wrong : {"--max-error 0", "--max-error -1%", "--max-error few", "--max-error 1%%",

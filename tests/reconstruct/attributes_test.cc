@@ -62,3 +62,17 @@ TEST_CASE("values that are not numbers do not spoil an average", "[attributes]")
 TEST_CASE("a cloud without attributes gives the level alone", "[attributes]") {
     CHECK(attributes_of(two_voxels()).size() == 1);
 }
+
+TEST_CASE("merged attributes: means, rounded for colours, the majority of labels", "[attributes]") {
+    using Type = VertexProperty::Type;
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const std::vector<VertexProperty> fine = {{"red", Type::uint8, {10, 11, 200, 30}},
+                                              {"part", Type::int32, {7, 9, 5, 9}},
+                                              {"intensity", Type::float64, {1, nan, 4, 5}}};
+    const std::vector<Index> into = {1, 1, 0, 1};
+    const auto merged = merge_attributes(fine, into, 2);
+    CHECK(named(merged, "red").values == std::vector<double>{200, 17});
+    CHECK(named(merged, "red").type == Type::uint8);
+    CHECK(named(merged, "part").values == std::vector<double>{5, 9});
+    CHECK(named(merged, "intensity").values == std::vector<double>{4, 3});
+}

@@ -75,6 +75,9 @@ private:
     static Index next(Index s) { return s % 3 == 2 ? s - 2 : s + 1; }
     static Index previous(Index s) { return s % 3 == 0 ? s + 2 : s - 1; }
 
+    /// Can the vertex do with a facet less?
+    bool spares(Index v) const { return facets_[v] > least_facets_[v]; }
+
     Vec3 middle(Index a, Index b) const { return 0.5 * (at(a) + at(b)); }
 
     /// How far the lines a-b and c-d miss each other: what a quad with these diagonals is off a plane.
@@ -131,25 +134,15 @@ private:
         link();
     }
 
-    /// Marks the quads whose diagonals are, or might be, not theirs alone; false if there is none.
+    /// Marks the quads whose diagonals are not theirs alone; false if there is none.
     bool keep_whole(std::vector<std::uint8_t>& whole) const {
         bool any = false;
         for (Index s = 0; s < corners_.size(); s += 3) {
-            if (!half_[s / 3]) continue;
-            const bool own = twin_[s] != no_index && facet_[twin_[s] / 3] == facet_[s / 3];
-            if (own && (is_whole_fan(s) || is_whole_fan(next(s)))) continue;
+            if (!half_[s / 3] || (twin_[s] != no_index && facet_[twin_[s] / 3] == facet_[s / 3])) continue;
             whole[facet_[s / 3]] = 1;
             any = true;
         }
         return any;
-    }
-
-    /// Do triangles alone surround the vertex at this corner?
-    bool is_whole_fan(Index corner) const {
-        Index s = corner;
-        do s = twin_[s] == no_index ? no_index : next(twin_[s]);
-        while (s != no_index && s != corner);
-        return s == corner;
     }
 
     void cut(std::span<const Index> f) {
@@ -170,24 +163,31 @@ private:
     /// Side s runs from corner s to next(s). Sides that not just two triangles share stay alone.
     void link() {
         struct Side {
-            Index low, high, side;
+            Index low, high, side; // no_index: of a facet that is kept
             bool operator<(const Side& o) const {
                 return std::tie(low, high, side) < std::tie(o.low, o.high, o.side);
             }
         };
-        std::vector<Side> sides(corners_.size());
-        for (Index s = 0; s < sides.size(); ++s) {
-            const auto [low, high] = std::minmax(corners_[s], corners_[next(s)]);
-            sides[s] = {low, high, s};
+        std::vector<Side> sides;
+        sides.reserve(corners_.size() + kept_.corners.size());
+        const auto enter = [&](Index a, Index b, Index side) {
+            sides.push_back({std::min(a, b), std::max(a, b), side});
+        };
+        for (Index s = 0; s < corners_.size(); ++s) enter(corners_[s], corners_[next(s)], s);
+        for (std::size_t f = 0; f < kept_.facet_count(); ++f) {
+            const auto ring = kept_.facet(f);
+            for (std::size_t i = 0; i < ring.size(); ++i)
+                enter(ring[i], ring[(i + 1) % ring.size()], no_index);
         }
         tbb::parallel_sort(sides.begin(), sides.end());
         twin_.assign(corners_.size(), no_index);
+        least_facets_.assign(mesh_.vertex_count(), 3);
         for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
-            while (end < sides.size() && sides[end].low == sides[begin].low
-                   && sides[end].high == sides[begin].high)
-                ++end;
-            const Index s = sides[begin].side, t = sides[end - 1].side;
-            if (end - begin != 2 || corners_[s] == corners_[t]) continue;
+            const Side& first = sides[begin];
+            while (end < sides.size() && sides[end].low == first.low && sides[end].high == first.high) ++end;
+            if (end - begin == 1) least_facets_[first.low] = least_facets_[first.high] = 1; // a border
+            const Index s = first.side, t = sides[end - 1].side;
+            if (end - begin != 2 || t == no_index || corners_[s] == corners_[t]) continue;
             twin_[s] = t;
             twin_[t] = s;
         }
@@ -207,7 +207,7 @@ private:
     bool flip(Index s) {
         const Index t = twin_[s], a = corners_[s], b = corners_[next(s)], c = corners_[previous(s)],
                     d = corners_[previous(t)];
-        if (c == d || facets_[a] < 4 || facets_[b] < 4) return false;
+        if (c == d || !spares(a) || !spares(b)) return false;
         const double old_shape = std::min(shape(at(a), at(b), at(c)), shape(at(b), at(a), at(d)));
         const double new_shape = std::min(shape(at(c), at(a), at(d)), shape(at(d), at(b), at(c)));
         if (new_shape < std::min(least_shape, old_shape)) return false;
@@ -300,7 +300,7 @@ private:
         for (const Quad& quad : quads) {
             const Index s = quad.side, t = twin_[s], a = corners_[s], b = corners_[t];
             if (partner[s / 3] != no_index || partner[t / 3] != no_index) continue;
-            if (facets_[a] < 4 || facets_[b] < 4) continue; // a vertex keeps three facets
+            if (!spares(a) || !spares(b)) continue;
             --facets_[a], --facets_[b];
             partner[s / 3] = s;
             partner[t / 3] = t;
@@ -328,7 +328,7 @@ private:
     std::vector<Look> look_;           // per side
     std::vector<std::uint8_t> turned_; // per triangle, in this sweep
     Index hint_ = no_index;
-    std::vector<Index> facets_; // per vertex
+    std::vector<Index> facets_, least_facets_; // per vertex: three, or one at a border
 };
 
 } // namespace

@@ -1,0 +1,93 @@
+#include "hsdm/adaptive/tidy.hh"
+#include "hsdm/adaptive/trouble.hh"
+#include "hsdm/facets/area_vector.hh"
+#include "hsdm/quality/topology.hh"
+
+#include <catch2/catch.hpp>
+
+#include <array>
+#include <cmath>
+
+using namespace hsdm;
+
+namespace {
+
+constexpr Index side = 7; // vertices
+
+/// A sheet of quads over a square, `height` at (x, y) up; the vertices by rows.
+template <class Height>
+PolygonMesh sheet(const Height& height) {
+    PolygonMesh mesh;
+    for (Index y = 0; y < side; ++y)
+        for (Index x = 0; x < side; ++x) mesh.positions.emplace_back(x, y, height(double(x), double(y)));
+    for (Index y = 0; y + 1 < side; ++y)
+        for (Index x = 0; x + 1 < side; ++x) {
+            const Index v = y * side + x;
+            mesh.add_facet(std::array{v, v + 1, v + side + 1, v + side});
+        }
+    return mesh;
+}
+
+TidyCounts tidied(PolygonMesh& mesh, const PolygonMesh& fine, double tolerance = 0.05) {
+    return tidy_facets(mesh, MeshDistance(fine), tolerance, [](Index) { return false; });
+}
+
+bool has_edge(const PolygonMesh& mesh, Index a, Index b) {
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+        const auto ring = mesh.facet(f);
+        for (std::size_t i = 0; i < ring.size(); ++i)
+            if (ring[i] == a && ring[(i + 1) % ring.size()] == b) return true;
+    }
+    return false;
+}
+
+} // namespace
+
+TEST_CASE("triangles of a flat sheet become quads again", "[adaptive]") {
+    const PolygonMesh flat = sheet([](double, double) { return 0.0; });
+    PolygonMesh mesh;
+    mesh.positions = flat.positions;
+    for (std::size_t f = 0; f < flat.facet_count(); ++f) {
+        const auto q = flat.facet(f);
+        mesh.add_facet(std::array{q[0], q[1], q[2]});
+        mesh.add_facet(std::array{q[0], q[2], q[3]});
+    }
+    const TidyCounts counts = tidied(mesh, flat);
+    CHECK(counts.joined >= 30); // of 36
+    CHECK(troubled_vertices(mesh).empty());
+    CHECK(measure_topology(mesh).euler == 1);
+}
+
+TEST_CASE("quads across a crease are cut along it", "[adaptive]") {
+    // A roof whose ridge runs along the diagonals from (x, x) to (x + 1, x + 1).
+    const PolygonMesh fine = [] {
+        PolygonMesh roof = sheet([](double x, double y) { return -std::abs(x - y); });
+        PolygonMesh cut;
+        cut.positions = roof.positions;
+        for (std::size_t f = 0; f < roof.facet_count(); ++f) {
+            const auto q = roof.facet(f);
+            cut.add_facet(std::array{q[0], q[1], q[2]});
+            cut.add_facet(std::array{q[0], q[2], q[3]});
+        }
+        return cut;
+    }();
+    PolygonMesh mesh = sheet([](double x, double y) { return -std::abs(x - y); });
+    tidied(mesh, fine);
+    for (Index i = 0; i + 1 < side; ++i) {
+        INFO("ridge from " << i);
+        const Index v = i * side + i;
+        CHECK((has_edge(mesh, v, v + side + 1) || has_edge(mesh, v + side + 1, v)));
+    }
+    CHECK(points_to_mesh(fine.positions, mesh).max < 1e-12);
+    CHECK(troubled_vertices(mesh).empty());
+    CHECK(measure_topology(mesh).euler == 1);
+}
+
+TEST_CASE("settled facets stay as they are", "[adaptive]") {
+    PolygonMesh mesh = sheet([](double x, double y) { return -std::abs(x - y); });
+    const PolygonMesh before = mesh;
+    const TidyCounts counts = tidy_facets(mesh, MeshDistance(before), 0.05, [](Index) { return true; });
+    CHECK(counts.flipped == 0);
+    CHECK(counts.joined == 0);
+    CHECK(mesh.corners == before.corners);
+}

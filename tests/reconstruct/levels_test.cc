@@ -1,0 +1,82 @@
+#include "hsdm/ReconstructorT.hh"
+#include "hsdm/facets/to_mesh.hh"
+#include "support/check.hh"
+#include "support/sample.hh"
+
+#include <catch2/catch.hpp>
+
+using namespace hsdm;
+using support::faults;
+
+namespace {
+
+struct Example {
+    const char* name;
+    support::Solid solid;
+    long genus;
+    int carries; ///< the coarsest level whose voxels carry the genus
+};
+
+std::vector<Example> examples() {
+    support::Random random(21);
+    return {{"torus", support::torus(1, 0.4).placed(support::random_pose(random)), 1, 4},
+            {"plate", support::box({1, 1, 0.1}).placed(support::random_pose(random)), 0, 4},
+            {"mechanical part", support::mechanical_part(support::random_pose(random)), 3, 5}};
+}
+
+PointCloud scan(const support::Solid& solid) {
+    return support::sample(solid, {.points = 20000});
+}
+
+} // namespace
+
+TEST_CASE("nested levels on adaptive grids are sound, each that of its depth alone", "[reconstruct]") {
+    for (const Example& e : examples()) {
+        INFO(e.name);
+        const PointCloud cloud = scan(e.solid);
+        ReconstructOptions options;
+        const std::vector<Reconstruction> uniform = reconstruct_levels(cloud, 4, 5, options);
+        options.grid = Grid::adaptive;
+        const std::vector<Reconstruction> levels = reconstruct_levels(cloud, 4, 5, options);
+        REQUIRE(levels.size() == 2);
+        for (int depth = 4; depth <= 5; ++depth) {
+            INFO("depth " << depth);
+            const Reconstruction& level = levels[static_cast<std::size_t>(depth - 4)];
+            const Report::Mesh& whole = uniform[static_cast<std::size_t>(depth - 4)].report.mesh;
+            CHECK(faults(to_polygons(level.mesh)) == "");
+            CHECK(level.report.mesh.closed);
+            CHECK(level.report.mesh.euler == whole.euler);
+            CHECK(level.report.mesh.components == whole.components);
+            CHECK(level.report.mesh.faces < whole.faces);
+            CHECK(level.report.grid.kind == "adaptive");
+            CHECK(level.report.grid.leaves_per_level.size() == static_cast<std::size_t>(depth) + 1);
+            if (depth >= e.carries) CHECK(level.report.mesh.genus == e.genus);
+            options.depth = depth;
+            const PolygonMesh alone = to_polygons(reconstruct(cloud, options).mesh);
+            options.depth.reset();
+            CHECK((to_polygons(level.mesh).positions == alone.positions));
+            CHECK((to_polygons(level.mesh).corners == alone.corners));
+        }
+    }
+}
+
+TEST_CASE("the stage for OpenMesh's meshes gives the mesh of the free function", "[reconstruct]") {
+    for (const Example& e : examples()) {
+        INFO(e.name);
+        const PointCloud cloud = scan(e.solid);
+        ReconstructOptions options;
+        options.max_error = MaxError{0.003, true};
+        const PolygonMesh expected = to_polygons(reconstruct(cloud, options).mesh);
+        PolyMesh mesh;
+        mesh.request_vertex_normals();
+        for (std::size_t p = 0; p < cloud.size(); ++p)
+            mesh.set_normal(mesh.add_vertex(cloud.positions[p]), cloud.normals[p]);
+        ReconstructorT<PolyMesh> reconstructor(mesh);
+        reconstructor.initialize(options);
+        const Report report = reconstructor.reconstruct();
+        CHECK(report.grid.kind == "adaptive");
+        const PolygonMesh result = to_polygons(mesh);
+        CHECK((result.positions == expected.positions));
+        CHECK((result.corners == expected.corners));
+    }
+}
