@@ -241,7 +241,7 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
     const Fans fans = build_fans(lattice, crossings, links);
     VertexPositions vertices = place_vertices(octree, level, lattice, sets, related, crossings, fans);
     extend_borders(level, lattice, sets, crossings, fans, vertices);
-    relax_vertices(level, lattice, crossings, fans, options.relax, vertices);
+    relax_vertices(octree, level, lattice, crossings, fans, options.relax, vertices);
     separate_sides(crossings, fans, h, vertices.positions);
 
     const Midpoints midpoints(lattice, sets, crossings, links, fans, h, vertices);

@@ -3,6 +3,7 @@
 #include "hsdm/chunks.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/facets/area_vector.hh"
+#include "hsdm/sheets/point_fit.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +15,7 @@ constexpr std::size_t fans_per_chunk = 1024;
 constexpr double same_sheet_cosine = 0.77; // normals within 40 degrees
 constexpr double along_cosine = 0.8;       // an edge this parallel to a crease lies on it
 constexpr double margin = 0.01;            // voxels: vertices stay this far from their voxel's faces
+constexpr double farther = 0.1;            // share by which a voxel's points may get farther off
 constexpr double nearness = 0.01;          // squared voxels: added to squared distances in weights
 
 /// As far from one position of a fan's vertex towards another as its voxel allows.
@@ -60,6 +62,19 @@ public:
             }
         });
         vertices_.positions.swap(next_);
+    }
+
+    /// Smooth vertices rise or sink until the facets, not the vertices alone, lie amid the points. Where a
+    /// voxel's points are then farther off than from the facets as placed, its vertices go back.
+    void fit(const PointFit& fit) {
+        const std::vector<double> before = fit.measure(placed_).misfit;
+        rise(fit.rises(fit.measure(vertices_.positions).heights));
+        const PointFit::Measure after = fit.measure(vertices_.positions);
+        rise(fit.rises(after.heights));
+        for (std::size_t v = 0; v < fans_.size(); ++v) {
+            const Index voxel = vertices_.voxel[v];
+            if (after.misfit[voxel] > (1 + farther) * before[voxel]) vertices_.positions[v] = placed_[v];
+        }
     }
 
 private:
@@ -131,6 +146,17 @@ private:
         return ahead > 0 && behind < 0 ? p + along * (0.5 * step * (ahead + behind)) : p;
     }
 
+    /// Moves vertices along their directions.
+    void rise(const std::vector<double>& heights) {
+        for_chunks(fans_.size(), fans_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t v = begin; v < end; ++v)
+                if (heights[v] != 0) {
+                    const Vec3 to = vertices_.positions[v] + vertices_.directions[v] * heights[v];
+                    vertices_.positions[v] = kept_in(static_cast<Index>(v), to);
+                }
+        });
+    }
+
     Vec3 kept_in(Index fan, const Vec3& p) const {
         return within_voxel(lattice_, crossings_, fans_, fan, h_, vertices_.positions[fan], p);
     }
@@ -188,15 +214,17 @@ void extend_borders(const OctreeLevel& level, const CornerLattice& lattice, cons
     });
 }
 
-void relax_vertices(const OctreeLevel& level, const CornerLattice& lattice, const Crossings& crossings,
-                    const Fans& fans, const RelaxOptions& options, VertexPositions& vertices) {
+void relax_vertices(const Octree& octree, const OctreeLevel& level, const CornerLattice& lattice,
+                    const Crossings& crossings, const Fans& fans, const RelaxOptions& options,
+                    VertexPositions& vertices) {
     if (options.rounds < 0)
         throw OptionError("relaxation rounds " + std::to_string(options.rounds) + ": must be 0 or more");
     if (!(options.step > 0 && options.step <= 1))
         throw OptionError("relaxation step " + std::to_string(options.step) + ": must lie in (0, 1]");
-    if (options.rounds == 0) return;
+    if (options.rounds == 0 && !options.fit) return;
     Relaxation relaxation(level.voxel_size, lattice, crossings, fans, vertices);
     for (int round = 0; round < options.rounds; ++round) relaxation.round(options.step);
+    if (options.fit) relaxation.fit(PointFit(octree, level, fans, vertices));
 }
 
 } // namespace hsdm

@@ -6,17 +6,20 @@
 namespace hsdm {
 
 struct RelaxOptions {
-    int rounds = 3;    ///< >= 0; 0: vertices stay where they were placed
+    int rounds = 3;    ///< >= 0: moves within the sheet
     double step = 0.7; ///< (0, 1]: share of the way to the mean of the neighbours in a round
+    bool fit = true;   ///< after that, move the sheet towards the points
 };
 
 /// Moves smooth vertices within their sheet towards the mean of their neighbours, those of a crease along it,
 /// corners and borders not at all, none out of its voxel. The sheet's height at the new place is the mean
-/// height of the vertices around as they were placed; on a curved sheet, where planes through its points lie
-/// outside it, that is nearer to the truth. O(rounds * crossings), parallel; the same for any number of
-/// threads. Throws OptionError.
-void relax_vertices(const OctreeLevel& level, const CornerLattice& lattice, const Crossings& crossings,
-                    const Fans& fans, const RelaxOptions& options, VertexPositions& vertices);
+/// height of the vertices around as they were placed. Then smooth vertices rise or sink until the facets, not
+/// the vertices alone, lie amid the points (PointFit::rises). Where a voxel's points are a tenth farther from
+/// the facets than before, its vertices go back. O(rounds * crossings), parallel; the same for any
+/// number of threads. Throws OptionError.
+void relax_vertices(const Octree& octree, const OctreeLevel& level, const CornerLattice& lattice,
+                    const Crossings& crossings, const Fans& fans, const RelaxOptions& options,
+                    VertexPositions& vertices);
 
 /// Moves the vertices of borders outwards within their sheet and voxel, to where the points of the voxel's
 /// own set end: evenly spread, they reach sqrt(3) standard deviations from their mean. O(fans), parallel.

@@ -1,0 +1,155 @@
+#include "hsdm/sheets/point_fit.hh"
+
+#include "hsdm/chunks.hh"
+#include "hsdm/quality/point_triangle.hh"
+
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t per_chunk = 512;
+constexpr std::size_t points_per_voxel = 8;
+constexpr double same_sheet_cosine = 0.77; // normals within 40 degrees
+constexpr double doubt = 2;                // times the variance that squared rises must exceed
+
+/// The nearest point of facets, in the triangle of three vertices.
+struct Foot {
+    std::array<Index, 3> corners{};
+    NearestOfTriangle nearest{Vec3(0, 0, 0), std::numeric_limits<double>::infinity(), {}};
+};
+
+/// Calls f(corners) for the triangles round a vertex until it returns true.
+template <class F>
+bool any_triangle(Index fan, const Fans& fans, F&& f) {
+    for (Node node : fans.fan(fan)) {
+        const Index x = node / 4;
+        const unsigned j = node % 4, next = (j + 1) % 4, across = (j + 2) % 4, before = (j + 3) % 4;
+        const Index opposite = fans.at(x, across, across);
+        if (f(std::array{fan, fans.at(x, next, j), opposite})
+            || f(std::array{fan, opposite, fans.at(x, before, before)}))
+            return true;
+    }
+    return false;
+}
+
+/// The nearest foot inside a triangle; round a single smooth vertex, about flat, the first; the nearest point
+/// of any triangle where no foot is inside one.
+Foot find_foot(const Vec3& p, std::span<const Index> around, const Fans& fans,
+               const VertexPositions& vertices, const std::vector<Vec3>& at) {
+    Foot best, foot;
+    const bool flat = around.size() == 1 && vertices.kinds[around[0]] == VertexKind::smooth;
+    for (Index fan : around)
+        any_triangle(fan, fans, [&](const std::array<Index, 3>& c) {
+            if (!foot_inside(p, at[c[0]], at[c[1]], at[c[2]], foot.nearest)) return false;
+            if (foot.nearest.squared_distance < best.nearest.squared_distance) best = {c, foot.nearest};
+            return flat;
+        });
+    if (best.nearest.squared_distance < std::numeric_limits<double>::infinity()) return best;
+    for (Index fan : around)
+        any_triangle(fan, fans, [&](const std::array<Index, 3>& c) {
+            const NearestOfTriangle nearest = nearest_of_triangle(p, at[c[0]], at[c[1]], at[c[2]]);
+            if (nearest.squared_distance < best.nearest.squared_distance) best = {c, nearest};
+            return false;
+        });
+    return best;
+}
+
+} // namespace
+
+void PointFit::Heights::add(double w, double h) {
+    weight += w;
+    height += w * h;
+    weight2 += w * w;
+    weight2_height += w * w * h;
+    height2 += w * w * h * h;
+}
+
+double PointFit::Heights::variance() const {
+    if (!(weight > 0)) return 0;
+    const double m = mean(), squares = height2 - 2 * m * weight2_height + m * m * weight2;
+    // weight^2 / weight2 is how many points of equal weight tell as much.
+    const double freedom = weight * weight - weight2;
+    return freedom > 1e-12 * weight * weight ? std::max(squares, 0.0) / freedom : m * m;
+}
+
+PointFit::PointFit(const Octree& octree, const OctreeLevel& level, const Fans& fans,
+                   const VertexPositions& vertices)
+    : octree_(octree),
+      level_(level),
+      fans_(fans),
+      vertices_(vertices),
+      first_(level.size() + 1, 0),
+      of_voxel_(fans.size()) {
+    for (std::size_t v = 0; v < fans.size(); ++v) ++first_[vertices.voxel[v] + 1];
+    for (std::size_t x = 0; x < level.size(); ++x) first_[x + 1] += first_[x];
+    std::vector<Index> next(first_.begin(), first_.end() - 1);
+    for (std::size_t v = 0; v < fans.size(); ++v)
+        of_voxel_[next[vertices.voxel[v]]++] = static_cast<Index>(v);
+}
+
+void PointFit::gather_beside(Index voxel, std::vector<Index>& fans) const {
+    fans.clear();
+    const VoxelCoord at = level_.coord(voxel);
+    for (std::size_t k = 0; k < 6; ++k) { // the first six are those beside its faces
+        const VoxelCoord& d = neighbor_offsets[k];
+        const Index x = level_.find({at[0] + d[0], at[1] + d[1], at[2] + d[2]});
+        if (x != no_index) fans.insert(fans.end(), fans_of(x).begin(), fans_of(x).end());
+    }
+}
+
+PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
+    Measure result{std::vector<double>(level_.size(), 0), std::vector<Heights>(fans_.size())};
+    // Vertices of other chunks' voxels get their share afterwards, in the order of the chunks.
+    std::vector<std::vector<Foreign>> foreign(chunk_count(level_.size(), per_chunk));
+    for_chunks(level_.size(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        std::vector<Index> beside;
+        for (std::size_t x = begin; x < end; ++x) {
+            if (fans_of(x).empty()) gather_beside(static_cast<Index>(x), beside);
+            const std::span<const Index> around = fans_of(x).empty() ? beside : fans_of(x);
+            if (around.empty()) continue;
+            const std::size_t first = level_.first_point[x], last = level_.first_point[x + 1];
+            const std::size_t stride = (last - first + points_per_voxel - 1) / points_per_voxel;
+            for (std::size_t i = first; i < last; i += stride) {
+                const Foot foot = find_foot(octree_.positions[i], around, fans_, vertices_, positions);
+                const double distance = std::sqrt(foot.nearest.squared_distance);
+                result.misfit[x] += distance;
+                const Vec3 way = octree_.positions[i] - foot.nearest.point;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const Index v = foot.corners[k];
+                    const double height = vertices_.directions[v] | way;
+                    if (vertices_.kinds[v] != VertexKind::smooth || fans_.open[v]
+                        || (octree_.normals[i] | vertices_.directions[v]) < same_sheet_cosine
+                        || std::abs(height) < same_sheet_cosine * distance) // beside the facets
+                        continue;
+                    if (vertices_.voxel[v] >= begin && vertices_.voxel[v] < end)
+                        result.heights[v].add(foot.nearest.weights[k], height);
+                    else
+                        foreign[chunk].push_back({v, foot.nearest.weights[k], height});
+                }
+            }
+        }
+    });
+    for (const std::vector<Foreign>& share : foreign)
+        for (const Foreign& f : share) result.heights[f.fan].add(f.weight, f.height);
+    return result;
+}
+
+std::vector<double> PointFit::rises(const std::vector<Heights>& heights) const {
+    std::vector<double> rises(fans_.size(), 0);
+    for_chunks(fans_.size(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t v = begin; v < end; ++v) {
+            double squares = 0, variance = 0;
+            for (Node node : fans_.fan(static_cast<Index>(v)))
+                for (unsigned j = 0; j < 4; ++j) {
+                    const Heights& h = heights[fans_.at(node / 4, j, j)];
+                    squares += h.mean() * h.mean();
+                    variance += h.variance();
+                }
+            if (squares > doubt * variance) rises[v] = heights[v].mean() * (1 - doubt * variance / squares);
+        }
+    });
+    return rises;
+}
+
+} // namespace hsdm
