@@ -46,11 +46,10 @@ struct NormalSets {
 };
 
 /// Sorts each voxel's points into sets: by direction (modes of the normals, mean shift), then by offset where
-/// two parallel sheets share a direction, unless they lie over each other with no sheet between that faces
-/// back: no solid has such sheets, they are one surface scanned twice. Does not depend on the order of the
-/// points. The centroid of points on a curved patch lies below it by half the mean of (n - mean n) . (p -
-/// mean p); that much is added back along the normal. Voxels whose points have no normals have no set.
-/// O(points), parallel. Throws OptionError.
+/// two parallel sheets share a direction. Does not depend on the order of the points. The centroid of points
+/// on a curved patch lies below it by half the mean of (n - mean n) . (p - mean p); that much is added back
+/// along the normal. Voxels whose points have no normals have no set. O(points), parallel. Throws
+/// OptionError.
 NormalSets build_normal_sets(const Octree& octree, const OctreeLevel& level,
                              const NormalSetOptions& options = {});
 
