@@ -5,8 +5,11 @@
 #include "hsdm/adaptive/trouble.hh"
 #include "hsdm/chunks.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/octree/morton_index.hh"
 #include "hsdm/quality/distance.hh"
 #include "hsdm/quality/self_intersections.hh"
+
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <optional>
@@ -18,6 +21,15 @@ constexpr std::size_t vertices_per_chunk = 2048;
 constexpr std::size_t fewest_samples = 10000, most_samples = 100000;
 constexpr double planes_share =
     0.35; // of the error: what planes of a leaf may be missed by, root mean square
+
+constexpr std::uint64_t no_key = 0;
+
+/// A bijection that spreads every bit over all.
+std::uint64_t mixed(std::uint64_t x) {
+    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9ull;
+    x = (x ^ x >> 27) * 0x94d049bb133111ebull;
+    return x ^ x >> 31;
+}
 
 /// A cluster: a vertex of the result.
 struct Place {
@@ -179,11 +191,62 @@ private:
     std::size_t split_distant(bool with_points) {
         const MeshDistance to_result(result_.mesh);
         std::size_t splits = 0;
-        const auto far = to_result.beyond(fine_.positions, options_.max_error);
-        for (std::size_t v = 0; v < far.size(); ++v)
-            if (far[v]) splits += split_at(places_[v]);
+        find_keys();
+        for (Index v : far_from(to_result, fine_.positions, near_vertex_)) splits += split_at(places_[v]);
         splits += split_far_facets();
         return splits > 0 || !with_points ? splits : split_for_points(to_result);
+    }
+
+    /// A facet is the same in two meshes if its corners are the same clusters in the same order: their key,
+    /// as clusters stay where they are.
+    void find_keys() {
+        const PolygonMesh& mesh = result_.mesh;
+        keys_.resize(mesh.facet_count());
+        for_chunks(keys_.size(), vertices_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            const auto id = [&](Index v) {
+                return static_cast<std::uint64_t>(coarse_[v].level) << 32 | coarse_[v].cluster;
+            };
+            for (std::size_t f = begin; f < end; ++f) {
+                const auto ring = mesh.facet(f);
+                std::size_t least = 0;
+                for (std::size_t i = 1; i < ring.size(); ++i)
+                    if (id(ring[i]) < id(ring[least])) least = i;
+                std::uint64_t key = ring.size();
+                for (std::size_t i = 0; i < ring.size(); ++i)
+                    key = mixed(key ^ id(ring[(least + i) % ring.size()]));
+                keys_[f] = key;
+            }
+        });
+        index_keys(keys_, present_);
+    }
+
+    static void index_keys(std::vector<std::uint64_t> keys, MortonIndex& index) {
+        tbb::parallel_sort(keys.begin(), keys.end());
+        keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+        if (!keys.empty() && keys.front() == no_key) keys.erase(keys.begin());
+        index.build(keys);
+    }
+
+    /// Which of some places are farther from the result than the bound. A place that was near a facet still
+    /// is if the facet has stayed: `near` keeps its key.
+    std::vector<Index> far_from(const MeshDistance& to_result, std::span<const Vec3> places,
+                                std::vector<std::uint64_t>& near) const {
+        near.resize(places.size(), no_key);
+        std::vector<std::vector<Index>> parts(chunk_count(places.size(), vertices_per_chunk));
+        for_chunks(places.size(), vertices_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+            for (std::size_t i = begin; i < end; ++i)
+                if (present_.find(near[i]) == no_index) parts[c].push_back(static_cast<Index>(i));
+        });
+        const std::vector<Index> doubtful = joined(parts);
+        std::vector<Vec3> at(doubtful.size());
+        for (std::size_t i = 0; i < at.size(); ++i) at[i] = places[doubtful[i]];
+        const std::vector<Index> facets = to_result.facets_within(at, options_.max_error);
+        std::vector<Index> far;
+        for (std::size_t i = 0; i < at.size(); ++i) {
+            near[doubtful[i]] = facets[i] == no_index ? no_key : keys_[facets[i]];
+            if (facets[i] == no_index) far.push_back(doubtful[i]);
+        }
+        return far;
     }
 
     /// Middles of facets, of their sides, and between middle and corners, against the fine mesh.
@@ -192,6 +255,7 @@ private:
         std::vector<Vec3> middles;
         std::vector<Index> facet;
         for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+            if (passed_.find(keys_[f]) != no_index) continue;
             const auto ring = mesh.facet(f);
             if (std::all_of(ring.begin(), ring.end(),
                             [&](Index v) { return coarse_[v].level == tree_.depth(); }))
@@ -211,23 +275,25 @@ private:
             facet.push_back(static_cast<Index>(f));
         }
         if (!to_fine_) to_fine_.emplace(fine_);
-        const auto far = to_fine_->beyond(middles, options_.max_error);
+        const std::vector<Index> near = to_fine_->facets_within(middles, options_.max_error);
         std::size_t splits = 0;
-        for (std::size_t i = 0; i < far.size(); ++i)
-            if (far[i])
-                for (Index v : mesh.facet(facet[i])) splits += split_at(coarse_[v]);
+        std::vector<std::uint64_t> passed = keys_;
+        for (std::size_t i = 0; i < near.size(); ++i) {
+            if (near[i] != no_index) continue;
+            for (Index v : mesh.facet(facet[i])) splits += split_at(coarse_[v]);
+            passed[facet[i]] = no_key;
+        }
+        index_keys(passed, passed_);
         return splits;
     }
 
     std::size_t split_for_points(const MeshDistance& to_result) {
-        const auto far = to_result.beyond(points_, options_.max_error);
-        std::vector<std::size_t> missed; // by the fine mesh already
+        const std::vector<Index> far = far_from(to_result, points_, near_point_);
+        std::vector<Index> missed; // by the fine mesh already
         std::size_t splits = 0;
         double farthest = 0;
-        result_.points_beyond = 0;
-        for (std::size_t p = 0; p < far.size(); ++p) {
-            if (!far[p]) continue;
-            ++result_.points_beyond;
+        result_.points_beyond = far.size();
+        for (Index p : far) {
             if (const double off = (*to_fine_)(points_[p]); off > options_.max_error) {
                 missed.push_back(p);
                 farthest = std::max(farthest, off);
@@ -237,7 +303,7 @@ private:
         }
         result_.unreachable = missed.size();
         // The largest distance of all is the fine mesh's, if that is beyond the bound.
-        for (std::size_t p : missed)
+        for (Index p : missed)
             if (to_result(points_[p]) > farthest) splits += split_around(points_[p]);
         return splits;
     }
@@ -279,6 +345,9 @@ private:
     std::vector<Index> vertex_; // per fine vertex, the vertex of the result
     std::vector<Place> coarse_; // per vertex of the result
     std::optional<MeshDistance> to_fine_;
+    std::vector<std::uint64_t> keys_; // per facet of the result
+    MortonIndex present_, passed_;    // keys of its facets; of those found near the fine mesh
+    std::vector<std::uint64_t> near_vertex_, near_point_; // of a facet that a fine vertex, a point is near to
     AdaptiveMesh result_;
 };
 

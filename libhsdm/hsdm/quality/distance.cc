@@ -19,7 +19,10 @@ struct Sums {
 
 } // namespace
 
-MeshDistance::MeshDistance(const PolygonMesh& mesh) : tree_(mesh.positions, triangulate(mesh).triangles) {}
+MeshDistance::MeshDistance(const PolygonMesh& mesh) : MeshDistance(mesh, triangulate(mesh)) {}
+
+MeshDistance::MeshDistance(const PolygonMesh& mesh, const Triangulation& cut)
+    : tree_(mesh.positions, cut.triangles), facet_(facet_of_triangle(cut)) {}
 
 double MeshDistance::operator()(const Vec3& point) const {
     return std::sqrt(tree_.nearest(point).squared);
@@ -58,14 +61,14 @@ bool MeshDistance::is_beyond(const Vec3& point, double bound, Index& hint) const
     return std::sqrt(nearest.squared) > bound;
 }
 
-std::vector<std::uint8_t> MeshDistance::beyond(std::span<const Vec3> points, double bound) const {
-    std::vector<std::uint8_t> far(points.size());
+std::vector<Index> MeshDistance::facets_within(std::span<const Vec3> points, double bound) const {
+    std::vector<Index> facets(points.size(), no_index);
     tbb::parallel_for(std::size_t{0}, (points.size() + chunk - 1) / chunk, [&](std::size_t c) {
         Index hint = no_index;
         for (std::size_t i = c * chunk; i < std::min(points.size(), (c + 1) * chunk); ++i)
-            far[i] = is_beyond(points[i], bound, hint);
+            if (!is_beyond(points[i], bound, hint)) facets[i] = facet_[tree_.nearest_in(hint, points[i])];
     });
-    return far;
+    return facets;
 }
 
 Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh) {

@@ -26,14 +26,16 @@ public:
     /// All points; parallel, quickest when neighbours in the list are neighbours in space, the same bits for
     /// any number of threads. Zero for an empty list.
     Distance operator()(std::span<const Vec3> points) const;
-    /// Per point, is it farther than `bound` from every triangle? Several times quicker than distances where
-    /// few are.
-    std::vector<std::uint8_t> beyond(std::span<const Vec3> points, double bound) const;
+    /// Per point a facet no farther than `bound`, or no_index if there is none. Several times quicker than
+    /// distances where few are.
+    std::vector<Index> facets_within(std::span<const Vec3> points, double bound) const;
     /// One point; `hint` is no_index or what the call for a point nearby left there.
     bool is_beyond(const Vec3& point, double bound, Index& hint) const;
 
 private:
+    explicit MeshDistance(const PolygonMesh& mesh, const Triangulation& cut);
     TriangleTree tree_;
+    std::vector<Index> facet_; // per triangle
 };
 
 /// Every point against its nearest triangle, through the tree; parallel, the same bits for any thread count.

@@ -233,6 +233,18 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3& given, Index hint, doubl
     return best;
 }
 
+Index TriangleTree::nearest_in(Index block, const Vec3& given) const {
+    const Vec3 point = given - centre_;
+    const std::array<Double2, 3> spread{Double2{} + point[0], Double2{} + point[1], Double2{} + point[2]};
+    double least = infinity;
+    std::size_t best = 0;
+    for (std::size_t lane = 0; lane < width; ++lane) {
+        const double squared = squared_distances(blocks_[block][lane / 2], spread)[lane % 2];
+        if (squared < least) least = squared, best = lane;
+    }
+    return triangle_of_[std::min(block * width + best, triangle_of_.size() - 1)];
+}
+
 TriangleTree::LaneBoxes TriangleTree::boxes_of(const Pair& pair) const {
     LaneBoxes boxes;
     for (std::size_t k = 0; k < 3; ++k) {

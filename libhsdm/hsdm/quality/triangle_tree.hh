@@ -30,6 +30,9 @@ public:
     /// distance is no more than `enough` will do.
     Nearest nearest(const Vec3& point, Index hint = no_index, double enough = 0) const;
 
+    /// The triangle of a block that is nearest to a point.
+    Index nearest_in(Index block, const Vec3& point) const;
+
     /// Replaces `pairs` by all pairs of triangles whose boxes overlap or touch, one of the pair being in
     /// `block` and the other in it or a later one. Over all blocks every such pair comes once.
     void overlapping(Index block, std::vector<TrianglePair>& pairs) const;
