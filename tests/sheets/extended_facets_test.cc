@@ -176,7 +176,7 @@ TEST_CASE("relaxed facets lie no farther from the points, and nearer where the s
         {"cylinder", support::cylinder(0.6, 1.5), 0, 0.8, 0.8},
         {"box", support::box({1, 1.3, 0.8}), 0, 1.001, 1.001},
         {"mechanical part", support::mechanical_part(), 0, 0.9, 0.9},
-        {"noisy sphere", support::sphere(1), 0.3, 1, 1.05},
+        {"noisy sphere", support::sphere(1), 0.3, 1.005, 1.05},
         {"noisy box", support::box({1, 1.3, 0.8}), 0.3, 1.005, 1.05},
     };
     const double voxel = 0.12;
