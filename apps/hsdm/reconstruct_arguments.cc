@@ -108,6 +108,9 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
                       {{"auto", Holes::automatic}, {"keep", Holes::keep}, {"close", Holes::close}},
                       "auto: close what is small against the sampling; close: everything; keep: nothing")
         ->group(method);
+    app.add_flag("--merge-layers", a.merge_layers,
+                 "for scans that do not register: sheets in a voxel that face the same way are one surface")
+        ->group(method);
     app.add_option("--min-component", a.min_component,
                    "drop components of fewer facets than SIZE (1% is of the largest one's area; 100% keeps "
                    "the largest alone); default: none is dropped")
@@ -194,6 +197,7 @@ ReconstructOptions ReconstructArguments::options() const {
     o.method = method;
     o.normals = normals;
     o.holes = holes;
+    o.merge_layers = merge_layers;
     if (!min_component.empty()) o.min_component = min_component_of(min_component);
     o.crease_angle = crease_degrees * std::numbers::pi / 180;
     o.normal_smoothing = smoothing;

@@ -25,6 +25,7 @@ struct ReconstructArguments {
     Holes holes = Holes::automatic;
     Grid grid = Grid::automatic;
     std::string levels;
+    bool merge_layers = false;
     std::string min_component;
     double crease_degrees = 35;
     int smoothing = 3;

@@ -61,7 +61,7 @@ bool turn_outward(PolygonMesh& mesh) {
 
 PolygonMesh extended_method(const MethodInput& in, Report& report, FeatureHints& hints) {
     const NormalSets sets = in.phases.run("sets", 0.2, report.seconds.graph, [&] {
-        NormalSets all = build_normal_sets(in.octree, in.level);
+        NormalSets all = build_normal_sets(in.octree, in.level, {.merge_layers = in.options.merge_layers});
         const RelationTest related({}, in.level.voxel_size);
         report.rejected["points_stray"] = drop_lonely_sets(in.level, related, all);
         return all;

@@ -214,6 +214,7 @@ void note_options(const PointCloud& cloud, const ReconstructOptions& options, Re
                                           ? text_of(100 * options.max_error->value) + "%"
                                           : text_of(options.max_error->value);
     report.options["holes"] = name_of(options.holes);
+    if (options.merge_layers) report.options["merge-layers"] = "yes";
     if (options.min_component)
         report.options["min-component"] = options.min_component->of_largest
                                               ? text_of(100 * options.min_component->value) + "%"

@@ -49,6 +49,9 @@ struct ReconstructOptions {
     Method method = Method::automatic;
     NormalSource normals = NormalSource::automatic;
     Holes holes = Holes::automatic;
+    /// Sheets less than a voxel apart that face the same way are layers of one surface, as misregistered
+    /// scans leave them (extended method; see NormalSetOptions).
+    bool merge_layers = false;
     /// Components smaller than this are dropped; by default none is, however small.
     std::optional<MinComponent> min_component;
     double crease_angle =

@@ -18,11 +18,11 @@ struct Built {
     NormalSets sets;
 };
 
-Built build(const PointCloud& cloud, int depth) {
+Built build(const PointCloud& cloud, int depth, const NormalSetOptions& options = {}) {
     Built b;
     b.octree = build_octree(cloud);
     b.level = extract_level(b.octree, depth);
-    b.sets = build_normal_sets(b.octree, b.level);
+    b.sets = build_normal_sets(b.octree, b.level, options);
     return b;
 }
 
@@ -78,16 +78,53 @@ TEST_CASE("normal noise of ten degrees does not tear a plane's set apart", "[she
     CHECK(torn == 0);
 }
 
-TEST_CASE("nested shells with equal normals are told apart by position", "[sheets]") {
+namespace {
+
+/// Flat sheets over 8 x 8 voxels, each at a height that may depend on x and faces up or down.
+struct Sheet {
+    double left, right; ///< heights over the left and the right half of every voxel
+    double up;
+};
+
+std::vector<std::size_t> sets_per_voxel(const std::vector<Sheet>& sheets, bool merge_layers) {
     PointCloud cloud;
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> unit(0, 1);
-    for (int i = 0; i < 4000; ++i) {
-        cloud.positions.emplace_back(8 * unit(random), 8 * unit(random), i % 2 ? 0.2 : 0.6);
-        cloud.normals.emplace_back(0, 0, 1);
-    }
-    const Built b = build(cloud, 3);
-    for (Index v = 0; v < b.level.size(); ++v) CHECK(b.sets.of_voxel(v).size() == 2);
+    for (int i = 0; i < 2000; ++i)
+        for (const Sheet& sheet : sheets) {
+            const double x = 8 * unit(random);
+            cloud.positions.emplace_back(x, 8 * unit(random),
+                                         x - std::floor(x) < 0.5 ? sheet.left : sheet.right);
+            cloud.normals.emplace_back(0, 0, sheet.up);
+        }
+    cloud.positions.emplace_back(0, 0, 0); // so that voxels are those of the halves
+    cloud.normals.emplace_back(0, 0, 1);
+    cloud.positions.emplace_back(8, 8, 0.9);
+    cloud.normals.emplace_back(0, 0, 1);
+    const Built b = build(cloud, 3, {.merge_layers = merge_layers});
+    std::vector<std::size_t> counts;
+    for (Index v = 1; v + 1 < b.level.size(); ++v) counts.push_back(b.sets.of_voxel(v).size());
+    return counts;
+}
+
+} // namespace
+
+TEST_CASE("nested shells with equal normals are told apart by position", "[sheets]") {
+    for (std::size_t count : sets_per_voxel({{0.2, 0.2, 1}, {0.6, 0.6, 1}}, false)) CHECK(count == 2);
+}
+
+TEST_CASE("of layers to be merged, those with none between that faces back are one set", "[sheets]") {
+    for (std::size_t count : sets_per_voxel({{0.2, 0.2, 1}, {0.6, 0.6, 1}}, true)) CHECK(count == 1);
+    for (std::size_t count : sets_per_voxel({{0.2, 0.2, 1}, {0.6, 0.6, 1}, {0.8, 0.8, -1}}, true))
+        CHECK(count == 2);
+    for (std::size_t count : sets_per_voxel({{0.2, 0.2, 1}, {0.4, 0.4, -1}, {0.6, 0.6, 1}}, true))
+        CHECK(count == 3);
+    for (std::size_t count : sets_per_voxel({{0.2, 0.2, 1}, {0.6, 0.6, -1}}, true)) CHECK(count == 2);
+}
+
+TEST_CASE("the two levels of a step are two sets", "[sheets]") {
+    for (bool merge_layers : {false, true})
+        for (std::size_t count : sets_per_voxel({{0.2, 0.6, 1}}, merge_layers)) CHECK(count == 2);
 }
 
 TEST_CASE("a set's centroid lies on a curved surface, not below it", "[sheets]") {

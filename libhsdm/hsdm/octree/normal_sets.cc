@@ -174,12 +174,43 @@ private:
             for (std::size_t i = 1; i < offsets_.size(); ++i)
                 if (const double gap = offsets_[i].first - offsets_[i - 1].first; gap > widest)
                     widest = gap, cut = i;
-            if (cut == 0 || !parallel_sides(cut)) return;
+            if (cut == 0 || !parallel_sides(cut) || (options_.merge_layers && double_layer(modes_[k], cut)))
+                return;
             const auto added = static_cast<std::uint8_t>(modes_.size());
             modes_.push_back(modes_[k]);
             for (std::size_t i = cut; i < offsets_.size(); ++i) label_[offsets_[i].second - begin_] = added;
             split_parallel_sheets(added);
         }
+    }
+
+    /// Two sheets of a solid that lie over each other and face the same way have one between them that faces
+    /// back. Without it they are one surface, scanned twice; beside each other they are a step.
+    bool double_layer(const Vec3& mode, std::size_t cut) const {
+        const auto [below, width_below] = across(mode, 0, cut);
+        const auto [above, width_above] = across(mode, cut, offsets_.size());
+        if ((above - below).norm() > std::max(width_below, width_above)) return false;
+        constexpr double faces_back = -0.7;
+        for (Index i = 0; i < size_; ++i) {
+            if (!has_normal(i) || (normal(i) | mode) > faces_back) continue;
+            const double offset = mode | octree_.positions[begin_ + i];
+            if (offset > offsets_[cut - 1].first && offset < offsets_[cut].first) return false;
+        }
+        return true;
+    }
+
+    /// Of some of the points: their mean without its part along the mode, and their root mean square
+    /// distance from it across the mode.
+    std::pair<Vec3, double> across(const Vec3& mode, std::size_t from, std::size_t to) const {
+        const auto flat = [&](std::size_t i) {
+            const Vec3& p = octree_.positions[offsets_[i].second];
+            return Vec3(p - mode * (mode | p));
+        };
+        Vec3 mean(0, 0, 0);
+        for (std::size_t i = from; i < to; ++i) mean += flat(i);
+        mean /= static_cast<double>(to - from);
+        double squares = 0;
+        for (std::size_t i = from; i < to; ++i) squares += (flat(i) - mean).sqrnorm();
+        return {mean, std::sqrt(squares / static_cast<double>(to - from))};
     }
 
     bool parallel_sides(std::size_t cut) const {

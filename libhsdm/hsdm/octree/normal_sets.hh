@@ -10,7 +10,10 @@ struct NormalSetOptions {
     double cluster_angle =
         0.61;               ///< radians, (0, pi/2): points of a set lie within this angle of its mean normal
     double sheet_gap = 0.3; ///< voxels, > 0: parallel sheets farther apart than this are two sets
-    int max_sets = 8;       ///< per voxel, [1, 8]; smaller groups join the nearest
+    /// Parallel sheets stay one set where they lie over each other, face the same way and none between them
+    /// faces back. No solid has such sheets: they are one surface, scanned twice.
+    bool merge_layers = false;
+    int max_sets = 8; ///< per voxel, [1, 8]; smaller groups join the nearest
 };
 
 /// Second moments of a set of positions about their mean: xx, yy, zz, xy, yz, zx.
