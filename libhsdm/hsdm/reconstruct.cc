@@ -5,6 +5,7 @@
 #include "hsdm/facets/to_mesh.hh"
 #include "hsdm/features/features.hh"
 #include "hsdm/normals/mend_normals.hh"
+#include "hsdm/normals/noise.hh"
 #include "hsdm/normals/normals.hh"
 #include "hsdm/octree/spacing.hh"
 #include "hsdm/quality/distance.hh"
@@ -110,7 +111,8 @@ public:
         OctreeOptions octree_options;
         octree_options.placement = CubePlacement::centred;
         octree_options.use_normals = options.normals != NormalSource::estimate;
-        if (options.voxel_size) octree_options.cube_extent = cube_of(cloud, *options.voxel_size);
+        if (options.voxel_size)
+            octree_options.cube_extent = cube_of(cloud.bounds().extent(), *options.voxel_size);
         octree = phases.run("octree", 0, report.seconds.octree,
                             [&] { return build_octree(cloud, octree_options); });
         check_spread(octree);
@@ -128,22 +130,27 @@ public:
         const NormalsReport made = phases.run("normals", 0.05, report.seconds.normals,
                                               [&] { return make_normals(octree, normals_options); });
         note_outliers(made.outliers);
+        note_smoothing(made.smoothed);
         report.rejected["normals_near_creases"] = made.bent;
         report.rejected["normals_missing"] = made.missing;
         report.rejected["normals_by_volume"] = made.orientation.by_volume;
     }
 
-    /// Turns given normals to one side if their signs contradict each other.
+    /// Turns given normals to one side if their signs contradict each other, and measures the noise where
+    /// there seems to be much.
     void check_given_normals(const PointCloud& cloud, const Phases& phases) {
         report.rejected["normals_mended"] = phases.run("normals", 0.05, report.seconds.normals, [&] {
-            if (!check_normals(octree).doubtful()) return std::size_t{0};
-            return mend_normals(octree, sensor_of(cloud));
+            const NormalConsistency consistency = check_normals(octree);
+            if (consistency.rough() && octree.size() > 1)
+                noise_ = noise_deviation(octree, find_neighbors(octree));
+            return consistency.doubtful() ? mend_normals(octree, sensor_of(cloud)) : std::size_t{0};
         });
         note_outliers(
             phases.run("strays", 0.08, report.seconds.normals, [&] { return drop_strays(octree); }));
     }
 
-    /// The depth the options ask for or the spacing suggests; notes it in the report.
+    /// The depth the options ask for or spacing and noise suggest, in a cube that fits; notes it in the
+    /// report.
     int choose_resolution(const ReconstructOptions& options) {
         if (options.depth) {
             report.options["depth"] = std::to_string(*options.depth);
@@ -155,10 +162,15 @@ public:
             report.options["resolution"] = "as asked by voxel size";
             return voxel_depth_;
         }
-        // An adaptive grid is as fine as two spacings only where the error needs it.
-        const DepthChoice choice = choose_depth(octree, report.input.spacing, options.max_error ? 2 : 3);
+        if (options.max_error) { // as fine as two spacings only where the error needs it
+            const DepthChoice choice = choose_depth(octree, report.input.spacing, 2);
+            report.options["resolution"] = choice.reason;
+            return choice.depth;
+        }
+        const VoxelChoice choice = choose_voxel(octree, report.input.spacing, noise_);
         report.options["resolution"] = choice.reason;
-        return choice.depth;
+        octree = rearranged(octree, octree.positions, cube_of(octree.bounds.extent(), choice.size));
+        return voxel_depth_;
     }
 
     Octree octree;
@@ -176,9 +188,14 @@ private:
         return *cloud.sensor - octree.origin;
     }
 
-    /// The smallest cube of 2^N voxels around the cloud, N in [1, 16].
-    double cube_of(const PointCloud& cloud, double voxel_size) {
-        const double extent = cloud.bounds().extent();
+    void note_smoothing(const SmoothReport& smoothed) {
+        report.rejected["points_between_sheets"] = smoothed.between;
+        noise_ = smoothed.noise;
+        if (noise_ > 0) report.input.spacing = estimate_spacing(octree); // noise makes it look wider
+    }
+
+    /// The smallest cube of 2^N voxels around a cloud of that extent, N in [1, 16].
+    double cube_of(double extent, double voxel_size) {
         double cube = 2 * voxel_size;
         for (voxel_depth_ = 1; cube < extent && voxel_depth_ < deepest; ++voxel_depth_) cube *= 2;
         if (cube < extent)
@@ -188,6 +205,7 @@ private:
     }
 
     int voxel_depth_ = 0;
+    double noise_ = 0; // standard deviation, if it is large
 };
 
 /// The extended method is the better one, with normals given or estimated.
@@ -245,8 +263,12 @@ void measure_mesh(const PolygonMesh& facets, Report& report) {
     m.closed = t.closed();
 }
 
-void measure_error(const Octree& octree, const PolygonMesh& facets, Report& report) {
-    const Distance distance = points_to_mesh(octree.positions, facets);
+/// From where the cloud has its points, wherever the octree has moved them.
+void measure_error(const PointCloud& cloud, const Octree& octree, const PolygonMesh& facets, Report& report) {
+    std::vector<Vec3> points(octree.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+        points[i] = cloud.positions[octree.source[i]] - octree.origin;
+    const Distance distance = points_to_mesh(points, facets);
     report.error.points_to_mesh_max = distance.max;
     report.error.points_to_mesh_mean = distance.mean;
     report.error.points_to_mesh_rms = distance.rms;
@@ -302,7 +324,7 @@ Reconstruction reconstruct_level(const PointCloud& cloud, const Octree& octree, 
                     + std::to_string(depth)
                     + "; try another depth, or check that the points sample a surface");
     phases.run("error", 0.6, seconds.error, [&] {
-        measure_error(octree, facets, report);
+        measure_error(cloud, octree, facets, report);
         measure_mesh(facets, report);
     });
     check_error_kept(report);

@@ -30,6 +30,16 @@ TEST_CASE("noise is told from creases, curvature and thin parts", "[normals]") {
     }
 }
 
+TEST_CASE("the deviation of noise is found whatever it is in spacings", "[normals]") {
+    const double spacing = std::sqrt(4 * std::numbers::pi / 20000);
+    for (double sigma : {0.15, 0.3, 0.5, 0.8, 1.2, 2.0, 3.0}) {
+        const Octree octree = build_octree(support::sample(
+            support::sphere(1), {.points = 20000, .normals = false, .position_noise = sigma * spacing}));
+        INFO("noise of " << sigma << " spacings");
+        CHECK(noise_deviation(octree, find_neighbors(octree)) == Approx(sigma * spacing).epsilon(0.25));
+    }
+}
+
 TEST_CASE("clean clouds are seen through 16 neighbours, noisy ones through more", "[normals]") {
     const double spacing = std::sqrt(4 * std::numbers::pi / 5000);
     CHECK(neighbors_for_noise(noise_of(support::sphere(1), 5000)) == 16);

@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <numbers>
 
 using namespace hsdm;
 using support::Solid;
@@ -54,6 +55,14 @@ TEST_CASE("the two sides of a plate face away from each other", "[normals]") {
         const Solid plate = in_general_pose(support::box(Vec3(1, 1, thickness * spacing)));
         CHECK(share_flipped(support::sample(plate, {.points = 8000})) < 0.02);
     }
+}
+
+TEST_CASE("normals of noisy clouds point outward", "[normals]") {
+    const double spacing = std::sqrt(4 * std::numbers::pi * std::numbers::pi * 0.4 / 8000); // of the torus
+    for (double noise : {0.7, 1.5})
+        CHECK(share_flipped(support::sample(in_general_pose(support::torus(1, 0.4)),
+                                            {.points = 8000, .position_noise = noise * spacing}))
+              < 0.005);
 }
 
 TEST_CASE("two objects are oriented each for itself", "[normals]") {

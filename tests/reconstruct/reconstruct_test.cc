@@ -260,6 +260,47 @@ TEST_CASE("points without normals come out like points with exact ones", "[recon
           < 0.2 * estimated.report.grid.voxel_size);
 }
 
+TEST_CASE("noise of half a voxel leaves the topology of points without normals alone", "[reconstruct]") {
+    constexpr double voxel = 0.1;
+    support::Random random(5);
+    const support::Pose pose = support::random_pose(random);
+    for (const auto& [solid, points, euler] :
+         {std::tuple(support::torus(1, 0.4).placed(pose), 12600u, 0L),
+          std::tuple(support::box({1.4, 1.1, 0.8}).placed(pose), 6000u, 2L)})
+        for (const double noise : {0.25, 0.5})
+            for (const bool choose : {false, true}) {
+                INFO("euler " << euler << ", noise of " << noise << " voxels, voxel chosen: " << choose);
+                ReconstructOptions options;
+                if (!choose) options.voxel_size = voxel;
+                const Reconstruction result = reconstruct(
+                    support::sample(
+                        solid,
+                        {.points = points, .seed = 23, .normals = false, .position_noise = noise * voxel}),
+                    options);
+                CHECK(faults(to_polygons(result.mesh)) == "");
+                CHECK(result.report.mesh.closed);
+                CHECK(result.report.mesh.components == 1);
+                CHECK(result.report.mesh.euler == euler);
+            }
+}
+
+TEST_CASE("voxels are three spacings wide, or twice the noise if that is more", "[reconstruct]") {
+    const double spacing = std::sqrt(4 * std::numbers::pi / 20000);
+    const auto report = [&](double noise) {
+        return reconstruct(
+                   support::sample(support::sphere(1),
+                                   {.points = 20000, .normals = false, .position_noise = noise * spacing}))
+            .report;
+    };
+    const Report clean = report(0), noisy = report(3);
+    CHECK(clean.grid.voxel_size == Approx(3 * spacing).epsilon(0.02));
+    CHECK(clean.options.at("resolution").find("noise") == std::string::npos);
+    CHECK(noisy.grid.voxel_size == Approx(6 * spacing).epsilon(0.15));
+    CHECK(noisy.options.at("resolution").find("noise") != std::string::npos);
+    CHECK(noisy.input.spacing == Approx(spacing).epsilon(0.1));
+    CHECK(noisy.mesh.closed);
+}
+
 TEST_CASE("given normals of mixed signs give the mesh of consistent ones, and are counted", "[reconstruct]") {
     PointCloud cloud = support::sample(support::torus(1, 0.4), {.points = 8000});
     ReconstructOptions options;

@@ -14,7 +14,7 @@ constexpr std::size_t points_per_chunk = 1 << 14;
 
 /// How two points next to each other lie.
 struct Pair {
-    enum Kind { unclear, flat, creased } kind = unclear;
+    enum Kind { unclear, flat, creased, steep } kind = unclear;
     bool opposed = false;
     double rise = 0; ///< sine of the angle between the chord and the planes
 };
@@ -29,6 +29,7 @@ Pair compare(const Octree& octree, std::size_t i, std::size_t j, double farthest
     const double rise_n = (n | d) / length, rise_m = (m | d) / length;
     const double rise = std::max(std::abs(rise_n), std::abs(rise_m));
     if (std::abs(cosine) > parallel && rise < flattest) return {Pair::flat, cosine < 0, rise};
+    if (cosine > parallel) return {Pair::steep, false, rise};
     const double mirrored = cosine - 2 * rise_n * rise_m; // see patch_evidence
     if (std::abs(cosine) < crossing && std::abs(mirrored) > clear) return {Pair::creased, mirrored < 0, rise};
     return {};
@@ -81,6 +82,7 @@ double NormalConsistency::contradiction() const {
 void NormalConsistency::operator+=(const NormalConsistency& other) {
     flat += other.flat, flat_opposed += other.flat_opposed;
     creased += other.creased, creased_opposed += other.creased_opposed;
+    steep += other.steep;
 }
 
 NormalConsistency check_normals(const Octree& octree) {
@@ -90,6 +92,7 @@ NormalConsistency check_normals(const Octree& octree) {
     const double highest = 3 * mean_rise(octree, farthest) + 0.01;
     return sum_pairs<NormalConsistency>(octree, farthest, [&](const Pair& pair, NormalConsistency& sum) {
         if (pair.kind == Pair::flat && pair.rise < highest) ++sum.flat, sum.flat_opposed += pair.opposed;
+        if (pair.kind == Pair::steep) ++sum.steep;
         if (pair.kind == Pair::creased) ++sum.creased, sum.creased_opposed += pair.opposed;
     });
 }

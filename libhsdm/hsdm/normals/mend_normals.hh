@@ -12,6 +12,10 @@ struct NormalConsistency {
     std::size_t flat = 0, flat_opposed = 0; ///< on one plane; of these, with opposite normals
     std::size_t creased = 0,
                 creased_opposed = 0; ///< on two planes that meet; of these, out on one and in on the other
+    std::size_t steep = 0; ///< whose normals agree while their chord rises clearly out of both planes
+
+    /// More steep pairs than flat ones: the noise is perhaps not small against the spacing.
+    bool rough() const { return steep > flat; }
 
     /// More contradictions than thin parts and strays cause: ten pairs, and over 0.05 % of the flat or 15 %
     /// of the creased.

@@ -10,9 +10,13 @@
 namespace hsdm {
 namespace {
 
+/// How far points lie from a plane, and how far those farthest away are that it was fitted to.
+struct Roughness {
+    double distance = 0, reach = 0;
+};
+
 /// Root mean square distance from the plane of the nearest few, for the three parameters that a plane has.
-double roughness(const Octree& octree, const Neighbors& neighbors, std::size_t i) {
-    constexpr std::size_t few = 6;
+Roughness roughness(const Octree& octree, const Neighbors& neighbors, std::size_t few, std::size_t i) {
     std::array<std::pair<double, Index>, 64> nearest;
     const auto around = neighbors.of(i);
     for (std::size_t k = 0; k < around.size(); ++k)
@@ -25,24 +29,69 @@ double roughness(const Octree& octree, const Neighbors& neighbors, std::size_t i
     for (std::size_t k = 0; k < count; ++k)
         sums.add(octree.positions[nearest[k].second] - octree.positions[i], 1);
     const double freedom = std::max(1.0, static_cast<double>(count) - 2) / static_cast<double>(count + 1);
-    return std::sqrt(fit_plane(sums).variance / freedom);
+    return {std::sqrt(fit_plane(sums).variance / freedom),
+            count > 0 ? std::sqrt(nearest[count - 1].first) : 0};
+}
+
+double lower_third(std::vector<double>& values) {
+    if (values.empty()) return 0;
+    const auto lower = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 3);
+    std::nth_element(values.begin(), lower, values.end());
+    return *lower;
+}
+
+/// Calls measure(point, place) for a sample of the points; returns its lower third.
+template <class Measure>
+double lower_third_of_sample(const Octree& octree, const Measure& measure) {
+    constexpr std::size_t samples = 1 << 14, samples_per_chunk = 1024;
+    const std::size_t stride = octree.size() / samples + 1;
+    std::vector<double> values((octree.size() + stride - 1) / stride, 0);
+    for_chunks(values.size(), samples_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t r = begin; r < end; ++r) values[r] = measure(r * stride);
+    });
+    return lower_third(values);
+}
+
+/// Every fourth point along the Morton curve: as even as all of them.
+Octree thinned(const Octree& octree) {
+    Octree thin;
+    thin.origin = octree.origin, thin.extent = octree.extent, thin.bounds = octree.bounds;
+    for (std::size_t i = 0; i < octree.size(); i += 4) {
+        thin.codes.push_back(octree.codes[i]);
+        thin.positions.push_back(octree.positions[i]);
+    }
+    return thin;
 }
 
 } // namespace
 
 double estimate_noise(const Octree& octree, const Neighbors& neighbors) {
-    constexpr std::size_t samples = 1 << 14, samples_per_chunk = 1024;
-    const std::size_t stride = octree.size() / samples + 1;
-    std::vector<double> ratios((octree.size() + stride - 1) / stride, 0);
-    if (ratios.empty()) return 0;
-    for_chunks(ratios.size(), samples_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t r = begin; r < end; ++r)
-            if (const std::size_t i = r * stride; neighbors.reach[i] > 0)
-                ratios[r] = roughness(octree, neighbors, i) / neighbors.reach[i];
+    return lower_third_of_sample(octree, [&](std::size_t i) {
+        return neighbors.reach[i] > 0 ? roughness(octree, neighbors, 6, i).distance / neighbors.reach[i] : 0;
     });
-    const auto lower = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 3);
-    std::nth_element(ratios.begin(), lower, ratios.end());
-    return *lower;
+}
+
+double noise_deviation(const Octree& octree, const Neighbors& neighbors) {
+    constexpr std::size_t fewest = 1000; // points: below, there is nothing to take a typical value of
+    struct Scale {
+        std::size_t few;
+        double small; ///< against the reach: about five deviations; where all is noise it is 0.23 and 0.30
+        double deviation; ///< of a normal distribution whose distances have this lower third
+    };
+    double deviation = 0;
+    for (const Scale& scale : {Scale{6, 0.15, 1.3}, Scale{12, 0.2, 1.13}}) {
+        const auto measured = [&](std::size_t i) { return roughness(octree, neighbors, scale.few, i); };
+        const double relative = lower_third_of_sample(octree, [&](std::size_t i) {
+            const Roughness r = measured(i);
+            return r.reach > 0 ? r.distance / r.reach : 0;
+        });
+        deviation = scale.deviation
+                    * lower_third_of_sample(octree, [&](std::size_t i) { return measured(i).distance; });
+        if (relative < scale.small) return deviation;
+    }
+    if (octree.size() < 2 * fewest) return deviation;
+    const Octree thin = thinned(octree);
+    return noise_deviation(thin, find_neighbors(thin));
 }
 
 int neighbors_for_noise(double noise) {

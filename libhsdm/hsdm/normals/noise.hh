@@ -11,6 +11,12 @@ namespace hsdm {
 /// sample, so that creases do not count. O(1) beyond the first 16,384 points.
 double estimate_noise(const Octree& octree, const Neighbors& neighbors);
 
+/// Standard deviation of the noise, in the cloud's units: the same distance, of 6 and 12 neighbours and then
+/// of those that are left of a cloud thinned to a quarter, a sixteenth, ..., at the first scale at which it
+/// is small against the reach. So it is found however many spacings it is, and no scale is looked at that is
+/// wider than needed: the sides of a plate or a slit stay apart. O(n).
+double noise_deviation(const Octree& octree, const Neighbors& neighbors);
+
 /// Neighbours per point that such noise, measured with 16 of them, calls for: 16, 32 or 64.
 int neighbors_for_noise(double noise);
 

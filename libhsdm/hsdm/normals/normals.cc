@@ -21,6 +21,7 @@ NormalsReport make_normals(Octree& octree, const NormalsOptions& options) {
     NormalsReport report;
     Neighbors nearest = find_neighbors(octree);
     report.outliers = drop_outliers(octree, nearest, options.outliers);
+    report.smoothed = smooth_noise(octree, nearest, options.smooth);
     const Neighbors neighbors = choose_neighbors(octree, options.neighbors, std::move(nearest));
     EstimatedNormals estimate = estimate_normals(octree, neighbors, options.estimate);
     report.orientation = orient_normals(octree, neighbors, estimate, options.orient);

@@ -44,6 +44,16 @@ MortonCode code_of(const Vec3& relative, double scale) {
     return morton_encode(c[0], c[1], c[2]);
 }
 
+/// Least corner of a cube about the middle of a box whose longest side is no longer.
+Vec3 centred_origin(const Box& bounds, double extent) {
+    Vec3 origin;
+    // A side as long as the cube's: rounding must not leave its ends a hair outside.
+    for (unsigned k = 0; k < 3; ++k)
+        origin[k] =
+            std::clamp(bounds.lo[k] + bounds.size()[k] / 2 - extent / 2, bounds.hi[k] - extent, bounds.lo[k]);
+    return origin;
+}
+
 /// Runs of equal codes come in the order of the input: sorts each by position, then normal.
 void order_ties(const PointCloud& cloud, bool with_normals, std::vector<CodeIndex>& keys) {
     auto key = [&](Index i) {
@@ -92,13 +102,8 @@ Octree build_octree(const PointCloud& cloud, const OctreeOptions& options) {
                               + ": must be 0 or at least " + std::to_string(octree.extent));
         octree.extent = options.cube_extent;
     }
-    if (options.placement == CubePlacement::centred) {
-        const double half = octree.extent / 2;
-        // The longest side fills the cube: rounding must not leave its ends a hair outside.
-        for (unsigned k = 0; k < 3; ++k)
-            octree.origin[k] = std::clamp(octree.bounds.lo[k] + octree.bounds.size()[k] / 2 - half,
-                                          octree.bounds.hi[k] - octree.extent, octree.bounds.lo[k]);
-    }
+    if (options.placement == CubePlacement::centred)
+        octree.origin = centred_origin(octree.bounds, octree.extent);
 
     const std::size_t n = cloud.size();
     const bool with_normals = options.use_normals && cloud.has_normals();
@@ -126,6 +131,42 @@ Octree build_octree(const PointCloud& cloud, const OctreeOptions& options) {
         }
     });
     return octree;
+}
+
+Octree rearranged(const Octree& octree, const std::vector<Vec3>& positions, double extent) {
+    Octree result;
+    result.bounds = octree.bounds;
+    result.merged_duplicates = octree.merged_duplicates;
+    result.extent = extent;
+    result.origin = extent == octree.extent ? octree.origin : centred_origin(octree.bounds, extent);
+    const Vec3 shift = octree.origin - result.origin;
+    PointCloud moved;
+    moved.positions.resize(octree.size());
+    moved.normals = octree.normals;
+    const double scale = static_cast<double>(1 << morton_levels) / extent;
+    std::vector<CodeIndex> keys(octree.size());
+    tbb::parallel_for(Range(0, keys.size(), grain), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            moved.positions[i] = positions[i] + shift;
+            keys[i] = {code_of(moved.positions[i], scale), static_cast<Index>(i)};
+        }
+    });
+    radix_sort(keys, 3 * morton_levels);
+    order_ties(moved, octree.has_normals(), keys);
+    result.codes.resize(keys.size());
+    result.source.resize(keys.size());
+    result.positions.resize(keys.size());
+    if (octree.has_normals()) result.normals.resize(keys.size());
+    tbb::parallel_for(Range(0, keys.size(), grain), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            const Index from = keys[i].index;
+            result.codes[i] = keys[i].code;
+            result.source[i] = octree.source[from];
+            result.positions[i] = moved.positions[from];
+            if (octree.has_normals()) result.normals[i] = octree.normals[from];
+        }
+    });
+    return result;
 }
 
 OctreeLevel extract_level(const Octree& octree, int depth) {

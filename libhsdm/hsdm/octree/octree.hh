@@ -45,6 +45,12 @@ struct Octree {
 /// OptionError if cube_extent is given but smaller than the cloud.
 Octree build_octree(const PointCloud& cloud, const OctreeOptions& options = {});
 
+/// The octree's points at other positions (relative to its origin, in its order), in the Morton order of a
+/// cube of the given extent: its own, or one about the middle of the cloud's box. Points outside the cube
+/// fall to its outermost voxels; none is merged, normals stay with their points, `source` and `bounds` refer
+/// to the cloud as before. O(n), parallel.
+Octree rearranged(const Octree& octree, const std::vector<Vec3>& positions, double extent);
+
 /// The occupied voxels of one level, in Morton order. Voxel v holds points first_point[v] .. first_point[v +
 /// 1].
 class OctreeLevel {

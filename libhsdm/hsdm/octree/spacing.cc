@@ -3,6 +3,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdio>
@@ -14,6 +15,9 @@ using Counts = std::array<std::size_t, morton_levels + 1>;
 
 /// Faces a surface of one unit of area crosses per voxel face, averaged over all directions.
 constexpr double voxels_per_area = 1.5;
+/// Of the voxels that a surface crosses, this share over the root of the points per voxel holds none of them,
+/// being clipped only at a tip (measured: 0.14 at 9 points, 0.10 at 17, 0.06 at 32).
+constexpr double tips = 0.4;
 constexpr double points_per_voxel = 8;
 constexpr int deepest = 16;
 
@@ -52,7 +56,28 @@ double estimate_spacing(const Octree& octree) {
     unsigned level = morton_levels;
     while (level > 0 && n < points_per_voxel * static_cast<double>(counts[level])) --level;
     const double h = octree.voxel_size(static_cast<int>(level));
-    return h * std::sqrt(static_cast<double>(counts[level]) / (voxels_per_area * n));
+    const auto voxels = static_cast<double>(counts[level]);
+    const double seen = 1 - std::min(0.5, tips * std::sqrt(voxels / n));
+    return h * std::sqrt(voxels / (voxels_per_area * seen * n));
+}
+
+VoxelChoice choose_voxel(const Octree& octree, double spacing, double noise) {
+    constexpr double spacings_per_voxel = 3, noises_per_voxel = 2;
+    VoxelChoice choice;
+    char text[160];
+    if (noises_per_voxel * noise > spacings_per_voxel * spacing) {
+        choice.size = noises_per_voxel * noise;
+        std::snprintf(text, sizeof text,
+                      "%g times the noise (standard deviation %.4g, spacing of the points %.4g)",
+                      noises_per_voxel, noise, spacing);
+    } else {
+        choice.size = spacings_per_voxel * spacing;
+        std::snprintf(text, sizeof text, "%g spacings of the points (spacing %.4g)", spacings_per_voxel,
+                      spacing);
+    }
+    choice.size = std::clamp(choice.size, octree.voxel_size(deepest), octree.voxel_size(1));
+    choice.reason = text;
+    return choice;
 }
 
 DepthChoice choose_depth(const Octree& octree, double spacing, double spacings_per_voxel) {

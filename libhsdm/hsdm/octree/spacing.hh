@@ -12,9 +12,21 @@ std::array<std::size_t, morton_levels + 1> count_voxels(const Octree& octree);
 
 /// Mean distance between neighbouring points in the cloud's units: the side of the square of surface that
 /// each point stands for. The area is taken from the finest level that still holds 8 points or more per
-/// voxel: a surface in general pose occupies 1.5 A / h^2 voxels of edge h. A few percent off for axis-aligned
-/// planes (which occupy A / h^2); meaningless for points that fill a volume.
+/// voxel: a surface in general pose crosses 1.5 A / h^2 voxels of edge h, less those clipped at a tip where
+/// no point fell. Up to a quarter too small for axis-aligned planes (which cross A / h^2); meaningless for
+/// points that fill a volume.
 double estimate_spacing(const Octree& octree);
+
+/// An edge of the voxels and why.
+struct VoxelChoice {
+    double size = 0;    ///< in the cloud's units
+    std::string reason; ///< one clause for a person
+};
+
+/// Three spacings: a surface in general pose then leaves few voxels empty by chance (about six points per
+/// voxel). If that is more, twice the standard deviation of the noise (in the cloud's units, 0 if there is
+/// none), below which nothing can be told from it. At most half the cube.
+VoxelChoice choose_voxel(const Octree& octree, double spacing, double noise);
 
 /// A depth and why.
 struct DepthChoice {
@@ -22,8 +34,7 @@ struct DepthChoice {
     std::string reason; ///< one clause for a person
 };
 
-/// The finest depth in [1, 16] whose voxels are at least so many spacings wide. At three a surface in general
-/// pose leaves few voxels empty by chance (about six points per voxel).
+/// The finest depth in [1, 16] whose voxels are at least so many spacings wide.
 DepthChoice choose_depth(const Octree& octree, double spacing, double spacings_per_voxel = 3);
 
 } // namespace hsdm

@@ -1,0 +1,172 @@
+#include "hsdm/normals/smooth_points.hh"
+
+#include "hsdm/chunks.hh"
+#include "hsdm/errors.hh"
+#include "hsdm/normals/neighborhood.hh"
+#include "hsdm/normals/noise.hh"
+#include "hsdm/normals/outliers.hh"
+#include "hsdm/normals/plane_fit.hh"
+#include "hsdm/octree/spacing.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t voxels_per_chunk = 256;
+/// In standard deviations of the noise: least radius of the surroundings, and where another sheet begins.
+constexpr double least_radius = 4, another_sheet = 4;
+/// The tilt of a plane falls with noise * spacing / radius^2: at so many geometric means of the two it is
+/// some four degrees.
+constexpr double steady_radius = 6;
+/// Voxels to a radius.
+constexpr std::int32_t reach = 2;
+constexpr int rounds = 3;
+
+/// Points, mean and second moments about it of one voxel.
+struct VoxelSums {
+    double count = 0;
+    Vec3 mean{0, 0, 0};
+    std::array<double, 6> spread{}; // xx, yy, zz, xy, yz, zx, summed
+};
+
+void add(PlaneSums& sums, const VoxelSums& voxel, const Vec3& base, double weight) {
+    sums.add(voxel.mean - base, weight * voxel.count);
+    for (std::size_t k = 0; k < 6; ++k) sums.second[k] += weight * voxel.spread[k];
+}
+
+class Smoothing {
+public:
+    Smoothing(const Octree& octree, double noise)
+        : noise_(noise),
+          radius_(
+              std::max(least_radius * noise, steady_radius * std::sqrt(noise * estimate_spacing(octree)))),
+          grid_(grid_of(octree, radius_ / reach)) {}
+
+    /// The new positions, in the octree's order, relative to its origin.
+    std::vector<Vec3> run() {
+        sum_voxels();
+        std::vector<Vec3> moved(grid_.size());
+        for_chunks(level_.size(), voxels_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            std::vector<Index> around;
+            for (std::size_t v = begin; v < end; ++v) {
+                find_around(static_cast<Index>(v), around);
+                for (Index i = level_.first_point[v]; i < level_.first_point[v + 1]; ++i)
+                    moved[grid_.source[i]] = project(grid_.positions[i], around) + grid_.origin;
+            }
+        });
+        return moved;
+    }
+
+private:
+    /// The same points in a cube whose voxels of some level have just the edge wanted.
+    Octree grid_of(const Octree& octree, double edge) {
+        PointCloud cloud;
+        cloud.positions = octree.positions;
+        const double extent = cloud.bounds().extent();
+        double cube = edge;
+        for (depth_ = 0; cube < extent && depth_ < morton_levels; ++depth_) cube *= 2;
+        return build_octree(cloud, {.merge_duplicates = false, .cube_extent = std::max(cube, extent)});
+    }
+
+    void sum_voxels() {
+        level_ = extract_level(grid_, depth_);
+        sums_.resize(level_.size());
+        for_chunks(level_.size(), voxels_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t v = begin; v < end; ++v) {
+                const Index first = level_.first_point[v], last = level_.first_point[v + 1];
+                VoxelSums& sum = sums_[v];
+                sum.count = last - first;
+                for (Index i = first; i < last; ++i) sum.mean += grid_.positions[i];
+                sum.mean /= sum.count;
+                PlaneSums spread;
+                for (Index i = first; i < last; ++i) spread.add(grid_.positions[i] - sum.mean, 1);
+                sum.spread = spread.second;
+            }
+        });
+    }
+
+    void find_around(Index voxel, std::vector<Index>& around) const {
+        const VoxelCoord c = level_.coord(voxel);
+        around.clear();
+        for (std::int32_t z = -reach; z <= reach; ++z)
+            for (std::int32_t y = -reach; y <= reach; ++y)
+                for (std::int32_t x = -reach; x <= reach; ++x)
+                    if (const Index v = level_.find(VoxelCoord{c[0] + x, c[1] + y, c[2] + z}); v != no_index)
+                        around.push_back(v);
+    }
+
+    /// The plane around the point itself first, then around where it came to lie.
+    Vec3 project(const Vec3& point, const std::vector<Index>& around) const {
+        const double inverse_radius = 1 / radius_, inverse_gap = 1 / (another_sheet * noise_);
+        Vec3 p = point, normal(0, 0, 0);
+        for (int round = 0; round < rounds; ++round) {
+            PlaneSums sums;
+            for (Index v : around) {
+                const Vec3 d = sums_[v].mean - p;
+                const double weight =
+                    closeness(d.norm(), inverse_radius) * closeness(d | normal, inverse_gap);
+                if (weight > 0) add(sums, sums_[v], p, weight);
+            }
+            const PlaneFit plane = fit_plane(sums);
+            if (plane.normal.sqrnorm() == 0) return p;
+            normal = plane.normal;
+            p += normal * (plane.centroid | normal);
+        }
+        return p;
+    }
+
+    double noise_, radius_;
+    int depth_ = 0;
+    Octree grid_;
+    OctreeLevel level_;
+    std::vector<VoxelSums> sums_;
+};
+
+/// Most points lie on surfaces that no smoothing moves; creases move theirs farther, so the lower third of
+/// the moves is taken, which is 0.43 standard deviations.
+double noise_of_moves(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
+    constexpr double lower_third = 0.4307;
+    std::vector<double> moves(from.size());
+    for (std::size_t i = 0; i < moves.size(); ++i) moves[i] = (to[i] - from[i]).norm();
+    const auto third = moves.begin() + static_cast<std::ptrdiff_t>(moves.size() / 3);
+    std::nth_element(moves.begin(), third, moves.end());
+    return *third / lower_third;
+}
+
+} // namespace
+
+double smooth_points(Octree& octree, double noise) {
+    constexpr int most_rounds = 4;
+    constexpr double clearly_less = 0.95;
+    std::vector<Vec3> moved;
+    for (int round = 0; round < most_rounds; ++round) {
+        moved = Smoothing(octree, noise).run();
+        const double found = noise_of_moves(octree.positions, moved);
+        if (found > clearly_less * noise || found == 0) break;
+        noise = found;
+    }
+    octree = rearranged(octree, moved, octree.extent);
+    return noise;
+}
+
+SmoothReport smooth_noise(Octree& octree, Neighbors& neighbors, const SmoothOptions& options) {
+    constexpr int rounds_of_removal = 2;
+    if (!(options.least_noise >= 0))
+        throw OptionError("least_noise " + std::to_string(options.least_noise) + ": must be 0 or more");
+    if (!(options.most_stretch > 1))
+        throw OptionError("most_stretch " + std::to_string(options.most_stretch) + ": must be above 1");
+    SmoothReport report;
+    const double noise = noise_deviation(octree, neighbors);
+    if (noise <= options.least_noise * estimate_spacing(octree)) return report;
+    report.noise = smooth_points(octree, noise);
+    neighbors = find_neighbors(octree);
+    OutlierOptions removal;
+    removal.most_stretch = options.most_stretch;
+    removal.rounds = rounds_of_removal;
+    report.between = drop_outliers(octree, neighbors, removal);
+    return report;
+}
+
+} // namespace hsdm

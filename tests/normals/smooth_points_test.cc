@@ -1,0 +1,99 @@
+#include "hsdm/normals/smooth_points.hh"
+
+#include "hsdm/errors.hh"
+#include "support/sample.hh"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <numbers>
+
+using namespace hsdm;
+using support::Solid;
+
+namespace {
+
+constexpr std::size_t points = 8000;
+const double spacing = std::sqrt(4 * std::numbers::pi / points); // of that many on a unit sphere
+
+struct Smoothed {
+    Octree octree;
+    SmoothReport report;
+};
+
+Smoothed smoothed(const PointCloud& cloud) {
+    Smoothed result{build_octree(cloud, {.use_normals = false}), {}};
+    Neighbors neighbors = find_neighbors(result.octree);
+    result.report = smooth_noise(result.octree, neighbors);
+    CHECK(neighbors.reach.size() == result.octree.size());
+    CHECK(std::is_sorted(result.octree.codes.begin(), result.octree.codes.end()));
+    return result;
+}
+
+double mean_distance(const Solid& solid, const Octree& octree) {
+    double sum = 0;
+    for (const Vec3& p : octree.positions) sum += std::abs(solid.distance(p + octree.origin));
+    return sum / static_cast<double>(octree.size());
+}
+
+} // namespace
+
+TEST_CASE("noisy points come to lie near their surface, and the noise is what they were moved by",
+          "[normals]") {
+    for (double noise : {0.7, 1.5, 2.0}) {
+        INFO("noise of " << noise << " spacings");
+        const double sigma = noise * spacing;
+        const Solid sphere = support::sphere(1);
+        const Smoothed s = smoothed(support::sample(sphere, {.points = points, .position_noise = sigma}));
+        CHECK(s.report.noise == Approx(sigma).epsilon(0.15));
+        CHECK(mean_distance(sphere, s.octree) < 0.4 * sigma);
+        CHECK(s.octree.size() + s.report.between == points);
+        CHECK(s.report.between < points / 50);
+    }
+}
+
+TEST_CASE("a cloud of little noise stays as it is", "[normals]") {
+    const Solid plate = support::box(Vec3(1, 1, 2.5 * std::sqrt(2.0 / points)));
+    for (const Solid& solid : {support::sphere(1), support::mechanical_part(), plate}) {
+        const PointCloud cloud = support::sample(solid, {.points = points, .normals = false});
+        const Smoothed s = smoothed(cloud);
+        CHECK(s.report.noise == 0);
+        CHECK(s.report.between == 0);
+        CHECK(s.octree.positions == build_octree(cloud).positions);
+    }
+}
+
+TEST_CASE("the noisy sides of a plate stay two", "[normals]") {
+    const double sigma = 1.2 * std::sqrt(2.0 / points);
+    for (double thickness : {7.0, 9.0}) {
+        INFO("thickness of " << thickness << " times the noise");
+        const Solid plate = support::box(Vec3(1, 1, thickness * sigma));
+        const Smoothed s = smoothed(support::sample(plate, {.points = points, .position_noise = sigma}));
+        std::size_t between = 0;
+        for (const Vec3& p : s.octree.positions)
+            between += std::abs((p + s.octree.origin)[2]) < 0.25 * thickness * sigma
+                       && std::abs((p + s.octree.origin)[0]) < 0.4
+                       && std::abs((p + s.octree.origin)[1]) < 0.4;
+        CHECK(between < points / 100);
+        CHECK(mean_distance(plate, s.octree) < 0.5 * sigma);
+    }
+}
+
+TEST_CASE("what becomes of noisy points does not depend on their order", "[normals]") {
+    PointCloud cloud =
+        support::sample(support::torus(1, 0.4), {.points = 3000, .normals = false, .position_noise = 0.05});
+    const Smoothed one = smoothed(cloud);
+    std::reverse(cloud.positions.begin(), cloud.positions.end());
+    std::rotate(cloud.positions.begin(), cloud.positions.begin() + 1000, cloud.positions.end());
+    const Smoothed other = smoothed(cloud);
+    CHECK(one.report.noise > 0);
+    CHECK(one.report.noise == other.report.noise);
+    CHECK(one.octree.positions == other.octree.positions);
+}
+
+TEST_CASE("smoothing options out of range are refused", "[normals]") {
+    Octree octree = build_octree(support::sample(support::sphere(1), {.points = 100}));
+    Neighbors neighbors = find_neighbors(octree);
+    CHECK_THROWS_AS(smooth_noise(octree, neighbors, {.least_noise = -1}), OptionError);
+    CHECK_THROWS_AS(smooth_noise(octree, neighbors, {.most_stretch = 1}), OptionError);
+}
