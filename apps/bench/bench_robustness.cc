@@ -7,6 +7,7 @@
 #include "support/pose.hh"
 #include "support/random.hh"
 #include "support/sample.hh"
+#include "support/trial.hh"
 
 #include <cmath>
 #include <cstdio>
@@ -116,6 +117,38 @@ std::string outcome(const Shape& shape, const PointCloud& cloud, NormalSource no
     }
 }
 
+/// How many of the solids with large features of a range of seeds come out with the right topology under
+/// position noise.
+void print_random_solids(std::uint64_t first_seed, std::uint64_t last_seed, NormalSource normals,
+                         bool choose) {
+    const std::vector<double> noises = {0, 0.25, 0.5};
+    std::vector<int> right(noises.size(), 0);
+    int solids = 0;
+    support::TrialOptions how;
+    how.voxel = voxel;
+    for (std::uint64_t seed = first_seed; seed < last_seed; ++seed) {
+        const support::Trial trial = support::make_trial(seed, how);
+        if (trial.size != support::FeatureSize::large) continue;
+        ++solids;
+        const support::Solid solid = support::random_solid(seed, how.thinnest * voxel, how.thickest * voxel);
+        for (std::size_t k = 0; k < noises.size(); ++k) {
+            ReconstructOptions options;
+            if (!choose) options.voxel_size = voxel;
+            options.normals = normals;
+            const PointCloud cloud = support::sample(
+                solid, {.points = trial.cloud.size(), .seed = seed, .position_noise = noises[k] * voxel});
+            const Report::Mesh m = reconstruct(cloud, options).report.mesh;
+            right[k] += m.closed && m.euler == trial.euler;
+        }
+    }
+    std::printf("| %-24s | %-16s | %-8s |", faults[0].name, "random solids",
+                normals == NormalSource::given ? "given" : "none");
+    for (std::size_t k = 0; k < noises.size(); ++k)
+        std::printf(" %g: %d of %d |", noises[k], right[k], solids);
+    std::printf("\n");
+    std::fflush(stdout);
+}
+
 } // namespace
 
 /// An argument names the faults that are wanted by a part of their names.
@@ -142,6 +175,9 @@ int main(int argc, char** argv) {
                     std::fflush(stdout);
                 }
         }
+        if (argc > 1 && std::string(faults[0].name).find(argv[1]) == std::string::npos) continue;
+        for (NormalSource normals : {NormalSource::given, NormalSource::estimate})
+            print_random_solids(200, 320, normals, choose);
     }
     return 0;
 }

@@ -35,6 +35,20 @@ std::vector<std::int8_t> free_signs(const Patches& patches, const Signs& signs,
     return sign;
 }
 
+/// Whether most of what patches see of the outside fits the signs that came out. The wall of a shell thinner
+/// than the space's voxels is overlooked here and there, from within as often as from without.
+bool views_agree(const Patches& patches, const OutsideView& view, const Signs& signs) {
+    constexpr double clear = 0.5;
+    const auto outside = static_cast<Index>(patches.size());
+    double sum = 0, total = 0;
+    for (std::size_t p = 0; p < patches.size(); ++p) {
+        if (view.votes[p] == 0 || signs.component[p] != signs.component[outside]) continue;
+        sum += view.votes[p] * signs.sign[p] * signs.sign[outside] * static_cast<double>(patches.counts[p]);
+        total += patches.counts[p];
+    }
+    return sum >= clear * total;
+}
+
 } // namespace
 
 OrientReport orient_normals(const Octree& octree, const Neighbors& neighbors, EstimatedNormals& estimate,
@@ -53,7 +67,7 @@ OrientReport orient_normals(const Octree& octree, const Neighbors& neighbors, Es
     }
     const Signs signs = agglomerate(patches.size() + 1, std::move(edges));
     std::vector<std::int8_t> turn = free_signs(patches, signs, options);
-    turn[signs.component[outside]] = signs.sign[outside];
+    if (views_agree(patches, view, signs)) turn[signs.component[outside]] = signs.sign[outside];
     for_chunks(octree.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i) {
             const Index p = patches.of_point[i];
