@@ -65,7 +65,7 @@ MaxError error_of(const std::string& text) {
 } // namespace
 
 void add_method_options(CLI::App& app, ReconstructArguments& a) {
-    const std::string resolution = "Resolution (default: chosen from the spacing of the points)";
+    const std::string resolution = "Resolution (default: chosen from the spacing and noise of the points)";
     const auto depth = app.add_option("--depth", a.depth,
                                       "octree depth N over the bounding cube, 1 to 16: voxel = "
                                       "largest extent / 2^N")

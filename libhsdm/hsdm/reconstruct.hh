@@ -37,7 +37,8 @@ struct MaxError {
 };
 
 struct ReconstructOptions {
-    /// Resolution: at most one of the three; by default the depth follows from the spacing of the points.
+    /// Resolution: at most one of the three; by default the voxel follows from the points' spacing and
+    /// noise (choose_voxel).
     std::optional<int> depth;         ///< octree depth over the bounding cube, [1, 16]
     std::optional<double> voxel_size; ///< edge of a voxel in the cloud's units, > 0: kept exactly, the
                                       ///< bounding cube grows to the next power of two of it
