@@ -35,18 +35,18 @@ Islands drop_islands(PolygonMesh& mesh, FeatureHints& hints, const MinComponent&
     const Sizes sizes = measure(mesh, components);
     const auto largest =
         static_cast<std::size_t>(std::max_element(sizes.area.begin(), sizes.area.end()) - sizes.area.begin());
-    std::vector<std::uint8_t> dropped(mesh.vertex_count(), 0);
-    for (std::size_t c = 0; c < dropped.size(); ++c) {
-        if (sizes.facets[c] == 0 || c == largest) continue;
-        dropped[c] = least.of_largest ? least.value >= 1 || sizes.area[c] < least.value * sizes.area[largest]
-                                      : static_cast<double>(sizes.facets[c]) < least.value;
-        removed.components += dropped[c];
-    }
+    const auto is_small = [&](std::size_t c) {
+        if (c == largest) return false;
+        return least.of_largest ? least.value >= 1 || sizes.area[c] < least.value * sizes.area[largest]
+                                : static_cast<double>(sizes.facets[c]) < least.value;
+    };
+    for (std::size_t c = 0; c < sizes.facets.size(); ++c)
+        if (sizes.facets[c] > 0 && is_small(c)) ++removed.components;
     if (removed.components == 0) return removed;
     PolygonMesh kept;
     std::vector<EdgeHint> sides;
     for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-        if (dropped[components.find(mesh.facet(f)[0])]) continue;
+        if (is_small(components.find(mesh.facet(f)[0]))) continue;
         kept.add_facet(mesh.facet(f));
         if (!hints.sides.empty())
             sides.insert(sides.end(), hints.sides.begin() + mesh.first[f],
