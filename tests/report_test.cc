@@ -23,7 +23,8 @@ TEST_CASE("the report holds every key that scripts rely on, numbers plain", "[re
          {"vertices", "edges", "faces", "triangles", "quads", "larger", "components", "boundary_loops",
           "boundary_edges", "euler", "genus", "closed"}},
         {"features", {"sharp_edges", "smooth_vertices", "edge_vertices", "corner_vertices"}},
-        {"error", {"points_to_mesh_max", "points_to_mesh_mean", "points_to_mesh_rms", "normalised_max",
+        {"error",
+         {"points_to_mesh_max", "points_to_mesh_mean", "points_to_mesh_rms", "normalised_max",
           "mesh_to_surface_max", "mesh_to_surface_mean"}},
         {"seconds",
          {"read", "normals", "octree", "graph", "facets", "mesh", "features", "error", "write", "total"}}};

@@ -35,7 +35,6 @@ void note_counts(const ExtendedFacets& facets, Report& report) {
     report.rejected["vertices_clamped"] = facets.clamped;
     report.rejected["edges_halved"] = facets.midpoints;
     report.rejected["doublets_merged"] = facets.doublets;
-    report.rejected["quads_cut_at_straight_corners"] = facets.straight;
     report.rejected["facets_debris"] = facets.debris;
     report.rejected["holes_closed"] = facets.holes.closed;
     report.rejected["holes_refused"] = facets.holes.refused;

@@ -5,6 +5,7 @@
 #include "hsdm/adaptive/trouble.hh"
 #include "hsdm/chunks.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/facets/straight_corners.hh"
 #include "hsdm/octree/morton_index.hh"
 #include "hsdm/quality/distance.hh"
 #include "hsdm/quality/self_intersections.hh"
@@ -21,6 +22,8 @@ constexpr std::size_t vertices_per_chunk = 2048;
 constexpr std::size_t fewest_samples = 10000, most_samples = 100000;
 constexpr double planes_share =
     0.35; // of the error: what planes of a leaf may be missed by, root mean square
+
+constexpr double reflex = -0.01; // sine of a corner; straight ones do no harm, and a cut costs a facet
 
 constexpr std::uint64_t no_key = 0;
 
@@ -133,6 +136,7 @@ private:
         if (!to_fine_) to_fine_.emplace(fine_);
         tidy_facets(result_.mesh, *to_fine_, planes_share * options_.max_error,
                     [&](Index v) { return coarse_[v].level == tree_.depth(); });
+        cut_straight_corners(result_.mesh, reflex);
     }
 
     /// The simple loops of three vertices and more that are left of a facet whose vertices coincide in part.

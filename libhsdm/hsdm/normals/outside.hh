@@ -8,7 +8,7 @@ namespace hsdm {
 struct OutsideOptions {
     double voxel_spacings = 3.7; ///< > 0: edge of the voxels of the empty space, at least so many spacings,
                                  ///< so that it does not leak through a sampled surface
-    int deepest = 7; ///< octree depth of these voxels at most, [1, 8]: the space is kept densely
+    int deepest = 7;             ///< octree depth of these voxels at most, [1, 8]: the space is kept densely
 };
 
 struct OutsideView {

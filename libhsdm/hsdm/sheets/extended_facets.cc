@@ -2,7 +2,6 @@
 
 #include "hsdm/chunks.hh"
 #include "hsdm/facets/doublets.hh"
-#include "hsdm/facets/straight_corners.hh"
 #include "hsdm/sheets/settle_crossings.hh"
 
 #include <algorithm>
@@ -270,7 +269,6 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
     untangle_options.reach *= h;
     untangle_options.nearby *= h;
     result.intersections = untangle(result.mesh, untangle_options);
-    result.straight = cut_straight_corners(result.mesh);
     take_properties(result);
     result.crossings = crossings.crossings.size();
     result.beyond_crease = crossings.dropped_beyond_crease;

@@ -27,7 +27,6 @@ struct ExtendedFacets {
                 clamped = 0;
     std::size_t midpoints = 0; ///< vertices added so that no two mesh edges join the same two vertices
     std::size_t doublets = 0;  ///< pairs of facets round one vertex made one
-    std::size_t straight = 0;  ///< quads cut at a straight corner
     std::size_t debris = 0;    ///< facets of splinters, removed
     FillHolesCounts holes;
     UntangleCounts intersections;
