@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace hsdm {
 namespace {
@@ -65,7 +66,8 @@ public:
     }
 
     /// Smooth vertices rise or sink until the facets, not the vertices alone, lie amid the points. Where a
-    /// voxel's points are then farther off than from the facets as placed, its vertices go back.
+    /// voxel's points are then farther off than from the facets as placed, its vertices go back; if the
+    /// points are in all, none is moved.
     void fit(const PointFit& fit) {
         const std::vector<double> before = fit.measure(placed_).misfit;
         rise(fit.rises(fit.measure(vertices_.positions).heights));
@@ -75,6 +77,10 @@ public:
             const Index voxel = vertices_.voxel[v];
             if (after.misfit[voxel] > (1 + farther) * before[voxel]) vertices_.positions[v] = placed_[v];
         }
+        const auto sum = [](const std::vector<double>& all) {
+            return std::accumulate(all.begin(), all.end(), 0.0);
+        };
+        if (sum(fit.measure(vertices_.positions).misfit) > sum(before)) vertices_.positions = placed_;
     }
 
 private:

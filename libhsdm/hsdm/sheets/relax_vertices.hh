@@ -15,8 +15,8 @@ struct RelaxOptions {
 /// corners and borders not at all, none out of its voxel. The sheet's height at the new place is the mean
 /// height of the vertices around as they were placed. Then smooth vertices rise or sink until the facets, not
 /// the vertices alone, lie amid the points (PointFit::rises). Where a voxel's points are a tenth farther from
-/// the facets than before, its vertices go back. O(rounds * crossings), parallel; the same for any
-/// number of threads. Throws OptionError.
+/// the facets than before, its vertices go back; all do if the points in all are not nearer. O(rounds *
+/// crossings), parallel; the same for any number of threads. Throws OptionError.
 void relax_vertices(const Octree& octree, const OctreeLevel& level, const CornerLattice& lattice,
                     const Crossings& crossings, const Fans& fans, const RelaxOptions& options,
                     VertexPositions& vertices);
