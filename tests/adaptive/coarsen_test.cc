@@ -105,7 +105,7 @@ TEST_CASE("an axis-parallel box becomes as few quads as its corners allow", "[ad
     CHECK(measure_topology(result.mesh).euler == 2);
 }
 
-TEST_CASE("rims of plates, edges of wedges and rods in general pose take few facets", "[adaptive]") {
+TEST_CASE("rims of plates, edges of wedges and rods in general pose take few facets", "[adaptive][slow]") {
     struct Example {
         const char* name;
         support::Solid solid;

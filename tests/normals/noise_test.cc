@@ -30,7 +30,7 @@ TEST_CASE("noise is told from creases, curvature and thin parts", "[normals]") {
     }
 }
 
-TEST_CASE("the deviation of noise is found whatever it is in spacings", "[normals]") {
+TEST_CASE("the deviation of noise is found whatever it is in spacings", "[normals][slow]") {
     const double spacing = std::sqrt(4 * std::numbers::pi / 20000);
     for (double sigma : {0.15, 0.3, 0.5, 0.8, 1.2, 2.0, 3.0}) {
         const Octree octree = build_octree(support::sample(

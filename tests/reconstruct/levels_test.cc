@@ -30,7 +30,7 @@ PointCloud scan(const support::Solid& solid) {
 
 } // namespace
 
-TEST_CASE("nested levels on adaptive grids are sound, each that of its depth alone", "[reconstruct]") {
+TEST_CASE("nested levels on adaptive grids are sound, each that of its depth alone", "[reconstruct][slow]") {
     for (const Example& e : examples()) {
         INFO(e.name);
         const PointCloud cloud = scan(e.solid);

@@ -72,7 +72,7 @@ TEST_CASE("well-sampled solids come out closed, manifold, outward, of the right 
     }
 }
 
-TEST_CASE("random solids give manifold meshes whatever holes they have", "[reconstruct]") {
+TEST_CASE("random solids give manifold meshes whatever holes they have", "[reconstruct][slow]") {
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
         INFO("seed " << seed);
         const Reconstruction result =
@@ -206,7 +206,7 @@ TEST_CASE("the callback sees work go forward and can stop it between phases", "[
     CHECK_THROWS_AS(reconstruct(cloud, options), Cancelled);
 }
 
-TEST_CASE("every level of one octree equals the reconstruction at that depth", "[reconstruct]") {
+TEST_CASE("every level of one octree equals the reconstruction at that depth", "[reconstruct][slow]") {
     const PointCloud cloud = scan(support::torus(1, 0.4), 20000);
     for (Method method : {Method::basic, Method::extended}) {
         ReconstructOptions options;
@@ -260,7 +260,8 @@ TEST_CASE("points without normals come out like points with exact ones", "[recon
           < 0.2 * estimated.report.grid.voxel_size);
 }
 
-TEST_CASE("noise of half a voxel leaves the topology of points without normals alone", "[reconstruct]") {
+TEST_CASE("noise of half a voxel leaves the topology of points without normals alone",
+          "[reconstruct][slow]") {
     constexpr double voxel = 0.1;
     support::Random random(5);
     const support::Pose pose = support::random_pose(random);
@@ -284,7 +285,7 @@ TEST_CASE("noise of half a voxel leaves the topology of points without normals a
             }
 }
 
-TEST_CASE("voxels are three spacings wide, or twice the noise if that is more", "[reconstruct]") {
+TEST_CASE("voxels are three spacings wide, or twice the noise if that is more", "[reconstruct][slow]") {
     const double spacing = std::sqrt(4 * std::numbers::pi / 20000);
     const auto report = [&](double noise) {
         return reconstruct(

@@ -46,7 +46,7 @@ support::Pose pose(std::uint64_t seed) {
 } // namespace
 
 TEST_CASE("smooth and sharp solids in general pose come out closed, of the right genus, near the surface",
-          "[sheets]") {
+          "[sheets][slow]") {
     struct Example {
         const char* name;
         support::Solid solid;

@@ -95,7 +95,8 @@ PointCloud smeared(PointCloud cloud, double reach) {
 
 } // namespace
 
-TEST_CASE("sheets and the dihedral test agree on the sharp edges of solids with flat sides", "[sheets]") {
+TEST_CASE("sheets and the dihedral test agree on the sharp edges of solids with flat sides",
+          "[sheets][slow]") {
     struct Example {
         const char* name;
         support::Solid solid;
