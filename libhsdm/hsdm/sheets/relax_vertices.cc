@@ -37,6 +37,10 @@ Vec3 within_voxel(const CornerLattice& lattice, const Crossings& crossings, cons
     return from + way * std::max(share, 0.0);
 }
 
+double sum_of(const std::vector<double>& all) {
+    return std::accumulate(all.begin(), all.end(), 0.0);
+}
+
 class Relaxation {
 public:
     Relaxation(double voxel_size, const CornerLattice& lattice, const Crossings& crossings, const Fans& fans,
@@ -72,15 +76,15 @@ public:
         const std::vector<double> before = fit.measure(placed_).misfit;
         rise(fit.rises(fit.measure(vertices_.positions).heights));
         const PointFit::Measure after = fit.measure(vertices_.positions);
+        if (sum_of(after.misfit) > sum_of(before)) {
+            vertices_.positions = placed_;
+            return;
+        }
         rise(fit.rises(after.heights));
         for (std::size_t v = 0; v < fans_.size(); ++v) {
             const Index voxel = vertices_.voxel[v];
             if (after.misfit[voxel] > (1 + farther) * before[voxel]) vertices_.positions[v] = placed_[v];
         }
-        const auto sum = [](const std::vector<double>& all) {
-            return std::accumulate(all.begin(), all.end(), 0.0);
-        };
-        if (sum(fit.measure(vertices_.positions).misfit) > sum(before)) vertices_.positions = placed_;
     }
 
 private:
