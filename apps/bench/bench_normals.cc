@@ -1,7 +1,7 @@
 // hsdm_bench_normals: accuracy and seconds of estimated normals, against the normals that the file gives.
 
 #include "hsdm/io/read_points.hh"
-#include "hsdm/normals/orient_normals.hh"
+#include "hsdm/normals/normals.hh"
 #include "hsdm/octree/spacing.hh"
 
 #include <CLI/CLI.hpp>
@@ -53,12 +53,12 @@ struct Score {
     double sum_smooth = 0, sum_crease = 0;
 };
 
-Score judge(const Octree& octree, const std::vector<Vec3>& normals, const std::vector<Segment>& edges,
-            double reach) {
+/// Against the normals of the cloud, at the points as they were read.
+Score judge(const Octree& octree, const PointCloud& cloud, const std::vector<Segment>& edges, double reach) {
     Score score;
     for (std::size_t i = 0; i < octree.size(); ++i) {
-        const Vec3 p = octree.positions[i] + octree.origin;
-        const double c = normals[i] | octree.normals[i];
+        const Vec3 p = cloud.positions[octree.source[i]];
+        const double c = octree.normals[i] | cloud.normals[octree.source[i]].normalized();
         const double angle = std::acos(std::min(1.0, std::abs(c))) * 180 / std::numbers::pi;
         const bool crease =
             std::any_of(edges.begin(), edges.end(), [&](const Segment& s) { return distance(p, s) < reach; });
@@ -75,49 +75,37 @@ Score judge(const Octree& octree, const std::vector<Vec3>& normals, const std::v
 int main(int argc, char** argv) {
     CLI::App app("Estimates the normals of clouds that have some and compares. Arguments: CLOUD[:EDGES] ...");
     std::vector<std::string> inputs;
-    int count = 16;
     app.add_option("cloud", inputs, "point file with exact normals, then a colon and a file of sharp edges")
         ->required();
-    EstimateOptions options;
-    app.add_option("--tolerance", options.least_tolerance)->capture_default_str();
-    app.add_option("--noise-tolerance", options.noise_tolerance)->capture_default_str();
-    app.add_option("--rounds", options.rounds)->capture_default_str();
-    app.add_option("--neighbors", count, "per point")->capture_default_str();
+    NormalsOptions options;
+    app.add_option("--tolerance", options.estimate.least_tolerance)->capture_default_str();
+    app.add_option("--noise-tolerance", options.estimate.noise_tolerance)->capture_default_str();
+    app.add_option("--rounds", options.estimate.rounds)->capture_default_str();
+    app.add_option("--neighbors", options.neighbors, "per point; 0: by the noise")->capture_default_str();
     CLI11_PARSE(app, argc, argv);
-    std::printf("%-24s %8s %7s %7s | smooth: %6s %6s | crease: %8s %6s %6s | %8s | %6s %6s %6s %6s | %7s %4s "
-                "%6s %6s\n",
-                "cloud", "points", "noise", "refit%", "deg", ">15%", "points", "deg", ">15%", "flipped%",
-                "knn", "fit", "orient", "settle", "patches", "comp", "seen", "volume");
+    std::printf("%-24s %8s %7s %7s %7s | smooth: %6s %6s | crease: %8s %6s %6s | %8s | %7s\n", "cloud",
+                "points", "noise", "moved", "refit%", "deg", ">15%", "points", "deg", ">15%", "flipped%",
+                "seconds");
     for (const std::string& input : inputs) {
         const std::size_t colon = input.find(':');
         const PointCloud cloud = read_points(input.substr(0, colon)).cloud;
         std::vector<Segment> edges;
         if (colon != std::string::npos) edges = read_edges(input.substr(colon + 1));
-        const Octree octree = build_octree(cloud);
+        Octree octree = build_octree(cloud, {.use_normals = false});
         const double h = octree.voxel_size(choose_depth(octree, estimate_spacing(octree)).depth);
         const double start = now();
-        const Neighbors neighbors = find_neighbors(octree, {.count = count});
-        const double found = now();
-        EstimatedNormals estimate = estimate_normals(octree, neighbors, options);
-        const double fitted = now();
-        const OrientReport orient = orient_normals(octree, neighbors, estimate);
-        const double oriented = now();
-        settle_normals(octree, neighbors, estimate);
-        const double settled = now();
-        const Score s = judge(octree, estimate.normals, edges, 2 * h);
+        const NormalsReport report = make_normals(octree, options);
+        const double seconds = now() - start;
+        const Score s = judge(octree, cloud, edges, 2 * h);
         const auto share = [](auto part, std::size_t whole) {
             return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
         };
-        std::printf("%-24s %8zu %7.4f %7.2f | %14.2f %6.2f | %16zu %6.2f %6.2f | %8.3f | %6.3f %6.3f %6.3f "
-                    "%6.3f | %7zu %4zu %5.1f%% %5.1f%%\n",
-                    std::filesystem::path(input.substr(0, colon)).stem().c_str(), octree.size(),
-                    estimate.noise, 100 * share(estimate.bent.size(), octree.size()),
+        std::printf("%-24s %8zu %7.4f %7.4f %7.2f | %14.2f %6.2f | %16zu %6.2f %6.2f | %8.3f | %7.3f\n",
+                    std::filesystem::path(input.substr(0, colon)).stem().c_str(), octree.size(), report.noise,
+                    report.smoothed.noise, 100 * share(report.bent, octree.size()),
                     share(s.sum_smooth, s.smooth), 100 * share(s.off_smooth, s.smooth), s.near_crease,
                     share(s.sum_crease, s.near_crease), 100 * share(s.off_crease, s.near_crease),
-                    100 * share(s.flipped, octree.size()), found - start, fitted - found, oriented - fitted,
-                    settled - oriented, orient.patches, orient.components,
-                    100 * share(orient.seen_from_outside, octree.size()),
-                    100 * share(orient.by_volume, octree.size()));
+                    100 * share(s.flipped, octree.size()), seconds);
     }
     return 0;
 }

@@ -14,33 +14,52 @@ struct NearestOfTriangle {
     std::array<double, 3> weights; ///< barycentric coordinates of the point
 };
 
-/// The foot of a point on a triangle's plane; false if it lies outside the triangle. O(1).
-inline bool foot_inside(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, NearestOfTriangle& foot) {
-    const Vec3 ab = b - a, ac = c - a, ap = p - a;
-    const Vec3 normal = ab % ac;
-    const double area = normal.sqrnorm();
-    // Barycentric coordinates times the area.
-    const double v = (ap % ac) | normal, w = (ab % ap) | normal;
-    if (!(area > 0 && v >= 0 && w >= 0 && v + w <= area)) return false;
-    const Vec3 height = normal * ((ap | normal) / area);
-    foot = {p - height, height.sqrnorm(), {(area - v - w) / area, v / area, w / area}};
-    return true;
-}
+/// A triangle made ready to be asked for many points.
+class Triangle {
+public:
+    Triangle(const Vec3& a, const Vec3& b, const Vec3& c) : a_(a), ab_(b - a), ac_(c - a) {
+        normal_ = ab_ % ac_;
+        area_ = normal_.sqrnorm();
+        if (!has_area()) return;
+        towards_b_ = (ac_ % normal_) / area_;
+        towards_c_ = (normal_ % ab_) / area_;
+    }
 
-/// The nearest point. O(1). A triangle without area counts as its sides.
-inline NearestOfTriangle nearest_of_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-    NearestOfTriangle best;
-    if (foot_inside(p, a, b, c, best)) return best;
-    const auto on_side = [&](const Vec3& from, const Vec3& way) {
-        const double length = way.sqrnorm();
-        return length > 0 ? std::clamp(((p - from) | way) / length, 0.0, 1.0) : 0.0;
-    };
-    const double s = on_side(a, b - a), t = on_side(a, c - a), u = on_side(b, c - b);
-    const Vec3 on_ab = a + (b - a) * s, on_ac = a + (c - a) * t, on_bc = b + (c - b) * u;
-    best = {on_ab, (p - on_ab).sqrnorm(), {1 - s, s, 0}};
-    if (const double d = (p - on_ac).sqrnorm(); d < best.squared_distance) best = {on_ac, d, {1 - t, 0, t}};
-    if (const double d = (p - on_bc).sqrnorm(); d < best.squared_distance) best = {on_bc, d, {0, 1 - u, u}};
-    return best;
-}
+    bool has_area() const { return area_ > 0; }
+
+    /// The foot of a point on the triangle's plane; false if it lies outside the triangle. O(1).
+    bool foot_inside(const Vec3& p, NearestOfTriangle& foot) const {
+        const Vec3 ap = p - a_;
+        const double v = ap | towards_b_, w = ap | towards_c_;
+        if (!(v >= 0 && w >= 0 && v + w <= 1 && has_area())) return false;
+        const Vec3 height = normal_ * ((ap | normal_) / area_);
+        foot = {p - height, height.sqrnorm(), {1 - v - w, v, w}};
+        return true;
+    }
+
+    /// The nearest point. O(1). A triangle without area counts as its sides.
+    NearestOfTriangle nearest(const Vec3& p) const {
+        NearestOfTriangle best;
+        if (foot_inside(p, best)) return best;
+        const auto on_side = [&](const Vec3& from, const Vec3& way) {
+            const double length = way.sqrnorm();
+            return length > 0 ? std::clamp(((p - from) | way) / length, 0.0, 1.0) : 0.0;
+        };
+        const Vec3 b = a_ + ab_, bc = ac_ - ab_;
+        const double s = on_side(a_, ab_), t = on_side(a_, ac_), u = on_side(b, bc);
+        const Vec3 on_ab = a_ + ab_ * s, on_ac = a_ + ac_ * t, on_bc = b + bc * u;
+        best = {on_ab, (p - on_ab).sqrnorm(), {1 - s, s, 0}};
+        if (const double d = (p - on_ac).sqrnorm(); d < best.squared_distance)
+            best = {on_ac, d, {1 - t, 0, t}};
+        if (const double d = (p - on_bc).sqrnorm(); d < best.squared_distance)
+            best = {on_bc, d, {0, 1 - u, u}};
+        return best;
+    }
+
+private:
+    Vec3 a_, ab_, ac_, normal_;
+    Vec3 towards_b_{0, 0, 0}, towards_c_{0, 0, 0}; // gradients of the barycentric coordinates
+    double area_;                                  // four times the area squared
+};
 
 } // namespace hsdm

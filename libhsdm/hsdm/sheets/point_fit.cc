@@ -13,45 +13,46 @@ constexpr std::size_t points_per_voxel = 8;
 constexpr double same_sheet_cosine = 0.77; // normals within 40 degrees
 constexpr double doubt = 2;                // times the variance that squared rises must exceed
 
+/// A triangle of the facets round a vertex.
+struct Around {
+    Triangle triangle;
+    std::array<Index, 3> corners;
+};
+
 /// The nearest point of facets, in the triangle of three vertices.
 struct Foot {
     std::array<Index, 3> corners{};
     NearestOfTriangle nearest{Vec3(0, 0, 0), std::numeric_limits<double>::infinity(), {}};
 };
 
-/// Calls f(corners) for the triangles round a vertex until it returns true.
-template <class F>
-bool any_triangle(Index fan, const Fans& fans, F&& f) {
+/// Appends the triangles round a vertex, two of each facet.
+void list_triangles(Index fan, const Fans& fans, const std::vector<Vec3>& at, std::vector<Around>& around) {
+    const auto add = [&](Index a, Index b, Index c) {
+        around.push_back({Triangle(at[a], at[b], at[c]), {a, b, c}});
+    };
     for (Node node : fans.fan(fan)) {
         const Index x = node / 4;
         const unsigned j = node % 4, next = (j + 1) % 4, across = (j + 2) % 4, before = (j + 3) % 4;
         const Index opposite = fans.at(x, across, across);
-        if (f(std::array{fan, fans.at(x, next, j), opposite})
-            || f(std::array{fan, opposite, fans.at(x, before, before)}))
-            return true;
+        add(fan, fans.at(x, next, j), opposite);
+        add(fan, opposite, fans.at(x, before, before));
     }
-    return false;
 }
 
-/// The nearest foot inside a triangle; round a single smooth vertex, about flat, the first; the nearest point
-/// of any triangle where no foot is inside one.
-Foot find_foot(const Vec3& p, std::span<const Index> around, const Fans& fans,
-               const VertexPositions& vertices, const std::vector<Vec3>& at) {
+/// The nearest foot inside a triangle, the first where all are about flat; the nearest point of any triangle
+/// where no foot is inside one.
+Foot find_foot(const Vec3& p, const std::vector<Around>& around, bool flat) {
     Foot best, foot;
-    const bool flat = around.size() == 1 && vertices.kinds[around[0]] == VertexKind::smooth;
-    for (Index fan : around)
-        any_triangle(fan, fans, [&](const std::array<Index, 3>& c) {
-            if (!foot_inside(p, at[c[0]], at[c[1]], at[c[2]], foot.nearest)) return false;
-            if (foot.nearest.squared_distance < best.nearest.squared_distance) best = {c, foot.nearest};
-            return flat;
-        });
+    for (const Around& a : around) {
+        if (!a.triangle.foot_inside(p, foot.nearest)) continue;
+        if (foot.nearest.squared_distance < best.nearest.squared_distance) best = {a.corners, foot.nearest};
+        if (flat) return best;
+    }
     if (best.nearest.squared_distance < std::numeric_limits<double>::infinity()) return best;
-    for (Index fan : around)
-        any_triangle(fan, fans, [&](const std::array<Index, 3>& c) {
-            const NearestOfTriangle nearest = nearest_of_triangle(p, at[c[0]], at[c[1]], at[c[2]]);
-            if (nearest.squared_distance < best.nearest.squared_distance) best = {c, nearest};
-            return false;
-        });
+    for (const Around& a : around) {
+        foot.nearest = a.triangle.nearest(p);
+        if (foot.nearest.squared_distance < best.nearest.squared_distance) best = {a.corners, foot.nearest};
+    }
     return best;
 }
 
@@ -104,14 +105,18 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
     std::vector<std::vector<Foreign>> foreign(chunk_count(level_.size(), per_chunk));
     for_chunks(level_.size(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         std::vector<Index> beside;
+        std::vector<Around> around;
         for (std::size_t x = begin; x < end; ++x) {
             if (fans_of(x).empty()) gather_beside(static_cast<Index>(x), beside);
-            const std::span<const Index> around = fans_of(x).empty() ? beside : fans_of(x);
+            const std::span<const Index> near = fans_of(x).empty() ? beside : fans_of(x);
+            const bool flat = near.size() == 1 && vertices_.kinds[near[0]] == VertexKind::smooth;
+            around.clear();
+            for (Index fan : near) list_triangles(fan, fans_, positions, around);
             if (around.empty()) continue;
             const std::size_t first = level_.first_point[x], last = level_.first_point[x + 1];
             const std::size_t stride = (last - first + points_per_voxel - 1) / points_per_voxel;
             for (std::size_t i = first; i < last; i += stride) {
-                const Foot foot = find_foot(octree_.positions[i], around, fans_, vertices_, positions);
+                const Foot foot = find_foot(octree_.positions[i], around, flat);
                 const double distance = std::sqrt(foot.nearest.squared_distance);
                 result.misfit[x] += distance;
                 const Vec3 way = octree_.positions[i] - foot.nearest.point;

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t fans_per_chunk = 1024;
 constexpr double same_sheet_cosine = 0.77; // normals within 40 degrees
 constexpr double along_cosine = 0.8;       // an edge this parallel to a crease lies on it
-constexpr double margin = 0.01;            // voxels: vertices stay this far from their voxel's faces
+constexpr double margin = 0.002;           // voxels: vertices stay this far from their voxel's faces
 constexpr double farther = 0.1;            // share by which a voxel's points may get farther off
 constexpr double nearness = 0.01;          // squared voxels: added to squared distances in weights
 
@@ -132,11 +132,12 @@ private:
             place += placed_[v] * weight;
             sum += weight;
         };
-        add(fan, 1);
+        if (!vertices_.is_clamped[fan]) add(fan, 1);
         for (Index n : neighbours(fan)) // each comes twice
-            if (vertices_.kinds[n] == VertexKind::smooth
+            if (vertices_.kinds[n] == VertexKind::smooth && !vertices_.is_clamped[n]
                 && (vertices_.directions[n] | own) > same_sheet_cosine)
                 add(n, 0.5);
+        if (!(sum > 0)) return p;
         normal.normalize();
         return p - normal * (normal | (p - place / sum));
     }
@@ -147,6 +148,7 @@ private:
         const Vec3& along = vertices_.directions[fan];
         double ahead = 0, behind = 0;
         for (Index n : neighbours(fan)) {
+            if (vertices_.is_clamped[n]) return p;
             if (vertices_.kinds[n] == VertexKind::smooth) continue;
             const Vec3 way = vertices_.positions[n] - p;
             const double s = way | along;

@@ -11,10 +11,11 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t fans_per_chunk = 1024;
-constexpr double margin = 0.01;          // voxels: vertices stay this far from their voxel's faces
+constexpr double margin = 0.002;         // voxels: vertices stay this far from their voxel's faces
 constexpr double least_singular = 0.003; // eigenvalues below this share of the largest are cut
-constexpr double hold = 0.002;    // of the largest eigenvalue: pull to the mean in directions left open
-constexpr double side_gap = 0.02; // voxels: half the least distance between two sides cut apart
+constexpr double hold = 0.002;       // of the largest eigenvalue: pull to the mean in directions left open
+constexpr double side_gap = 0.02;    // voxels: half the least distance between two sides cut apart
+constexpr double farthest_out = 0.5; // voxels, of vertices that leave theirs
 constexpr double new_sheet_cosine = 0.77; // normals farther apart than 40 degrees belong to different sheets
 
 struct Plane {
@@ -148,8 +149,6 @@ public:
           fans_(fans),
           crosses_(crosses) {}
 
-    std::size_t clamped_count = 0;
-
     void place(Index fan, VertexPositions& result) {
         gather(fan);
         const Index nearest = sets_.sets[crossings_.crossings[fans_.fan(fan)[0] / 4].set].voxel;
@@ -160,7 +159,8 @@ public:
             sheets = 3;
             solution = least_squares(problem_, sheets);
         }
-        if (!inside(solution.position, problem_)) solution = kept_inside(solution);
+        if (!inside(solution.position, problem_) && !may_leave(solution.position))
+            result.is_clamped[fan] = keep_inside(solution);
         result.positions[fan] = solution.position;
         const bool upward = (solution.steep | problem_.planes[0].normal) > 0;
         result.directions[fan] =
@@ -257,16 +257,52 @@ private:
         problem_.planes.push_back({set.normal, set.centroid, 0.5 * std::min<double>(set.count, 6)});
     }
 
-    Solution kept_inside(Solution solution) {
+    /// A bulge, crease or corner may reach through a face of the voxel without crossing an edge of the next
+    /// one. If none of its sheets does so, that voxel has no vertex on them, and this one may lie there.
+    bool may_leave(const Vec3& position) const {
+        VoxelCoord beside;
+        int beyond = 0;
+        for (unsigned k = 0; k < 3; ++k) {
+            const double at = (position[k] - problem_.lo[k]) / problem_.size;
+            if (at < -farthest_out || at > 1 + farthest_out) return false;
+            const int step = (at > 1 - margin) - (at < margin);
+            beside[k] = static_cast<int>(std::lround(problem_.lo[k] / problem_.size)) + step;
+            beyond += step != 0;
+        }
+        return beyond == 1 && !is_crossed(beside);
+    }
+
+    /// Does one of the vertex's sheets cross an edge of this voxel?
+    bool is_crossed(const VoxelCoord& voxel) const {
+        for (unsigned corner = 0; corner < 8; ++corner) {
+            VoxelCoord c = voxel;
+            for (unsigned k = 0; k < 3; ++k) c[k] += static_cast<int>(corner >> k & 1u);
+            const Index lower = lattice_.index.find(CornerLattice::code(c));
+            if (lower == no_index) continue;
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                if (corner >> axis & 1u) continue;
+                for (const Crossing& x : crossings_.on_edge(3 * lower + axis))
+                    if (has_sheet(x.normal)) return true;
+            }
+        }
+        return false;
+    }
+
+    bool has_sheet(const Vec3& normal) const {
+        return std::any_of(problem_.planes.begin(), problem_.planes.end(),
+                           [&](const Plane& plane) { return (plane.normal | normal) > new_sheet_cosine; });
+    }
+
+    /// Returns whether the planes were missed for it.
+    bool keep_inside(Solution& solution) const {
         if ((solution.position - clamped(solution.position, problem_)).norm() > 0.5 * problem_.size
             && solution.rank > 1) {
             // Planes that meet far away say nothing about this voxel.
             solution = least_squares(problem_, 1);
-            if (inside(solution.position, problem_)) return solution;
+            if (inside(solution.position, problem_)) return false;
         }
-        ++clamped_count;
         solution.position = least_in_box(solution, problem_);
-        return solution;
+        return true;
     }
 
     const OctreeLevel& level_;
@@ -329,14 +365,13 @@ VertexPositions place_vertices(const Octree&, const OctreeLevel& level, const Co
     result.kinds.resize(fans.size());
     result.directions.resize(fans.size());
     result.voxel.resize(fans.size());
+    result.is_clamped.resize(fans.size());
     const auto crosses = sets_that_cross(lattice, sets, related, crossings, fans);
-    std::vector<std::size_t> clamped_counts(chunk_count(fans.size(), fans_per_chunk));
-    for_chunks(fans.size(), fans_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+    for_chunks(fans.size(), fans_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         Placer placer(level, lattice, sets, related, crossings, fans, crosses);
         for (std::size_t v = begin; v < end; ++v) placer.place(static_cast<Index>(v), result);
-        clamped_counts[chunk] = placer.clamped_count;
     });
-    for (std::size_t c : clamped_counts) result.clamped += c;
+    result.clamped = static_cast<std::size_t>(std::ranges::count(result.is_clamped, 1));
     return result;
 }
 

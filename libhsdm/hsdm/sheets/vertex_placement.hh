@@ -14,7 +14,8 @@ struct VertexPositions {
     /// Per fan: of a smooth vertex the sheet's unit normal, of an edge vertex a unit vector along the crease.
     std::vector<Vec3> directions;
     std::vector<Index> voxel; ///< per fan, its voxel; where no point lies in it, that of the nearest set
-    std::size_t clamped = 0;  ///< kept in their voxel although their planes meet outside
+    std::vector<std::uint8_t> is_clamped; ///< per fan, kept in its voxel although its planes meet outside
+    std::size_t clamped = 0;              ///< how many are
 };
 
 /// Least squares over the planes of the fan's crossings and of the voxel's own sets, towards their mean
