@@ -31,6 +31,7 @@ struct Crossings {
     std::size_t dropped_beyond_crease = 0; ///< clipped by the sheet's crease partner
     std::size_t settled = 0;               ///< taken back, brought back or made (settle_crossings)
     std::size_t trimmed = 0;               ///< beyond the end of the data (trim_unsupported)
+    std::size_t tips = 0;                  ///< pairs that only a tip made (drop_tips)
 
     std::span<const Crossing> on_edge(Index e) const {
         return {crossings.data() + first[e], crossings.data() + first[e + 1]};

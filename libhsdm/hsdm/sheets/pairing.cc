@@ -197,6 +197,22 @@ bool ends_beyond(const Crossings& crossings, const Links& links, std::span<const
     return bordering < open;
 }
 
+/// Returns how many.
+std::size_t remove_crossings(std::span<const std::uint8_t> removed, Crossings& crossings) {
+    auto& list = crossings.crossings;
+    std::size_t kept = 0;
+    for (std::size_t e = 0, x = 0; e + 1 < crossings.first.size(); ++e) {
+        const std::size_t end = crossings.first[e + 1];
+        crossings.first[e] = static_cast<Index>(kept);
+        for (; x < end; ++x)
+            if (!removed[x]) list[kept++] = list[x];
+    }
+    crossings.first.back() = static_cast<Index>(kept);
+    const std::size_t count = list.size() - kept;
+    list.resize(kept);
+    return count;
+}
+
 } // namespace
 
 std::size_t trim_unsupported(Crossings& crossings, const Links& links) {
@@ -225,18 +241,25 @@ std::size_t trim_unsupported(Crossings& crossings, const Links& links) {
         if (!ends_beyond(crossings, links, patch, on_border)) continue;
         for (Index x : patch) removed[x] = 1;
     }
-    std::size_t kept = 0;
-    for (std::size_t e = 0, x = 0; e + 1 < crossings.first.size(); ++e) {
-        const std::size_t end = crossings.first[e + 1];
-        crossings.first[e] = static_cast<Index>(kept);
-        for (; x < end; ++x)
-            if (!removed[x]) list[kept++] = list[x];
-    }
-    crossings.first.back() = static_cast<Index>(kept);
-    const std::size_t count = list.size() - kept;
-    list.resize(kept);
+    const std::size_t count = remove_crossings(removed, crossings);
     crossings.trimmed += count;
     return count;
+}
+
+std::size_t drop_tips(Crossings& crossings, const Links& links) {
+    const auto& list = crossings.crossings;
+    std::vector<std::uint8_t> removed(list.size(), 0);
+    for (Index x = 0; x + 1 < list.size(); ++x) {
+        if (list[x].edge != list[x + 1].edge) continue;
+        const auto& around = links.of_crossing[x];
+        const auto joined = std::count_if(around.begin(), around.end(), [&](const Link& link) {
+            return link.crossing == x + 1 && !link.rim;
+        });
+        if (joined >= 3) removed[x] = removed[x + 1] = 1;
+    }
+    const std::size_t count = remove_crossings(removed, crossings);
+    crossings.tips += count / 2;
+    return count / 2;
 }
 
 } // namespace hsdm
