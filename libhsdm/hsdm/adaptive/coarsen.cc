@@ -1,6 +1,7 @@
 #include "hsdm/adaptive/coarsen.hh"
 
 #include "hsdm/adaptive/clusters.hh"
+#include "hsdm/adaptive/dissolve.hh"
 #include "hsdm/adaptive/tidy.hh"
 #include "hsdm/adaptive/trouble.hh"
 #include "hsdm/chunks.hh"
@@ -130,6 +131,25 @@ private:
             for (Index v : fine_.facet(f)) ring.push_back(vertex_[v]);
             add_loops(ring, mesh);
         }
+        drop_doublets();
+    }
+
+    /// The vertices taken out are renumbered away; their neighbours take over the fine vertices.
+    void drop_doublets() {
+        PolygonMesh& mesh = result_.mesh;
+        const std::vector<Index> stands_for = dissolve_doublets(mesh);
+        std::vector<Index> number(stands_for.size(), no_index);
+        Index kept = 0;
+        for (Index v = 0; v < number.size(); ++v) {
+            if (stands_for[v] != v) continue;
+            mesh.positions[kept] = mesh.positions[v];
+            coarse_[kept] = coarse_[v];
+            number[v] = kept++;
+        }
+        mesh.positions.resize(kept);
+        coarse_.resize(kept);
+        for (Index& v : mesh.corners) v = number[v];
+        for (Index& v : vertex_) v = number[stands_for[v]];
     }
 
     void tidy() {

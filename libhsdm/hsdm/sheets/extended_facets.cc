@@ -238,7 +238,7 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
     Links links = pair_crossings(lattice, crossings, sets, related);
     for (int round = 0; round < 3 && trim_unsupported(crossings, links) > 0; ++round)
         links = pair_crossings(lattice, crossings, sets, related);
-    for (int round = 0; round < 3 && drop_tips(crossings, links) > 0; ++round)
+    for (int round = 0; round < 3 && drop_tips(sets, related, links, crossings) > 0; ++round)
         links = pair_crossings(lattice, crossings, sets, related);
     const Fans fans = build_fans(lattice, crossings, links);
     VertexPositions vertices = place_vertices(octree, level, lattice, sets, related, crossings, fans);

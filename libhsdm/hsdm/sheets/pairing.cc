@@ -246,16 +246,19 @@ std::size_t trim_unsupported(Crossings& crossings, const Links& links) {
     return count;
 }
 
-std::size_t drop_tips(Crossings& crossings, const Links& links) {
+std::size_t drop_tips(const NormalSets& sets, const RelationTest& related, const Links& links,
+                      Crossings& crossings) {
     const auto& list = crossings.crossings;
+    const auto are_sides = [&](const Crossing& x, const Crossing& y) {
+        return opposed(x, y) && related(sets.sets[x.set], sets.sets[y.set]) == Relation::none;
+    };
     std::vector<std::uint8_t> removed(list.size(), 0);
     for (Index x = 0; x + 1 < list.size(); ++x) {
         if (list[x].edge != list[x + 1].edge) continue;
         const auto& around = links.of_crossing[x];
-        const auto joined = std::count_if(around.begin(), around.end(), [&](const Link& link) {
-            return link.crossing == x + 1 && !link.rim;
-        });
-        if (joined >= 3) removed[x] = removed[x + 1] = 1;
+        const auto joined = std::count_if(around.begin(), around.end(),
+                                          [&](const Link& link) { return link.crossing == x + 1; });
+        if (joined >= 3 && !are_sides(list[x], list[x + 1])) removed[x] = removed[x + 1] = 1;
     }
     const std::size_t count = remove_crossings(removed, crossings);
     crossings.tips += count / 2;

@@ -58,9 +58,10 @@ Links pair_crossings(const CornerLattice& lattice, const Crossings& crossings, c
 std::size_t trim_unsupported(Crossings& crossings, const Links& links);
 
 /// Takes back the two crossings of an edge that only the tip of a corner or the end of a crease pokes
-/// through: two that are joined to each other on three or four sides, and none of these a rim. Their facets
-/// would lie back to back, between vertices of which two have no other facet. Returns the number of pairs; if
-/// it is not 0 the crossings must be paired again. O(crossings).
-std::size_t drop_tips(Crossings& crossings, const Links& links);
+/// through: two that are joined to each other on three or four sides and not the two sides of a thin part.
+/// Their facets would lie back to back, between vertices of which two have no other facet. Returns the number
+/// of pairs; if it is not 0 the crossings must be paired again. O(crossings).
+std::size_t drop_tips(const NormalSets& sets, const RelationTest& related, const Links& links,
+                      Crossings& crossings);
 
 } // namespace hsdm
