@@ -10,15 +10,18 @@
 namespace hsdm {
 namespace {
 constexpr std::size_t vertices_per_chunk = 4096;
-}
+} // namespace
 
 MortonCode CellTree::code_at(const Vec3& position) const {
     const double cells = static_cast<double>(1u << depth());
     std::array<std::uint32_t, 3> c{};
     for (unsigned k = 0; k < 3; ++k) {
+        // A plane that lies on the faces of cells, but for rounding, is all in the upper ones; on the cube's
+        // own upper faces it is inside.
+        const double at = position[k] / extent * cells + rounding;
+        const double cell = at >= cells && at < cells + 2 * rounding ? cells - 1 : std::floor(at);
         // Moved by a whole cube, so that positions beside the cube have codes too.
-        const double at = std::floor(position[k] / extent * cells) + cells;
-        c[k] = static_cast<std::uint32_t>(std::clamp(at, 0.0, 3 * cells - 1));
+        c[k] = static_cast<std::uint32_t>(std::clamp(cell + cells, 0.0, 3 * cells - 1));
     }
     return morton_encode(c[0], c[1], c[2]);
 }

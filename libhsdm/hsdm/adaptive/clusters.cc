@@ -227,11 +227,12 @@ private:
 
     Box box_of(Index cell, std::size_t level) const {
         const double size = tree_.extent / static_cast<double>(1u << level);
+        const double slack = 2 * CellTree::rounding * tree_.extent / static_cast<double>(1u << tree_.depth());
         const VoxelCoord c = morton_decode(tree_.levels[level].codes[cell]);
         Box box;
         for (unsigned k = 0; k < 3; ++k) {
-            box.lo[k] = c[k] * size - tree_.extent; // codes are moved by a cube
-            box.hi[k] = box.lo[k] + size;
+            box.lo[k] = c[k] * size - tree_.extent - slack; // codes are moved by a cube
+            box.hi[k] = c[k] * size - tree_.extent + size + slack;
         }
         return box;
     }

@@ -217,7 +217,7 @@ private:
         std::size_t splits = 0;
         find_keys();
         for (Index v : far_from(to_result, fine_.positions, near_vertex_)) splits += split_at(places_[v]);
-        splits += split_far_facets();
+        splits += split_far_vertices() + split_far_facets();
         return splits > 0 || !with_points ? splits : split_for_points(to_result);
     }
 
@@ -273,6 +273,23 @@ private:
         return far;
     }
 
+    /// Vertices of the result, but for the fine mesh's own, against the fine mesh.
+    std::size_t split_far_vertices() {
+        std::vector<Index> moved;
+        std::vector<Vec3> at;
+        for (Index v = 0; v < coarse_.size(); ++v) {
+            if (coarse_[v].level == tree_.depth()) continue;
+            moved.push_back(v);
+            at.push_back(result_.mesh.positions[v]);
+        }
+        if (!to_fine_) to_fine_.emplace(fine_);
+        const std::vector<Index> near = to_fine_->facets_within(at, options_.max_error);
+        std::size_t splits = 0;
+        for (std::size_t i = 0; i < moved.size(); ++i)
+            if (near[i] == no_index) splits += split_at(coarse_[moved[i]]);
+        return splits;
+    }
+
     /// Middles of facets, of their sides, and between middle and corners, against the fine mesh.
     std::size_t split_far_facets() {
         const PolygonMesh& mesh = result_.mesh;
@@ -298,7 +315,6 @@ private:
             middles.push_back(centre);
             facet.push_back(static_cast<Index>(f));
         }
-        if (!to_fine_) to_fine_.emplace(fine_);
         const std::vector<Index> near = to_fine_->facets_within(middles, options_.max_error);
         std::size_t splits = 0;
         std::vector<std::uint64_t> passed = keys_;

@@ -90,10 +90,12 @@ Solution least_squares(const Problem& problem, int most_rank) {
     return solution;
 }
 
-bool inside(const Vec3& p, const Problem& problem) {
-    const double slack = margin * problem.size;
-    for (unsigned k = 0; k < 3; ++k)
-        if (p[k] < problem.lo[k] + slack || p[k] > problem.lo[k] + problem.size - slack) return false;
+/// `slack` voxels from the faces; negative: so far beyond them at most.
+bool inside(const Vec3& p, const Problem& problem, double slack = margin) {
+    for (unsigned k = 0; k < 3; ++k) {
+        const double at = (p[k] - problem.lo[k]) / problem.size;
+        if (at < slack || at > 1 - slack) return false;
+    }
     return true;
 }
 
@@ -236,7 +238,7 @@ private:
                     const Solution corner = least_squares(problem_, 3);
                     problem_.planes.resize(planes);
                     const double d = (corner.position - sets_.sets[s].centroid).sqrnorm();
-                    if (corner.rank == 3 && inside(corner.position, problem_)
+                    if (corner.rank == 3 && inside(corner.position, problem_, -margin)
                         && (d < nearest || (d == nearest && s < best)))
                         nearest = d, best = s;
                 }
@@ -258,18 +260,24 @@ private:
     }
 
     /// A bulge, crease or corner may reach through a face of the voxel without crossing an edge of the next
-    /// one. If none of its sheets does so, that voxel has no vertex on them, and this one may lie there.
+    /// one. If none of its sheets does so, that voxel has no vertex on them, and this one may lie there; on
+    /// the far side of an edge or corner of the voxel if that holds for all voxels around.
     bool may_leave(const Vec3& position) const {
-        VoxelCoord beside;
-        int beyond = 0;
+        VoxelCoord voxel, step;
         for (unsigned k = 0; k < 3; ++k) {
             const double at = (position[k] - problem_.lo[k]) / problem_.size;
             if (at < -farthest_out || at > 1 + farthest_out) return false;
-            const int step = (at > 1 - margin) - (at < margin);
-            beside[k] = static_cast<int>(std::lround(problem_.lo[k] / problem_.size)) + step;
-            beyond += step != 0;
+            step[k] = (at > 1 - margin) - (at < margin);
+            voxel[k] = static_cast<int>(std::lround(problem_.lo[k] / problem_.size));
         }
-        return beyond == 1 && !is_crossed(beside);
+        for (unsigned way = 1; way < 8; ++way) {
+            VoxelCoord beside = voxel;
+            bool on_the_way = true;
+            for (unsigned k = 0; k < 3; ++k)
+                if (way >> k & 1u) beside[k] += step[k], on_the_way = on_the_way && step[k] != 0;
+            if (on_the_way && is_crossed(beside)) return false;
+        }
+        return true;
     }
 
     /// Does one of the vertex's sheets cross an edge of this voxel?
