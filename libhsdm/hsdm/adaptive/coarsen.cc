@@ -113,6 +113,7 @@ private:
             number[level].assign(clusters_[level].size(), no_index);
         PolygonMesh& mesh = result_.mesh = PolygonMesh();
         coarse_.clear();
+        pinched_.clear();
         vertex_.resize(fine_.vertex_count());
         for (std::size_t v = 0; v < places_.size(); ++v) {
             const Place& place = places_[v];
@@ -129,7 +130,7 @@ private:
         for (std::size_t f = 0; f < fine_.facet_count(); ++f) {
             ring.clear();
             for (Index v : fine_.facet(f)) ring.push_back(vertex_[v]);
-            add_loops(ring, mesh);
+            if (!add_loops(ring, mesh)) pinched_.push_back(static_cast<Index>(f));
         }
         drop_doublets();
     }
@@ -160,11 +161,17 @@ private:
     }
 
     /// The simple loops of three vertices and more that are left of a facet whose vertices coincide in part.
-    static void add_loops(const std::vector<Index>& ring, PolygonMesh& mesh) {
+    /// False if corners coincide that are not next to each other: what the surface has between them could be
+    /// a handle.
+    static bool add_loops(std::vector<Index>& ring, PolygonMesh& mesh) {
+        ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+        while (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
+        bool simple = true;
         std::vector<Index> open;
         for (Index v : ring) {
             const auto seen = std::find(open.begin(), open.end(), v);
             if (seen != open.end()) {
+                simple = false;
                 if (open.end() - seen >= 3)
                     mesh.add_facet({&*seen, static_cast<std::size_t>(open.end() - seen)});
                 open.erase(seen, open.end());
@@ -172,6 +179,7 @@ private:
             open.push_back(v);
         }
         if (open.size() >= 3) mesh.add_facet(open);
+        return simple;
     }
 
     std::size_t split_at(const Place& place) { return tree_.split(place.level, place.cell); }
@@ -182,6 +190,8 @@ private:
         std::vector<Index> troubled = troubled_vertices(result_.mesh);
         add_lost(troubled);
         for (Index v : troubled) splits += split_at(coarse_[v]);
+        for (Index f : pinched_)
+            for (Index v : fine_.facet(f)) splits += split_at(places_[v]);
         if (splits > 0 || troubled.empty()) return splits;
         // Vertices of the deepest level alone cannot be helped: their neighbours can.
         for (Index v : troubled) due[v] = 1;
@@ -381,9 +391,10 @@ private:
     const CoarsenOptions& options_;
     CellTree tree_;
     std::vector<ClusterLevel> clusters_;
-    std::vector<Place> places_; // per fine vertex
-    std::vector<Index> vertex_; // per fine vertex, the vertex of the result
-    std::vector<Place> coarse_; // per vertex of the result
+    std::vector<Place> places_;  // per fine vertex
+    std::vector<Index> vertex_;  // per fine vertex, the vertex of the result
+    std::vector<Place> coarse_;  // per vertex of the result
+    std::vector<Index> pinched_; // facets of the fine mesh with opposite corners in one vertex
     std::optional<MeshDistance> to_fine_;
     std::vector<std::uint64_t> keys_; // per facet of the result
     MortonIndex present_, passed_;    // keys of its facets; of those found near the fine mesh
