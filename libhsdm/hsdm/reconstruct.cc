@@ -1,6 +1,7 @@
 #include "hsdm/reconstruct.hh"
 
 #include "hsdm/adaptive/adaptive_grid.hh"
+#include "hsdm/chunks.hh"
 #include "hsdm/extended_method.hh"
 #include "hsdm/facets/to_mesh.hh"
 #include "hsdm/features/features.hh"
@@ -21,6 +22,7 @@ namespace hsdm {
 namespace {
 
 constexpr int deepest = 16;
+constexpr std::size_t points_per_chunk = 1 << 14;
 
 void check_depth(const std::string& name, int depth) {
     if (depth < 1 || depth > deepest)
@@ -263,16 +265,39 @@ void measure_mesh(const PolygonMesh& facets, Report& report) {
     m.closed = t.closed();
 }
 
-/// From where the cloud has its points, wherever the octree has moved them.
-void measure_error(const PointCloud& cloud, const Octree& octree, const PolygonMesh& facets, Report& report) {
+/// The octree's points where the cloud has them, wherever they have been moved since, relative to its origin.
+std::vector<Vec3> points_as_read(const PointCloud& cloud, const Octree& octree) {
     std::vector<Vec3> points(octree.size());
-    for (std::size_t i = 0; i < points.size(); ++i)
-        points[i] = cloud.positions[octree.source[i]] - octree.origin;
+    for_chunks(points.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i)
+            points[i] = cloud.positions[octree.source[i]] - octree.origin;
+    });
+    return points;
+}
+
+void measure_error(std::span<const Vec3> points, const Octree& octree, const PolygonMesh& facets,
+                   Report& report) {
     const Distance distance = points_to_mesh(points, facets);
     report.error.points_to_mesh_max = distance.max;
     report.error.points_to_mesh_mean = distance.mean;
     report.error.points_to_mesh_rms = distance.rms;
     report.error.normalised_max = distance.max / octree.bounds.diagonal();
+}
+
+/// Drops small components if asked to, and measures what is left. A bound is checked before: it is one for
+/// the points of what is dropped too.
+void drop_and_measure(const std::vector<Vec3>& points, const Octree& octree,
+                      const ReconstructOptions& options, PolygonMesh& facets, FeatureHints& hints,
+                      Report& report) {
+    const bool bounded = report.grid.max_error > 0;
+    if (bounded || !options.min_component) measure_error(points, octree, facets, report);
+    check_error_kept(report);
+    if (options.min_component) {
+        const Islands islands = drop_islands(facets, hints, *options.min_component);
+        note_islands(islands, report);
+        if (!bounded || islands.components > 0) measure_error(points, octree, facets, report);
+    }
+    measure_mesh(facets, report);
 }
 
 /// Phase 3 on the mesh, in the cloud's own coordinates.
@@ -313,22 +338,20 @@ Reconstruction reconstruct_level(const PointCloud& cloud, const Octree& octree, 
     FeatureHints hints;
     PolygonMesh facets = method_for(options) == Method::extended ? extended_method(input, report, hints)
                                                                  : basic_method(input, report);
-    if (wants_adaptive(options) && facets.facet_count() > 0) {
-        facets =
-            phases.run("adaptive", 0.5, seconds.facets, [&] { return adaptive_grid(input, facets, report); });
-        hints = {}; // they are those of the fine facets
-    }
-    if (options.min_component) note_islands(drop_islands(facets, hints, *options.min_component), report);
     if (facets.facet_count() == 0)
         throw Error("no facet came out of " + std::to_string(level.size()) + " voxels at depth "
                     + std::to_string(depth)
                     + "; try another depth, or check that the points sample a surface");
-    phases.run("error", 0.6, seconds.error, [&] {
-        measure_error(cloud, octree, facets, report);
-        measure_mesh(facets, report);
-    });
-    check_error_kept(report);
+    std::vector<Vec3> points = points_as_read(cloud, octree);
+    if (wants_adaptive(options)) {
+        facets = phases.run("adaptive", 0.5, seconds.facets,
+                            [&] { return adaptive_grid(input, points, facets, report); });
+        hints = {}; // they are those of the fine facets
+    }
+    phases.run("error", 0.6, seconds.error,
+               [&] { drop_and_measure(points, octree, options, facets, hints, report); });
 
+    points = {};
     Reconstruction result;
     phases.run("mesh", 0.85, seconds.mesh, [&] {
         for (Vec3& p : facets.positions) p += octree.origin;
