@@ -113,10 +113,10 @@ public:
         OctreeOptions octree_options;
         octree_options.placement = CubePlacement::centred;
         octree_options.use_normals = options.normals != NormalSource::estimate;
-        if (options.voxel_size)
-            octree_options.cube_extent = cube_of(cloud.bounds().extent(), *options.voxel_size);
         octree = phases.run("octree", 0, report.seconds.octree,
                             [&] { return build_octree(cloud, octree_options); });
+        far_away_ = drop_far_away(octree, cloud);
+        if (far_away_ > 0) report.rejected["points_outlying"] = far_away_;
         check_spread(octree);
         report.input.points = cloud.size();
         report.input.merged_duplicates = octree.merged_duplicates;
@@ -147,8 +147,11 @@ public:
                 noise_ = noise_deviation(octree, find_neighbors(octree));
             return consistency.doubtful() ? mend_normals(octree, sensor_of(cloud)) : std::size_t{0};
         });
-        note_outliers(
-            phases.run("strays", 0.08, report.seconds.normals, [&] { return drop_strays(octree); }));
+        note_outliers(phases.run("strays", 0.08, report.seconds.normals, [&] {
+            const std::size_t strays = drop_strays(octree);
+            if (strays > 0) fit_to_points(octree);
+            return strays;
+        }));
     }
 
     /// The depth the options ask for or spacing and noise suggest, in a cube that fits; notes it in the
@@ -162,7 +165,7 @@ public:
         if (options.voxel_size) {
             report.options["voxel-size"] = text_of(*options.voxel_size);
             report.options["resolution"] = "as asked by voxel size";
-            return voxel_depth_;
+            return fit_voxels(*options.voxel_size);
         }
         if (options.max_error) { // as fine as two spacings only where the error needs it
             const DepthChoice choice = choose_depth(octree, report.input.spacing, 2);
@@ -171,18 +174,19 @@ public:
         }
         const VoxelChoice choice = choose_voxel(octree, report.input.spacing, noise_);
         report.options["resolution"] = choice.reason;
-        octree = rearranged(octree, octree.positions, cube_of(octree.bounds.extent(), choice.size));
-        return voxel_depth_;
+        return fit_voxels(choice.size);
     }
 
     Octree octree;
     Report report;
 
 private:
-    /// Outliers make a cloud look sparser than its surface is.
+    /// Outliers make a cloud look sparser and larger than its surface is.
     void note_outliers(std::size_t count) {
-        report.rejected["points_outlying"] = count;
-        if (count > 0) report.input.spacing = estimate_spacing(octree);
+        report.rejected["points_outlying"] = far_away_ + count;
+        if (count == 0) return;
+        report.input.bbox = octree.bounds;
+        report.input.spacing = estimate_spacing(octree);
     }
 
     std::optional<Vec3> sensor_of(const PointCloud& cloud) const {
@@ -196,18 +200,22 @@ private:
         if (noise_ > 0) report.input.spacing = estimate_spacing(octree); // noise makes it look wider
     }
 
-    /// The smallest cube of 2^N voxels around a cloud of that extent, N in [1, 16].
-    double cube_of(double extent, double voxel_size) {
+    /// Puts the points in the smallest cube of 2^N voxels of this size around their box, N in [1, 16];
+    /// returns N.
+    int fit_voxels(double voxel_size) {
+        const double extent = octree.bounds.extent();
+        int depth = 1;
         double cube = 2 * voxel_size;
-        for (voxel_depth_ = 1; cube < extent && voxel_depth_ < deepest; ++voxel_depth_) cube *= 2;
+        for (; cube < extent && depth < deepest; ++depth) cube *= 2;
         if (cube < extent)
             throw OptionError("voxel_size " + text_of(voxel_size) + ": must be at least "
                               + text_of(extent / (1 << deepest)) + ", the cloud's extent over 2^16");
-        return cube;
+        octree = rearranged(octree, octree.positions, cube);
+        return depth;
     }
 
-    int voxel_depth_ = 0;
-    double noise_ = 0; // standard deviation, if it is large
+    std::size_t far_away_ = 0; // points removed before all else
+    double noise_ = 0;         // standard deviation, if it is large
 };
 
 /// The extended method is the better one, with normals given or estimated.
