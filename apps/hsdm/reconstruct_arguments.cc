@@ -1,7 +1,9 @@
 #include "reconstruct_arguments.hh"
 
 #include <charconv>
+#include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace hsdm::command {
 namespace {
@@ -35,31 +37,40 @@ void refuse(bool given, const std::string& what) {
     if (given) throw UsageError(what + " is not available yet");
 }
 
+/// A number, or a percentage as a share.
+struct Amount {
+    double value = 0;
+    bool is_share = false;
+};
+
+/// Nothing if the text is none, or not finite.
+std::optional<Amount> amount_of(const std::string& text) {
+    Amount amount;
+    const char* const end = text.data() + text.size();
+    const auto read = std::from_chars(text.data(), end, amount.value);
+    amount.is_share = read.ptr != end && *read.ptr == '%';
+    if (amount.is_share) amount.value /= 100;
+    if (read.ec != std::errc() || read.ptr + amount.is_share != end || !std::isfinite(amount.value))
+        return std::nullopt;
+    return amount;
+}
+
 /// A number of facets, or with % a share of the largest component.
 MinComponent min_component_of(const std::string& text) {
-    MinComponent least;
-    const char* const end = text.data() + text.size();
-    const auto read = std::from_chars(text.data(), end, least.value);
-    least.of_largest = read.ptr != end && *read.ptr == '%';
-    if (least.of_largest) least.value /= 100;
-    if (read.ec != std::errc() || read.ptr + least.of_largest != end || !(least.value >= 0)
-        || (least.of_largest && least.value > 1))
+    const auto least = amount_of(text);
+    if (!least || least->value < 0 || (least->is_share && least->value > 1))
         throw UsageError("--min-component " + text
                          + ": a number of facets or a percentage up to 100% is wanted, e.g. 200 or 1%");
-    return least;
+    return {least->value, least->is_share};
 }
 
 /// A length, or with % a share of the bounding box's diagonal.
 MaxError error_of(const std::string& text) {
-    MaxError error;
-    const char* const end = text.data() + text.size();
-    const auto read = std::from_chars(text.data(), end, error.value);
-    error.of_diagonal = read.ptr != end && *read.ptr == '%';
-    if (error.of_diagonal) error.value /= 100;
-    if (read.ec != std::errc() || read.ptr + error.of_diagonal != end || !(error.value > 0))
+    const auto error = amount_of(text);
+    if (!error || !(error->value > 0))
         throw UsageError("--max-error " + text
                          + ": a length above 0 or a percentage is wanted, e.g. 0.2 or 0.1%");
-    return error;
+    return {error->value, error->is_share};
 }
 
 } // namespace

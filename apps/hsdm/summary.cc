@@ -41,9 +41,13 @@ std::string islands_words(const Report& report) {
 std::string bound_words(const Report& report) {
     if (report.grid.max_error == 0) return {};
     const std::string bound = "\nbound     " + number(report.grid.max_error, 3) + ": ";
-    if (report.grid.points_beyond == 0) return bound + "kept by all points";
+    const auto dropped = report.rejected.find("components_small");
+    const bool incomplete = dropped != report.rejected.end() && dropped->second > 0;
+    if (report.grid.points_beyond == 0)
+        return bound + "kept by all points" + (incomplete ? " but those of the components dropped" : "");
     return bound + "not met at " + plural(report.grid.points_beyond, "point", "points")
-           + ", which the finest surface misses already";
+           + ", which the finest surface misses already"
+           + (incomplete ? ", nor at those of the components dropped" : "");
 }
 
 std::string seconds(double value) {

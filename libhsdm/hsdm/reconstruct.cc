@@ -1,6 +1,7 @@
 #include "hsdm/reconstruct.hh"
 
 #include "hsdm/adaptive/adaptive_grid.hh"
+#include "hsdm/chunks.hh"
 #include "hsdm/extended_method.hh"
 #include "hsdm/facets/to_mesh.hh"
 #include "hsdm/features/features.hh"
@@ -21,6 +22,7 @@ namespace hsdm {
 namespace {
 
 constexpr int deepest = 16;
+constexpr std::size_t points_per_chunk = 1 << 14;
 
 void check_depth(const std::string& name, int depth) {
     if (depth < 1 || depth > deepest)
@@ -111,10 +113,10 @@ public:
         OctreeOptions octree_options;
         octree_options.placement = CubePlacement::centred;
         octree_options.use_normals = options.normals != NormalSource::estimate;
-        if (options.voxel_size)
-            octree_options.cube_extent = cube_of(cloud.bounds().extent(), *options.voxel_size);
         octree = phases.run("octree", 0, report.seconds.octree,
                             [&] { return build_octree(cloud, octree_options); });
+        far_away_ = drop_far_away(octree, cloud);
+        if (far_away_ > 0) report.rejected["points_outlying"] = far_away_;
         check_spread(octree);
         report.input.points = cloud.size();
         report.input.merged_duplicates = octree.merged_duplicates;
@@ -145,8 +147,11 @@ public:
                 noise_ = noise_deviation(octree, find_neighbors(octree));
             return consistency.doubtful() ? mend_normals(octree, sensor_of(cloud)) : std::size_t{0};
         });
-        note_outliers(
-            phases.run("strays", 0.08, report.seconds.normals, [&] { return drop_strays(octree); }));
+        note_outliers(phases.run("strays", 0.08, report.seconds.normals, [&] {
+            const std::size_t strays = drop_strays(octree);
+            if (strays > 0) fit_to_points(octree);
+            return strays;
+        }));
     }
 
     /// The depth the options ask for or spacing and noise suggest, in a cube that fits; notes it in the
@@ -160,7 +165,7 @@ public:
         if (options.voxel_size) {
             report.options["voxel-size"] = text_of(*options.voxel_size);
             report.options["resolution"] = "as asked by voxel size";
-            return voxel_depth_;
+            return fit_voxels(*options.voxel_size);
         }
         if (options.max_error) { // as fine as two spacings only where the error needs it
             const DepthChoice choice = choose_depth(octree, report.input.spacing, 2);
@@ -169,18 +174,19 @@ public:
         }
         const VoxelChoice choice = choose_voxel(octree, report.input.spacing, noise_);
         report.options["resolution"] = choice.reason;
-        octree = rearranged(octree, octree.positions, cube_of(octree.bounds.extent(), choice.size));
-        return voxel_depth_;
+        return fit_voxels(choice.size);
     }
 
     Octree octree;
     Report report;
 
 private:
-    /// Outliers make a cloud look sparser than its surface is.
+    /// Outliers make a cloud look sparser and larger than its surface is.
     void note_outliers(std::size_t count) {
-        report.rejected["points_outlying"] = count;
-        if (count > 0) report.input.spacing = estimate_spacing(octree);
+        report.rejected["points_outlying"] = far_away_ + count;
+        if (count == 0) return;
+        report.input.bbox = octree.bounds;
+        report.input.spacing = estimate_spacing(octree);
     }
 
     std::optional<Vec3> sensor_of(const PointCloud& cloud) const {
@@ -194,18 +200,22 @@ private:
         if (noise_ > 0) report.input.spacing = estimate_spacing(octree); // noise makes it look wider
     }
 
-    /// The smallest cube of 2^N voxels around a cloud of that extent, N in [1, 16].
-    double cube_of(double extent, double voxel_size) {
+    /// Puts the points in the smallest cube of 2^N voxels of this size around their box, N in [1, 16];
+    /// returns N.
+    int fit_voxels(double voxel_size) {
+        const double extent = octree.bounds.extent();
+        int depth = 1;
         double cube = 2 * voxel_size;
-        for (voxel_depth_ = 1; cube < extent && voxel_depth_ < deepest; ++voxel_depth_) cube *= 2;
+        for (; cube < extent && depth < deepest; ++depth) cube *= 2;
         if (cube < extent)
             throw OptionError("voxel_size " + text_of(voxel_size) + ": must be at least "
                               + text_of(extent / (1 << deepest)) + ", the cloud's extent over 2^16");
-        return cube;
+        octree = rearranged(octree, octree.positions, cube);
+        return depth;
     }
 
-    int voxel_depth_ = 0;
-    double noise_ = 0; // standard deviation, if it is large
+    std::size_t far_away_ = 0; // points removed before all else
+    double noise_ = 0;         // standard deviation, if it is large
 };
 
 /// The extended method is the better one, with normals given or estimated.
@@ -263,16 +273,39 @@ void measure_mesh(const PolygonMesh& facets, Report& report) {
     m.closed = t.closed();
 }
 
-/// From where the cloud has its points, wherever the octree has moved them.
-void measure_error(const PointCloud& cloud, const Octree& octree, const PolygonMesh& facets, Report& report) {
+/// The octree's points where the cloud has them, wherever they have been moved since, relative to its origin.
+std::vector<Vec3> points_as_read(const PointCloud& cloud, const Octree& octree) {
     std::vector<Vec3> points(octree.size());
-    for (std::size_t i = 0; i < points.size(); ++i)
-        points[i] = cloud.positions[octree.source[i]] - octree.origin;
+    for_chunks(points.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i)
+            points[i] = cloud.positions[octree.source[i]] - octree.origin;
+    });
+    return points;
+}
+
+void measure_error(std::span<const Vec3> points, const Octree& octree, const PolygonMesh& facets,
+                   Report& report) {
     const Distance distance = points_to_mesh(points, facets);
     report.error.points_to_mesh_max = distance.max;
     report.error.points_to_mesh_mean = distance.mean;
     report.error.points_to_mesh_rms = distance.rms;
     report.error.normalised_max = distance.max / octree.bounds.diagonal();
+}
+
+/// Drops small components if asked to, and measures what is left. A bound is checked before: it is one for
+/// the points of what is dropped too.
+void drop_and_measure(const std::vector<Vec3>& points, const Octree& octree,
+                      const ReconstructOptions& options, PolygonMesh& facets, FeatureHints& hints,
+                      Report& report) {
+    const bool bounded = report.grid.max_error > 0;
+    if (bounded || !options.min_component) measure_error(points, octree, facets, report);
+    check_error_kept(report);
+    if (options.min_component) {
+        const Islands islands = drop_islands(facets, hints, *options.min_component);
+        note_islands(islands, report);
+        if (!bounded || islands.components > 0) measure_error(points, octree, facets, report);
+    }
+    measure_mesh(facets, report);
 }
 
 /// Phase 3 on the mesh, in the cloud's own coordinates.
@@ -313,22 +346,20 @@ Reconstruction reconstruct_level(const PointCloud& cloud, const Octree& octree, 
     FeatureHints hints;
     PolygonMesh facets = method_for(options) == Method::extended ? extended_method(input, report, hints)
                                                                  : basic_method(input, report);
-    if (wants_adaptive(options) && facets.facet_count() > 0) {
-        facets =
-            phases.run("adaptive", 0.5, seconds.facets, [&] { return adaptive_grid(input, facets, report); });
-        hints = {}; // they are those of the fine facets
-    }
-    if (options.min_component) note_islands(drop_islands(facets, hints, *options.min_component), report);
     if (facets.facet_count() == 0)
         throw Error("no facet came out of " + std::to_string(level.size()) + " voxels at depth "
                     + std::to_string(depth)
                     + "; try another depth, or check that the points sample a surface");
-    phases.run("error", 0.6, seconds.error, [&] {
-        measure_error(cloud, octree, facets, report);
-        measure_mesh(facets, report);
-    });
-    check_error_kept(report);
+    std::vector<Vec3> points = points_as_read(cloud, octree);
+    if (wants_adaptive(options)) {
+        facets = phases.run("adaptive", 0.5, seconds.facets,
+                            [&] { return adaptive_grid(input, points, facets, report); });
+        hints = {}; // they are those of the fine facets
+    }
+    phases.run("error", 0.6, seconds.error,
+               [&] { drop_and_measure(points, octree, options, facets, hints, report); });
 
+    points = {};
     Reconstruction result;
     phases.run("mesh", 0.85, seconds.mesh, [&] {
         for (Vec3& p : facets.positions) p += octree.origin;

@@ -9,6 +9,10 @@
 #include <catch2/catch.hpp>
 #include <tbb/global_control.h>
 
+#include <array>
+#include <map>
+#include <numbers>
+
 using namespace hsdm;
 using support::faults;
 
@@ -125,6 +129,63 @@ TEST_CASE("rims of plates, edges of wedges and rods in general pose take few fac
         CHECK(measure_topology(result.mesh).euler == measure_topology(fine.mesh).euler);
         CHECK(result.mesh.facet_count() <= e.most_faces);
         CHECK(fine.mesh.facet_count() > 5 * e.most_faces);
+    }
+}
+
+TEST_CASE("sides at a border stay near the fine surface's", "[adaptive]") {
+    // A flat ring: chords of its inner border lie off it.
+    constexpr Index rings = 17, spokes = 256;
+    PolygonMesh ring;
+    for (Index r = 0; r < rings; ++r)
+        for (Index s = 0; s < spokes; ++s) {
+            const double turn = 2 * std::numbers::pi * s / spokes, radius = 1 + r / 16.0;
+            ring.positions.emplace_back(2.1 + radius * std::cos(turn), 2.1 + radius * std::sin(turn), 0.7);
+        }
+    for (Index r = 0; r + 1 < rings; ++r)
+        for (Index s = 0; s < spokes; ++s) {
+            const Index next = (s + 1) % spokes, in = r * spokes, out = in + spokes;
+            ring.add_facet(std::array{in + s, out + s, out + next, in + next});
+        }
+    const MeshDistance to_fine(ring);
+    for (double error : {0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6}) {
+        INFO("error " << error);
+        const PolygonMesh mesh = coarsen(ring, {}, 4.2, 6, {.max_error = error}).mesh;
+        CHECK(4 * mesh.facet_count() < ring.facet_count());
+        std::map<std::array<Index, 2>, int> sides;
+        for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+            const auto facet = mesh.facet(f);
+            for (std::size_t i = 0; i < facet.size(); ++i) {
+                const Index a = facet[i], b = facet[(i + 1) % facet.size()];
+                ++sides[{std::min(a, b), std::max(a, b)}];
+            }
+        }
+        std::size_t borders = 0;
+        for (const auto& [side, facets] : sides) {
+            if (facets != 1) continue;
+            ++borders;
+            CHECK(to_fine(0.5 * (mesh.positions[side[0]] + mesh.positions[side[1]])) <= error);
+        }
+        CHECK(borders > 6);
+    }
+}
+
+TEST_CASE("points that the fine mesh does not miss are never missed", "[adaptive]") {
+    // Cells far smaller than facets: a point may have none in its own nor around.
+    const Fine fine = fine_mesh(support::torus(1, 0.35), 40000, 4);
+    for (double share : {0.001, 0.004, 0.02}) {
+        INFO("error " << share << " of the extent");
+        const AdaptiveMesh result = coarsen(fine.mesh, fine.octree.positions, fine.octree.extent, 9,
+                                            {.max_error = share * fine.octree.extent});
+        CHECK(result.points_beyond == result.unreachable);
+        CHECK(faults(result.mesh) == "");
+        const MeshDistance to_fine(fine.mesh), to_result(result.mesh);
+        std::size_t missed = 0, beyond = 0;
+        for (const Vec3& p : fine.octree.positions) {
+            missed += to_fine(p) > share * fine.octree.extent;
+            beyond += to_result(p) > share * fine.octree.extent;
+        }
+        CHECK(beyond == result.points_beyond);
+        CHECK(beyond <= missed);
     }
 }
 

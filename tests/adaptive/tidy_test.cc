@@ -32,6 +32,18 @@ TidyCounts tidied(PolygonMesh& mesh, const PolygonMesh& fine, double tolerance =
     return tidy_facets(mesh, MeshDistance(fine), tolerance, [](Index) { return false; });
 }
 
+/// Every quad cut from its first corner.
+PolygonMesh cut_in_two(const PolygonMesh& quads) {
+    PolygonMesh cut;
+    cut.positions = quads.positions;
+    for (std::size_t f = 0; f < quads.facet_count(); ++f) {
+        const auto q = quads.facet(f);
+        cut.add_facet(std::array{q[0], q[1], q[2]});
+        cut.add_facet(std::array{q[0], q[2], q[3]});
+    }
+    return cut;
+}
+
 bool has_edge(const PolygonMesh& mesh, Index a, Index b) {
     for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
         const auto ring = mesh.facet(f);
@@ -45,13 +57,7 @@ bool has_edge(const PolygonMesh& mesh, Index a, Index b) {
 
 TEST_CASE("triangles of a flat sheet become quads again", "[adaptive]") {
     const PolygonMesh flat = sheet([](double, double) { return 0.0; });
-    PolygonMesh mesh;
-    mesh.positions = flat.positions;
-    for (std::size_t f = 0; f < flat.facet_count(); ++f) {
-        const auto q = flat.facet(f);
-        mesh.add_facet(std::array{q[0], q[1], q[2]});
-        mesh.add_facet(std::array{q[0], q[2], q[3]});
-    }
+    PolygonMesh mesh = cut_in_two(flat);
     const TidyCounts counts = tidied(mesh, flat);
     CHECK(counts.joined >= 30); // of 36
     CHECK(troubled_vertices(mesh).empty());
@@ -60,18 +66,8 @@ TEST_CASE("triangles of a flat sheet become quads again", "[adaptive]") {
 
 TEST_CASE("quads across a crease are cut along it", "[adaptive]") {
     // A roof whose ridge runs along the diagonals from (x, x) to (x + 1, x + 1).
-    const PolygonMesh fine = [] {
-        PolygonMesh roof = sheet([](double x, double y) { return -std::abs(x - y); });
-        PolygonMesh cut;
-        cut.positions = roof.positions;
-        for (std::size_t f = 0; f < roof.facet_count(); ++f) {
-            const auto q = roof.facet(f);
-            cut.add_facet(std::array{q[0], q[1], q[2]});
-            cut.add_facet(std::array{q[0], q[2], q[3]});
-        }
-        return cut;
-    }();
     PolygonMesh mesh = sheet([](double x, double y) { return -std::abs(x - y); });
+    const PolygonMesh fine = cut_in_two(mesh);
     tidied(mesh, fine);
     for (Index i = 0; i + 1 < side; ++i) {
         INFO("ridge from " << i);
@@ -81,6 +77,16 @@ TEST_CASE("quads across a crease are cut along it", "[adaptive]") {
     CHECK(points_to_mesh(fine.positions, mesh).max < 1e-12);
     CHECK(troubled_vertices(mesh).empty());
     CHECK(measure_topology(mesh).euler == 1);
+}
+
+TEST_CASE("a triangle without area is no half of a quad", "[adaptive]") {
+    PolygonMesh mesh;
+    mesh.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0.5, 1, 0), Vec3(1, 0, 0)};
+    mesh.add_facet(std::array<Index, 3>{0, 1, 2});
+    mesh.add_facet(std::array<Index, 3>{1, 0, 3}); // its third corner lies on its first
+    const PolygonMesh before = mesh;
+    CHECK(tidied(mesh, before).joined == 0);
+    CHECK(mesh.facet_count() == 2);
 }
 
 TEST_CASE("settled facets stay as they are", "[adaptive]") {

@@ -189,8 +189,9 @@ TEST_CASE("an error is kept with fewer facets, as a length or as a share of the 
     CHECK(missed.out.find("points, which the finest surface misses already") != std::string::npos);
     CHECK(run(folder, "reconstruct scan.xyz --quiet -o b.off --depth 5 --grid adaptive").status == 0);
     CHECK(run(folder, "reconstruct scan.xyz --quiet -o l.off --levels 4:5 --grid adaptive").status == 0);
-    for (const char* wrong : {"--max-error 0", "--max-error -1%", "--max-error few", "--max-error 1%%",
-                              "--max-error 0.1% --depth 5", "--max-error 0.1% --grid uniform"}) {
+    for (const char* wrong :
+         {"--max-error 0", "--max-error -1%", "--max-error few", "--max-error inf", "--max-error nan",
+          "--max-error 1%%", "--max-error 0.1% --depth 5", "--max-error 0.1% --grid uniform"}) {
         INFO(wrong);
         CHECK(run(folder, std::string("reconstruct scan.xyz -o c.off ") + wrong).status == 2);
     }
@@ -293,7 +294,12 @@ TEST_CASE("small components are dropped when asked, and said", "[cli]") {
     CHECK(components("--min-component 20%") == 1);
     CHECK(components("--min-component 100%") == 1);
     CHECK(components("--min-component 300") == 1);
-    for (const char* bad : {"x", "-1", "101%", "5 %", "nan", ""})
+    const CommandResult bounded =
+        run(folder, "reconstruct scan.xyz -o a.off --max-error 0.05 --min-component 100%");
+    CHECK(bounded.status == 0);
+    CHECK(bounded.out.find("bound     0.05: kept by all points but those of the components dropped\n")
+          != std::string::npos);
+    for (const char* bad : {"x", "-1", "101%", "5 %", "nan", "inf", ""})
         CHECK(run(folder, std::string("reconstruct scan.xyz -o a.off --min-component '") + bad + "'").status
               == (*bad == '\0' ? 0 : 2));
 }

@@ -298,7 +298,10 @@ TEST_CASE("the sensor is where the PLY file's camera stood, before or behind the
         std::string triangle = "\3";
         for (int v : {0, 1, 0}) triangle += bytes_of(v, big);
         CHECK(sensor(format, camera + vertex, view + two) == Vec3(1.5, -2, 30));
-        CHECK(sensor(format, vertex + faces + camera, two + triangle + view) == Vec3(1.5, -2, 30));
+        CHECK(sensor(format, vertex + camera + faces, two + view + triangle) == Vec3(1.5, -2, 30));
+        // Behind lists it would cost reading every one of them, and a file cut off there would be an error.
+        CHECK_FALSE(sensor(format, vertex + faces + camera, two + triangle + view));
+        CHECK_FALSE(sensor(format, vertex + faces + camera, two + triangle.substr(0, 5)));
         CHECK(error_of("a.ply", ply(format, vertex + camera, two + view.substr(1))).find("camera")
               != std::string::npos);
     }
@@ -307,5 +310,12 @@ TEST_CASE("the sensor is where the PLY file's camera stood, before or behind the
     CHECK_FALSE(sensor("ascii", camera + vertex, "nan 0 0 7\n" + points));
     CHECK_FALSE(sensor("ascii", "element camera 2" + camera.substr(16) + vertex, at + at + points));
     CHECK_FALSE(sensor("ascii", "element camera 1\nproperty int view_px\n" + vertex, "1\n" + points));
+    const std::string x = "property float view_px\n", y = "property float view_py\n",
+                      z = "property float view_pz\n", one = "element camera 1\n";
+    CHECK_FALSE(sensor("ascii", one + x + x + y + vertex, "1 2 3\n" + points)); // no z
+    CHECK_FALSE(sensor("ascii", one + x + y + z + z + vertex, "1 2 3 4\n" + points));
+    CHECK(sensor("ascii", one + z + y + x + vertex, "1 2 3\n" + points) == Vec3(3, 2, 1));
+    CHECK_FALSE(sensor("ascii", camera + vertex + camera, at + points + at));
+    CHECK_FALSE(sensor("ascii", camera + vertex + one + x, at + points + "1\n"));
     CHECK_FALSE(sensor("ascii", vertex, points));
 }

@@ -46,6 +46,17 @@ TEST_CASE("several PTX scans make one cloud, which has no single sensor", "[io]"
     CHECK_FALSE(cloud.sensor);
 }
 
+TEST_CASE("PTX scans that hit nothing leave the sensor of the one that did", "[io]") {
+    const std::string nothing = header(1, 2, "7 7 7") + "0 0 0 0\n0 0 0 0\n", none = header(0, 5, "8 8 8");
+    for (const std::string& text : {nothing + header(2, 2) + rays, header(2, 2) + rays + nothing,
+                                    none + header(2, 2) + rays, header(2, 2) + rays + none}) {
+        const auto cloud = read("a.ptx", text).cloud;
+        CHECK(cloud.size() == 3);
+        REQUIRE(cloud.sensor);
+        CHECK(*cloud.sensor == Vec3(10, 20, 30));
+    }
+}
+
 TEST_CASE("what is wrong with a PTX file is said with its line", "[io]") {
     CHECK(error_of("a.ptx", header(2, 3) + rays).find("ends after 4 of 6 rays") != std::string::npos);
     CHECK(error_of("a.ptx", header(1, 2) + rays)

@@ -75,6 +75,24 @@ TEST_CASE("many points in one place cost no more than others and have neighbours
     }
 }
 
+TEST_CASE("two parts too far apart for one octree cost no more than others", "[normals]") {
+    support::Random random(5);
+    PointCloud cloud;
+    for (int i = 0; i < 200000; ++i)
+        cloud.positions.push_back(random.direction() + Vec3(i % 2 ? 0 : 1e9, 0, 0));
+    const Octree octree = build_octree(cloud);
+    const Neighbors neighbors = find_neighbors(octree); // minutes, if each looked at all of its part
+    double farthest = 0;
+    for (Index i = 0; i < octree.size(); i += 50) {
+        const std::vector<Index> found = sorted(neighbors.of(i));
+        CHECK(std::adjacent_find(found.begin(), found.end()) == found.end());
+        CHECK_FALSE(std::binary_search(found.begin(), found.end(), i));
+        CHECK(found.back() < octree.size());
+        farthest = std::max(farthest, neighbors.reach[i]);
+    }
+    CHECK(farthest < 3); // of its own part
+}
+
 TEST_CASE("the number of neighbours is held against its range", "[normals]") {
     const Octree octree =
         build_octree(support::sample(support::sphere(1), {.points = 100, .normals = false}));

@@ -48,6 +48,16 @@ TEST_CASE("the normals of a shell's cavity point into the cavity", "[normals]") 
     CHECK(share_flipped(support::sample(support::nested_spheres(1, 0.9), {.points = 20000})) == 0);
 }
 
+TEST_CASE("the report says whose side only the volume told", "[normals]") {
+    const auto share_by_volume = [](const Solid& solid) {
+        Octree octree = without_normals(support::sample(solid, {.points = 20000}));
+        const NormalsReport report = make_normals(octree);
+        return static_cast<double>(report.orientation.by_volume) / static_cast<double>(octree.size());
+    };
+    CHECK(share_by_volume(support::torus(1, 0.4)) == 0);
+    CHECK(share_by_volume(support::nested_spheres(1, 0.95)) > 0.9); // too thin for views that agree
+}
+
 TEST_CASE("the two sides of a plate face away from each other", "[normals]") {
     const double spacing = std::sqrt(2.0 / 8000);
     for (double thickness : {2.0, 3.0, 5.0}) {

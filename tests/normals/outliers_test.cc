@@ -155,5 +155,54 @@ TEST_CASE("neighbours of a few points are those found among all", "[normals]") {
         CHECK(a == b);
         CHECK(all.reach[points[k]] == some.reach[k]);
     }
+    CHECK(some.leaf_first.empty());
     CHECK(find_neighbors_of(octree, {}).reach.empty());
+}
+
+TEST_CASE("points far away from all others go first, the others lose no digit", "[normals]") {
+    PointCloud cloud = spoilt_sphere(0);
+    for (Vec3& p : cloud.positions) p += Vec3(3, 5, 7);
+    const std::size_t surface = cloud.size();
+    const OctreeOptions centred{.placement = CubePlacement::centred};
+    Octree octree = build_octree(cloud, centred);
+    const Octree clean = octree;
+    CHECK(drop_far_away(octree, cloud) == 0);
+    CHECK(octree.positions == clean.positions);
+    for (int i = 0; i < 10; ++i) {
+        cloud.positions.emplace_back(i % 2 ? 1e9 : -1e6, 4, std::pow(10.0, i));
+        cloud.normals.emplace_back(1, 0, 0);
+    }
+    octree = build_octree(cloud, centred);
+    CHECK(drop_far_away(octree, cloud) == 10);
+    REQUIRE(octree.size() == surface);
+    CHECK((octree.origin - clean.origin).norm() < 1e-12);
+    CHECK(octree.extent == clean.extent);
+    CHECK(octree.source == clean.source);
+    CHECK(std::is_sorted(octree.codes.begin(), octree.codes.end()));
+    double worst = 0;
+    for (std::size_t i = 0; i < surface; ++i)
+        worst = std::max(worst, (octree.positions[i] - clean.positions[i]).norm());
+    CHECK(worst < 1e-14);
+}
+
+TEST_CASE("two objects far from each other are both kept", "[normals]") {
+    PointCloud cloud = spoilt_sphere(0);
+    for (std::size_t i = 0; i < cloud.size(); i += 10) cloud.positions[i] += Vec3(1e5, 0, 0);
+    Octree octree = build_octree(cloud);
+    CHECK(drop_far_away(octree, cloud) == 0);
+}
+
+TEST_CASE("a cube that fits again is that of the points left", "[normals]") {
+    PointCloud cloud = spoilt_sphere(0);
+    const Octree clean = build_octree(cloud, {.placement = CubePlacement::centred});
+    cloud.positions.emplace_back(100, 20, 3);
+    cloud.normals.emplace_back(1, 0, 0);
+    Octree octree = build_octree(cloud, {.placement = CubePlacement::centred});
+    Neighbors neighbors = find_neighbors(octree);
+    REQUIRE(drop_outliers(octree, neighbors) == 1);
+    CHECK(fit_to_points(octree));
+    CHECK_FALSE(fit_to_points(octree));
+    CHECK(octree.extent == Approx(clean.extent).epsilon(1e-12));
+    CHECK((octree.origin - clean.origin).norm() < 1e-12);
+    CHECK(octree.source == clean.source);
 }

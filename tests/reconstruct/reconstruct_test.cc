@@ -384,3 +384,69 @@ TEST_CASE("a minimal size of components is checked, and the largest is kept", "[
         CHECK_THROWS_AS(reconstruct(two, options), OptionError);
     }
 }
+
+TEST_CASE("a bound is kept for the points of components that are then dropped", "[reconstruct]") {
+    PointCloud two = scan(support::sphere(1), 4000);
+    for (const Vec3& p : scan(support::sphere(0.3), 800).positions)
+        two.positions.push_back(p + Vec3(2, 0, 0));
+    ReconstructOptions options;
+    options.max_error = MaxError{0.05};
+    const Report both = reconstruct(two, options).report;
+    CHECK(both.error.points_to_mesh_max <= 0.05);
+    options.min_component = MinComponent{1, true};
+    const Report one = reconstruct(two, options).report;
+    CHECK(one.mesh.components == 1);
+    CHECK(one.rejected.at("components_small") == 1);
+    CHECK(one.grid.points_beyond == 0);
+    CHECK(one.error.points_to_mesh_max > 0.9); // of what is written: the dropped component's points count
+}
+
+namespace {
+
+/// How a cloud with a stray so many extents away differs from the same without.
+void check_stray(const ReconstructOptions& options, double away) {
+    const Vec3 direction(0.8, -0.6, 0);
+    PointCloud cloud = support::sample(support::torus(1, 0.4), {.points = 20000});
+    const Report clean = reconstruct(cloud, options).report;
+    cloud.positions.push_back(away * 2.8 * direction);
+    cloud.normals.emplace_back(0, 0, 1); // such that the far surface is in its plane
+    const Reconstruction spoilt = reconstruct(cloud, options);
+    CHECK(faults(to_polygons(spoilt.mesh)) == "");
+    CHECK(spoilt.report.mesh.closed);
+    CHECK(spoilt.report.mesh.components == 1);
+    CHECK(spoilt.report.mesh.euler == 0);
+    CHECK(spoilt.report.input.points == cloud.size());
+    CHECK(spoilt.report.rejected.at("points_outlying") == 1);
+    CHECK((spoilt.report.input.bbox.lo - clean.input.bbox.lo).norm() < 1e-9);
+    CHECK((spoilt.report.input.bbox.hi - clean.input.bbox.hi).norm() < 1e-9);
+    CHECK(spoilt.report.grid.depth == clean.grid.depth);
+    CHECK(spoilt.report.grid.voxel_size == Approx(clean.grid.voxel_size).epsilon(1e-6));
+    CHECK(spoilt.report.grid.max_error == Approx(clean.grid.max_error).epsilon(1e-6));
+    CHECK(spoilt.report.error.normalised_max == Approx(clean.error.normalised_max).epsilon(0.1));
+}
+
+} // namespace
+
+TEST_CASE("a stray however far changes neither cube nor resolution", "[reconstruct]") {
+    for (const NormalSource normals : {NormalSource::given, NormalSource::estimate})
+        for (const double away : {30.0, 1e3, 3e3, 1e5, 1e9, 1e15, 1e200}) {
+            INFO((normals == NormalSource::given ? "given" : "estimated") << ", " << away << " extents");
+            ReconstructOptions options;
+            options.normals = normals;
+            check_stray(options, away);
+        }
+}
+
+TEST_CASE("a far stray has no part in any resolution that is asked for", "[reconstruct]") {
+    for (const double away : {1e3, 1e5}) {
+        INFO(away << " extents");
+        ReconstructOptions by_depth, by_voxel, by_error;
+        by_depth.depth = 5;
+        check_stray(by_depth, away);
+        by_voxel.voxel_size = 0.09;
+        by_voxel.normals = NormalSource::estimate;
+        check_stray(by_voxel, away);
+        by_error.max_error = MaxError{0.01, true};
+        check_stray(by_error, away);
+    }
+}

@@ -120,6 +120,10 @@ TEST_CASE("of layers to be merged, those with none between that faces back are o
     for (std::size_t count : sets_per_voxel({{0.2, 0.2, 1}, {0.4, 0.4, -1}, {0.6, 0.6, 1}}, true))
         CHECK(count == 3);
     for (std::size_t count : sets_per_voxel({{0.2, 0.2, 1}, {0.6, 0.6, -1}}, true)) CHECK(count == 2);
+    // The widest gap is one of layers, a narrower one of sheets.
+    for (std::size_t count :
+         sets_per_voxel({{0.1, 0.1, 1}, {0.45, 0.45, 1}, {0.85, 0.85, 1}, {0.25, 0.25, -1}}, true))
+        CHECK(count == 3);
 }
 
 TEST_CASE("the two levels of a step are two sets", "[sheets]") {

@@ -33,15 +33,15 @@ bool wants_adaptive(const ReconstructOptions& options) {
     return options.grid == Grid::adaptive || (options.grid == Grid::automatic && options.max_error);
 }
 
-PolygonMesh adaptive_grid(const MethodInput& in, const PolygonMesh& fine, Report& report) {
+PolygonMesh adaptive_grid(const MethodInput& in, std::span<const Vec3> points, const PolygonMesh& fine,
+                          Report& report) {
     const double bound = error_bound(in);
-    AdaptiveMesh coarse =
-        coarsen(fine, in.octree.positions, in.octree.extent, in.level.depth, {.max_error = bound});
+    AdaptiveMesh coarse = coarsen(fine, points, in.octree.extent, in.level.depth, {.max_error = bound});
     report.grid.kind = "adaptive";
     report.grid.leaves_per_level = coarse.leaves_per_level;
     report.grid.balance_splits = coarse.balance_splits;
     report.grid.max_error = bound;
-    report.grid.points_beyond = coarse.points_beyond;
+    report.grid.points_beyond = coarse.unreachable;
     report.rejected["leaves_split_for_topology"] = coarse.topology_splits;
     report.rejected["leaves_split_for_error"] = coarse.error_splits;
     report.rejected["leaves_split_for_intersections"] = coarse.intersection_splits;

@@ -3,16 +3,20 @@
 
 #include "hsdm/basic_method.hh"
 
+#include <span>
+
 namespace hsdm {
 
 /// Does the caller want an adaptive grid?
 bool wants_adaptive(const ReconstructOptions& options);
 
 /// The facets of one level, relative to the octree's origin, over the leaves of a balanced octree. Vertex
-/// properties are means over the fine vertices that a vertex stands for, of labels the majority's. Notes in
-/// the report the bound, how many points the fine mesh misses by more, and the distance of the result from
-/// it.
-PolygonMesh adaptive_grid(const MethodInput& input, const PolygonMesh& fine, Report& report);
+/// properties are means over the fine vertices that a vertex stands for, of labels the majority's. The bound
+/// is kept at `points`, which are those that the error is measured from: where they were read, whatever the
+/// octree's have been moved to. Notes in the report the bound, how many points the fine mesh misses by more,
+/// and the distance of the result from it.
+PolygonMesh adaptive_grid(const MethodInput& input, std::span<const Vec3> points, const PolygonMesh& fine,
+                          Report& report);
 
 /// Throws Error if a point was measured farther from the final mesh than the bound and none was announced.
 void check_error_kept(const Report& report);

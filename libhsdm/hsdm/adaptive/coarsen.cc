@@ -20,6 +20,7 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t vertices_per_chunk = 2048;
+constexpr std::size_t far_per_chunk = 64; // distances of places that are far take long
 constexpr std::size_t fewest_samples = 10000, most_samples = 100000;
 constexpr double planes_share =
     0.35; // of the error: what planes of a leaf may be missed by, root mean square
@@ -56,7 +57,7 @@ public:
     AdaptiveMesh run() {
         int round = 0;
         while (round < options_.rounds && split_what_is_wrong() > 0) ++round;
-        if (round == options_.rounds) settle_for_fine();
+        if (round == options_.rounds || result_.points_beyond > result_.unreachable) settle_for_fine();
         count_leaves();
         const std::size_t samples = std::clamp(2 * result_.mesh.facet_count(), fewest_samples, most_samples);
         if (to_fine_) result_.to_fine = (*to_fine_)(sample_surface(result_.mesh, samples));
@@ -69,6 +70,7 @@ private:
     std::size_t split_what_is_wrong() {
         result_.balance_splits += balance(tree_);
         collapse();
+        drop_doublets();
         const std::size_t troubled = split_troubled();
         result_.topology_splits += troubled;
         if (troubled > 0) return troubled; // all else needs a 2-manifold
@@ -132,7 +134,6 @@ private:
             for (Index v : fine_.facet(f)) ring.push_back(vertex_[v]);
             if (!add_loops(ring, mesh)) pinched_.push_back(static_cast<Index>(f));
         }
-        drop_doublets();
     }
 
     /// The vertices taken out are renumbered away; their neighbours take over the fine vertices.
@@ -300,11 +301,27 @@ private:
         return splits;
     }
 
+    /// Vertices at a border: each vertex of a whole fan is as often behind the one in the middle as before
+    /// it.
+    static std::vector<std::uint8_t> border_vertices(const PolygonMesh& mesh) {
+        std::vector<std::int64_t> balance(mesh.vertex_count(), 0);
+        for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+            const auto ring = mesh.facet(f);
+            Index before = ring.back();
+            for (std::size_t i = 0; i < ring.size(); before = ring[i++])
+                balance[ring[i]] += std::int64_t{ring[(i + 1) % ring.size()]} - std::int64_t{before};
+        }
+        std::vector<std::uint8_t> border(balance.size());
+        std::transform(balance.begin(), balance.end(), border.begin(), [](std::int64_t b) { return b != 0; });
+        return border;
+    }
+
     /// Middles of facets, of their sides, and between middle and corners, against the fine mesh.
     std::size_t split_far_facets() {
         const PolygonMesh& mesh = result_.mesh;
         std::vector<Vec3> middles;
         std::vector<Index> facet;
+        const std::vector<std::uint8_t> border = border_vertices(mesh);
         for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
             if (passed_.find(keys_[f]) != no_index) continue;
             const auto ring = mesh.facet(f);
@@ -315,10 +332,11 @@ private:
             for (Index v : ring) sum += mesh.positions[v];
             const Vec3 centre = sum / static_cast<double>(ring.size());
             for (std::size_t i = 0; i < ring.size(); ++i) {
-                const Vec3 &a = mesh.positions[ring[i]], &b = mesh.positions[ring[(i + 1) % ring.size()]];
+                const Index next = ring[(i + 1) % ring.size()];
+                const Vec3 &a = mesh.positions[ring[i]], &b = mesh.positions[next];
                 middles.push_back(0.5 * (a + centre));
                 facet.push_back(static_cast<Index>(f));
-                if (ring[i] > ring[(i + 1) % ring.size()]) continue; // the other facet has it
+                if (ring[i] > next && !(border[ring[i]] && border[next])) continue; // the other facet has it
                 middles.push_back(0.5 * (a + b));
                 facet.push_back(static_cast<Index>(f));
             }
@@ -339,22 +357,46 @@ private:
 
     std::size_t split_for_points(const MeshDistance& to_result) {
         const std::vector<Index> far = far_from(to_result, points_, near_point_);
+        measure_to_fine(far);
         std::vector<Index> missed; // by the fine mesh already
         std::size_t splits = 0;
         double farthest = 0;
         result_.points_beyond = far.size();
         for (Index p : far) {
-            if (const double off = (*to_fine_)(points_[p]); off > options_.max_error) {
+            if (const double off = off_fine_[p]; off > options_.max_error) {
                 missed.push_back(p);
                 farthest = std::max(farthest, off);
             } else {
-                splits += split_around(points_[p]);
+                splits += split_near(p, to_result);
             }
         }
         result_.unreachable = missed.size();
         // The largest distance of all is the fine mesh's, if that is beyond the bound.
-        for (Index p : missed)
-            if (to_result(points_[p]) > farthest) splits += split_around(points_[p]);
+        std::vector<double> off(missed.size());
+        for_chunks(missed.size(), far_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i) off[i] = to_result(points_[missed[i]]);
+        });
+        for (std::size_t i = 0; i < missed.size(); ++i)
+            if (off[i] > farthest) splits += split_near(missed[i], to_result);
+        return splits;
+    }
+
+    /// Of points that were not measured in a round before.
+    void measure_to_fine(const std::vector<Index>& far) {
+        if (!far.empty()) off_fine_.resize(points_.size(), -1);
+        for_chunks(far.size(), far_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i)
+                if (double& off = off_fine_[far[i]]; off < 0) off = (*to_fine_)(points_[far[i]]);
+        });
+    }
+
+    /// The leaves around a point; where there are none to subdivide, those of the facet nearest to it.
+    std::size_t split_near(Index p, const MeshDistance& to_result) {
+        std::size_t splits = split_around(points_[p]);
+        if (splits > 0) return splits;
+        const Index facet = to_result.nearest_facet(points_[p]);
+        if (facet != no_index)
+            for (Index v : result_.mesh.facet(facet)) splits += split_at(coarse_[v]);
         return splits;
     }
 
@@ -399,6 +441,7 @@ private:
     std::vector<std::uint64_t> keys_; // per facet of the result
     MortonIndex present_, passed_;    // keys of its facets; of those found near the fine mesh
     std::vector<std::uint64_t> near_vertex_, near_point_; // of a facet that a fine vertex, a point is near to
+    std::vector<double> off_fine_;                        // per point, from the fine mesh; -1: not known
     AdaptiveMesh result_;
 };
 

@@ -23,7 +23,7 @@ struct AdaptiveMesh {
     std::size_t error_splits = 0;              ///< ... because the error was too large
     std::size_t intersection_splits = 0;       ///< ... because facets intersected
     std::size_t points_beyond = 0;             ///< points farther than max_error from the result
-    std::size_t unreachable = 0;               ///< of these, so far from the fine mesh already
+    std::size_t unreachable = 0;               ///< of these, so far from the fine mesh already: all of them
     Distance to_fine;                          ///< of points spread over the mesh, from the fine one
 };
 
@@ -31,9 +31,9 @@ struct AdaptiveMesh {
 /// edges, so where leaves of different size meet there are neither cracks nor T-vertices. The octree is
 /// subdivided until nothing is wrong: facets a 2-manifold, no intersections the fine mesh has not, points and
 /// fine vertices within max_error of the result and it of the fine mesh. Facets are cut and joined anew where
-/// that suits their shape. If `rounds` do not suffice the fine mesh itself comes out. `points` and the mesh
-/// are relative to the least corner of the cube, `extent` is its edge, `depth` the level of the fine mesh.
-/// O(n log n). Throws OptionError.
+/// that suits their shape. If `rounds` or the cells do not suffice the fine mesh itself comes out. `points`
+/// and the mesh are relative to the least corner of the cube, `extent` is its edge, `depth` the level of the
+/// fine mesh. O(n log n). Throws OptionError.
 AdaptiveMesh coarsen(const PolygonMesh& fine, std::span<const Vec3> points, double extent, int depth,
                      const CoarsenOptions& options);
 

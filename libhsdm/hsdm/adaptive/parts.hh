@@ -15,9 +15,8 @@ Vec3 place_in(const Quadric& planes, const Box& box);
 
 /// Joins adjacent members, those first that the joint planes miss least, while the planes of a part are met
 /// within `tolerance` (root mean square) at one point of the box. Returns per member the least member of its
-/// part; empty if more than four parts remain or two that touch face the same way (to 60 degrees): then the
-/// piece is curved, and smaller cells serve it better. `adjacent` holds pairs of members. O(members^3), and
-/// more than 64 members are refused.
+/// part; empty if more than four parts remain: then smaller cells serve the piece better. `adjacent` holds
+/// pairs of members. O(members^3), and more than 64 members are refused.
 std::vector<Index> divide_by_planes(std::span<const Quadric> members,
                                     std::span<const std::pair<Index, Index>> adjacent, const Box& box,
                                     double tolerance);

@@ -14,7 +14,6 @@ void Quadric::add_plane(const Vec3& normal, const Vec3& point, double weight) {
         for (unsigned j = i; j < 3; ++j) a_[k++] += weight * normal[i] * normal[j];
     b_ += normal * (weight * d);
     c_ += weight * d * d;
-    facing_ += normal * weight;
     weight_ += weight;
 }
 
@@ -27,7 +26,6 @@ Quadric& Quadric::operator+=(const Quadric& other) {
     for (std::size_t k = 0; k < 6; ++k) a_[k] += other.a_[k];
     b_ += other.b_;
     c_ += other.c_;
-    facing_ += other.facing_;
     weight_ += other.weight_;
     sum_ += other.sum_;
     points_ += other.points_;

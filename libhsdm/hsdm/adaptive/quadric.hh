@@ -17,14 +17,11 @@ public:
     Vec3 minimum(double least_share) const;
     /// Root of the weighted mean of the squared distances at x; 0 without planes.
     double rms(const Vec3& x) const;
-    /// The planes' normals by weight: which way their surface faces on the whole.
-    const Vec3& facing() const { return facing_; }
 
 private:
     double a_[6] = {0, 0, 0, 0, 0, 0}; // xx, xy, xz, yy, yz, zz
     Vec3 b_{0, 0, 0};
     double c_ = 0, weight_ = 0;
-    Vec3 facing_{0, 0, 0};
     Vec3 sum_{0, 0, 0};
     double points_ = 0;
 };

@@ -275,16 +275,18 @@ private:
         if (c == d || (one | two) < join_cosine * one.norm() * two.norm()) return std::nullopt;
         const std::array<Index, 4> ring{a, d, b, c};
         const Vec3 up = (one + two).normalized();
-        double sine = 1;
+        double least = 1;
         for (std::size_t i = 0; i < 4; ++i) {
             const Vec3 &p = at(ring[i]), &q = at(ring[(i + 1) % 4]), &r = at(ring[(i + 3) % 4]);
-            sine = std::min(sine, (((q - p) % (r - p)) | up) / ((q - p).norm() * (r - p).norm()));
+            const double sine = (((q - p) % (r - p)) | up) / ((q - p).norm() * (r - p).norm());
+            if (!(sine >= least_corner)) return std::nullopt; // not a number where corners coincide
+            least = std::min(least, sine);
         }
         // Whoever cuts the quad takes the shorter diagonal: it must be the one that is there, or do no harm.
         const bool shorter = (at(b) - at(a)).sqrnorm() <= (at(d) - at(c)).sqrnorm();
-        if (!(sine >= least_corner) || (!shorter && warp(a, b, c, d) > tolerance_)) return std::nullopt;
+        if (!shorter && warp(a, b, c, d) > tolerance_) return std::nullopt;
         const bool whole = half_[s / 3] && half_[t / 3] && s % 3 == 0 && t % 3 == 0;
-        return Quad{sine + (whole ? was_quad : 0), s};
+        return Quad{least + (whole ? was_quad : 0), s};
     }
 
     std::size_t join() {

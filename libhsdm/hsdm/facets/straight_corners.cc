@@ -28,10 +28,16 @@ std::pair<std::size_t, double> straightest(const PolygonMesh& mesh, std::span<co
     return result;
 }
 
-/// Of some possible new edges, those that facets have already, in order.
-std::vector<Edge> taken(const PolygonMesh& mesh, const std::vector<Edge>& possible) {
+/// A quad to be cut at a corner.
+struct Cut {
+    Edge diagonal;
+    std::size_t facet, corner;
+};
+
+/// Of the edges that facets have, those that a diagonal may be, in order.
+std::vector<Edge> possible_edges(const PolygonMesh& mesh, const std::vector<Cut>& due) {
     std::vector<std::uint8_t> met(mesh.vertex_count(), 0);
-    for (const Edge& e : possible) met[e[0]] = met[e[1]] = 1;
+    for (const Cut& cut : due) met[cut.diagonal[0]] = met[cut.diagonal[1]] = 1;
     std::vector<Edge> edges;
     for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
         const auto ring = mesh.facet(f);
@@ -44,45 +50,47 @@ std::vector<Edge> taken(const PolygonMesh& mesh, const std::vector<Edge>& possib
     return edges;
 }
 
+/// Removes the cuts whose diagonal is an edge already or that of a facet before; leaves them by facet.
+void keep_allowed(const PolygonMesh& mesh, std::vector<Cut>& due) {
+    if (due.empty()) return;
+    const std::vector<Edge> edges = possible_edges(mesh, due);
+    std::sort(due.begin(), due.end(), [](const Cut& a, const Cut& b) {
+        return a.diagonal != b.diagonal ? a.diagonal < b.diagonal : a.facet < b.facet;
+    });
+    const auto same = [](const Cut& a, const Cut& b) { return a.diagonal == b.diagonal; };
+    due.erase(std::unique(due.begin(), due.end(), same), due.end());
+    std::erase_if(
+        due, [&](const Cut& cut) { return std::binary_search(edges.begin(), edges.end(), cut.diagonal); });
+    std::sort(due.begin(), due.end(), [](const Cut& a, const Cut& b) { return a.facet < b.facet; });
+}
+
 } // namespace
 
 std::size_t cut_straight_corners(PolygonMesh& mesh, double least_sine) {
-    std::vector<std::pair<std::size_t, std::size_t>> due; // facet, corner
-    std::vector<Edge> diagonals;
+    std::vector<Cut> due;
     for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
         const auto quad = mesh.facet(f);
         if (quad.size() != 4) continue;
         const auto [corner, sine] = straightest(mesh, quad);
-        if (sine >= least_sine) continue;
-        due.emplace_back(f, corner);
-        diagonals.push_back(edge(quad[corner], quad[(corner + 2) % 4]));
+        if (sine < least_sine) due.push_back({edge(quad[corner], quad[(corner + 2) % 4]), f, corner});
     }
+    keep_allowed(mesh, due);
     if (due.empty()) return 0;
-    std::vector<Edge> edges = taken(mesh, diagonals);
     PolygonMesh cut;
-    std::size_t next = 0, count = 0;
+    auto next = due.begin();
     for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
         const auto ring = mesh.facet(f);
-        const std::size_t d = next;
-        if (d == due.size() || due[d].first != f) {
+        if (next == due.end() || next->facet != f) {
             cut.add_facet(ring);
             continue;
         }
-        ++next;
-        const auto at = std::lower_bound(edges.begin(), edges.end(), diagonals[d]);
-        if (at != edges.end() && *at == diagonals[d]) {
-            cut.add_facet(ring);
-            continue;
-        }
-        edges.insert(at, diagonals[d]);
-        const std::size_t i = due[d].second;
+        const std::size_t i = next++->corner;
         cut.add_facet(std::array{ring[i], ring[(i + 1) % 4], ring[(i + 2) % 4]});
         cut.add_facet(std::array{ring[i], ring[(i + 2) % 4], ring[(i + 3) % 4]});
-        ++count;
     }
     mesh.corners = std::move(cut.corners);
     mesh.first = std::move(cut.first);
-    return count;
+    return due.size();
 }
 
 } // namespace hsdm

@@ -7,8 +7,8 @@ namespace hsdm {
 
 /// Cuts quads in two at a corner that is straight or reflex: seen along the area vector, its angle's sine is
 /// below `least_sine`. Along a crease such quads are frequent, with two sides on it. Those whose new edge
-/// would be one of other facets already stay. Vertices do not change, a 2-manifold remains one. Returns how
-/// many were cut. O(corners).
-std::size_t cut_straight_corners(PolygonMesh& mesh, double least_sine = 0.1);
+/// would be one of other facets already stay; of several that would get the same one, the first is cut.
+/// Vertices do not change, a 2-manifold remains one. Returns how many were cut. O(corners log corners).
+std::size_t cut_straight_corners(PolygonMesh& mesh, double least_sine);
 
 } // namespace hsdm

@@ -265,7 +265,10 @@ PointCloud read_ply_binary(const SourceBytes& bytes, const PlyHeader& header, st
 std::optional<Vec3> read_ply_sensor_binary(const SourceBytes& bytes, const PlyHeader& header,
                                            const PlyCamera& camera) {
     BinaryBody body(bytes, header);
-    for (std::size_t i = 0; i < camera.element; ++i) body.skip(header.elements[i]);
+    for (std::size_t i = 0; i < camera.element; ++i) {
+        if (header.elements[i].has_list()) return std::nullopt; // every list would have to be read to pass it
+        body.skip(header.elements[i]);
+    }
     return sensor_of_camera(camera, body.row(header.elements[camera.element]));
 }
 

@@ -5,19 +5,28 @@
 namespace hsdm::io {
 
 std::optional<PlyCamera> find_camera(const PlyHeader& header) {
+    std::optional<PlyCamera> found;
+    std::size_t cameras = 0;
     for (std::size_t e = 0; e < header.elements.size(); ++e) {
         const PlyElement& element = header.elements[e];
-        if (element.name != "camera" || element.count != 1 || element.has_list()) continue;
+        if (element.name != "camera") continue;
+        ++cameras;
+        if (element.count != 1 || element.has_list()) continue;
         PlyCamera camera{e, {}};
-        std::size_t found = 0;
+        unsigned axes = 0; // a bit each
+        bool twice = false;
         for (std::size_t i = 0; i < element.properties.size(); ++i) {
             const std::string& name = element.properties[i].name;
-            if (name.size() == 7 && name.starts_with("view_p") && name[6] >= 'x' && name[6] <= 'z')
-                camera.position[static_cast<std::size_t>(name[6] - 'x')] = i, ++found;
+            if (name.size() != 7 || !name.starts_with("view_p") || name[6] < 'x' || name[6] > 'z') continue;
+            const auto axis = static_cast<unsigned>(name[6] - 'x');
+            twice |= (axes >> axis & 1) != 0;
+            axes |= 1u << axis;
+            camera.position[axis] = i;
         }
-        if (found == 3) return camera;
+        if (axes == 7 && !twice) found = camera;
     }
-    return std::nullopt;
+    if (cameras != 1) return std::nullopt;
+    return found;
 }
 
 std::optional<Vec3> sensor_of_camera(const PlyCamera& camera, std::span<const double> values) {

@@ -97,12 +97,15 @@ void append(std::vector<T>& values, const std::vector<T>& more, const std::vecto
 }
 
 /// Adds the rays of one scan that hit something, in world coordinates. A ray that did not is 0 0 0.
-void append_scan(const ScanHeader& header, PointCloud& scan, PointCloud& cloud) {
+void append_scan(const Text& text, const ScanHeader& header, PointCloud& scan, PointCloud& cloud) {
     std::vector<std::uint8_t> hit(scan.size());
     for (std::size_t i = 0; i < scan.size(); ++i) {
         hit[i] = scan.positions[i] != Vec3(0, 0, 0);
         scan.positions[i] = header.to_world(scan.positions[i]);
     }
+    if (const auto hits = static_cast<std::size_t>(std::count(hit.begin(), hit.end(), 1));
+        hits > no_index - cloud.size())
+        throw Error(text.file(), "holds more points than can be numbered; split the file");
     append(cloud.positions, scan.positions, hit);
     append(cloud.colors, scan.colors, hit);
     if (cloud.scalars.empty())
@@ -123,8 +126,8 @@ PointFile read_ptx(const SourceBytes& bytes) {
     const Text text(bytes);
     PointFile file;
     file.format = "ptx";
-    std::size_t scans = 0, width = 0;
-    for (const char* at = text.begin; has_line(text, at); ++scans) {
+    std::size_t scans = 0, width = 0; // scans that hit something
+    for (const char* at = text.begin; has_line(text, at);) {
         const ScanHeader header = read_header(text, at);
         const Text body = take_rays(text, header.rays, at);
         if (header.rays == 0) continue;
@@ -139,7 +142,10 @@ PointFile read_ptx(const SourceBytes& bytes) {
         Rows rows(body, layout);
         const double factor = rows.color_factor(columns, false);
         PointCloud scan = std::move(rows).to_cloud(columns, factor);
-        append_scan(header, scan, file.cloud);
+        const std::size_t before = file.cloud.size();
+        append_scan(text, header, scan, file.cloud);
+        if (file.cloud.size() == before) continue;
+        ++scans;
         file.cloud.sensor = header.matrix[3]; // the scanner is the origin of its own coordinates
     }
     if (scans > 1) file.cloud.sensor.reset();

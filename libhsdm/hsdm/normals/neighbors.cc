@@ -13,6 +13,9 @@ namespace {
 
 constexpr std::size_t leaf_points = 12;
 constexpr std::size_t leaves_per_chunk = 256;
+/// Of a voxel of the finest level so many points are looked at together: were it all of them, time would grow
+/// with their square where a cloud's parts lie so far apart that each is in few voxels.
+constexpr Index crowd = 256;
 /// So many candidates per neighbour wanted keep the nearest away from the rim of the 27 voxels.
 constexpr std::size_t candidates_per_neighbor = 4;
 
@@ -32,7 +35,7 @@ int split_level(MortonCode a, MortonCode b) {
     return morton_levels - (63 - std::countl_zero(a ^ b)) / 3;
 }
 
-/// The largest voxels that hold at most leaf_points points (or are as small as voxels get).
+/// The largest voxels that hold at most leaf_points points (or are as small as voxels get: at most a crowd).
 std::vector<Leaf> find_leaves(const std::vector<MortonCode>& codes) {
     std::vector<Leaf> leaves;
     leaves.reserve(codes.size() / 4 + 1);
@@ -42,7 +45,8 @@ std::vector<Leaf> find_leaves(const std::vector<MortonCode>& codes) {
             level = std::max(level, split_level(codes[i], codes[i + leaf_points]));
         level = std::min(level, morton_levels);
         const int shift = 3 * (morton_levels - level);
-        for (end = i + 1; end < codes.size() && codes[end] >> shift == codes[i] >> shift;) ++end;
+        const std::size_t last = level < morton_levels ? codes.size() : std::min(codes.size(), i + crowd);
+        for (end = i + 1; end < last && codes[end] >> shift == codes[i] >> shift;) ++end;
         leaves.push_back({static_cast<Index>(i), static_cast<Index>(end), level, static_cast<Index>(i)});
     }
     return leaves;
@@ -100,6 +104,7 @@ public:
             Candidates& candidates = scratch.local();
             for (std::size_t l = begin; l < end; ++l) search_leaf(leaves[l], candidates);
         });
+        if (points) return;
         result.leaf_first.reserve(leaves.size() + 1);
         for (const Leaf& leaf : leaves) result.leaf_first.push_back(leaf.begin);
         result.leaf_first.push_back(static_cast<Index>(octree.size()));
@@ -153,8 +158,14 @@ private:
         const Vec3 base = octree_.positions[leaf.begin];
         const OctreeLevel& grid = levels_[static_cast<std::size_t>(level)];
         candidates.clear();
-        for (std::size_t v = 0; v < count; ++v)
-            candidates.add(octree_, grid.first_point[voxels[v]], grid.first_point[voxels[v] + 1], base);
+        for (std::size_t v = 0; v < count; ++v) {
+            Index first = grid.first_point[voxels[v]], last = grid.first_point[voxels[v] + 1];
+            if (level == morton_levels && last - first > 2 * crowd) { // those next to the leaf in order
+                first = std::clamp(leaf.begin, first + crowd / 2, last - 3 * crowd / 2) - crowd / 2;
+                last = first + 2 * crowd;
+            }
+            candidates.add(octree_, first, last, base);
+        }
         float limit = std::numeric_limits<float>::max();
         if (points_)
             for (Index slot = leaf.slot; slot < points_->size() && (*points_)[slot] < leaf.end; ++slot)
@@ -189,10 +200,6 @@ private:
     Neighbors& result_;
     std::vector<OctreeLevel> levels_;
 };
-
-} // namespace
-
-namespace {
 
 Neighbors search(const Octree& octree, const std::vector<Index>* points, const NeighborOptions& options) {
     if (options.count < 3 || options.count > 64)

@@ -14,8 +14,9 @@ struct Neighbors {
     std::size_t count = 0;         ///< per point: min(options.count, points - 1)
     std::vector<Index> index;      ///< points x count, octree order
     std::vector<double> reach;     ///< per point: distance of the farthest of them, in the cloud's units
-    std::vector<Index> leaf_first; ///< the leaves the points were taken in: leaf l holds points leaf_first[l]
-                                   ///< .. leaf_first[l + 1] - 1, a dozen at most, of one voxel
+    std::vector<Index> leaf_first; ///< of all points: the leaves they were taken in: leaf l holds points
+                                   ///< leaf_first[l] .. leaf_first[l + 1] - 1, of one voxel, a dozen at most
+                                   ///< (more where the finest voxels hold more); empty if of some points
 
     std::span<const Index> of(std::size_t point) const { return {index.data() + point * count, count}; }
 };
@@ -23,7 +24,9 @@ struct Neighbors {
 /// Nearest neighbours, ties by octree order. Points are taken leaf by leaf (the largest voxels of at most a
 /// dozen points) and searched in the 27 voxels around, at the finest level where these hold enough points
 /// that the nearest are among them: exact on a surface that is sampled about evenly over the neighbourhood,
-/// near enough elsewhere. O(n) time and space, parallel. Throws OptionError.
+/// near enough elsewhere. Where hundreds of points share a voxel of the finest level (parts of a cloud too
+/// far from each other for one octree), they are sought among some hundreds only. O(n) time and space,
+/// parallel. Throws OptionError.
 Neighbors find_neighbors(const Octree& octree, const NeighborOptions& options = {});
 
 /// The same for the given points alone (ascending), in their order: `of(k)` and `reach[k]` are of points[k].

@@ -72,7 +72,7 @@ double estimate_noise(const Octree& octree, const Neighbors& neighbors) {
 }
 
 double noise_deviation(const Octree& octree, const Neighbors& neighbors) {
-    constexpr std::size_t fewest = 1000; // points: below, there is nothing to take a typical value of
+    constexpr std::size_t fewest = 500; // points: below, there is nothing to take a typical value of
     struct Scale {
         std::size_t few;
         double small; ///< against the reach: about five deviations; where all is noise it is 0.23 and 0.30
@@ -89,7 +89,7 @@ double noise_deviation(const Octree& octree, const Neighbors& neighbors) {
                     * lower_third_of_sample(octree, [&](std::size_t i) { return measured(i).distance; });
         if (relative < scale.small) return deviation;
     }
-    if (octree.size() < 2 * fewest) return deviation;
+    if (octree.size() < 4 * fewest) return deviation; // a quarter of them is looked at next
     const Octree thin = thinned(octree);
     return noise_deviation(thin, find_neighbors(thin));
 }

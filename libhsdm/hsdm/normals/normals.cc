@@ -21,10 +21,15 @@ NormalsReport make_normals(Octree& octree, const NormalsOptions& options) {
     NormalsReport report;
     Neighbors nearest = find_neighbors(octree);
     report.outliers = drop_outliers(octree, nearest, options.outliers);
+    OrientOptions orient = options.orient;
+    if (const Vec3 origin = octree.origin; report.outliers > 0 && fit_to_points(octree)) {
+        nearest = find_neighbors(octree); // in another order, and in voxels that fit what is left
+        if (orient.sensor) *orient.sensor += origin - octree.origin;
+    }
     report.smoothed = smooth_noise(octree, nearest, options.smooth);
     const Neighbors neighbors = choose_neighbors(octree, options.neighbors, std::move(nearest));
     EstimatedNormals estimate = estimate_normals(octree, neighbors, options.estimate);
-    report.orientation = orient_normals(octree, neighbors, estimate, options.orient);
+    report.orientation = orient_normals(octree, neighbors, estimate, orient);
     settle_normals(octree, neighbors, estimate);
     report.noise = estimate.noise;
     report.bent = estimate.bent.size();

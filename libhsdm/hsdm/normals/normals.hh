@@ -24,11 +24,12 @@ struct NormalsReport {
     OrientReport orientation;
 };
 
-/// Removes outliers, moves the points of a noisy cloud onto the surface that they scatter about, and gives
-/// the octree's points normals from their positions alone, each on its own face where faces meet in a crease,
-/// and all of one side: outward on a closed surface. Those the octree has are replaced. Two sides of a thin
-/// part stay apart if they are at least as far from each other as neighbouring points. O(n log n), parallel;
-/// the same bits for every number of threads. Throws OptionError.
+/// Removes outliers (and fits the cube to what is left: the octree's origin and order may change), moves the
+/// points of a noisy cloud onto the surface that they scatter about, and gives the octree's points normals
+/// from their positions alone, each on its own face where faces meet in a crease, and all of one side:
+/// outward on a closed surface. Those the octree has are replaced. Two sides of a thin part stay apart if
+/// they are at least as far from each other as neighbouring points. O(n log n), parallel; the same bits for
+/// every number of threads. Throws OptionError.
 NormalsReport make_normals(Octree& octree, const NormalsOptions& options = {});
 
 } // namespace hsdm

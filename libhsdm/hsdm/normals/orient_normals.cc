@@ -67,7 +67,8 @@ OrientReport orient_normals(const Octree& octree, const Neighbors& neighbors, Es
     }
     const Signs signs = agglomerate(patches.size() + 1, std::move(edges));
     std::vector<std::int8_t> turn = free_signs(patches, signs, options);
-    if (views_agree(patches, view, signs)) turn[signs.component[outside]] = signs.sign[outside];
+    const bool seen = views_agree(patches, view, signs);
+    if (seen) turn[signs.component[outside]] = signs.sign[outside];
     for_chunks(octree.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i) {
             const Index p = patches.of_point[i];
@@ -78,7 +79,7 @@ OrientReport orient_normals(const Octree& octree, const Neighbors& neighbors, Es
     report.patches = patches.size();
     report.components = signs.components; // the outside, seen by nobody, is one
     for (std::size_t p = 0; p < patches.size(); ++p)
-        if (signs.component[p] != signs.component[outside]) report.by_volume += patches.counts[p];
+        if (!seen || signs.component[p] != signs.component[outside]) report.by_volume += patches.counts[p];
     return report;
 }
 

@@ -18,13 +18,15 @@ struct OrientOptions {
 struct OrientReport {
     std::size_t patches = 0, components = 0;
     std::size_t seen_from_outside = 0; ///< whose patch lies between inside and outside
-    std::size_t by_volume = 0; ///< whose component only its signed volume (or the sensor) could orient
+    std::size_t by_volume = 0; ///< whose component its signed volume had to orient (or the sensor, or the
+                               ///< signs that came): none of it sees the outside, or its views contradict
+                               ///< each other
 };
 
 /// Turns the normals, in place. Patches are joined by the evidence of neighbouring points (patch_evidence)
 /// and of the empty space around and in between (view_outside), the strongest first; a component without a
-/// view of the outside is turned towards the sensor, or such that its signed volume is positive. O(n log n)
-/// at worst.
+/// view of the outside, or with views that contradict each other, is turned towards the sensor, or such that
+/// its signed volume is positive. O(n log n) at worst.
 OrientReport orient_normals(const Octree& octree, const Neighbors& neighbors, EstimatedNormals& estimate,
                             const OrientOptions& options = {});
 

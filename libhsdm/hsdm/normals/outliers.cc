@@ -71,6 +71,25 @@ std::vector<std::uint8_t> find_outliers(const Octree& octree, const Neighbors& n
     return found;
 }
 
+/// All but the outer two percent along each axis, of a sample.
+Box box_of_most(const Octree& octree, const PointCloud& cloud) {
+    constexpr std::size_t samples = 1 << 12;
+    const std::size_t stride = octree.size() / samples + 1;
+    Box box{Vec3(0, 0, 0), Vec3(0, 0, 0)};
+    std::vector<double> values;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        values.clear();
+        for (std::size_t i = 0; i < octree.size(); i += stride)
+            values.push_back(cloud.positions[octree.source[i]][axis]);
+        std::sort(values.begin(), values.end());
+        const std::size_t outer = std::max<std::size_t>(1, values.size() / 50);
+        if (2 * outer >= values.size()) return box;
+        box.lo[axis] = values[outer];
+        box.hi[axis] = values[values.size() - 1 - outer];
+    }
+    return box;
+}
+
 /// The finest level on which a typical point shares its voxel with so many.
 OctreeLevel level_of_density(const Octree& octree, double points_per_voxel, double& typical) {
     const auto counts = count_voxels(octree);
@@ -91,14 +110,17 @@ OctreeLevel level_of_density(const Octree& octree, double points_per_voxel, doub
     }
 }
 
-/// Of the neighbours, how many continue the point's plane with a normal like its own.
-int support(const Octree& octree, Index i, std::span<const Index> neighbors, const StrayOptions& options) {
+/// Of the neighbours, how many continue the point's plane with a normal like its own. A dense surface far
+/// away is in no plane that the point continues.
+int support(const Octree& octree, Index i, std::span<const Index> neighbors,
+            const std::vector<std::uint8_t>& is_sparse, double farthest, const StrayOptions& options) {
     const double least_cosine = std::cos(options.most_angle);
     int count = 0;
     for (Index n : neighbors) {
         const Vec3 d = octree.positions[n] - octree.positions[i];
         const Vec3& normal = octree.normals[i];
-        count += (normal | octree.normals[n]) > least_cosine
+        count += (is_sparse[n] || d.sqrnorm() <= farthest * farthest)
+                 && (normal | octree.normals[n]) > least_cosine
                  && std::abs(normal | d) <= options.most_rise * d.norm();
     }
     return count;
@@ -118,19 +140,46 @@ std::size_t drop_outliers(Octree& octree, Neighbors& neighbors, const OutlierOpt
     return total;
 }
 
+std::size_t drop_far_away(Octree& octree, const PointCloud& cloud) {
+    constexpr double cubes_least = 1 << 12, margin = 1 << 10; // of the box that most points lie in
+    const Box core = box_of_most(octree, cloud);
+    const double extent = core.extent();
+    if (!(extent > 0) || cubes_least * extent >= octree.extent) return 0;
+    std::vector<std::uint8_t> far(octree.size(), 0);
+    Box bounds; // of the others
+    for (std::size_t i = 0; i < far.size(); ++i) {
+        const Vec3& p = cloud.positions[octree.source[i]];
+        const Vec3 below = core.lo - p, above = p - core.hi;
+        far[i] = std::max(below.max(), above.max()) > margin * extent;
+        if (!far[i]) bounds.add(p);
+    }
+    const std::size_t count = remove(octree, far);
+    if (count == 0 || !(bounds.extent() > 0)) return count;
+    octree.bounds = bounds;
+    octree.origin = bounds.lo;
+    for (std::size_t i = 0; i < octree.size(); ++i)
+        octree.positions[i] = cloud.positions[octree.source[i]] - octree.origin;
+    octree = rearranged(octree, octree.positions, bounds.extent());
+    return count;
+}
+
 std::size_t drop_strays(Octree& octree, const StrayOptions& options) {
     double typical = 0;
     const OctreeLevel level = level_of_density(octree, options.points_per_voxel, typical);
     const auto most = static_cast<Index>(std::max(1.0, options.most_share * typical));
     std::vector<Index> sparse;
+    std::vector<std::uint8_t> is_sparse(octree.size(), 0);
     for (std::size_t v = 0; v < level.size(); ++v)
         if (level.first_point[v + 1] - level.first_point[v] <= most)
-            for (Index i = level.first_point[v]; i < level.first_point[v + 1]; ++i) sparse.push_back(i);
+            for (Index i = level.first_point[v]; i < level.first_point[v + 1]; ++i)
+                sparse.push_back(i), is_sparse[i] = 1;
     const Neighbors neighbors = find_neighbors_of(octree, sparse, {.count = options.neighbors});
+    const double farthest = options.most_distance * level.voxel_size;
     std::vector<std::uint8_t> stray(octree.size(), 0);
     for_chunks(sparse.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t k = begin; k < end; ++k)
-            stray[sparse[k]] = support(octree, sparse[k], neighbors.of(k), options) < options.least_support;
+            stray[sparse[k]] = support(octree, sparse[k], neighbors.of(k), is_sparse, farthest, options)
+                               < options.least_support;
     });
     return remove(octree, stray);
 }

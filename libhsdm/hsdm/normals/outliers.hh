@@ -23,11 +23,19 @@ struct OutlierOptions {
 /// sparse it is. Returns how many; the neighbours are those of the points left. O(n) per round, parallel.
 std::size_t drop_outliers(Octree& octree, Neighbors& neighbors, const OutlierOptions& options = {});
 
+/// Removes points so far away that the octree is for nothing else: one garbage coordinate, and the finest
+/// voxels hold crowds. All but the outer two percent along each axis (of a sample) lie in a box less than
+/// 2^-12 of the cube; what is more than 2^10 of such boxes from it goes. The others' positions are taken anew
+/// from the cloud that the octree was built of, since near a far origin they were rounded, and fit their cube
+/// again. Returns how many went. O(1) if none does, else O(n).
+std::size_t drop_far_away(Octree& octree, const PointCloud& cloud);
+
 struct StrayOptions {
     double points_per_voxel = 8; ///< of a typical point's voxel: on such a level sparse voxels are looked for
     double most_share = 0.125;   ///< of those points in a sparse voxel
     int neighbors = 16;          ///< per point of a sparse voxel, [3, 64]
     int least_support = 3;       ///< of them must continue the point's own plane
+    double most_distance = 8;    ///< in voxels: of those of them that are not of a sparse voxel themselves
     double most_angle = 0.79;    ///< radians: between normals of one plane (45 degrees)
     double most_rise = 0.35;     ///< of a neighbour over the point's plane, in distances between the two
 };

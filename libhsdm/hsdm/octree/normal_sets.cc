@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace hsdm {
@@ -169,17 +170,32 @@ private:
             for_each(k, [&](Index i) { offsets_.emplace_back(modes_[k] | octree_.positions[i], i); });
             if (offsets_.size() < 2) return;
             std::sort(offsets_.begin(), offsets_.end());
-            std::size_t cut = 0;
-            double widest = options_.sheet_gap * voxel_size_;
-            for (std::size_t i = 1; i < offsets_.size(); ++i)
-                if (const double gap = offsets_[i].first - offsets_[i - 1].first; gap > widest)
-                    widest = gap, cut = i;
-            if (cut == 0 || !parallel_sides(cut) || (options_.merge_layers && double_layer(modes_[k], cut)))
-                return;
+            const std::size_t cut = where_to_cut(modes_[k]);
+            if (cut == 0) return;
             const auto added = static_cast<std::uint8_t>(modes_.size());
             modes_.push_back(modes_[k]);
             for (std::size_t i = cut; i < offsets_.size(); ++i) label_[offsets_[i].second - begin_] = added;
             split_parallel_sheets(added);
+        }
+    }
+
+    /// The place among the offsets behind the widest gap between two parallel sheets that are not to be one;
+    /// 0 if there is none.
+    std::size_t where_to_cut(const Vec3& mode) const {
+        const double least = options_.sheet_gap * voxel_size_;
+        double last_gap = std::numeric_limits<double>::infinity(); // the one looked at before
+        std::size_t last = 0;
+        while (true) {
+            std::size_t cut = 0;
+            double widest = least;
+            for (std::size_t i = 1; i < offsets_.size(); ++i) {
+                const double gap = offsets_[i].first - offsets_[i - 1].first;
+                const bool is_next = gap < last_gap || (gap == last_gap && i > last);
+                if (gap > widest && is_next) widest = gap, cut = i;
+            }
+            if (cut == 0 || !parallel_sides(cut)) return 0;
+            if (!options_.merge_layers || !double_layer(mode, cut)) return cut;
+            last_gap = widest, last = cut; // a narrower one may have a sheet in it that faces back
         }
     }
 

@@ -169,6 +169,20 @@ Octree rearranged(const Octree& octree, const std::vector<Vec3>& positions, doub
     return result;
 }
 
+bool fit_to_points(Octree& octree) {
+    if (octree.size() == 0) return false;
+    constexpr double negligible = 1e-9; // of the box
+    Box box;
+    for (const Vec3& p : octree.positions) box.add(p);
+    const Box bounds{box.lo + octree.origin, box.hi + octree.origin};
+    const double change =
+        std::max((bounds.lo - octree.bounds.lo).max_abs(), (bounds.hi - octree.bounds.hi).max_abs());
+    if (!(bounds.extent() > 0) || change <= negligible * bounds.extent()) return false;
+    octree.bounds = bounds;
+    octree = rearranged(octree, octree.positions, bounds.extent());
+    return true;
+}
+
 OctreeLevel extract_level(const Octree& octree, int depth) {
     OctreeLevel level;
     level.depth = depth;

@@ -51,6 +51,11 @@ Octree build_octree(const PointCloud& cloud, const OctreeOptions& options = {});
 /// to the cloud as before. O(n), parallel.
 Octree rearranged(const Octree& octree, const std::vector<Vec3>& positions, double extent);
 
+/// After points were removed: `bounds` becomes the box of those left, and they are rearranged in the cube of
+/// its longest side about its middle. Leaves the octree as it is, and returns false, if the box has stayed
+/// (but for rounding). O(n).
+bool fit_to_points(Octree& octree);
+
 /// The occupied voxels of one level, in Morton order. Voxel v holds points first_point[v] .. first_point[v +
 /// 1].
 class OctreeLevel {

@@ -55,6 +55,11 @@ Distance MeshDistance::operator()(std::span<const Vec3> points) const {
     return {total.max, total.sum / n, std::sqrt(total.squares / n), total.farthest};
 }
 
+Index MeshDistance::nearest_facet(const Vec3& point) const {
+    const Index block = tree_.nearest(point).block;
+    return block == no_index ? no_index : facet_[tree_.nearest_in(block, point)];
+}
+
 bool MeshDistance::is_beyond(const Vec3& point, double bound, Index& hint) const {
     const TriangleTree::Nearest nearest = tree_.nearest(point, hint, bound * bound);
     hint = nearest.block;

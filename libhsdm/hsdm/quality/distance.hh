@@ -29,6 +29,8 @@ public:
     /// Per point a facet no farther than `bound`, or no_index if there is none. Several times quicker than
     /// distances where few are.
     std::vector<Index> facets_within(std::span<const Vec3> points, double bound) const;
+    /// The facet nearest to a point, or no_index if the mesh has none.
+    Index nearest_facet(const Vec3& point) const;
     /// One point; `hint` is no_index or what the call for a point nearby left there.
     bool is_beyond(const Vec3& point, double bound, Index& hint) const;
 
