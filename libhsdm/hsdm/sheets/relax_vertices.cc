@@ -73,17 +73,17 @@ public:
     /// voxel's points are then farther off than from the facets as placed, its vertices go back; if the
     /// points are in all, none is moved.
     void fit(const PointFit& fit) {
-        const std::vector<double> before = fit.measure(placed_).misfit;
-        rise(fit.rises(fit.measure(vertices_.positions).heights));
+        const PointFit::Measure before = fit.measure(placed_);
+        rise(fit.rises(before.heights));
         const PointFit::Measure after = fit.measure(vertices_.positions);
-        if (sum_of(after.misfit) > sum_of(before)) {
+        if (sum_of(after.misfit) > sum_of(before.misfit)) {
             vertices_.positions = placed_;
             return;
         }
         rise(fit.rises(after.heights));
         for (std::size_t v = 0; v < fans_.size(); ++v) {
             const Index voxel = vertices_.voxel[v];
-            if (after.misfit[voxel] > (1 + farther) * before[voxel]) vertices_.positions[v] = placed_[v];
+            if (after.misfit[voxel] > (1 + farther) * before.misfit[voxel]) vertices_.positions[v] = placed_[v];
         }
     }
 
