@@ -3,7 +3,10 @@
 #include "hsdm/chunks.hh"
 #include "hsdm/octree/radix_sort.hh"
 
+#include <tbb/parallel_sort.h>
+
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 
 namespace hsdm {
@@ -20,22 +23,45 @@ VoxelCoord octant_offset(unsigned octant) {
             static_cast<int>(octant >> 2 & 1) - 1};
 }
 
+/// The corners of voxels of one block of 4 x 4 x 4: voxels of a surface share most of theirs.
+class BlockCorners {
+public:
+    void add(MortonCode voxel) {
+        const VoxelCoord c = morton_decode(voxel & (voxels - 1));
+        for (int k = 0; k < 8; ++k)
+            used_.set(static_cast<std::size_t>(c[0] + (k & 1) + 5 * (c[1] + (k >> 1 & 1))
+                                               + 25 * (c[2] + (k >> 2))));
+    }
+    /// Appends their codes and starts anew.
+    void take(MortonCode block, std::vector<CodeIndex>& corners) {
+        const VoxelCoord c = morton_decode(block * voxels);
+        for (int i = 0; i < 125; ++i)
+            if (used_[static_cast<std::size_t>(i)])
+                corners.push_back({CornerLattice::code({c[0] + i % 5, c[1] + i / 5 % 5, c[2] + i / 25}), 0});
+        used_.reset();
+    }
+    static constexpr MortonCode voxels = 64;
+
+private:
+    std::bitset<125> used_;
+};
+
 /// Every corner of every voxel, sorted, each once.
 std::vector<MortonCode> corner_codes(const OctreeLevel& level) {
-    std::vector<CodeIndex> corners(8 * level.size());
-    for_chunks(level.size(), corners_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+    std::vector<std::vector<CodeIndex>> parts(chunk_count(level.size(), corners_per_chunk));
+    for_chunks(level.size(), corners_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        BlockCorners block;
         for (std::size_t v = begin; v < end; ++v) {
-            const VoxelCoord c = level.coord(static_cast<Index>(v));
-            for (std::size_t k = 0; k < 8; ++k)
-                corners[8 * v + k] = {
-                    CornerLattice::code({c[0] + static_cast<int>(k & 1), c[1] + static_cast<int>(k >> 1 & 1),
-                                         c[2] + static_cast<int>(k >> 2)}),
-                    0};
+            const MortonCode number = level.codes[v] / BlockCorners::voxels;
+            block.add(level.codes[v]);
+            if (v + 1 == end || level.codes[v + 1] / BlockCorners::voxels != number)
+                block.take(number, parts[chunk]);
         }
     });
+    std::vector<CodeIndex> corners = joined(parts);
     radix_sort(corners, 3 * (level.depth + 2));
     std::vector<MortonCode> codes;
-    codes.reserve(corners.size() / 3);
+    codes.reserve(corners.size());
     for (const CodeIndex& corner : corners)
         if (codes.empty() || codes.back() != corner.code) codes.push_back(corner.code);
     return codes;
@@ -316,21 +342,24 @@ std::size_t extend_lattice(CornerLattice& lattice, LocalSheets& sheets, const Oc
     });
     std::vector<MortonCode> missing = joined(parts);
     if (missing.empty()) return 0;
-    std::sort(missing.begin(), missing.end());
+    tbb::parallel_sort(missing.begin(), missing.end());
     missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
     lattice.codes.insert(lattice.codes.end(), missing.begin(), missing.end());
     lattice.index.build(lattice.codes);
     lattice.voxels.resize(lattice.size());
     lattice.next.resize(lattice.size());
-    for (std::size_t i = n; i < lattice.size(); ++i) {
-        connect_corner(lattice, i, level);
-        for (unsigned axis = 0; axis < 3; ++axis) {
-            VoxelCoord below = lattice.coord(static_cast<Index>(i));
-            --below[axis];
-            const Index corner = lattice.index.find(CornerLattice::code(below));
-            if (corner != no_index) lattice.next[corner][axis] = static_cast<Index>(i);
+    for_chunks(missing.size(), corners_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = n + begin; i < n + end; ++i) {
+            connect_corner(lattice, i, level);
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                VoxelCoord below = lattice.coord(static_cast<Index>(i));
+                --below[axis];
+                const Index corner = lattice.index.find(CornerLattice::code(below));
+                // Corners added connect themselves.
+                if (corner != no_index && corner < n) lattice.next[corner][axis] = static_cast<Index>(i);
+            }
         }
-    }
+    });
     sheets.first_member.resize(lattice.size() + 1, sheets.first_member.back());
     sheets.first_sheet.resize(lattice.size() + 1, sheets.first_sheet.back());
     return missing.size();
