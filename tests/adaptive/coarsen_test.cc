@@ -109,6 +109,22 @@ TEST_CASE("an axis-parallel box becomes as few quads as its corners allow", "[ad
     CHECK(measure_topology(result.mesh).euler == 2);
 }
 
+TEST_CASE("sparse boxes in general pose take few facets", "[adaptive]") {
+    constexpr std::uint64_t poses = 20;
+    std::size_t facets = 0;
+    for (std::uint64_t seed = 1; seed <= poses; ++seed) {
+        INFO("seed " << seed);
+        const Fine fine = fine_mesh(support::box({1, 1, 1}).placed(pose(seed)), 5000, 4);
+        const double voxel = fine.octree.voxel_size(4);
+        const double farthest = points_to_mesh(fine.octree.positions, fine.mesh).max;
+        CHECK(farthest < 0.3 * voxel);
+        const AdaptiveMesh result = coarse(fine, 0.002 * fine.octree.bounds.diagonal());
+        CHECK(measure_topology(result.mesh).euler == 2);
+        facets += result.mesh.facet_count();
+    }
+    CHECK(facets <= 160 * poses);
+}
+
 TEST_CASE("rims of plates, edges of wedges and rods in general pose take few facets", "[adaptive][slow]") {
     struct Example {
         const char* name;
