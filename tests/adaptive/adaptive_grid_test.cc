@@ -64,7 +64,7 @@ TEST_CASE("attributes on an adaptive grid are means, labels the majority's", "[a
     CHECK(mixed > 0);
 }
 
-TEST_CASE("on an adaptive grid the bound is one for noisy points as they were read", "[adaptive]") {
+TEST_CASE("on an adaptive grid the bound is one for noisy points as they were read", "[adaptive][slow]") {
     constexpr double noise = 0.02; // 0.8 spacings: the points are moved
     const PointCloud cloud =
         support::sample(support::sphere(1), {.points = 20000, .normals = false, .position_noise = noise});

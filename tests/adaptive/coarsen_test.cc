@@ -45,7 +45,8 @@ support::Pose pose(std::uint64_t seed) {
 
 } // namespace
 
-TEST_CASE("coarse meshes are closed 2-manifolds of the fine one's topology within the error", "[adaptive]") {
+TEST_CASE("coarse meshes are closed 2-manifolds of the fine one's topology within the error",
+          "[adaptive][slow]") {
     struct Example {
         const char* name;
         support::Solid solid;
@@ -185,7 +186,7 @@ TEST_CASE("sides at a border stay near the fine surface's", "[adaptive]") {
     }
 }
 
-TEST_CASE("points that the fine mesh does not miss are never missed", "[adaptive]") {
+TEST_CASE("points that the fine mesh does not miss are never missed", "[adaptive][slow]") {
     // Cells far smaller than facets: a point may have none in its own nor around.
     const Fine fine = fine_mesh(support::torus(1, 0.35), 40000, 4);
     for (double share : {0.001, 0.004, 0.02}) {

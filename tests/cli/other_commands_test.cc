@@ -62,15 +62,15 @@ TEST_CASE("process runs modules in order and refuses unknown ones", "[cli]") {
 
 TEST_CASE("regress passes within tolerance, fails outside it, and names what missed", "[cli]") {
     const Folder folder;
-    folder.write("scan.xyz", xyz(sphere_scan()));
+    folder.write("scan.xyz", xyz(sphere_scan(1000)));
     const auto suite = [&folder](const std::string& expect) {
         folder.write("suite.json",
-                     R"({"cases": [{"name": "sphere", "input": "scan.xyz", "args": ["--depth", "4"],
+                     R"({"cases": [{"name": "sphere", "input": "scan.xyz", "args": ["--depth", "3"],
                                       "expect": )"
                          + expect + "}]}");
         return run(folder, "regress suite.json --json out.json");
     };
-    CommandResult result = suite(R"({"mesh.closed": true, "mesh.euler": 2, "grid.depth": {"value": 4},
+    CommandResult result = suite(R"({"mesh.closed": true, "mesh.euler": 2, "grid.depth": {"value": 3},
                                      "error.normalised_max": {"max": 0.05}, "mesh.faces": {"min": 10}})");
     INFO(result.out << result.err);
     CHECK(result.status == 0);

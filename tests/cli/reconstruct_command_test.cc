@@ -33,15 +33,15 @@ TEST_CASE("a scan becomes a mesh, a report and features with one command", "[cli
 
 TEST_CASE("every format is written under its extension", "[cli]") {
     const Folder folder;
-    folder.write("scan.xyz", xyz(sphere_scan()));
+    folder.write("scan.xyz", xyz(sphere_scan(1000)));
     for (const char* name : {"a.off", "a.stl", "a.ply", "a.obj", "a.om"}) {
         INFO(name);
-        CHECK(run(folder, std::string("reconstruct scan.xyz --depth 4 --quiet -o ") + name).status == 0);
+        CHECK(run(folder, std::string("reconstruct scan.xyz --depth 3 --quiet -o ") + name).status == 0);
         CHECK(read_file(folder / name).size() > 1000);
     }
-    CHECK(run(folder, "reconstruct scan.xyz --depth 4 --ascii -o text.stl").status == 0);
+    CHECK(run(folder, "reconstruct scan.xyz --depth 3 --ascii -o text.stl").status == 0);
     CHECK(read_file(folder / "text.stl").starts_with("solid"));
-    CHECK(run(folder, "reconstruct scan.xyz --depth 4 --plain -o plain.ply").status == 0);
+    CHECK(run(folder, "reconstruct scan.xyz --depth 3 --plain -o plain.ply").status == 0);
     CHECK(read_file(folder / "a.ply").find("hsdm_vertex_class") != std::string::npos);
     CHECK(read_file(folder / "plain.ply").find("hsdm_vertex_class") == std::string::npos);
     CHECK(read_file(folder / "plain.ply").size() < read_file(folder / "a.ply").size() / 2);
@@ -162,7 +162,7 @@ TEST_CASE("options that are not available yet say so instead of being ignored", 
 
 TEST_CASE("an error is kept with fewer facets, as a length or as a share of the diagonal", "[cli]") {
     const Folder folder;
-    folder.write("scan.xyz", xyz(sphere_scan(20000)));
+    folder.write("scan.xyz", xyz(sphere_scan(8000)));
     REQUIRE(run(folder, "reconstruct scan.xyz --quiet -o fine.off --report fine.json").status == 0);
     const Json fine = Json::parse(read_file(folder / "fine.json"));
     std::size_t fewer = fine["mesh"]["faces"];
@@ -243,13 +243,12 @@ TEST_CASE("one or two threads and any order of the points write the same bytes",
     folder.write("scan.xyz", xyz(cloud));
     std::shuffle(cloud.positions.begin(), cloud.positions.end(), std::mt19937_64(3));
     folder.write("shuffled.xyz", xyz(cloud));
-    for (const char* format : {"off", "ply"}) {
-        const std::string tail = std::string(" --depth 5 --quiet -o - --format ") + format;
-        const std::string one = run(folder, "reconstruct scan.xyz --threads 1" + tail).out;
-        CHECK(one.size() > 10000);
-        CHECK((run(folder, "reconstruct scan.xyz --threads 2" + tail).out == one));
-        CHECK((run(folder, "reconstruct shuffled.xyz" + tail).out == one));
-    }
+    // PLY has all that the other formats have.
+    const std::string tail = " --depth 5 --quiet -o - --format ply";
+    const std::string one = run(folder, "reconstruct scan.xyz --threads 1" + tail).out;
+    CHECK(one.size() > 10000);
+    CHECK((run(folder, "reconstruct scan.xyz --threads 2" + tail).out == one));
+    CHECK((run(folder, "reconstruct shuffled.xyz" + tail).out == one));
 }
 
 TEST_CASE("an interrupt ends with status 130 and no partial file", "[cli]") {

@@ -75,7 +75,7 @@ TEST_CASE("many points in one place cost no more than others and have neighbours
     }
 }
 
-TEST_CASE("two parts too far apart for one octree cost no more than others", "[normals]") {
+TEST_CASE("two parts too far apart for one octree cost no more than others", "[normals][slow]") {
     support::Random random(5);
     PointCloud cloud;
     for (int i = 0; i < 200000; ++i)

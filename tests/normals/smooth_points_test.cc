@@ -63,7 +63,7 @@ TEST_CASE("a cloud of little noise stays as it is", "[normals]") {
     }
 }
 
-TEST_CASE("the noisy sides of a plate stay two", "[normals]") {
+TEST_CASE("the noisy sides of a plate stay two", "[normals][slow]") {
     const double sigma = 1.2 * std::sqrt(2.0 / points);
     for (double thickness : {7.0, 9.0}) {
         INFO("thickness of " << thickness << " times the noise");

@@ -50,6 +50,31 @@ support::Pose pose(std::uint64_t seed) {
     return support::random_pose(random);
 }
 
+/// A random solid's scan; some of its normals are flipped or, for each third seed, all point anywhere.
+void check_unaided(std::uint64_t seed, std::size_t points, double voxel) {
+    ExtendedOptions unaided;
+    unaided.fill = false;
+    PointCloud cloud = scan(support::random_solid(seed), points, seed);
+    support::Random random(seed);
+    for (Vec3& n : cloud.normals)
+        if (random.uniform(0, 1) < 0.1 * static_cast<double>(seed % 5)) n = -n; // some flipped
+    if (seed % 3 == 0)
+        for (Vec3& n : cloud.normals)
+            n = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    INFO("seed " << seed);
+    const ExtendedFacets facets = facets_of(cloud, voxel, unaided);
+    const Topology t = measure_topology(facets.mesh);
+    const ManifoldCounts& mended = facets.manifold;
+    // Two facets back to back are a bubble, closed in itself, and cancel.
+    CHECK(mended.degenerate + mended.duplicates + mended.complex_edges == 0);
+    CHECK(mended.opened_edges + mended.split_vertices == 0);
+    CHECK(t.manifold());
+    CHECK(t.misoriented_edges == 0);
+    CHECK(t.degenerate_facets == 0);
+    CHECK(t.duplicate_facets == 0);
+    CHECK(t.isolated_vertices == 0);
+}
+
 } // namespace
 
 TEST_CASE("smooth and sharp solids in general pose come out closed, of the right genus, near the surface",
@@ -177,7 +202,7 @@ TEST_CASE("relaxation leaves facets, voxels and corners alone", "[sheets]") {
 }
 
 TEST_CASE("relaxed facets lie no farther from the points, and nearer where the surface is curved",
-          "[sheets]") {
+          "[sheets][slow]") {
     struct Example {
         const char* name;
         support::Solid solid;
@@ -239,30 +264,13 @@ TEST_CASE("an open sheet keeps its border and does not grow beyond the points by
         }
 }
 
-TEST_CASE("whatever the normals, crossings, joins and chains alone make an oriented 2-manifold", "[sheets]") {
-    ExtendedOptions unaided;
-    unaided.fill = false;
-    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
-        PointCloud cloud = scan(support::random_solid(seed), 8000, seed);
-        support::Random random(seed);
-        for (Vec3& n : cloud.normals)
-            if (random.uniform(0, 1) < 0.1 * static_cast<double>(seed % 5)) n = -n; // some flipped
-        if (seed % 3 == 0)
-            for (Vec3& n : cloud.normals)
-                n = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-        INFO("seed " << seed);
-        const ExtendedFacets facets = facets_of(cloud, 0.1, unaided);
-        const Topology t = measure_topology(facets.mesh);
-        const ManifoldCounts& mended = facets.manifold;
-        // Two facets back to back are a bubble, closed in itself, and cancel.
-        CHECK(mended.degenerate + mended.duplicates + mended.complex_edges == 0);
-        CHECK(mended.opened_edges + mended.split_vertices == 0);
-        CHECK(t.manifold());
-        CHECK(t.misoriented_edges == 0);
-        CHECK(t.degenerate_facets == 0);
-        CHECK(t.duplicate_facets == 0);
-        CHECK(t.isolated_vertices == 0);
-    }
+TEST_CASE("whatever the normals, crossings, joins and chains alone make an oriented 2-manifold",
+          "[sheets][slow]") {
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) check_unaided(seed, 8000, 0.1);
+}
+
+TEST_CASE("whatever the normals of a small cloud, an oriented 2-manifold comes out unaided", "[sheets]") {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) check_unaided(seed, 2000, 0.2);
 }
 
 TEST_CASE("the extended facets do not depend on the number of threads", "[sheets]") {

@@ -76,7 +76,8 @@ TEST_CASE("crossings lost at random come back and the surface closes", "[sheets]
     CHECK(found.open_sides(crossings) == 0);
 }
 
-TEST_CASE("where many creases meet, settling closes most faces that the sheets leave open", "[sheets]") {
+TEST_CASE("where many creases meet, settling closes most faces that the sheets leave open",
+          "[sheets][slow]") {
     using support::box;
     support::Random random(8);
     std::size_t open_before = 0, open_after = 0;

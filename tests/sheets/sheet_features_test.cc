@@ -167,7 +167,7 @@ TEST_CASE("corners of a box are found in every pose, with fewer false ones than 
 }
 
 TEST_CASE("normals smeared across creases leave the decision to the dihedral test", "[sheets]") {
-    const PointCloud cloud = smeared(scan(support::box({1, 0.8, 0.6}).placed(pose(4)), 8000), 0.08);
+    const PointCloud cloud = smeared(scan(support::box({1, 0.8, 0.6}).placed(pose(4)), 4000), 0.08);
     const Part part(cloud, 0.1);
     FeatureCounts sheets, dihedral;
     part.by_sheets(sheets);
