@@ -162,7 +162,7 @@ TEST_CASE("options that are not available yet say so instead of being ignored", 
 
 TEST_CASE("an error is kept with fewer facets, as a length or as a share of the diagonal", "[cli]") {
     const Folder folder;
-    folder.write("scan.xyz", xyz(sphere_scan(8000)));
+    folder.write("scan.xyz", xyz(sphere_scan(3000)));
     REQUIRE(run(folder, "reconstruct scan.xyz --quiet -o fine.off --report fine.json").status == 0);
     const Json fine = Json::parse(read_file(folder / "fine.json"));
     std::size_t fewer = fine["mesh"]["faces"];
@@ -187,8 +187,8 @@ TEST_CASE("an error is kept with fewer facets, as a length or as a share of the 
     const CommandResult missed = run(folder, "reconstruct scan.xyz -o b.off --max-error 1e-5");
     CHECK(missed.status == 0); // announced: the finest surface is no nearer
     CHECK(missed.out.find("points, which the finest surface misses already") != std::string::npos);
-    CHECK(run(folder, "reconstruct scan.xyz --quiet -o b.off --depth 5 --grid adaptive").status == 0);
-    CHECK(run(folder, "reconstruct scan.xyz --quiet -o l.off --levels 4:5 --grid adaptive").status == 0);
+    CHECK(run(folder, "reconstruct scan.xyz --quiet -o b.off --depth 4 --grid adaptive").status == 0);
+    CHECK(run(folder, "reconstruct scan.xyz --quiet -o l.off --levels 3:4 --grid adaptive").status == 0);
     for (const char* wrong :
          {"--max-error 0", "--max-error -1%", "--max-error few", "--max-error inf", "--max-error nan",
           "--max-error 1%%", "--max-error 0.1% --depth 5", "--max-error 0.1% --grid uniform"}) {
