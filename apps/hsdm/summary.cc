@@ -84,6 +84,8 @@ void print_summary(std::ostream& out, const Report& r, const std::string& writte
         out << "; " << grouped(r.input.dropped_nonfinite) << " not finite, dropped";
     if (r.input.merged_duplicates > 0)
         out << "; " << grouped(r.input.merged_duplicates) << " duplicates, merged";
+    if (const auto moved = r.rejected.find("points_moved"); moved != r.rejected.end() && moved->second > 0)
+        out << "; noisy, moved onto their surface";
     out << "\nvoxels    " << grouped(r.grid.voxels) << " of edge " << number(r.grid.voxel_size) << ", depth "
         << r.grid.depth << ": " << option(r, "resolution") << "\nmesh      "
         << plural(r.mesh.vertices, "vertex", "vertices") << ", " << plural(r.mesh.faces, "face", "faces")

@@ -177,6 +177,18 @@ public:
         return fit_voxels(choice.size);
     }
 
+    /// Moves the points onto their surface where noise is no longer small against voxels of this depth: there
+    /// it would decide topology. Less noisy ones stay where they are, which creases are crisper for. What was
+    /// moved for its normals has little noise left.
+    void smooth_for_depth(int depth, const Phases& phases) {
+        constexpr double harmless = 0.3; // of a voxel
+        if (moved_ || noise_ <= harmless * octree.voxel_size(depth)) return;
+        note_smoothing(phases.run("noise", 0.1, report.seconds.normals, [&] {
+            Neighbors neighbors;
+            return smooth_known_noise(octree, noise_, neighbors);
+        }));
+    }
+
     Octree octree;
     Report report;
 
@@ -197,7 +209,10 @@ private:
     void note_smoothing(const SmoothReport& smoothed) {
         report.rejected["points_between_sheets"] = smoothed.between;
         noise_ = smoothed.noise;
-        if (noise_ > 0) report.input.spacing = estimate_spacing(octree); // noise makes it look wider
+        moved_ = noise_ > 0;
+        if (!moved_) return;
+        report.rejected["points_moved"] = octree.size();
+        report.input.spacing = estimate_spacing(octree); // noise makes it look wider
     }
 
     /// Puts the points in the smallest cube of 2^N voxels of this size around their box, N in [1, 16];
@@ -216,6 +231,7 @@ private:
 
     std::size_t far_away_ = 0; // points removed before all else
     double noise_ = 0;         // standard deviation, if it is large
+    bool moved_ = false;       // the points, because of it
 };
 
 /// The extended method is the better one, with normals given or estimated.
@@ -402,6 +418,7 @@ std::vector<Reconstruction> run(const PointCloud& cloud, const ReconstructOption
     for (int depth = range->first; depth <= range->second; ++depth) {
         const double begin = (depth - range->first) / count;
         const auto level_start = results.empty() ? start : std::chrono::steady_clock::now();
+        decomposition.smooth_for_depth(depth, Phases(options, begin, begin + 1 / count));
         results.push_back(reconstruct_level(*finite, decomposition.octree, depth, report, options,
                                             Phases(options, begin, begin + 1 / count)));
         results.back().report.seconds.total =

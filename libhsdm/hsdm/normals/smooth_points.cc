@@ -135,6 +135,13 @@ double noise_of_moves(const std::vector<Vec3>& from, const std::vector<Vec3>& to
     return *third / lower_third;
 }
 
+void validate(const SmoothOptions& options) {
+    if (!(options.least_noise >= 0))
+        throw OptionError("least_noise " + std::to_string(options.least_noise) + ": must be 0 or more");
+    if (!(options.most_stretch > 1))
+        throw OptionError("most_stretch " + std::to_string(options.most_stretch) + ": must be above 1");
+}
+
 } // namespace
 
 double smooth_points(Octree& octree, double noise) {
@@ -152,14 +159,17 @@ double smooth_points(Octree& octree, double noise) {
 }
 
 SmoothReport smooth_noise(Octree& octree, Neighbors& neighbors, const SmoothOptions& options) {
-    constexpr int rounds_of_removal = 2;
-    if (!(options.least_noise >= 0))
-        throw OptionError("least_noise " + std::to_string(options.least_noise) + ": must be 0 or more");
-    if (!(options.most_stretch > 1))
-        throw OptionError("most_stretch " + std::to_string(options.most_stretch) + ": must be above 1");
-    SmoothReport report;
+    validate(options);
     const double noise = noise_deviation(octree, neighbors);
-    if (noise <= options.least_noise * estimate_spacing(octree)) return report;
+    if (noise <= options.least_noise * estimate_spacing(octree)) return {};
+    return smooth_known_noise(octree, noise, neighbors, options);
+}
+
+SmoothReport smooth_known_noise(Octree& octree, double noise, Neighbors& neighbors,
+                                const SmoothOptions& options) {
+    constexpr int rounds_of_removal = 2;
+    validate(options);
+    SmoothReport report;
     report.noise = smooth_points(octree, noise);
     neighbors = find_neighbors(octree);
     OutlierOptions removal;

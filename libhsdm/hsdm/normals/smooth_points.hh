@@ -16,10 +16,16 @@ struct SmoothReport {
     std::size_t between = 0; ///< points removed because they came to lie on no sheet
 };
 
-/// Makes a noisy cloud one of little noise, with its neighbours; leaves others alone. Points are moved with
-/// smooth_points, and those that came to lie between sheets, farther from the others than these from each
-/// other, are removed (twice, since some lie there in twos). O(n), parallel. Throws OptionError.
+/// Makes a noisy cloud one of little noise, with its neighbours; leaves others alone. O(n), parallel. Throws
+/// OptionError.
 SmoothReport smooth_noise(Octree& octree, Neighbors& neighbors, const SmoothOptions& options = {});
+
+/// The same for a standard deviation of the noise that is known (> 0), however small. Points are moved with
+/// smooth_points, and those that came to lie between sheets, farther from the others than these from each
+/// other, are removed (twice, since some lie there in twos). Normals stay with their points. Returns the
+/// neighbours of those left in `neighbors`, whatever it held before. O(n), parallel. Throws OptionError.
+SmoothReport smooth_known_noise(Octree& octree, double noise, Neighbors& neighbors,
+                                const SmoothOptions& options = {});
 
 /// Moves every point along the normal of the plane that its surroundings lie about, onto that plane. The
 /// surroundings reach four standard deviations of the noise (in the cloud's units, > 0), farther where that
