@@ -91,9 +91,29 @@ TEST_CASE("what becomes of noisy points does not depend on their order", "[norma
     CHECK(one.octree.positions == other.octree.positions);
 }
 
+TEST_CASE("points keep their normals when they are moved, for noise however small", "[normals]") {
+    const double sigma = 0.2 * spacing; // left alone unless it is said to be too much
+    const Solid sphere = support::sphere(1);
+    const PointCloud cloud = support::sample(sphere, {.points = points, .position_noise = sigma});
+    Octree octree = build_octree(cloud);
+    const double before = mean_distance(sphere, octree);
+    Neighbors neighbors;
+    const SmoothReport report = smooth_known_noise(octree, sigma, neighbors);
+    CHECK(report.noise > 0);
+    CHECK(mean_distance(sphere, octree) < 0.6 * before);
+    CHECK(octree.size() + report.between == points);
+    CHECK(neighbors.reach.size() == octree.size());
+    REQUIRE(octree.normals.size() == octree.size());
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < octree.size(); ++i)
+        kept += (octree.normals[i] | cloud.normals[octree.source[i]]) > 1 - 1e-12;
+    CHECK(kept == octree.size());
+}
+
 TEST_CASE("smoothing options out of range are refused", "[normals]") {
     Octree octree = build_octree(support::sample(support::sphere(1), {.points = 100}));
     Neighbors neighbors = find_neighbors(octree);
     CHECK_THROWS_AS(smooth_noise(octree, neighbors, {.least_noise = -1}), OptionError);
     CHECK_THROWS_AS(smooth_noise(octree, neighbors, {.most_stretch = 1}), OptionError);
+    CHECK_THROWS_AS(smooth_known_noise(octree, 0.1, neighbors, {.most_stretch = 1}), OptionError);
 }

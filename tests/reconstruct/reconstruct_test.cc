@@ -285,6 +285,47 @@ TEST_CASE("noise of half a voxel leaves the topology of points without normals a
             }
 }
 
+TEST_CASE("noise of half a voxel leaves the topology of points with given normals alone", "[reconstruct]") {
+    constexpr double voxel = 0.1, noise = 0.5 * voxel;
+    support::Random random(3);
+    const support::Solid torus = support::torus(1, 0.4).placed(support::random_pose(random));
+    ReconstructOptions options;
+    options.voxel_size = voxel;
+    for (const std::uint64_t seed : {5u, 6u, 7u}) {
+        INFO("seed " << seed);
+        const Reconstruction result = reconstruct(
+            support::sample(torus, {.points = 12600, .seed = seed, .position_noise = noise}), options);
+        const Report& report = result.report;
+        CHECK(report.options.at("normals") == "given");
+        CHECK(faults(to_polygons(result.mesh)) == "");
+        CHECK(report.mesh.closed);
+        CHECK(report.mesh.components == 1);
+        CHECK(report.mesh.euler == 0);
+        CHECK(report.rejected.at("points_moved") > 12000);
+        CHECK(report.error.points_to_mesh_mean > 0.6 * noise); // of the points as they were read
+        CHECK(support::farthest_vertex(to_polygons(result.mesh), torus) < 0.7 * voxel);
+    }
+}
+
+TEST_CASE("points with given normals are moved only where voxels are small against their noise",
+          "[reconstruct]") {
+    const double spacing = std::sqrt(4 * std::numbers::pi / 10000); // 0.035
+    const double noise = 0.8 * spacing;
+    const PointCloud cloud =
+        support::sample(support::sphere(1), {.points = 10000, .seed = 3, .position_noise = noise});
+    for (Reconstruction& level : reconstruct_levels(cloud, 3, 5)) {
+        const Report& report = level.report;
+        INFO("voxel " << report.grid.voxel_size);
+        const bool moved = report.rejected.count("points_moved") > 0;
+        if (report.grid.voxel_size > 5 * noise) CHECK(!moved);
+        if (report.grid.voxel_size < 2.5 * noise) CHECK(moved);
+        CHECK(report.mesh.closed);
+        CHECK(report.mesh.euler == 2);
+    }
+    const PointCloud clean = support::sample(support::sphere(1), {.points = 10000, .seed = 3});
+    CHECK(reconstruct(clean).report.rejected.count("points_moved") == 0);
+}
+
 TEST_CASE("voxels are three spacings wide, or twice the noise if that is more", "[reconstruct][slow]") {
     const double spacing = std::sqrt(4 * std::numbers::pi / 20000);
     const auto report = [&](double noise) {

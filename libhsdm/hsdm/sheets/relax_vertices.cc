@@ -83,7 +83,8 @@ public:
         rise(fit.rises(after.heights));
         for (std::size_t v = 0; v < fans_.size(); ++v) {
             const Index voxel = vertices_.voxel[v];
-            if (after.misfit[voxel] > (1 + farther) * before.misfit[voxel]) vertices_.positions[v] = placed_[v];
+            if (after.misfit[voxel] > (1 + farther) * before.misfit[voxel])
+                vertices_.positions[v] = placed_[v];
         }
     }
 
