@@ -77,11 +77,17 @@ public:
         return exact ? count : std::min<std::size_t>(count, 64);
     }
     blocked_range piece(std::size_t i, std::size_t count) const {
-        return {static_cast<Value>(begin_ + static_cast<std::ptrdiff_t>(size() * i / count)),
-                static_cast<Value>(begin_ + static_cast<std::ptrdiff_t>(size() * (i + 1) / count)), grain_};
+        return {at(size() * i / count), at(size() * (i + 1) / count), grain_};
     }
 
 private:
+    Value at(std::size_t offset) const {
+        if constexpr (std::is_integral_v<Value>)
+            return static_cast<Value>(begin_ + static_cast<Value>(offset));
+        else
+            return begin_ + static_cast<std::ptrdiff_t>(offset);
+    }
+
     Value begin_, end_;
     std::size_t grain_;
 };
