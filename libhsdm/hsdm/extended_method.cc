@@ -32,6 +32,7 @@ void note_counts(const ExtendedFacets& facets, Report& report) {
     report.rejected["crossings_beyond_crease"] = facets.beyond_crease;
     report.rejected["crossings_settled"] = facets.settled;
     report.rejected["crossings_beyond_data"] = facets.trimmed;
+    report.rejected["crossings_at_tips"] = 2 * facets.tips;
     report.rejected["vertices_clamped"] = facets.clamped;
     report.rejected["edges_halved"] = facets.midpoints;
     report.rejected["doublets_merged"] = facets.doublets;

@@ -276,6 +276,7 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
     result.beyond_crease = crossings.dropped_beyond_crease;
     result.settled = crossings.settled;
     result.trimmed = crossings.trimmed;
+    result.tips = crossings.tips;
     result.open = links.open;
     result.rims = links.rims;
     result.cut = fans.cut;

@@ -23,8 +23,8 @@ struct ExtendedFacets {
     PolygonMesh mesh;              ///< relative to the octree's origin; an oriented 2-manifold
     std::vector<VertexKind> kinds; ///< per vertex
     std::vector<Index> voxel;      ///< per vertex, the occupied voxel it stands for
-    std::size_t crossings = 0, beyond_crease = 0, settled = 0, trimmed = 0, open = 0, rims = 0, cut = 0,
-                clamped = 0;
+    std::size_t crossings = 0, beyond_crease = 0, settled = 0, trimmed = 0, tips = 0, open = 0, rims = 0,
+                cut = 0, clamped = 0;
     std::size_t midpoints = 0; ///< vertices added so that no two mesh edges join the same two vertices
     std::size_t doublets = 0;  ///< pairs of facets round one vertex made one
     std::size_t debris = 0;    ///< facets of splinters, removed
