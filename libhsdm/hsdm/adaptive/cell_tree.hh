@@ -23,14 +23,13 @@ struct CellTree {
     std::vector<CellLevel> levels;
     std::vector<Index> of_vertex; ///< per vertex, its cell of the deepest level
     double extent = 0;            ///< edge of the cube
-    /// Deepest cells: planes on the faces of cells are exact to so much at best.
+    /// In cells of the deepest level: how exactly a plane lies on the faces of cells at best.
     static constexpr double rounding = 0.01;
 
     int depth() const { return static_cast<int>(levels.size()) - 1; }
     /// The code of the deepest level's cell around a position relative to the cube's least corner; positions
-    /// up to one cube away are fine. What
-    /// lies on a face is of the upper cell, `rounding` to either side of it; on the cube's upper faces of the
-    /// lower one.
+    /// up to one cube away are fine. What lies on a face, `rounding` to either side of it, is of the upper
+    /// cell; on the cube's own upper faces of the lower one.
     MortonCode code_at(const Vec3& position) const;
     /// The cell of a level with this code, or no_index. O(log cells).
     Index find(int level, MortonCode code) const;

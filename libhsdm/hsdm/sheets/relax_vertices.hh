@@ -11,12 +11,13 @@ struct RelaxOptions {
     bool fit = true;   ///< after that, move the sheet towards the points
 };
 
-/// Moves smooth vertices within their sheet towards the mean of their neighbours, those of a crease along it,
-/// corners and borders not at all, none out of its voxel. The sheet's height at the new place is the mean
-/// height of the vertices around as they were placed. Then smooth vertices rise or sink until the facets, not
-/// the vertices alone, lie amid the points (PointFit::rises). Where a voxel's points are a tenth farther from
-/// the facets than before, its vertices go back; all do if the points in all are not nearer. O(rounds *
-/// crossings), parallel; the same for any number of threads. Throws OptionError.
+/// Moves smooth vertices within their sheet towards the mean of their neighbours, those of a crease along it
+/// (not beside one that was kept off its planes: the facets between would grow), corners and borders not at
+/// all, none out of its voxel. The sheet's height at the new place is the mean height of the vertices around
+/// as they were placed. Then smooth vertices rise or sink, twice, until the facets, not the vertices alone,
+/// lie amid the points (PointFit::rises). Where after the first of the two a voxel's points are a tenth
+/// farther from the facets than as placed, its vertices go back; all do if the points in all are farther.
+/// O(rounds * crossings), parallel; the same for any number of threads. Throws OptionError.
 void relax_vertices(const Octree& octree, const OctreeLevel& level, const CornerLattice& lattice,
                     const Crossings& crossings, const Fans& fans, const RelaxOptions& options,
                     VertexPositions& vertices);

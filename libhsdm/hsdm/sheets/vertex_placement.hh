@@ -19,8 +19,8 @@ struct VertexPositions {
 };
 
 /// Least squares over the planes of the fan's crossings and of the voxel's own sets, towards their mean
-/// point, with as many directions as sheets meet (one, two, three); kept inside the voxel. O(crossings),
-/// parallel.
+/// point, with as many directions as sheets meet (one, two, three). Inside the voxel, or up to half a voxel
+/// beyond where no vertex of the same sheets can be; else kept in it. O(crossings), parallel.
 VertexPositions place_vertices(const Octree& octree, const OctreeLevel& level, const CornerLattice& lattice,
                                const NormalSets& sets, const RelationTest& related,
                                const Crossings& crossings, const Fans& fans);

@@ -1,0 +1,63 @@
+#include "hsdm/facets/facet_unions.hh"
+
+#include <algorithm>
+
+namespace hsdm {
+namespace {
+
+/// The ring of a facet from the corner after v round to the one before it.
+std::vector<Index> without(std::span<const Index> ring, Index v) {
+    const auto at = std::find(ring.begin(), ring.end(), v);
+    std::vector<Index> rest(at + 1, ring.end());
+    rest.insert(rest.end(), ring.begin(), at);
+    return rest;
+}
+
+} // namespace
+
+VertexFacets facets_at_vertices(const PolygonMesh& mesh) {
+    VertexFacets at{std::vector<std::array<Index, 2>>(mesh.vertex_count()),
+                    std::vector<std::uint8_t>(mesh.vertex_count(), 0)};
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f)
+        for (Index v : mesh.facet(f)) {
+            if (at.count[v] < 2) at.facets[v][at.count[v]] = static_cast<Index>(f);
+            at.count[v] = static_cast<std::uint8_t>(std::min(at.count[v] + 1, 3));
+        }
+    return at;
+}
+
+std::vector<Index> united_ring(const PolygonMesh& mesh, Index f, Index g, Index between) {
+    std::vector<Index> ring = without(mesh.facet(f), between);
+    const std::vector<Index> other = without(mesh.facet(g), between);
+    // An inner vertex: where f comes from, g goes to, and the other way round.
+    if (ring.front() != other.back() || ring.back() != other.front()) return {};
+    ring.insert(ring.end(), other.begin() + 1, other.end() - 1);
+    std::vector<Index> sorted = ring;
+    std::sort(sorted.begin(), sorted.end());
+    const bool simple = std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
+    return simple ? ring : std::vector<Index>();
+}
+
+void FacetUnions::unite(Index f, Index g, std::vector<Index> ring) {
+    ++count_;
+    fate_[f] = fate_[g] = goes;
+    if (ring.size() < 3) return;
+    fate_[f] = static_cast<Index>(unions_.size());
+    unions_.push_back(std::move(ring));
+}
+
+std::size_t FacetUnions::apply(PolygonMesh& mesh) const {
+    if (count_ == 0) return 0;
+    PolygonMesh kept;
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+        if (fate_[f] == stays)
+            kept.add_facet(mesh.facet(f));
+        else if (fate_[f] != goes)
+            kept.add_facet(unions_[fate_[f]]);
+    }
+    mesh.corners = std::move(kept.corners);
+    mesh.first = std::move(kept.first);
+    return count_;
+}
+
+} // namespace hsdm

@@ -1,0 +1,39 @@
+#pragma once
+// Pairs of facets round a vertex that no other facet has, and what takes their place.
+
+#include "hsdm/polygon_mesh.hh"
+
+#include <array>
+
+namespace hsdm {
+
+/// The facets at each vertex with one or two of them, and how many there are.
+struct VertexFacets {
+    std::vector<std::array<Index, 2>> facets;
+    std::vector<std::uint8_t> count; ///< 3: more than two
+};
+VertexFacets facets_at_vertices(const PolygonMesh& mesh);
+
+/// The rings of two facets as one, without the vertex between them; two vertices if both are triangles. Empty
+/// if the vertex lies on a border, or if the union has another vertex twice.
+std::vector<Index> united_ring(const PolygonMesh& mesh, Index f, Index g, Index between);
+
+/// Facets to be replaced two by two, each once.
+class FacetUnions {
+public:
+    explicit FacetUnions(const PolygonMesh& mesh) : fate_(mesh.facet_count(), stays) {}
+
+    bool is_free(Index f, Index g) const { return f != g && fate_[f] == stays && fate_[g] == stays; }
+    /// A ring of fewer than three vertices leaves no facet.
+    void unite(Index f, Index g, std::vector<Index> ring);
+    /// Each union stands where its first facet was; positions stay. Returns how many there were.
+    std::size_t apply(PolygonMesh& mesh) const;
+
+private:
+    static constexpr Index stays = no_index, goes = no_index - 1;
+    std::vector<Index> fate_; // per facet: stays, goes, or the union that takes its place
+    std::vector<std::vector<Index>> unions_;
+    std::size_t count_ = 0;
+};
+
+} // namespace hsdm
