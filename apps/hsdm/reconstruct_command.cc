@@ -13,6 +13,7 @@
 
 #include <chrono>
 #include <iostream>
+#include <span>
 
 namespace hsdm::command {
 namespace {
@@ -77,6 +78,16 @@ private:
         }
     }
 
+    /// What make() returns; its errors begin with a name.
+    template <class Make>
+    static auto named(const std::string& name, Make make) {
+        try {
+            return make();
+        } catch (const Error& error) {
+            throw Error(name, error.what());
+        }
+    }
+
     void reconstruct_one(const std::string& input) {
         const auto start = Clock::now();
         const std::string name = input == "-" ? "standard input" : input;
@@ -85,31 +96,29 @@ private:
         PointFile file = read_input(input, arguments_.read);
         const double read_seconds = seconds_since(start);
         stop_if_interrupted();
-        std::vector<Reconstruction> meshes = reconstruct_cloud(name, file.cloud, bar);
-        points_ += file.cloud.size();
-        file.cloud = PointCloud(); // its memory serves the writers
-        for (Reconstruction& mesh : meshes) {
-            bar.show("write", 0.97);
-            mesh.report.input.file = input;
-            mesh.report.seconds.read = read_seconds;
-            write_one(input, mesh, start);
-        }
-    }
-
-    std::vector<Reconstruction> reconstruct_cloud(const std::string& name, const PointCloud& cloud,
-                                                  ProgressBar& bar) {
         ReconstructOptions options = options_;
         options.progress = [&bar](const char* phase, double share) {
             bar.show(phase, 0.1 + 0.85 * share);
             return !interrupted();
         };
-        try {
-            if (levels_) return reconstruct_levels(cloud, levels_->first, levels_->second, options);
-            std::vector<Reconstruction> one;
-            one.push_back(reconstruct(cloud, options));
-            return one;
-        } catch (const Error& error) {
-            throw Error(name, error.what());
+        const auto write = [&](std::span<Reconstruction> results) {
+            points_ += file.cloud.size();
+            file.cloud = PointCloud(); // its memory serves the writers
+            for (Reconstruction& result : results) {
+                bar.show("write", 0.97);
+                result.report.input.file = input;
+                result.report.seconds.read = read_seconds;
+                write_one(input, result, start);
+            }
+        };
+        if (levels_) {
+            std::vector<Reconstruction> results = named(name, [&] {
+                return reconstruct_levels(file.cloud, levels_->first, levels_->second, options);
+            });
+            write(results);
+        } else {
+            Reconstruction result = named(name, [&] { return reconstruct(file.cloud, options); });
+            write({&result, 1});
         }
     }
 

@@ -51,8 +51,7 @@ void note_counts(const ExtendedFacets& facets, Report& report) {
 /// Facets face where the points' normals point. If these point into a closed solid, the whole surface is
 /// turned.
 bool turn_outward(PolygonMesh& mesh) {
-    const Topology topology = measure_topology(mesh);
-    if (!topology.closed() || topology.signed_volume >= 0) return false;
+    if (signed_volume(mesh) >= 0 || !measure_topology(mesh).closed()) return false;
     for (std::size_t f = 0; f < mesh.facet_count(); ++f)
         std::reverse(mesh.corners.begin() + mesh.first[f], mesh.corners.begin() + mesh.first[f + 1]);
     return true;

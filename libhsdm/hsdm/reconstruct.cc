@@ -94,15 +94,16 @@ void check_spread(const Octree& octree) {
         throw Error("only " + std::to_string(octree.size())
                     + " different points; a surface needs 4, and a good one many more");
     const Vec3& first = octree.positions.front();
-    const Vec3* farthest = &first;
-    for (const Vec3& p : octree.positions)
-        if ((p - first).sqrnorm() > (*farthest - first).sqrnorm()) farthest = &p;
-    const Vec3 along = (*farthest - first).normalized();
+    // Of the longest side of the box, one end at least is half its length away from any point.
+    const double far = octree.bounds.extent() / 4;
+    const auto other = std::find_if(octree.positions.begin(), octree.positions.end(),
+                                    [&](const Vec3& p) { return (p - first).max_abs() > far; });
     // Far from the origin the coordinates' own last digit is the larger noise.
     const double reach = std::max(octree.bounds.lo.max_abs(), octree.bounds.hi.max_abs());
     const double tolerance = negligible * octree.extent + 4 * std::numeric_limits<double>::epsilon() * reach;
-    for (const Vec3& p : octree.positions)
-        if (((p - first) % along).norm() > tolerance) return;
+    if (other != octree.positions.end())
+        for (const Vec3& p : octree.positions)
+            if (((p - first) % (*other - first).normalized()).norm() > tolerance) return;
     throw Error("all points lie on a line; there is no surface in them");
 }
 
@@ -347,8 +348,8 @@ std::size_t peak_memory() {
 }
 
 /// Phases 2 and 3 on one level of a decomposition.
-Reconstruction reconstruct_level(const PointCloud& cloud, const Octree& octree, int depth, Report report,
-                                 const ReconstructOptions& options, const Phases& phases) {
+void reconstruct_level(const PointCloud& cloud, const Octree& octree, int depth, Report report,
+                       const ReconstructOptions& options, const Phases& phases, Reconstruction& result) {
     Report::Seconds& seconds = report.seconds;
     const OctreeLevel level =
         phases.run("voxels", 0.15, seconds.octree, [&] { return extract_level(octree, depth); });
@@ -376,23 +377,21 @@ Reconstruction reconstruct_level(const PointCloud& cloud, const Octree& octree, 
                [&] { drop_and_measure(points, octree, options, facets, hints, report); });
 
     points = {};
-    Reconstruction result;
     phases.run("mesh", 0.85, seconds.mesh, [&] {
         for (Vec3& p : facets.positions) p += octree.origin;
-        ToMeshResult built = to_mesh(facets);
-        result.mesh = std::move(built.mesh);
-        report.rejected["to_mesh"] = built.rejected;
-        if (built.rejected > 0) hints = {}; // they are counted by facets
+        const std::size_t rejected = to_mesh(facets, result.mesh).rejected;
+        report.rejected["to_mesh"] = rejected;
+        if (rejected > 0) hints = {}; // they are counted by facets
     });
     phases.run("features", 0.9, seconds.features,
                [&] { find_features(result.mesh, options, hints, report); });
     report.peak_memory_bytes = peak_memory();
     result.report = std::move(report);
-    return result;
 }
 
-std::vector<Reconstruction> run(const PointCloud& cloud, const ReconstructOptions& options,
-                                std::optional<std::pair<int, int>> range) {
+/// One result per level of the range, or one of the level that the options choose.
+void run(const PointCloud& cloud, const ReconstructOptions& options, std::optional<std::pair<int, int>> range,
+         std::span<Reconstruction> results) {
     const auto start = std::chrono::steady_clock::now();
     const FiniteCloud finite(cloud);
     if (options.normals == NormalSource::given && !(*finite).has_normals())
@@ -413,33 +412,34 @@ std::vector<Reconstruction> run(const PointCloud& cloud, const ReconstructOption
         const int depth = decomposition.choose_resolution(options);
         range = {depth, depth};
     }
-    std::vector<Reconstruction> results;
-    const double count = range->second - range->first + 1;
-    for (int depth = range->first; depth <= range->second; ++depth) {
-        const double begin = (depth - range->first) / count;
-        const auto level_start = results.empty() ? start : std::chrono::steady_clock::now();
-        decomposition.smooth_for_depth(depth, Phases(options, begin, begin + 1 / count));
-        results.push_back(reconstruct_level(*finite, decomposition.octree, depth, report, options,
-                                            Phases(options, begin, begin + 1 / count)));
-        results.back().report.seconds.total =
+    const auto count = static_cast<double>(results.size());
+    for (std::size_t i = 0; i < results.size(); ++i) {
+        const double begin = static_cast<double>(i) / count;
+        const Phases phases(options, begin, begin + 1 / count);
+        const int depth = range->first + static_cast<int>(i);
+        const auto level_start = i == 0 ? start : std::chrono::steady_clock::now();
+        decomposition.smooth_for_depth(depth, phases);
+        reconstruct_level(*finite, decomposition.octree, depth, report, options, phases, results[i]);
+        results[i].report.seconds.total =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - level_start).count();
     }
-    return results;
 }
 
 /// At most options.threads threads, for this call alone.
-std::vector<Reconstruction> run_in_arena(const PointCloud& cloud, const ReconstructOptions& options,
-                                         std::optional<std::pair<int, int>> range) {
-    if (options.threads == 0) return run(cloud, options, range);
+void run_in_arena(const PointCloud& cloud, const ReconstructOptions& options,
+                  std::optional<std::pair<int, int>> range, std::span<Reconstruction> results) {
+    if (options.threads == 0) return run(cloud, options, range, results);
     tbb::task_arena arena(options.threads);
-    return arena.execute([&] { return run(cloud, options, range); });
+    arena.execute([&] { run(cloud, options, range, results); });
 }
 
 } // namespace
 
 Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& options) {
     validate(options);
-    return std::move(run_in_arena(cloud, options, std::nullopt).front());
+    Reconstruction result;
+    run_in_arena(cloud, options, std::nullopt, {&result, 1});
+    return result;
 }
 
 std::vector<Reconstruction> reconstruct_levels(const PointCloud& cloud, int first_depth, int last_depth,
@@ -453,7 +453,9 @@ std::vector<Reconstruction> reconstruct_levels(const PointCloud& cloud, int firs
     if (first_depth > last_depth)
         throw OptionError("levels " + std::to_string(first_depth) + ":" + std::to_string(last_depth)
                           + ": the first depth must not be above the last");
-    return run_in_arena(cloud, options, std::pair(first_depth, last_depth));
+    std::vector<Reconstruction> results(static_cast<std::size_t>(last_depth - first_depth) + 1);
+    run_in_arena(cloud, options, std::pair(first_depth, last_depth), results);
+    return results;
 }
 
 } // namespace hsdm

@@ -251,14 +251,17 @@ void read_properties(const PolyMesh& mesh, const Selection& selection, PolygonMe
 
 } // namespace
 
-ToMeshResult to_mesh(const PolygonMesh& facets) {
+ToMeshCounts to_mesh(const PolygonMesh& facets, PolyMesh& mesh) {
     const FacetLinks links = link_facets(facets);
+    write_connectivity(facets, links, mesh);
+    write_geometry(facets, links, mesh);
+    write_properties(facets, links, mesh);
+    return {links.rejected, links.split_vertices};
+}
+
+ToMeshResult to_mesh(const PolygonMesh& facets) {
     ToMeshResult result;
-    result.rejected = links.rejected;
-    result.split_vertices = links.split_vertices;
-    write_connectivity(facets, links, result.mesh);
-    write_geometry(facets, links, result.mesh);
-    write_properties(facets, links, result.mesh);
+    static_cast<ToMeshCounts&>(result) = to_mesh(facets, result.mesh);
     return result;
 }
 

@@ -6,12 +6,14 @@
 
 namespace hsdm {
 
-struct ToMeshResult {
-    PolyMesh mesh;
+struct ToMeshCounts {
     std::size_t rejected =
         0; ///< facets that would have broken the 2-manifold; 0 for what our own facet stages make
     std::size_t split_vertices =
         0; ///< vertices added where facets met in a vertex only: each fan has its own
+};
+struct ToMeshResult : ToMeshCounts {
+    PolyMesh mesh;
 };
 
 /// Builds the half-edge mesh: always an oriented 2-manifold, possibly with boundary. A facet is rejected if
@@ -21,6 +23,8 @@ struct ToMeshResult {
 /// split vertices come last. Vertex properties become named mesh properties (`hsdm_...`), facets get their
 /// normals. Nothing is printed. O(corners log valence), parallel.
 ToMeshResult to_mesh(const PolygonMesh& facets);
+/// The same in an empty mesh where it is to stay: meshes of OpenMesh cannot be moved, only copied.
+ToMeshCounts to_mesh(const PolygonMesh& facets, PolyMesh& mesh);
 
 /// The mesh's polygons without deleted elements and isolated vertices; its vertex normals if it has them; its
 /// named vertex properties of type uint8, int32, float and double. `hsdm_normals` comes as nine of type

@@ -98,7 +98,10 @@ public:
         if (leaves.empty()) return;
         int deepest = 0;
         for (const Leaf& leaf : leaves) deepest = std::max(deepest, leaf.level);
-        for (int level = 0; level <= deepest; ++level) levels_.push_back(extract_level(octree, level));
+        levels_.resize(static_cast<std::size_t>(deepest) + 1);
+        levels_.back() = extract_level(octree, deepest);
+        for (auto level = levels_.size() - 1; level-- > 0;)
+            levels_[level] = coarser_level(levels_[level + 1], static_cast<int>(level));
         tbb::enumerable_thread_specific<Candidates> scratch;
         for_chunks(leaves.size(), leaves_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             Candidates& candidates = scratch.local();

@@ -98,8 +98,7 @@ OctreeLevel level_of_density(const Octree& octree, double points_per_voxel, doub
            && static_cast<double>(octree.size())
                   < 0.25 * points_per_voxel * static_cast<double>(counts[static_cast<std::size_t>(depth)]))
         --depth;
-    for (;; --depth) {
-        OctreeLevel level = extract_level(octree, depth);
+    for (OctreeLevel level = extract_level(octree, depth);; level = coarser_level(level, --depth)) {
         double squares = 0;
         for (std::size_t v = 0; v < level.size(); ++v) {
             const auto count = static_cast<double>(level.first_point[v + 1] - level.first_point[v]);

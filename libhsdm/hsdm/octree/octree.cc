@@ -183,18 +183,18 @@ bool fit_to_points(Octree& octree) {
     return true;
 }
 
-OctreeLevel extract_level(const Octree& octree, int depth) {
-    OctreeLevel level;
-    level.depth = depth;
-    level.voxel_size = octree.voxel_size(depth);
-    const int shift = 3 * (morton_levels - depth);
-    const std::size_t n = octree.size();
+namespace {
+
+/// Finds where codes begin to differ after a shift, and makes the voxels of it; first_point_of(i) is the
+/// first point of code i.
+template <class FirstPoint>
+void group_codes(const std::vector<MortonCode>& codes, int shift, FirstPoint first_point_of,
+                 OctreeLevel& level) {
+    const std::size_t n = codes.size();
     const std::size_t chunks = (n + grain - 1) / grain;
 
     // Two passes over fixed chunks: count the voxels that begin in each, then write them at their offset.
-    auto begins = [&](std::size_t i) {
-        return i == 0 || octree.codes[i] >> shift != octree.codes[i - 1] >> shift;
-    };
+    auto begins = [&](std::size_t i) { return i == 0 || codes[i] >> shift != codes[i - 1] >> shift; };
     std::vector<std::size_t> offset(chunks + 1, 0);
     tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
         std::size_t count = 0;
@@ -208,12 +208,32 @@ OctreeLevel extract_level(const Octree& octree, int depth) {
         std::size_t voxel = offset[chunk];
         for (std::size_t i = chunk * grain; i < std::min(n, (chunk + 1) * grain); ++i) {
             if (!begins(i)) continue;
-            level.codes[voxel] = octree.codes[i] >> shift;
-            level.first_point[voxel++] = static_cast<Index>(i);
+            level.codes[voxel] = codes[i] >> shift;
+            level.first_point[voxel++] = first_point_of(i);
         }
     });
-    level.first_point.back() = static_cast<Index>(n);
+    level.first_point.back() = first_point_of(n);
     level.build_index();
+}
+
+} // namespace
+
+OctreeLevel extract_level(const Octree& octree, int depth) {
+    OctreeLevel level;
+    level.depth = depth;
+    level.voxel_size = octree.voxel_size(depth);
+    group_codes(
+        octree.codes, 3 * (morton_levels - depth), [](std::size_t i) { return static_cast<Index>(i); },
+        level);
+    return level;
+}
+
+OctreeLevel coarser_level(const OctreeLevel& finer, int depth) {
+    OctreeLevel level;
+    level.depth = depth;
+    level.voxel_size = finer.voxel_size * static_cast<double>(1u << (finer.depth - depth));
+    group_codes(
+        finer.codes, 3 * (finer.depth - depth), [&](std::size_t i) { return finer.first_point[i]; }, level);
     return level;
 }
 

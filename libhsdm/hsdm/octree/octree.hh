@@ -80,6 +80,8 @@ private:
 
 /// The voxels of one level of the HSDM, depth in [0, 21]. O(n), parallel.
 OctreeLevel extract_level(const Octree& octree, int depth);
+/// The same from a deeper level, of which only the voxels are looked at. O(voxels), parallel.
+OctreeLevel coarser_level(const OctreeLevel& finer, int depth);
 
 /// Offsets of the 6 face, 12 edge and 8 corner neighbours: 6-, 18- and 26-adjacency is the first 6, 18, 26.
 extern const std::array<VoxelCoord, 26> neighbor_offsets;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 namespace hsdm {
 
@@ -19,20 +20,21 @@ class Triangle {
 public:
     Triangle(const Vec3& a, const Vec3& b, const Vec3& c) : a_(a), ab_(b - a), ac_(c - a) {
         normal_ = ab_ % ac_;
-        area_ = normal_.sqrnorm();
-        if (!has_area()) return;
-        towards_b_ = (ac_ % normal_) / area_;
-        towards_c_ = (normal_ % ab_) / area_;
+        const double area = normal_.sqrnorm();
+        if (!(area >= std::numeric_limits<double>::min())) return;
+        per_area_ = 1 / area;
+        towards_b_ = (ac_ % normal_) * per_area_;
+        towards_c_ = (normal_ % ab_) * per_area_;
     }
 
-    bool has_area() const { return area_ > 0; }
+    bool has_area() const { return per_area_ > 0; }
 
     /// The foot of a point on the triangle's plane; false if it lies outside the triangle. O(1).
     bool foot_inside(const Vec3& p, NearestOfTriangle& foot) const {
         const Vec3 ap = p - a_;
         const double v = ap | towards_b_, w = ap | towards_c_;
         if (!(v >= 0 && w >= 0 && v + w <= 1 && has_area())) return false;
-        const Vec3 height = normal_ * ((ap | normal_) / area_);
+        const Vec3 height = normal_ * ((ap | normal_) * per_area_);
         foot = {p - height, height.sqrnorm(), {1 - v - w, v, w}};
         return true;
     }
@@ -59,7 +61,7 @@ public:
 private:
     Vec3 a_, ab_, ac_, normal_;
     Vec3 towards_b_{0, 0, 0}, towards_c_{0, 0, 0}; // gradients of the barycentric coordinates
-    double area_;                                  // four times the area squared
+    double per_area_ = 0;                          // one over four times the area squared
 };
 
 } // namespace hsdm

@@ -232,6 +232,8 @@ double chunked_sum(std::size_t n, Term term) {
     return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
+} // namespace
+
 /// About the centre of the box, so that a mesh far from the origin loses no digits.
 double signed_volume(const PolygonMesh& mesh) {
     Box box;
@@ -244,8 +246,6 @@ double signed_volume(const PolygonMesh& mesh) {
                | ((mesh.positions[b] - centre) % (mesh.positions[c] - centre)) / 6;
     });
 }
-
-} // namespace
 
 Topology measure_topology(const PolygonMesh& mesh) {
     Topology topology;

@@ -3,6 +3,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cmath>
@@ -68,9 +69,17 @@ void split(Item* begin, Item* end) {
 
 TriangleTree::TriangleTree(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
     if (triangles.empty()) return;
-    Box box;
-    for (const Triangle& t : triangles)
-        for (Index v : t) box.add(positions[v]);
+    const Box box = tbb::parallel_reduce(
+        Range(0, triangles.size(), grain), Box{},
+        [&](const Range& range, Box part) {
+            for (std::size_t t = range.begin(); t != range.end(); ++t)
+                for (Index v : triangles[t]) part.add(positions[v]);
+            return part;
+        },
+        [](Box a, const Box& b) {
+            a.add(b);
+            return a;
+        });
     centre_ = box.lo + box.size() / 2;
     rounding_ = 4 * std::numeric_limits<double>::epsilon() * box.diagonal();
     order(positions, triangles);

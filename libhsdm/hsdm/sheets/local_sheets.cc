@@ -18,46 +18,62 @@ constexpr int closure_rounds = 8;
 constexpr double least_closure_cosine = 0.35; // 70 degrees
 constexpr double nearness = 0.5; // voxels: a set's say falls off with its distance from the corner
 
-VoxelCoord octant_offset(unsigned octant) {
-    return {static_cast<int>(octant & 1) - 1, static_cast<int>(octant >> 1 & 1) - 1,
-            static_cast<int>(octant >> 2 & 1) - 1};
-}
+constexpr std::array<Index, 8> no_voxels{no_index, no_index, no_index, no_index,
+                                         no_index, no_index, no_index, no_index};
 
 /// The corners of voxels of one block of 4 x 4 x 4: voxels of a surface share most of theirs.
 class BlockCorners {
 public:
-    void add(MortonCode voxel) {
+    static constexpr MortonCode voxels = 64;
+    /// The place of a voxel's corner among those of its block; bit k of the number is set on the upper side
+    /// of axis k.
+    static std::size_t place(MortonCode voxel, unsigned corner) {
         const VoxelCoord c = morton_decode(voxel & (voxels - 1));
-        for (int k = 0; k < 8; ++k)
-            used_.set(static_cast<std::size_t>(c[0] + (k & 1) + 5 * (c[1] + (k >> 1 & 1))
-                                               + 25 * (c[2] + (k >> 2))));
+        return static_cast<std::size_t>(c[0] + static_cast<int>(corner & 1)
+                                        + 5 * (c[1] + static_cast<int>(corner >> 1 & 1))
+                                        + 25 * (c[2] + static_cast<int>(corner >> 2)));
     }
-    /// Appends their codes and starts anew.
-    void take(MortonCode block, std::vector<CodeIndex>& corners) {
+
+    void add(MortonCode voxel) {
+        for (unsigned corner = 0; corner < 8; ++corner) used_.set(place(voxel, corner));
+    }
+    /// Calls each(place, code) for the corners of the block's voxels, and starts anew.
+    template <class Each>
+    void take(MortonCode block, Each each) {
         const VoxelCoord c = morton_decode(block * voxels);
         for (int i = 0; i < 125; ++i)
             if (used_[static_cast<std::size_t>(i)])
-                corners.push_back({CornerLattice::code({c[0] + i % 5, c[1] + i / 5 % 5, c[2] + i / 25}), 0});
+                each(i, CornerLattice::code({c[0] + i % 5, c[1] + i / 5 % 5, c[2] + i / 25}));
         used_.reset();
     }
-    static constexpr MortonCode voxels = 64;
 
 private:
     std::bitset<125> used_;
 };
 
+/// Calls each(corners, block, begin, end, chunk) for the voxels of every block; a block that lies in two
+/// chunks comes twice.
+template <class Each>
+void for_blocks(const OctreeLevel& level, Each each) {
+    for_chunks(level.size(), corners_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        BlockCorners corners;
+        for (std::size_t first = begin, v = begin; v < end; ++v) {
+            const MortonCode block = level.codes[v] / BlockCorners::voxels;
+            corners.add(level.codes[v]);
+            if (v + 1 < end && level.codes[v + 1] / BlockCorners::voxels == block) continue;
+            each(corners, block, first, v + 1, chunk);
+            first = v + 1;
+        }
+    });
+}
+
 /// Every corner of every voxel, sorted, each once.
 std::vector<MortonCode> corner_codes(const OctreeLevel& level) {
     std::vector<std::vector<CodeIndex>> parts(chunk_count(level.size(), corners_per_chunk));
-    for_chunks(level.size(), corners_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        BlockCorners block;
-        for (std::size_t v = begin; v < end; ++v) {
-            const MortonCode number = level.codes[v] / BlockCorners::voxels;
-            block.add(level.codes[v]);
-            if (v + 1 == end || level.codes[v + 1] / BlockCorners::voxels != number)
-                block.take(number, parts[chunk]);
-        }
-    });
+    for_blocks(level,
+               [&](BlockCorners& corners, MortonCode block, std::size_t, std::size_t, std::size_t chunk) {
+                   corners.take(block, [&](int, MortonCode code) { parts[chunk].push_back({code, 0}); });
+               });
     std::vector<CodeIndex> corners = joined(parts);
     radix_sort(corners, 3 * (level.depth + 2));
     std::vector<MortonCode> codes;
@@ -65,6 +81,21 @@ std::vector<MortonCode> corner_codes(const OctreeLevel& level) {
     for (const CodeIndex& corner : corners)
         if (codes.empty() || codes.back() != corner.code) codes.push_back(corner.code);
     return codes;
+}
+
+/// Each voxel is seen from its eight corners.
+void connect_voxels(const OctreeLevel& level, CornerLattice& lattice) {
+    lattice.voxels.resize(lattice.size(), no_voxels);
+    for_blocks(level, [&](BlockCorners& corners, MortonCode block, std::size_t begin, std::size_t end, auto) {
+        std::array<Index, 125> corner_at;
+        corners.take(block, [&](int place, MortonCode code) {
+            corner_at[static_cast<std::size_t>(place)] = lattice.index.find(code);
+        });
+        for (std::size_t v = begin; v < end; ++v)
+            for (unsigned k = 0; k < 8; ++k)
+                lattice.voxels[corner_at[BlockCorners::place(level.codes[v], k)]][7 - k] =
+                    static_cast<Index>(v);
+    });
 }
 
 /// The sets around one corner and their sheets, on the stack.
@@ -161,50 +192,75 @@ struct Corner {
     }
 };
 
-void connect_corner(CornerLattice& lattice, std::size_t i, const OctreeLevel& level) {
-    const VoxelCoord c = lattice.coord(static_cast<Index>(i));
-    for (unsigned octant = 0; octant < 8; ++octant) {
-        const VoxelCoord o = octant_offset(octant);
-        lattice.voxels[i][octant] = level.find(VoxelCoord{c[0] + o[0], c[1] + o[1], c[2] + o[2]});
-    }
+void connect_corner(CornerLattice& lattice, std::size_t i) {
     for (unsigned axis = 0; axis < 3; ++axis) {
-        VoxelCoord n = c;
-        ++n[axis];
-        lattice.next[i][axis] = lattice.index.find(lattice.code(n));
+        VoxelCoord next = lattice.coord(static_cast<Index>(i));
+        ++next[axis];
+        lattice.next[i][axis] = lattice.index.find(lattice.code(next));
     }
 }
 
-/// What an edge crossed along an axis from corner c needs: its two ends, and the other corners of the four
+/// The grid points that the edges crossed from a corner need: both ends, and the other corners of the four
 /// faces beside.
-void add_missing(const CornerLattice& lattice, VoxelCoord c, unsigned axis, int side,
-                 std::vector<MortonCode>& missing) {
-    const auto need = [&](VoxelCoord d) {
-        for (int x : d)
-            if (x < -1 || x > side + 1) return;
-        if (lattice.index.find(lattice.code(d)) == no_index) missing.push_back(lattice.code(d));
-    };
-    for (int end : {0, 1}) {
-        need(c);
-        for (unsigned other : {(axis + 1) % 3, (axis + 2) % 3})
-            for (int beside : {-1, 1}) {
-                VoxelCoord d = c;
-                d[other] += beside;
-                need(d);
-            }
-        if (end == 0) ++c[axis];
+class MissingCorners {
+public:
+    MissingCorners(const CornerLattice& lattice, int side)
+        : lattice_(lattice), below_(corners_below(lattice)), side_(side) {}
+
+    /// Those of the edge from corner i up an axis, or down.
+    void add(Index i, unsigned axis, bool up, std::vector<MortonCode>& missing) const {
+        VoxelCoord c = lattice_.coord(i);
+        add_beside(i, c, axis, missing);
+        c[axis] += up ? 1 : -1;
+        const Index end = up ? lattice_.next[i][axis] : below_[i][axis];
+        if (end == no_index) add(c, missing, false);
+        add_beside(end, c, axis, missing);
     }
-}
+
+private:
+    /// The four grid points beside a corner, across an axis; the corner itself may be missing.
+    void add_beside(Index i, const VoxelCoord& c, unsigned axis, std::vector<MortonCode>& missing) const {
+        for (unsigned other : {(axis + 1) % 3, (axis + 2) % 3})
+            for (bool up : {false, true}) {
+                if (i != no_index && (up ? lattice_.next : below_)[i][other] != no_index) continue;
+                VoxelCoord d = c;
+                d[other] += up ? 1 : -1;
+                add(d, missing, i == no_index);
+            }
+    }
+    /// But for those beyond the margin around the bounding cube, and, in doubt, those there are.
+    void add(const VoxelCoord& c, std::vector<MortonCode>& missing, bool in_doubt) const {
+        if (std::any_of(c.begin(), c.end(), [&](int x) { return x < -1 || x > side_ + 1; })) return;
+        if (!in_doubt || lattice_.index.find(lattice_.code(c)) == no_index)
+            missing.push_back(lattice_.code(c));
+    }
+
+    const CornerLattice& lattice_;
+    std::vector<std::array<Index, 3>> below_;
+    int side_;
+};
 
 } // namespace
+
+std::vector<std::array<Index, 3>> corners_below(const CornerLattice& lattice) {
+    std::vector<std::array<Index, 3>> below(lattice.size(), {no_index, no_index, no_index});
+    for_chunks(lattice.size(), corners_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t c = begin; c < end; ++c)
+            for (unsigned axis = 0; axis < 3; ++axis)
+                if (const Index next = lattice.next[c][axis]; next != no_index)
+                    below[next][axis] = static_cast<Index>(c);
+    });
+    return below;
+}
 
 CornerLattice build_corner_lattice(const OctreeLevel& level) {
     CornerLattice lattice;
     lattice.codes = corner_codes(level);
-    lattice.voxels.resize(lattice.size());
-    lattice.next.resize(lattice.size());
     lattice.index.build(lattice.codes);
+    connect_voxels(level, lattice);
+    lattice.next.resize(lattice.size());
     for_chunks(lattice.size(), corners_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i) connect_corner(lattice, i, level);
+        for (std::size_t i = begin; i < end; ++i) connect_corner(lattice, i);
     });
     return lattice;
 }
@@ -322,23 +378,18 @@ LocalSheets group_local_sheets(const CornerLattice& lattice, const NormalSets& s
 
 std::size_t extend_lattice(CornerLattice& lattice, LocalSheets& sheets, const OctreeLevel& level) {
     const std::size_t n = lattice.size();
-    const int side = 1 << level.depth;
+    const MissingCorners corners(lattice, 1 << level.depth);
     std::vector<std::vector<MortonCode>> parts(chunk_count(n, corners_per_chunk));
     for_chunks(n, corners_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const VoxelCoord c = lattice.coord(static_cast<Index>(i));
+        for (std::size_t i = begin; i < end; ++i)
             for (const LocalSheet& sheet : sheets.sheets_at(static_cast<Index>(i)))
                 for (unsigned axis = 0; axis < 3; ++axis) {
                     const double rise = sheet.normal[axis] * level.voxel_size;
                     const bool inside = sheet.distance < 0;
-                    if (inside != (sheet.distance + rise < 0))
-                        add_missing(lattice, c, axis, side, parts[chunk]);
-                    if (inside == (sheet.distance - rise < 0)) continue;
-                    VoxelCoord below = c;
-                    --below[axis];
-                    add_missing(lattice, below, axis, side, parts[chunk]);
+                    for (bool up : {true, false})
+                        if (inside != (sheet.distance + (up ? rise : -rise) < 0))
+                            corners.add(static_cast<Index>(i), axis, up, parts[chunk]);
                 }
-        }
     });
     std::vector<MortonCode> missing = joined(parts);
     if (missing.empty()) return 0;
@@ -346,11 +397,11 @@ std::size_t extend_lattice(CornerLattice& lattice, LocalSheets& sheets, const Oc
     missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
     lattice.codes.insert(lattice.codes.end(), missing.begin(), missing.end());
     lattice.index.build(lattice.codes);
-    lattice.voxels.resize(lattice.size());
+    lattice.voxels.resize(lattice.size(), no_voxels);
     lattice.next.resize(lattice.size());
     for_chunks(missing.size(), corners_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = n + begin; i < n + end; ++i) {
-            connect_corner(lattice, i, level);
+            connect_corner(lattice, i);
             for (unsigned axis = 0; axis < 3; ++axis) {
                 VoxelCoord below = lattice.coord(static_cast<Index>(i));
                 --below[axis];

@@ -29,6 +29,8 @@ struct CornerLattice {
     }
 };
 CornerLattice build_corner_lattice(const OctreeLevel& level);
+/// Per corner, the next corner down each axis, or no_index: the inverse of `next`.
+std::vector<std::array<Index, 3>> corners_below(const CornerLattice& lattice);
 
 /// A set seen from a corner: where it lies and which of the corner's sheets it belongs to.
 struct SheetMember {

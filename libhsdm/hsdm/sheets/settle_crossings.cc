@@ -96,12 +96,7 @@ public:
           h_(voxel_size),
           side_(lattice.size(), unknown),
           belief_(lattice.size(), 0),
-          below_(lattice.size(), {no_index, no_index, no_index}) {
-        for_corners([&](Index c) {
-            for (unsigned a = 0; a < 3; ++a)
-                if (lattice.next[c][a] != no_index) below_[lattice.next[c][a]][a] = c;
-        });
-    }
+          below_(corners_below(lattice)) {}
 
     Crossings run() {
         believe();
