@@ -261,7 +261,9 @@ ToMeshCounts to_mesh(const PolygonMesh& facets, PolyMesh& mesh) {
 
 ToMeshResult to_mesh(const PolygonMesh& facets) {
     ToMeshResult result;
-    static_cast<ToMeshCounts&>(result) = to_mesh(facets, result.mesh);
+    const ToMeshCounts counts = to_mesh(facets, result.mesh);
+    result.rejected = counts.rejected;
+    result.split_vertices = counts.split_vertices;
     return result;
 }
 

@@ -12,8 +12,9 @@ struct ToMeshCounts {
     std::size_t split_vertices =
         0; ///< vertices added where facets met in a vertex only: each fan has its own
 };
-struct ToMeshResult : ToMeshCounts {
+struct ToMeshResult {
     PolyMesh mesh;
+    std::size_t rejected = 0, split_vertices = 0; ///< as ToMeshCounts
 };
 
 /// Builds the half-edge mesh: always an oriented 2-manifold, possibly with boundary. A facet is rejected if
