@@ -2,6 +2,7 @@
 
 #include "hsdm/chunks.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/normals/height_fit.hh"
 #include "hsdm/normals/neighborhood.hh"
 #include "hsdm/normals/noise.hh"
 #include "hsdm/normals/plane_fit.hh"
@@ -20,6 +21,10 @@ constexpr double bent_spread = 0.45;
 constexpr double clear_gain = 1.3;
 /// Neighbours whose normals differ less than this are no sign of a crease (23 and 26 degrees).
 constexpr double cos_differing = 0.92, cos_crease = 0.9;
+/// Neighbours that deviate less from their plane, in reaches, tilt it by some 0.2 degrees.
+constexpr double flat_spread = 0.004;
+/// From this noise on, about a tenth of the spacing, planes of one neighbourhood are two degrees off.
+constexpr double rough = 0.02;
 
 class Estimation {
 public:
@@ -36,7 +41,10 @@ public:
         find_bent();
         for (int round = 0; round < options_.rounds; ++round)
             renew([this](Index i) { return best_plane(i); });
-        for (int round = 0; round < options_.rounds; ++round) renew([this](Index i) { return averaged(i); });
+        for (int round = 0; round < options_.rounds; ++round)
+            renew([this](Index i) { return differs(i, cos_crease) ? averaged(i) : result_.normals[i]; });
+        if (options_.rounds > 0) renew_all([this](Index i) { return curved(i); });
+        if (options_.rounds > 0 && result_.noise > rough) renew_all([this](Index i) { return averaged(i); });
         return std::move(result_);
     }
 
@@ -89,6 +97,40 @@ private:
             for (std::size_t b = begin; b < end; ++b) renewed[b] = normal_of(bent[b]);
         });
         for (std::size_t b = 0; b < bent.size(); ++b) result_.normals[bent[b]] = renewed[b];
+    }
+
+    /// A plane has the normal of the neighbours' centroid, not of the point, where the surface is curved.
+    /// Away from creases it is turned towards that of a quadratic surface: not at all up to where the tilt
+    /// between the two is such that their expected errors are equal (twice what noise makes of it), as at the
+    /// border of rough points, almost all of it where that is far exceeded.
+    Vec3 curved(Index i) const {
+        const Vec3& own = result_.normals[i];
+        const double reach = neighbors_.reach[i];
+        if (spread_[i] < flat_spread * reach || own.sqrnorm() == 0 || differs(i, cos_crease)) return own;
+        const Vec3 u = own.cross(std::abs(own[0]) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)).normalized();
+        const Vec3 v = own.cross(u);
+        const Vec3 x = u / reach, y = v / reach, z = own / reach;
+        HeightSums sums;
+        sums.add(0, 0, 0);
+        for (Index j : neighbors_.of(i)) {
+            const Vec3 d = octree_.positions[j] - octree_.positions[i];
+            sums.add(x | d, y | d, z | d);
+        }
+        const HeightFit fit = sums.fit();
+        const double square = fit.tilt[0] * fit.tilt[0] + fit.tilt[1] * fit.tilt[1];
+        if (square <= 2 * fit.variance) return own;
+        const double share = 1 - 2 * fit.variance / square;
+        return (own - (u * fit.tilt[0] + v * fit.tilt[1]) * share).normalized();
+    }
+
+    /// New normals for all points, all from the old ones.
+    template <class NormalOf>
+    void renew_all(const NormalOf& normal_of) {
+        std::vector<Vec3> renewed(octree_.size());
+        for_chunks(octree_.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i) renewed[i] = normal_of(static_cast<Index>(i));
+        });
+        result_.normals = std::move(renewed);
     }
 
     bool differs(Index i, double cosine) const {
@@ -146,10 +188,9 @@ private:
         return normal;
     }
 
-    /// Near a crease, the mean over the neighbours whose planes pass through the point; flat ones count most.
+    /// The mean over the neighbours whose planes pass through the point; flat ones count most.
     Vec3 averaged(Index i) const {
         const Vec3& own = result_.normals[i];
-        if (!differs(i, cos_crease)) return own;
         const Neighborhood around(octree_, neighbors_, i);
         const double inverse = 1 / result_.tolerance[i];
         Vec3 sum = 0.5 * own;
