@@ -10,6 +10,7 @@
 #include <tbb/global_control.h>
 
 #include <cmath>
+#include <numbers>
 
 using namespace hsdm;
 using support::faults;
@@ -262,6 +263,34 @@ TEST_CASE("an open sheet keeps its border and does not grow beyond the points by
             CHECK(p[k] > box.lo[k] - voxel);
             CHECK(p[k] < box.hi[k] + voxel);
         }
+}
+
+TEST_CASE("a slot at the end of a narrow pipe stays open", "[sheets]") {
+    constexpr double slot = 2, length = 10; // radians, voxels
+    ExtendedOptions unaided;
+    unaided.fill = false;
+    for (const double radius : {1.0, 1.3, 1.6}) {
+        INFO("radius of " << radius << " voxels");
+        std::size_t vertices_in_slot = 0;
+        for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+            support::Random random(seed);
+            const support::Pose pose = support::random_pose(random);
+            PointCloud cloud;
+            while (cloud.size() < 1500) {
+                const double angle = random.uniform(0, 2 * std::numbers::pi), z = random.uniform(0, length);
+                if (z > length / 2 && angle < slot) continue;
+                const Vec3 n(std::cos(angle), std::sin(angle), 0);
+                cloud.positions.push_back(pose.to_world(n * radius + Vec3(0, 0, z)));
+                cloud.normals.push_back(pose.rotate(n));
+            }
+            for (const Vec3& p : facets_of(cloud, 1, unaided).mesh.positions) {
+                const Vec3 q = pose.to_local(p);
+                const double angle = std::atan2(q[1], q[0]);
+                vertices_in_slot += q[2] > length / 2 + 0.5 && std::abs(angle - slot / 2) < slot / 4;
+            }
+        }
+        CHECK(vertices_in_slot < 50); // of a slot closed all over, some 150
+    }
 }
 
 TEST_CASE("whatever the normals, crossings, joins and chains alone make an oriented 2-manifold",

@@ -4,13 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hsdm {
 namespace {
 
 constexpr std::size_t corners_per_chunk = 2048;
-constexpr std::size_t longest_defect =
-    16; // sides: a shorter boundary loop is a defect to close, not a border
+/// Sides: a shorter boundary loop is a defect to close, not a border; and the same of the hole in the data
+/// around it, whose outline is more ragged.
+constexpr std::ptrdiff_t longest_defect = 16, longest_outline = 20;
 
 /// A crossing on the perimeter of a face.
 struct Stop {
@@ -148,8 +150,13 @@ Links pair_crossings(const CornerLattice& lattice, const Crossings& crossings, c
 
 namespace {
 
-/// Per side (4 * crossing + face), does it lie on a boundary loop too long for a mere defect?
-std::vector<std::uint8_t> on_borders(const Crossings& crossings, const Links& links) {
+/// The boundary loops of the mesh to be.
+struct OpenLoops {
+    std::vector<Index> of_side;        ///< per side (4 * crossing + face); no_index: joined
+    std::vector<std::ptrdiff_t> sides; ///< per loop
+};
+
+OpenLoops find_open_loops(const Crossings& crossings, const Links& links) {
     const auto open = [&](std::size_t side) {
         return links.of_crossing[side / 4][side % 4].crossing == no_index;
     };
@@ -167,34 +174,77 @@ std::vector<std::uint8_t> on_borders(const Crossings& crossings, const Links& li
             k = link.face;
         }
     };
-    std::vector<std::uint8_t> on_border(4 * links.of_crossing.size(), 0), seen(on_border);
-    std::vector<std::size_t> loop;
-    for (std::size_t start = 0; start < on_border.size(); ++start) {
-        if (!open(start) || seen[start]) continue;
-        loop.clear();
-        for (std::size_t side = start; !seen[side]; side = next(side)) {
-            seen[side] = 1;
-            loop.push_back(side);
+    OpenLoops loops;
+    loops.of_side.assign(4 * links.of_crossing.size(), no_index);
+    for (std::size_t start = 0; start < loops.of_side.size(); ++start) {
+        if (!open(start) || loops.of_side[start] != no_index) continue;
+        const auto number = static_cast<Index>(loops.sides.size());
+        loops.sides.push_back(0);
+        for (std::size_t side = start; loops.of_side[side] == no_index; side = next(side)) {
+            loops.of_side[side] = number;
+            ++loops.sides[number];
         }
-        if (loop.size() > longest_defect)
-            for (std::size_t side : loop) on_border[side] = 1;
     }
-    return on_border;
+    return loops;
 }
 
-/// Is a connected patch of crossings that the data do not carry to be taken back? Beyond a border always;
-/// beside a mere defect only if the boundary gets shorter, as it does for a fin or a splinter.
-bool ends_beyond(const Crossings& crossings, const Links& links, std::span<const Index> patch,
-                 std::span<const std::uint8_t> on_border) {
-    std::size_t open = 0, bordering = 0;
-    for (Index x : patch)
-        for (std::size_t k = 0; k < 4; ++k) {
-            if (on_border[4 * std::size_t{x} + k]) return true;
-            const Index other = links.of_crossing[x][k].crossing;
-            open += other == no_index;
-            bordering += other != no_index && crossings.crossings[other].supported;
+/// A connected patch of crossings that the data do not carry, and what its sides are.
+struct Patch {
+    std::vector<Index> crossings;
+    std::vector<Index> open;      ///< of each open side, the loop; ascending
+    std::ptrdiff_t bordering = 0; ///< sides joined to crossings that the data carry
+};
+
+/// Patches that a boundary loop reaches.
+std::vector<Patch> find_patches(const Crossings& crossings, const Links& links, const OpenLoops& loops) {
+    const auto& list = crossings.crossings;
+    const auto is_open = [](const Link& link) { return link.crossing == no_index; };
+    std::vector<Patch> patches;
+    std::vector<std::uint8_t> seen(list.size(), 0);
+    for (Index start = 0; start < list.size(); ++start) {
+        const auto& around = links.of_crossing[start];
+        if (list[start].supported || seen[start] || std::none_of(around.begin(), around.end(), is_open))
+            continue;
+        Patch patch{{start}, {}};
+        seen[start] = 1;
+        for (std::size_t i = 0; i < patch.crossings.size(); ++i)
+            for (std::size_t k = 0; k < 4; ++k) {
+                const std::size_t side = 4 * std::size_t{patch.crossings[i]} + k;
+                const Index other = links.of_crossing[side / 4][k].crossing;
+                if (other == no_index)
+                    patch.open.push_back(loops.of_side[side]);
+                else if (list[other].supported)
+                    ++patch.bordering;
+                else if (!std::exchange(seen[other], std::uint8_t{1}))
+                    patch.crossings.push_back(other);
+            }
+        std::sort(patch.open.begin(), patch.open.end());
+        patches.push_back(std::move(patch));
+    }
+    return patches;
+}
+
+/// Per loop, is it too long for a mere defect? What counts is the hole in the data: of a pipe's end that the
+/// surface runs on beyond, the sides that the loop has without the patches beside it.
+std::vector<std::uint8_t> find_borders(const OpenLoops& loops, const std::vector<Patch>& patches) {
+    std::vector<std::ptrdiff_t> outline = loops.sides;
+    for (const Patch& patch : patches)
+        for (auto at = patch.open.begin(); at != patch.open.end();) {
+            const auto end = std::upper_bound(at, patch.open.end(), *at);
+            outline[*at] += patch.bordering - (end - at);
+            at = end;
         }
-    return bordering < open;
+    std::vector<std::uint8_t> is_border(outline.size());
+    for (std::size_t l = 0; l < outline.size(); ++l)
+        is_border[l] = loops.sides[l] > longest_defect || outline[l] > longest_outline;
+    return is_border;
+}
+
+/// Is a patch to be taken back? Beyond a border always; beside a mere defect only if the boundary gets
+/// shorter, as it does for a fin or a splinter.
+bool ends_beyond(const Patch& patch, std::span<const std::uint8_t> is_border) {
+    return std::any_of(patch.open.begin(), patch.open.end(), [&](Index loop) { return is_border[loop] != 0; })
+           || patch.bordering < std::ssize(patch.open);
 }
 
 /// Returns how many.
@@ -223,24 +273,13 @@ std::size_t trim_unsupported(Crossings& crossings, const Links& links) {
         // Hangs by one side at most.
         if (std::count_if(around.begin(), around.end(), is_open) >= 3) list[x].supported = false;
     }
-    const std::vector<std::uint8_t> on_border = on_borders(crossings, links);
-    std::vector<std::uint8_t> seen(list.size(), 0), removed(list.size(), 0);
-    std::vector<Index> patch;
-    for (Index start = 0; start < list.size(); ++start) {
-        const auto& around = links.of_crossing[start];
-        if (list[start].supported || seen[start] || std::none_of(around.begin(), around.end(), is_open))
-            continue;
-        patch.assign(1, start);
-        seen[start] = 1;
-        for (std::size_t i = 0; i < patch.size(); ++i)
-            for (const Link& link : links.of_crossing[patch[i]]) {
-                if (is_open(link) || list[link.crossing].supported || seen[link.crossing]) continue;
-                seen[link.crossing] = 1;
-                patch.push_back(link.crossing);
-            }
-        if (!ends_beyond(crossings, links, patch, on_border)) continue;
-        for (Index x : patch) removed[x] = 1;
-    }
+    const OpenLoops loops = find_open_loops(crossings, links);
+    const std::vector<Patch> patches = find_patches(crossings, links, loops);
+    const std::vector<std::uint8_t> is_border = find_borders(loops, patches);
+    std::vector<std::uint8_t> removed(list.size(), 0);
+    for (const Patch& patch : patches)
+        if (ends_beyond(patch, is_border))
+            for (Index x : patch.crossings) removed[x] = 1;
     const std::size_t count = remove_crossings(removed, crossings);
     crossings.trimmed += count;
     return count;

@@ -52,9 +52,9 @@ Links pair_crossings(const CornerLattice& lattice, const Crossings& crossings, c
                      const RelationTest& related);
 
 /// Takes back the crossings beyond the end of the data: patches of those not supported that a border reaches.
-/// A boundary loop of up to 16 sides is a defect and no border; beside it a patch goes only if that makes the
-/// boundary shorter. A closed surface loses none. Returns the number removed; if it is not 0 the crossings
-/// must be paired again. O(crossings).
+/// A boundary loop of up to 16 sides is a defect and no border if it has at most 20 without the patches
+/// beside it; there a patch goes only if that makes the boundary shorter. A closed surface loses none.
+/// Returns the number removed; if it is not 0 the crossings must be paired again. O(crossings).
 std::size_t trim_unsupported(Crossings& crossings, const Links& links);
 
 /// Takes back the two crossings of an edge that only the tip of a corner or the end of a crease pokes
