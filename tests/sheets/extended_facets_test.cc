@@ -293,6 +293,17 @@ TEST_CASE("a slot at the end of a narrow pipe stays open", "[sheets]") {
     }
 }
 
+TEST_CASE("a round part a few voxels thick is mostly quads", "[sheets]") {
+    std::size_t triangles = 0, facets = 0;
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        const PolygonMesh mesh =
+            facets_of(scan(support::torus(4, 1.2).placed(pose(seed)), 8000, seed), 1).mesh;
+        for (std::size_t f = 0; f < mesh.facet_count(); ++f) triangles += mesh.facet(f).size() == 3;
+        facets += mesh.facet_count();
+    }
+    CHECK(static_cast<double>(triangles) < 0.28 * static_cast<double>(facets));
+}
+
 TEST_CASE("whatever the normals, crossings, joins and chains alone make an oriented 2-manifold",
           "[sheets][slow]") {
     for (std::uint64_t seed = 1; seed <= 12; ++seed) check_unaided(seed, 8000, 0.1);

@@ -149,8 +149,9 @@ private:
     }
 
     /// Where a crease runs across a quad, corner to corner, the quad is cut there: the paper's refinement
-    /// triangles.
+    /// triangles. Folds of less than 30 degrees are those of round parts a voxel or two thick.
     std::size_t crease_diagonal(const std::array<Index, 4>& q) const {
+        constexpr double cos_fold = 0.866, cos_other = 0.95;
         for (std::size_t d = 0; d < 2; ++d) {
             const Index a = q[d], b = q[d + 1], c = q[d + 2], e = q[(d + 3) % 4];
             if (vertices_.kinds[a] == VertexKind::smooth || vertices_.kinds[c] == VertexKind::smooth)
@@ -159,7 +160,7 @@ private:
             const Vec3 m0 = triangle_normal(b, c, e), m1 = triangle_normal(b, e, a);
             const double fold = (n0 | n1) / std::max(n0.norm() * n1.norm(), 1e-300);
             const double other = (m0 | m1) / std::max(m0.norm() * m1.norm(), 1e-300);
-            if (fold <= 0.9 && other <= 0.95) return d;
+            if (fold <= cos_fold && other <= cos_other) return d;
         }
         return 2;
     }
