@@ -31,8 +31,8 @@ struct Topology {
 /// O(facets), flat arrays and one sort.
 Topology measure_topology(const PolygonMesh& mesh);
 
-/// Volume enclosed by a closed mesh, negative if its facets face inwards; of an open one that of the cone over
-/// it from the centre of its box. O(facets), parallel; the same bits for any number of threads.
+/// Volume enclosed by a closed mesh, negative if its facets face inwards; of an open one that of the cone
+/// over it from the centre of its box. O(facets), parallel; the same bits for any number of threads.
 double signed_volume(const PolygonMesh& mesh);
 
 /// Shape of the facets (0 worst, 1 a square).
