@@ -34,6 +34,7 @@ void note_counts(const ExtendedFacets& facets, Report& report) {
     report.rejected["crossings_beyond_data"] = facets.trimmed;
     report.rejected["crossings_at_tips"] = 2 * facets.tips;
     report.rejected["vertices_clamped"] = facets.clamped;
+    report.rejected["corners_merged"] = facets.corners_merged;
     report.rejected["edges_halved"] = facets.midpoints;
     report.rejected["doublets_merged"] = facets.doublets;
     report.rejected["facets_debris"] = facets.debris;

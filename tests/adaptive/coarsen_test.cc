@@ -110,20 +110,24 @@ TEST_CASE("an axis-parallel box becomes as few quads as its corners allow", "[ad
     CHECK(measure_topology(result.mesh).euler == 2);
 }
 
-TEST_CASE("sparse boxes in general pose take few facets", "[adaptive]") {
+TEST_CASE("sparse boxes in general pose have sharp corners and take few facets", "[adaptive]") {
     constexpr std::uint64_t poses = 20;
-    std::size_t facets = 0;
+    std::size_t facets = 0, blunt = 0;
     for (std::uint64_t seed = 1; seed <= poses; ++seed) {
         INFO("seed " << seed);
         const Fine fine = fine_mesh(support::box({1, 1, 1}).placed(pose(seed)), 5000, 4);
         const double voxel = fine.octree.voxel_size(4);
         const double farthest = points_to_mesh(fine.octree.positions, fine.mesh).max;
         CHECK(farthest < 0.3 * voxel);
+        blunt += farthest > 0.05 * voxel;
+        CHECK(faults(fine.mesh) == "");
         const AdaptiveMesh result = coarse(fine, 0.002 * fine.octree.bounds.diagonal());
+        CHECK(faults(result.mesh) == "");
         CHECK(measure_topology(result.mesh).euler == 2);
         facets += result.mesh.facet_count();
     }
-    CHECK(facets <= 160 * poses);
+    CHECK(blunt <= 1);
+    CHECK(facets <= 80 * poses);
 }
 
 TEST_CASE("rims of plates, edges of wedges and rods in general pose take few facets", "[adaptive][slow]") {

@@ -3,6 +3,7 @@
 #include "hsdm/chunks.hh"
 #include "hsdm/facets/doublets.hh"
 #include "hsdm/sheets/settle_crossings.hh"
+#include "hsdm/sheets/shared_corners.hh"
 
 #include <algorithm>
 
@@ -224,6 +225,17 @@ void take_properties(ExtendedFacets& result) {
     result.mesh.properties.clear();
 }
 
+/// Returns how many vertices another took the place of.
+std::size_t merge_corners(std::span<const EdgeCollapse> edges, PolygonMesh& mesh) {
+    const std::vector<std::uint8_t> collapsed = collapse_edges(mesh, edges);
+    std::vector<double>& kinds = mesh.properties[0].values;
+    for (std::size_t i = 0; i < collapsed.size(); ++i)
+        if (collapsed[i]) kinds[edges[i].to] = static_cast<double>(VertexKind::corner);
+    const auto count = static_cast<std::size_t>(std::ranges::count(collapsed, 1));
+    if (count > 0) remove_isolated_vertices(mesh);
+    return count;
+}
+
 } // namespace
 
 ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
@@ -243,6 +255,7 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
         links = pair_crossings(lattice, crossings, sets, related);
     const Fans fans = build_fans(lattice, crossings, links);
     VertexPositions vertices = place_vertices(octree, level, lattice, sets, related, crossings, fans);
+    const std::vector<EdgeCollapse> to_corners = shared_corners(lattice, crossings, fans, h, vertices);
     extend_borders(level, lattice, sets, crossings, fans, vertices);
     relax_vertices(octree, level, lattice, crossings, fans, options.relax, vertices);
     separate_sides(crossings, fans, h, vertices.positions);
@@ -257,6 +270,7 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
 
     result.mesh.positions = std::move(vertices.positions);
     add_properties(vertices, result.mesh);
+    result.corners_merged = merge_corners(to_corners, result.mesh);
     result.debris = drop_debris(result.mesh, options.debris);
     if (options.fill) {
         FillHolesOptions holes = options.holes;

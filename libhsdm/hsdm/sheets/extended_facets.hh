@@ -25,9 +25,10 @@ struct ExtendedFacets {
     std::vector<Index> voxel;      ///< per vertex, the occupied voxel it stands for
     std::size_t crossings = 0, beyond_crease = 0, settled = 0, trimmed = 0, tips = 0, open = 0, rims = 0,
                 cut = 0, clamped = 0;
-    std::size_t midpoints = 0; ///< vertices added so that no two mesh edges join the same two vertices
-    std::size_t doublets = 0;  ///< pairs of facets round one vertex made one
-    std::size_t debris = 0;    ///< facets of splinters, removed
+    std::size_t corners_merged = 0; ///< vertices made one with that of the voxel that holds their corner
+    std::size_t midpoints = 0;      ///< vertices added so that no two mesh edges join the same two vertices
+    std::size_t doublets = 0;       ///< pairs of facets round one vertex made one
+    std::size_t debris = 0;         ///< facets of splinters, removed
     FillHolesCounts holes;
     UntangleCounts intersections;
     ManifoldCounts manifold; ///< what the last check still had to mend

@@ -13,9 +13,10 @@ namespace {
 constexpr std::size_t fans_per_chunk = 1024;
 constexpr double margin = 0.002;         // voxels: vertices stay this far from their voxel's faces
 constexpr double least_singular = 0.003; // eigenvalues below this share of the largest are cut
-constexpr double hold = 0.002;       // of the largest eigenvalue: pull to the mean in directions left open
-constexpr double side_gap = 0.02;    // voxels: half the least distance between two sides cut apart
-constexpr double farthest_out = 0.5; // voxels, of vertices that leave theirs
+constexpr double hold = 0.002;        // of the largest eigenvalue: pull to the mean in directions left open
+constexpr double side_gap = 0.02;     // voxels: half the least distance between two sides cut apart
+constexpr double farthest_out = 0.5;  // voxels, of vertices that leave theirs
+constexpr double clear_corner = 0.03; // voxels: root mean square of what a corner's planes may miss it by
 constexpr double new_sheet_cosine = 0.77; // normals farther apart than 40 degrees belong to different sheets
 
 struct Plane {
@@ -32,20 +33,22 @@ struct Problem {
     double size = 0;
 };
 
-/// How many sheets the planes belong to, at most three.
-int sheet_count(const std::vector<Plane>& planes) {
-    std::array<Vec3, 3> found;
+/// A normal of each sheet the planes belong to, of three at most.
+struct SheetNormals {
+    std::array<Vec3, 3> normals;
     int count = 0;
-    for (const Plane& plane : planes) {
-        bool known = false;
-        for (int i = 0; i < count && !known; ++i)
-            known = (found[static_cast<std::size_t>(i)] | plane.normal) > new_sheet_cosine;
-        if (known) continue;
-        found[static_cast<std::size_t>(count)] = plane.normal;
-        if (++count == 3) break;
+
+    explicit SheetNormals(const std::vector<Plane>& planes) {
+        for (const Plane& plane : planes) {
+            const auto end = normals.begin() + count;
+            if (std::any_of(normals.begin(), end,
+                            [&](const Vec3& n) { return (n | plane.normal) > new_sheet_cosine; }))
+                continue;
+            *end = plane.normal;
+            if (++count == 3) break;
+        }
     }
-    return count;
-}
+};
 
 struct Solution {
     Vec3 position;
@@ -88,6 +91,17 @@ Solution least_squares(const Problem& problem, int most_rank) {
     solution.free = Vec3(free[0], free[1], free[2]);
     solution.steep = Vec3(steep[0], steep[1], steep[2]);
     return solution;
+}
+
+/// Root mean square distance of a point from the planes.
+double misfit(const Vec3& p, const Problem& problem) {
+    double sum = 0, weight = 0;
+    for (const Plane& plane : problem.planes) {
+        const double d = plane.normal | (p - plane.point);
+        sum += plane.weight * d * d;
+        weight += plane.weight;
+    }
+    return std::sqrt(sum / weight);
 }
 
 /// `slack` voxels from the faces; negative: so far beyond them at most.
@@ -151,18 +165,22 @@ public:
           fans_(fans),
           crosses_(crosses) {}
 
+    std::vector<VertexPositions::Beyond> beyond;
+
     void place(Index fan, VertexPositions& result) {
         gather(fan);
         const Index nearest = sets_.sets[crossings_.crossings[fans_.fan(fan)[0] / 4].set].voxel;
         result.voxel[fan] = voxel_ != no_index ? voxel_ : nearest;
-        int sheets = sheet_count(problem_.planes);
+        int sheets = SheetNormals(problem_.planes).count;
         Solution solution = least_squares(problem_, sheets);
         if (sheets == 2 && solution.rank == 2 && add_corner_plane(fan)) {
             sheets = 3;
             solution = least_squares(problem_, sheets);
         }
-        if (!inside(solution.position, problem_) && !may_leave(solution.position))
+        if (!inside(solution.position, problem_) && !may_leave(solution.position)) {
+            note_corner(fan, solution);
             result.is_clamped[fan] = keep_inside(solution);
+        }
         result.positions[fan] = solution.position;
         const bool upward = (solution.steep | problem_.planes[0].normal) > 0;
         result.directions[fan] =
@@ -263,21 +281,46 @@ private:
     /// one. If none of its sheets does so, that voxel has no vertex on them, and this one may lie there; on
     /// the far side of an edge or corner of the voxel if that holds for all voxels around.
     bool may_leave(const Vec3& position) const {
-        VoxelCoord voxel, step;
+        if (!inside(position, problem_, -farthest_out)) return false;
+        const VoxelCoord step = step_to(position);
+        for (unsigned way = 1; way < 8; ++way)
+            if (is_crossed(step, way)) return false;
+        return true;
+    }
+
+    /// For the voxels around, whose own vertices may stand for this corner.
+    void note_corner(Index fan, const Solution& solution) {
+        if (solution.rank < 3 || !inside(solution.position, problem_, -farthest_out)
+            || misfit(solution.position, problem_) > clear_corner * problem_.size)
+            return;
+        const VoxelCoord step = step_to(solution.position);
+        unsigned crossed = 0;
+        for (unsigned way = 1; way < 8; ++way) crossed |= unsigned{is_crossed(step, way)} << way;
+        const auto sheets = SheetNormals(problem_.planes).normals;
+        beyond.push_back({fan, solution.position, sheets, step, static_cast<std::uint8_t>(crossed)});
+    }
+
+    /// To the voxel that a position less than a voxel away lies in.
+    VoxelCoord step_to(const Vec3& position) const {
+        VoxelCoord step;
         for (unsigned k = 0; k < 3; ++k) {
             const double at = (position[k] - problem_.lo[k]) / problem_.size;
-            if (at < -farthest_out || at > 1 + farthest_out) return false;
             step[k] = (at > 1 - margin) - (at < margin);
-            voxel[k] = static_cast<int>(std::lround(problem_.lo[k] / problem_.size));
         }
-        for (unsigned way = 1; way < 8; ++way) {
-            VoxelCoord beside = voxel;
-            bool on_the_way = true;
-            for (unsigned k = 0; k < 3; ++k)
-                if (way >> k & 1u) beside[k] += step[k], on_the_way = on_the_way && step[k] != 0;
-            if (on_the_way && is_crossed(beside)) return false;
+        return step;
+    }
+
+    /// Is there a voxel that many steps away, along the axes of `way`, and does one of the vertex's sheets
+    /// cross an edge of it?
+    bool is_crossed(const VoxelCoord& step, unsigned way) const {
+        VoxelCoord beside;
+        for (unsigned k = 0; k < 3; ++k) {
+            beside[k] = static_cast<int>(std::lround(problem_.lo[k] / problem_.size));
+            if (!(way >> k & 1u)) continue;
+            if (step[k] == 0) return false;
+            beside[k] += step[k];
         }
-        return true;
+        return is_crossed(beside);
     }
 
     /// Does one of the vertex's sheets cross an edge of this voxel?
@@ -375,10 +418,13 @@ VertexPositions place_vertices(const Octree&, const OctreeLevel& level, const Co
     result.voxel.resize(fans.size());
     result.is_clamped.resize(fans.size());
     const auto crosses = sets_that_cross(lattice, sets, related, crossings, fans);
-    for_chunks(fans.size(), fans_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+    std::vector<std::vector<VertexPositions::Beyond>> beyond(chunk_count(fans.size(), fans_per_chunk));
+    for_chunks(fans.size(), fans_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         Placer placer(level, lattice, sets, related, crossings, fans, crosses);
         for (std::size_t v = begin; v < end; ++v) placer.place(static_cast<Index>(v), result);
+        beyond[chunk] = std::move(placer.beyond);
     });
+    result.beyond = joined(beyond);
     result.clamped = static_cast<std::size_t>(std::ranges::count(result.is_clamped, 1));
     return result;
 }

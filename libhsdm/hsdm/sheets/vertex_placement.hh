@@ -16,6 +16,15 @@ struct VertexPositions {
     std::vector<Index> voxel; ///< per fan, its voxel; where no point lies in it, that of the nearest set
     std::vector<std::uint8_t> is_clamped; ///< per fan, kept in its voxel although its planes meet outside
     std::size_t clamped = 0;              ///< how many are
+    /// Corners of three sheets that would lie in the next voxel; their vertices are kept in their own.
+    struct Beyond {
+        Index fan;
+        Vec3 position;
+        std::array<Vec3, 3> normals; ///< of the three sheets
+        VoxelCoord step;             ///< to the voxel it lies in
+        std::uint8_t crossed; ///< bit w: the voxel along the axes of w only has an edge crossed by the sheets
+    };
+    std::vector<Beyond> beyond; ///< by ascending fan
 };
 
 /// Least squares over the planes of the fan's crossings and of the voxel's own sets, towards their mean
