@@ -18,11 +18,13 @@ struct Accuracy {
     double off = 0;          ///< share more than 15 degrees off
 };
 
-/// Estimates the normals of a scan and compares, whatever their sign.
+/// Estimates the normals of a scan, refines them (not with rounds 0) and compares, whatever their sign.
 Accuracy accuracy(const Solid& solid, std::size_t points, const EstimateOptions& options = {},
                   double noise = 0) {
     const Octree octree = build_octree(support::sample(solid, {.points = points, .position_noise = noise}));
-    const EstimatedNormals estimate = estimate_normals(octree, find_neighbors(octree), options);
+    const Neighbors neighbors = find_neighbors(octree);
+    EstimatedNormals estimate = estimate_normals(octree, neighbors, options);
+    if (options.rounds > 0) refine_normals(octree, neighbors, estimate);
     Accuracy result;
     for (std::size_t i = 0; i < octree.size(); ++i) {
         const double angle =

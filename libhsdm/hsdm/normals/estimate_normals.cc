@@ -28,24 +28,25 @@ constexpr double rough = 0.02;
 
 class Estimation {
 public:
-    Estimation(const Octree& octree, const Neighbors& neighbors, const EstimateOptions& options)
-        : octree_(octree), neighbors_(neighbors), options_(options), spread_(octree.size()) {
-        result_.normals.resize(octree.size());
-        result_.tolerance.resize(octree.size());
-    }
+    Estimation(const Octree& octree, const Neighbors& neighbors, EstimatedNormals& result)
+        : octree_(octree), neighbors_(neighbors), result_(result) {}
 
-    EstimatedNormals run() {
+    void run(const EstimateOptions& options) {
+        result_.normals.resize(octree_.size());
+        result_.tolerance.resize(octree_.size());
+        result_.spread.resize(octree_.size());
         fit_all();
         result_.noise = estimate_noise(octree_, neighbors_);
-        choose_tolerance();
+        choose_tolerance(options);
         find_bent();
-        for (int round = 0; round < options_.rounds; ++round)
-            renew([this](Index i) { return best_plane(i); });
-        for (int round = 0; round < options_.rounds; ++round)
+        for (int round = 0; round < options.rounds; ++round) renew([this](Index i) { return best_plane(i); });
+        for (int round = 0; round < options.rounds; ++round)
             renew([this](Index i) { return differs(i, cos_crease) ? averaged(i) : result_.normals[i]; });
-        if (options_.rounds > 0) renew_all([this](Index i) { return curved(i); });
-        if (options_.rounds > 0 && result_.noise > rough) renew_all([this](Index i) { return averaged(i); });
-        return std::move(result_);
+    }
+
+    void refine() {
+        renew_all([this](Index i) { return curved(i); });
+        if (result_.noise > rough) renew_all([this](Index i) { return averaged(i); });
     }
 
 private:
@@ -57,20 +58,20 @@ private:
                 for (Index j : neighbors_.of(i)) sums.add(octree_.positions[j] - octree_.positions[i], 1);
                 const PlaneFit fit = fit_plane(sums);
                 result_.normals[i] = fit.normal;
-                spread_[i] = std::sqrt(fit.variance);
+                result_.spread[i] = std::sqrt(fit.variance);
             }
         });
     }
 
     /// Not below the spread of the flattest neighbour: where the whole neighbourhood is rough, that is no
     /// crease.
-    void choose_tolerance() {
+    void choose_tolerance(const EstimateOptions& options) {
         const double relative =
-            std::clamp(options_.noise_tolerance * result_.noise, options_.least_tolerance, 0.5);
+            std::clamp(options.noise_tolerance * result_.noise, options.least_tolerance, 0.5);
         for_chunks(octree_.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t i = begin; i < end; ++i) {
-                double least = spread_[i];
-                for (Index j : neighbors_.of(i)) least = std::min(least, spread_[j]);
+                double least = result_.spread[i];
+                for (Index j : neighbors_.of(i)) least = std::min(least, result_.spread[j]);
                 const double base = relative * neighbors_.reach[i];
                 result_.tolerance[i] = std::clamp(least, base, 2 * base);
             }
@@ -82,7 +83,7 @@ private:
         for_chunks(octree_.size(), points_per_chunk,
                    [&](std::size_t begin, std::size_t end, std::size_t chunk) {
                        for (std::size_t i = begin; i < end; ++i)
-                           if (spread_[i] > bent_spread * result_.tolerance[i])
+                           if (result_.spread[i] > bent_spread * result_.tolerance[i])
                                found[chunk].push_back(static_cast<Index>(i));
                    });
         result_.bent = joined(found);
@@ -106,7 +107,8 @@ private:
     Vec3 curved(Index i) const {
         const Vec3& own = result_.normals[i];
         const double reach = neighbors_.reach[i];
-        if (spread_[i] < flat_spread * reach || own.sqrnorm() == 0 || differs(i, cos_crease)) return own;
+        if (result_.spread[i] < flat_spread * reach || own.sqrnorm() == 0 || differs(i, cos_crease))
+            return own;
         const Vec3 u = own.cross(std::abs(own[0]) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)).normalized();
         const Vec3 v = own.cross(u);
         const Vec3 x = u / reach, y = v / reach, z = own / reach;
@@ -198,7 +200,7 @@ private:
             const Vec3& other = result_.normals[around.point(k)];
             const double cosine = own | other;
             const double weight = agreement(cosine) * closeness(other | around.offset(k), inverse)
-                                  * closeness(spread_[around.point(k)], inverse);
+                                  * closeness(result_.spread[around.point(k)], inverse);
             sum += other * (cosine < 0 ? -weight : weight);
         }
         return sum.sqrnorm() > 0 ? sum.normalized() : own;
@@ -206,9 +208,7 @@ private:
 
     const Octree& octree_;
     const Neighbors& neighbors_;
-    const EstimateOptions& options_;
-    std::vector<double> spread_; // per point: root mean square distance of its neighbours from their plane
-    EstimatedNormals result_;
+    EstimatedNormals& result_;
 };
 
 void validate(const EstimateOptions& options) {
@@ -226,7 +226,13 @@ void validate(const EstimateOptions& options) {
 EstimatedNormals estimate_normals(const Octree& octree, const Neighbors& neighbors,
                                   const EstimateOptions& options) {
     validate(options);
-    return Estimation(octree, neighbors, options).run();
+    EstimatedNormals result;
+    Estimation(octree, neighbors, result).run(options);
+    return result;
+}
+
+void refine_normals(const Octree& octree, const Neighbors& neighbors, EstimatedNormals& estimate) {
+    Estimation(octree, neighbors, estimate).refine();
 }
 
 } // namespace hsdm

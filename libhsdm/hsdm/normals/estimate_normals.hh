@@ -15,18 +15,23 @@ struct EstimateOptions {
 struct EstimatedNormals {
     std::vector<Vec3> normals;     ///< per point, unit; (0, 0, 0) where the neighbours span no plane
     std::vector<double> tolerance; ///< per point: the distance from a plane that was allowed
-    std::vector<Index> bent;       ///< ascending: the points whose neighbours are not all of one plane
+    std::vector<double> spread; ///< per point: root mean square distance of its neighbours from their plane
+    std::vector<Index> bent;    ///< ascending: the points whose neighbours are not all of one plane
     double noise = 0; ///< typical distance of a point from the plane of its neighbours, over their reach
 };
 
 /// Normals of either sign. A least-squares plane smears the normals over a whole neighbourhood on both sides
 /// of a crease. So where neighbours disagree, every point looks among its neighbours' planes for the one
 /// that, moved to pass through it, holds clearly more of its neighbours than its own does, takes it over and
-/// fits it to those it holds; then points near a crease average over their neighbours of the same face. Away
-/// from creases the plane gives way to a quadratic surface as far as that is the better of the two, and where
-/// points are rough all average over their neighbours of the same face. O(n), parallel. Throws OptionError.
+/// fits it to those it holds; then points near a crease average over their neighbours of the same face. O(n),
+/// parallel. Throws OptionError.
 EstimatedNormals estimate_normals(const Octree& octree, const Neighbors& neighbors,
                                   const EstimateOptions& options = {});
+
+/// Away from creases the plane gives way to a quadratic surface as far as that is the better of the two, and
+/// where points are rough all average over their neighbours of the same face. No normal changes its side; to
+/// be called when these are known, for which planes serve better. O(n), parallel.
+void refine_normals(const Octree& octree, const Neighbors& neighbors, EstimatedNormals& estimate);
 
 /// For normals that are oriented: each point near a crease, or whose normal stands alone, takes the normal
 /// that most of its neighbours on one plane with it agree on. Turns single points that were oriented wrongly.

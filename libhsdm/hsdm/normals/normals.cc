@@ -30,6 +30,7 @@ NormalsReport make_normals(Octree& octree, const NormalsOptions& options) {
     const Neighbors neighbors = choose_neighbors(octree, options.neighbors, std::move(nearest));
     EstimatedNormals estimate = estimate_normals(octree, neighbors, options.estimate);
     report.orientation = orient_normals(octree, neighbors, estimate, orient);
+    refine_normals(octree, neighbors, estimate);
     settle_normals(octree, neighbors, estimate);
     report.noise = estimate.noise;
     report.bent = estimate.bent.size();
