@@ -101,9 +101,9 @@ void check_spread(const Octree& octree) {
     // Far from the origin the coordinates' own last digit is the larger noise.
     const double reach = std::max(octree.bounds.lo.max_abs(), octree.bounds.hi.max_abs());
     const double tolerance = negligible * octree.extent + 4 * std::numeric_limits<double>::epsilon() * reach;
-    if (other != octree.positions.end())
-        for (const Vec3& p : octree.positions)
-            if (((p - first) % (*other - first).normalized()).norm() > tolerance) return;
+    const Vec3 along = other != octree.positions.end() ? (*other - first).normalized() : Vec3(0, 0, 0);
+    for (const Vec3& p : octree.positions)
+        if (((p - first) % along).norm() > tolerance) return;
     throw Error("all points lie on a line; there is no surface in them");
 }
 

@@ -119,3 +119,15 @@ TEST_CASE("whatever edges are asked for, a closed manifold stays one", "[facets]
     for (Index v : mesh.corners) ++facets[v];
     CHECK(*std::min_element(facets.begin(), facets.end()) >= 3);
 }
+
+TEST_CASE("an edge between two borders stays", "[facets]") {
+    PolygonMesh strip;
+    for (int x = 0; x < 3; ++x)
+        for (int y = 0; y < 2; ++y) strip.positions.emplace_back(x, y, 0);
+    strip.add_facet(std::array<Index, 4>{0, 2, 3, 1});
+    strip.add_facet(std::array<Index, 4>{2, 4, 5, 3});
+    const std::array<EdgeCollapse, 1> rung{{{2, 3, Vec3(1, 0.5, 0)}}};
+    CHECK(collapse(strip, rung) == 0);
+    CHECK(strip.facet(0).size() == 4);
+    CHECK(strip.positions[3] == Vec3(1, 1, 0));
+}

@@ -72,6 +72,23 @@ TEST_CASE("normals of noisy points are better than those of least squares", "[no
     }
 }
 
+TEST_CASE("noise between far scan lines is no curvature", "[normals]") {
+    support::Random random(5);
+    PointCloud cloud;
+    for (int line = 0; line < 12; ++line)
+        for (int i = 0; i < 150; ++i)
+            cloud.positions.emplace_back(0.08 * i, line + 0.005 * random.gauss(), 0.01 * random.gauss());
+    const Octree octree = build_octree(cloud);
+    const Neighbors neighbors = find_neighbors(octree);
+    const EstimatedNormals plain = estimate_normals(octree, neighbors);
+    EstimatedNormals refined = plain;
+    refine_normals(octree, neighbors, refined);
+    std::size_t turned = 0;
+    for (std::size_t i = 0; i < octree.size(); ++i)
+        turned += std::abs(plain.normals[i] | refined.normals[i]) < std::cos(15 * degree);
+    CHECK(turned < octree.size() / 200);
+}
+
 TEST_CASE("neighbours on a line give no normal", "[normals]") {
     PointCloud cloud;
     for (int i = 0; i < 100; ++i) cloud.positions.emplace_back(0.01 * i, 0, 0);

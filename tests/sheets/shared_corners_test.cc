@@ -40,7 +40,7 @@ struct Found {
             settle_crossings(lattice, local, sets, find_crossings(lattice, local, sets, related, h), h);
         fans = build_fans(lattice, crossings, pair_crossings(lattice, crossings, sets, related));
         edges = shared_corners(lattice, crossings, fans, h,
-                               place_vertices(octree, level, lattice, sets, related, crossings, fans));
+                               place_vertices(level, lattice, sets, related, crossings, fans));
     }
 
     Vec3 to_local(const Vec3& p) const { return pose.to_local(p + octree.origin); }

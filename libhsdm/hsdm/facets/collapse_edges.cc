@@ -12,6 +12,7 @@ constexpr double least_area = 0.01;     // twice a facet's, over its longest sid
 constexpr double least_share = 0.5;     // of what a facet with less than that had
 constexpr double least_side = 0.01;     // over the longest
 constexpr std::size_t most_corners = 6; // of united facets
+constexpr int most_rounds = 16;
 
 using RingVertices = std::vector<Index>;
 
@@ -139,6 +140,8 @@ private:
         }
         if (both != 2) return false;
         const std::vector<Index> one = neighbours_of(from), other = neighbours_of(to);
+        // Those of a border have one neighbour more than facets; joined, they would pinch the surface.
+        if (one.size() > rings_at(from).size() && other.size() > rings_at(to).size()) return false;
         std::vector<Index> common;
         std::set_intersection(one.begin(), one.end(), other.begin(), other.end(), std::back_inserter(common));
         return common.size() == triangles;
@@ -210,7 +213,7 @@ private:
     Change* across(const Change& flat, Index a, Index b) {
         for (Change& change : changes_) {
             const std::size_t at = find_in(change.after, b);
-            if (&change != &flat && at < change.after.size()
+            if (&change != &flat && change.after.size() > 2 && at < change.after.size()
                 && change.after[(at + 1) % change.after.size()] == a)
                 return &change;
         }
@@ -278,13 +281,13 @@ std::vector<std::uint8_t> collapse_edges(PolygonMesh& mesh, std::span<const Edge
     std::vector<std::uint8_t> collapsed(edges.size(), 0);
     if (edges.empty()) return collapsed;
     Patch patch(mesh, edges);
-    std::size_t before = 0, count = 0;
-    do {
-        before = count;
+    bool changed = true, any = false;
+    for (int round = 0; changed && round < most_rounds; ++round) {
+        changed = false;
         for (std::size_t i = 0; i < edges.size(); ++i)
-            if (!collapsed[i] && patch.collapse(edges[i])) collapsed[i] = 1, ++count;
-    } while (count > before);
-    if (count > 0) patch.write();
+            if (!collapsed[i] && patch.collapse(edges[i])) collapsed[i] = 1, changed = any = true;
+    }
+    if (any) patch.write();
     return collapsed;
 }
 

@@ -23,6 +23,9 @@ constexpr double clear_gain = 1.3;
 constexpr double cos_differing = 0.92, cos_crease = 0.9;
 /// Neighbours that deviate less from their plane, in reaches, tilt it by some 0.2 degrees.
 constexpr double flat_spread = 0.004;
+/// Slopes: a tilt more uncertain than this (six degrees) is not determined by the neighbours, as beside a
+/// scan line without others near by; one above 30 degrees is none of a smooth surface.
+constexpr double most_variance = 0.01, most_square = 0.33;
 /// From this noise on, about a tenth of the spacing, planes of one neighbourhood are two degrees off.
 constexpr double rough = 0.02;
 
@@ -120,7 +123,7 @@ private:
         }
         const HeightFit fit = sums.fit();
         const double square = fit.tilt[0] * fit.tilt[0] + fit.tilt[1] * fit.tilt[1];
-        if (square <= 2 * fit.variance) return own;
+        if (square <= 2 * fit.variance || fit.variance > most_variance || square > most_square) return own;
         const double share = 1 - 2 * fit.variance / square;
         return (own - (u * fit.tilt[0] + v * fit.tilt[1]) * share).normalized();
     }

@@ -254,11 +254,11 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
     for (int round = 0; round < 3 && drop_tips(sets, related, links, crossings) > 0; ++round)
         links = pair_crossings(lattice, crossings, sets, related);
     const Fans fans = build_fans(lattice, crossings, links);
-    VertexPositions vertices = place_vertices(octree, level, lattice, sets, related, crossings, fans);
-    const std::vector<EdgeCollapse> to_corners = shared_corners(lattice, crossings, fans, h, vertices);
+    VertexPositions vertices = place_vertices(level, lattice, sets, related, crossings, fans);
     extend_borders(level, lattice, sets, crossings, fans, vertices);
     relax_vertices(octree, level, lattice, crossings, fans, options.relax, vertices);
     separate_sides(crossings, fans, h, vertices.positions);
+    const std::vector<EdgeCollapse> to_corners = shared_corners(lattice, crossings, fans, h, vertices);
 
     const Midpoints midpoints(lattice, sets, crossings, links, fans, h, vertices);
     result.midpoints = midpoints.count();

@@ -68,7 +68,7 @@ LocalSheets group_local_sheets(const CornerLattice& lattice, const NormalSets& s
                                const RelationTest& related, double voxel_size);
 
 /// Adds the grid points that a sheet needs where it bulges, by less than the sampling shows, out of the
-/// occupied voxels: the ends of the edges it crosses there and the lower corners of the faces beside those
+/// occupied voxels: the ends of the edges it crosses there and the other corners of the faces beside those
 /// edges. The new corners have no members. Returns how many were added.
 std::size_t extend_lattice(CornerLattice& lattice, LocalSheets& sheets, const OctreeLevel& level);
 

@@ -293,11 +293,12 @@ private:
         if (solution.rank < 3 || !inside(solution.position, problem_, -farthest_out)
             || misfit(solution.position, problem_) > clear_corner * problem_.size)
             return;
+        const SheetNormals sheets(problem_.planes);
+        if (sheets.count < 3) return;
         const VoxelCoord step = step_to(solution.position);
         unsigned crossed = 0;
         for (unsigned way = 1; way < 8; ++way) crossed |= unsigned{is_crossed(step, way)} << way;
-        const auto sheets = SheetNormals(problem_.planes).normals;
-        beyond.push_back({fan, solution.position, sheets, step, static_cast<std::uint8_t>(crossed)});
+        beyond.push_back({fan, solution.position, sheets.normals, step, static_cast<std::uint8_t>(crossed)});
     }
 
     /// To the voxel that a position less than a voxel away lies in.
@@ -408,9 +409,8 @@ void separate_sides(const Crossings& crossings, const Fans& fans, double voxel_s
     }
 }
 
-VertexPositions place_vertices(const Octree&, const OctreeLevel& level, const CornerLattice& lattice,
-                               const NormalSets& sets, const RelationTest& related,
-                               const Crossings& crossings, const Fans& fans) {
+VertexPositions place_vertices(const OctreeLevel& level, const CornerLattice& lattice, const NormalSets& sets,
+                               const RelationTest& related, const Crossings& crossings, const Fans& fans) {
     VertexPositions result;
     result.positions.resize(fans.size());
     result.kinds.resize(fans.size());

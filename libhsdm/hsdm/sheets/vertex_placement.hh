@@ -30,9 +30,8 @@ struct VertexPositions {
 /// Least squares over the planes of the fan's crossings and of the voxel's own sets, towards their mean
 /// point, with as many directions as sheets meet (one, two, three). Inside the voxel, or up to half a voxel
 /// beyond where no vertex of the same sheets can be; else kept in it. O(crossings), parallel.
-VertexPositions place_vertices(const Octree& octree, const OctreeLevel& level, const CornerLattice& lattice,
-                               const NormalSets& sets, const RelationTest& related,
-                               const Crossings& crossings, const Fans& fans);
+VertexPositions place_vertices(const OctreeLevel& level, const CornerLattice& lattice, const NormalSets& sets,
+                               const RelationTest& related, const Crossings& crossings, const Fans& fans);
 
 /// The sides of a thin part cut apart in one voxel may end on the same point, and the facets between them
 /// would have no area: such neighbours move apart, each along its own sheet's normal. O(chains cut).
