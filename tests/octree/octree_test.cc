@@ -57,6 +57,21 @@ TEST_CASE("every point lies in the voxel that holds it, at every level", "[octre
     }
 }
 
+TEST_CASE("a level made from a deeper one is that of the points", "[octree]") {
+    const Octree octree = build_octree(random_cloud(5000, 4));
+    for (int deeper : {1, 5, 21})
+        for (int depth : {0, 1, 4, 5}) {
+            if (depth > deeper) continue;
+            const OctreeLevel one = extract_level(octree, depth),
+                              other = coarser_level(extract_level(octree, deeper), depth);
+            CHECK(other.depth == depth);
+            CHECK(other.voxel_size == Approx(one.voxel_size));
+            CHECK(other.codes == one.codes);
+            CHECK(other.first_point == one.first_point);
+            CHECK(other.find(one.codes.back()) == one.size() - 1);
+        }
+}
+
 TEST_CASE("a coordinate without points is not found", "[octree]") {
     PointCloud cloud;
     cloud.positions = {Vec3(0, 0, 0), Vec3(1, 1, 1)};

@@ -150,6 +150,10 @@ Links pair_crossings(const CornerLattice& lattice, const Crossings& crossings, c
 
 namespace {
 
+bool is_open(const Link& link) {
+    return link.crossing == no_index;
+}
+
 /// The boundary loops of the mesh to be.
 struct OpenLoops {
     std::vector<Index> of_side;        ///< per side (4 * crossing + face); no_index: joined
@@ -157,9 +161,7 @@ struct OpenLoops {
 };
 
 OpenLoops find_open_loops(const Crossings& crossings, const Links& links) {
-    const auto open = [&](std::size_t side) {
-        return links.of_crossing[side / 4][side % 4].crossing == no_index;
-    };
+    const auto open = [&](std::size_t side) { return is_open(links.of_crossing[side / 4][side % 4]); };
     // From an open side round the vertex at its end, face by face, to the next open one.
     const auto next = [&](std::size_t side) {
         auto k = static_cast<unsigned>(side % 4);
@@ -198,7 +200,6 @@ struct Patch {
 /// Patches that a boundary loop reaches.
 std::vector<Patch> find_patches(const Crossings& crossings, const Links& links, const OpenLoops& loops) {
     const auto& list = crossings.crossings;
-    const auto is_open = [](const Link& link) { return link.crossing == no_index; };
     std::vector<Patch> patches;
     std::vector<std::uint8_t> seen(list.size(), 0);
     for (Index start = 0; start < list.size(); ++start) {
@@ -267,7 +268,6 @@ std::size_t remove_crossings(std::span<const std::uint8_t> removed, Crossings& c
 
 std::size_t trim_unsupported(Crossings& crossings, const Links& links) {
     auto& list = crossings.crossings;
-    const auto is_open = [](const Link& link) { return link.crossing == no_index; };
     for (Index x = 0; x < list.size(); ++x) {
         const auto& around = links.of_crossing[x];
         // Hangs by one side at most.
