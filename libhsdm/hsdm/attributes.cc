@@ -86,11 +86,14 @@ std::vector<VertexProperty> average_attributes(const PointCloud& cloud, const Oc
 std::vector<VertexProperty> merge_attributes(std::span<const VertexProperty> properties,
                                              std::span<const Index> into, std::size_t count) {
     using Type = VertexProperty::Type;
-    std::vector<Index> first(count + 1, 0), members(into.size());
-    for (Index v : into) ++first[v + 1];
+    std::vector<Index> first(count + 1, 0);
+    for (Index v : into)
+        if (v != no_index) ++first[v + 1];
     std::partial_sum(first.begin(), first.end(), first.begin());
     std::vector<Index> next(first.begin(), first.end() - 1);
-    for (Index v = 0; v < into.size(); ++v) members[next[into[v]]++] = v;
+    std::vector<Index> members(first.back());
+    for (Index v = 0; v < into.size(); ++v)
+        if (into[v] != no_index) members[next[into[v]]++] = v;
     std::vector<VertexProperty> result;
     for (const VertexProperty& property : properties) {
         VertexProperty merged{property.name, property.type, std::vector<double>(count)};

@@ -14,8 +14,8 @@ std::vector<VertexProperty> average_attributes(const PointCloud& cloud, const Oc
 
 /// The same properties for vertices that each stand for many: vertex v's values go into vertex `into[v]` of
 /// `count`. Whole numbers of colour channels (uint8) are rounded means, int32 are labels and decided by
-/// majority, all others means over the finite values. Every vertex has one that goes into it. O(n) per
-/// property.
+/// majority, all others means over the finite values. `no_index` goes nowhere; every vertex has one that goes
+/// into it. O(n) per property.
 std::vector<VertexProperty> merge_attributes(std::span<const VertexProperty> properties,
                                              std::span<const Index> into, std::size_t count);
 

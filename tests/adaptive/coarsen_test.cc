@@ -91,10 +91,11 @@ TEST_CASE("leaves, levels and vertices belong to the mesh", "[adaptive]") {
     REQUIRE(result.leaves_per_level.size() == 6);
     std::size_t leaves = 0;
     for (std::size_t n : result.leaves_per_level) leaves += n;
-    CHECK(leaves <= result.mesh.vertex_count());
+    CHECK(leaves <= result.mesh.vertex_count() + result.merged);
     std::vector<std::uint8_t> seen(result.mesh.vertex_count(), 0);
     for (std::size_t v = 0; v < result.vertex.size(); ++v) {
         const Index coarse = result.vertex[v];
+        if (coarse == no_index) continue;
         REQUIRE(coarse < seen.size());
         seen[coarse] = 1;
         const double leaf = fine.octree.extent / static_cast<double>(1u << result.level[coarse]);
@@ -127,20 +128,21 @@ TEST_CASE("sparse boxes in general pose have sharp corners and take few facets",
         facets += result.mesh.facet_count();
     }
     CHECK(blunt <= 1);
-    CHECK(facets <= 80 * poses);
+    CHECK(facets <= 15 * poses);
 }
 
-TEST_CASE("rims of plates, edges of wedges and rods in general pose take few facets", "[adaptive][slow]") {
+TEST_CASE("plates and wedges and rods in general pose and a shaft take few facets", "[adaptive][slow]") {
     struct Example {
         const char* name;
         support::Solid solid;
         std::size_t most_faces;
     };
     const std::vector<Example> examples = {
-        {"plate of a twentieth", support::box({1, 1, 0.05}).placed(pose(6)), 500},
-        {"plate of a fiftieth", support::box({1, 1, 0.02}).placed(pose(7)), 500},
-        {"rod", support::box({1, 0.06, 0.06}).placed(pose(8)), 250},
-        {"wedge", support::wedge(0.5, 1, 1).placed(pose(9)), 600},
+        {"plate of a twentieth", support::box({1, 1, 0.05}).placed(pose(6)), 20},
+        {"plate of a fiftieth", support::box({1, 1, 0.02}).placed(pose(7)), 50},
+        {"rod", support::box({1, 0.06, 0.06}).placed(pose(8)), 25},
+        {"wedge", support::wedge(0.5, 1, 1).placed(pose(9)), 80},
+        {"shaft", support::cylinder(0.5, 2), 150},
     };
     for (const Example& e : examples) {
         INFO(e.name);

@@ -29,7 +29,8 @@ PolygonMesh sheet(const Height& height) {
 }
 
 TidyCounts tidied(PolygonMesh& mesh, const PolygonMesh& fine, double tolerance = 0.05) {
-    return tidy_facets(mesh, MeshDistance(fine), tolerance, [](Index) { return false; });
+    return tidy_facets(mesh, MeshDistance(fine), tolerance,
+                       std::vector<std::uint8_t>(mesh.vertex_count(), 0));
 }
 
 /// Every quad cut from its first corner.
@@ -92,7 +93,8 @@ TEST_CASE("a triangle without area is no half of a quad", "[adaptive]") {
 TEST_CASE("settled facets stay as they are", "[adaptive]") {
     PolygonMesh mesh = sheet([](double x, double y) { return -std::abs(x - y); });
     const PolygonMesh before = mesh;
-    const TidyCounts counts = tidy_facets(mesh, MeshDistance(before), 0.05, [](Index) { return true; });
+    const TidyCounts counts =
+        tidy_facets(mesh, MeshDistance(before), 0.05, std::vector<std::uint8_t>(mesh.vertex_count(), 1));
     CHECK(counts.flipped == 0);
     CHECK(counts.joined == 0);
     CHECK(mesh.corners == before.corners);

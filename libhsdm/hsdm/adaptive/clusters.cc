@@ -3,7 +3,6 @@
 #include "hsdm/adaptive/parts.hh"
 #include "hsdm/chunks.hh"
 #include "hsdm/disjoint_sets.hh"
-#include "hsdm/facets/area_vector.hh"
 
 #include <tbb/parallel_sort.h>
 
@@ -34,7 +33,7 @@ public:
         }
         tbb::parallel_sort(edges_.begin(), edges_.end());
         edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
-        gather_planes();
+        quadrics_ = vertex_planes(mesh);
     }
 
     std::vector<ClusterLevel> run() {
@@ -46,23 +45,6 @@ public:
     }
 
 private:
-    /// Each vertex has the planes of its facets, by their share of the area.
-    void gather_planes() {
-        quadrics_.resize(mesh_.vertex_count());
-        for (std::size_t v = 0; v < quadrics_.size(); ++v) quadrics_[v].add_point(mesh_.positions[v]);
-        for (std::size_t f = 0; f < mesh_.facet_count(); ++f) {
-            const auto ring = mesh_.facet(f);
-            const Vec3 area = area_vector(mesh_, ring);
-            const double length = area.norm();
-            if (!(length > 0)) continue;
-            Vec3 centre(0, 0, 0);
-            for (Index v : ring) centre += mesh_.positions[v];
-            centre /= static_cast<double>(ring.size());
-            for (Index v : ring)
-                quadrics_[v].add_plane(area / length, centre, length / static_cast<double>(ring.size()));
-        }
-    }
-
     /// Cells whose children are all whole.
     std::vector<std::uint8_t> eligible_cells(std::size_t level) const {
         const CellLevel& below = tree_.levels[level + 1];

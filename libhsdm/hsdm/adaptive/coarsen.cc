@@ -2,39 +2,23 @@
 
 #include "hsdm/adaptive/clusters.hh"
 #include "hsdm/adaptive/dissolve.hh"
+#include "hsdm/adaptive/merge_leaves.hh"
 #include "hsdm/adaptive/tidy.hh"
 #include "hsdm/adaptive/trouble.hh"
 #include "hsdm/chunks.hh"
 #include "hsdm/errors.hh"
-#include "hsdm/facets/straight_corners.hh"
-#include "hsdm/octree/morton_index.hh"
-#include "hsdm/quality/distance.hh"
 #include "hsdm/quality/self_intersections.hh"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
-#include <optional>
 
 namespace hsdm {
 namespace {
 
 constexpr std::size_t vertices_per_chunk = 2048;
-constexpr std::size_t far_per_chunk = 64; // distances of places that are far take long
 constexpr std::size_t fewest_samples = 10000, most_samples = 100000;
+constexpr double spacing = 1; // of places on facets, in voxels of the fine mesh
 constexpr double planes_share =
     0.35; // of the error: what planes of a leaf may be missed by, root mean square
-
-constexpr double reflex = -0.01; // sine of a corner; straight ones do no harm, and a cut costs a facet
-
-constexpr std::uint64_t no_key = 0;
-
-/// A bijection that spreads every bit over all.
-std::uint64_t mixed(std::uint64_t x) {
-    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9ull;
-    x = (x ^ x >> 27) * 0x94d049bb133111ebull;
-    return x ^ x >> 31;
-}
 
 /// A cluster: a vertex of the result.
 struct Place {
@@ -50,17 +34,21 @@ public:
         : fine_(fine),
           points_(points),
           options_(options),
-          tree_(build_cell_tree(fine.positions, extent, depth)) {
+          tree_(build_cell_tree(fine.positions, extent, depth)),
+          check_(fine, points, options.max_error, spacing * extent / static_cast<double>(1u << depth)) {
         clusters_ = build_clusters(fine, tree_, planes_share * options.max_error);
     }
 
     AdaptiveMesh run() {
         int round = 0;
         while (round < options_.rounds && split_what_is_wrong() > 0) ++round;
-        if (round == options_.rounds || result_.points_beyond > result_.unreachable) settle_for_fine();
+        if (round == options_.rounds || result_.points_beyond > result_.unreachable)
+            settle_for_fine();
+        else
+            merge();
         count_leaves();
         const std::size_t samples = std::clamp(2 * result_.mesh.facet_count(), fewest_samples, most_samples);
-        if (to_fine_) result_.to_fine = (*to_fine_)(sample_surface(result_.mesh, samples));
+        result_.to_fine = check_.to_fine()(sample_surface(result_.mesh, samples));
         result_.vertex = std::move(vertex_);
         return std::move(result_);
     }
@@ -74,18 +62,53 @@ private:
         const std::size_t troubled = split_troubled();
         result_.topology_splits += troubled;
         if (troubled > 0) return troubled; // all else needs a 2-manifold
-        tidy();
-        const std::size_t crossing = split_intersecting(), distant = split_distant(crossing == 0);
+        tidy_facets(result_.mesh, check_.to_fine(), tolerance(), own());
+        const std::size_t crossing = split_intersecting(), distant = split_distant();
         result_.intersection_splits += crossing;
         result_.error_splits += distant;
         return crossing + distant;
+    }
+
+    /// Makes do with fewer vertices than leaves.
+    void merge() {
+        LeafMesh leaves{std::move(result_.mesh), std::move(vertex_), own()};
+        MergedLeaves merged =
+            merge_leaves(leaves, vertex_planes(fine_), check_,
+                         {.tolerance = tolerance(), .faults = faults_, .rounds = options_.rounds});
+        result_.mesh = std::move(merged.mesh);
+        result_.merged = leaves.mesh.vertex_count() - result_.mesh.vertex_count();
+        set_beyond(merged.far_points);
+        vertex_ = std::move(leaves.vertex);
+        std::vector<Index> number(coarse_.size(), no_index);
+        const std::vector<Index> nearest = nearest_leaves(leaves.mesh, merged.vertex);
+        for (Index v = 0; v < nearest.size(); ++v) number[nearest[v]] = v;
+        for (Index& v : vertex_) v = number[v];
+        coarse_ = picked(coarse_, nearest);
+    }
+
+    /// Per vertex of the result the nearest of those that were merged there.
+    std::vector<Index> nearest_leaves(const PolygonMesh& leaves, const std::vector<Index>& vertex) const {
+        std::vector<Index> nearest(result_.mesh.vertex_count(), no_index);
+        for (Index leaf = 0; leaf < vertex.size(); ++leaf) {
+            Index& best = nearest[vertex[leaf]];
+            const Vec3& place = result_.mesh.positions[vertex[leaf]];
+            if (best == no_index
+                || (leaves.positions[leaf] - place).sqrnorm() < (leaves.positions[best] - place).sqrnorm())
+                best = leaf;
+        }
+        return nearest;
+    }
+
+    void set_beyond(const FarPoints& far) {
+        result_.points_beyond = far.beyond;
+        result_.unreachable = far.unreachable;
     }
 
     void settle_for_fine() {
         for (CellLevel& level : tree_.levels)
             if (&level != &tree_.levels.back()) level.whole.assign(level.whole.size(), 0);
         collapse();
-        split_distant(true);
+        split_distant();
     }
 
     /// The leaf and the cluster of every fine vertex.
@@ -136,29 +159,20 @@ private:
         }
     }
 
-    /// The vertices taken out are renumbered away; their neighbours take over the fine vertices.
+    /// Their neighbours take over the fine vertices.
     void drop_doublets() {
-        PolygonMesh& mesh = result_.mesh;
-        const std::vector<Index> stands_for = dissolve_doublets(mesh);
-        std::vector<Index> number(stands_for.size(), no_index);
-        Index kept = 0;
-        for (Index v = 0; v < number.size(); ++v) {
-            if (stands_for[v] != v) continue;
-            mesh.positions[kept] = mesh.positions[v];
-            coarse_[kept] = coarse_[v];
-            number[v] = kept++;
-        }
-        mesh.positions.resize(kept);
-        coarse_.resize(kept);
-        for (Index& v : mesh.corners) v = number[v];
-        for (Index& v : vertex_) v = number[stands_for[v]];
+        std::vector<Index> stands_for = dissolve_doublets(result_.mesh);
+        coarse_ = picked(coarse_, drop_replaced(result_.mesh, stands_for));
+        for (Index& v : vertex_) v = stands_for[v];
     }
 
-    void tidy() {
-        if (!to_fine_) to_fine_.emplace(fine_);
-        tidy_facets(result_.mesh, *to_fine_, planes_share * options_.max_error,
-                    [&](Index v) { return coarse_[v].level == tree_.depth(); });
-        cut_straight_corners(result_.mesh, reflex);
+    double tolerance() const { return planes_share * options_.max_error; }
+
+    /// Per vertex of the result, is it one of the fine mesh?
+    std::vector<std::uint8_t> own() const {
+        std::vector<std::uint8_t> result(coarse_.size());
+        for (std::size_t v = 0; v < result.size(); ++v) result[v] = coarse_[v].level == tree_.depth();
+        return result;
     }
 
     /// The simple loops of three vertices and more that are left of a facet whose vertices coincide in part.
@@ -215,189 +229,38 @@ private:
 
     std::size_t split_intersecting() {
         const SelfIntersections found = find_self_intersections(result_.mesh);
+        faults_ = found.facet_pairs.size();
         std::size_t splits = 0;
         for (const auto& pair : found.facet_pairs)
-            for (Index f : pair)
-                for (Index v : result_.mesh.facet(f)) splits += split_at(coarse_[v]);
+            for (Index f : pair) splits += split_facet(f);
         return splits;
     }
 
-    /// The points last, as there are most of them.
-    std::size_t split_distant(bool with_points) {
-        const MeshDistance to_result(result_.mesh);
+    std::size_t split_distant() {
+        const FarPlaces far = check_.find_far(result_.mesh);
         std::size_t splits = 0;
-        find_keys();
-        for (Index v : far_from(to_result, fine_.positions, near_vertex_)) splits += split_at(places_[v]);
-        splits += split_far_vertices() + split_far_facets();
-        return splits > 0 || !with_points ? splits : split_for_points(to_result);
-    }
-
-    /// A facet is the same in two meshes if its corners are the same clusters in the same order: their key,
-    /// as clusters stay where they are.
-    void find_keys() {
-        const PolygonMesh& mesh = result_.mesh;
-        keys_.resize(mesh.facet_count());
-        for_chunks(keys_.size(), vertices_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-            const auto id = [&](Index v) {
-                return static_cast<std::uint64_t>(coarse_[v].level) << 32 | coarse_[v].cluster;
-            };
-            for (std::size_t f = begin; f < end; ++f) {
-                const auto ring = mesh.facet(f);
-                std::size_t least = 0;
-                for (std::size_t i = 1; i < ring.size(); ++i)
-                    if (id(ring[i]) < id(ring[least])) least = i;
-                std::uint64_t key = ring.size();
-                for (std::size_t i = 0; i < ring.size(); ++i)
-                    key = mixed(key ^ id(ring[(least + i) % ring.size()]));
-                keys_[f] = key;
-            }
-        });
-        index_keys(keys_, present_);
-    }
-
-    static void index_keys(std::vector<std::uint64_t> keys, MortonIndex& index) {
-        tbb::parallel_sort(keys.begin(), keys.end());
-        keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-        if (!keys.empty() && keys.front() == no_key) keys.erase(keys.begin());
-        index.build(keys);
-    }
-
-    /// Which of some places are farther from the result than the bound. A place that was near a facet still
-    /// is if the facet has stayed: `near` keeps its key.
-    std::vector<Index> far_from(const MeshDistance& to_result, std::span<const Vec3> places,
-                                std::vector<std::uint64_t>& near) const {
-        near.resize(places.size(), no_key);
-        std::vector<std::vector<Index>> parts(chunk_count(places.size(), vertices_per_chunk));
-        for_chunks(places.size(), vertices_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
-            for (std::size_t i = begin; i < end; ++i)
-                if (present_.find(near[i]) == no_index) parts[c].push_back(static_cast<Index>(i));
-        });
-        const std::vector<Index> doubtful = joined(parts);
-        std::vector<Vec3> at(doubtful.size());
-        for (std::size_t i = 0; i < at.size(); ++i) at[i] = places[doubtful[i]];
-        const std::vector<Index> facets = to_result.facets_within(at, options_.max_error);
-        std::vector<Index> far;
-        for (std::size_t i = 0; i < at.size(); ++i) {
-            near[doubtful[i]] = facets[i] == no_index ? no_key : keys_[facets[i]];
-            if (facets[i] == no_index) far.push_back(doubtful[i]);
-        }
-        return far;
-    }
-
-    /// Vertices of the result, but for the fine mesh's own, against the fine mesh.
-    std::size_t split_far_vertices() {
-        std::vector<Index> moved;
-        std::vector<Vec3> at;
-        for (Index v = 0; v < coarse_.size(); ++v) {
-            if (coarse_[v].level == tree_.depth()) continue;
-            moved.push_back(v);
-            at.push_back(result_.mesh.positions[v]);
-        }
-        if (!to_fine_) to_fine_.emplace(fine_);
-        const std::vector<Index> near = to_fine_->facets_within(at, options_.max_error);
-        std::size_t splits = 0;
-        for (std::size_t i = 0; i < moved.size(); ++i)
-            if (near[i] == no_index) splits += split_at(coarse_[moved[i]]);
+        for (Index v : far.fine_vertices) splits += split_at(places_[v]);
+        for (Index v : far.vertices) splits += split_at(coarse_[v]);
+        for (Index f : far.facets) splits += split_facet(f);
+        const FarPoints points = check_.find_far_points();
+        set_beyond(points);
+        for (Index p : points.points) splits += split_near(points_[p]);
+        faults_ += far.fine_vertices.size() + far.vertices.size() + far.facets.size() + points.points.size();
         return splits;
     }
 
-    /// Vertices at a border: each vertex of a whole fan is as often behind the one in the middle as before
-    /// it.
-    static std::vector<std::uint8_t> border_vertices(const PolygonMesh& mesh) {
-        std::vector<std::int64_t> balance(mesh.vertex_count(), 0);
-        for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-            const auto ring = mesh.facet(f);
-            Index before = ring.back();
-            for (std::size_t i = 0; i < ring.size(); before = ring[i++])
-                balance[ring[i]] += std::int64_t{ring[(i + 1) % ring.size()]} - std::int64_t{before};
-        }
-        std::vector<std::uint8_t> border(balance.size());
-        std::transform(balance.begin(), balance.end(), border.begin(), [](std::int64_t b) { return b != 0; });
-        return border;
-    }
-
-    /// Middles of facets, of their sides, and between middle and corners, against the fine mesh.
-    std::size_t split_far_facets() {
-        const PolygonMesh& mesh = result_.mesh;
-        std::vector<Vec3> middles;
-        std::vector<Index> facet;
-        const std::vector<std::uint8_t> border = border_vertices(mesh);
-        for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-            if (passed_.find(keys_[f]) != no_index) continue;
-            const auto ring = mesh.facet(f);
-            if (std::all_of(ring.begin(), ring.end(),
-                            [&](Index v) { return coarse_[v].level == tree_.depth(); }))
-                continue;
-            Vec3 sum(0, 0, 0);
-            for (Index v : ring) sum += mesh.positions[v];
-            const Vec3 centre = sum / static_cast<double>(ring.size());
-            for (std::size_t i = 0; i < ring.size(); ++i) {
-                const Index next = ring[(i + 1) % ring.size()];
-                const Vec3 &a = mesh.positions[ring[i]], &b = mesh.positions[next];
-                middles.push_back(0.5 * (a + centre));
-                facet.push_back(static_cast<Index>(f));
-                if (ring[i] > next && !(border[ring[i]] && border[next])) continue; // the other facet has it
-                middles.push_back(0.5 * (a + b));
-                facet.push_back(static_cast<Index>(f));
-            }
-            middles.push_back(centre);
-            facet.push_back(static_cast<Index>(f));
-        }
-        const std::vector<Index> near = to_fine_->facets_within(middles, options_.max_error);
+    std::size_t split_facet(Index f) {
         std::size_t splits = 0;
-        std::vector<std::uint64_t> passed = keys_;
-        for (std::size_t i = 0; i < near.size(); ++i) {
-            if (near[i] != no_index) continue;
-            for (Index v : mesh.facet(facet[i])) splits += split_at(coarse_[v]);
-            passed[facet[i]] = no_key;
-        }
-        index_keys(passed, passed_);
+        for (Index v : result_.mesh.facet(f)) splits += split_at(coarse_[v]);
         return splits;
-    }
-
-    std::size_t split_for_points(const MeshDistance& to_result) {
-        const std::vector<Index> far = far_from(to_result, points_, near_point_);
-        measure_to_fine(far);
-        std::vector<Index> missed; // by the fine mesh already
-        std::size_t splits = 0;
-        double farthest = 0;
-        result_.points_beyond = far.size();
-        for (Index p : far) {
-            if (const double off = off_fine_[p]; off > options_.max_error) {
-                missed.push_back(p);
-                farthest = std::max(farthest, off);
-            } else {
-                splits += split_near(p, to_result);
-            }
-        }
-        result_.unreachable = missed.size();
-        // The largest distance of all is the fine mesh's, if that is beyond the bound.
-        std::vector<double> off(missed.size());
-        for_chunks(missed.size(), far_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t i = begin; i < end; ++i) off[i] = to_result(points_[missed[i]]);
-        });
-        for (std::size_t i = 0; i < missed.size(); ++i)
-            if (off[i] > farthest) splits += split_near(missed[i], to_result);
-        return splits;
-    }
-
-    /// Of points that were not measured in a round before.
-    void measure_to_fine(const std::vector<Index>& far) {
-        if (!far.empty()) off_fine_.resize(points_.size(), -1);
-        for_chunks(far.size(), far_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t i = begin; i < end; ++i)
-                if (double& off = off_fine_[far[i]]; off < 0) off = (*to_fine_)(points_[far[i]]);
-        });
     }
 
     /// The leaves around a point; where there are none to subdivide, those of the facet nearest to it.
-    std::size_t split_near(Index p, const MeshDistance& to_result) {
-        std::size_t splits = split_around(points_[p]);
+    std::size_t split_near(const Vec3& point) {
+        const std::size_t splits = split_around(point);
         if (splits > 0) return splits;
-        const Index facet = to_result.nearest_facet(points_[p]);
-        if (facet != no_index)
-            for (Index v : result_.mesh.facet(facet)) splits += split_at(coarse_[v]);
-        return splits;
+        const Index facet = check_.nearest_facet(point);
+        return facet == no_index ? 0 : split_facet(facet);
     }
 
     /// The leaf that holds a point, or else those around it.
@@ -437,11 +300,8 @@ private:
     std::vector<Index> vertex_;  // per fine vertex, the vertex of the result
     std::vector<Place> coarse_;  // per vertex of the result
     std::vector<Index> pinched_; // facets of the fine mesh with opposite corners in one vertex
-    std::optional<MeshDistance> to_fine_;
-    std::vector<std::uint64_t> keys_; // per facet of the result
-    MortonIndex present_, passed_;    // keys of its facets; of those found near the fine mesh
-    std::vector<std::uint64_t> near_vertex_, near_point_; // of a facet that a fine vertex, a point is near to
-    std::vector<double> off_fine_;                        // per point, from the fine mesh; -1: not known
+    BoundCheck check_;
+    std::size_t faults_ = 0; // of the last round, whether leaves could be smaller there or not
     AdaptiveMesh result_;
 };
 

@@ -14,14 +14,17 @@ struct CoarsenOptions {
 };
 
 struct AdaptiveMesh {
-    PolygonMesh mesh;                          ///< an oriented 2-manifold with the fine one's topology
-    std::vector<Index> vertex;                 ///< per fine vertex, the vertex that stands for it
+    PolygonMesh mesh; ///< an oriented 2-manifold with the fine one's topology
+    /// Per fine vertex, the vertex that its leaf's became; no_index where one of another leaf is nearer to
+    /// that.
+    std::vector<Index> vertex;
     std::vector<std::uint8_t> level;           ///< per vertex, the level of its leaf
     std::vector<std::size_t> leaves_per_level; ///< 0 to depth
     std::size_t balance_splits = 0;            ///< cells subdivided to balance the octree
     std::size_t topology_splits = 0;           ///< ... because the surface would not have been a 2-manifold
     std::size_t error_splits = 0;              ///< ... because the error was too large
     std::size_t intersection_splits = 0;       ///< ... because facets intersected
+    std::size_t merged = 0;                    ///< vertices that others stand for, beyond their leaves
     std::size_t points_beyond = 0;             ///< points farther than max_error from the result
     std::size_t unreachable = 0;               ///< of these, so far from the fine mesh already: all of them
     Distance to_fine;                          ///< of points spread over the mesh, from the fine one

@@ -37,4 +37,18 @@ std::vector<Index> dissolve_doublets(PolygonMesh& mesh) {
     return stands_for;
 }
 
+std::vector<Index> drop_replaced(PolygonMesh& mesh, std::vector<Index>& stands_for) {
+    std::vector<Index> kept, number(stands_for.size(), no_index);
+    for (Index v = 0; v < stands_for.size(); ++v) {
+        if (stands_for[v] != v) continue;
+        number[v] = static_cast<Index>(kept.size());
+        mesh.positions[kept.size()] = mesh.positions[v];
+        kept.push_back(v);
+    }
+    mesh.positions.resize(kept.size());
+    for (Index& v : mesh.corners) v = number[v];
+    for (Index& v : stands_for) v = number[v];
+    return kept;
+}
+
 } // namespace hsdm

@@ -13,4 +13,17 @@ namespace hsdm {
 /// each of a few rounds.
 std::vector<Index> dissolve_doublets(PolygonMesh& mesh);
 
+/// The values of the vertices that are kept.
+template <class T>
+std::vector<T> picked(const std::vector<T>& values, const std::vector<Index>& kept) {
+    std::vector<T> result;
+    result.reserve(kept.size());
+    for (Index v : kept) result.push_back(values[v]);
+    return result;
+}
+
+/// Renumbers vertices away for which others stand; `stands_for` has the new numbers afterwards. Returns per
+/// vertex that is left its old number.
+std::vector<Index> drop_replaced(PolygonMesh& mesh, std::vector<Index>& stands_for);
+
 } // namespace hsdm

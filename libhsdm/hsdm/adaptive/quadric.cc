@@ -1,5 +1,7 @@
 #include "hsdm/adaptive/quadric.hh"
 
+#include "hsdm/facets/area_vector.hh"
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -54,6 +56,23 @@ double Quadric::rms(const Vec3& x) const {
     const double xax = a_[0] * x[0] * x[0] + a_[3] * x[1] * x[1] + a_[5] * x[2] * x[2]
                        + 2 * (a_[1] * x[0] * x[1] + a_[2] * x[0] * x[2] + a_[4] * x[1] * x[2]);
     return std::sqrt(std::max(0.0, xax - 2 * (b_ | x) + c_) / weight_);
+}
+
+std::vector<Quadric> vertex_planes(const PolygonMesh& mesh) {
+    std::vector<Quadric> planes(mesh.vertex_count());
+    for (std::size_t v = 0; v < planes.size(); ++v) planes[v].add_point(mesh.positions[v]);
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+        const auto ring = mesh.facet(f);
+        const Vec3 area = area_vector(mesh, ring);
+        const double length = area.norm();
+        if (!(length > 0)) continue;
+        Vec3 centre(0, 0, 0);
+        for (Index v : ring) centre += mesh.positions[v];
+        centre /= static_cast<double>(ring.size());
+        for (Index v : ring)
+            planes[v].add_plane(area / length, centre, length / static_cast<double>(ring.size()));
+    }
+    return planes;
 }
 
 } // namespace hsdm

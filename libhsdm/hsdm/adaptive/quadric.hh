@@ -1,7 +1,7 @@
 #pragma once
 // Sums of squared distances to planes: where a vertex that stands for many lies, and how far off it is.
 
-#include "hsdm/types.hh"
+#include "hsdm/polygon_mesh.hh"
 
 namespace hsdm {
 
@@ -25,5 +25,8 @@ private:
     Vec3 sum_{0, 0, 0};
     double points_ = 0;
 };
+
+/// Per vertex the planes of its facets, each by its share of their area, and the vertex itself.
+std::vector<Quadric> vertex_planes(const PolygonMesh& mesh);
 
 } // namespace hsdm

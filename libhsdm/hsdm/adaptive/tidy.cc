@@ -1,6 +1,8 @@
 #include "hsdm/adaptive/tidy.hh"
 
+#include "hsdm/adaptive/triangle_sides.hh"
 #include "hsdm/chunks.hh"
+#include "hsdm/facets/straight_corners.hh"
 
 #include <tbb/parallel_sort.h>
 
@@ -8,7 +10,6 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <tuple>
 
 namespace hsdm {
 namespace {
@@ -21,6 +22,7 @@ constexpr double least_shape = 0.02; // of an equilateral triangle's: no flip ma
 constexpr double flip_cosine = 0.94; // for shape: normals up to 20 degrees apart
 constexpr double join_cosine = 0.77; // normals of a quad's halves up to 40 degrees apart
 constexpr double least_corner = 0.2; // of a quad's corners: the sine of the sharpest or bluntest angle
+constexpr double reflex = -0.01;     // sine of a corner; straight ones do no harm, and a cut costs a facet
 constexpr double was_quad = 0.3;     // added to the corner's sine of what was a quad before
 
 Vec3 normal(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -36,12 +38,13 @@ double shape(const Vec3& a, const Vec3& b, const Vec3& c) {
 class Tidying {
 public:
     Tidying(PolygonMesh& mesh, const MeshDistance& to_fine, double tolerance,
-            const std::function<bool(Index)>& settled)
+            std::span<const std::uint8_t> settled)
         : mesh_(mesh), to_fine_(to_fine), tolerance_(tolerance), facets_(mesh.vertex_count(), 0) {
         std::vector<std::uint8_t> whole(mesh.facet_count());
         for (std::size_t f = 0; f < whole.size(); ++f) {
             const auto ring = mesh.facet(f);
-            whole[f] = ring.size() > 4 || std::all_of(ring.begin(), ring.end(), settled);
+            whole[f] =
+                ring.size() > 4 || std::all_of(ring.begin(), ring.end(), [&](Index v) { return settled[v]; });
         }
         // A diagonal may be an edge of other facets already: such quads are not cut.
         do cut_all(whole);
@@ -72,8 +75,8 @@ public:
 
 private:
     const Vec3& at(Index v) const { return mesh_.positions[v]; }
-    static Index next(Index s) { return s % 3 == 2 ? s - 2 : s + 1; }
-    static Index previous(Index s) { return s % 3 == 0 ? s + 2 : s - 1; }
+    static Index next(Index s) { return next_side(s); }
+    static Index previous(Index s) { return previous_side(s); }
 
     /// Can the vertex do with a facet less?
     bool spares(Index v) const { return facets_[v] > least_facets_[v]; }
@@ -160,37 +163,11 @@ private:
         }
     }
 
-    /// Side s runs from corner s to next(s). Sides that not just two triangles share stay alone.
     void link() {
-        struct Side {
-            Index low, high, side; // no_index: of a facet that is kept
-            bool operator<(const Side& o) const {
-                return std::tie(low, high, side) < std::tie(o.low, o.high, o.side);
-            }
-        };
-        std::vector<Side> sides;
-        sides.reserve(corners_.size() + kept_.corners.size());
-        const auto enter = [&](Index a, Index b, Index side) {
-            sides.push_back({std::min(a, b), std::max(a, b), side});
-        };
-        for (Index s = 0; s < corners_.size(); ++s) enter(corners_[s], corners_[next(s)], s);
-        for (std::size_t f = 0; f < kept_.facet_count(); ++f) {
-            const auto ring = kept_.facet(f);
-            for (std::size_t i = 0; i < ring.size(); ++i)
-                enter(ring[i], ring[(i + 1) % ring.size()], no_index);
-        }
-        tbb::parallel_sort(sides.begin(), sides.end());
-        twin_.assign(corners_.size(), no_index);
-        least_facets_.assign(mesh_.vertex_count(), 3);
-        for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
-            const Side& first = sides[begin];
-            while (end < sides.size() && sides[end].low == first.low && sides[end].high == first.high) ++end;
-            if (end - begin == 1) least_facets_[first.low] = least_facets_[first.high] = 1; // a border
-            const Index s = first.side, t = sides[end - 1].side;
-            if (end - begin != 2 || t == no_index || corners_[s] == corners_[t]) continue;
-            twin_[s] = t;
-            twin_[t] = s;
-        }
+        TriangleSides sides = link_triangles(corners_, kept_, mesh_.vertex_count());
+        twin_ = std::move(sides.twin);
+        least_facets_.resize(mesh_.vertex_count());
+        for (std::size_t v = 0; v < least_facets_.size(); ++v) least_facets_[v] = sides.border[v] ? 1 : 3;
     }
 
     /// Whether two vertices, the first at this corner, are known to share no edge: its fan must be whole.
@@ -336,8 +313,10 @@ private:
 } // namespace
 
 TidyCounts tidy_facets(PolygonMesh& mesh, const MeshDistance& to_fine, double tolerance,
-                       const std::function<bool(Index)>& settled) {
-    return Tidying(mesh, to_fine, tolerance, settled).run();
+                       std::span<const std::uint8_t> settled) {
+    const TidyCounts counts = Tidying(mesh, to_fine, tolerance, settled).run();
+    cut_straight_corners(mesh, reflex);
+    return counts;
 }
 
 } // namespace hsdm

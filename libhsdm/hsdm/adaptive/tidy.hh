@@ -3,7 +3,7 @@
 
 #include "hsdm/quality/distance.hh"
 
-#include <functional>
+#include <span>
 
 namespace hsdm {
 
@@ -16,9 +16,9 @@ struct TidyCounts {
 /// otherwise so that triangles are well shaped, and joins flat pairs of triangles to convex quads, those
 /// first that are nearest to rectangles. What is no more than `tolerance` (the mesh's units) off the fine
 /// surface, or off a plane, counts as on it. A 2-manifold remains one with the same vertices; facets of which
-/// all vertices are `settled`, and those of more than four corners, stay here (cut_straight_corners, which
-/// follows, looks at all quads). O(corners log corners).
+/// all vertices are `settled`, and those of more than four corners, stay. At the end quads with a reflex
+/// corner, wherever they are, are cut in two. O(corners log corners).
 TidyCounts tidy_facets(PolygonMesh& mesh, const MeshDistance& to_fine, double tolerance,
-                       const std::function<bool(Index)>& settled);
+                       std::span<const std::uint8_t> settled);
 
 } // namespace hsdm

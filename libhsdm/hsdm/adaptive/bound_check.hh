@@ -1,0 +1,58 @@
+#pragma once
+// Where a coarse mesh is farther from a fine one, or from points, than a bound.
+
+#include "hsdm/octree/morton_index.hh"
+#include "hsdm/quality/distance.hh"
+
+#include <optional>
+
+namespace hsdm {
+
+/// What is farther from the other mesh than the bound.
+struct FarPlaces {
+    std::vector<Index> fine_vertices;
+    std::vector<Index> vertices; ///< of the coarse mesh
+    std::vector<Index> facets;   ///< of the coarse mesh
+};
+
+struct FarPoints {
+    std::vector<Index> points;   ///< farther than the bound, and than any is from the fine mesh
+    std::size_t beyond = 0;      ///< all points farther than the bound
+    std::size_t unreachable = 0; ///< ... and from the fine mesh already
+};
+
+/// Compares one mesh after the other with the same fine mesh and points, and measures again only what may
+/// have changed: facets of two meshes are the same if their corners are at the same places.
+class BoundCheck {
+public:
+    /// `fine` and `points` must outlive it; bound > 0. `spacing` > 0: of places looked at on a facet.
+    BoundCheck(const PolygonMesh& fine, std::span<const Vec3> points, double bound, double spacing);
+
+    FarPlaces find_far(const PolygonMesh& mesh);
+
+    /// From the mesh last compared.
+    FarPoints find_far_points();
+    Index nearest_facet(const Vec3& place) const { return to_mesh_->nearest_facet(place); }
+    const Vec3& point(Index p) const { return points_[p]; }
+    const MeshDistance& to_fine() const { return to_fine_; }
+
+private:
+    std::vector<Index> far_from(std::span<const Vec3> places, std::vector<std::uint64_t>& near) const;
+    std::vector<Index> far_vertices(const PolygonMesh& mesh) const;
+    std::vector<Index> far_facets(const PolygonMesh& mesh);
+    void measure_to_fine(const std::vector<Index>& far);
+
+    const PolygonMesh& fine_;
+    std::span<const Vec3> points_;
+    double bound_, spacing_;
+    MeshDistance to_fine_;
+    std::optional<MeshDistance> to_mesh_;
+    MortonIndex fine_names_;           // of places of vertices
+    std::vector<std::uint64_t> names_; // per vertex of the mesh
+    std::vector<std::uint64_t> keys_;  // per facet of the mesh
+    MortonIndex present_, passed_;     // keys of its facets; of those found near the fine mesh
+    std::vector<std::uint64_t> near_vertex_, near_point_; // of a facet that a fine vertex, a point is near to
+    std::vector<double> off_fine_;                        // per point, from the fine mesh; -1: not known
+};
+
+} // namespace hsdm

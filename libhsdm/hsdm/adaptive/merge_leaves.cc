@@ -1,0 +1,140 @@
+#include "hsdm/adaptive/merge_leaves.hh"
+
+#include "hsdm/adaptive/dissolve.hh"
+#include "hsdm/adaptive/merge.hh"
+#include "hsdm/adaptive/tidy.hh"
+#include "hsdm/quality/self_intersections.hh"
+
+#include <algorithm>
+#include <numeric>
+
+namespace hsdm {
+namespace {
+
+constexpr double least_share = 0.2; // of the tolerance: what goes wrong below is not merged
+constexpr double few_leaves = 0.02; // of all: so few need not be merged
+constexpr int most_rings = 4;       // of facets around something wrong
+
+/// What is wrong with a mesh, and the vertices there.
+struct Faults {
+    std::size_t count = 0;
+    std::vector<Index> vertices;
+};
+
+class LeafMerging {
+public:
+    LeafMerging(const LeafMesh& leaves, std::span<const Quadric> planes, BoundCheck& check,
+                const MergeLeavesOptions& options)
+        : leaves_(leaves),
+          check_(check),
+          options_(options),
+          planes_(leaves.mesh.vertex_count()),
+          tolerance_(leaves.mesh.vertex_count(), options.tolerance) {
+        for (std::size_t v = 0; v < planes.size(); ++v) planes_[leaves.vertex[v]] += planes[v];
+    }
+
+    MergedLeaves run() {
+        for (int round = 0; round < options_.rounds; ++round) {
+            merge_once();
+            const Faults faults = find_faults();
+            if (faults.count <= options_.faults) return std::move(result_);
+            if (keep_closer(faults.vertices) == 0) break;
+        }
+        result_.mesh = leaves_.mesh;
+        result_.vertex.resize(leaves_.mesh.vertex_count());
+        std::iota(result_.vertex.begin(), result_.vertex.end(), Index{0});
+        find_faults();
+        return std::move(result_);
+    }
+
+private:
+    void merge_once() {
+        result_.mesh = leaves_.mesh;
+        std::vector<Index> stands_for = merge_vertices(result_.mesh, planes_, tolerance_);
+        std::vector<std::uint8_t> merged(stands_for.size(), 0);
+        for (Index v = 0; v < stands_for.size(); ++v) merged[stands_for[v]] |= stands_for[v] != v;
+        const std::vector<Index> leaf = drop_replaced(result_.mesh, stands_for);
+        result_.vertex = std::move(stands_for);
+        has_merged_ = picked(merged, leaf);
+        // What nothing has changed stays as it is.
+        std::vector<std::uint8_t> settled(leaf.size(), 1);
+        for (Index v : with_neighbours(has_merged_)) settled[v] = 0;
+        tidy_facets(result_.mesh, check_.to_fine(), options_.tolerance, settled);
+    }
+
+    /// Marked vertices, and those that share facets with them.
+    std::vector<Index> with_neighbours(const std::vector<std::uint8_t>& marked) const {
+        std::vector<Index> found;
+        for (std::size_t f = 0; f < result_.mesh.facet_count(); ++f) {
+            const auto ring = result_.mesh.facet(f);
+            if (std::any_of(ring.begin(), ring.end(), [&](Index v) { return marked[v]; }))
+                found.insert(found.end(), ring.begin(), ring.end());
+        }
+        return found;
+    }
+
+    Faults find_faults() {
+        const PolygonMesh& mesh = result_.mesh;
+        Faults faults;
+        const auto blame = [&](Index f) {
+            const auto ring = mesh.facet(f);
+            faults.vertices.insert(faults.vertices.end(), ring.begin(), ring.end());
+        };
+        const FarPlaces far = check_.find_far(mesh);
+        for (Index v : far.fine_vertices) faults.vertices.push_back(result_.vertex[leaves_.vertex[v]]);
+        for (Index v : far.vertices) faults.vertices.push_back(v);
+        for (Index f : far.facets) blame(f);
+        const SelfIntersections found = find_self_intersections(mesh);
+        for (const auto& pair : found.facet_pairs)
+            for (Index f : pair) blame(f);
+        result_.far_points = check_.find_far_points();
+        for (Index p : result_.far_points.points) blame(check_.nearest_facet(check_.point(p)));
+        faults.count = far.fine_vertices.size() + far.vertices.size() + far.facets.size()
+                       + found.facet_pairs.size() + result_.far_points.points.size();
+        return faults;
+    }
+
+    /// What was merged into these vertices is to miss its planes by less or, where nothing was, what was
+    /// merged around them. Returns how many vertices of the leaves that concerns.
+    std::size_t keep_closer(const std::vector<Index>& vertices) {
+        std::vector<std::uint8_t> wrong(result_.mesh.vertex_count(), 0);
+        for (Index v : vertices) wrong[v] = 1;
+        for (int ring = 0; ring < most_rings; ++ring) {
+            if (const std::size_t count = lower_tolerances(wrong); count > 0) return count;
+            for (Index v : with_neighbours(wrong)) wrong[v] = 1;
+        }
+        return 0;
+    }
+
+    std::size_t lower_tolerances(const std::vector<std::uint8_t>& wrong) {
+        std::vector<Index> concerned;
+        for (Index leaf = 0; leaf < tolerance_.size(); ++leaf) {
+            const Index v = result_.vertex[leaf];
+            if (wrong[v] && has_merged_[v] && tolerance_[leaf] > 0) concerned.push_back(leaf);
+        }
+        const bool few =
+            static_cast<double>(concerned.size()) < few_leaves * static_cast<double>(tolerance_.size());
+        for (Index leaf : concerned) {
+            double& tolerance = tolerance_[leaf];
+            tolerance = few || tolerance < least_share * options_.tolerance ? 0 : 0.5 * tolerance;
+        }
+        return concerned.size();
+    }
+
+    const LeafMesh& leaves_;
+    BoundCheck& check_;
+    const MergeLeavesOptions& options_;
+    std::vector<Quadric> planes_;          // per vertex of the leaves
+    std::vector<double> tolerance_;        // ...
+    std::vector<std::uint8_t> has_merged_; // per vertex of the result
+    MergedLeaves result_;
+};
+
+} // namespace
+
+MergedLeaves merge_leaves(const LeafMesh& leaves, std::span<const Quadric> planes, BoundCheck& check,
+                          const MergeLeavesOptions& options) {
+    return LeafMerging(leaves, planes, check, options).run();
+}
+
+} // namespace hsdm
