@@ -17,7 +17,7 @@ TEST_CASE("the report holds every key that scripts rely on, numbers plain", "[re
          {"file", "points", "dropped_nonfinite", "merged_duplicates", "has_normals", "bbox_min", "bbox_max",
           "spacing"}},
         {"grid",
-         {"kind", "depth", "voxel_size", "voxels", "leaves_per_level", "sets", "balance_splits", "max_error",
+         {"kind", "depth", "voxel_size", "voxels", "leaves_per_level", "sets", "balance_splits", "merged", "max_error",
           "points_beyond"}},
         {"mesh",
          {"vertices", "edges", "faces", "triangles", "quads", "larger", "components", "boundary_loops",

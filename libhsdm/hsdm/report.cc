@@ -32,6 +32,7 @@ Json to_json(const Report::Grid& grid) {
             {"leaves_per_level", grid.leaves_per_level},
             {"sets", grid.sets},
             {"balance_splits", grid.balance_splits},
+            {"merged", grid.merged},
             {"max_error", grid.max_error},
             {"points_beyond", grid.points_beyond}};
 }

@@ -27,7 +27,7 @@ struct Report {
         double voxel_size = 0;
         std::size_t voxels = 0;
         std::vector<std::size_t> leaves_per_level; ///< index = level
-        std::size_t sets = 0, balance_splits = 0;
+        std::size_t sets = 0, balance_splits = 0, merged = 0;
         double max_error = 0;          ///< the bound an adaptive grid keeps; 0 for a uniform one
         std::size_t points_beyond = 0; ///< farther than that, from the finest surface already
     } grid;

@@ -40,6 +40,7 @@ PolygonMesh adaptive_grid(const MethodInput& in, std::span<const Vec3> points, c
     report.grid.kind = "adaptive";
     report.grid.leaves_per_level = coarse.leaves_per_level;
     report.grid.balance_splits = coarse.balance_splits;
+    report.grid.merged = coarse.merged;
     report.grid.max_error = bound;
     report.grid.points_beyond = coarse.unreachable;
     report.rejected["leaves_split_for_topology"] = coarse.topology_splits;

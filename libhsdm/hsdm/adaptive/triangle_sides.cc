@@ -1,51 +1,71 @@
 #include "hsdm/adaptive/triangle_sides.hh"
 
-#include <tbb/parallel_sort.h>
+#include "hsdm/chunks.hh"
 
 #include <algorithm>
-#include <tuple>
+#include <numeric>
 
 namespace hsdm {
 namespace {
 
+constexpr std::size_t vertices_per_chunk = 1024;
+
+/// Of sides by their lower vertex.
 struct Side {
-    Index low, high, side; // no_index: of another facet
-    bool operator<(const Side& o) const {
-        return std::tie(low, high, side) < std::tie(o.low, o.high, o.side);
-    }
+    Index high, side; // no_index: of another facet
 };
 
-std::vector<Side> sorted_sides(std::span<const Index> corners, const PolygonMesh& others) {
-    std::vector<Side> sides;
-    sides.reserve(corners.size() + others.corners.size());
-    const auto enter = [&](Index a, Index b, Index side) {
-        sides.push_back({std::min(a, b), std::max(a, b), side});
+struct SidesByVertex {
+    std::vector<std::size_t> first; // per vertex, and the end
+    std::vector<Side> sides;        // by vertex
+};
+
+SidesByVertex gather_sides(std::span<const Index> corners, const PolygonMesh& others,
+                           std::size_t vertex_count) {
+    SidesByVertex by{std::vector<std::size_t>(vertex_count + 1, 0), {}};
+    const auto for_each_side = [&](const auto& visit) {
+        for (Index s = 0; s < corners.size(); ++s) visit(corners[s], corners[next_side(s)], s);
+        for (std::size_t f = 0; f < others.facet_count(); ++f) {
+            const auto ring = others.facet(f);
+            for (std::size_t i = 0; i < ring.size(); ++i)
+                visit(ring[i], ring[(i + 1) % ring.size()], no_index);
+        }
     };
-    for (Index s = 0; s < corners.size(); ++s) enter(corners[s], corners[next_side(s)], s);
-    for (std::size_t f = 0; f < others.facet_count(); ++f) {
-        const auto ring = others.facet(f);
-        for (std::size_t i = 0; i < ring.size(); ++i) enter(ring[i], ring[(i + 1) % ring.size()], no_index);
-    }
-    tbb::parallel_sort(sides.begin(), sides.end());
-    return sides;
+    for_each_side([&](Index a, Index b, Index) { ++by.first[std::min(a, b) + 1]; });
+    std::partial_sum(by.first.begin(), by.first.end(), by.first.begin());
+    by.sides.resize(by.first.back());
+    std::vector<std::size_t> next(by.first.begin(), by.first.end() - 1);
+    for_each_side([&](Index a, Index b, Index side) {
+        by.sides[next[std::min(a, b)]++] = {std::max(a, b), side};
+    });
+    return by;
 }
 
 } // namespace
 
 TriangleSides link_triangles(std::span<const Index> corners, const PolygonMesh& others,
                              std::size_t vertex_count) {
-    const std::vector<Side> sides = sorted_sides(corners, others);
+    SidesByVertex by = gather_sides(corners, others, vertex_count);
     TriangleSides result{std::vector<Index>(corners.size(), no_index),
                          std::vector<std::uint8_t>(vertex_count, 0)};
-    for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
-        const Side& first = sides[begin];
-        while (end < sides.size() && sides[end].low == first.low && sides[end].high == first.high) ++end;
-        if (end - begin == 1) result.border[first.low] = result.border[first.high] = 1;
-        const Index s = first.side, t = sides[end - 1].side;
-        if (end - begin != 2 || t == no_index || corners[s] == corners[t]) continue;
-        result.twin[s] = t;
-        result.twin[t] = s;
-    }
+    for_chunks(vertex_count, vertices_per_chunk, [&](std::size_t low, std::size_t last, std::size_t) {
+        for (; low < last; ++low)
+            std::sort(by.sides.begin() + static_cast<std::ptrdiff_t>(by.first[low]),
+                      by.sides.begin() + static_cast<std::ptrdiff_t>(by.first[low + 1]),
+                      [](const Side& a, const Side& b) {
+                          return a.high != b.high ? a.high < b.high : a.side < b.side;
+                      });
+    });
+    for (Index low = 0; low < vertex_count; ++low)
+        for (std::size_t begin = by.first[low], end = begin; begin < by.first[low + 1]; begin = end) {
+            const Index high = by.sides[begin].high;
+            while (end < by.first[low + 1] && by.sides[end].high == high) ++end;
+            if (end - begin == 1) result.border[low] = result.border[high] = 1;
+            const Index s = by.sides[begin].side, t = by.sides[end - 1].side;
+            if (end - begin != 2 || t == no_index || corners[s] == corners[t]) continue;
+            result.twin[s] = t;
+            result.twin[t] = s;
+        }
     return result;
 }
 

@@ -19,7 +19,7 @@ struct TriangleSides {
 };
 
 /// Sides that not just two triangles share, one running either way, have no twin; nor have those shared with
-/// `others`, facets of the same vertices. O(n log n), parallel in parts.
+/// `others`, facets of the same vertices. O(n), parallel in parts.
 TriangleSides link_triangles(std::span<const Index> corners, const PolygonMesh& others,
                              std::size_t vertex_count);
 
