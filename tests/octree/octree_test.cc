@@ -87,8 +87,10 @@ TEST_CASE("a coordinate without points is not found", "[octree]") {
 TEST_CASE("the octree does not depend on the order of the points or on the number of threads", "[octree]") {
     PointCloud cloud = random_cloud(300000, 3);
     for (std::size_t i = 0; i < 1000; ++i) cloud.positions[i] = cloud.positions[i + 1000]; // duplicates
+    for (std::size_t i = 2000; i < 60000; ++i) cloud.positions[i] *= 1e-4;                 // crowds
     const Octree octree = build_octree(cloud);
     CHECK(octree.merged_duplicates == 1000);
+    CHECK(std::is_sorted(octree.codes.begin(), octree.codes.end()));
 
     std::shuffle(cloud.positions.begin(), cloud.positions.end(), std::mt19937_64(4));
     const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);

@@ -1,5 +1,6 @@
 #include "hsdm/octree/octree.hh"
 
+#include "hsdm/chunks.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/octree/radix_sort.hh"
 
@@ -54,23 +55,37 @@ Vec3 centred_origin(const Box& bounds, double extent) {
     return origin;
 }
 
-/// Runs of equal codes come in the order of the input: sorts each by position, then normal.
-void order_ties(const PointCloud& cloud, bool with_normals, std::vector<CodeIndex>& keys) {
-    auto key = [&](Index i) {
+/// Orders points by code, then position, then normal. Their cells of level 11 are sorted by digits; few
+/// points of a surface share one, and those few are compared.
+void order_points(const PointCloud& cloud, bool with_normals, std::vector<CodeIndex>& keys) {
+    constexpr int in_cell = 3 * (morton_levels - 11);
+    radix_sort(keys, 3 * morton_levels, in_cell);
+    const auto key = [&](Index i) {
         const Vec3& p = cloud.positions[i];
         const Vec3 n = with_normals ? cloud.normals[i] : Vec3(0, 0, 0);
-        return std::tuple(p[0], p[1], p[2], n[0], n[1], n[2]);
+        return std::tuple(p[0], p[1], p[2], n[0], n[1], n[2], i);
     };
-    for (std::size_t begin = 0, end = 0; begin < keys.size(); begin = end) {
-        while (end < keys.size() && keys[end].code == keys[begin].code) ++end;
-        if (end - begin < 2) continue;
-        std::sort(keys.begin() + static_cast<std::ptrdiff_t>(begin),
-                  keys.begin() + static_cast<std::ptrdiff_t>(end),
-                  [&](const CodeIndex& a, const CodeIndex& b) {
-                      const auto ka = key(a.index), kb = key(b.index);
-                      return ka != kb ? ka < kb : a.index < b.index;
-                  });
+    const auto same_cell = [](const CodeIndex& a, const CodeIndex& b) {
+        return a.code >> in_cell == b.code >> in_cell;
+    };
+    std::vector<std::size_t> first(chunk_count(keys.size(), grain) + 1, keys.size()); // cells are not parted
+    for (std::size_t chunk = 0; chunk + 1 < first.size(); ++chunk) {
+        std::size_t i = chunk * grain;
+        if (chunk > 0) i = std::max(i, first[chunk - 1]);
+        while (i > 0 && i < keys.size() && same_cell(keys[i - 1], keys[i])) ++i;
+        first[chunk] = i;
     }
+    tbb::parallel_for(std::size_t{0}, first.size() - 1, [&](std::size_t chunk) {
+        const auto last = keys.begin() + static_cast<std::ptrdiff_t>(first[chunk + 1]);
+        for (auto begin = keys.begin() + static_cast<std::ptrdiff_t>(first[chunk]); begin < last;) {
+            auto end = begin + 1;
+            while (end != last && same_cell(*begin, *end)) ++end;
+            std::sort(begin, end, [&](const CodeIndex& a, const CodeIndex& b) {
+                return a.code != b.code ? a.code < b.code : key(a.index) < key(b.index);
+            });
+            begin = end;
+        }
+    });
 }
 
 /// Removes points equal to their predecessor in position and normal; equal points are neighbours by now.
@@ -113,8 +128,7 @@ Octree build_octree(const PointCloud& cloud, const OctreeOptions& options) {
         for (std::size_t i = range.begin(); i != range.end(); ++i)
             keys[i] = {code_of(cloud.positions[i] - octree.origin, scale), static_cast<Index>(i)};
     });
-    radix_sort(keys, 3 * morton_levels);
-    order_ties(cloud, with_normals, keys);
+    order_points(cloud, with_normals, keys);
     if (options.merge_duplicates) octree.merged_duplicates = merge_equal(cloud, with_normals, keys);
 
     octree.codes.resize(keys.size());
@@ -151,8 +165,7 @@ Octree rearranged(const Octree& octree, const std::vector<Vec3>& positions, doub
             keys[i] = {code_of(moved.positions[i], scale), static_cast<Index>(i)};
         }
     });
-    radix_sort(keys, 3 * morton_levels);
-    order_ties(moved, octree.has_normals(), keys);
+    order_points(moved, octree.has_normals(), keys);
     result.codes.resize(keys.size());
     result.source.resize(keys.size());
     result.positions.resize(keys.size());

@@ -11,7 +11,7 @@ namespace {
 constexpr int digit_bits = 11;
 constexpr std::size_t buckets = std::size_t{1} << digit_bits;
 constexpr std::size_t chunk_size = std::size_t{1}
-                                   << 18; // a chunk's histogram must cost little against its keys
+                                   << 16; // a chunk's histogram must cost little against its keys
 
 using Histogram = std::array<std::size_t, buckets>;
 
@@ -37,12 +37,12 @@ bool counts_to_offsets(std::vector<Histogram>& histograms, std::size_t n) {
 
 } // namespace
 
-void radix_sort(std::vector<CodeIndex>& keys, int bits) {
+void radix_sort(std::vector<CodeIndex>& keys, int high, int low) {
     const std::size_t n = keys.size();
     const std::size_t chunks = (n + chunk_size - 1) / chunk_size;
     std::vector<CodeIndex> buffer(n);
     std::vector<Histogram> histograms(chunks);
-    for (int shift = 0; shift < bits; shift += digit_bits) {
+    for (int shift = low; shift < high; shift += digit_bits) {
         tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
             Histogram& histogram = histograms[chunk];
             histogram.fill(0);

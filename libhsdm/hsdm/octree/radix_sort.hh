@@ -13,8 +13,8 @@ struct CodeIndex {
     Index index;
 };
 
-/// Sorts by the low `bits` bits of the code, least significant digit first, stable. O(n), parallel; one
+/// Sorts by the bits [low, high) of the code, least significant digit first, stable. O(n), parallel; one
 /// buffer of the same size. A digit that is the same everywhere costs one counting pass and no move.
-void radix_sort(std::vector<CodeIndex>& keys, int bits);
+void radix_sort(std::vector<CodeIndex>& keys, int high, int low = 0);
 
 } // namespace hsdm
