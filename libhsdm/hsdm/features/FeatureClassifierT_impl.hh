@@ -42,7 +42,7 @@ FeatureCounts FeatureClassifierT<Mesh>::classify() {
     FeatureCounts counts;
     counts.sharp_edges = count_sharp_edges();
     classify_vertices(normals, counts);
-    write_vertex_normals(mesh_, normals, false);
+    if (options_.write_normals) write_vertex_normals(mesh_, normals, false);
     return counts;
 }
 

@@ -57,7 +57,8 @@ public:
 
     void gather(OpenMesh::VertexHandle v);
 
-    std::span<const FanFacet> facets() const { return facets_; }
+    /// Of the vertex gathered last; an arc tangent for each.
+    std::span<const FanFacet> facets();
     int sharp_edges() const { return sharp_edges_; }
     /// The angle by which the line turns here, if exactly two sharp edges meet; else 0.
     double turn() const { return sharp_edges_ == 2 ? angle_between(-sharp_[0], sharp_[1]) : 0; }
@@ -68,7 +69,6 @@ private:
         int facet = -1; ///< between this spoke and the one before; -1 for a gap
         bool sharp = false;
     };
-    void gather_spokes(OpenMesh::VertexHandle v);
 
     const Mesh& mesh_;
     const std::vector<Vec3>& facet_normals_;

@@ -42,8 +42,9 @@ FacetNeighbours facet_neighbours(const Mesh& mesh, StatusBits bits) {
 }
 
 template <class Mesh>
-void VertexFanT<Mesh>::gather_spokes(OpenMesh::VertexHandle v) {
+void VertexFanT<Mesh>::gather(OpenMesh::VertexHandle v) {
     spokes_.clear();
+    sharp_edges_ = 0;
     const auto first = mesh_.halfedge_handle(v);
     if (!first.is_valid()) return;
     const Vec3 centre = to_vec3(mesh_.point(v));
@@ -51,27 +52,26 @@ void VertexFanT<Mesh>::gather_spokes(OpenMesh::VertexHandle v) {
     do { // clockwise: the facet of h lies between h and the half-edge before it
         spokes_.push_back({to_vec3(mesh_.point(mesh_.to_vertex_handle(h))) - centre,
                            mesh_.face_handle(h).idx(), mesh_.status(mesh_.edge_handle(h)).feature()});
+        if (spokes_.back().sharp) {
+            if (sharp_edges_ < 2) sharp_[static_cast<std::size_t>(sharp_edges_)] = spokes_.back().direction;
+            ++sharp_edges_;
+        }
         h = mesh_.next_halfedge_handle(mesh_.opposite_halfedge_handle(h));
     } while (h != first);
 }
 
 template <class Mesh>
-void VertexFanT<Mesh>::gather(OpenMesh::VertexHandle v) {
-    gather_spokes(v);
+std::span<const FanFacet> VertexFanT<Mesh>::facets() {
     facets_.clear();
-    sharp_edges_ = 0;
     for (std::size_t i = 0; i < spokes_.size(); ++i) {
         const Spoke& spoke = spokes_[i];
         const Spoke& before = spokes_[i == 0 ? spokes_.size() - 1 : i - 1];
-        if (spoke.sharp) {
-            if (sharp_edges_ < 2) sharp_[static_cast<std::size_t>(sharp_edges_)] = spoke.direction;
-            ++sharp_edges_;
-        }
         if (spoke.facet < 0) continue;
         facets_.push_back({facet_normals_[static_cast<std::size_t>(spoke.facet)],
                            angle_between(before.direction, spoke.direction),
                            before.sharp || before.facet < 0});
     }
+    return facets_;
 }
 
 template <class Mesh>

@@ -14,6 +14,8 @@ struct FeatureOptions {
     /// Rounds of normal smoothing, >= 0, that the angle at a sharp edge has to outlast: departs from the
     /// paper's plain dihedral test (0 rounds), which takes a scan's noise for creases (docs/features.md).
     int confirmation_rounds = 3;
+    /// False leaves the vertices' normals to the smoother that comes next.
+    bool write_normals = true;
 };
 
 /// What the classifier found on the mesh (deleted elements and isolated vertices are not counted).
