@@ -6,7 +6,7 @@
 
 namespace hsdm::io {
 
-void advise_huge_pages(const void* memory, std::size_t bytes) {
+void advise_huge_pages(void* memory, std::size_t bytes) {
 #ifdef MADV_HUGEPAGE
     constexpr std::uintptr_t huge_page = std::uintptr_t(1) << 21;
     // Only whole huge pages inside the block: its neighbours in memory are not ours to advise on.
