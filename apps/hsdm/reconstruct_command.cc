@@ -41,7 +41,10 @@ public:
           options_(arguments.options()),
           levels_(arguments.level_range()),
           plan_(arguments),
-          text_(plan_.uses_standard_output() ? std::cerr : std::cout) {}
+          text_(plan_.uses_standard_output() ? std::cerr : std::cout) {
+        options_.measure = !arguments.quiet || !arguments.report.empty();
+        options_.classify = options_.measure || plan_.writes_features();
+    }
 
     int run() {
         for (const std::string& input : arguments_.inputs) {

@@ -127,6 +127,11 @@ MeshTarget OutputPlan::target(const std::string& input, std::optional<int> depth
     return result;
 }
 
+bool OutputPlan::writes_features() const {
+    const bool bare = arguments_.plain || format_ == MeshFormat::off || format_ == MeshFormat::stl;
+    return !bare || !arguments_.features.empty();
+}
+
 bool OutputPlan::uses_standard_output() const {
     return arguments_.output == "-" || arguments_.report == "-" || arguments_.features == "-";
 }

@@ -22,6 +22,9 @@ public:
     /// `depth` is set when --levels names several.
     MeshTarget target(const std::string& input, std::optional<int> depth) const;
 
+    /// True if sharp edges, classes or normals of vertices are written.
+    bool writes_features() const;
+
     /// True if something other than the summary goes to standard output, which must then stay clean.
     bool uses_standard_output() const;
 

@@ -75,13 +75,15 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FeatureHints&
     note_counts(facets, report);
     const bool turned = turn_outward(facets.mesh);
     report.rejected["normals_turned"] = turned ? in.octree.size() : 0;
-    SheetFeatures features = in.phases.run("sheet features", 0.5, report.seconds.features, [&] {
-        return sheet_features(in.octree, in.level, sets, facets.mesh, facets.voxel, in.options.crease_angle,
-                              turned);
-    });
-    report.rejected["edges_bent"] = features.smooth;
-    report.rejected["edges_doubtful"] = features.doubtful;
-    hints = std::move(features.hints);
+    if (in.options.classify) {
+        SheetFeatures features = in.phases.run("sheet features", 0.5, report.seconds.features, [&] {
+            return sheet_features(in.octree, in.level, sets, facets.mesh, facets.voxel,
+                                  in.options.crease_angle, turned);
+        });
+        report.rejected["edges_bent"] = features.smooth;
+        report.rejected["edges_doubtful"] = features.doubtful;
+        hints = std::move(features.hints);
+    }
     facets.mesh.properties = average_attributes(in.cloud, in.octree, in.level, facets.voxel);
     if (!in.options.debug_dir.empty()) {
         PolygonMesh placed = facets.mesh;

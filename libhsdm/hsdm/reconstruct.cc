@@ -300,9 +300,10 @@ std::vector<Vec3> points_as_read(const PointCloud& cloud, const Octree& octree) 
     return points;
 }
 
+/// Distances up to `enough` may come out larger, though not above it.
 void measure_error(std::span<const Vec3> points, const Octree& octree, const PolygonMesh& facets,
-                   Report& report) {
-    const Distance distance = points_to_mesh(points, facets);
+                   double enough, Report& report) {
+    const Distance distance = points_to_mesh(points, facets, enough);
     report.error.points_to_mesh_max = distance.max;
     report.error.points_to_mesh_mean = distance.mean;
     report.error.points_to_mesh_rms = distance.rms;
@@ -315,14 +316,17 @@ void drop_and_measure(const std::vector<Vec3>& points, const Octree& octree,
                       const ReconstructOptions& options, PolygonMesh& facets, FeatureHints& hints,
                       Report& report) {
     const bool bounded = report.grid.max_error > 0;
-    if (bounded || !options.min_component) measure_error(points, octree, facets, report);
+    if (bounded || (options.measure && !options.min_component))
+        measure_error(points, octree, facets, options.measure ? 0 : report.grid.max_error, report);
     check_error_kept(report);
+    if (!options.measure) report.error = {};
     if (options.min_component) {
         const Islands islands = drop_islands(facets, hints, *options.min_component);
         note_islands(islands, report);
-        if (!bounded || islands.components > 0) measure_error(points, octree, facets, report);
+        if (options.measure && (!bounded || islands.components > 0))
+            measure_error(points, octree, facets, 0, report);
     }
-    measure_mesh(facets, report);
+    if (options.measure) measure_mesh(facets, report);
 }
 
 /// Phase 3 on the mesh, in the cloud's own coordinates.
@@ -330,6 +334,7 @@ void find_features(PolyMesh& mesh, const ReconstructOptions& options, const Feat
                    Report& report) {
     FeatureOptions feature_options;
     feature_options.crease_angle = options.crease_angle;
+    feature_options.write_normals = false; // smooth_normals does
     const FeatureCounts counts = classify_features(mesh, feature_options, hints);
     NormalSmoothingOptions smoothing;
     smoothing.rounds = options.normal_smoothing;
@@ -367,7 +372,8 @@ void reconstruct_level(const PointCloud& cloud, const Octree& octree, int depth,
         throw Error("no facet came out of " + std::to_string(level.size()) + " voxels at depth "
                     + std::to_string(depth)
                     + "; try another depth, or check that the points sample a surface");
-    std::vector<Vec3> points = points_as_read(cloud, octree);
+    std::vector<Vec3> points;
+    if (options.measure || wants_adaptive(options)) points = points_as_read(cloud, octree);
     if (wants_adaptive(options)) {
         facets = phases.run("adaptive", 0.5, seconds.facets,
                             [&] { return adaptive_grid(input, points, facets, report); });
@@ -383,8 +389,9 @@ void reconstruct_level(const PointCloud& cloud, const Octree& octree, int depth,
         report.rejected["to_mesh"] = rejected;
         if (rejected > 0) hints = {}; // they are counted by facets
     });
-    phases.run("features", 0.9, seconds.features,
-               [&] { find_features(result.mesh, options, hints, report); });
+    if (options.classify)
+        phases.run("features", 0.9, seconds.features,
+                   [&] { find_features(result.mesh, options, hints, report); });
     report.peak_memory_bytes = peak_memory();
     result.report = std::move(report);
 }

@@ -59,6 +59,9 @@ struct ReconstructOptions {
         0.61;                 ///< radians, (0, pi): dihedral angle above which an edge is sharp (35 degrees)
     int normal_smoothing = 3; ///< rounds of anisotropic normal smoothing, >= 0 (section 3.3)
     int threads = 0;          ///< at most this many; 0: all. The result does not depend on it
+    /// What will not be read need not be computed: a third of the time. The facets are the same.
+    bool classify = true;  ///< phase 3: sharp edges, classes and normals of vertices; else the mesh has none
+    bool measure = true;   ///< the report's error and mesh; else zero, but a bound is checked all the same
     std::string debug_dir; ///< if set, the phases of Fig. 3 (voxels, graph, facets) are written to dN in it,
                            ///< N the depth
     std::function<bool(const char* phase, double done)> progress; ///< done in [0, 1]; return false to cancel

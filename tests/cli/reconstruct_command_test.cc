@@ -47,6 +47,21 @@ TEST_CASE("every format is written under its extension", "[cli]") {
     CHECK(read_file(folder / "plain.ply").size() < read_file(folder / "a.ply").size() / 2);
 }
 
+TEST_CASE("what is written does not depend on what is told", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan(1000)));
+    const std::string command = "reconstruct scan.xyz --depth 3 ";
+    for (const char* format : {"off", "stl", "ply", "off --features f", "off --report r"}) {
+        INFO(format);
+        CHECK(run(folder, command + "--quiet -o quiet --format " + format).status == 0);
+        CHECK(run(folder, command + "-o told --format " + format).status == 0);
+        CHECK(read_file(folder / "quiet") == read_file(folder / "told"));
+    }
+    const std::string features = read_file(folder / "f");
+    CHECK(run(folder, command + "--quiet -o quiet --format off --features f").status == 0);
+    CHECK(read_file(folder / "f") == features);
+}
+
 TEST_CASE("the resolution follows the spacing of the points when none is asked for, and says why", "[cli]") {
     const Folder folder;
     folder.write("scan.xyz", xyz(sphere_scan()));

@@ -142,6 +142,8 @@ TEST_CASE("many points give the largest, mean and rms distance and the farthest 
     CHECK(distance.farthest == farthest);
     CHECK(distance.mean == Approx(sum / 5000).epsilon(1e-12));
     CHECK(distance.rms == Approx(std::sqrt(squares / 5000)).epsilon(1e-12));
+    for (const double bound : {0.5 * max, std::nextafter(max, 0), max, 2 * max})
+        CHECK((points_to_mesh(points, mesh, bound).max > bound) == (max > bound));
 }
 
 TEST_CASE("distances are the same bits with one thread and with many", "[distance]") {

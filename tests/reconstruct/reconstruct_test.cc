@@ -99,6 +99,27 @@ TEST_CASE("the report agrees with the mesh", "[reconstruct]") {
           == Approx(result.report.error.points_to_mesh_max / result.report.input.bbox.diagonal()));
 }
 
+TEST_CASE("what nobody asks for is left out and changes no facet", "[reconstruct]") {
+    const PointCloud cloud = scan(support::mechanical_part(), 10000);
+    ReconstructOptions all, bare;
+    bare.classify = bare.measure = false;
+    for (const bool bounded : {false, true}) {
+        if (bounded) all.max_error = bare.max_error = MaxError{0.005, true};
+        const Reconstruction full = reconstruct(cloud, all), facets = reconstruct(cloud, bare);
+        const PolygonMesh expected = to_polygons(full.mesh), mesh = to_polygons(facets.mesh);
+        CHECK((mesh.positions == expected.positions));
+        CHECK((mesh.corners == expected.corners));
+        CHECK((mesh.first == expected.first));
+        CHECK(full.report.features.sharp_edges > 0);
+        CHECK(full.report.error.points_to_mesh_max > 0);
+        CHECK(full.report.mesh.faces == full.mesh.n_faces());
+        CHECK(facets.report.features.sharp_edges == 0);
+        CHECK(facets.report.error.points_to_mesh_max == 0);
+        CHECK(facets.report.mesh.faces == 0);
+        CHECK(facets.report.grid.max_error == full.report.grid.max_error);
+    }
+}
+
 TEST_CASE("the mesh does not depend on threads or on the order of the points", "[reconstruct]") {
     PointCloud cloud = scan(support::mechanical_part(), 20000);
     ReconstructOptions options = at_depth(5);

@@ -28,7 +28,7 @@ double MeshDistance::operator()(const Vec3& point) const {
     return std::sqrt(tree_.nearest(point).squared);
 }
 
-Distance MeshDistance::operator()(std::span<const Vec3> points) const {
+Distance MeshDistance::operator()(std::span<const Vec3> points, double enough) const {
     Distance distance;
     if (points.empty()) return distance;
     std::vector<Sums> chunks((points.size() + chunk - 1) / chunk);
@@ -36,7 +36,7 @@ Distance MeshDistance::operator()(std::span<const Vec3> points) const {
         Sums sums;
         Index hint = no_index;
         for (std::size_t i = c * chunk; i < std::min(points.size(), (c + 1) * chunk); ++i) {
-            const TriangleTree::Nearest nearest = tree_.nearest(points[i], hint);
+            const TriangleTree::Nearest nearest = tree_.nearest(points[i], hint, enough * enough);
             hint = nearest.block;
             const double d = std::sqrt(nearest.squared);
             sums.sum += d;
@@ -76,8 +76,8 @@ std::vector<Index> MeshDistance::facets_within(std::span<const Vec3> points, dou
     return facets;
 }
 
-Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh) {
-    return MeshDistance(mesh)(points);
+Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh, double enough) {
+    return MeshDistance(mesh)(points, enough);
 }
 
 std::vector<Vec3> sample_surface(const PolygonMesh& mesh, std::size_t count) {

@@ -24,8 +24,9 @@ public:
     /// Distance from a point to the nearest triangle; infinity if the mesh has no facet.
     double operator()(const Vec3& point) const;
     /// All points; parallel, quickest when neighbours in the list are neighbours in space, the same bits for
-    /// any number of threads. Zero for an empty list.
-    Distance operator()(std::span<const Vec3> points) const;
+    /// any number of threads. Zero for an empty list. Distances up to `enough` may come out larger, though
+    /// never above it: whether a bound is kept is known several times sooner than by how much.
+    Distance operator()(std::span<const Vec3> points, double enough = 0) const;
     /// Per point a facet no farther than `bound`, or no_index if there is none. Several times quicker than
     /// distances where few are.
     std::vector<Index> facets_within(std::span<const Vec3> points, double bound) const;
@@ -41,7 +42,8 @@ private:
 };
 
 /// Every point against its nearest triangle, through the tree; parallel, the same bits for any thread count.
-Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh);
+/// `enough` as above.
+Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh, double enough = 0);
 
 /// Points spread evenly over the mesh's area, deterministic: for the other direction of a Hausdorff distance.
 std::vector<Vec3> sample_surface(const PolygonMesh& mesh, std::size_t count);
