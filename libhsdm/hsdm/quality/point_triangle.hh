@@ -18,14 +18,14 @@ struct NearestOfTriangle {
 /// A triangle made ready to be asked for many points.
 class Triangle {
 public:
-    Triangle(const Vec3& a, const Vec3& b, const Vec3& c) : a_(a), ab_(b - a), ac_(c - a) {
-        normal_ = ab_ % ac_;
-        const double area = normal_.sqrnorm();
-        if (!(area >= std::numeric_limits<double>::min())) return;
-        per_area_ = 1 / area;
-        towards_b_ = (ac_ % normal_) * per_area_;
-        towards_c_ = (normal_ % ab_) * per_area_;
-    }
+    Triangle(const Vec3& a, const Vec3& b, const Vec3& c)
+        : a_(a),
+          ab_(b - a),
+          ac_(c - a),
+          normal_(ab_ % ac_),
+          per_area_(reciprocal(normal_.sqrnorm())),
+          towards_b_((ac_ % normal_) * per_area_),
+          towards_c_((normal_ % ab_) * per_area_) {}
 
     bool has_area() const { return per_area_ > 0; }
 
@@ -59,9 +59,11 @@ public:
     }
 
 private:
+    static double reciprocal(double x) { return x >= std::numeric_limits<double>::min() ? 1 / x : 0; }
+
     Vec3 a_, ab_, ac_, normal_;
-    Vec3 towards_b_{0, 0, 0}, towards_c_{0, 0, 0}; // gradients of the barycentric coordinates
-    double per_area_ = 0;                          // one over four times the area squared
+    double per_area_;            // one over four times the area squared, 0 if there is none
+    Vec3 towards_b_, towards_c_; // gradients of the barycentric coordinates
 };
 
 } // namespace hsdm

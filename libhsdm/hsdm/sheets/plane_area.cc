@@ -18,16 +18,20 @@ struct Polygon {
     }
 };
 
-Polygon clipped(const Polygon& polygon, const HalfSpace& keep) {
-    Polygon result;
+/// Replaces `result` by the part of a polygon whose corners have no positive height.
+template <class Height>
+void clip(const Polygon& polygon, const Height& height, Polygon& result) {
+    result.size = 0;
+    if (polygon.size == 0) return;
+    double da = height(polygon.corners[0]);
     for (std::size_t i = 0; i < polygon.size; ++i) {
         const Vec3& a = polygon.corners[i];
-        const Vec3& b = polygon.corners[(i + 1) % polygon.size];
-        const double da = (keep.normal | a) - keep.offset, db = (keep.normal | b) - keep.offset;
+        const Vec3& b = polygon.corners[i + 1 < polygon.size ? i + 1 : 0];
+        const double db = height(b);
         if (da <= 0) result.add(a);
         if ((da < 0 && db > 0) || (da > 0 && db < 0)) result.add(a + (b - a) * (da / (da - db)));
+        da = db;
     }
-    return result;
 }
 
 double area(const Polygon& polygon) {
@@ -55,14 +59,18 @@ Polygon covering_square(const Vec3& normal, double offset, const Vec3& lo, doubl
 
 double plane_area(const Vec3& normal, double offset, const Vec3& lo, double size,
                   std::span<const HalfSpace> clips) {
-    Polygon polygon = covering_square(normal, offset, lo, size);
+    Polygon polygon = covering_square(normal, offset, lo, size), part;
     for (unsigned axis = 0; axis < 3; ++axis) {
-        Vec3 up(0, 0, 0);
-        up[axis] = 1;
-        polygon = clipped(polygon, {up, lo[axis] + size});
-        polygon = clipped(polygon, {-up, -lo[axis]});
+        clip(
+            polygon, [&](const Vec3& p) { return p[axis] - (lo[axis] + size); }, part);
+        clip(
+            part, [&](const Vec3& p) { return lo[axis] - p[axis]; }, polygon);
     }
-    for (const HalfSpace& clip : clips) polygon = clipped(polygon, clip);
+    for (const HalfSpace& half : clips) {
+        clip(
+            polygon, [&](const Vec3& p) { return (half.normal | p) - half.offset; }, part);
+        polygon = part;
+    }
     return area(polygon);
 }
 

@@ -15,6 +15,8 @@ constexpr double doubt = 2;                // times the variance that squared ri
 
 /// A triangle of the facets round a vertex.
 struct Around {
+    Around(const std::vector<Vec3>& at, Index a, Index b, Index c)
+        : triangle(at[a], at[b], at[c]), corners{a, b, c} {}
     Triangle triangle;
     std::array<Index, 3> corners;
 };
@@ -27,15 +29,12 @@ struct Foot {
 
 /// Appends the triangles round a vertex, two of each facet.
 void list_triangles(Index fan, const Fans& fans, const std::vector<Vec3>& at, std::vector<Around>& around) {
-    const auto add = [&](Index a, Index b, Index c) {
-        around.push_back({Triangle(at[a], at[b], at[c]), {a, b, c}});
-    };
     for (Node node : fans.fan(fan)) {
         const Index x = node / 4;
         const unsigned j = node % 4, next = (j + 1) % 4, across = (j + 2) % 4, before = (j + 3) % 4;
         const Index opposite = fans.at(x, across, across);
-        add(fan, fans.at(x, next, j), opposite);
-        add(fan, opposite, fans.at(x, before, before));
+        around.emplace_back(at, fan, fans.at(x, next, j), opposite);
+        around.emplace_back(at, fan, opposite, fans.at(x, before, before));
     }
 }
 
