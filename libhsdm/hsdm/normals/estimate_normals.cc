@@ -145,13 +145,14 @@ private:
         });
     }
 
-    /// How many neighbours the plane with this normal holds that passes through the point.
-    static double support(const Neighborhood& around, const Vec3& normal, double inverse) {
-        double sum = 0;
+    /// How many neighbours the planes with these normals hold that pass through the point.
+    static Double2 support(const Neighborhood& around, const VectorPair& normal, double inverse) {
+        Double2 sum{};
         for (std::size_t k = 0; k < around.size(); ++k) sum += closeness(normal | around.offset(k), inverse);
         return sum;
     }
-    /// The same for the parallel plane through the centroid, on which a bent sheet lies better.
+    /// The same for one normal and the parallel plane through the centroid, on which a bent sheet lies
+    /// better.
     static double centred_support(const Neighborhood& around, const Vec3& normal, double inverse) {
         double mean = 0;
         for (std::size_t k = 0; k < around.size(); ++k) mean += normal | around.offset(k);
@@ -167,12 +168,16 @@ private:
         if (!differs(i, cos_differing)) return own;
         const Neighborhood around(octree_, neighbors_, i);
         const double inverse = 1 / result_.tolerance[i];
-        double most =
-            clear_gain * std::max(support(around, own, inverse), centred_support(around, own, inverse));
+        double most = clear_gain
+                      * std::max(support(around, VectorPair(own, own), inverse)[0],
+                                 centred_support(around, own, inverse));
         const Vec3* best = &own;
-        for (std::size_t k = 0; k < around.size(); ++k) {
-            const Vec3& candidate = result_.normals[around.point(k)];
-            if (const double s = support(around, candidate, inverse); s > most) most = s, best = &candidate;
+        for (std::size_t k = 0; k < around.size(); k += 2) {
+            const std::array<const Vec3*, 2> candidates{&result_.normals[around.point(k)],
+                                                        &result_.normals[around.point(around.after(k))]};
+            const Double2 found = support(around, VectorPair(*candidates[0], *candidates[1]), inverse);
+            for (std::size_t lane = 0; lane < 2; ++lane)
+                if (found[lane] > most) most = found[lane], best = candidates[lane];
         }
         return best == &own ? own : refitted(around, *best, inverse);
     }

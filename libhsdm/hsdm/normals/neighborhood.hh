@@ -3,6 +3,7 @@
 // them.
 
 #include "hsdm/normals/neighbors.hh"
+#include "hsdm/quality/lanes.hh"
 
 #include <array>
 
@@ -13,12 +14,29 @@ inline double closeness(double residual, double inverse_tolerance) {
     const double t = residual * inverse_tolerance, u = std::max(0.0, 1 - t * t);
     return u * u;
 }
+inline Double2 closeness(Double2 residual, double inverse_tolerance) {
+    const Double2 u = 1 - square(residual * inverse_tolerance);
+    return square(u > 0 ? u : Double2{});
+}
 
 /// Of two normals by their cosine: 1 for the same direction, 0 from 33 degrees on.
+constexpr double least_agreement = 0.7;
 inline double agreement(double cosine) {
-    constexpr double least = 0.7;
-    return std::max(0.0, cosine * cosine - least) / (1 - least);
+    return std::max(0.0, cosine * cosine - least_agreement) / (1 - least_agreement);
 }
+inline Double2 agreement(Double2 cosine) {
+    return max_lanes(Double2{}, cosine * cosine - least_agreement) / (1 - least_agreement);
+}
+
+/// Two vectors side by side: what is asked of one is asked of both at once.
+class VectorPair {
+public:
+    VectorPair(const Vec3& a, const Vec3& b) : lanes_{{{a[0], b[0]}, {a[1], b[1]}, {a[2], b[2]}}} {}
+    Double2 operator|(const Vec3& v) const { return lanes_[0] * v[0] + lanes_[1] * v[1] + lanes_[2] * v[2]; }
+
+private:
+    std::array<Double2, 3> lanes_;
+};
 
 /// The neighbours of one point as seen from it.
 class Neighborhood {
@@ -30,6 +48,8 @@ public:
     }
     std::size_t size() const { return around_.size(); }
     Index point(std::size_t k) const { return around_[k]; }
+    /// The next one, or the last.
+    std::size_t after(std::size_t k) const { return std::min(k + 1, size() - 1); }
     const Vec3& offset(std::size_t k) const { return offsets_[k]; }
 
 private:

@@ -56,15 +56,18 @@ std::vector<std::uint8_t> find_outliers(const Octree& octree, const Neighbors& n
     const double typical = median(all);
     std::vector<std::uint8_t> found(octree.size(), 0);
     for_chunks(octree.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        std::vector<double> around;
         for (std::size_t i = begin; i < end; ++i) {
-            const double reach = neighbors.reach[i];
-            around.clear();
-            for (Index n : neighbors.of(i)) around.push_back(neighbors.reach[n]);
-            const double stretch = reach / median(around), sparseness = reach / typical;
-            if (stretch > options.most_stretch || sparseness > options.most_sparseness)
+            const double reach = neighbors.reach[i], sparseness = reach / typical;
+            const auto around = neighbors.of(i);
+            // Is the reach more times the neighbours' median? Then it is so for more than half of them.
+            const auto is_stretched = [&](double times) {
+                std::size_t count = 0;
+                for (Index n : around) count += reach / neighbors.reach[n] > times;
+                return count > around.size() / 2;
+            };
+            if (sparseness > options.most_sparseness || is_stretched(options.most_stretch))
                 found[i] = 1;
-            else if (stretch > options.doubtful_stretch || sparseness > options.doubtful_sparseness)
+            else if (sparseness > options.doubtful_sparseness || is_stretched(options.doubtful_stretch))
                 found[i] = is_off_surface(octree, neighbors, i, options);
         }
     });

@@ -24,22 +24,28 @@ public:
 
     Vec3 settled(const Vec3& own) const {
         Vec3 best = own;
-        double most = clear_gain * support(own) + least_support;
-        for (std::size_t k = 0; k < around_.size(); ++k)
-            if (const double s = support(normal(k)); s > most) most = s, best = normal(k);
+        double most = clear_gain * support(VectorPair(own, own))[0] + least_support;
+        for (std::size_t k = 0; k < around_.size(); k += 2) {
+            const std::array<std::size_t, 2> places{k, around_.after(k)};
+            const Double2 found = support(VectorPair(normal(places[0]), normal(places[1])));
+            for (std::size_t lane = 0; lane < 2; ++lane)
+                if (found[lane] > most) most = found[lane], best = normal(places[lane]);
+        }
         Vec3 sum = best * 0.5;
-        for (std::size_t k = 0; k < around_.size(); ++k) sum += normal(k) * weight(best, k);
+        for (std::size_t k = 0; k < around_.size(); ++k)
+            sum += normal(k) * weight(VectorPair(best, best), k)[0];
         return sum.sqrnorm() > 0 ? sum.normalized() : own;
     }
 
 private:
     const Vec3& normal(std::size_t k) const { return normals_[around_.point(k)]; }
-    double weight(const Vec3& n, std::size_t k) const {
-        const double cosine = n | normal(k);
-        return cosine > 0 ? agreement(cosine) * closeness(n | around_.offset(k), inverse_) : 0;
+    Double2 weight(const VectorPair& n, std::size_t k) const {
+        const Double2 cosine = n | normal(k);
+        const Double2 all = agreement(cosine) * closeness(n | around_.offset(k), inverse_);
+        return cosine > 0 ? all : Double2{};
     }
-    double support(const Vec3& n) const {
-        double sum = 0;
+    Double2 support(const VectorPair& n) const {
+        Double2 sum{};
         for (std::size_t k = 0; k < around_.size(); ++k) sum += weight(n, k);
         return sum;
     }
