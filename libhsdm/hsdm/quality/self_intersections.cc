@@ -1,6 +1,7 @@
 #include "hsdm/quality/self_intersections.hh"
 
 #include "hsdm/facets/weld.hh"
+#include "hsdm/quality/flat_fans.hh"
 #include "hsdm/quality/triangle_tree.hh"
 #include "hsdm/quality/triangles_meet.hh"
 
@@ -23,6 +24,7 @@ public:
           facet_(facet_of_triangle(cut_)),
           welded_(weld(mesh.positions)),
           tree_(mesh.positions, cut_.triangles),
+          flat_(flat_fans(mesh.positions, cut_.triangles, welded_)),
           collinear_(cut_.size()) {
         tbb::parallel_for(std::size_t{0}, cut_.size(),
                           [&](std::size_t t) { collinear_[t] = is_collinear(place(t).corner); });
@@ -60,9 +62,17 @@ private:
         return placed;
     }
 
+    bool share_flat_fan(std::size_t a, std::size_t b) const {
+        for (Index p : cut_.triangles[a])
+            for (Index q : cut_.triangles[b])
+                if (welded_[p] == welded_[q] && flat_[welded_[p]]) return true;
+        return false;
+    }
+
     void test(const std::vector<TrianglePair>& candidates, std::vector<FacetPair>& found) const {
         for (const auto& [a, b] : candidates) {
-            if (collinear_[a] || collinear_[b] || !triangles_meet(place(a), place(b))) continue;
+            if (share_flat_fan(a, b) || collinear_[a] || collinear_[b] || !triangles_meet(place(a), place(b)))
+                continue;
             const auto [lesser, greater] = std::minmax(facet_[a], facet_[b]);
             found.push_back({lesser, greater});
         }
@@ -72,6 +82,7 @@ private:
     Triangulation cut_;
     std::vector<Index> facet_, welded_;
     TriangleTree tree_;
+    std::vector<std::uint8_t> flat_;
     std::vector<unsigned char> collinear_;
 };
 

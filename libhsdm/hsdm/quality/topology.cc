@@ -2,6 +2,7 @@
 
 #include "hsdm/disjoint_sets.hh"
 #include "hsdm/facets/triangulate.hh"
+#include "hsdm/quality/mix.hh"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -187,14 +188,6 @@ std::size_t count_degenerate(const PolygonMesh& mesh) {
             degenerate[f] = is_degenerate(mesh, mesh.facet(f));
     });
     return static_cast<std::size_t>(std::count(degenerate.begin(), degenerate.end(), 1));
-}
-
-/// Mixes a vertex index well enough that sums of mixed indices tell vertex sets apart (splitmix64).
-std::uint64_t mix(std::uint64_t x) {
-    x += 0x9e3779b97f4a7c15ull;
-    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9ull;
-    x = (x ^ x >> 27) * 0x94d049bb133111ebull;
-    return x ^ x >> 31;
 }
 
 std::size_t count_duplicates(const PolygonMesh& mesh) {

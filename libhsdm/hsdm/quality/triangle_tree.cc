@@ -245,10 +245,12 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3& given, Index hint, doubl
 Index TriangleTree::nearest_in(Index block, const Vec3& given) const {
     const Vec3 point = given - centre_;
     const std::array<Double2, 3> spread{Double2{} + point[0], Double2{} + point[1], Double2{} + point[2]};
+    const std::array<Double2, 2> pairs{squared_distances(blocks_[block][0], spread),
+                                       squared_distances(blocks_[block][1], spread)};
     double least = infinity;
     std::size_t best = 0;
     for (std::size_t lane = 0; lane < width; ++lane) {
-        const double squared = squared_distances(blocks_[block][lane / 2], spread)[lane % 2];
+        const double squared = pairs[lane / 2][lane % 2];
         if (squared < least) least = squared, best = lane;
     }
     return triangle_of_[std::min(block * width + best, triangle_of_.size() - 1)];
