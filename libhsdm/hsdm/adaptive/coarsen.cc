@@ -47,8 +47,11 @@ public:
         else
             merge();
         count_leaves();
-        const std::size_t samples = std::clamp(2 * result_.mesh.facet_count(), fewest_samples, most_samples);
-        result_.to_fine = check_.to_fine()(sample_surface(result_.mesh, samples));
+        if (options_.measure) {
+            const std::size_t samples =
+                std::clamp(2 * result_.mesh.facet_count(), fewest_samples, most_samples);
+            result_.to_fine = check_.to_fine()(sample_surface(result_.mesh, samples));
+        }
         result_.vertex = std::move(vertex_);
         return std::move(result_);
     }

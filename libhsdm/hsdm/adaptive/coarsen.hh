@@ -10,7 +10,8 @@ namespace hsdm {
 struct CoarsenOptions {
     /// The mesh's units, > 0: how far the coarse surface may lie from the fine one, and points from it.
     double max_error = 0;
-    int rounds = 24; ///< of looking for what is wrong and subdividing there, >= 1
+    int rounds = 24;     ///< of looking for what is wrong and subdividing there, >= 1
+    bool measure = true; ///< else `to_fine` stays zero
 };
 
 struct AdaptiveMesh {

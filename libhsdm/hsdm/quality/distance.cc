@@ -56,8 +56,8 @@ Distance MeshDistance::operator()(std::span<const Vec3> points, double enough) c
 }
 
 Index MeshDistance::nearest_facet(const Vec3& point) const {
-    const Index block = tree_.nearest(point).block;
-    return block == no_index ? no_index : facet_[tree_.nearest_in(block, point)];
+    const Index triangle = tree_.nearest(point).triangle;
+    return triangle == no_index ? no_index : facet_[triangle];
 }
 
 bool MeshDistance::is_beyond(const Vec3& point, double bound, Index& hint) const {
@@ -70,8 +70,11 @@ std::vector<Index> MeshDistance::facets_within(std::span<const Vec3> points, dou
     std::vector<Index> facets(points.size(), no_index);
     tbb::parallel_for(std::size_t{0}, (points.size() + chunk - 1) / chunk, [&](std::size_t c) {
         Index hint = no_index;
-        for (std::size_t i = c * chunk; i < std::min(points.size(), (c + 1) * chunk); ++i)
-            if (!is_beyond(points[i], bound, hint)) facets[i] = facet_[tree_.nearest_in(hint, points[i])];
+        for (std::size_t i = c * chunk; i < std::min(points.size(), (c + 1) * chunk); ++i) {
+            const TriangleTree::Nearest nearest = tree_.nearest(points[i], hint, bound * bound);
+            hint = nearest.block;
+            if (std::sqrt(nearest.squared) <= bound) facets[i] = facet_[nearest.triangle];
+        }
     });
     return facets;
 }

@@ -200,12 +200,15 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3& given, Index hint, doubl
     double rounding = 0;
     for (unsigned k = 0; k < 3; ++k) rounding += std::abs(point[k] - static_cast<double>(p[k]));
     float limit = infinity;
+    std::size_t lane = 0; // of the nearest
     auto look_at = [&](Index block) {
-        const Double2 pairs = min_lanes(squared_distances(blocks_[block][0], spread),
-                                        squared_distances(blocks_[block][1], spread));
+        const Double2 one = squared_distances(blocks_[block][0], spread),
+                      other = squared_distances(blocks_[block][1], spread), pairs = min_lanes(one, other);
         const double squared = std::min(pairs[0], pairs[1]);
         if (!(squared < best.squared)) return;
-        best = {squared, block};
+        best.squared = squared;
+        best.block = block;
+        lane = one[0] == squared ? 0 : one[1] == squared ? 1 : other[0] == squared ? 2 : 3;
         const double reach = std::sqrt(squared) + rounding;
         limit = static_cast<float>(1.00001 * reach * reach) + std::numeric_limits<float>::min();
     };
@@ -239,21 +242,9 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3& given, Index hint, doubl
             stack[at] = {squared[i], static_cast<Index>(width * entry.child + i), entry.level - 1};
         }
     }
+    if (best.block != no_index)
+        best.triangle = triangle_of_[std::min(best.block * width + lane, triangle_of_.size() - 1)];
     return best;
-}
-
-Index TriangleTree::nearest_in(Index block, const Vec3& given) const {
-    const Vec3 point = given - centre_;
-    const std::array<Double2, 3> spread{Double2{} + point[0], Double2{} + point[1], Double2{} + point[2]};
-    const std::array<Double2, 2> pairs{squared_distances(blocks_[block][0], spread),
-                                       squared_distances(blocks_[block][1], spread)};
-    double least = infinity;
-    std::size_t best = 0;
-    for (std::size_t lane = 0; lane < width; ++lane) {
-        const double squared = pairs[lane / 2][lane % 2];
-        if (squared < least) least = squared, best = lane;
-    }
-    return triangle_of_[std::min(block * width + best, triangle_of_.size() - 1)];
 }
 
 TriangleTree::LaneBoxes TriangleTree::boxes_of(const Pair& pair) const {

@@ -20,18 +20,15 @@ public:
     /// O(t log t), parallel; the same tree for any number of threads. Nothing given need outlive it.
     TriangleTree(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
 
-    /// A squared distance and the block that holds the nearest triangle.
+    /// A squared distance, the nearest triangle, and the block that holds it.
     struct Nearest {
         double squared = std::numeric_limits<double>::infinity();
-        Index block = no_index;
+        Index block = no_index, triangle = no_index;
     };
     /// Nearest triangle to a point in the mesh's own coordinates. `hint` is a block to begin with (the answer
     /// for a point nearby), or no_index: it changes the time, never the distance. Any triangle whose squared
     /// distance is no more than `enough` will do.
     Nearest nearest(const Vec3& point, Index hint = no_index, double enough = 0) const;
-
-    /// The triangle of a block that is nearest to a point.
-    Index nearest_in(Index block, const Vec3& point) const;
 
     /// Replaces `pairs` by all pairs of triangles whose boxes overlap or touch, one of the pair being in
     /// `block` and the other in it or a later one. Over all blocks every such pair comes once.
