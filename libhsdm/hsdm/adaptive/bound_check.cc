@@ -2,6 +2,7 @@
 
 #include "hsdm/chunks.hh"
 #include "hsdm/facets/triangulate.hh"
+#include "hsdm/quality/mix.hh"
 
 #include <tbb/parallel_sort.h>
 
@@ -17,13 +18,6 @@ constexpr std::size_t places_per_chunk = 2048;
 constexpr std::size_t far_per_chunk = 64; // distances of places that are far take long
 constexpr std::uint64_t no_key = 0;
 
-/// A bijection that spreads every bit over all.
-std::uint64_t mixed(std::uint64_t x) {
-    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9ull;
-    x = (x ^ x >> 27) * 0x94d049bb133111ebull;
-    return x ^ x >> 31;
-}
-
 /// Numbers that are the same for the same places.
 std::vector<std::uint64_t> names_of(std::span<const Vec3> places) {
     std::vector<std::uint64_t> names(places.size());
@@ -31,7 +25,7 @@ std::vector<std::uint64_t> names_of(std::span<const Vec3> places) {
         for (std::size_t i = begin; i < end; ++i) {
             names[i] = 1;
             for (unsigned k = 0; k < 3; ++k)
-                names[i] = mixed(names[i] ^ std::bit_cast<std::uint64_t>(places[i][k]));
+                names[i] = mix(names[i] ^ std::bit_cast<std::uint64_t>(places[i][k]));
         }
     });
     return names;
@@ -48,7 +42,7 @@ std::vector<std::uint64_t> facet_keys(const PolygonMesh& mesh, std::span<const s
                 if (names[ring[i]] < names[ring[least]]) least = i;
             std::uint64_t key = ring.size();
             for (std::size_t i = 0; i < ring.size(); ++i)
-                key = mixed(key ^ names[ring[(least + i) % ring.size()]]);
+                key = mix(key ^ names[ring[(least + i) % ring.size()]]);
             keys[f] = key;
         }
     });

@@ -13,9 +13,9 @@ class MortonIndex {
 public:
     /// The codes must be different from each other. O(n).
     void build(const std::vector<MortonCode>& codes) {
-        const std::size_t slots = std::bit_ceil(std::max<std::size_t>(2 * codes.size(), 2));
+        const std::size_t slots = std::bit_ceil(std::max<std::size_t>(2 * codes.size(), 2 * siblings));
         slots_.assign(slots, Slot{0, no_index});
-        shift_ = 64 - std::countr_zero(slots);
+        shift_ = 64 - std::countr_zero(slots / siblings);
         for (std::size_t i = 0; i < codes.size(); ++i) {
             std::size_t slot = slot_of(codes[i]);
             while (slots_[slot].position != no_index) slot = (slot + 1) & (slots - 1);
@@ -36,10 +36,13 @@ private:
         MortonCode code;
         Index position;
     };
-    /// Fibonacci hashing: the high bits of the product are well mixed.
+    /// Fibonacci hashing of the parent's code: the high bits of the product are well mixed. Siblings lie side
+    /// by side, as who asks for one soon asks for others.
     std::size_t slot_of(MortonCode code) const {
-        return static_cast<std::size_t>((code * 0x9e3779b97f4a7c15ull) >> shift_);
+        return static_cast<std::size_t>((code / siblings * 0x9e3779b97f4a7c15ull) >> shift_) * siblings
+               + code % siblings;
     }
+    static constexpr std::size_t siblings = 8;
 
     std::vector<Slot> slots_; // a power of two, load at most one half
     int shift_ = 0;
