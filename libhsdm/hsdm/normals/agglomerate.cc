@@ -8,9 +8,21 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <ranges>
 
 namespace hsdm {
 namespace {
+
+struct Joint {
+    Index root, joined;
+    std::int8_t sign; ///< of the joined one's tree relative to the root's
+};
+
+/// What was joined in a round, and the evidence, between the roots before it, that it was joined by.
+struct Round {
+    std::vector<SignedEdge> edges;
+    std::vector<Joint> joints;
+};
 
 /// Union-find that knows every node's sign relative to its root.
 class SignedForest {
@@ -32,15 +44,15 @@ public:
         }
         return root;
     }
-    /// Joins the trees of two nodes, the larger root below the smaller; false if they are one already.
-    bool join(Index a, Index b, int relation) {
+    /// Joins the trees of two nodes, the larger root below the smaller; the joint's ends are the same if
+    /// they are one tree already.
+    Joint join(Index a, Index b, int relation) {
         int sign_a = 1, sign_b = 1;
         Index root_a = find(a, sign_a), root_b = find(b, sign_b);
-        if (root_a == root_b) return false;
         if (root_b < root_a) std::swap(root_a, root_b);
-        parent_[root_b] = root_a;
-        sign_[root_b] = static_cast<std::int8_t>(relation * sign_a * sign_b);
-        return true;
+        const auto sign = static_cast<std::int8_t>(relation * sign_a * sign_b);
+        if (root_a != root_b) parent_[root_b] = root_a, sign_[root_b] = sign;
+        return {root_a, root_b, sign};
     }
 
 private:
@@ -95,9 +107,10 @@ std::vector<Index> picked_edges(const std::vector<SignedEdge>& edges, std::size_
     return best;
 }
 
-/// Names the edges' ends by their roots, turns the evidence with them and drops what became internal.
-void contract(std::vector<SignedEdge>& edges, SignedForest& forest) {
-    std::size_t kept = 0;
+/// The edges between the roots of their ends, the evidence turned with these; without what became internal.
+std::vector<SignedEdge> contracted(const std::vector<SignedEdge>& edges, SignedForest& forest) {
+    std::vector<SignedEdge> result;
+    result.reserve(edges.size());
     for (SignedEdge e : edges) {
         int sign_a = 1, sign_b = 1;
         e.a = forest.find(e.a, sign_a);
@@ -105,25 +118,102 @@ void contract(std::vector<SignedEdge>& edges, SignedForest& forest) {
         if (e.a == e.b) continue;
         if (e.b < e.a) std::swap(e.a, e.b);
         e.weight *= static_cast<float>(sign_a * sign_b);
-        edges[kept++] = e;
+        result.push_back(e);
     }
-    edges.resize(kept);
+    return result;
 }
+
+std::vector<Round> join_all(SignedForest& forest, std::vector<SignedEdge> edges, std::size_t nodes) {
+    std::vector<Round> rounds;
+    while (!edges.empty()) {
+        sort_and_merge(edges, nodes);
+        std::vector<Joint> joints;
+        for (Index e : picked_edges(edges, nodes)) {
+            const Joint joint = forest.join(edges[e].a, edges[e].b, edges[e].weight < 0 ? -1 : 1);
+            if (joint.root != joint.joined) joints.push_back(joint);
+        }
+        if (joints.empty()) break;
+        std::vector<SignedEdge> rest = contracted(edges, forest);
+        rounds.push_back({std::move(edges), std::move(joints)});
+        edges = std::move(rest);
+    }
+    return rounds;
+}
+
+/// Turns nodes that the sum of all their evidence contradicts, of two neighbours the more contradicted one,
+/// which may settle the other. The agreement summed over all edges only grows.
+class Improvement {
+public:
+    explicit Improvement(std::vector<std::int8_t>& sign) : sign_(sign), support_(sign.size()), mark_(sign.size(), Mark::stays) {}
+
+    void run(const std::vector<SignedEdge>& edges) {
+        constexpr int sweeps = 8;
+        for (const SignedEdge& e : edges) support_[e.a] = support_[e.b] = 0;
+        for (const SignedEdge& e : edges) {
+            const double agreement = agreement_of(e);
+            support_[e.a] += agreement;
+            support_[e.b] += agreement;
+        }
+        for (int sweep = 0; sweep < sweeps && find_contradicted(edges); ++sweep) {
+            mark();
+            turn();
+        }
+    }
+
+private:
+    enum class Mark : std::int8_t { stays, held, turns };
+
+    double agreement_of(const SignedEdge& e) const {
+        return static_cast<double>(e.weight) * sign_[e.a] * sign_[e.b];
+    }
+    /// The edges of contradicted nodes: all that a turn concerns.
+    bool find_contradicted(const std::vector<SignedEdge>& edges) {
+        contradicted_.clear();
+        for (const SignedEdge& e : edges)
+            if (support_[e.a] < 0 || support_[e.b] < 0) contradicted_.push_back(e);
+        return !contradicted_.empty();
+    }
+    void mark() {
+        for (const SignedEdge& e : contradicted_) {
+            for (Index v : {e.a, e.b})
+                if (support_[v] < 0 && mark_[v] == Mark::stays) mark_[v] = Mark::turns;
+            if (support_[e.a] < 0 && support_[e.b] < 0)
+                mark_[support_[e.b] < support_[e.a] ? e.a : e.b] = Mark::held;
+        }
+    }
+    void turn() {
+        for (const SignedEdge& e : contradicted_) {
+            if (mark_[e.a] != Mark::turns && mark_[e.b] != Mark::turns) continue;
+            const double change = 2 * agreement_of(e);
+            support_[e.a] -= change;
+            support_[e.b] -= change;
+        }
+        for (const SignedEdge& e : contradicted_)
+            for (Index v : {e.a, e.b}) {
+                if (mark_[v] == Mark::turns) sign_[v] = static_cast<std::int8_t>(-sign_[v]);
+                mark_[v] = Mark::stays;
+            }
+    }
+
+    std::vector<std::int8_t>& sign_;
+    std::vector<double> support_;
+    std::vector<Mark> mark_;
+    std::vector<SignedEdge> contradicted_;
+};
 
 } // namespace
 
 Signs agglomerate(std::size_t nodes, std::vector<SignedEdge> edges) {
     SignedForest forest(nodes);
-    while (!edges.empty()) {
-        sort_and_merge(edges, nodes);
-        bool joined_any = false;
-        for (Index e : picked_edges(edges, nodes))
-            joined_any |= forest.join(edges[e].a, edges[e].b, edges[e].weight < 0 ? -1 : 1);
-        if (!joined_any) break;
-        contract(edges, forest);
-    }
+    std::vector<Round> rounds = join_all(forest, std::move(edges), nodes);
     Signs result;
-    result.sign.resize(nodes);
+    result.sign.assign(nodes, 1);
+    Improvement improvement(result.sign);
+    for (; !rounds.empty(); rounds.pop_back()) {
+        for (const Joint& joint : std::views::reverse(rounds.back().joints))
+            result.sign[joint.joined] = static_cast<std::int8_t>(result.sign[joint.root] * joint.sign);
+        improvement.run(rounds.back().edges);
+    }
     result.component.resize(nodes);
     std::vector<Index> number(nodes, no_index);
     for (Index v = 0; v < nodes; ++v) {
@@ -131,7 +221,6 @@ Signs agglomerate(std::size_t nodes, std::vector<SignedEdge> edges) {
         const Index root = forest.find(v, sign);
         if (number[root] == no_index) number[root] = static_cast<Index>(result.components++);
         result.component[v] = number[root];
-        result.sign[v] = static_cast<std::int8_t>(sign);
     }
     return result;
 }

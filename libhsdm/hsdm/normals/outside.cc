@@ -153,17 +153,21 @@ std::vector<std::int8_t> classify(std::size_t regions, const std::vector<Sights>
     return kind;
 }
 
-/// Sheets in a row along a ray face alternately forward and back.
+/// Sheets in a row along a ray face alternately forward and back: surely if the ray meets the sheet head-on,
+/// as patch_evidence weighs a pair of points, while a sheet that begins beside the ray, as the next tread of
+/// a stair, says nothing.
 std::vector<SignedEdge> facing_patches(const std::vector<Sights>& seen, const Patches& patches) {
-    constexpr double least_cosine = 0.7;
     std::vector<SignedEdge> edges;
     for (Index p = 0; p < seen.size(); ++p)
         for (const Sight& sight : seen[p]) {
             const Index q = sight.point == no_index ? no_index : patches.of_point[sight.point];
             if (q == no_index || q == p) continue;
+            const Vec3 d = patches.centroids[q] - patches.centroids[p];
             const double cosine = patches.normals[p] | patches.normals[q];
-            if (std::abs(cosine) < least_cosine) continue;
-            const auto weight = static_cast<float>(patches.counts[p]);
+            const double mirrored =
+                cosine - 2 * (patches.normals[p] | d) * (patches.normals[q] | d) / d.sqrnorm();
+            if (mirrored * cosine >= 0) continue;
+            const auto weight = static_cast<float>(patches.counts[p] * std::abs(mirrored));
             edges.push_back({std::min(p, q), std::max(p, q), cosine < 0 ? weight : -weight, weight});
         }
     return edges;
