@@ -46,6 +46,21 @@ TEST_CASE("hidden signs are found although a tenth of the evidence is wrong", "[
     CHECK(std::max(same, static_cast<int>(side * side) - same) > static_cast<int>(side * side) * 97 / 100);
 }
 
+TEST_CASE("no node is left against the sum of its evidence", "[normals]") {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        support::Random random(seed);
+        const Index side = 40;
+        const std::vector<int> hidden(side * side, 1);
+        const std::vector<SignedEdge> edges = grid_edges(side, hidden, 0.15, random);
+        const Signs signs = agglomerate(side * side, edges);
+        std::vector<double> support(side * side, 0);
+        for (const SignedEdge& e : edges)
+            for (Index v : {e.a, e.b})
+                support[v] += static_cast<double>(e.weight) * signs.sign[e.a] * signs.sign[e.b];
+        CHECK(*std::min_element(support.begin(), support.end()) >= -1e-6);
+    }
+}
+
 TEST_CASE("many weak witnesses along a border outweigh one strong one", "[normals]") {
     // Two rows of ten, sure of themselves; nine steps between them say opposite, one says same, and louder.
     std::vector<SignedEdge> edges;

@@ -144,7 +144,8 @@ std::vector<Round> join_all(SignedForest& forest, std::vector<SignedEdge> edges,
 /// which may settle the other. The agreement summed over all edges only grows.
 class Improvement {
 public:
-    explicit Improvement(std::vector<std::int8_t>& sign) : sign_(sign), support_(sign.size()), mark_(sign.size(), Mark::stays) {}
+    explicit Improvement(std::vector<std::int8_t>& sign)
+        : sign_(sign), support_(sign.size()), mark_(sign.size(), Mark::stays) {}
 
     void run(const std::vector<SignedEdge>& edges) {
         constexpr int sweeps = 8;

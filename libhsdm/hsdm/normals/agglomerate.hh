@@ -20,8 +20,10 @@ struct Signs {
 };
 
 /// Boruvka's algorithm with sums: in every round each component joins the one that it has the strongest
-/// evidence with, summed along their whole border; the strongest first. O(e log n) at worst, in at most log2
-/// n rounds. The result does not depend on the order of the edges beyond the last bit of their sums.
+/// evidence with, summed along their whole border; the strongest first. Then the rounds are undone, last one
+/// first, and in each what the sum of its evidence contradicts is turned, so that an early error does not
+/// stay. O(e log n) at worst, in at most log2 n rounds. The result does not depend on the order of the edges
+/// beyond the last bit of their sums.
 Signs agglomerate(std::size_t nodes, std::vector<SignedEdge> edges);
 
 } // namespace hsdm

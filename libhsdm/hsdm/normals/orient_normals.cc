@@ -10,6 +10,10 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t points_per_chunk = 1 << 14;
+/// What a point of a patch with a view of the outside says, in pairs of neighbours: half of those that it is
+/// compared in. Measured, one view in ten thousand is wrong, one pair of patches in a hundred.
+constexpr float view_weight = 4;
+
 /// Signs of components that no view decided: by the signs that most normals came with if these count, else by
 /// the sensor, else by the signed volume about their own centre.
 std::vector<std::int8_t> free_signs(const Patches& patches, const Signs& signs,
@@ -61,7 +65,7 @@ OrientReport orient_normals(const Octree& octree, const Neighbors& neighbors, Es
     OrientReport report;
     for (Index p = 0; p < patches.size(); ++p) {
         if (view.votes[p] == 0) continue;
-        const auto weight = static_cast<float>(patches.counts[p]);
+        const auto weight = view_weight * static_cast<float>(patches.counts[p]);
         edges.push_back({p, outside, view.votes[p] * weight, weight});
         report.seen_from_outside += patches.counts[p];
     }

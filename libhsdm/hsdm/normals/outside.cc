@@ -154,8 +154,8 @@ std::vector<std::int8_t> classify(std::size_t regions, const std::vector<Sights>
 }
 
 /// Sheets in a row along a ray face alternately forward and back: surely if the ray meets the sheet head-on,
-/// as patch_evidence weighs a pair of points, while a sheet that begins beside the ray, as the next tread of
-/// a stair, says nothing.
+/// as patch_evidence weighs a pair of points, while a sheet beside the ray, as the other face of an obtuse
+/// crease near by, says nothing.
 std::vector<SignedEdge> facing_patches(const std::vector<Sights>& seen, const Patches& patches) {
     std::vector<SignedEdge> edges;
     for (Index p = 0; p < seen.size(); ++p)
