@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <ranges>
+#include <numeric>
 
 namespace hsdm {
 namespace {
@@ -211,8 +211,10 @@ Signs agglomerate(std::size_t nodes, std::vector<SignedEdge> edges) {
     result.sign.assign(nodes, 1);
     Improvement improvement(result.sign);
     for (; !rounds.empty(); rounds.pop_back()) {
-        for (const Joint& joint : std::views::reverse(rounds.back().joints))
+        const std::vector<Joint>& joints = rounds.back().joints;
+        std::for_each(joints.rbegin(), joints.rend(), [&](const Joint& joint) {
             result.sign[joint.joined] = static_cast<std::int8_t>(result.sign[joint.root] * joint.sign);
+        });
         improvement.run(rounds.back().edges);
     }
     result.component.resize(nodes);
