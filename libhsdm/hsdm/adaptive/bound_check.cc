@@ -99,7 +99,9 @@ void add_places(const PolygonMesh& mesh, const Triangle& t, const std::vector<st
 
 BoundCheck::BoundCheck(const PolygonMesh& fine, std::span<const Vec3> points, double bound, double spacing)
     : fine_(fine), points_(points), bound_(bound), spacing_(spacing), to_fine_(fine) {
-    index_keys(names_of(fine.positions), fine_names_);
+    const std::vector<std::uint64_t> names = names_of(fine.positions);
+    index_keys(names, fine_names_);
+    index_keys(facet_keys(fine, names), fine_keys_);
 }
 
 FarPlaces BoundCheck::find_far(const PolygonMesh& mesh) {
@@ -152,11 +154,7 @@ std::vector<Index> BoundCheck::far_facets(const PolygonMesh& mesh) {
     const Triangulation cut = triangulate(mesh);
     FacetPlaces places;
     for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-        if (passed_.find(keys_[f]) != no_index) continue;
-        const auto ring = mesh.facet(f);
-        if (std::all_of(ring.begin(), ring.end(),
-                        [&](Index v) { return fine_names_.find(names_[v]) != no_index; }))
-            continue;
+        if (passed_.find(keys_[f]) != no_index || fine_keys_.find(keys_[f]) != no_index) continue;
         for (Index t = cut.first[f]; t < cut.first[f + 1]; ++t)
             add_places(mesh, cut.triangles[t], border, spacing_, places.at);
         places.facet.resize(places.at.size(), static_cast<Index>(f));

@@ -47,10 +47,10 @@ private:
     double bound_, spacing_;
     MeshDistance to_fine_;
     std::optional<MeshDistance> to_mesh_;
-    MortonIndex fine_names_;           // of places of vertices
-    std::vector<std::uint64_t> names_; // per vertex of the mesh
-    std::vector<std::uint64_t> keys_;  // per facet of the mesh
-    MortonIndex present_, passed_;     // keys of its facets; of those found near the fine mesh
+    MortonIndex fine_names_, fine_keys_; // of the fine mesh's vertices and facets
+    std::vector<std::uint64_t> names_;   // per vertex of the mesh
+    std::vector<std::uint64_t> keys_;    // per facet of the mesh
+    MortonIndex present_, passed_;       // keys of its facets; of those found near the fine mesh
     std::vector<std::uint64_t> near_vertex_, near_point_; // of a facet that a fine vertex, a point is near to
     std::vector<double> off_fine_;                        // per point, from the fine mesh; -1: not known
 };
