@@ -155,3 +155,19 @@ TEST_CASE("merging does not depend on the number of threads", "[adaptive]") {
     CHECK(one.corners == many.corners);
     CHECK(one.positions == many.positions);
 }
+
+TEST_CASE("a vertex with two fans stays", "[adaptive]") {
+    const auto touching = [](int x, int y, int z) {
+        return (x < 3 && y < 3 && z < 3) || (x >= 3 && y >= 3 && z >= 3);
+    };
+    for (const double tolerance : {0.01, 100.0}) {
+        PolygonMesh mesh = surface_of_cubes(6, touching);
+        const auto pinch = static_cast<Index>(
+            std::find(mesh.positions.begin(), mesh.positions.end(), Vec3(3, 3, 3)) - mesh.positions.begin());
+        const std::vector<Index> stands_for = merged(mesh, tolerance);
+        CHECK(stands_for[pinch] == pinch);
+        CHECK(std::count(stands_for.begin(), stands_for.end(), pinch) == 1);
+        for (Index v : mesh.corners) CHECK(stands_for[v] == v);
+        CHECK(measure_topology(mesh).boundary_edges == 0);
+    }
+}

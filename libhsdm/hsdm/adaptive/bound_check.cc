@@ -43,7 +43,8 @@ std::vector<std::uint64_t> facet_keys(const PolygonMesh& mesh, std::span<const s
             std::uint64_t key = ring.size();
             for (std::size_t i = 0; i < ring.size(); ++i)
                 key = mix(key ^ names[ring[(least + i) % ring.size()]]);
-            keys[f] = key;
+            // Which of two equal diagonals cuts a quad depends on where its ring starts.
+            keys[f] = ring.size() == 4 && least % 2 == 1 ? mix(key) : key;
         }
     });
     return keys;
@@ -76,23 +77,48 @@ struct FacetPlaces {
     std::vector<Index> facet;
 };
 
-/// A grid on a triangle, its lines no farther apart than `spacing` and in thirds at least; of its sides only
-/// those are taken that the other triangle there leaves.
-void add_places(const PolygonMesh& mesh, const Triangle& t, const std::vector<std::uint8_t>& border,
-                double spacing, std::vector<Vec3>& places) {
-    const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
-    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-    const int n = std::max(3, static_cast<int>(std::ceil(longest / spacing)));
-    const auto takes = [&](Index v, Index w) { return v < w || (border[v] && border[w]); };
-    const std::array<bool, 3> takes_side{takes(t[0], t[1]), takes(t[1], t[2]), takes(t[2], t[0])};
-    for (int i = 0; i <= n; ++i)
-        for (int j = 0; i + j <= n; ++j) {
-            const int k = n - i - j;                          // weights of b, c and a
-            if ((i == 0) + (j == 0) + (k == 0) > 1) continue; // a corner
-            if ((j == 0 && !takes_side[0]) || (k == 0 && !takes_side[1]) || (i == 0 && !takes_side[2]))
-                continue;
-            places.push_back((k * a + i * b + j * c) / static_cast<double>(n));
+std::array<Vec3, 3> corners_of(const PolygonMesh& mesh, const Triangle& t) {
+    return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
+}
+
+/// The sides that are looked at with this triangle and not with the other one there, whatever the numbers of
+/// the vertices.
+std::array<bool, 3> sides_of(const Triangle& t, const std::vector<std::uint8_t>& border,
+                             std::span<const std::uint64_t> names) {
+    const auto takes = [&](Index v, Index w) { return names[v] < names[w] || (border[v] && border[w]); };
+    return {takes(t[0], t[1]), takes(t[1], t[2]), takes(t[2], t[0])};
+}
+
+/// Places on a triangle in rows along its longest side, neither rows nor places farther apart than `spacing`;
+/// at least the middles of the sides and one inside. Of sides only those are taken that the other facet there
+/// leaves.
+void add_places(const std::array<Vec3, 3>& corners, const std::array<bool, 3>& takes_side, double spacing,
+                std::vector<Vec3>& places) {
+    std::size_t longest = 0;
+    for (std::size_t k = 1; k < 3; ++k)
+        if ((corners[(k + 1) % 3] - corners[k]).sqrnorm()
+            > (corners[(longest + 1) % 3] - corners[longest]).sqrnorm())
+            longest = k;
+    const Vec3 &a = corners[longest], &b = corners[(longest + 1) % 3], &c = corners[(longest + 2) % 3];
+    const bool takes_ab = takes_side[longest], takes_bc = takes_side[(longest + 1) % 3],
+               takes_ca = takes_side[(longest + 2) % 3];
+    // Even, as the middles of sides are the farthest from an arc.
+    const auto steps = [&](double length) {
+        return 2 * std::max(1, static_cast<int>(std::ceil(length / (2 * spacing))));
+    };
+    const double length = (b - a).norm();
+    const int rows = steps(std::max((c - a).norm(), (c - b).norm()));
+    for (int r = 0; r < rows; ++r) {
+        const double up = static_cast<double>(r) / rows;
+        const Vec3 left = a + (c - a) * up, right = b + (c - b) * up;
+        const int columns = steps(length * (1 - up));
+        for (int k = 0; k <= columns; ++k) {
+            const bool on_left = k == 0, on_right = k == columns;
+            if (r == 0 && (on_left || on_right || !takes_ab)) continue;
+            if ((on_left && !takes_ca) || (on_right && !takes_bc)) continue;
+            places.push_back(left + (right - left) * (static_cast<double>(k) / columns));
         }
+    }
 }
 
 } // namespace
@@ -156,7 +182,8 @@ std::vector<Index> BoundCheck::far_facets(const PolygonMesh& mesh) {
     for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
         if (passed_.find(keys_[f]) != no_index || fine_keys_.find(keys_[f]) != no_index) continue;
         for (Index t = cut.first[f]; t < cut.first[f + 1]; ++t)
-            add_places(mesh, cut.triangles[t], border, spacing_, places.at);
+            add_places(corners_of(mesh, cut.triangles[t]), sides_of(cut.triangles[t], border, names_),
+                       spacing_, places.at);
         places.facet.resize(places.at.size(), static_cast<Index>(f));
     }
     const std::vector<Index> near = to_fine_.facets_within(places.at, bound_);

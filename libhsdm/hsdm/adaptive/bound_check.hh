@@ -13,6 +13,8 @@ struct FarPlaces {
     std::vector<Index> fine_vertices;
     std::vector<Index> vertices; ///< of the coarse mesh
     std::vector<Index> facets;   ///< of the coarse mesh
+
+    std::size_t size() const { return fine_vertices.size() + vertices.size() + facets.size(); }
 };
 
 struct FarPoints {

@@ -74,7 +74,7 @@ private:
 
     /// Makes do with fewer vertices than leaves.
     void merge() {
-        LeafMesh leaves{std::move(result_.mesh), std::move(vertex_), own()};
+        LeafMesh leaves{std::move(result_.mesh), std::move(vertex_)};
         MergedLeaves merged =
             merge_leaves(leaves, vertex_planes(fine_), check_,
                          {.tolerance = tolerance(), .faults = faults_, .rounds = options_.rounds});
@@ -232,7 +232,7 @@ private:
 
     std::size_t split_intersecting() {
         const SelfIntersections found = find_self_intersections(result_.mesh);
-        faults_ = found.facet_pairs.size();
+        faults_.crossing = found.facet_pairs.size();
         std::size_t splits = 0;
         for (const auto& pair : found.facet_pairs)
             for (Index f : pair) splits += split_facet(f);
@@ -248,7 +248,7 @@ private:
         const FarPoints points = check_.find_far_points();
         set_beyond(points);
         for (Index p : points.points) splits += split_near(points_[p]);
-        faults_ += far.fine_vertices.size() + far.vertices.size() + far.facets.size() + points.points.size();
+        faults_.distant = far.size() + points.points.size();
         return splits;
     }
 
@@ -304,7 +304,7 @@ private:
     std::vector<Place> coarse_;  // per vertex of the result
     std::vector<Index> pinched_; // facets of the fine mesh with opposite corners in one vertex
     BoundCheck check_;
-    std::size_t faults_ = 0; // of the last round, whether leaves could be smaller there or not
+    FaultCounts faults_; // of the last round, whether leaves could be smaller there or not
     AdaptiveMesh result_;
 };
 

@@ -32,7 +32,8 @@ struct AdaptiveMesh {
 };
 
 /// Puts one vertex for each piece of a fine mesh in each leaf of a balanced octree. Edges between cells stay
-/// edges, so where leaves of different size meet there are neither cracks nor T-vertices. The octree is
+/// edges, so where leaves of different size meet there are neither cracks nor T-vertices; at the end vertices
+/// merge where fewer do (merge_leaves). The octree is
 /// subdivided until nothing is wrong: facets a 2-manifold, no intersections the fine mesh has not, points and
 /// fine vertices within max_error of the result and it of the fine mesh. Facets are cut and joined anew where
 /// that suits their shape. If `rounds` or the cells do not suffice the fine mesh itself comes out. `points`

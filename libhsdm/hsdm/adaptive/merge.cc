@@ -1,5 +1,6 @@
 #include "hsdm/adaptive/merge.hh"
 
+#include "hsdm/adaptive/triangle_shape.hh"
 #include "hsdm/adaptive/triangle_sides.hh"
 #include "hsdm/chunks.hh"
 #include "hsdm/facets/triangulate.hh"
@@ -16,21 +17,10 @@ namespace {
 
 constexpr int most_sweeps = 32; // each leaves two thirds at most of what can merge
 constexpr std::size_t sides_per_chunk = 2048;
-constexpr std::size_t most_facets = 24; // of a vertex: bounds the work, and nobody wants larger fans
+constexpr std::size_t most_facets = 24; // of a vertex: bounds the work
 constexpr double free_share = 0.1;      // of the tolerance: "about as well"
 constexpr double least_share = 0.02;    // of the largest eigenvalue, as for leaves
 constexpr double turn_cosine = 0.77;    // normals turn by less than 40 degrees
-constexpr double least_shape = 0.02; // of an equilateral triangle's: thinner ones only where there were such
-
-Vec3 normal(const Vec3& a, const Vec3& b, const Vec3& c) {
-    return (b - a) % (c - a);
-}
-
-/// 1 for an equilateral triangle, 0 for a flat one.
-double shape(const Vec3& a, const Vec3& b, const Vec3& c) {
-    const double sides = (b - a).sqrnorm() + (c - b).sqrnorm() + (a - c).sqrnorm();
-    return sides > 0 ? 2 * std::sqrt(3.0) * normal(a, b, c).norm() / sides : 0;
-}
 
 class Merging {
 public:
@@ -156,7 +146,7 @@ private:
         return place;
     }
 
-    /// The neighbours of a side's start, its end first; false if its facets make no whole fan.
+    /// The neighbours of a side's start, its end first; false if its facets are not one whole fan.
     bool ring_of(Index side, std::vector<Index>& ring) const {
         ring.clear();
         Index s = side;
@@ -164,7 +154,7 @@ private:
             ring.push_back(end(s));
             s = twin_[previous_side(s)];
         } while (s != no_index && s != side);
-        return s == side;
+        return s == side && ring.size() == facets_[corners_[side]];
     }
 
     /// Merges the start of a side into its end, at a place, if the facets round them allow.
@@ -189,8 +179,9 @@ private:
     }
 
     /// No further vertex may be a neighbour of both, and those beside the edge must keep three facets.
-    bool is_link(const std::vector<Index>& from, const std::vector<Index>& to) {
-        if (from.size() + to.size() > most_facets + 4 || from.size() + to.size() < 7) return false;
+    bool is_link(const std::vector<Index>& from, const std::vector<Index>& to) const {
+        if (std::min(from.size(), to.size()) < 3 || from.size() + to.size() < 7) return false;
+        if (from.size() + to.size() > most_facets + 4) return false;
         for (std::size_t i = 2; i + 1 < from.size(); ++i)
             if (std::find(to.begin(), to.end(), from[i]) != to.end()) return false;
         return spares(from[1]) && spares(from.back());
@@ -201,20 +192,23 @@ private:
 
     bool suits(const Vec3& place) const {
         double thinnest = least_shape, thinnest_new = 1;
+        const Index to = ring_[0];
         return suits_ring(place, ring_, ring_to_[0], thinnest, thinnest_new)
-               && suits_ring(place, ring_to_, ring_[0], thinnest, thinnest_new) && thinnest_new >= thinnest;
+               && (place == at(to) || suits_ring(place, ring_to_, to, thinnest, thinnest_new))
+               && thinnest_new >= thinnest;
     }
 
     /// The facets round a vertex that keep an area.
     bool suits_ring(const Vec3& place, const std::vector<Index>& ring, Index centre, double& thinnest,
                     double& thinnest_new) const {
         for (std::size_t i = 0; i < ring.size(); ++i)
-            thinnest = std::min(thinnest, shape(at(centre), at(ring[i]), at(ring[(i + 1) % ring.size()])));
+            thinnest =
+                std::min(thinnest, triangle_shape(at(centre), at(ring[i]), at(ring[(i + 1) % ring.size()])));
         for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
             const Vec3 &p = at(ring[i]), &q = at(ring[i + 1]);
-            const Vec3 before = normal(at(centre), p, q), after = normal(place, p, q);
+            const Vec3 before = triangle_normal(at(centre), p, q), after = triangle_normal(place, p, q);
             if (!((before | after) > turn_cosine * before.norm() * after.norm())) return false;
-            thinnest_new = std::min(thinnest_new, shape(place, p, q));
+            thinnest_new = std::min(thinnest_new, triangle_shape(place, p, q));
         }
         return true;
     }

@@ -5,17 +5,17 @@
 #include "hsdm/adaptive/quadric.hh"
 #include "hsdm/polygon_mesh.hh"
 
-#include <span>
+#include <vector>
 
 namespace hsdm {
 
-/// Merges inner vertices into neighbours, over short edges first, where a place misses the planes that either
-/// stands for by no more than its `tolerance` (root mean square, the mesh's units; 0: it stays); the
-/// neighbour moves there unless it is as good where it is, and stands for both from then on. A closed
-/// 2-manifold keeps its topology (link condition), no facet turns, none gets thinner than all were; what
-/// changes comes out as triangles. `planes` and `tolerance` have an entry per vertex, and so has the result:
-/// the vertex that stands for it now, itself or one that it was merged into (it is isolated then). O(n log n)
-/// in each of a few sweeps.
+/// Merges inner vertices into neighbours, over short edges first, where a place misses the planes of either
+/// by no more than the smaller `tolerance` of both (root mean square, the mesh's units; a vertex with 0
+/// stays, and nothing merges into it); the neighbour moves there unless it is as good where it is, and stands
+/// for both from then on. A 2-manifold keeps its topology (link condition), no facet turns, none gets thinner
+/// than all were; what changes comes out as triangles. `planes` and `tolerance` have an entry per vertex, and
+/// so has the result: the vertex that stands for it now, itself or one that it was merged into (it is
+/// isolated then). O(n log n) in each of two times 32 sweeps at most, of fewer edges each.
 std::vector<Index> merge_vertices(PolygonMesh& mesh, std::vector<Quadric> planes,
                                   std::vector<double> tolerance);
 

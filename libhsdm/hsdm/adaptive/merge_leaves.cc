@@ -3,6 +3,7 @@
 #include "hsdm/adaptive/dissolve.hh"
 #include "hsdm/adaptive/merge.hh"
 #include "hsdm/adaptive/tidy.hh"
+#include "hsdm/adaptive/trouble.hh"
 #include "hsdm/quality/self_intersections.hh"
 
 #include <algorithm>
@@ -15,10 +16,13 @@ constexpr double least_share = 0.2; // of the tolerance: what goes wrong below i
 constexpr double few_leaves = 0.02; // of all: so few need not be merged
 constexpr int most_rings = 4;       // of facets around something wrong
 
-/// What is wrong with a mesh, and the vertices there.
-struct Faults {
-    std::size_t count = 0;
-    std::vector<Index> vertices;
+struct Faults : FaultCounts {
+    bool manifold = true;
+    std::vector<Index> vertices; // where they are
+
+    bool no_worse_than(const FaultCounts& other) const {
+        return manifold && crossing <= other.crossing && distant <= other.distant;
+    }
 };
 
 class LeafMerging {
@@ -37,7 +41,7 @@ public:
         for (int round = 0; round < options_.rounds; ++round) {
             merge_once();
             const Faults faults = find_faults();
-            if (faults.count <= options_.faults) return std::move(result_);
+            if (faults.no_worse_than(options_.faults)) return std::move(result_);
             if (keep_closer(faults.vertices) == 0) break;
         }
         result_.mesh = leaves_.mesh;
@@ -76,7 +80,10 @@ private:
     Faults find_faults() {
         const PolygonMesh& mesh = result_.mesh;
         Faults faults;
+        faults.vertices = troubled_vertices(mesh);
+        faults.manifold = faults.vertices.empty();
         const auto blame = [&](Index f) {
+            if (f == no_index) return;
             const auto ring = mesh.facet(f);
             faults.vertices.insert(faults.vertices.end(), ring.begin(), ring.end());
         };
@@ -89,8 +96,8 @@ private:
             for (Index f : pair) blame(f);
         result_.far_points = check_.find_far_points();
         for (Index p : result_.far_points.points) blame(check_.nearest_facet(check_.point(p)));
-        faults.count = far.fine_vertices.size() + far.vertices.size() + far.facets.size()
-                       + found.facet_pairs.size() + result_.far_points.points.size();
+        faults.crossing = found.facet_pairs.size();
+        faults.distant = far.size() + result_.far_points.points.size();
         return faults;
     }
 

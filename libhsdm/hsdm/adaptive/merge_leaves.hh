@@ -10,15 +10,19 @@ namespace hsdm {
 /// A mesh over the leaves of an octree, as clusters of the vertices of a finer one.
 struct LeafMesh {
     PolygonMesh mesh;
-    std::vector<Index> vertex;     ///< per fine vertex, the vertex that stands for it
-    std::vector<std::uint8_t> own; ///< per vertex, is it one of the fine mesh?
+    std::vector<Index> vertex; ///< per fine vertex, the vertex that stands for it
+};
+
+/// What is wrong with a mesh.
+struct FaultCounts {
+    std::size_t crossing = 0; ///< pairs of facets that intersect
+    std::size_t distant = 0;  ///< places, vertices and points beyond the bound
 };
 
 struct MergeLeavesOptions {
     double tolerance = 0; ///< the mesh's units, > 0: what a vertex may miss planes by, root mean square
-    std::size_t faults =
-        0;           ///< facets that intersect and places beyond the bound that the leaves have already
-    int rounds = 24; ///< of undoing what makes something wrong, >= 1
+    FaultCounts faults;   ///< that the leaves have already
+    int rounds = 24;      ///< of undoing what makes something wrong, >= 1
 };
 
 struct MergedLeaves {
@@ -27,9 +31,10 @@ struct MergedLeaves {
     FarPoints far_points;
 };
 
-/// Merges vertices where that takes nothing out of the bound of `check` and makes no facets intersect, and
-/// cuts and joins facets anew. Where it does, nothing merges into the vertices there, and all is merged anew;
-/// if rounds do not suffice the result is the mesh over the leaves. `planes`: per vertex of the fine mesh.
+/// Merges vertices where a 2-manifold remains, no more is beyond the bound of `check` and no more facets
+/// intersect than before, and cuts and joins facets anew. What is merged where something is wrong has to keep
+/// closer to its planes, or stays as it was, and all is merged anew; if rounds do not suffice the result is
+/// the mesh over the leaves. `planes`: per vertex of the fine mesh.
 MergedLeaves merge_leaves(const LeafMesh& leaves, std::span<const Quadric> planes, BoundCheck& check,
                           const MergeLeavesOptions& options);
 

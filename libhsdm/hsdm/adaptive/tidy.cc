@@ -1,5 +1,6 @@
 #include "hsdm/adaptive/tidy.hh"
 
+#include "hsdm/adaptive/triangle_shape.hh"
 #include "hsdm/adaptive/triangle_sides.hh"
 #include "hsdm/chunks.hh"
 #include "hsdm/facets/straight_corners.hh"
@@ -18,22 +19,11 @@ constexpr int sweeps = 4;
 constexpr std::size_t sides_per_chunk = 3 * 1024; // whole triangles, and the same hints for any thread count
 
 constexpr double better_shape = 1.1; // a flip for shape gains at least this factor
-constexpr double least_shape = 0.02; // of an equilateral triangle's: no flip makes one thinner
 constexpr double flip_cosine = 0.94; // for shape: normals up to 20 degrees apart
 constexpr double join_cosine = 0.77; // normals of a quad's halves up to 40 degrees apart
 constexpr double least_corner = 0.2; // of a quad's corners: the sine of the sharpest or bluntest angle
 constexpr double reflex = -0.01;     // sine of a corner; straight ones do no harm, and a cut costs a facet
 constexpr double was_quad = 0.3;     // added to the corner's sine of what was a quad before
-
-Vec3 normal(const Vec3& a, const Vec3& b, const Vec3& c) {
-    return (b - a) % (c - a);
-}
-
-/// 1 for an equilateral triangle, 0 for a flat one.
-double shape(const Vec3& a, const Vec3& b, const Vec3& c) {
-    const double sides = (b - a).sqrnorm() + (c - b).sqrnorm() + (a - c).sqrnorm();
-    return sides > 0 ? 2 * std::sqrt(3.0) * normal(a, b, c).norm() / sides : 0;
-}
 
 class Tidying {
 public:
@@ -75,8 +65,6 @@ public:
 
 private:
     const Vec3& at(Index v) const { return mesh_.positions[v]; }
-    static Index next(Index s) { return next_side(s); }
-    static Index previous(Index s) { return previous_side(s); }
 
     /// Can the vertex do with a facet less?
     bool spares(Index v) const { return facets_[v] > least_facets_[v]; }
@@ -100,7 +88,7 @@ private:
                 const Index t = twin_[s];
                 if (t == no_index || t < s) continue;
                 const Index a = corners_[s], b = corners_[t];
-                if (warp(a, b, corners_[previous(s)], corners_[previous(t)]) > tolerance_)
+                if (warp(a, b, corners_[previous_side(s)], corners_[previous_side(t)]) > tolerance_)
                     look_[s] = look_[t] = look(a, b, hint);
             }
         });
@@ -150,10 +138,10 @@ private:
 
     void cut(std::span<const Index> f) {
         if (f.size() == 3) return add(f[0], f[1], f[2], false);
-        const double shape02 =
-            std::min(shape(at(f[0]), at(f[1]), at(f[2])), shape(at(f[0]), at(f[2]), at(f[3])));
-        const double shape13 =
-            std::min(shape(at(f[0]), at(f[1]), at(f[3])), shape(at(f[1]), at(f[2]), at(f[3])));
+        const double shape02 = std::min(triangle_shape(at(f[0]), at(f[1]), at(f[2])),
+                                        triangle_shape(at(f[0]), at(f[2]), at(f[3])));
+        const double shape13 = std::min(triangle_shape(at(f[0]), at(f[1]), at(f[3])),
+                                        triangle_shape(at(f[1]), at(f[2]), at(f[3])));
         if (shape02 >= shape13) {
             add(f[2], f[0], f[1], true); // the diagonal is side 0 of either half
             add(f[0], f[2], f[3], true);
@@ -174,22 +162,24 @@ private:
     bool apart(Index corner, Index other) const {
         Index s = corner;
         do {
-            if (corners_[next(s)] == other || corners_[previous(s)] == other) return false;
-            s = twin_[s] == no_index ? no_index : next(twin_[s]);
+            if (corners_[next_side(s)] == other || corners_[previous_side(s)] == other) return false;
+            s = twin_[s] == no_index ? no_index : next_side(twin_[s]);
         } while (s != no_index && s != corner);
         return s == corner;
     }
 
     /// Lays the diagonal of the two triangles at side s the other way if that is better.
     bool flip(Index s) {
-        const Index t = twin_[s], a = corners_[s], b = corners_[next(s)], c = corners_[previous(s)],
-                    d = corners_[previous(t)];
+        const Index t = twin_[s], a = corners_[s], b = corners_[next_side(s)], c = corners_[previous_side(s)],
+                    d = corners_[previous_side(t)];
         if (c == d || !spares(a) || !spares(b)) return false;
-        const double old_shape = std::min(shape(at(a), at(b), at(c)), shape(at(b), at(a), at(d)));
-        const double new_shape = std::min(shape(at(c), at(a), at(d)), shape(at(d), at(b), at(c)));
+        const double old_shape =
+            std::min(triangle_shape(at(a), at(b), at(c)), triangle_shape(at(b), at(a), at(d)));
+        const double new_shape =
+            std::min(triangle_shape(at(c), at(a), at(d)), triangle_shape(at(d), at(b), at(c)));
         if (new_shape < std::min(least_shape, old_shape)) return false;
-        const Vec3 first = normal(at(c), at(a), at(d)), second = normal(at(d), at(b), at(c)),
-                   sum = first + second;
+        const Vec3 first = triangle_normal(at(c), at(a), at(d)),
+                   second = triangle_normal(at(d), at(b), at(c)), sum = first + second;
         if ((first | sum) <= 0 || (second | sum) <= 0) return false;
         const bool flat = warp(a, b, c, d) <= tolerance_;
         Look now = Look::on;
@@ -198,7 +188,8 @@ private:
             if (to_fine_.is_beyond(middle(c, d), 0.5 * was, hint_)) return false;
             now = Look::none;
         } else {
-            const Vec3 old1 = normal(at(a), at(b), at(c)), old2 = normal(at(b), at(a), at(d));
+            const Vec3 old1 = triangle_normal(at(a), at(b), at(c)),
+                       old2 = triangle_normal(at(b), at(a), at(d));
             if (new_shape < better_shape * old_shape) return false;
             if ((first | second) < flip_cosine * first.norm() * second.norm()) return false;
             if ((old1 | old2) < flip_cosine * old1.norm() * old2.norm() && old_shape > least_shape)
@@ -208,17 +199,18 @@ private:
             else if (look(c, d, hint_) == Look::off)
                 return false;
         }
-        if (!apart(previous(s), d) && !apart(previous(t), c)) return false;
+        if (!apart(previous_side(s), d) && !apart(previous_side(t), c)) return false;
         turn(s, t, now);
         return true;
     }
 
     void turn(Index s, Index t, Look now) {
-        const Index a = corners_[s], b = corners_[t], c = corners_[previous(s)], d = corners_[previous(t)];
-        const Index ca = twin_[previous(s)], bc = twin_[next(s)], ad = twin_[next(t)],
-                    db = twin_[previous(t)];
-        const Look look_ca = look_[previous(s)], look_bc = look_[next(s)], look_ad = look_[next(t)],
-                   look_db = look_[previous(t)];
+        const Index a = corners_[s], b = corners_[t], c = corners_[previous_side(s)],
+                    d = corners_[previous_side(t)];
+        const Index ca = twin_[previous_side(s)], bc = twin_[next_side(s)], ad = twin_[next_side(t)],
+                    db = twin_[previous_side(t)];
+        const Look look_ca = look_[previous_side(s)], look_bc = look_[next_side(s)],
+                   look_ad = look_[next_side(t)], look_db = look_[previous_side(t)];
         const Index one = s - s % 3, two = t - t % 3;
         turned_[one / 3] = turned_[two / 3] = 1;
         const auto place = [&](Index from, std::array<Index, 3> corners) {
@@ -246,9 +238,9 @@ private:
     };
 
     std::optional<Quad> quad_across(Index s) const {
-        const Index t = twin_[s], a = corners_[s], b = corners_[t], c = corners_[previous(s)],
-                    d = corners_[previous(t)];
-        const Vec3 one = normal(at(a), at(b), at(c)), two = normal(at(b), at(a), at(d));
+        const Index t = twin_[s], a = corners_[s], b = corners_[t], c = corners_[previous_side(s)],
+                    d = corners_[previous_side(t)];
+        const Vec3 one = triangle_normal(at(a), at(b), at(c)), two = triangle_normal(at(b), at(a), at(d));
         if (c == d || (one | two) < join_cosine * one.norm() * two.norm()) return std::nullopt;
         const std::array<Index, 4> ring{a, d, b, c};
         const Vec3 up = (one + two).normalized();
@@ -290,8 +282,8 @@ private:
             if (s == no_index)
                 kept_.add_facet(std::array{corners_[3 * f], corners_[3 * f + 1], corners_[3 * f + 2]});
             else if (s < twin_[s])
-                kept_.add_facet(std::array{corners_[s], corners_[previous(twin_[s])], corners_[next(s)],
-                                           corners_[previous(s)]});
+                kept_.add_facet(std::array{corners_[s], corners_[previous_side(twin_[s])],
+                                           corners_[next_side(s)], corners_[previous_side(s)]});
         }
         return joined;
     }

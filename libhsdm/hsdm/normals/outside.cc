@@ -166,9 +166,9 @@ std::vector<SignedEdge> facing_patches(const std::vector<Sights>& seen, const Pa
             const double cosine = patches.normals[p] | patches.normals[q];
             const double mirrored =
                 cosine - 2 * (patches.normals[p] | d) * (patches.normals[q] | d) / d.sqrnorm();
-            if (mirrored * cosine >= 0) continue;
-            const auto weight = static_cast<float>(patches.counts[p] * std::abs(mirrored));
-            edges.push_back({std::min(p, q), std::max(p, q), cosine < 0 ? weight : -weight, weight});
+            if (!(mirrored * cosine < 0)) continue;
+            const auto weight = static_cast<float>(patches.counts[p] * mirrored);
+            edges.push_back({std::min(p, q), std::max(p, q), weight, std::abs(weight)});
         }
     return edges;
 }
