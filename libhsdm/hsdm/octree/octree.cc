@@ -55,17 +55,30 @@ Vec3 centred_origin(const Box& bounds, double extent) {
     return origin;
 }
 
-/// Orders points by code, then position, then normal. Their cells of level 11 are sorted by digits; few
-/// points of a surface share one, and those few are compared.
-void order_points(const PointCloud& cloud, bool with_normals, std::vector<CodeIndex>& keys) {
+/// Sorts by cells of level 11, or by all of the code where one of these is crowded: a stray far away leaves
+/// few cells to all other points. Returns by how many bits codes of one cell may differ.
+int sort_by_cells(std::vector<CodeIndex>& keys) {
     constexpr int in_cell = 3 * (morton_levels - 11);
+    constexpr std::size_t crowd = 256;
     radix_sort(keys, 3 * morton_levels, in_cell);
+    for (std::size_t i = 0; i + crowd < keys.size(); i += crowd)
+        if (keys[i].code >> in_cell == keys[i + crowd].code >> in_cell) {
+            radix_sort(keys, 3 * morton_levels);
+            return 0;
+        }
+    return in_cell;
+}
+
+/// Orders points by code, then position, then normal. Cells are sorted by digits; few points of a surface
+/// share one, and those few are compared.
+void order_points(const PointCloud& cloud, bool with_normals, std::vector<CodeIndex>& keys) {
+    const int in_cell = sort_by_cells(keys);
     const auto key = [&](Index i) {
         const Vec3& p = cloud.positions[i];
         const Vec3 n = with_normals ? cloud.normals[i] : Vec3(0, 0, 0);
         return std::tuple(p[0], p[1], p[2], n[0], n[1], n[2], i);
     };
-    const auto same_cell = [](const CodeIndex& a, const CodeIndex& b) {
+    const auto same_cell = [in_cell](const CodeIndex& a, const CodeIndex& b) {
         return a.code >> in_cell == b.code >> in_cell;
     };
     std::vector<std::size_t> first(chunk_count(keys.size(), grain) + 1, keys.size()); // cells are not parted
