@@ -19,7 +19,6 @@ constexpr int most_sweeps = 32; // each leaves two thirds at most of what can me
 constexpr std::size_t sides_per_chunk = 2048;
 constexpr std::size_t most_facets = 24; // of a vertex: bounds the work
 constexpr double free_share = 0.1;      // of the tolerance: "about as well"
-constexpr double least_share = 0.02;    // of the largest eigenvalue, as for leaves
 constexpr double turn_cosine = 0.77;    // normals turn by less than 40 degrees
 
 class Merging {
@@ -139,7 +138,7 @@ private:
         if (!(tolerance_[a] > 0 && tolerance_[b] > 0)) return std::nullopt;
         Quadric both = planes_[a];
         both += planes_[b];
-        const Vec3 place = both.minimum(least_share);
+        const Vec3 place = both.minimum();
         const double reach = (at(b) - at(a)).sqrnorm(), most = std::min(tolerance_[a], tolerance_[b]);
         if ((place - at(a)).sqrnorm() > reach || (place - at(b)).sqrnorm() > reach) return std::nullopt;
         if (planes_[a].rms(place) > most || planes_[b].rms(place) > most) return std::nullopt;

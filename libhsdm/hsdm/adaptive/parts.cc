@@ -6,8 +6,6 @@
 namespace hsdm {
 namespace {
 
-constexpr double least_share =
-    0.02; // of the largest eigenvalue: normals spread by less do not fix a position
 constexpr std::size_t most_parts = 4, most_members = 64;
 
 /// Two parts that touch, and what their joint planes are missed by.
@@ -72,7 +70,7 @@ private:
 } // namespace
 
 Vec3 place_in(const Quadric& planes, const Box& box) {
-    Vec3 p = planes.minimum(least_share);
+    Vec3 p = planes.minimum();
     for (unsigned k = 0; k < 3; ++k) p[k] = std::clamp(p[k], box.lo[k], box.hi[k]);
     return p;
 }

@@ -34,7 +34,8 @@ Quadric& Quadric::operator+=(const Quadric& other) {
     return *this;
 }
 
-Vec3 Quadric::minimum(double least_share) const {
+Vec3 Quadric::minimum() const {
+    constexpr double least_share = 0.02;
     const Vec3 mean = points_ > 0 ? sum_ / points_ : Vec3(0, 0, 0);
     Eigen::Matrix3d a;
     a << a_[0], a_[1], a_[2], a_[1], a_[3], a_[4], a_[2], a_[4], a_[5];
