@@ -1,34 +1,45 @@
 #pragma once
-// Disjoint sets of indices: union by least member, path halving.
+// Disjoint sets of indices: union by least member, path halving; from any number of threads at once.
 
 #include "hsdm/types.hh"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <vector>
 
 namespace hsdm {
 
 /// Disjoint sets over 0 .. n - 1. The least member of a set stands for it, so results do not depend on the
-/// order of the joins.
+/// order of the joins. Threads may join and find at the same time: a member's parent only ever becomes less.
 class DisjointSets {
 public:
     explicit DisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
 
     Index find(Index i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
+        for (;;) {
+            Index up = parent(i).load(std::memory_order_relaxed);
+            if (up == i) return i;
+            const Index above = parent(up).load(std::memory_order_relaxed);
+            if (above != up) parent(i).compare_exchange_weak(up, above, std::memory_order_relaxed);
+            i = above;
+        }
     }
     /// Returns whether the two were apart.
     bool join(Index a, Index b) {
-        a = find(a);
-        b = find(b);
-        if (a == b) return false;
-        parent_[std::max(a, b)] = std::min(a, b);
-        return true;
+        for (;;) {
+            a = find(a);
+            b = find(b);
+            if (a == b) return false;
+            Index root = std::max(a, b);
+            if (parent(root).compare_exchange_strong(root, std::min(a, b), std::memory_order_relaxed))
+                return true;
+        }
     }
 
 private:
+    std::atomic_ref<Index> parent(Index i) { return std::atomic_ref(parent_[i]); }
+
     std::vector<Index> parent_;
 };
 

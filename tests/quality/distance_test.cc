@@ -146,6 +146,26 @@ TEST_CASE("many points give the largest, mean and rms distance and the farthest 
         CHECK((points_to_mesh(points, mesh, bound).max > bound) == (max > bound));
 }
 
+TEST_CASE("points in each other's neighbourhood are measured as if each were alone", "[distance]") {
+    const PolygonMesh mesh = random_triangles(4000, 12);
+    const MeshDistance single(mesh);
+    for (const double step : {1e-4, 1e-3, 1e-2, 0.1, 1.0}) {
+        std::vector<Vec3> walk{Vec3(0, 0, 0)};
+        for (const Vec3& way : random_points(1999, 13, step)) {
+            walk.push_back(walk.back() + way);
+            if (walk.back().norm() > 1.5) walk.back() = -walk.back(); // and a jump now and then
+        }
+        double sum = 0, max = 0;
+        for (const Vec3& p : walk) {
+            sum += single(p);
+            max = std::max(max, single(p));
+        }
+        const Distance distance = points_to_mesh(walk, mesh);
+        CHECK(distance.mean == sum / 2000); // to the bit: so few are summed in order
+        CHECK(distance.max == max);
+    }
+}
+
 TEST_CASE("distances are the same bits with one thread and with many", "[distance]") {
     const PolygonMesh mesh = random_triangles(20000, 10);
     const std::vector<Vec3> points = random_points(20000, 11, 2);

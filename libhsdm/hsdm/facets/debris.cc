@@ -1,13 +1,15 @@
 #include "hsdm/facets/debris.hh"
 
+#include "hsdm/chunks.hh"
 #include "hsdm/disjoint_sets.hh"
 
 #include <array>
 #include <iterator>
 
 namespace hsdm {
-
 namespace {
+
+constexpr std::size_t facets_per_chunk = 4096;
 
 /// Of the components of no more facets than `most`: do they have a border?
 std::vector<std::uint8_t> open_components(const PolygonMesh& mesh, DisjointSets& components,
@@ -36,8 +38,10 @@ std::vector<std::uint8_t> open_components(const PolygonMesh& mesh, DisjointSets&
 std::size_t drop_debris(PolygonMesh& mesh, const DebrisOptions& options) {
     if (mesh.facet_count() == 0) return 0;
     DisjointSets components(mesh.vertex_count());
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f)
-        for (Index v : mesh.facet(f)) components.join(mesh.facet(f)[0], v);
+    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t f = begin; f < end; ++f)
+            for (Index v : mesh.facet(f)) components.join(mesh.facet(f)[0], v);
+    });
     std::vector<std::size_t> sizes(mesh.vertex_count(), 0);
     for (std::size_t f = 0; f < mesh.facet_count(); ++f) ++sizes[components.find(mesh.facet(f)[0])];
     const auto largest = static_cast<double>(*std::max_element(sizes.begin(), sizes.end()));

@@ -4,6 +4,8 @@
 #include "hsdm/normals/plane_fit.hh"
 #include "hsdm/octree/spacing.hh"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -31,10 +33,8 @@ void keep(std::vector<T>& values, const std::vector<std::uint8_t>& dropped) {
 std::size_t remove(Octree& octree, const std::vector<std::uint8_t>& dropped) {
     const auto count = static_cast<std::size_t>(std::count(dropped.begin(), dropped.end(), 1));
     if (count == 0) return 0;
-    keep(octree.codes, dropped);
-    keep(octree.positions, dropped);
-    keep(octree.normals, dropped);
-    keep(octree.source, dropped);
+    tbb::parallel_invoke([&] { keep(octree.codes, dropped); }, [&] { keep(octree.positions, dropped); },
+                         [&] { keep(octree.normals, dropped); }, [&] { keep(octree.source, dropped); });
     return count;
 }
 

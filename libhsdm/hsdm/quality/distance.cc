@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hsdm {
 namespace {
@@ -11,6 +12,58 @@ namespace {
 /// Points worked through in order, each beginning where its predecessor's nearest triangle was; also the
 /// unit of the sums, so that their rounding does not depend on the number of threads.
 constexpr std::size_t chunk = 1 << 11;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t packet = 32;  // points, if they lie close together:
+constexpr double packet_size = 0.8; // in mean sizes of the tree's blocks
+constexpr double near_enough = 0.1; // of a packet's radius: a foothold to reach out from
+
+/// Distances of points that are neighbours in space if they are in the list. A packet of them goes down the
+/// tree once; their own searches are among the few blocks found there.
+class Packets {
+public:
+    Packets(const TriangleTree& tree, std::span<const Vec3> points) : tree_(tree), points_(points) {}
+
+    /// To be called for one point after the other.
+    TriangleTree::Nearest operator()(std::size_t i) {
+        if (i >= end_) begin_at(i);
+        const TriangleTree::Nearest nearest =
+            has_part_ ? tree_.nearest(part_, points_[i]) : tree_.nearest(points_[i], hint_);
+        hint_ = nearest.block;
+        return nearest;
+    }
+
+private:
+    void begin_at(std::size_t first) {
+        const double most = packet_size * tree_.block_size();
+        Box box, wider;
+        for (end_ = first; end_ < std::min(points_.size(), first + packet); ++end_, box = wider) {
+            wider.add(points_[end_]);
+            if (end_ > first && wider.diagonal() > most) break;
+        }
+        go_down(points_.subspan(first, end_ - first), box);
+    }
+
+    /// No point's nearest triangle is farther from it than where its middle one has its own.
+    void go_down(std::span<const Vec3> points, const Box& box) {
+        const Vec3 centre = 0.5 * (box.lo + box.hi);
+        const Vec3& middle =
+            *std::min_element(points.begin(), points.end(), [&](const Vec3& p, const Vec3& q) {
+                return (p - centre).sqrnorm() < (q - centre).sqrnorm();
+            });
+        double radius = 0;
+        for (const Vec3& p : points) radius = std::max(radius, (p - middle).norm());
+        double off = has_part_ ? std::sqrt(tree_.nearest(part_, middle).squared) : infinity;
+        if (off > near_enough * radius) off = std::sqrt(tree_.nearest(middle, hint_).squared);
+        has_part_ = tree_.find_part(box, 1.00001 * (off + radius), part_);
+    }
+
+    const TriangleTree& tree_;
+    std::span<const Vec3> points_;
+    std::size_t end_ = 0; // of the packet
+    Index hint_ = no_index;
+    bool has_part_ = false;
+    TriangleTree::Part part_;
+};
 
 struct Sums {
     double max = -1, sum = 0, squares = 0;
@@ -34,9 +87,12 @@ Distance MeshDistance::operator()(std::span<const Vec3> points, double enough) c
     std::vector<Sums> chunks((points.size() + chunk - 1) / chunk);
     tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t c) {
         Sums sums;
+        Packets packets(tree_, points);
         Index hint = no_index;
         for (std::size_t i = c * chunk; i < std::min(points.size(), (c + 1) * chunk); ++i) {
-            const TriangleTree::Nearest nearest = tree_.nearest(points[i], hint, enough * enough);
+            // One triangle that is near enough is found sooner than all that could be nearer.
+            const TriangleTree::Nearest nearest =
+                enough > 0 ? tree_.nearest(points[i], hint, enough * enough) : packets(i);
             hint = nearest.block;
             const double d = std::sqrt(nearest.squared);
             sums.sum += d;

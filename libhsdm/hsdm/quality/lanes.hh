@@ -25,4 +25,12 @@ inline Lanes square(Lanes t) {
     return t * t;
 }
 
+/// Whether a comparison holds in any lane.
+template <class Lanes>
+inline bool any(Lanes held) {
+    using Long2 = long long __attribute__((vector_size(16)));
+    const auto halves = reinterpret_cast<Long2>(held);
+    return (halves[0] | halves[1]) != 0;
+}
+
 } // namespace hsdm

@@ -1,5 +1,6 @@
 #include "hsdm/quality/topology.hh"
 
+#include "hsdm/chunks.hh"
 #include "hsdm/disjoint_sets.hh"
 #include "hsdm/facets/triangulate.hh"
 #include "hsdm/quality/mix.hh"
@@ -90,41 +91,45 @@ EdgeGroups group_edges(const Loops& loops, std::size_t vertices) {
     return groups;
 }
 
-/// Joins the corners of consecutive facets around each vertex (fans) and facets across edges (components),
-/// and counts what edges show.
+/// Corners joined where they follow each other round a vertex (fans), facets across edges (components), and
+/// what edges show.
 struct Fans {
     DisjointSets corners, facets;
     std::vector<Index> fans;             ///< per vertex
     std::vector<unsigned char> branches; ///< per vertex: an edge with three or more facets ends there
-
-    Fans(const Loops& loops, std::size_t vertices, std::size_t facet_count)
-        : corners(loops.vertex.size()), facets(facet_count), fans(vertices, 0), branches(vertices, 0) {
-        for (Index v : loops.vertex) ++fans[v];
-    }
-
-    /// Corner `a` is at one end of an edge, `b` too, in another facet or at another place of the same one.
-    void join_corners(const Loops& loops, Index a, Index b) {
-        if (corners.join(a, b)) --fans[loops.vertex[a]];
-    }
 };
+
+/// Joins what an edge joins; returns whether its two facets run along it the same way.
+bool join_at_edge(const Loops& loops, const EdgeGroups& groups, std::size_t e, Fans& fans) {
+    const Index h = groups.sorted[groups.first[e]].corner;
+    bool misoriented = false;
+    for (Index i = groups.first[e] + 1; i < groups.first[e + 1]; ++i) {
+        const Index other = groups.sorted[i].corner;
+        const bool same_way = loops.vertex[other] == loops.vertex[h];
+        misoriented |= groups.uses(e) == 2 && same_way;
+        fans.corners.join(h, same_way ? other : loops.next[other]);
+        fans.corners.join(loops.next[h], same_way ? loops.next[other] : other);
+        fans.facets.join(loops.facet[h], loops.facet[other]);
+    }
+    return misoriented;
+}
 
 Fans measure_edges(const Loops& loops, const EdgeGroups& groups, std::size_t vertices,
                    std::size_t facet_count, Topology& topology) {
-    Fans fans(loops, vertices, facet_count);
+    Fans fans{DisjointSets(loops.vertex.size()), DisjointSets(facet_count), std::vector<Index>(vertices, 0),
+              std::vector<unsigned char>(vertices, 0)};
+    std::vector<std::size_t> misoriented(chunk_count(groups.size(), chunk), 0);
+    for_chunks(groups.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+        for (std::size_t e = begin; e < end; ++e) misoriented[c] += join_at_edge(loops, groups, e, fans);
+    });
+    topology.misoriented_edges = std::accumulate(misoriented.begin(), misoriented.end(), std::size_t{0});
     for (std::size_t e = 0; e < groups.size(); ++e) {
         const Index uses = groups.uses(e), h = groups.sorted[groups.first[e]].corner;
         topology.boundary_edges += uses == 1;
         topology.nonmanifold_edges += uses > 2;
-        for (Index i = groups.first[e] + 1; i < groups.first[e + 1]; ++i) {
-            const Index other = groups.sorted[i].corner;
-            const bool same_way = loops.vertex[other] == loops.vertex[h];
-            topology.misoriented_edges += uses == 2 && same_way;
-            fans.join_corners(loops, h, same_way ? other : loops.next[other]);
-            fans.join_corners(loops, loops.next[h], same_way ? loops.next[other] : other);
-            fans.facets.join(loops.facet[h], loops.facet[other]);
-        }
         if (uses > 2) fans.branches[loops.vertex[h]] = fans.branches[loops.vertex[loops.next[h]]] = 1;
     }
+    for (Index c = 0; c < loops.vertex.size(); ++c) fans.fans[loops.vertex[c]] += fans.corners.find(c) == c;
     return fans;
 }
 

@@ -6,7 +6,9 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 namespace hsdm {
 namespace {
@@ -103,9 +105,9 @@ void TriangleTree::order(const std::vector<Vec3>& positions, const std::vector<T
 }
 
 void TriangleTree::fill_blocks(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
-    const std::size_t blocks = (triangles.size() + width - 1) / width;
+    const std::size_t blocks = block_count_ = (triangles.size() + width - 1) / width;
     const std::size_t parents = (blocks + width - 1) / width;
-    blocks_.resize(blocks);
+    blocks_ = std::make_unique_for_overwrite<Block[]>(blocks);
     std::vector<Boxes> boxes(parents);
     tbb::parallel_for(Range(0, parents * width, grain), [&](const Range& range) {
         for (std::size_t b = range.begin(); b != range.end(); ++b) {
@@ -124,6 +126,13 @@ void TriangleTree::fill_blocks(const std::vector<Vec3>& positions, const std::ve
             }
         }
     });
+    for (std::size_t b = 0; b < blocks; ++b) {
+        double squared = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            squared += square(static_cast<double>(boxes[b / width].hi[k][b % width])
+                              - static_cast<double>(boxes[b / width].lo[k][b % width]));
+        block_size_ += std::sqrt(squared) / static_cast<double>(blocks);
+    }
     build_levels(boxes);
 }
 
@@ -189,31 +198,69 @@ Double2 TriangleTree::squared_distances(const Pair& pair, const std::array<Doubl
     return inside >= 0 ? min_lanes(to_foot, to_sides) : to_sides;
 }
 
-TriangleTree::Nearest TriangleTree::nearest(const Vec3& given, Index hint, double enough) const {
-    Nearest best;
-    if (blocks_.empty()) return best;
-    const Vec3 point = given - centre_;
-    const std::array<float, 3> p{static_cast<float>(point[0]), static_cast<float>(point[1]),
-                                 static_cast<float>(point[2])};
-    const std::array<Double2, 3> spread{Double2{} + point[0], Double2{} + point[1], Double2{} + point[2]};
-    // A box is skipped when even the float point, moved by its rounding error, cannot come below the best.
-    double rounding = 0;
-    for (unsigned k = 0; k < 3; ++k) rounding += std::abs(point[k] - static_cast<double>(p[k]));
-    float limit = infinity;
-    std::size_t lane = 0; // of the nearest
-    auto look_at = [&](Index block) {
-        const Double2 one = squared_distances(blocks_[block][0], spread),
-                      other = squared_distances(blocks_[block][1], spread), pairs = min_lanes(one, other);
-        const double squared = std::min(pairs[0], pairs[1]);
-        if (!(squared < best.squared)) return;
-        best.squared = squared;
-        best.block = block;
-        lane = one[0] == squared ? 0 : one[1] == squared ? 1 : other[0] == squared ? 2 : 3;
-        const double reach = std::sqrt(squared) + rounding;
-        limit = static_cast<float>(1.00001 * reach * reach) + std::numeric_limits<float>::min();
-    };
-    if (hint != no_index) look_at(hint);
+/// The nearest triangle to a point so far. A box is skipped when even the float point, moved by its rounding
+/// error, cannot come below the best.
+class TriangleTree::Search {
+public:
+    Search(const TriangleTree& tree, const Vec3& given) : tree_(tree) {
+        const Vec3 point = given - tree.centre_;
+        double rounding = 0;
+        for (unsigned k = 0; k < 3; ++k) {
+            spread_[k] = Double2{} + point[k];
+            point_[k] = static_cast<float>(point[k]);
+            rounding += std::abs(point[k] - static_cast<double>(point_[k]));
+        }
+        slack_ = 102 * rounding * rounding;
+    }
 
+    void look_at(Index block) {
+        if (block >= tree_.block_count_) return; // distances so large that absent boxes are no farther
+        const Double2 one = squared_distances(tree_.blocks_[block][0], spread_),
+                      other = squared_distances(tree_.blocks_[block][1], spread_),
+                      pairs = min_lanes(one, other);
+        const double squared = std::min(pairs[0], pairs[1]);
+        if (!(squared < best_.squared)) return;
+        best_.squared = squared;
+        best_.block = block;
+        lane_ = one[0] == squared ? 0 : one[1] == squared ? 1 : other[0] == squared ? 2 : 3;
+        // No less than the square of the distance and the rounding together, and a little.
+        limit_ = static_cast<float>(1.01 * squared + slack_) + std::numeric_limits<float>::min();
+    }
+
+    /// Per child of a node, the squared distance to its box.
+    Float4 to_children(const Boxes& boxes) const {
+        Float4 squared{};
+        for (std::size_t k = 0; k < 3; ++k)
+            squared +=
+                square(max_lanes(max_lanes(boxes.lo[k] - point_[k], point_[k] - boxes.hi[k]), Float4{}));
+        return squared;
+    }
+
+    auto reaches(auto squared) const { return squared <= limit_; } // a float, or four
+    double squared() const { return best_.squared; }
+
+    Nearest result() const {
+        Nearest best = best_;
+        if (best.block != no_index)
+            best.triangle =
+                tree_.triangle_of_[std::min(best.block * width + lane_, tree_.triangle_of_.size() - 1)];
+        return best;
+    }
+
+private:
+    const TriangleTree& tree_;
+    std::array<Double2, 3> spread_{};
+    std::array<float, 3> point_{};
+    double slack_ = 0;
+    float limit_ = infinity;
+    Nearest best_;
+    std::size_t lane_ = 0; // of the nearest
+};
+
+TriangleTree::Nearest TriangleTree::nearest(const Vec3& point, Index hint, double enough) const {
+    if (block_count_ == 0) return {};
+    Search search(*this, point);
+    if (hint != no_index) search.look_at(hint);
     struct Entry {
         float squared;
         Index child; // index in its level, or block
@@ -222,29 +269,104 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3& given, Index hint, doubl
     std::array<Entry, stack_size> stack;
     std::size_t top = 0;
     stack[top++] = {0, 0, static_cast<int>(level_first_.size()) - 1};
-    while (top > 0 && best.squared > enough) {
+    while (top > 0 && search.squared() > enough) {
         const Entry entry = stack[--top];
-        if (entry.squared > limit) continue;
+        if (!search.reaches(entry.squared)) continue;
         if (entry.level < 0) {
-            if (entry.child != hint) look_at(entry.child);
+            if (entry.child != hint) search.look_at(entry.child);
             continue;
         }
-        const Boxes& boxes = nodes_[level_first_[static_cast<std::size_t>(entry.level)] + entry.child];
-        Float4 squared{};
-        for (std::size_t k = 0; k < 3; ++k)
-            squared += square(max_lanes(max_lanes(boxes.lo[k] - p[k], p[k] - boxes.hi[k]), Float4{}));
+        const Float4 squared =
+            search.to_children(nodes_[level_first_[static_cast<std::size_t>(entry.level)] + entry.child]);
         // Nearest child last, so that it is the next one taken.
         const std::size_t bottom = top;
         for (std::size_t i = 0; i < width; ++i) {
-            if (!(squared[i] <= limit)) continue;
+            if (!search.reaches(squared[i])) continue;
             std::size_t at = top++;
             for (; at > bottom && stack[at - 1].squared < squared[i]; --at) stack[at] = stack[at - 1];
             stack[at] = {squared[i], static_cast<Index>(width * entry.child + i), entry.level - 1};
         }
     }
-    if (best.block != no_index)
-        best.triangle = triangle_of_[std::min(best.block * width + lane, triangle_of_.size() - 1)];
-    return best;
+    return search.result();
+}
+
+bool TriangleTree::find_part(const Box& box, double reach, Part& part) const {
+    part.count_ = 0;
+    if (block_count_ == 0) return true;
+    std::array<float, 3> lo, hi;
+    for (unsigned k = 0; k < 3; ++k) {
+        lo[k] = round_down(box.lo[k] - centre_[k] - reach);
+        hi[k] = round_up(box.hi[k] - centre_[k] + reach);
+    }
+    struct Entry {
+        Index node; // in its level
+        int level;
+    };
+    std::array<Entry, stack_size> stack;
+    std::size_t top = 0;
+    stack[top++] = {0, static_cast<int>(level_first_.size()) - 1};
+    while (top > 0) {
+        const Entry entry = stack[--top];
+        const Boxes& boxes = nodes_[level_first_[static_cast<std::size_t>(entry.level)] + entry.node];
+        auto apart = boxes.lo[0] > hi[0];
+        for (std::size_t k = 0; k < 3; ++k) apart |= (boxes.lo[k] > hi[k]) | (lo[k] > boxes.hi[k]);
+        for (std::size_t i = 0; i < width; ++i) {
+            if (apart[i]) continue;
+            const auto child = static_cast<Index>(width * entry.node + i);
+            if (entry.level > 0)
+                stack[top++] = {child, entry.level - 1};
+            else if (!part.add(boxes, i, child))
+                return false;
+        }
+    }
+    part.fill_up();
+    return true;
+}
+
+bool TriangleTree::Part::add(const Boxes& boxes, std::size_t lane, Index block) {
+    if (count_ == width * most_nodes) return false;
+    for (std::size_t k = 0; k < 3; ++k) {
+        nodes_[count_ / width].lo[k][count_ % width] = boxes.lo[k][lane];
+        nodes_[count_ / width].hi[k][count_ % width] = boxes.hi[k][lane];
+    }
+    blocks_[count_ / width][count_ % width] = block;
+    ++count_;
+    return true;
+}
+
+/// The last block stands in for those that the last node lacks.
+void TriangleTree::Part::fill_up() {
+    if (count_ == 0) return;
+    const std::size_t last = count_ - 1;
+    while (count_ % width != 0) add(nodes_[last / width], last % width, blocks_[last / width][last % width]);
+}
+
+TriangleTree::Nearest TriangleTree::nearest(const Part& part, const Vec3& point) const {
+    Search search(*this, point);
+    if (part.count_ == 0) return search.result();
+    const std::size_t nodes = part.count_ / width;
+    // Per lane the least, its node in the lowest bits: floats that are not negative are in order as integers.
+    using Int4 = std::int32_t __attribute__((vector_size(16)));
+    static_assert(std::has_single_bit(Part::most_nodes));
+    constexpr std::int32_t node_bits = Part::most_nodes - 1;
+    Int4 least = Int4{} + std::numeric_limits<std::int32_t>::max();
+    std::array<Float4, Part::most_nodes> squared;
+    for (std::size_t n = 0; n < nodes; ++n) {
+        squared[n] = search.to_children(part.nodes_[n]);
+        const Int4 key = (reinterpret_cast<Int4>(squared[n]) & ~node_bits) | static_cast<std::int32_t>(n);
+        least = min_lanes(least, key);
+    }
+    std::size_t lane = 0;
+    for (std::size_t i = 1; i < width; ++i) lane = least[i] < least[lane] ? i : lane;
+    const std::size_t first = static_cast<std::size_t>(least[lane] & node_bits);
+    search.look_at(part.blocks_[first][lane]);
+    squared[first][lane] = infinity;
+    for (std::size_t n = 0; n < nodes; ++n) {
+        if (!any(search.reaches(squared[n]))) continue;
+        for (std::size_t i = 0; i < width; ++i)
+            if (search.reaches(squared[n][i])) search.look_at(part.blocks_[n][i]);
+    }
+    return search.result();
 }
 
 TriangleTree::LaneBoxes TriangleTree::boxes_of(const Pair& pair) const {

@@ -5,6 +5,7 @@
 #include "hsdm/quality/lanes.hh"
 
 #include <array>
+#include <memory>
 
 namespace hsdm {
 
@@ -30,11 +31,21 @@ public:
     /// distance is no more than `enough` will do.
     Nearest nearest(const Vec3& point, Index hint = no_index, double enough = 0) const;
 
+    /// Blocks in a part of space, to look through instead of the whole tree.
+    class Part;
+    /// Replaces `part` by all blocks that may have a point within `reach` of a box. False if there are too
+    /// many for the part to be of use.
+    bool find_part(const Box& box, double reach, Part& part) const;
+    /// As above for a point whose nearest triangle is known to be in the part.
+    Nearest nearest(const Part& part, const Vec3& point) const;
+
     /// Replaces `pairs` by all pairs of triangles whose boxes overlap or touch, one of the pair being in
     /// `block` and the other in it or a later one. Over all blocks every such pair comes once.
     void overlapping(Index block, std::vector<TrianglePair>& pairs) const;
 
-    std::size_t block_count() const { return blocks_.size(); }
+    std::size_t block_count() const { return block_count_; }
+    /// Mean diagonal of the boxes of blocks.
+    double block_size() const { return block_size_; }
 
 private:
     static constexpr std::size_t width = 4;
@@ -52,6 +63,8 @@ private:
     /// Four triangles; a block not full repeats its last one.
     using Block = std::array<Pair, 2>;
 
+    class Search;
+
     struct LaneBoxes {
         std::array<Double2, 3> lo, hi;
     };
@@ -65,11 +78,25 @@ private:
     static Double2 squared_distances(const Pair& pair, const std::array<Double2, 3>& point);
 
     Vec3 centre_{0, 0, 0};
-    double rounding_ = 0;            // bound on the error of a + ab in a block
+    double rounding_ = 0; // bound on the error of a + ab in a block
+    double block_size_ = 0;
     std::vector<Index> triangle_of_; // by place in the order: the triangle's own index
-    std::vector<Block> blocks_;
+    std::size_t block_count_ = 0;
+    std::unique_ptr<Block[]> blocks_;      // no vector: threads fill fresh memory sooner than one clears it
     std::vector<Boxes> nodes_;             // level 0 first, the root last
     std::vector<std::size_t> level_first_; // of each level, its first node
+};
+
+class TriangleTree::Part {
+    friend class TriangleTree;
+    static constexpr std::size_t most_nodes = 32;
+
+    bool add(const Boxes& boxes, std::size_t lane, Index block);
+    void fill_up();
+
+    std::array<Boxes, most_nodes> nodes_;
+    std::array<std::array<Index, width>, most_nodes> blocks_;
+    std::size_t count_ = 0; // of blocks
 };
 
 } // namespace hsdm

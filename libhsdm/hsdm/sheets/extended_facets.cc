@@ -10,6 +10,8 @@
 namespace hsdm {
 namespace {
 
+constexpr std::size_t edges_per_chunk = 4096;
+
 /// Vertices on mesh edges. Two links across one face whose ends are the same two vertices would make one edge
 /// with four facets; a vertex in the middle of all but the first keeps them apart.
 class Midpoints {
@@ -209,6 +211,12 @@ private:
     std::vector<Quad> round_;
 };
 
+void add_all_facets(const PolygonMesh& part, PolygonMesh& mesh) {
+    const auto offset = static_cast<Index>(mesh.corners.size());
+    mesh.corners.insert(mesh.corners.end(), part.corners.begin(), part.corners.end());
+    for (std::size_t f = 1; f < part.first.size(); ++f) mesh.first.push_back(offset + part.first[f]);
+}
+
 /// Kind and voxel travel with the vertices as properties while these are split or dropped.
 void add_properties(const VertexPositions& vertices, PolygonMesh& mesh) {
     std::vector<double> kinds, voxels;
@@ -262,10 +270,17 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
 
     const Midpoints midpoints(lattice, sets, crossings, links, fans, h, vertices);
     result.midpoints = midpoints.count();
-    FacetBuilder builder(crossings, links, fans, midpoints, vertices, result.mesh);
-    for (std::size_t e = 0; e + 1 < crossings.first.size(); ++e)
-        builder.add_facets(crossings.first[e], crossings.first[e + 1]);
-    for (Index x = 0; x < crossings.crossings.size(); ++x) builder.add_strips(x);
+    const std::size_t edges = crossings.first.size() - 1;
+    std::vector<PolygonMesh> facets(chunk_count(edges, edges_per_chunk)), strips(facets.size());
+    for_chunks(edges, edges_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        FacetBuilder builder(crossings, links, fans, midpoints, vertices, facets[chunk]);
+        for (std::size_t e = begin; e < end; ++e)
+            builder.add_facets(crossings.first[e], crossings.first[e + 1]);
+        FacetBuilder strip_builder(crossings, links, fans, midpoints, vertices, strips[chunk]);
+        for (Index x = crossings.first[begin]; x < crossings.first[end]; ++x) strip_builder.add_strips(x);
+    });
+    for (const auto* parts : {&facets, &strips})
+        for (const PolygonMesh& part : *parts) add_all_facets(part, result.mesh);
     for (const std::vector<Index>& cap : fans.caps) result.mesh.add_facet(cap);
 
     result.mesh.positions = std::move(vertices.positions);
