@@ -44,6 +44,7 @@ public:
           text_(plan_.uses_standard_output() ? std::cerr : std::cout) {
         options_.measure = !arguments.quiet || !arguments.report.empty();
         options_.classify = options_.measure || plan_.writes_features();
+        options_.vertex_normals = plan_.writes_properties();
     }
 
     int run() {

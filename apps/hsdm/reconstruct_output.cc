@@ -127,9 +127,12 @@ MeshTarget OutputPlan::target(const std::string& input, std::optional<int> depth
     return result;
 }
 
+bool OutputPlan::writes_properties() const {
+    return !arguments_.plain && format_ != MeshFormat::off && format_ != MeshFormat::stl;
+}
+
 bool OutputPlan::writes_features() const {
-    const bool bare = arguments_.plain || format_ == MeshFormat::off || format_ == MeshFormat::stl;
-    return !bare || !arguments_.features.empty();
+    return writes_properties() || !arguments_.features.empty();
 }
 
 bool OutputPlan::uses_standard_output() const {

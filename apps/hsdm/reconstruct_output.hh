@@ -22,7 +22,9 @@ public:
     /// `depth` is set when --levels names several.
     MeshTarget target(const std::string& input, std::optional<int> depth) const;
 
-    /// True if sharp edges, classes or normals of vertices are written.
+    /// True if the mesh is written with properties: normals and classes of vertices, sharp edges.
+    bool writes_properties() const;
+    /// True if sharp edges or classes are written, there or into a file of their own.
     bool writes_features() const;
 
     /// True if something other than the summary goes to standard output, which must then stay clean.

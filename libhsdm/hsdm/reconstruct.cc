@@ -336,9 +336,11 @@ void find_features(PolyMesh& mesh, const ReconstructOptions& options, const Feat
     feature_options.crease_angle = options.crease_angle;
     feature_options.write_normals = false; // smooth_normals does
     const FeatureCounts counts = classify_features(mesh, feature_options, hints);
-    NormalSmoothingOptions smoothing;
-    smoothing.rounds = options.normal_smoothing;
-    smooth_normals(mesh, smoothing);
+    if (options.vertex_normals) {
+        NormalSmoothingOptions smoothing;
+        smoothing.rounds = options.normal_smoothing;
+        smooth_normals(mesh, smoothing);
+    }
     report.features.sharp_edges = counts.sharp_edges;
     report.features.smooth_vertices = counts.smooth_vertices;
     report.features.edge_vertices = counts.edge_vertices;

@@ -60,7 +60,8 @@ struct ReconstructOptions {
     int normal_smoothing = 3; ///< rounds of anisotropic normal smoothing, >= 0 (section 3.3)
     int threads = 0;          ///< at most this many; 0: all. The result does not depend on it
     /// What will not be read need not be computed: a third of the time. The facets are the same.
-    bool classify = true;  ///< phase 3: sharp edges, classes and normals of vertices; else the mesh has none
+    bool classify = true;       ///< phase 3: sharp edges and classes of vertices; else the mesh has none
+    bool vertex_normals = true; ///< phase 3, where there are classes: smoothed normals of vertices
     bool measure = true;   ///< the report's error and mesh; else zero, but a bound is checked all the same
     std::string debug_dir; ///< if set, the phases of Fig. 3 (voxels, graph, facets) are written to dN in it,
                            ///< N the depth
