@@ -3,6 +3,7 @@
 #include "hsdm/chunks.hh"
 #include "hsdm/sheets/plane_area.hh"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hsdm {
@@ -53,7 +54,7 @@ public:
     void find(Index corner, unsigned axis, std::vector<Candidate>& found) {
         ends_[0] = corner, ends_[1] = lattice_.next[corner][axis], axis_ = axis;
         if (ends_[1] == no_index
-            || (local_.members_at(ends_[0]).empty() && local_.members_at(ends_[1]).empty()))
+            || (local_.members_at(ends_[0]).empty() && local_.members_at(ends_[1]).empty()) || passes_by())
             return;
         const VoxelCoord c = lattice_.coord(corner);
         low_ = Vec3(c[0], c[1], c[2]) * h_;
@@ -90,6 +91,19 @@ private:
     std::size_t root(std::size_t i) {
         while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
         return i;
+    }
+
+    /// Is there one sheet, on one side of both ends? So it is at most edges, which need no closer look.
+    bool passes_by() const {
+        const auto low = local_.sheets_at(ends_[0]), high = local_.sheets_at(ends_[1]);
+        if (low.size() != 1 || high.size() != 1 || !(low[0].weight > 0) || !(high[0].weight > 0))
+            return false;
+        if ((low[0].distance < 0) != (high[0].distance < 0)) return false;
+        const auto others = local_.members_at(ends_[1]);
+        return std::ranges::any_of(local_.members_at(ends_[0]), [&](const SheetMember& a) {
+            return beside(a, 0)
+                   && std::ranges::any_of(others, [&](const SheetMember& b) { return b.set == a.set; });
+        });
     }
 
     /// Local sheets at the two ends are one along the edge if they share a set of a voxel beside it.
