@@ -56,9 +56,8 @@ void split(Item* begin, Item* end) {
     while (4 * run < n) run *= 4;
     Item* middle = begin + (n <= 2 * run ? run : 2 * run);
     const std::size_t axis = widest_axis(begin, end);
-    std::nth_element(begin, middle, end, [axis](const Item& a, const Item& b) {
-        return a.centre[axis] != b.centre[axis] ? a.centre[axis] < b.centre[axis] : a.triangle < b.triangle;
-    });
+    std::nth_element(begin, middle, end,
+                     [axis](const Item& a, const Item& b) { return a.centre[axis] < b.centre[axis]; });
     if (n < 4096) {
         split(begin, middle);
         split(middle, end);
