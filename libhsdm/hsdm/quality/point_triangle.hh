@@ -33,7 +33,8 @@ public:
     bool foot_inside(const Vec3& p, NearestOfTriangle& foot) const {
         const Vec3 ap = p - a_;
         const double v = ap | towards_b_, w = ap | towards_c_;
-        if (!(v >= 0 && w >= 0 && v + w <= 1 && has_area())) return false;
+        const bool inside = (v >= 0) & (w >= 0) & (v + w <= 1); // one branch: each alone is a toss-up
+        if (!inside || !has_area()) return false;
         const Vec3 height = normal_ * ((ap | normal_) * per_area_);
         foot = {p - height, height.sqrnorm(), {1 - v - w, v, w}};
         return true;
