@@ -49,10 +49,10 @@ public:
         std::vector<std::uint8_t> turned(half_.size(), 1);
         for (int sweep = 0; sweep < sweeps; ++sweep) {
             turned_.assign(half_.size(), 0);
+            judge_all(turned);
             std::size_t flipped = 0;
             for (Index s = 0; s < corners_.size(); ++s)
-                if (twin_[s] != no_index && s < twin_[s] && (turned[s / 3] || turned[twin_[s] / 3]))
-                    flipped += flip(s);
+                if (is_due(s, turned)) flipped += flip(s);
             counts.flipped += flipped;
             turned.swap(turned_);
             if (flipped == 0) break;
@@ -97,12 +97,6 @@ private:
     enum class Look : std::uint8_t { none, on, off };
     Look look(Index a, Index b, Index& hint) const {
         return to_fine_.is_beyond(middle(a, b), tolerance_, hint) ? Look::off : Look::on;
-    }
-
-    bool is_off(Index s) {
-        const Index t = twin_[s];
-        if (look_[s] == Look::none) look_[s] = look_[t] = look(corners_[s], corners_[t], hint_);
-        return look_[s] == Look::off;
     }
 
     void add(Index a, Index b, Index c, bool half) {
@@ -168,39 +162,65 @@ private:
         return s == corner;
     }
 
-    /// Lays the diagonal of the two triangles at side s the other way if that is better.
-    bool flip(Index s) {
-        const Index t = twin_[s], a = corners_[s], b = corners_[next_side(s)], c = corners_[previous_side(s)],
+    /// What two triangles alone tell of the diagonal between them.
+    struct Verdict {
+        bool flips = false;       ///< is the other one better?
+        Look before = Look::none; ///< this one's
+        Look after = Look::none;  ///< the other one's
+    };
+
+    /// Is this the side to ask at, and was one of its triangles turned?
+    bool is_due(Index s, const std::vector<std::uint8_t>& turned) const {
+        return twin_[s] != no_index && s < twin_[s] && (turned[s / 3] || turned[twin_[s] / 3]);
+    }
+
+    void judge_all(const std::vector<std::uint8_t>& turned) {
+        verdicts_.resize(corners_.size());
+        for_chunks(corners_.size(), sides_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            Index hint = no_index;
+            for (auto s = static_cast<Index>(begin); s < end; ++s)
+                if (is_due(s, turned)) verdicts_[s] = judge(s, hint);
+        });
+    }
+
+    Verdict judge(Index s, Index& hint) const {
+        const Index t = twin_[s], a = corners_[s], b = corners_[t], c = corners_[previous_side(s)],
                     d = corners_[previous_side(t)];
-        if (c == d || !spares(a) || !spares(b)) return false;
+        Verdict verdict{false, look_[s], Look::none};
         const double old_shape =
             std::min(triangle_shape(at(a), at(b), at(c)), triangle_shape(at(b), at(a), at(d)));
         const double new_shape =
             std::min(triangle_shape(at(c), at(a), at(d)), triangle_shape(at(d), at(b), at(c)));
-        if (new_shape < std::min(least_shape, old_shape)) return false;
+        if (new_shape < std::min(least_shape, old_shape)) return verdict;
         const Vec3 first = triangle_normal(at(c), at(a), at(d)),
                    second = triangle_normal(at(d), at(b), at(c)), sum = first + second;
-        if ((first | sum) <= 0 || (second | sum) <= 0) return false;
+        if ((first | sum) <= 0 || (second | sum) <= 0) return verdict;
         const bool flat = warp(a, b, c, d) <= tolerance_;
-        Look now = Look::on;
-        if (!flat && is_off(s)) {
+        if (!flat && verdict.before == Look::none) verdict.before = look(a, b, hint);
+        if (!flat && verdict.before == Look::off) {
             const double was = to_fine_(middle(a, b));
-            if (to_fine_.is_beyond(middle(c, d), 0.5 * was, hint_)) return false;
-            now = Look::none;
-        } else {
-            const Vec3 old1 = triangle_normal(at(a), at(b), at(c)),
-                       old2 = triangle_normal(at(b), at(a), at(d));
-            if (new_shape < better_shape * old_shape) return false;
-            if ((first | second) < flip_cosine * first.norm() * second.norm()) return false;
-            if ((old1 | old2) < flip_cosine * old1.norm() * old2.norm() && old_shape > least_shape)
-                return false;
-            if (flat)
-                now = look_[s];
-            else if (look(c, d, hint_) == Look::off)
-                return false;
+            verdict.flips = !to_fine_.is_beyond(middle(c, d), 0.5 * was, hint);
+            return verdict;
         }
-        if (!apart(previous_side(s), d) && !apart(previous_side(t), c)) return false;
-        turn(s, t, now);
+        if (new_shape < better_shape * old_shape) return verdict;
+        if ((first | second) < flip_cosine * first.norm() * second.norm()) return verdict;
+        const Vec3 old1 = triangle_normal(at(a), at(b), at(c)), old2 = triangle_normal(at(b), at(a), at(d));
+        if ((old1 | old2) < flip_cosine * old1.norm() * old2.norm() && old_shape > least_shape)
+            return verdict;
+        verdict.after = flat ? verdict.before : look(c, d, hint);
+        verdict.flips = flat || verdict.after == Look::on;
+        return verdict;
+    }
+
+    /// Lays the diagonal of the two triangles at side s the other way if that is better.
+    bool flip(Index s) {
+        const Index t = twin_[s], c = corners_[previous_side(s)], d = corners_[previous_side(t)];
+        if (c == d || !spares(corners_[s]) || !spares(corners_[t])) return false;
+        const bool stale = turned_[s / 3] || turned_[t / 3];
+        const Verdict verdict = stale ? judge(s, hint_) : verdicts_[s];
+        look_[s] = look_[t] = verdict.before;
+        if (!verdict.flips || (!apart(previous_side(s), d) && !apart(previous_side(t), c))) return false;
+        turn(s, t, verdict.after);
         return true;
     }
 
@@ -258,11 +278,18 @@ private:
         return Quad{least + (whole ? was_quad : 0), s};
     }
 
+    std::vector<Quad> possible_quads() const {
+        std::vector<std::vector<Quad>> parts(chunk_count(corners_.size(), sides_per_chunk));
+        for_chunks(corners_.size(), sides_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+            for (auto s = static_cast<Index>(begin); s < end; ++s)
+                if (twin_[s] != no_index && s < twin_[s])
+                    if (const auto quad = quad_across(s)) parts[c].push_back(*quad);
+        });
+        return joined(parts);
+    }
+
     std::size_t join() {
-        std::vector<Quad> quads;
-        for (Index s = 0; s < corners_.size(); ++s)
-            if (twin_[s] != no_index && s < twin_[s])
-                if (const auto quad = quad_across(s)) quads.push_back(*quad);
+        std::vector<Quad> quads = possible_quads();
         tbb::parallel_sort(quads.begin(), quads.end(), [](const Quad& p, const Quad& q) {
             return p.score != q.score ? p.score > q.score : p.side < q.side;
         });
@@ -297,6 +324,7 @@ private:
     std::vector<Index> facet_;         // per triangle, the facet it was cut from
     std::vector<Index> twin_;          // per side of a triangle
     std::vector<Look> look_;           // per side
+    std::vector<Verdict> verdicts_;    // per side, as of the sweep's start
     std::vector<std::uint8_t> turned_; // per triangle, in this sweep
     Index hint_ = no_index;
     std::vector<Index> facets_, least_facets_; // per vertex: three, or one at a border
