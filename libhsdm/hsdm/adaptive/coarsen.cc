@@ -1,13 +1,13 @@
 #include "hsdm/adaptive/coarsen.hh"
 
 #include "hsdm/adaptive/clusters.hh"
+#include "hsdm/adaptive/crossing_check.hh"
 #include "hsdm/adaptive/dissolve.hh"
 #include "hsdm/adaptive/merge_leaves.hh"
 #include "hsdm/adaptive/tidy.hh"
 #include "hsdm/adaptive/trouble.hh"
 #include "hsdm/chunks.hh"
 #include "hsdm/errors.hh"
-#include "hsdm/quality/self_intersections.hh"
 
 #include <algorithm>
 
@@ -76,7 +76,7 @@ private:
     void merge() {
         LeafMesh leaves{std::move(result_.mesh), std::move(vertex_)};
         MergedLeaves merged =
-            merge_leaves(leaves, vertex_planes(fine_), check_,
+            merge_leaves(leaves, vertex_planes(fine_), check_, crossing_check_,
                          {.tolerance = tolerance(), .faults = faults_, .rounds = options_.rounds});
         result_.mesh = std::move(merged.mesh);
         result_.merged = leaves.mesh.vertex_count() - result_.mesh.vertex_count();
@@ -231,10 +231,10 @@ private:
     }
 
     std::size_t split_intersecting() {
-        const SelfIntersections found = find_self_intersections(result_.mesh);
-        faults_.crossing = found.facet_pairs.size();
+        const auto pairs = crossing_check_.find(result_.mesh);
+        faults_.crossing = pairs.size();
         std::size_t splits = 0;
-        for (const auto& pair : found.facet_pairs)
+        for (const auto& pair : pairs)
             for (Index f : pair) splits += split_facet(f);
         return splits;
     }
@@ -304,6 +304,7 @@ private:
     std::vector<Place> coarse_;  // per vertex of the result
     std::vector<Index> pinched_; // facets of the fine mesh with opposite corners in one vertex
     BoundCheck check_;
+    CrossingCheck crossing_check_;
     FaultCounts faults_; // of the last round, whether leaves could be smaller there or not
     AdaptiveMesh result_;
 };

@@ -4,7 +4,6 @@
 #include "hsdm/adaptive/merge.hh"
 #include "hsdm/adaptive/tidy.hh"
 #include "hsdm/adaptive/trouble.hh"
-#include "hsdm/quality/self_intersections.hh"
 
 #include <algorithm>
 #include <numeric>
@@ -28,9 +27,10 @@ struct Faults : FaultCounts {
 class LeafMerging {
 public:
     LeafMerging(const LeafMesh& leaves, std::span<const Quadric> planes, BoundCheck& check,
-                const MergeLeavesOptions& options)
+                CrossingCheck& crossing_check, const MergeLeavesOptions& options)
         : leaves_(leaves),
           check_(check),
+          crossing_check_(crossing_check),
           options_(options),
           planes_(leaves.mesh.vertex_count()),
           tolerance_(leaves.mesh.vertex_count(), options.tolerance) {
@@ -91,12 +91,12 @@ private:
         for (Index v : far.fine_vertices) faults.vertices.push_back(result_.vertex[leaves_.vertex[v]]);
         for (Index v : far.vertices) faults.vertices.push_back(v);
         for (Index f : far.facets) blame(f);
-        const SelfIntersections found = find_self_intersections(mesh);
-        for (const auto& pair : found.facet_pairs)
+        const auto pairs = crossing_check_.find(mesh);
+        for (const auto& pair : pairs)
             for (Index f : pair) blame(f);
         result_.far_points = check_.find_far_points();
         for (Index p : result_.far_points.points) blame(check_.nearest_facet(check_.point(p)));
-        faults.crossing = found.facet_pairs.size();
+        faults.crossing = pairs.size();
         faults.distant = far.size() + result_.far_points.points.size();
         return faults;
     }
@@ -130,6 +130,7 @@ private:
 
     const LeafMesh& leaves_;
     BoundCheck& check_;
+    CrossingCheck& crossing_check_;
     const MergeLeavesOptions& options_;
     std::vector<Quadric> planes_;          // per vertex of the leaves
     std::vector<double> tolerance_;        // ...
@@ -140,8 +141,8 @@ private:
 } // namespace
 
 MergedLeaves merge_leaves(const LeafMesh& leaves, std::span<const Quadric> planes, BoundCheck& check,
-                          const MergeLeavesOptions& options) {
-    return LeafMerging(leaves, planes, check, options).run();
+                          CrossingCheck& crossing_check, const MergeLeavesOptions& options) {
+    return LeafMerging(leaves, planes, check, crossing_check, options).run();
 }
 
 } // namespace hsdm

@@ -3,6 +3,7 @@
 // are leaves.
 
 #include "hsdm/adaptive/bound_check.hh"
+#include "hsdm/adaptive/crossing_check.hh"
 #include "hsdm/adaptive/quadric.hh"
 
 namespace hsdm {
@@ -36,6 +37,6 @@ struct MergedLeaves {
 /// closer to its planes, or stays as it was, and all is merged anew; if rounds do not suffice the result is
 /// the mesh over the leaves. `planes`: per vertex of the fine mesh.
 MergedLeaves merge_leaves(const LeafMesh& leaves, std::span<const Quadric> planes, BoundCheck& check,
-                          const MergeLeavesOptions& options);
+                          CrossingCheck& crossing_check, const MergeLeavesOptions& options);
 
 } // namespace hsdm
