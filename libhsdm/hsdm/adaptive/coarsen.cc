@@ -1,7 +1,6 @@
 #include "hsdm/adaptive/coarsen.hh"
 
 #include "hsdm/adaptive/clusters.hh"
-#include "hsdm/adaptive/crossing_check.hh"
 #include "hsdm/adaptive/dissolve.hh"
 #include "hsdm/adaptive/merge_leaves.hh"
 #include "hsdm/adaptive/tidy.hh"
@@ -35,8 +34,9 @@ public:
           points_(points),
           options_(options),
           tree_(build_cell_tree(fine.positions, extent, depth)),
-          check_(fine, points, options.max_error, spacing * extent / static_cast<double>(1u << depth)) {
-        clusters_ = build_clusters(fine, tree_, planes_share * options.max_error);
+          checks_(fine, points, options.max_error, spacing * extent / static_cast<double>(1u << depth),
+                  tolerance()) {
+        clusters_ = build_clusters(fine, tree_, tolerance());
     }
 
     AdaptiveMesh run() {
@@ -50,7 +50,7 @@ public:
         if (options_.measure) {
             const std::size_t samples =
                 std::clamp(2 * result_.mesh.facet_count(), fewest_samples, most_samples);
-            result_.to_fine = check_.to_fine()(sample_surface(result_.mesh, samples));
+            result_.to_fine = checks_.bound.to_fine()(sample_surface(result_.mesh, samples));
         }
         result_.vertex = std::move(vertex_);
         return std::move(result_);
@@ -65,7 +65,7 @@ private:
         const std::size_t troubled = split_troubled();
         result_.topology_splits += troubled;
         if (troubled > 0) return troubled; // all else needs a 2-manifold
-        tidy_facets(result_.mesh, check_.to_fine(), tolerance(), own());
+        tidy_facets(result_.mesh, checks_.fine, own());
         const std::size_t crossing = split_intersecting(), distant = split_distant();
         result_.intersection_splits += crossing;
         result_.error_splits += distant;
@@ -75,9 +75,8 @@ private:
     /// Makes do with fewer vertices than leaves.
     void merge() {
         LeafMesh leaves{std::move(result_.mesh), std::move(vertex_)};
-        MergedLeaves merged =
-            merge_leaves(leaves, vertex_planes(fine_), check_, crossing_check_,
-                         {.tolerance = tolerance(), .faults = faults_, .rounds = options_.rounds});
+        MergedLeaves merged = merge_leaves(leaves, vertex_planes(fine_), checks_,
+                                           {.faults = faults_, .rounds = options_.rounds});
         result_.mesh = std::move(merged.mesh);
         result_.merged = leaves.mesh.vertex_count() - result_.mesh.vertex_count();
         set_beyond(merged.far_points);
@@ -231,7 +230,7 @@ private:
     }
 
     std::size_t split_intersecting() {
-        const auto pairs = crossing_check_.find(result_.mesh);
+        const auto pairs = checks_.crossing.find(result_.mesh);
         faults_.crossing = pairs.size();
         std::size_t splits = 0;
         for (const auto& pair : pairs)
@@ -240,12 +239,12 @@ private:
     }
 
     std::size_t split_distant() {
-        const FarPlaces far = check_.find_far(result_.mesh);
+        const FarPlaces far = checks_.bound.find_far(result_.mesh);
         std::size_t splits = 0;
         for (Index v : far.fine_vertices) splits += split_at(places_[v]);
         for (Index v : far.vertices) splits += split_at(coarse_[v]);
         for (Index f : far.facets) splits += split_facet(f);
-        const FarPoints points = check_.find_far_points();
+        const FarPoints points = checks_.bound.find_far_points();
         set_beyond(points);
         for (Index p : points.points) splits += split_near(points_[p]);
         faults_.distant = far.size() + points.points.size();
@@ -262,7 +261,7 @@ private:
     std::size_t split_near(const Vec3& point) {
         const std::size_t splits = split_around(point);
         if (splits > 0) return splits;
-        const Index facet = check_.nearest_facet(point);
+        const Index facet = checks_.bound.nearest_facet(point);
         return facet == no_index ? 0 : split_facet(facet);
     }
 
@@ -303,8 +302,7 @@ private:
     std::vector<Index> vertex_;  // per fine vertex, the vertex of the result
     std::vector<Place> coarse_;  // per vertex of the result
     std::vector<Index> pinched_; // facets of the fine mesh with opposite corners in one vertex
-    BoundCheck check_;
-    CrossingCheck crossing_check_;
+    RoundChecks checks_;
     FaultCounts faults_; // of the last round, whether leaves could be smaller there or not
     AdaptiveMesh result_;
 };

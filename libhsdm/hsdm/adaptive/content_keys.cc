@@ -12,13 +12,16 @@ constexpr std::size_t keys_per_chunk = 2048;
 
 } // namespace
 
+Key place_key(const Vec3& place) {
+    Key key = 1;
+    for (unsigned k = 0; k < 3; ++k) key = mix(key ^ std::bit_cast<Key>(place[k]));
+    return key;
+}
+
 std::vector<Key> place_keys(std::span<const Vec3> places) {
     std::vector<Key> keys(places.size());
     for_chunks(keys.size(), keys_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i) {
-            keys[i] = 1;
-            for (unsigned k = 0; k < 3; ++k) keys[i] = mix(keys[i] ^ std::bit_cast<Key>(places[i][k]));
-        }
+        for (std::size_t i = begin; i < end; ++i) keys[i] = place_key(places[i]);
     });
     return keys;
 }

@@ -12,6 +12,7 @@ namespace hsdm {
 using Key = std::uint64_t;
 inline constexpr Key no_key = 0;
 
+Key place_key(const Vec3& place);
 /// O(n), parallel.
 std::vector<Key> place_keys(std::span<const Vec3> places);
 

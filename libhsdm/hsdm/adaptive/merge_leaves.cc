@@ -26,14 +26,13 @@ struct Faults : FaultCounts {
 
 class LeafMerging {
 public:
-    LeafMerging(const LeafMesh& leaves, std::span<const Quadric> planes, BoundCheck& check,
-                CrossingCheck& crossing_check, const MergeLeavesOptions& options)
+    LeafMerging(const LeafMesh& leaves, std::span<const Quadric> planes, RoundChecks& checks,
+                const MergeLeavesOptions& options)
         : leaves_(leaves),
-          check_(check),
-          crossing_check_(crossing_check),
+          checks_(checks),
           options_(options),
           planes_(leaves.mesh.vertex_count()),
-          tolerance_(leaves.mesh.vertex_count(), options.tolerance) {
+          tolerance_(leaves.mesh.vertex_count(), checks.fine.tolerance()) {
         for (std::size_t v = 0; v < planes.size(); ++v) planes_[leaves.vertex[v]] += planes[v];
     }
 
@@ -63,7 +62,7 @@ private:
         // What nothing has changed stays as it is.
         std::vector<std::uint8_t> settled(leaf.size(), 1);
         for (Index v : with_neighbours(has_merged_)) settled[v] = 0;
-        tidy_facets(result_.mesh, check_.to_fine(), options_.tolerance, settled);
+        tidy_facets(result_.mesh, checks_.fine, settled);
     }
 
     /// Marked vertices, and those that share facets with them.
@@ -87,15 +86,15 @@ private:
             const auto ring = mesh.facet(f);
             faults.vertices.insert(faults.vertices.end(), ring.begin(), ring.end());
         };
-        const FarPlaces far = check_.find_far(mesh);
+        const FarPlaces far = checks_.bound.find_far(mesh);
         for (Index v : far.fine_vertices) faults.vertices.push_back(result_.vertex[leaves_.vertex[v]]);
         for (Index v : far.vertices) faults.vertices.push_back(v);
         for (Index f : far.facets) blame(f);
-        const auto pairs = crossing_check_.find(mesh);
+        const auto pairs = checks_.crossing.find(mesh);
         for (const auto& pair : pairs)
             for (Index f : pair) blame(f);
-        result_.far_points = check_.find_far_points();
-        for (Index p : result_.far_points.points) blame(check_.nearest_facet(check_.point(p)));
+        result_.far_points = checks_.bound.find_far_points();
+        for (Index p : result_.far_points.points) blame(checks_.bound.nearest_facet(checks_.bound.point(p)));
         faults.crossing = pairs.size();
         faults.distant = far.size() + result_.far_points.points.size();
         return faults;
@@ -123,14 +122,13 @@ private:
             static_cast<double>(concerned.size()) < few_leaves * static_cast<double>(tolerance_.size());
         for (Index leaf : concerned) {
             double& tolerance = tolerance_[leaf];
-            tolerance = few || tolerance < least_share * options_.tolerance ? 0 : 0.5 * tolerance;
+            tolerance = few || tolerance < least_share * checks_.fine.tolerance() ? 0 : 0.5 * tolerance;
         }
         return concerned.size();
     }
 
     const LeafMesh& leaves_;
-    BoundCheck& check_;
-    CrossingCheck& crossing_check_;
+    RoundChecks& checks_;
     const MergeLeavesOptions& options_;
     std::vector<Quadric> planes_;          // per vertex of the leaves
     std::vector<double> tolerance_;        // ...
@@ -140,9 +138,9 @@ private:
 
 } // namespace
 
-MergedLeaves merge_leaves(const LeafMesh& leaves, std::span<const Quadric> planes, BoundCheck& check,
-                          CrossingCheck& crossing_check, const MergeLeavesOptions& options) {
-    return LeafMerging(leaves, planes, check, crossing_check, options).run();
+MergedLeaves merge_leaves(const LeafMesh& leaves, std::span<const Quadric> planes, RoundChecks& checks,
+                          const MergeLeavesOptions& options) {
+    return LeafMerging(leaves, planes, checks, options).run();
 }
 
 } // namespace hsdm

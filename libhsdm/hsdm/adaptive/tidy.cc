@@ -27,9 +27,8 @@ constexpr double was_quad = 0.3;     // added to the corner's sine of what was a
 
 class Tidying {
 public:
-    Tidying(PolygonMesh& mesh, const MeshDistance& to_fine, double tolerance,
-            std::span<const std::uint8_t> settled)
-        : mesh_(mesh), to_fine_(to_fine), tolerance_(tolerance), facets_(mesh.vertex_count(), 0) {
+    Tidying(PolygonMesh& mesh, SurfaceBand& fine, std::span<const std::uint8_t> settled)
+        : mesh_(mesh), fine_(fine), tolerance_(fine.tolerance()), facets_(mesh.vertex_count(), 0) {
         std::vector<std::uint8_t> whole(mesh.facet_count());
         for (std::size_t f = 0; f < whole.size(); ++f) {
             const auto ring = mesh.facet(f);
@@ -96,7 +95,7 @@ private:
 
     enum class Look : std::uint8_t { none, on, off };
     Look look(Index a, Index b, Index& hint) const {
-        return to_fine_.is_beyond(middle(a, b), tolerance_, hint) ? Look::off : Look::on;
+        return fine_.holds(middle(a, b), hint) ? Look::on : Look::off;
     }
 
     void add(Index a, Index b, Index c, bool half) {
@@ -198,8 +197,8 @@ private:
         const bool flat = warp(a, b, c, d) <= tolerance_;
         if (!flat && verdict.before == Look::none) verdict.before = look(a, b, hint);
         if (!flat && verdict.before == Look::off) {
-            const double was = to_fine_(middle(a, b));
-            verdict.flips = !to_fine_.is_beyond(middle(c, d), 0.5 * was, hint);
+            const double was = fine_.surface()(middle(a, b));
+            verdict.flips = !fine_.surface().is_beyond(middle(c, d), 0.5 * was, hint);
             return verdict;
         }
         if (new_shape < better_shape * old_shape) return verdict;
@@ -316,7 +315,7 @@ private:
     }
 
     PolygonMesh& mesh_;
-    const MeshDistance& to_fine_;
+    SurfaceBand& fine_;
     double tolerance_;
     PolygonMesh kept_;                 // facets that are done
     std::vector<Index> corners_;       // three per triangle
@@ -332,9 +331,8 @@ private:
 
 } // namespace
 
-TidyCounts tidy_facets(PolygonMesh& mesh, const MeshDistance& to_fine, double tolerance,
-                       std::span<const std::uint8_t> settled) {
-    const TidyCounts counts = Tidying(mesh, to_fine, tolerance, settled).run();
+TidyCounts tidy_facets(PolygonMesh& mesh, SurfaceBand& fine, std::span<const std::uint8_t> settled) {
+    const TidyCounts counts = Tidying(mesh, fine, settled).run();
     cut_straight_corners(mesh, reflex);
     return counts;
 }
