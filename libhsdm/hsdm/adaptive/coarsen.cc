@@ -13,7 +13,7 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t vertices_per_chunk = 2048;
+constexpr std::size_t vertices_per_chunk = 2048, facets_per_chunk = 8192;
 constexpr std::size_t fewest_samples = 10000, most_samples = 100000;
 constexpr double spacing = 1; // of places on facets, in voxels of the fine mesh
 constexpr double planes_share =
@@ -34,9 +34,10 @@ public:
           points_(points),
           options_(options),
           tree_(build_cell_tree(fine.positions, extent, depth)),
+          planes_(vertex_planes(fine)),
           checks_(fine, points, options.max_error, spacing * extent / static_cast<double>(1u << depth),
                   tolerance()) {
-        clusters_ = build_clusters(fine, tree_, tolerance());
+        clusters_ = build_clusters(fine, tree_, planes_, tolerance());
     }
 
     AdaptiveMesh run() {
@@ -75,8 +76,8 @@ private:
     /// Makes do with fewer vertices than leaves.
     void merge() {
         LeafMesh leaves{std::move(result_.mesh), std::move(vertex_)};
-        MergedLeaves merged = merge_leaves(leaves, vertex_planes(fine_), checks_,
-                                           {.faults = faults_, .rounds = options_.rounds});
+        MergedLeaves merged =
+            merge_leaves(leaves, planes_, checks_, {.faults = faults_, .rounds = options_.rounds});
         result_.mesh = std::move(merged.mesh);
         result_.merged = leaves.mesh.vertex_count() - result_.mesh.vertex_count();
         set_beyond(merged.far_points);
@@ -140,7 +141,6 @@ private:
             number[level].assign(clusters_[level].size(), no_index);
         PolygonMesh& mesh = result_.mesh = PolygonMesh();
         coarse_.clear();
-        pinched_.clear();
         vertex_.resize(fine_.vertex_count());
         for (std::size_t v = 0; v < places_.size(); ++v) {
             const Place& place = places_[v];
@@ -153,12 +153,21 @@ private:
             }
             vertex_[v] = n;
         }
-        std::vector<Index> ring;
-        for (std::size_t f = 0; f < fine_.facet_count(); ++f) {
-            ring.clear();
-            for (Index v : fine_.facet(f)) ring.push_back(vertex_[v]);
-            if (!add_loops(ring, mesh)) pinched_.push_back(static_cast<Index>(f));
-        }
+        std::vector<PolygonMesh> parts(chunk_count(fine_.facet_count(), facets_per_chunk));
+        std::vector<std::vector<Index>> pinched(parts.size());
+        for_chunks(fine_.facet_count(), facets_per_chunk,
+                   [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+                       std::vector<Index> ring, open;
+                       for (std::size_t f = begin; f < end; ++f) {
+                           ring.clear();
+                           for (Index v : fine_.facet(f)) ring.push_back(vertex_[v]);
+                           if (!add_loops(ring, open, parts[chunk]))
+                               pinched[chunk].push_back(static_cast<Index>(f));
+                       }
+                   });
+        for (const PolygonMesh& part : parts)
+            for (std::size_t f = 0; f < part.facet_count(); ++f) mesh.add_facet(part.facet(f));
+        pinched_ = joined(pinched);
     }
 
     /// Their neighbours take over the fine vertices.
@@ -179,12 +188,12 @@ private:
 
     /// The simple loops of three vertices and more that are left of a facet whose vertices coincide in part.
     /// False if corners coincide that are not next to each other: what the surface has between them could be
-    /// a handle.
-    static bool add_loops(std::vector<Index>& ring, PolygonMesh& mesh) {
+    /// a handle. `open` is room to work in.
+    static bool add_loops(std::vector<Index>& ring, std::vector<Index>& open, PolygonMesh& mesh) {
         ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
         while (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
         bool simple = true;
-        std::vector<Index> open;
+        open.clear();
         for (Index v : ring) {
             const auto seen = std::find(open.begin(), open.end(), v);
             if (seen != open.end()) {
@@ -297,6 +306,7 @@ private:
     std::span<const Vec3> points_;
     const CoarsenOptions& options_;
     CellTree tree_;
+    std::vector<Quadric> planes_; // per fine vertex
     std::vector<ClusterLevel> clusters_;
     std::vector<Place> places_;  // per fine vertex
     std::vector<Index> vertex_;  // per fine vertex, the vertex of the result

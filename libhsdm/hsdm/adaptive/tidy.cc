@@ -16,7 +16,7 @@ namespace hsdm {
 namespace {
 
 constexpr int sweeps = 4;
-constexpr std::size_t sides_per_chunk = 3 * 1024; // whole triangles, and the same hints for any thread count
+constexpr std::size_t triangles_per_chunk = 1024, sides_per_chunk = 3 * triangles_per_chunk;
 
 constexpr double better_shape = 1.1; // a flip for shape gains at least this factor
 constexpr double flip_cosine = 0.94; // for shape: normals up to 20 degrees apart
@@ -98,23 +98,24 @@ private:
         return fine_.holds(middle(a, b), hint) ? Look::on : Look::off;
     }
 
-    void add(Index a, Index b, Index c, bool half) {
-        corners_.insert(corners_.end(), {a, b, c});
-        half_.push_back(half);
-    }
-
     void cut_all(const std::vector<std::uint8_t>& whole) {
         kept_ = {};
-        corners_.clear();
         half_.clear();
         facet_.clear();
         for (std::size_t f = 0; f < whole.size(); ++f) {
-            if (whole[f])
-                kept_.add_facet(mesh_.facet(f));
-            else
-                cut(mesh_.facet(f));
-            facet_.resize(half_.size(), static_cast<Index>(f));
+            const auto ring = mesh_.facet(f);
+            if (whole[f]) {
+                kept_.add_facet(ring);
+                continue;
+            }
+            facet_.resize(facet_.size() + ring.size() - 2, static_cast<Index>(f));
+            half_.resize(facet_.size(), ring.size() == 4);
         }
+        corners_.resize(3 * facet_.size());
+        for_chunks(facet_.size(), triangles_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t t = begin; t < end; ++t)
+                if (t == 0 || facet_[t - 1] != facet_[t]) cut(mesh_.facet(facet_[t]), &corners_[3 * t]);
+        });
         link();
     }
 
@@ -129,19 +130,20 @@ private:
         return any;
     }
 
-    void cut(std::span<const Index> f) {
-        if (f.size() == 3) return add(f[0], f[1], f[2], false);
+    /// Three corners, or six with the diagonal as side 0 of either half.
+    void cut(std::span<const Index> f, Index* out) const {
+        if (f.size() == 3) {
+            std::copy(f.begin(), f.end(), out);
+            return;
+        }
         const double shape02 = std::min(triangle_shape(at(f[0]), at(f[1]), at(f[2])),
                                         triangle_shape(at(f[0]), at(f[2]), at(f[3])));
         const double shape13 = std::min(triangle_shape(at(f[0]), at(f[1]), at(f[3])),
                                         triangle_shape(at(f[1]), at(f[2]), at(f[3])));
-        if (shape02 >= shape13) {
-            add(f[2], f[0], f[1], true); // the diagonal is side 0 of either half
-            add(f[0], f[2], f[3], true);
-        } else {
-            add(f[1], f[3], f[0], true);
-            add(f[3], f[1], f[2], true);
-        }
+        const std::array<Index, 6> halves = shape02 >= shape13
+                                                ? std::array{f[2], f[0], f[1], f[0], f[2], f[3]}
+                                                : std::array{f[1], f[3], f[0], f[3], f[1], f[2]};
+        std::copy(halves.begin(), halves.end(), out);
     }
 
     void link() {
@@ -186,14 +188,15 @@ private:
         const Index t = twin_[s], a = corners_[s], b = corners_[t], c = corners_[previous_side(s)],
                     d = corners_[previous_side(t)];
         Verdict verdict{false, look_[s], Look::none};
-        const double old_shape =
-            std::min(triangle_shape(at(a), at(b), at(c)), triangle_shape(at(b), at(a), at(d)));
-        const double new_shape =
-            std::min(triangle_shape(at(c), at(a), at(d)), triangle_shape(at(d), at(b), at(c)));
-        if (new_shape < std::min(least_shape, old_shape)) return verdict;
         const Vec3 first = triangle_normal(at(c), at(a), at(d)),
                    second = triangle_normal(at(d), at(b), at(c)), sum = first + second;
         if ((first | sum) <= 0 || (second | sum) <= 0) return verdict;
+        const Vec3 old1 = triangle_normal(at(a), at(b), at(c)), old2 = triangle_normal(at(b), at(a), at(d));
+        const double old_shape =
+            std::min(triangle_shape(at(a), at(b), at(c), old1), triangle_shape(at(b), at(a), at(d), old2));
+        const double new_shape =
+            std::min(triangle_shape(at(c), at(a), at(d), first), triangle_shape(at(d), at(b), at(c), second));
+        if (new_shape < std::min(least_shape, old_shape)) return verdict;
         const bool flat = warp(a, b, c, d) <= tolerance_;
         if (!flat && verdict.before == Look::none) verdict.before = look(a, b, hint);
         if (!flat && verdict.before == Look::off) {
@@ -203,7 +206,6 @@ private:
         }
         if (new_shape < better_shape * old_shape) return verdict;
         if ((first | second) < flip_cosine * first.norm() * second.norm()) return verdict;
-        const Vec3 old1 = triangle_normal(at(a), at(b), at(c)), old2 = triangle_normal(at(b), at(a), at(d));
         if ((old1 | old2) < flip_cosine * old1.norm() * old2.norm() && old_shape > least_shape)
             return verdict;
         verdict.after = flat ? verdict.before : look(c, d, hint);
