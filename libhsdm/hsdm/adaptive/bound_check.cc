@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t places_per_chunk = 2048;
 constexpr std::size_t far_per_chunk = 64; // distances of places that are far take long
+constexpr std::size_t keys_per_chunk = 512;
 
 /// Vertices at a border: each vertex of a whole fan is as often behind the one in the middle as before it.
 std::vector<std::uint8_t> border_vertices(const PolygonMesh& mesh) {
@@ -26,12 +27,6 @@ std::vector<std::uint8_t> border_vertices(const PolygonMesh& mesh) {
     std::transform(balance.begin(), balance.end(), border.begin(), [](std::int64_t b) { return b != 0; });
     return border;
 }
-
-/// Places on facets, and the facet of each.
-struct FacetPlaces {
-    std::vector<Vec3> at;
-    std::vector<Index> facet;
-};
 
 std::array<Vec3, 3> corners_of(const PolygonMesh& mesh, const Triangle& t) {
     return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
@@ -77,6 +72,22 @@ void add_places(const std::array<Vec3, 3>& corners, const std::array<bool, 3>& t
     }
 }
 
+/// What is far of things with these keys, but for those known to be near. From now on all others are known.
+template <class IsFar>
+std::vector<Index> far_of(std::vector<Key> keys, KeySet& near, const IsFar& is_far) {
+    std::vector<std::vector<Index>> parts(chunk_count(keys.size(), keys_per_chunk));
+    for_chunks(keys.size(), keys_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+        Index hint = no_index;
+        std::vector<Vec3> room;
+        for (auto i = static_cast<Index>(begin); i < end; ++i)
+            if (!near.contains(keys[i]) && is_far(i, hint, room)) parts[c].push_back(i);
+    });
+    const std::vector<Index> far = joined(parts);
+    for (Index i : far) keys[i] = no_key;
+    near = KeySet(keys);
+    return far;
+}
+
 } // namespace
 
 BoundCheck::BoundCheck(const PolygonMesh& fine, std::span<const Vec3> points, double bound, double spacing)
@@ -116,46 +127,23 @@ std::vector<Index> BoundCheck::far_from(std::span<const Vec3> places, std::vecto
 
 /// The fine mesh's own vertices need no look.
 std::vector<Index> BoundCheck::far_vertices(const PolygonMesh& mesh) {
-    std::vector<Index> moved;
-    std::vector<Vec3> at;
-    for (Index v = 0; v < mesh.vertex_count(); ++v) {
-        if (fine_names_.contains(names_[v]) || near_names_.contains(names_[v])) continue;
-        moved.push_back(v);
-        at.push_back(mesh.positions[v]);
-    }
-    const std::vector<Index> near = to_fine_.facets_within(at, bound_);
-    std::vector<Index> far;
-    std::vector<Key> passed = names_;
-    for (std::size_t i = 0; i < moved.size(); ++i) {
-        if (near[i] != no_index) continue;
-        far.push_back(moved[i]);
-        passed[moved[i]] = no_key;
-    }
-    near_names_ = KeySet(passed);
-    return far;
+    return far_of(names_, near_names_, [&](Index v, Index& hint, std::vector<Vec3>&) {
+        return !fine_names_.contains(names_[v]) && to_fine_.is_beyond(mesh.positions[v], bound_, hint);
+    });
 }
 
 std::vector<Index> BoundCheck::far_facets(const PolygonMesh& mesh) {
     const std::vector<std::uint8_t> border = border_vertices(mesh);
     const Triangulation cut = triangulate(mesh);
-    FacetPlaces places;
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-        if (near_keys_.contains(keys_[f]) || fine_keys_.contains(keys_[f])) continue;
+    return far_of(keys_, near_keys_, [&](Index f, Index& hint, std::vector<Vec3>& places) {
+        if (fine_keys_.contains(keys_[f])) return false;
+        places.clear();
         for (Index t = cut.first[f]; t < cut.first[f + 1]; ++t)
             add_places(corners_of(mesh, cut.triangles[t]), sides_of(cut.triangles[t], border, names_),
-                       spacing_, places.at);
-        places.facet.resize(places.at.size(), static_cast<Index>(f));
-    }
-    const std::vector<Index> near = to_fine_.facets_within(places.at, bound_);
-    std::vector<Index> far;
-    std::vector<Key> passed = keys_;
-    for (std::size_t i = 0; i < near.size(); ++i) {
-        if (near[i] != no_index) continue;
-        if (passed[places.facet[i]] != no_key) far.push_back(places.facet[i]);
-        passed[places.facet[i]] = no_key;
-    }
-    near_keys_ = KeySet(passed);
-    return far;
+                       spacing_, places);
+        return std::any_of(places.begin(), places.end(),
+                           [&](const Vec3& place) { return to_fine_.is_beyond(place, bound_, hint); });
+    });
 }
 
 FarPoints BoundCheck::find_far_points() {

@@ -9,7 +9,7 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t vertices_per_chunk = 1024;
+constexpr std::size_t vertices_per_chunk = 1024, facets_per_chunk = 2048;
 constexpr double flat = 1e-6; // twice a facet's area over its squared length: less is no area
 
 /// A side of a facet: corner `corner` starts it, `next` ends it.
@@ -48,6 +48,20 @@ std::vector<Side> sorted_sides(const PolygonMesh& mesh) {
     return sides;
 }
 
+std::vector<Index> flat_facets(const PolygonMesh& mesh) {
+    std::vector<std::vector<Index>> parts(chunk_count(mesh.facet_count(), facets_per_chunk));
+    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t f, std::size_t end, std::size_t c) {
+        for (; f < end; ++f) {
+            const auto ring = mesh.facet(f);
+            double longest = 0;
+            for (std::size_t i = 1; i < ring.size(); ++i)
+                longest = std::max(longest, (mesh.positions[ring[i]] - mesh.positions[ring[0]]).sqrnorm());
+            if (area_vector(mesh, ring).norm() <= flat * longest) parts[c].push_back(static_cast<Index>(f));
+        }
+    });
+    return joined(parts);
+}
+
 } // namespace
 
 std::vector<Index> troubled_vertices(const PolygonMesh& mesh) {
@@ -74,14 +88,8 @@ std::vector<Index> troubled_vertices(const PolygonMesh& mesh) {
         root[v] = r;
         ++facets[v];
     }
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-        const auto ring = mesh.facet(f);
-        double longest = 0;
-        for (std::size_t i = 1; i < ring.size(); ++i)
-            longest = std::max(longest, (mesh.positions[ring[i]] - mesh.positions[ring[0]]).sqrnorm());
-        if (area_vector(mesh, ring).norm() <= flat * longest)
-            for (Index v : ring) troubled[v] = 1;
-    }
+    for (Index f : flat_facets(mesh))
+        for (Index v : mesh.facet(f)) troubled[v] = 1;
     std::vector<Index> result;
     for (Index v = 0; v < troubled.size(); ++v)
         if (troubled[v] || (facets[v] > 0 && facets[v] < 3 && !border[v])) result.push_back(v);
