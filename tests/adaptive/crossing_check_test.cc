@@ -20,7 +20,7 @@ Vec3 place(Random& random) {
 PolygonMesh soup(Random& random, Index count) {
     PolygonMesh mesh;
     for (Index i = 0; i < count; ++i) {
-        const double size = i % 20 == 0 ? 0.8 : 0.15;
+        const double size = i % 50 == 0 ? 0.4 : 0.04;
         const Vec3 middle = place(random);
         const Index v = static_cast<Index>(mesh.positions.size());
         for (int k = 0; k < 3; ++k) mesh.positions.push_back(middle + random.direction() * size);
