@@ -51,7 +51,7 @@ public:
         if (options_.measure) {
             const std::size_t samples =
                 std::clamp(2 * result_.mesh.facet_count(), fewest_samples, most_samples);
-            result_.to_fine = checks_.bound.to_fine()(sample_surface(result_.mesh, samples));
+            result_.to_fine = checks_.bound().to_fine()(sample_surface(result_.mesh, samples));
         }
         result_.vertex = std::move(vertex_);
         return std::move(result_);
@@ -66,8 +66,11 @@ private:
         const std::size_t troubled = split_troubled();
         result_.topology_splits += troubled;
         if (troubled > 0) return troubled; // all else needs a 2-manifold
-        tidy_facets(result_.mesh, checks_.fine, own());
-        const std::size_t crossing = split_intersecting(), distant = split_distant();
+        tidy_facets(result_.mesh, checks_.band(), own());
+        const Findings found = checks_.look_at(result_.mesh);
+        faults_ = found.count();
+        set_beyond(found.far_points);
+        const std::size_t crossing = split_intersecting(found), distant = split_distant(found);
         result_.intersection_splits += crossing;
         result_.error_splits += distant;
         return crossing + distant;
@@ -111,7 +114,7 @@ private:
         for (CellLevel& level : tree_.levels)
             if (&level != &tree_.levels.back()) level.whole.assign(level.whole.size(), 0);
         collapse();
-        split_distant();
+        set_beyond(checks_.look_at(result_.mesh).far_points);
     }
 
     /// The leaf and the cluster of every fine vertex.
@@ -238,25 +241,19 @@ private:
             if (lost[v]) troubled.push_back(v);
     }
 
-    std::size_t split_intersecting() {
-        const auto pairs = checks_.crossing.find(result_.mesh);
-        faults_.crossing = pairs.size();
+    std::size_t split_intersecting(const Findings& found) {
         std::size_t splits = 0;
-        for (const auto& pair : pairs)
+        for (const auto& pair : found.crossing)
             for (Index f : pair) splits += split_facet(f);
         return splits;
     }
 
-    std::size_t split_distant() {
-        const FarPlaces far = checks_.bound.find_far(result_.mesh);
+    std::size_t split_distant(const Findings& found) {
         std::size_t splits = 0;
-        for (Index v : far.fine_vertices) splits += split_at(places_[v]);
-        for (Index v : far.vertices) splits += split_at(coarse_[v]);
-        for (Index f : far.facets) splits += split_facet(f);
-        const FarPoints points = checks_.bound.find_far_points();
-        set_beyond(points);
-        for (Index p : points.points) splits += split_near(points_[p]);
-        faults_.distant = far.size() + points.points.size();
+        for (Index v : found.far.fine_vertices) splits += split_at(places_[v]);
+        for (Index v : found.far.vertices) splits += split_at(coarse_[v]);
+        for (Index f : found.far.facets) splits += split_facet(f);
+        for (Index p : found.far_points.points) splits += split_near(points_[p]);
         return splits;
     }
 
@@ -270,7 +267,7 @@ private:
     std::size_t split_near(const Vec3& point) {
         const std::size_t splits = split_around(point);
         if (splits > 0) return splits;
-        const Index facet = checks_.bound.nearest_facet(point);
+        const Index facet = checks_.bound().nearest_facet(point);
         return facet == no_index ? 0 : split_facet(facet);
     }
 

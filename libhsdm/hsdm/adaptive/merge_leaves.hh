@@ -2,10 +2,8 @@
 // Leaves are cubes: over flat ground, along straight creases and along cylinders fewer vertices do than there
 // are leaves.
 
-#include "hsdm/adaptive/bound_check.hh"
-#include "hsdm/adaptive/crossing_check.hh"
 #include "hsdm/adaptive/quadric.hh"
-#include "hsdm/adaptive/surface_band.hh"
+#include "hsdm/adaptive/round_checks.hh"
 
 namespace hsdm {
 
@@ -13,27 +11,6 @@ namespace hsdm {
 struct LeafMesh {
     PolygonMesh mesh;
     std::vector<Index> vertex; ///< per fine vertex, the vertex that stands for it
-};
-
-/// What is asked of one mesh after the other, and in part remembered.
-struct RoundChecks {
-    /// As BoundCheck; `tolerance`, the mesh's units, > 0: what a vertex may miss planes by, root mean square,
-    /// and edges the fine surface.
-    RoundChecks(const PolygonMesh& fine_mesh, std::span<const Vec3> points, double bound_to_keep,
-                double spacing, double tolerance)
-        : bound(fine_mesh, points, bound_to_keep, spacing),
-          fine(bound.to_fine(), tolerance, fine_mesh.vertex_count()) {}
-    RoundChecks(const RoundChecks&) = delete;
-
-    BoundCheck bound;
-    CrossingCheck crossing;
-    SurfaceBand fine;
-};
-
-/// What is wrong with a mesh.
-struct FaultCounts {
-    std::size_t crossing = 0; ///< pairs of facets that intersect
-    std::size_t distant = 0;  ///< places, vertices and points beyond the bound
 };
 
 struct MergeLeavesOptions {
