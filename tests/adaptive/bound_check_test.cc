@@ -75,3 +75,15 @@ TEST_CASE("what was near a facet that has gone is measured again, in any order o
     CHECK(check.find_far(again).size() == 0);
     CHECK(check.find_far_points().points.empty());
 }
+
+TEST_CASE("what was far from the fine mesh is so each time", "[adaptive]") {
+    const PolygonMesh fine = roof();
+    BoundCheck check(fine, {}, 0.1, 1);
+    PolygonMesh lifted = fine;
+    for (Vec3& p : lifted.positions) p[2] += p[0] < 3.5 ? 0.05 : 0.2;
+    const FarPlaces first = check.find_far(lifted), second = check.find_far(lifted);
+    CHECK(first.vertices.size() == std::size_t{5} * side);
+    CHECK(first.facets.size() == std::size_t{5} * (side - 1));
+    CHECK(second.vertices == first.vertices);
+    CHECK(second.facets == first.facets);
+}

@@ -28,9 +28,11 @@ PolygonMesh sheet(const Height& height) {
     return mesh;
 }
 
-TidyCounts tidied(PolygonMesh& mesh, const PolygonMesh& fine, double tolerance = 0.05) {
-    return tidy_facets(mesh, MeshDistance(fine), tolerance,
-                       std::vector<std::uint8_t>(mesh.vertex_count(), 0));
+TidyCounts tidied(PolygonMesh& mesh, const PolygonMesh& fine, bool settled = false) {
+    constexpr double tolerance = 0.05;
+    const MeshDistance surface(fine);
+    SurfaceBand band(surface, tolerance, mesh.vertex_count());
+    return tidy_facets(mesh, band, std::vector<std::uint8_t>(mesh.vertex_count(), settled));
 }
 
 /// Every quad cut from its first corner.
@@ -93,8 +95,7 @@ TEST_CASE("a triangle without area is no half of a quad", "[adaptive]") {
 TEST_CASE("settled facets stay as they are", "[adaptive]") {
     PolygonMesh mesh = sheet([](double x, double y) { return -std::abs(x - y); });
     const PolygonMesh before = mesh;
-    const TidyCounts counts =
-        tidy_facets(mesh, MeshDistance(before), 0.05, std::vector<std::uint8_t>(mesh.vertex_count(), 1));
+    const TidyCounts counts = tidied(mesh, before, true);
     CHECK(counts.flipped == 0);
     CHECK(counts.joined == 0);
     CHECK(mesh.corners == before.corners);

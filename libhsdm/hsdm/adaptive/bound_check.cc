@@ -2,13 +2,9 @@
 
 #include "hsdm/chunks.hh"
 #include "hsdm/facets/triangulate.hh"
-#include "hsdm/quality/mix.hh"
-
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 
 namespace hsdm {
@@ -16,46 +12,7 @@ namespace {
 
 constexpr std::size_t places_per_chunk = 2048;
 constexpr std::size_t far_per_chunk = 64; // distances of places that are far take long
-constexpr std::uint64_t no_key = 0;
-
-/// Numbers that are the same for the same places.
-std::vector<std::uint64_t> names_of(std::span<const Vec3> places) {
-    std::vector<std::uint64_t> names(places.size());
-    for_chunks(names.size(), places_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i) {
-            names[i] = 1;
-            for (unsigned k = 0; k < 3; ++k)
-                names[i] = mix(names[i] ^ std::bit_cast<std::uint64_t>(places[i][k]));
-        }
-    });
-    return names;
-}
-
-/// Facets are the same if their vertices are, in the same order.
-std::vector<std::uint64_t> facet_keys(const PolygonMesh& mesh, std::span<const std::uint64_t> names) {
-    std::vector<std::uint64_t> keys(mesh.facet_count());
-    for_chunks(keys.size(), places_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t f = begin; f < end; ++f) {
-            const auto ring = mesh.facet(f);
-            std::size_t least = 0;
-            for (std::size_t i = 1; i < ring.size(); ++i)
-                if (names[ring[i]] < names[ring[least]]) least = i;
-            std::uint64_t key = ring.size();
-            for (std::size_t i = 0; i < ring.size(); ++i)
-                key = mix(key ^ names[ring[(least + i) % ring.size()]]);
-            // Which of two equal diagonals cuts a quad depends on where its ring starts.
-            keys[f] = ring.size() == 4 && least % 2 == 1 ? mix(key) : key;
-        }
-    });
-    return keys;
-}
-
-void index_keys(std::vector<std::uint64_t> keys, MortonIndex& index) {
-    tbb::parallel_sort(keys.begin(), keys.end());
-    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-    if (!keys.empty() && keys.front() == no_key) keys.erase(keys.begin());
-    index.build(keys);
-}
+constexpr std::size_t keys_per_chunk = 512;
 
 /// Vertices at a border: each vertex of a whole fan is as often behind the one in the middle as before it.
 std::vector<std::uint8_t> border_vertices(const PolygonMesh& mesh) {
@@ -71,12 +28,6 @@ std::vector<std::uint8_t> border_vertices(const PolygonMesh& mesh) {
     return border;
 }
 
-/// Places on facets, and the facet of each.
-struct FacetPlaces {
-    std::vector<Vec3> at;
-    std::vector<Index> facet;
-};
-
 std::array<Vec3, 3> corners_of(const PolygonMesh& mesh, const Triangle& t) {
     return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
 }
@@ -84,7 +35,7 @@ std::array<Vec3, 3> corners_of(const PolygonMesh& mesh, const Triangle& t) {
 /// The sides that are looked at with this triangle and not with the other one there, whatever the numbers of
 /// the vertices.
 std::array<bool, 3> sides_of(const Triangle& t, const std::vector<std::uint8_t>& border,
-                             std::span<const std::uint64_t> names) {
+                             std::span<const Key> names) {
     const auto takes = [&](Index v, Index w) { return names[v] < names[w] || (border[v] && border[w]); };
     return {takes(t[0], t[1]), takes(t[1], t[2]), takes(t[2], t[0])};
 }
@@ -121,31 +72,46 @@ void add_places(const std::array<Vec3, 3>& corners, const std::array<bool, 3>& t
     }
 }
 
+/// What is far of things with these keys, but for those known to be near. From now on all others are known.
+template <class IsFar>
+std::vector<Index> far_of(std::vector<Key> keys, KeySet& near, const IsFar& is_far) {
+    std::vector<std::vector<Index>> parts(chunk_count(keys.size(), keys_per_chunk));
+    for_chunks(keys.size(), keys_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+        Index hint = no_index;
+        std::vector<Vec3> room;
+        for (auto i = static_cast<Index>(begin); i < end; ++i)
+            if (!near.contains(keys[i]) && is_far(i, hint, room)) parts[c].push_back(i);
+    });
+    const std::vector<Index> far = joined(parts);
+    for (Index i : far) keys[i] = no_key;
+    near = KeySet(keys);
+    return far;
+}
+
 } // namespace
 
 BoundCheck::BoundCheck(const PolygonMesh& fine, std::span<const Vec3> points, double bound, double spacing)
     : fine_(fine), points_(points), bound_(bound), spacing_(spacing), to_fine_(fine) {
-    const std::vector<std::uint64_t> names = names_of(fine.positions);
-    index_keys(names, fine_names_);
-    index_keys(facet_keys(fine, names), fine_keys_);
+    const std::vector<Key> names = place_keys(fine.positions);
+    fine_names_ = KeySet(names);
+    fine_keys_ = KeySet(facet_keys(fine, names));
 }
 
 FarPlaces BoundCheck::find_far(const PolygonMesh& mesh) {
     to_mesh_.emplace(mesh);
-    names_ = names_of(mesh.positions);
+    names_ = place_keys(mesh.positions);
     keys_ = facet_keys(mesh, names_);
-    index_keys(keys_, present_);
+    present_ = KeySet(keys_);
     return {far_from(fine_.positions, near_vertex_), far_vertices(mesh), far_facets(mesh)};
 }
 
 /// A place that was near a facet still is if the facet has stayed: `near` keeps its key.
-std::vector<Index> BoundCheck::far_from(std::span<const Vec3> places,
-                                        std::vector<std::uint64_t>& near) const {
+std::vector<Index> BoundCheck::far_from(std::span<const Vec3> places, std::vector<Key>& near) const {
     near.resize(places.size(), no_key);
     std::vector<std::vector<Index>> parts(chunk_count(places.size(), places_per_chunk));
     for_chunks(places.size(), places_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
         for (std::size_t i = begin; i < end; ++i)
-            if (present_.find(near[i]) == no_index) parts[c].push_back(static_cast<Index>(i));
+            if (!present_.contains(near[i])) parts[c].push_back(static_cast<Index>(i));
     });
     const std::vector<Index> doubtful = joined(parts);
     std::vector<Vec3> at(doubtful.size());
@@ -160,42 +126,24 @@ std::vector<Index> BoundCheck::far_from(std::span<const Vec3> places,
 }
 
 /// The fine mesh's own vertices need no look.
-std::vector<Index> BoundCheck::far_vertices(const PolygonMesh& mesh) const {
-    std::vector<Index> moved;
-    std::vector<Vec3> at;
-    for (Index v = 0; v < mesh.vertex_count(); ++v) {
-        if (fine_names_.find(names_[v]) != no_index) continue;
-        moved.push_back(v);
-        at.push_back(mesh.positions[v]);
-    }
-    const std::vector<Index> near = to_fine_.facets_within(at, bound_);
-    std::vector<Index> far;
-    for (std::size_t i = 0; i < moved.size(); ++i)
-        if (near[i] == no_index) far.push_back(moved[i]);
-    return far;
+std::vector<Index> BoundCheck::far_vertices(const PolygonMesh& mesh) {
+    return far_of(names_, near_names_, [&](Index v, Index& hint, std::vector<Vec3>&) {
+        return !fine_names_.contains(names_[v]) && to_fine_.is_beyond(mesh.positions[v], bound_, hint);
+    });
 }
 
 std::vector<Index> BoundCheck::far_facets(const PolygonMesh& mesh) {
     const std::vector<std::uint8_t> border = border_vertices(mesh);
     const Triangulation cut = triangulate(mesh);
-    FacetPlaces places;
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-        if (passed_.find(keys_[f]) != no_index || fine_keys_.find(keys_[f]) != no_index) continue;
+    return far_of(keys_, near_keys_, [&](Index f, Index& hint, std::vector<Vec3>& places) {
+        if (fine_keys_.contains(keys_[f])) return false;
+        places.clear();
         for (Index t = cut.first[f]; t < cut.first[f + 1]; ++t)
             add_places(corners_of(mesh, cut.triangles[t]), sides_of(cut.triangles[t], border, names_),
-                       spacing_, places.at);
-        places.facet.resize(places.at.size(), static_cast<Index>(f));
-    }
-    const std::vector<Index> near = to_fine_.facets_within(places.at, bound_);
-    std::vector<Index> far;
-    std::vector<std::uint64_t> passed = keys_;
-    for (std::size_t i = 0; i < near.size(); ++i) {
-        if (near[i] != no_index) continue;
-        if (passed[places.facet[i]] != no_key) far.push_back(places.facet[i]);
-        passed[places.facet[i]] = no_key;
-    }
-    index_keys(passed, passed_);
-    return far;
+                       spacing_, places);
+        return std::any_of(places.begin(), places.end(),
+                           [&](const Vec3& place) { return to_fine_.is_beyond(place, bound_, hint); });
+    });
 }
 
 FarPoints BoundCheck::find_far_points() {

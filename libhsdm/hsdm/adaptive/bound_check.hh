@@ -1,7 +1,7 @@
 #pragma once
 // Where a coarse mesh is farther from a fine one, or from points, than a bound.
 
-#include "hsdm/octree/morton_index.hh"
+#include "hsdm/adaptive/content_keys.hh"
 #include "hsdm/quality/distance.hh"
 
 #include <optional>
@@ -39,8 +39,8 @@ public:
     const MeshDistance& to_fine() const { return to_fine_; }
 
 private:
-    std::vector<Index> far_from(std::span<const Vec3> places, std::vector<std::uint64_t>& near) const;
-    std::vector<Index> far_vertices(const PolygonMesh& mesh) const;
+    std::vector<Index> far_from(std::span<const Vec3> places, std::vector<Key>& near) const;
+    std::vector<Index> far_vertices(const PolygonMesh& mesh);
     std::vector<Index> far_facets(const PolygonMesh& mesh);
     void measure_to_fine(const std::vector<Index>& far);
 
@@ -49,12 +49,12 @@ private:
     double bound_, spacing_;
     MeshDistance to_fine_;
     std::optional<MeshDistance> to_mesh_;
-    MortonIndex fine_names_, fine_keys_; // of the fine mesh's vertices and facets
-    std::vector<std::uint64_t> names_;   // per vertex of the mesh
-    std::vector<std::uint64_t> keys_;    // per facet of the mesh
-    MortonIndex present_, passed_;       // keys of its facets; of those found near the fine mesh
-    std::vector<std::uint64_t> near_vertex_, near_point_; // of a facet that a fine vertex, a point is near to
-    std::vector<double> off_fine_;                        // per point, from the fine mesh; -1: not known
+    KeySet fine_names_, fine_keys_;             // of the fine mesh's vertices and facets
+    std::vector<Key> names_, keys_;             // of the mesh's
+    KeySet present_;                            // keys of its facets
+    KeySet near_names_, near_keys_;             // of those found near the fine mesh
+    std::vector<Key> near_vertex_, near_point_; // of a facet that a fine vertex, a point is near to
+    std::vector<double> off_fine_;              // per point, from the fine mesh; -1: not known
 };
 
 } // namespace hsdm

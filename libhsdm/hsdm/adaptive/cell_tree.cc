@@ -5,6 +5,7 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hsdm {
@@ -81,7 +82,11 @@ std::size_t balance(CellTree& tree) {
             if (here.whole[c]) continue;
             const VoxelCoord at = morton_decode(here.codes[c]);
             for (int k = 0; k < 27; ++k) {
-                const VoxelCoord n{at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1};
+                const std::array<int, 3> step{k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
+                // Two steps along an axis lead to the same parent: the second finds nothing new.
+                const auto repeats = [&](std::size_t axis) { return step[axis] == (at[axis] % 2 == 0); };
+                if (repeats(0) || repeats(1) || repeats(2)) continue;
+                const VoxelCoord n{at[0] + step[0], at[1] + step[1], at[2] + step[2]};
                 if (n[0] < 0 || n[1] < 0 || n[2] < 0) continue;
                 const Index cell = tree.find(level - 1, morton_encode(n) >> 3);
                 if (cell == no_index || !above.whole[cell]) continue;

@@ -18,11 +18,12 @@ constexpr std::size_t clusters_per_chunk = 1024;
 /// joins different clusters, so the lists shrink by a factor of two and more per level.
 class Gathering {
 public:
-    Gathering(const PolygonMesh& mesh, CellTree& tree, double tolerance)
+    Gathering(const PolygonMesh& mesh, CellTree& tree, std::vector<Quadric> planes, double tolerance)
         : mesh_(mesh),
           tree_(tree),
           tolerance_(tolerance),
           current_(mesh.vertex_count()),
+          quadrics_(std::move(planes)),
           euler_(mesh.vertex_count(), 1) {
         for (Index v = 0; v < current_.size(); ++v) current_[v] = v;
         for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
@@ -33,7 +34,6 @@ public:
         }
         tbb::parallel_sort(edges_.begin(), edges_.end());
         edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
-        quadrics_ = vertex_planes(mesh);
     }
 
     std::vector<ClusterLevel> run() {
@@ -231,8 +231,9 @@ private:
 
 } // namespace
 
-std::vector<ClusterLevel> build_clusters(const PolygonMesh& mesh, CellTree& tree, double tolerance) {
-    return Gathering(mesh, tree, tolerance).run();
+std::vector<ClusterLevel> build_clusters(const PolygonMesh& mesh, CellTree& tree, std::vector<Quadric> planes,
+                                         double tolerance) {
+    return Gathering(mesh, tree, std::move(planes), tolerance).run();
 }
 
 } // namespace hsdm

@@ -4,7 +4,6 @@
 
 #include "hsdm/adaptive/cell_tree.hh"
 #include "hsdm/adaptive/quadric.hh"
-#include "hsdm/polygon_mesh.hh"
 
 namespace hsdm {
 
@@ -20,7 +19,8 @@ struct ClusterLevel {
 /// cluster. A cell stays whole if each of its clusters can be one vertex: its planes are met within
 /// `tolerance` (root mean square, the mesh's units), and what the cluster covers of the surface can shrink to
 /// a point (connected, Euler characteristic 1), so that putting one vertex for it changes no topology. Clears
-/// `whole` of the other cells. O(vertices * levels), parallel in parts.
-std::vector<ClusterLevel> build_clusters(const PolygonMesh& mesh, CellTree& tree, double tolerance);
+/// `whole` of the other cells. `planes`: per vertex. O(vertices * levels), parallel in parts.
+std::vector<ClusterLevel> build_clusters(const PolygonMesh& mesh, CellTree& tree, std::vector<Quadric> planes,
+                                         double tolerance);
 
 } // namespace hsdm

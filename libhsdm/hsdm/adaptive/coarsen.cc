@@ -7,14 +7,13 @@
 #include "hsdm/adaptive/trouble.hh"
 #include "hsdm/chunks.hh"
 #include "hsdm/errors.hh"
-#include "hsdm/quality/self_intersections.hh"
 
 #include <algorithm>
 
 namespace hsdm {
 namespace {
 
-constexpr std::size_t vertices_per_chunk = 2048;
+constexpr std::size_t vertices_per_chunk = 2048, facets_per_chunk = 8192;
 constexpr std::size_t fewest_samples = 10000, most_samples = 100000;
 constexpr double spacing = 1; // of places on facets, in voxels of the fine mesh
 constexpr double planes_share =
@@ -35,8 +34,10 @@ public:
           points_(points),
           options_(options),
           tree_(build_cell_tree(fine.positions, extent, depth)),
-          check_(fine, points, options.max_error, spacing * extent / static_cast<double>(1u << depth)) {
-        clusters_ = build_clusters(fine, tree_, planes_share * options.max_error);
+          planes_(vertex_planes(fine)),
+          checks_(fine, points, options.max_error, spacing * extent / static_cast<double>(1u << depth),
+                  tolerance()) {
+        clusters_ = build_clusters(fine, tree_, planes_, tolerance());
     }
 
     AdaptiveMesh run() {
@@ -50,7 +51,7 @@ public:
         if (options_.measure) {
             const std::size_t samples =
                 std::clamp(2 * result_.mesh.facet_count(), fewest_samples, most_samples);
-            result_.to_fine = check_.to_fine()(sample_surface(result_.mesh, samples));
+            result_.to_fine = checks_.bound().to_fine()(sample_surface(result_.mesh, samples));
         }
         result_.vertex = std::move(vertex_);
         return std::move(result_);
@@ -65,8 +66,11 @@ private:
         const std::size_t troubled = split_troubled();
         result_.topology_splits += troubled;
         if (troubled > 0) return troubled; // all else needs a 2-manifold
-        tidy_facets(result_.mesh, check_.to_fine(), tolerance(), own());
-        const std::size_t crossing = split_intersecting(), distant = split_distant();
+        tidy_facets(result_.mesh, checks_.band(), own());
+        const Findings found = checks_.look_at(result_.mesh);
+        faults_ = found.count();
+        set_beyond(found.far_points);
+        const std::size_t crossing = split_intersecting(found), distant = split_distant(found);
         result_.intersection_splits += crossing;
         result_.error_splits += distant;
         return crossing + distant;
@@ -76,8 +80,7 @@ private:
     void merge() {
         LeafMesh leaves{std::move(result_.mesh), std::move(vertex_)};
         MergedLeaves merged =
-            merge_leaves(leaves, vertex_planes(fine_), check_,
-                         {.tolerance = tolerance(), .faults = faults_, .rounds = options_.rounds});
+            merge_leaves(leaves, planes_, checks_, {.faults = faults_, .rounds = options_.rounds});
         result_.mesh = std::move(merged.mesh);
         result_.merged = leaves.mesh.vertex_count() - result_.mesh.vertex_count();
         set_beyond(merged.far_points);
@@ -111,7 +114,7 @@ private:
         for (CellLevel& level : tree_.levels)
             if (&level != &tree_.levels.back()) level.whole.assign(level.whole.size(), 0);
         collapse();
-        split_distant();
+        set_beyond(checks_.look_at(result_.mesh).far_points);
     }
 
     /// The leaf and the cluster of every fine vertex.
@@ -141,7 +144,6 @@ private:
             number[level].assign(clusters_[level].size(), no_index);
         PolygonMesh& mesh = result_.mesh = PolygonMesh();
         coarse_.clear();
-        pinched_.clear();
         vertex_.resize(fine_.vertex_count());
         for (std::size_t v = 0; v < places_.size(); ++v) {
             const Place& place = places_[v];
@@ -154,12 +156,21 @@ private:
             }
             vertex_[v] = n;
         }
-        std::vector<Index> ring;
-        for (std::size_t f = 0; f < fine_.facet_count(); ++f) {
-            ring.clear();
-            for (Index v : fine_.facet(f)) ring.push_back(vertex_[v]);
-            if (!add_loops(ring, mesh)) pinched_.push_back(static_cast<Index>(f));
-        }
+        std::vector<PolygonMesh> parts(chunk_count(fine_.facet_count(), facets_per_chunk));
+        std::vector<std::vector<Index>> pinched(parts.size());
+        for_chunks(fine_.facet_count(), facets_per_chunk,
+                   [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+                       std::vector<Index> ring, open;
+                       for (std::size_t f = begin; f < end; ++f) {
+                           ring.clear();
+                           for (Index v : fine_.facet(f)) ring.push_back(vertex_[v]);
+                           if (!add_loops(ring, open, parts[chunk]))
+                               pinched[chunk].push_back(static_cast<Index>(f));
+                       }
+                   });
+        for (const PolygonMesh& part : parts)
+            for (std::size_t f = 0; f < part.facet_count(); ++f) mesh.add_facet(part.facet(f));
+        pinched_ = joined(pinched);
     }
 
     /// Their neighbours take over the fine vertices.
@@ -180,12 +191,12 @@ private:
 
     /// The simple loops of three vertices and more that are left of a facet whose vertices coincide in part.
     /// False if corners coincide that are not next to each other: what the surface has between them could be
-    /// a handle.
-    static bool add_loops(std::vector<Index>& ring, PolygonMesh& mesh) {
+    /// a handle. `open` is room to work in.
+    static bool add_loops(std::vector<Index>& ring, std::vector<Index>& open, PolygonMesh& mesh) {
         ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
         while (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
         bool simple = true;
-        std::vector<Index> open;
+        open.clear();
         for (Index v : ring) {
             const auto seen = std::find(open.begin(), open.end(), v);
             if (seen != open.end()) {
@@ -230,25 +241,19 @@ private:
             if (lost[v]) troubled.push_back(v);
     }
 
-    std::size_t split_intersecting() {
-        const SelfIntersections found = find_self_intersections(result_.mesh);
-        faults_.crossing = found.facet_pairs.size();
+    std::size_t split_intersecting(const Findings& found) {
         std::size_t splits = 0;
-        for (const auto& pair : found.facet_pairs)
+        for (const auto& pair : found.crossing)
             for (Index f : pair) splits += split_facet(f);
         return splits;
     }
 
-    std::size_t split_distant() {
-        const FarPlaces far = check_.find_far(result_.mesh);
+    std::size_t split_distant(const Findings& found) {
         std::size_t splits = 0;
-        for (Index v : far.fine_vertices) splits += split_at(places_[v]);
-        for (Index v : far.vertices) splits += split_at(coarse_[v]);
-        for (Index f : far.facets) splits += split_facet(f);
-        const FarPoints points = check_.find_far_points();
-        set_beyond(points);
-        for (Index p : points.points) splits += split_near(points_[p]);
-        faults_.distant = far.size() + points.points.size();
+        for (Index v : found.far.fine_vertices) splits += split_at(places_[v]);
+        for (Index v : found.far.vertices) splits += split_at(coarse_[v]);
+        for (Index f : found.far.facets) splits += split_facet(f);
+        for (Index p : found.far_points.points) splits += split_near(points_[p]);
         return splits;
     }
 
@@ -262,7 +267,7 @@ private:
     std::size_t split_near(const Vec3& point) {
         const std::size_t splits = split_around(point);
         if (splits > 0) return splits;
-        const Index facet = check_.nearest_facet(point);
+        const Index facet = checks_.bound().nearest_facet(point);
         return facet == no_index ? 0 : split_facet(facet);
     }
 
@@ -298,12 +303,13 @@ private:
     std::span<const Vec3> points_;
     const CoarsenOptions& options_;
     CellTree tree_;
+    std::vector<Quadric> planes_; // per fine vertex
     std::vector<ClusterLevel> clusters_;
     std::vector<Place> places_;  // per fine vertex
     std::vector<Index> vertex_;  // per fine vertex, the vertex of the result
     std::vector<Place> coarse_;  // per vertex of the result
     std::vector<Index> pinched_; // facets of the fine mesh with opposite corners in one vertex
-    BoundCheck check_;
+    RoundChecks checks_;
     FaultCounts faults_; // of the last round, whether leaves could be smaller there or not
     AdaptiveMesh result_;
 };

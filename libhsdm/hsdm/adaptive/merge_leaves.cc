@@ -4,7 +4,8 @@
 #include "hsdm/adaptive/merge.hh"
 #include "hsdm/adaptive/tidy.hh"
 #include "hsdm/adaptive/trouble.hh"
-#include "hsdm/quality/self_intersections.hh"
+
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <numeric>
@@ -16,24 +17,25 @@ constexpr double least_share = 0.2; // of the tolerance: what goes wrong below i
 constexpr double few_leaves = 0.02; // of all: so few need not be merged
 constexpr int most_rings = 4;       // of facets around something wrong
 
-struct Faults : FaultCounts {
+struct Faults {
+    FaultCounts counts;
     bool manifold = true;
     std::vector<Index> vertices; // where they are
 
     bool no_worse_than(const FaultCounts& other) const {
-        return manifold && crossing <= other.crossing && distant <= other.distant;
+        return manifold && counts.crossing <= other.crossing && counts.distant <= other.distant;
     }
 };
 
 class LeafMerging {
 public:
-    LeafMerging(const LeafMesh& leaves, std::span<const Quadric> planes, BoundCheck& check,
+    LeafMerging(const LeafMesh& leaves, std::span<const Quadric> planes, RoundChecks& checks,
                 const MergeLeavesOptions& options)
         : leaves_(leaves),
-          check_(check),
+          checks_(checks),
           options_(options),
           planes_(leaves.mesh.vertex_count()),
-          tolerance_(leaves.mesh.vertex_count(), options.tolerance) {
+          tolerance_(leaves.mesh.vertex_count(), checks.band().tolerance()) {
         for (std::size_t v = 0; v < planes.size(); ++v) planes_[leaves.vertex[v]] += planes[v];
     }
 
@@ -63,7 +65,7 @@ private:
         // What nothing has changed stays as it is.
         std::vector<std::uint8_t> settled(leaf.size(), 1);
         for (Index v : with_neighbours(has_merged_)) settled[v] = 0;
-        tidy_facets(result_.mesh, check_.to_fine(), options_.tolerance, settled);
+        tidy_facets(result_.mesh, checks_.band(), settled);
     }
 
     /// Marked vertices, and those that share facets with them.
@@ -79,25 +81,25 @@ private:
 
     Faults find_faults() {
         const PolygonMesh& mesh = result_.mesh;
+        Findings found;
         Faults faults;
-        faults.vertices = troubled_vertices(mesh);
+        tbb::parallel_invoke([&] { faults.vertices = troubled_vertices(mesh); },
+                             [&] { found = checks_.look_at(mesh); });
         faults.manifold = faults.vertices.empty();
+        faults.counts = found.count();
         const auto blame = [&](Index f) {
             if (f == no_index) return;
             const auto ring = mesh.facet(f);
             faults.vertices.insert(faults.vertices.end(), ring.begin(), ring.end());
         };
-        const FarPlaces far = check_.find_far(mesh);
-        for (Index v : far.fine_vertices) faults.vertices.push_back(result_.vertex[leaves_.vertex[v]]);
-        for (Index v : far.vertices) faults.vertices.push_back(v);
-        for (Index f : far.facets) blame(f);
-        const SelfIntersections found = find_self_intersections(mesh);
-        for (const auto& pair : found.facet_pairs)
+        for (Index v : found.far.fine_vertices) faults.vertices.push_back(result_.vertex[leaves_.vertex[v]]);
+        for (Index v : found.far.vertices) faults.vertices.push_back(v);
+        for (Index f : found.far.facets) blame(f);
+        for (const auto& pair : found.crossing)
             for (Index f : pair) blame(f);
-        result_.far_points = check_.find_far_points();
-        for (Index p : result_.far_points.points) blame(check_.nearest_facet(check_.point(p)));
-        faults.crossing = found.facet_pairs.size();
-        faults.distant = far.size() + result_.far_points.points.size();
+        for (Index p : found.far_points.points)
+            blame(checks_.bound().nearest_facet(checks_.bound().point(p)));
+        result_.far_points = std::move(found.far_points);
         return faults;
     }
 
@@ -123,13 +125,13 @@ private:
             static_cast<double>(concerned.size()) < few_leaves * static_cast<double>(tolerance_.size());
         for (Index leaf : concerned) {
             double& tolerance = tolerance_[leaf];
-            tolerance = few || tolerance < least_share * options_.tolerance ? 0 : 0.5 * tolerance;
+            tolerance = few || tolerance < least_share * checks_.band().tolerance() ? 0 : 0.5 * tolerance;
         }
         return concerned.size();
     }
 
     const LeafMesh& leaves_;
-    BoundCheck& check_;
+    RoundChecks& checks_;
     const MergeLeavesOptions& options_;
     std::vector<Quadric> planes_;          // per vertex of the leaves
     std::vector<double> tolerance_;        // ...
@@ -139,9 +141,9 @@ private:
 
 } // namespace
 
-MergedLeaves merge_leaves(const LeafMesh& leaves, std::span<const Quadric> planes, BoundCheck& check,
+MergedLeaves merge_leaves(const LeafMesh& leaves, std::span<const Quadric> planes, RoundChecks& checks,
                           const MergeLeavesOptions& options) {
-    return LeafMerging(leaves, planes, check, options).run();
+    return LeafMerging(leaves, planes, checks, options).run();
 }
 
 } // namespace hsdm

@@ -2,8 +2,8 @@
 // Leaves are cubes: over flat ground, along straight creases and along cylinders fewer vertices do than there
 // are leaves.
 
-#include "hsdm/adaptive/bound_check.hh"
 #include "hsdm/adaptive/quadric.hh"
+#include "hsdm/adaptive/round_checks.hh"
 
 namespace hsdm {
 
@@ -13,16 +13,9 @@ struct LeafMesh {
     std::vector<Index> vertex; ///< per fine vertex, the vertex that stands for it
 };
 
-/// What is wrong with a mesh.
-struct FaultCounts {
-    std::size_t crossing = 0; ///< pairs of facets that intersect
-    std::size_t distant = 0;  ///< places, vertices and points beyond the bound
-};
-
 struct MergeLeavesOptions {
-    double tolerance = 0; ///< the mesh's units, > 0: what a vertex may miss planes by, root mean square
-    FaultCounts faults;   ///< that the leaves have already
-    int rounds = 24;      ///< of undoing what makes something wrong, >= 1
+    FaultCounts faults; ///< that the leaves have already
+    int rounds = 24;    ///< of undoing what makes something wrong, >= 1
 };
 
 struct MergedLeaves {
@@ -31,11 +24,11 @@ struct MergedLeaves {
     FarPoints far_points;
 };
 
-/// Merges vertices where a 2-manifold remains, no more is beyond the bound of `check` and no more facets
+/// Merges vertices where a 2-manifold remains, no more is beyond the bound of `checks` and no more facets
 /// intersect than before, and cuts and joins facets anew. What is merged where something is wrong has to keep
 /// closer to its planes, or stays as it was, and all is merged anew; if rounds do not suffice the result is
 /// the mesh over the leaves. `planes`: per vertex of the fine mesh.
-MergedLeaves merge_leaves(const LeafMesh& leaves, std::span<const Quadric> planes, BoundCheck& check,
+MergedLeaves merge_leaves(const LeafMesh& leaves, std::span<const Quadric> planes, RoundChecks& checks,
                           const MergeLeavesOptions& options);
 
 } // namespace hsdm

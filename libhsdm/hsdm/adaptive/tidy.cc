@@ -16,7 +16,7 @@ namespace hsdm {
 namespace {
 
 constexpr int sweeps = 4;
-constexpr std::size_t sides_per_chunk = 3 * 1024; // whole triangles, and the same hints for any thread count
+constexpr std::size_t triangles_per_chunk = 1024, sides_per_chunk = 3 * triangles_per_chunk;
 
 constexpr double better_shape = 1.1; // a flip for shape gains at least this factor
 constexpr double flip_cosine = 0.94; // for shape: normals up to 20 degrees apart
@@ -27,9 +27,8 @@ constexpr double was_quad = 0.3;     // added to the corner's sine of what was a
 
 class Tidying {
 public:
-    Tidying(PolygonMesh& mesh, const MeshDistance& to_fine, double tolerance,
-            std::span<const std::uint8_t> settled)
-        : mesh_(mesh), to_fine_(to_fine), tolerance_(tolerance), facets_(mesh.vertex_count(), 0) {
+    Tidying(PolygonMesh& mesh, SurfaceBand& fine, std::span<const std::uint8_t> settled)
+        : mesh_(mesh), fine_(fine), tolerance_(fine.tolerance()), facets_(mesh.vertex_count(), 0) {
         std::vector<std::uint8_t> whole(mesh.facet_count());
         for (std::size_t f = 0; f < whole.size(); ++f) {
             const auto ring = mesh.facet(f);
@@ -49,10 +48,10 @@ public:
         std::vector<std::uint8_t> turned(half_.size(), 1);
         for (int sweep = 0; sweep < sweeps; ++sweep) {
             turned_.assign(half_.size(), 0);
+            judge_all(turned);
             std::size_t flipped = 0;
             for (Index s = 0; s < corners_.size(); ++s)
-                if (twin_[s] != no_index && s < twin_[s] && (turned[s / 3] || turned[twin_[s] / 3]))
-                    flipped += flip(s);
+                if (is_due(s, turned)) flipped += flip(s);
             counts.flipped += flipped;
             turned.swap(turned_);
             if (flipped == 0) break;
@@ -96,32 +95,27 @@ private:
 
     enum class Look : std::uint8_t { none, on, off };
     Look look(Index a, Index b, Index& hint) const {
-        return to_fine_.is_beyond(middle(a, b), tolerance_, hint) ? Look::off : Look::on;
-    }
-
-    bool is_off(Index s) {
-        const Index t = twin_[s];
-        if (look_[s] == Look::none) look_[s] = look_[t] = look(corners_[s], corners_[t], hint_);
-        return look_[s] == Look::off;
-    }
-
-    void add(Index a, Index b, Index c, bool half) {
-        corners_.insert(corners_.end(), {a, b, c});
-        half_.push_back(half);
+        return fine_.holds(middle(a, b), hint) ? Look::on : Look::off;
     }
 
     void cut_all(const std::vector<std::uint8_t>& whole) {
         kept_ = {};
-        corners_.clear();
         half_.clear();
         facet_.clear();
         for (std::size_t f = 0; f < whole.size(); ++f) {
-            if (whole[f])
-                kept_.add_facet(mesh_.facet(f));
-            else
-                cut(mesh_.facet(f));
-            facet_.resize(half_.size(), static_cast<Index>(f));
+            const auto ring = mesh_.facet(f);
+            if (whole[f]) {
+                kept_.add_facet(ring);
+                continue;
+            }
+            facet_.resize(facet_.size() + ring.size() - 2, static_cast<Index>(f));
+            half_.resize(facet_.size(), ring.size() == 4);
         }
+        corners_.resize(3 * facet_.size());
+        for_chunks(facet_.size(), triangles_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t t = begin; t < end; ++t)
+                if (t == 0 || facet_[t - 1] != facet_[t]) cut(mesh_.facet(facet_[t]), &corners_[3 * t]);
+        });
         link();
     }
 
@@ -136,19 +130,20 @@ private:
         return any;
     }
 
-    void cut(std::span<const Index> f) {
-        if (f.size() == 3) return add(f[0], f[1], f[2], false);
+    /// Three corners, or six with the diagonal as side 0 of either half.
+    void cut(std::span<const Index> f, Index* out) const {
+        if (f.size() == 3) {
+            std::copy(f.begin(), f.end(), out);
+            return;
+        }
         const double shape02 = std::min(triangle_shape(at(f[0]), at(f[1]), at(f[2])),
                                         triangle_shape(at(f[0]), at(f[2]), at(f[3])));
         const double shape13 = std::min(triangle_shape(at(f[0]), at(f[1]), at(f[3])),
                                         triangle_shape(at(f[1]), at(f[2]), at(f[3])));
-        if (shape02 >= shape13) {
-            add(f[2], f[0], f[1], true); // the diagonal is side 0 of either half
-            add(f[0], f[2], f[3], true);
-        } else {
-            add(f[1], f[3], f[0], true);
-            add(f[3], f[1], f[2], true);
-        }
+        const std::array<Index, 6> halves = shape02 >= shape13
+                                                ? std::array{f[2], f[0], f[1], f[0], f[2], f[3]}
+                                                : std::array{f[1], f[3], f[0], f[3], f[1], f[2]};
+        std::copy(halves.begin(), halves.end(), out);
     }
 
     void link() {
@@ -168,39 +163,65 @@ private:
         return s == corner;
     }
 
-    /// Lays the diagonal of the two triangles at side s the other way if that is better.
-    bool flip(Index s) {
-        const Index t = twin_[s], a = corners_[s], b = corners_[next_side(s)], c = corners_[previous_side(s)],
+    /// What two triangles alone tell of the diagonal between them.
+    struct Verdict {
+        bool flips = false;       ///< is the other one better?
+        Look before = Look::none; ///< this one's
+        Look after = Look::none;  ///< the other one's
+    };
+
+    /// Is this the side to ask at, and was one of its triangles turned?
+    bool is_due(Index s, const std::vector<std::uint8_t>& turned) const {
+        return twin_[s] != no_index && s < twin_[s] && (turned[s / 3] || turned[twin_[s] / 3]);
+    }
+
+    void judge_all(const std::vector<std::uint8_t>& turned) {
+        verdicts_.resize(corners_.size());
+        for_chunks(corners_.size(), sides_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            Index hint = no_index;
+            for (auto s = static_cast<Index>(begin); s < end; ++s)
+                if (is_due(s, turned)) verdicts_[s] = judge(s, hint);
+        });
+    }
+
+    Verdict judge(Index s, Index& hint) const {
+        const Index t = twin_[s], a = corners_[s], b = corners_[t], c = corners_[previous_side(s)],
                     d = corners_[previous_side(t)];
-        if (c == d || !spares(a) || !spares(b)) return false;
-        const double old_shape =
-            std::min(triangle_shape(at(a), at(b), at(c)), triangle_shape(at(b), at(a), at(d)));
-        const double new_shape =
-            std::min(triangle_shape(at(c), at(a), at(d)), triangle_shape(at(d), at(b), at(c)));
-        if (new_shape < std::min(least_shape, old_shape)) return false;
+        Verdict verdict{false, look_[s], Look::none};
         const Vec3 first = triangle_normal(at(c), at(a), at(d)),
                    second = triangle_normal(at(d), at(b), at(c)), sum = first + second;
-        if ((first | sum) <= 0 || (second | sum) <= 0) return false;
+        if ((first | sum) <= 0 || (second | sum) <= 0) return verdict;
+        const Vec3 old1 = triangle_normal(at(a), at(b), at(c)), old2 = triangle_normal(at(b), at(a), at(d));
+        const double old_shape =
+            std::min(triangle_shape(at(a), at(b), at(c), old1), triangle_shape(at(b), at(a), at(d), old2));
+        const double new_shape =
+            std::min(triangle_shape(at(c), at(a), at(d), first), triangle_shape(at(d), at(b), at(c), second));
+        if (new_shape < std::min(least_shape, old_shape)) return verdict;
         const bool flat = warp(a, b, c, d) <= tolerance_;
-        Look now = Look::on;
-        if (!flat && is_off(s)) {
-            const double was = to_fine_(middle(a, b));
-            if (to_fine_.is_beyond(middle(c, d), 0.5 * was, hint_)) return false;
-            now = Look::none;
-        } else {
-            const Vec3 old1 = triangle_normal(at(a), at(b), at(c)),
-                       old2 = triangle_normal(at(b), at(a), at(d));
-            if (new_shape < better_shape * old_shape) return false;
-            if ((first | second) < flip_cosine * first.norm() * second.norm()) return false;
-            if ((old1 | old2) < flip_cosine * old1.norm() * old2.norm() && old_shape > least_shape)
-                return false;
-            if (flat)
-                now = look_[s];
-            else if (look(c, d, hint_) == Look::off)
-                return false;
+        if (!flat && verdict.before == Look::none) verdict.before = look(a, b, hint);
+        if (!flat && verdict.before == Look::off) {
+            const double was = fine_.surface()(middle(a, b));
+            verdict.flips = !fine_.surface().is_beyond(middle(c, d), 0.5 * was, hint);
+            return verdict;
         }
-        if (!apart(previous_side(s), d) && !apart(previous_side(t), c)) return false;
-        turn(s, t, now);
+        if (new_shape < better_shape * old_shape) return verdict;
+        if ((first | second) < flip_cosine * first.norm() * second.norm()) return verdict;
+        if ((old1 | old2) < flip_cosine * old1.norm() * old2.norm() && old_shape > least_shape)
+            return verdict;
+        verdict.after = flat ? verdict.before : look(c, d, hint);
+        verdict.flips = flat || verdict.after == Look::on;
+        return verdict;
+    }
+
+    /// Lays the diagonal of the two triangles at side s the other way if that is better.
+    bool flip(Index s) {
+        const Index t = twin_[s], c = corners_[previous_side(s)], d = corners_[previous_side(t)];
+        if (c == d || !spares(corners_[s]) || !spares(corners_[t])) return false;
+        const bool stale = turned_[s / 3] || turned_[t / 3];
+        const Verdict verdict = stale ? judge(s, hint_) : verdicts_[s];
+        look_[s] = look_[t] = verdict.before;
+        if (!verdict.flips || (!apart(previous_side(s), d) && !apart(previous_side(t), c))) return false;
+        turn(s, t, verdict.after);
         return true;
     }
 
@@ -258,11 +279,18 @@ private:
         return Quad{least + (whole ? was_quad : 0), s};
     }
 
+    std::vector<Quad> possible_quads() const {
+        std::vector<std::vector<Quad>> parts(chunk_count(corners_.size(), sides_per_chunk));
+        for_chunks(corners_.size(), sides_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+            for (auto s = static_cast<Index>(begin); s < end; ++s)
+                if (twin_[s] != no_index && s < twin_[s])
+                    if (const auto quad = quad_across(s)) parts[c].push_back(*quad);
+        });
+        return joined(parts);
+    }
+
     std::size_t join() {
-        std::vector<Quad> quads;
-        for (Index s = 0; s < corners_.size(); ++s)
-            if (twin_[s] != no_index && s < twin_[s])
-                if (const auto quad = quad_across(s)) quads.push_back(*quad);
+        std::vector<Quad> quads = possible_quads();
         tbb::parallel_sort(quads.begin(), quads.end(), [](const Quad& p, const Quad& q) {
             return p.score != q.score ? p.score > q.score : p.side < q.side;
         });
@@ -289,7 +317,7 @@ private:
     }
 
     PolygonMesh& mesh_;
-    const MeshDistance& to_fine_;
+    SurfaceBand& fine_;
     double tolerance_;
     PolygonMesh kept_;                 // facets that are done
     std::vector<Index> corners_;       // three per triangle
@@ -297,6 +325,7 @@ private:
     std::vector<Index> facet_;         // per triangle, the facet it was cut from
     std::vector<Index> twin_;          // per side of a triangle
     std::vector<Look> look_;           // per side
+    std::vector<Verdict> verdicts_;    // per side, as of the sweep's start
     std::vector<std::uint8_t> turned_; // per triangle, in this sweep
     Index hint_ = no_index;
     std::vector<Index> facets_, least_facets_; // per vertex: three, or one at a border
@@ -304,9 +333,8 @@ private:
 
 } // namespace
 
-TidyCounts tidy_facets(PolygonMesh& mesh, const MeshDistance& to_fine, double tolerance,
-                       std::span<const std::uint8_t> settled) {
-    const TidyCounts counts = Tidying(mesh, to_fine, tolerance, settled).run();
+TidyCounts tidy_facets(PolygonMesh& mesh, SurfaceBand& fine, std::span<const std::uint8_t> settled) {
+    const TidyCounts counts = Tidying(mesh, fine, settled).run();
     cut_straight_corners(mesh, reflex);
     return counts;
 }

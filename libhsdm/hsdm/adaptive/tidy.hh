@@ -1,7 +1,7 @@
 #pragma once
 // Facets over leaves of different size, cut and joined anew over the same vertices.
 
-#include "hsdm/quality/distance.hh"
+#include "hsdm/adaptive/surface_band.hh"
 
 #include <span>
 
@@ -14,11 +14,10 @@ struct TidyCounts {
 
 /// Cuts quads into triangles, lays diagonals where they are near the fine surface (so along creases) and
 /// otherwise so that triangles are well shaped, and joins flat pairs of triangles to convex quads, those
-/// first that are nearest to rectangles. What is no more than `tolerance` (the mesh's units) off the fine
-/// surface, or off a plane, counts as on it. A 2-manifold remains one with the same vertices; facets of which
+/// first that are nearest to rectangles. What is in the band round the fine surface, or no more than its
+/// tolerance off a plane, counts as on it. A 2-manifold remains one with the same vertices; facets of which
 /// all vertices are `settled`, and those of more than four corners, stay. At the end quads with a reflex
 /// corner, wherever they are, are cut in two. O(corners log corners).
-TidyCounts tidy_facets(PolygonMesh& mesh, const MeshDistance& to_fine, double tolerance,
-                       std::span<const std::uint8_t> settled);
+TidyCounts tidy_facets(PolygonMesh& mesh, SurfaceBand& fine, std::span<const std::uint8_t> settled);
 
 } // namespace hsdm

@@ -1,40 +1,65 @@
 #include "hsdm/adaptive/trouble.hh"
 
+#include "hsdm/chunks.hh"
 #include "hsdm/disjoint_sets.hh"
 #include "hsdm/facets/area_vector.hh"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
-#include <tuple>
 
 namespace hsdm {
 namespace {
 
+constexpr std::size_t vertices_per_chunk = 1024, facets_per_chunk = 2048;
 constexpr double flat = 1e-6; // twice a facet's area over its squared length: less is no area
 
-/// A side of a facet: corner `side` starts it, `next` ends it.
+/// A side of a facet: corner `corner` starts it, `next` ends it.
 struct Side {
     Index low, high, corner, next;
     bool forward; // from low to high
-    bool operator<(const Side& o) const {
-        return std::tie(low, high, corner) < std::tie(o.low, o.high, o.corner);
-    }
 };
 
-std::vector<Side> sorted_sides(const PolygonMesh& mesh) {
-    std::vector<Side> sides;
-    sides.reserve(mesh.corners.size());
+template <class F>
+void for_each_side(const PolygonMesh& mesh, const F& visit) {
     for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
         const Index begin = mesh.first[f], end = mesh.first[f + 1];
         for (Index c = begin; c < end; ++c) {
             const Index next = c + 1 == end ? begin : c + 1;
             const Index a = mesh.corners[c], b = mesh.corners[next];
-            sides.push_back({std::min(a, b), std::max(a, b), c, next, a < b});
+            visit(Side{std::min(a, b), std::max(a, b), c, next, a < b});
         }
     }
-    tbb::parallel_sort(sides.begin(), sides.end());
+}
+
+/// Those of an edge one after the other, by ascending corners.
+std::vector<Side> sorted_sides(const PolygonMesh& mesh) {
+    std::vector<Side> sides(mesh.corners.size());
+    // Two to the right, so that filling the sides in moves them to their places.
+    std::vector<Index> first(mesh.vertex_count() + 2, 0);
+    for_each_side(mesh, [&](const Side& side) { ++first[side.low + 2]; });
+    counts_to_first(first);
+    for_each_side(mesh, [&](const Side& side) { sides[first[side.low + 1]++] = side; });
+    for_chunks(mesh.vertex_count(), vertices_per_chunk, [&](std::size_t v, std::size_t end, std::size_t) {
+        for (; v < end; ++v)
+            std::sort(sides.begin() + first[v], sides.begin() + first[v + 1],
+                      [](const Side& a, const Side& b) {
+                          return a.high != b.high ? a.high < b.high : a.corner < b.corner;
+                      });
+    });
     return sides;
+}
+
+std::vector<Index> flat_facets(const PolygonMesh& mesh) {
+    std::vector<std::vector<Index>> parts(chunk_count(mesh.facet_count(), facets_per_chunk));
+    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t f, std::size_t end, std::size_t c) {
+        for (; f < end; ++f) {
+            const auto ring = mesh.facet(f);
+            double longest = 0;
+            for (std::size_t i = 1; i < ring.size(); ++i)
+                longest = std::max(longest, (mesh.positions[ring[i]] - mesh.positions[ring[0]]).sqrnorm());
+            if (area_vector(mesh, ring).norm() <= flat * longest) parts[c].push_back(static_cast<Index>(f));
+        }
+    });
+    return joined(parts);
 }
 
 } // namespace
@@ -63,14 +88,8 @@ std::vector<Index> troubled_vertices(const PolygonMesh& mesh) {
         root[v] = r;
         ++facets[v];
     }
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-        const auto ring = mesh.facet(f);
-        double longest = 0;
-        for (std::size_t i = 1; i < ring.size(); ++i)
-            longest = std::max(longest, (mesh.positions[ring[i]] - mesh.positions[ring[0]]).sqrnorm());
-        if (area_vector(mesh, ring).norm() <= flat * longest)
-            for (Index v : ring) troubled[v] = 1;
-    }
+    for (Index f : flat_facets(mesh))
+        for (Index v : mesh.facet(f)) troubled[v] = 1;
     std::vector<Index> result;
     for (Index v = 0; v < troubled.size(); ++v)
         if (troubled[v] || (facets[v] > 0 && facets[v] < 3 && !border[v])) result.push_back(v);

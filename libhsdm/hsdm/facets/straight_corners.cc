@@ -1,5 +1,6 @@
 #include "hsdm/facets/straight_corners.hh"
 
+#include "hsdm/chunks.hh"
 #include "hsdm/facets/area_vector.hh"
 
 #include <algorithm>
@@ -7,6 +8,8 @@
 
 namespace hsdm {
 namespace {
+
+constexpr std::size_t facets_per_chunk = 2048;
 
 using Edge = std::array<Index, 2>; // the lower vertex first
 
@@ -33,6 +36,20 @@ struct Cut {
     Edge diagonal;
     std::size_t facet, corner;
 };
+
+std::vector<Cut> possible_cuts(const PolygonMesh& mesh, double least_sine) {
+    std::vector<std::vector<Cut>> parts(chunk_count(mesh.facet_count(), facets_per_chunk));
+    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t f, std::size_t end, std::size_t c) {
+        for (; f < end; ++f) {
+            const auto quad = mesh.facet(f);
+            if (quad.size() != 4) continue;
+            const auto [corner, sine] = straightest(mesh, quad);
+            if (sine < least_sine)
+                parts[c].push_back({edge(quad[corner], quad[(corner + 2) % 4]), f, corner});
+        }
+    });
+    return joined(parts);
+}
 
 /// Of the edges that facets have, those that a diagonal may be, in order.
 std::vector<Edge> possible_edges(const PolygonMesh& mesh, const std::vector<Cut>& due) {
@@ -67,13 +84,7 @@ void keep_allowed(const PolygonMesh& mesh, std::vector<Cut>& due) {
 } // namespace
 
 std::size_t cut_straight_corners(PolygonMesh& mesh, double least_sine) {
-    std::vector<Cut> due;
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-        const auto quad = mesh.facet(f);
-        if (quad.size() != 4) continue;
-        const auto [corner, sine] = straightest(mesh, quad);
-        if (sine < least_sine) due.push_back({edge(quad[corner], quad[(corner + 2) % 4]), f, corner});
-    }
+    std::vector<Cut> due = possible_cuts(mesh, least_sine);
     keep_allowed(mesh, due);
     if (due.empty()) return 0;
     PolygonMesh cut;

@@ -1,0 +1,136 @@
+#include "hsdm/adaptive/crossing_check.hh"
+
+#include "hsdm/chunks.hh"
+#include "hsdm/quality/self_intersections.hh"
+
+#include <algorithm>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t facets_per_chunk = 4096;
+
+Box box_of(const PolygonMesh& mesh, std::size_t facet) {
+    Box box;
+    for (Index v : mesh.facet(facet)) box.add(mesh.positions[v]);
+    return box;
+}
+
+/// Whether a box may touch one of others: some cell of a grid has a part of both. Counts are summed up along
+/// the axes, so that a large box takes no longer than a small one.
+class BoxGrid {
+public:
+    /// All boxes lie inside.
+    explicit BoxGrid(const Box& whole) : lo_(whole.lo), counts_(std::size_t{1} << 3 * bits, 0) {
+        for (unsigned k = 0; k < 3; ++k) scale_[k] = whole.size()[k] > 0 ? cells / whole.size()[k] : 0;
+    }
+
+    void add(const Box& box) {
+        for_corners(box, [&](std::size_t at, int sign) { counts_[at] -= sign; });
+    }
+
+    /// Of boxes over each cell, then of covered cells before each.
+    void sum_up() {
+        add_along_axes();
+        constexpr std::size_t next = 1 + side + side * side; // in all directions; no box has the last cells
+        for (std::size_t i = counts_.size(); i-- > 0;) counts_[i] = i >= next && counts_[i - next] > 0;
+        add_along_axes();
+    }
+
+    bool touches(const Box& box) const {
+        std::int32_t covered = 0;
+        for_corners(box, [&](std::size_t at, int sign) { covered += sign * counts_[at]; });
+        return covered > 0;
+    }
+
+private:
+    static constexpr unsigned bits = 6;
+    static constexpr std::size_t side = std::size_t{1} << bits, cells = side - 1;
+
+    std::size_t cell_of(double x, unsigned axis) const {
+        return std::min(static_cast<std::size_t>((x - lo_[axis]) * scale_[axis]), cells - 1);
+    }
+
+    /// The cells at the lower ends of a box and behind the upper ones; 1 or -1 as a sum over it has them.
+    template <class F>
+    void for_corners(const Box& box, F&& visit) const {
+        for (unsigned corner = 0; corner < 8; ++corner) {
+            std::size_t at = 0;
+            int sign = 1;
+            for (unsigned k = 0; k < 3; ++k) {
+                const bool upper = corner >> k & 1;
+                at |= (upper ? cell_of(box.hi[k], k) + 1 : cell_of(box.lo[k], k)) << bits * k;
+                if (!upper) sign = -sign;
+            }
+            visit(at, sign);
+        }
+    }
+
+    void add_along_axes() {
+        for (unsigned shift = 0; shift < 3 * bits; shift += bits)
+            for (std::size_t i = 0; i < counts_.size(); ++i)
+                if (i >> shift & (side - 1)) counts_[i] += counts_[i - (std::size_t{1} << shift)];
+    }
+
+    Vec3 lo_, scale_;
+    std::vector<std::int32_t> counts_;
+};
+
+/// Marked facets and those whose boxes may touch theirs, ascending.
+std::vector<Index> with_touching(const PolygonMesh& mesh, const std::vector<std::uint8_t>& marked) {
+    Box whole;
+    for (const Vec3& p : mesh.positions) whole.add(p);
+    BoxGrid grid(whole);
+    for (std::size_t f = 0; f < marked.size(); ++f)
+        if (marked[f]) grid.add(box_of(mesh, f));
+    grid.sum_up();
+    std::vector<std::vector<Index>> parts(chunk_count(marked.size(), facets_per_chunk));
+    for_chunks(marked.size(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+        for (std::size_t f = begin; f < end; ++f)
+            if (marked[f] || grid.touches(box_of(mesh, f))) parts[c].push_back(static_cast<Index>(f));
+    });
+    return joined(parts);
+}
+
+/// Some facets of a mesh and their vertices.
+PolygonMesh part_of(const PolygonMesh& mesh, const std::vector<Index>& facets) {
+    PolygonMesh part;
+    std::vector<Index> number(mesh.vertex_count(), no_index);
+    for (Index f : facets) {
+        for (Index v : mesh.facet(f)) {
+            if (number[v] == no_index) {
+                number[v] = static_cast<Index>(part.positions.size());
+                part.positions.push_back(mesh.positions[v]);
+            }
+            part.corners.push_back(number[v]);
+        }
+        part.first.push_back(static_cast<Index>(part.corners.size()));
+    }
+    return part;
+}
+
+} // namespace
+
+std::vector<std::array<Index, 2>> CrossingCheck::find(const PolygonMesh& mesh) {
+    std::vector<Key> keys = facet_keys(mesh, place_keys(mesh.positions));
+    const std::vector<Index> due = with_touching(mesh, changed(keys));
+    auto pairs = find_self_intersections(part_of(mesh, due)).facet_pairs;
+    for (auto& pair : pairs)
+        for (Index& f : pair) {
+            f = due[f];
+            keys[f] = no_key;
+        }
+    clear_ = KeySet(keys);
+    return pairs;
+}
+
+/// Per facet; of facets in the same place all but one, whatever they were before.
+std::vector<std::uint8_t> CrossingCheck::changed(std::span<const Key> keys) const {
+    KeySet seen(keys.size());
+    std::vector<std::uint8_t> result(keys.size());
+    for (std::size_t f = 0; f < keys.size(); ++f)
+        result[f] = !seen.insert(keys[f]) || !clear_.contains(keys[f]);
+    return result;
+}
+
+} // namespace hsdm
