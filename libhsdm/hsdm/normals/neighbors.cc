@@ -54,19 +54,23 @@ std::vector<Leaf> find_leaves(const std::vector<MortonCode>& codes) {
 
 /// The candidates of one leaf, relative to its first point: float suffices to rank distances.
 struct Candidates {
-    std::vector<float> x, y, z;
+    std::vector<float> x, y, z; ///< room for more than there are
     std::vector<Index> id;
     std::vector<float> distance;       ///< squared, of the point at hand
     std::vector<std::uint64_t> ranked; ///< bits of the squared distance, then the candidate's place
 
-    void clear() { x.clear(), y.clear(), z.clear(), id.clear(); }
+    void clear() { id.clear(); }
     void add(const Octree& octree, Index begin, Index end, const Vec3& base) {
-        for (Index i = begin; i < end; ++i) {
+        const std::size_t old = id.size(), size = old + (end - begin);
+        id.resize(size);
+        for (std::vector<float>* axis : {&x, &y, &z})
+            if (axis->size() < size) axis->resize(2 * size);
+        for (std::size_t c = old; c < size; ++c) {
+            const Index i = id[c] = begin + static_cast<Index>(c - old);
             const Vec3 p = octree.positions[i] - base;
-            x.push_back(static_cast<float>(p[0]));
-            y.push_back(static_cast<float>(p[1]));
-            z.push_back(static_cast<float>(p[2]));
-            id.push_back(i);
+            x[c] = static_cast<float>(p[0]);
+            y[c] = static_cast<float>(p[1]);
+            z[c] = static_cast<float>(p[2]);
         }
     }
     void measure(float px, float py, float pz) {

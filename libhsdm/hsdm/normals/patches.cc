@@ -3,6 +3,7 @@
 #include "hsdm/chunks.hh"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hsdm {
@@ -100,20 +101,36 @@ private:
 /// where the chord is slanted.
 constexpr double near_pair = 0.45;
 
-/// Adds to one of the latest edges, where the same two patches mostly are, or appends.
-void add_edge(std::vector<SignedEdge>& edges, Index a, Index b, double weight) {
-    constexpr std::size_t latest = 32;
-    if (b < a) std::swap(a, b);
-    const auto w = static_cast<float>(weight);
-    for (std::size_t e = edges.size(); e > 0 && e + latest > edges.size(); --e) {
-        SignedEdge& edge = edges[e - 1];
-        if (edge.a != a || edge.b != b) continue;
-        edge.weight += w;
-        edge.total += std::abs(w);
-        return;
+class EdgeList {
+public:
+    /// Adds to one of the latest edges, where the same two patches mostly are, or appends.
+    void add(Index a, Index b, double weight) {
+        if (b < a) std::swap(a, b);
+        const auto w = static_cast<float>(weight);
+        const std::size_t e = place(a, b);
+        if (e == edges.size()) edges.push_back({a, b, 0, 0});
+        edges[e].weight += w;
+        edges[e].total += std::abs(w);
     }
-    edges.push_back({a, b, w, std::abs(w)});
-}
+
+    std::vector<SignedEdge> edges;
+
+private:
+    static constexpr std::size_t latest = 32, places = 256;
+
+    bool joins(std::size_t e, Index a, Index b) const { return edges[e].a == a && edges[e].b == b; }
+
+    /// Of these patches' edge, or behind the last where none of the latest is theirs.
+    std::size_t place(Index a, Index b) {
+        std::size_t& last = place_[(7 * a + b) % places];
+        if (last < edges.size() && last + latest > edges.size() && joins(last, a, b)) return last;
+        for (std::size_t e = edges.size(); e > 0 && e + latest > edges.size(); --e)
+            if (joins(e - 1, a, b)) return last = e - 1;
+        return last = edges.size();
+    }
+
+    std::array<std::size_t, places> place_{}; // where edges of such patches were last
+};
 
 } // namespace
 
@@ -126,6 +143,7 @@ std::vector<SignedEdge> patch_evidence(const Octree& octree, const Neighbors& ne
     const std::size_t leaves = neighbors.leaf_first.size() - 1;
     std::vector<std::vector<SignedEdge>> found(chunk_count(leaves, leaves_per_chunk));
     for_chunks(leaves, leaves_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        EdgeList list;
         for (Index i = neighbors.leaf_first[begin]; i < neighbors.leaf_first[end]; ++i) {
             const Index a = patches.of_point[i];
             if (a == no_index) continue;
@@ -138,10 +156,10 @@ std::vector<SignedEdge> patch_evidence(const Octree& octree, const Neighbors& ne
                 const Vec3 d = octree.positions[j] - octree.positions[i];
                 const Vec3& m = estimate.normals[j];
                 const double mirrored = (n | m) - 2 * (n | d) * (m | d) / std::min(d.sqrnorm(), span * span);
-                add_edge(found[chunk], a, b,
-                         std::clamp(mirrored, -1.0, 1.0) * patches.sign[i] * patches.sign[j]);
+                list.add(a, b, std::clamp(mirrored, -1.0, 1.0) * patches.sign[i] * patches.sign[j]);
             }
         }
+        found[chunk] = std::move(list.edges);
     });
     return joined(found);
 }
