@@ -16,15 +16,18 @@ Vec3 place(Random& random) {
     return {random.uniform(), random.uniform(), random.uniform()};
 }
 
-/// Triangles, most of them small, and some with a corner in common.
+/// Triangles and quads, most of them small, and some with a corner in common.
 PolygonMesh soup(Random& random, Index count) {
     PolygonMesh mesh;
     for (Index i = 0; i < count; ++i) {
         const double size = i % 50 == 0 ? 0.4 : 0.04;
         const Vec3 middle = place(random);
         const Index v = static_cast<Index>(mesh.positions.size());
-        for (int k = 0; k < 3; ++k) mesh.positions.push_back(middle + random.direction() * size);
-        mesh.add_facet(std::array{i % 3 == 2 ? v - 3 : v, v + 1, v + 2});
+        for (int k = 0; k < 4; ++k) mesh.positions.push_back(middle + random.direction() * size);
+        if (i % 4 == 1)
+            mesh.add_facet(std::array{v, v + 1, v + 2, v + 3});
+        else
+            mesh.add_facet(std::array{i % 3 == 2 ? v - 3 : v, v + 1, v + 2});
     }
     return mesh;
 }
@@ -63,8 +66,10 @@ TEST_CASE("a mesh that moves as a whole is looked at as a whole", "[adaptive]") 
     Random random(7);
     PolygonMesh mesh = soup(random, 60);
     CrossingCheck check;
-    const auto before = check.find(mesh);
-    for (Vec3& p : mesh.positions) p = Vec3(p[0], p[1], 0.5 * p[2]); // a map of lines onto lines
-    CHECK(check.find(mesh) == before);
+    const std::size_t before = check.find(mesh).size();
+    for (Vec3& p : mesh.positions) p = Vec3(p[0], p[1], 0.01 * p[2] * p[2]); // brings all close together
+    const auto expected = find_self_intersections(mesh).facet_pairs;
+    REQUIRE(expected.size() > before);
+    CHECK(check.find(mesh) == expected);
     CHECK(check.find({}).empty());
 }

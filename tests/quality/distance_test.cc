@@ -166,6 +166,28 @@ TEST_CASE("points in each other's neighbourhood are measured as if each were alo
     }
 }
 
+TEST_CASE("points that rounding alone keeps off a triangle are found on it, alone and together",
+          "[distance]") {
+    PolygonMesh mesh; // two open pieces, one of which ends in the centre of both
+    mesh.positions = {{1, 0, 0}, {0, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, 1, 0}, {-1, 1, 1}};
+    for (int copy = 0; copy < 4; ++copy) mesh.add_facet(std::array<Index, 3>{0, 1, 2});
+    for (int copy = 0; copy < 4; ++copy) mesh.add_facet(std::array<Index, 3>{3, 4, 5});
+    for (const double off : {-1e-15, -6.1e-17, -1e-17, 0.0, 1e-17}) {
+        const std::vector<Vec3> points(20, Vec3(off, 0, 0));
+        CHECK(points_to_mesh(points, mesh).max <= 2e-15);
+        CHECK(MeshDistance(mesh)(points[0]) <= 2e-15);
+    }
+}
+
+TEST_CASE("a point so far away that floats overflow has its distance", "[distance]") {
+    for (const std::size_t triangles : {3u, 70u, 2000u}) {
+        const PolygonMesh mesh = random_triangles(triangles, 14);
+        const std::vector<Vec3> points(20, Vec3(1e20, 0, 0));
+        CHECK(MeshDistance(mesh)(points[0]) == Approx(1e20));
+        CHECK(points_to_mesh(points, mesh).max == Approx(1e20));
+    }
+}
+
 TEST_CASE("distances are the same bits with one thread and with many", "[distance]") {
     const PolygonMesh mesh = random_triangles(20000, 10);
     const std::vector<Vec3> points = random_points(20000, 11, 2);

@@ -15,7 +15,7 @@ TEST_CASE("no point of a triangle is nearer than the nearest", "[quality]") {
     for (int trial = 0; trial < 500; ++trial) {
         const Vec3 a = point(), b = point(), p = point();
         const Vec3 c = trial % 5 == 0 ? a + (b - a) * random.uniform(-1, 2) : point(); // some without area
-        const NearestOfTriangle nearest = Triangle(a, b, c).nearest(p);
+        const NearestOfTriangle nearest = PreparedTriangle(a, b, c).nearest(p);
         CHECK(nearest.squared_distance == Approx((p - nearest.point).sqrnorm()).margin(1e-12));
         double least = 100;
         for (int i = 0; i <= 40; ++i)

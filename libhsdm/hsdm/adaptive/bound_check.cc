@@ -2,6 +2,7 @@
 
 #include "hsdm/chunks.hh"
 #include "hsdm/facets/triangulate.hh"
+#include "hsdm/quality/mix.hh"
 
 #include <algorithm>
 #include <array>
@@ -135,7 +136,13 @@ std::vector<Index> BoundCheck::far_vertices(const PolygonMesh& mesh) {
 std::vector<Index> BoundCheck::far_facets(const PolygonMesh& mesh) {
     const std::vector<std::uint8_t> border = border_vertices(mesh);
     const Triangulation cut = triangulate(mesh);
-    return far_of(keys_, near_keys_, [&](Index f, Index& hint, std::vector<Vec3>& places) {
+    std::vector<Key> keys = keys_; // which sides are looked at depends on borders too
+    for (std::size_t f = 0; f < keys.size(); ++f) {
+        Key at_border = 0;
+        for (Index v : mesh.facet(f)) at_border = 2 * at_border + border[v];
+        if (at_border != 0) keys[f] = mix(keys[f] ^ at_border);
+    }
+    return far_of(std::move(keys), near_keys_, [&](Index f, Index& hint, std::vector<Vec3>& places) {
         if (fine_keys_.contains(keys_[f])) return false;
         places.clear();
         for (Index t = cut.first[f]; t < cut.first[f + 1]; ++t)

@@ -114,7 +114,7 @@ private:
         for (CellLevel& level : tree_.levels)
             if (&level != &tree_.levels.back()) level.whole.assign(level.whole.size(), 0);
         collapse();
-        set_beyond(checks_.look_at(result_.mesh).far_points);
+        set_beyond(checks_.far_points(result_.mesh));
     }
 
     /// The leaf and the cluster of every fine vertex.

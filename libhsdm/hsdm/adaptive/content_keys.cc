@@ -37,8 +37,8 @@ std::vector<Key> facet_keys(const PolygonMesh& mesh, std::span<const Key> places
             Key key = ring.size();
             for (std::size_t i = 0; i < ring.size(); ++i)
                 key = mix(key ^ places[ring[(least + i) % ring.size()]]);
-            // Which of two equal diagonals cuts a quad depends on where its ring starts.
-            keys[f] = ring.size() == 4 && least % 2 == 1 ? mix(key) : key;
+            // How a ring is cut depends on where it starts.
+            keys[f] = ring.size() > 3 ? mix(key ^ least) : key;
         }
     });
     return keys;

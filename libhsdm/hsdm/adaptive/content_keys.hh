@@ -23,11 +23,11 @@ std::vector<Key> facet_keys(const PolygonMesh& mesh, std::span<const Key> places
 /// A set of keys, no_key never among them.
 class KeySet {
 public:
-    /// Takes up to this many keys.
+    /// Takes up to this many keys, and no more.
     explicit KeySet(std::size_t most = 0);
     explicit KeySet(std::span<const Key> keys);
 
-    /// False if the key is there already. O(1).
+    /// False if the key is there already, or is none. O(1).
     bool insert(Key key);
     bool contains(Key key) const { return key != no_key && slots_[slot_of(key)] == key; }
 

@@ -1,6 +1,7 @@
 #include "hsdm/adaptive/merge_leaves.hh"
 
 #include "hsdm/adaptive/dissolve.hh"
+#include "hsdm/adaptive/drop_vertices.hh"
 #include "hsdm/adaptive/merge.hh"
 #include "hsdm/adaptive/tidy.hh"
 #include "hsdm/adaptive/trouble.hh"
@@ -8,6 +9,7 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 
 namespace hsdm {
@@ -27,36 +29,38 @@ struct Faults {
     }
 };
 
-class LeafMerging {
+/// Merges vertices of a mesh, and returns per vertex the one that stands for it. A vertex with a tolerance of
+/// 0 is to stay.
+using Merge = std::function<std::vector<Index>(PolygonMesh&, const std::vector<double>& tolerance)>;
+
+/// Merges vertices of a mesh as far as nothing gets worse.
+class MergeRounds {
 public:
-    LeafMerging(const LeafMesh& leaves, std::span<const Quadric> planes, RoundChecks& checks,
-                const MergeLeavesOptions& options)
+    MergeRounds(const LeafMesh& leaves, RoundChecks& checks, const MergeLeavesOptions& options)
         : leaves_(leaves),
           checks_(checks),
           options_(options),
-          planes_(leaves.mesh.vertex_count()),
-          tolerance_(leaves.mesh.vertex_count(), checks.band().tolerance()) {
-        for (std::size_t v = 0; v < planes.size(); ++v) planes_[leaves.vertex[v]] += planes[v];
-    }
+          tolerance_(leaves.mesh.vertex_count(), checks.band().tolerance()) {}
 
-    MergedLeaves run() {
+    MergedLeaves run(const Merge& merge, Diagonals diagonals) {
         for (int round = 0; round < options_.rounds; ++round) {
-            merge_once();
+            merge_once(merge, diagonals);
             const Faults faults = find_faults();
+            result_.faults = faults.counts;
             if (faults.no_worse_than(options_.faults)) return std::move(result_);
             if (keep_closer(faults.vertices) == 0) break;
         }
         result_.mesh = leaves_.mesh;
         result_.vertex.resize(leaves_.mesh.vertex_count());
         std::iota(result_.vertex.begin(), result_.vertex.end(), Index{0});
-        find_faults();
+        result_.faults = find_faults().counts;
         return std::move(result_);
     }
 
 private:
-    void merge_once() {
+    void merge_once(const Merge& merge, Diagonals diagonals) {
         result_.mesh = leaves_.mesh;
-        std::vector<Index> stands_for = merge_vertices(result_.mesh, planes_, tolerance_);
+        std::vector<Index> stands_for = merge(result_.mesh, tolerance_);
         std::vector<std::uint8_t> merged(stands_for.size(), 0);
         for (Index v = 0; v < stands_for.size(); ++v) merged[stands_for[v]] |= stands_for[v] != v;
         const std::vector<Index> leaf = drop_replaced(result_.mesh, stands_for);
@@ -65,7 +69,7 @@ private:
         // What nothing has changed stays as it is.
         std::vector<std::uint8_t> settled(leaf.size(), 1);
         for (Index v : with_neighbours(has_merged_)) settled[v] = 0;
-        tidy_facets(result_.mesh, checks_.band(), settled);
+        tidy_facets(result_.mesh, checks_.band(), settled, diagonals);
     }
 
     /// Marked vertices, and those that share facets with them.
@@ -107,7 +111,9 @@ private:
     /// merged around them. Returns how many vertices of the leaves that concerns.
     std::size_t keep_closer(const std::vector<Index>& vertices) {
         std::vector<std::uint8_t> wrong(result_.mesh.vertex_count(), 0);
-        for (Index v : vertices) wrong[v] = 1;
+        std::vector<std::uint8_t> unmerged(wrong.size(), 0); // what is wrong there comes from beside it
+        for (Index v : vertices) (has_merged_[v] ? wrong : unmerged)[v] = 1;
+        for (Index v : with_neighbours(unmerged)) wrong[v] = 1;
         for (int ring = 0; ring < most_rings; ++ring) {
             if (const std::size_t count = lower_tolerances(wrong); count > 0) return count;
             for (Index v : with_neighbours(wrong)) wrong[v] = 1;
@@ -133,17 +139,41 @@ private:
     const LeafMesh& leaves_;
     RoundChecks& checks_;
     const MergeLeavesOptions& options_;
-    std::vector<Quadric> planes_;          // per vertex of the leaves
-    std::vector<double> tolerance_;        // ...
+    std::vector<double> tolerance_;        // per vertex of the leaves
     std::vector<std::uint8_t> has_merged_; // per vertex of the result
     MergedLeaves result_;
 };
+
+/// What stands for what stands for each.
+std::vector<Index> through(const std::vector<Index>& first, const std::vector<Index>& second) {
+    std::vector<Index> result(first.size());
+    std::transform(first.begin(), first.end(), result.begin(), [&](Index v) { return second[v]; });
+    return result;
+}
 
 } // namespace
 
 MergedLeaves merge_leaves(const LeafMesh& leaves, std::span<const Quadric> planes, RoundChecks& checks,
                           const MergeLeavesOptions& options) {
-    return LeafMerging(leaves, planes, checks, options).run();
+    std::vector<Quadric> leaf_planes(leaves.mesh.vertex_count());
+    for (std::size_t v = 0; v < planes.size(); ++v) leaf_planes[leaves.vertex[v]] += planes[v];
+    const auto by_planes = [&](PolygonMesh& mesh, const std::vector<double>& tolerance) {
+        return merge_vertices(mesh, leaf_planes, tolerance);
+    };
+    MergedLeaves merged = MergeRounds(leaves, checks, options).run(by_planes, Diagonals::may_flip);
+
+    const LeafMesh base{std::move(merged.mesh), through(leaves.vertex, merged.vertex)};
+    MergeLeavesOptions drop_options = options;
+    drop_options.faults = merged.faults;
+    const std::vector<Drop> drops = find_drops(base.mesh, checks.wide_band());
+    const auto by_distance = [&](PolygonMesh& mesh, const std::vector<double>& tolerance) {
+        std::vector<std::uint8_t> may_go(tolerance.size()); // what was wrong once stays
+        for (std::size_t v = 0; v < may_go.size(); ++v) may_go[v] = tolerance[v] >= checks.band().tolerance();
+        return drop_vertices(mesh, drops, may_go);
+    };
+    MergedLeaves dropped = MergeRounds(base, checks, drop_options).run(by_distance, Diagonals::stay);
+    dropped.vertex = through(merged.vertex, dropped.vertex);
+    return dropped;
 }
 
 } // namespace hsdm

@@ -3,10 +3,11 @@
 #include <tbb/parallel_invoke.h>
 
 namespace hsdm {
-
 RoundChecks::RoundChecks(const PolygonMesh& fine, std::span<const Vec3> points, double bound, double spacing,
                          double tolerance)
-    : bound_(fine, points, bound, spacing), band_(bound_.to_fine(), tolerance, fine.vertex_count()) {}
+    : bound_(fine, points, bound, spacing),
+      band_(bound_.to_fine(), tolerance, fine.vertex_count()),
+      wide_band_(bound_.to_fine(), 2 * tolerance, fine.vertex_count()) {}
 
 /// At once, as either has steps that one thread takes alone.
 Findings RoundChecks::look_at(const PolygonMesh& mesh) {
@@ -17,6 +18,11 @@ Findings RoundChecks::look_at(const PolygonMesh& mesh) {
                              found.far_points = bound_.find_far_points();
                          });
     return found;
+}
+
+FarPoints RoundChecks::far_points(const PolygonMesh& mesh) {
+    bound_.find_far(mesh);
+    return bound_.find_far_points();
 }
 
 } // namespace hsdm

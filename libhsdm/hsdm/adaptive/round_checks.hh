@@ -23,21 +23,25 @@ struct Findings {
 /// All that is remembered of one mesh for the next.
 class RoundChecks {
 public:
-    /// As for BoundCheck; `tolerance`, the mesh's units, > 0: the width of the band round the fine mesh.
+    /// As for BoundCheck; `tolerance`, the mesh's units, > 0: the width of the band round the fine mesh, half
+    /// of that of the wide one.
     RoundChecks(const PolygonMesh& fine, std::span<const Vec3> points, double bound, double spacing,
                 double tolerance);
     RoundChecks(const RoundChecks&) = delete;
 
     Findings look_at(const PolygonMesh& mesh);
+    /// Without all else.
+    FarPoints far_points(const PolygonMesh& mesh);
 
     /// Of the mesh last looked at.
     const BoundCheck& bound() const { return bound_; }
     SurfaceBand& band() { return band_; }
+    SurfaceBand& wide_band() { return wide_band_; }
 
 private:
     BoundCheck bound_;
     CrossingCheck crossing_;
-    SurfaceBand band_;
+    SurfaceBand band_, wide_band_;
 };
 
 } // namespace hsdm

@@ -15,7 +15,7 @@
 namespace hsdm {
 namespace {
 
-constexpr int sweeps = 4;
+constexpr int most_sweeps = 4;
 constexpr std::size_t triangles_per_chunk = 1024, sides_per_chunk = 3 * triangles_per_chunk;
 
 constexpr double better_shape = 1.1; // a flip for shape gains at least this factor
@@ -42,8 +42,9 @@ public:
         for (Index v : kept_.corners) ++facets_[v];
     }
 
-    TidyCounts run() {
+    TidyCounts run(Diagonals diagonals) {
         TidyCounts counts;
+        const int sweeps = diagonals == Diagonals::may_flip ? most_sweeps : 0;
         look_at_edges();
         std::vector<std::uint8_t> turned(half_.size(), 1);
         for (int sweep = 0; sweep < sweeps; ++sweep) {
@@ -333,8 +334,9 @@ private:
 
 } // namespace
 
-TidyCounts tidy_facets(PolygonMesh& mesh, SurfaceBand& fine, std::span<const std::uint8_t> settled) {
-    const TidyCounts counts = Tidying(mesh, fine, settled).run();
+TidyCounts tidy_facets(PolygonMesh& mesh, SurfaceBand& fine, std::span<const std::uint8_t> settled,
+                       Diagonals diagonals) {
+    const TidyCounts counts = Tidying(mesh, fine, settled).run(diagonals);
     cut_straight_corners(mesh, reflex);
     return counts;
 }

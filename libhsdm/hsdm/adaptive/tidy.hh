@@ -7,6 +7,8 @@
 
 namespace hsdm {
 
+enum class Diagonals { may_flip, stay };
+
 struct TidyCounts {
     std::size_t flipped = 0; ///< diagonals laid the other way
     std::size_t joined = 0;  ///< pairs of triangles that became quads
@@ -18,6 +20,7 @@ struct TidyCounts {
 /// tolerance off a plane, counts as on it. A 2-manifold remains one with the same vertices; facets of which
 /// all vertices are `settled`, and those of more than four corners, stay. At the end quads with a reflex
 /// corner, wherever they are, are cut in two. O(corners log corners).
-TidyCounts tidy_facets(PolygonMesh& mesh, SurfaceBand& fine, std::span<const std::uint8_t> settled);
+TidyCounts tidy_facets(PolygonMesh& mesh, SurfaceBand& fine, std::span<const std::uint8_t> settled,
+                       Diagonals diagonals = Diagonals::may_flip);
 
 } // namespace hsdm

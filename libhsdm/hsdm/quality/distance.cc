@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t chunk = 1 << 11;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t packet = 32;  // points, if they lie close together:
+constexpr std::size_t fewest = 6;   // are worth the way down
 constexpr double packet_size = 0.8; // in mean sizes of the tree's blocks
 constexpr double near_enough = 0.1; // of a packet's radius: a foothold to reach out from
 
@@ -40,7 +41,10 @@ private:
             wider.add(points_[end_]);
             if (end_ > first && wider.diagonal() > most) break;
         }
-        go_down(points_.subspan(first, end_ - first), box);
+        if (end_ - first >= fewest)
+            go_down(points_.subspan(first, end_ - first), box);
+        else
+            has_part_ = false;
     }
 
     /// No point's nearest triangle is farther from it than where its middle one has its own.
@@ -54,7 +58,7 @@ private:
         for (const Vec3& p : points) radius = std::max(radius, (p - middle).norm());
         double off = has_part_ ? std::sqrt(tree_.nearest(part_, middle).squared) : infinity;
         if (off > near_enough * radius) off = std::sqrt(tree_.nearest(middle, hint_).squared);
-        has_part_ = tree_.find_part(box, 1.00001 * (off + radius), part_);
+        has_part_ = off <= tree_.block_size() && tree_.find_part(box, 1.00001 * (off + radius), part_);
     }
 
     const TriangleTree& tree_;

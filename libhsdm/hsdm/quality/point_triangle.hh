@@ -16,9 +16,9 @@ struct NearestOfTriangle {
 };
 
 /// A triangle made ready to be asked for many points.
-class Triangle {
+class PreparedTriangle {
 public:
-    Triangle(const Vec3& a, const Vec3& b, const Vec3& c)
+    PreparedTriangle(const Vec3& a, const Vec3& b, const Vec3& c)
         : a_(a),
           ab_(b - a),
           ac_(c - a),

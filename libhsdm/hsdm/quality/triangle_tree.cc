@@ -213,7 +213,6 @@ public:
     }
 
     void look_at(Index block) {
-        if (block >= tree_.block_count_) return; // distances so large that absent boxes are no farther
         const Double2 one = squared_distances(tree_.blocks_[block][0], spread_),
                       other = squared_distances(tree_.blocks_[block][1], spread_),
                       pairs = min_lanes(one, other);
@@ -256,6 +255,13 @@ private:
     std::size_t lane_ = 0; // of the nearest
 };
 
+/// Nodes or, below them, blocks. Coordinates so large that floats overflow lead to absent ones too.
+std::size_t TriangleTree::size_of(int level) const {
+    if (level < 0) return block_count_;
+    const auto next = static_cast<std::size_t>(level) + 1;
+    return (next < level_first_.size() ? level_first_[next] : nodes_.size()) - level_first_[next - 1];
+}
+
 TriangleTree::Nearest TriangleTree::nearest(const Vec3& point, Index hint, double enough) const {
     if (block_count_ == 0) return {};
     Search search(*this, point);
@@ -271,6 +277,7 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3& point, Index hint, doubl
     while (top > 0 && search.squared() > enough) {
         const Entry entry = stack[--top];
         if (!search.reaches(entry.squared)) continue;
+        if (entry.squared == infinity && entry.child >= size_of(entry.level)) continue;
         if (entry.level < 0) {
             if (entry.child != hint) search.look_at(entry.child);
             continue;
@@ -293,6 +300,7 @@ bool TriangleTree::find_part(const Box& box, double reach, Part& part) const {
     part.count_ = 0;
     if (block_count_ == 0) return true;
     std::array<float, 3> lo, hi;
+    reach += 4 * rounding_; // a distance that came out as nothing need not be none
     for (unsigned k = 0; k < 3; ++k) {
         lo[k] = round_down(box.lo[k] - centre_[k] - reach);
         hi[k] = round_up(box.hi[k] - centre_[k] + reach);
@@ -306,6 +314,7 @@ bool TriangleTree::find_part(const Box& box, double reach, Part& part) const {
     stack[top++] = {0, static_cast<int>(level_first_.size()) - 1};
     while (top > 0) {
         const Entry entry = stack[--top];
+        if (entry.node >= size_of(entry.level)) continue;
         const Boxes& boxes = nodes_[level_first_[static_cast<std::size_t>(entry.level)] + entry.node];
         auto apart = boxes.lo[0] > hi[0];
         for (std::size_t k = 0; k < 3; ++k) apart |= (boxes.lo[k] > hi[k]) | (lo[k] > boxes.hi[k]);
@@ -314,7 +323,7 @@ bool TriangleTree::find_part(const Box& box, double reach, Part& part) const {
             const auto child = static_cast<Index>(width * entry.node + i);
             if (entry.level > 0)
                 stack[top++] = {child, entry.level - 1};
-            else if (!part.add(boxes, i, child))
+            else if (child < block_count_ && !part.add(boxes, i, child))
                 return false;
         }
     }
@@ -416,6 +425,7 @@ void TriangleTree::overlapping(Index block, std::vector<TrianglePair>& pairs) co
     stack[top++] = {0, static_cast<int>(level_first_.size()) - 1};
     while (top > 0) {
         const Entry entry = stack[--top];
+        if (entry.child >= size_of(entry.level)) continue;
         if (entry.level < 0) {
             pair_up(block, entry.child, pairs);
             continue;

@@ -34,7 +34,7 @@ public:
     /// Blocks in a part of space, to look through instead of the whole tree.
     class Part;
     /// Replaces `part` by all blocks that may have a point within `reach` of a box. False if there are too
-    /// many for the part to be of use.
+    /// many: the part is then not to be used.
     bool find_part(const Box& box, double reach, Part& part) const;
     /// As above for a point whose nearest triangle is known to be in the part.
     Nearest nearest(const Part& part, const Vec3& point) const;
@@ -72,6 +72,7 @@ private:
     void order(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
     void fill_blocks(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
     void build_levels(std::vector<Boxes>& block_boxes);
+    std::size_t size_of(int level) const;
     static void put(Pair& pair, std::size_t lane, const Vec3& a, const Vec3& ab, const Vec3& ac);
     LaneBoxes boxes_of(const Pair& pair) const;
     void pair_up(Index block, Index other, std::vector<TrianglePair>& pairs) const;

@@ -17,7 +17,7 @@ constexpr double doubt = 2;                // times the variance that squared ri
 struct Around {
     Around(const std::vector<Vec3>& at, Index a, Index b, Index c)
         : triangle(at[a], at[b], at[c]), corners{a, b, c} {}
-    Triangle triangle;
+    PreparedTriangle triangle;
     std::array<Index, 3> corners;
 };
 

@@ -1,0 +1,147 @@
+#include "hsdm/adaptive/collapsing_mesh.hh"
+
+#include "hsdm/adaptive/triangle_shape.hh"
+#include "hsdm/facets/triangulate.hh"
+
+#include <algorithm>
+#include <numeric>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t most_facets = 24; // of a vertex: bounds the work
+constexpr double turn_cosine = 0.77;    // normals turn by less than 40 degrees
+
+} // namespace
+
+CollapsingMesh::CollapsingMesh(PolygonMesh& mesh)
+    : mesh_(mesh),
+      stands_for_(mesh.vertex_count()),
+      facets_(mesh.vertex_count(), 0),
+      locked_(mesh.vertex_count(), 0),
+      changed_(mesh.vertex_count(), 1),
+      touched_(mesh.facet_count(), 0) {
+    std::iota(stands_for_.begin(), stands_for_.end(), Index{0});
+    const Triangulation cut = triangulate(mesh);
+    facet_ = facet_of_triangle(cut);
+    corners_.reserve(3 * cut.size());
+    for (const Triangle& t : cut.triangles) corners_.insert(corners_.end(), t.begin(), t.end());
+    TriangleSides sides = link_triangles(corners_, {}, mesh.vertex_count());
+    twin_ = std::move(sides.twin);
+    border_ = std::move(sides.border);
+    for (Index v : corners_) ++facets_[v];
+    lock_facets();
+}
+
+/// A diagonal may be an edge of other facets already.
+void CollapsingMesh::lock_facets() {
+    for (Index s = 0; s < corners_.size(); ++s) {
+        const auto ring = mesh_.facet(facet_[s / 3]);
+        if (ring.size() == 3 || (twin_[s] != no_index && facet_[twin_[s] / 3] == facet_[s / 3])) continue;
+        const auto start = std::find(ring.begin(), ring.end(), corners_[s]);
+        if (end(s) == (start + 1 == ring.end() ? ring.front() : start[1])) continue;
+        for (Index v : ring) locked_[v] = 1;
+    }
+}
+
+bool CollapsingMesh::ring_of(Index side, std::vector<Index>& ring) const {
+    ring.clear();
+    Index s = side;
+    do {
+        ring.push_back(end(s));
+        s = twin_[previous_side(s)];
+    } while (s != no_index && s != side);
+    return s == side && ring.size() == facets_[corners_[side]];
+}
+
+bool CollapsingMesh::may_collapse(const std::vector<Index>& ring, const std::vector<Index>& ring_to,
+                                  const Vec3& place) const {
+    if (!is_link(ring, ring_to)) return false;
+    double thinnest = least_shape, thinnest_new = 1;
+    const Index to = ring[0];
+    return suits_ring(place, ring, ring_to[0], thinnest, thinnest_new)
+           && (place == at(to) || suits_ring(place, ring_to, to, thinnest, thinnest_new))
+           && thinnest_new >= thinnest;
+}
+
+/// No further vertex may be a neighbour of both, and those beside the edge must keep three facets.
+bool CollapsingMesh::is_link(const std::vector<Index>& from, const std::vector<Index>& to) const {
+    if (std::min(from.size(), to.size()) < 3 || from.size() + to.size() < 7) return false;
+    if (from.size() + to.size() > most_facets + 4) return false;
+    for (std::size_t i = 2; i + 1 < from.size(); ++i)
+        if (std::find(to.begin(), to.end(), from[i]) != to.end()) return false;
+    return spares(from[1]) && spares(from.back());
+}
+
+/// The facets round a vertex that keep an area.
+bool CollapsingMesh::suits_ring(const Vec3& place, const std::vector<Index>& ring, Index centre,
+                                double& thinnest, double& thinnest_new) const {
+    for (std::size_t i = 0; i < ring.size(); ++i)
+        thinnest =
+            std::min(thinnest, triangle_shape(at(centre), at(ring[i]), at(ring[(i + 1) % ring.size()])));
+    for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
+        const Vec3 &p = at(ring[i]), &q = at(ring[i + 1]);
+        const Vec3 before = triangle_normal(at(centre), p, q), after = triangle_normal(place, p, q);
+        if (!((before | after) > turn_cosine * before.norm() * after.norm())) return false;
+        thinnest_new = std::min(thinnest_new, triangle_shape(place, p, q));
+    }
+    return true;
+}
+
+bool CollapsingMesh::collapse(Index side, const Vec3& place) {
+    const Index from = start(side), to = end(side);
+    if (!ring_of(side, ring_) || !ring_of(twin_[side], ring_to_)) return false;
+    if (!may_collapse(ring_, ring_to_, place)) return false;
+    if (place != at(to)) touch(twin_[side]);
+    touch(side);
+    mesh_.positions[to] = place;
+    for (Index v : ring_) changed_[v] = 1;
+    for (Index v : ring_to_) changed_[v] = 1;
+    stands_for_[from] = to;
+    facets_[to] = facets_[to] + facets_[from] - 4;
+    --facets_[ring_[1]];
+    --facets_[ring_.back()];
+    remove(side);
+    return true;
+}
+
+/// The facets round the start of a side are not what they were.
+void CollapsingMesh::touch(Index side) {
+    sides_.clear();
+    Index s = side;
+    do {
+        sides_.push_back(s);
+        touched_[facet_[s / 3]] = 1;
+        s = twin_[previous_side(s)];
+    } while (s != side);
+}
+
+/// Takes out the two triangles at a side, whose start becomes its end; its fan was touched last.
+void CollapsingMesh::remove(Index side) {
+    const Index other = twin_[side], to = end(side);
+    for (Index out : sides_) corners_[out] = to;
+    for (const Index gone : {side, other}) {
+        const Index p = twin_[next_side(gone)], q = twin_[previous_side(gone)];
+        twin_[p] = q;
+        twin_[q] = p;
+    }
+    for (const Index gone : {side, other})
+        for (const Index corner : {gone, next_side(gone), previous_side(gone)}) corners_[corner] = no_index;
+}
+
+std::vector<Index> CollapsingMesh::write() {
+    PolygonMesh kept;
+    Index t = 0;
+    for (std::size_t f = 0; f < mesh_.facet_count(); ++f) {
+        if (!touched_[f]) kept.add_facet(mesh_.facet(f));
+        for (; t < facet_.size() && facet_[t] == f; ++t)
+            if (touched_[f] && !is_gone(3 * t)) kept.add_facet({&corners_[3 * t], 3});
+    }
+    mesh_.corners = std::move(kept.corners);
+    mesh_.first = std::move(kept.first);
+    for (Index& v : stands_for_)
+        while (stands_for_[v] != v) v = stands_for_[v];
+    return std::move(stands_for_);
+}
+
+} // namespace hsdm

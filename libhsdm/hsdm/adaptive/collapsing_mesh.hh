@@ -1,0 +1,60 @@
+#pragma once
+// The triangles of a 2-manifold while edges collapse.
+
+#include "hsdm/adaptive/triangle_sides.hh"
+
+namespace hsdm {
+
+/// A mesh, cut into triangles, of which inner vertices merge into neighbours. Side s runs from start(s) to
+/// end(s). Facets whose diagonals are edges of others too stay whole: their vertices are locked.
+class CollapsingMesh {
+public:
+    explicit CollapsingMesh(PolygonMesh& mesh);
+
+    const Vec3& at(Index v) const { return mesh_.positions[v]; }
+    std::size_t vertex_count() const { return mesh_.vertex_count(); }
+    std::size_t side_count() const { return corners_.size(); }
+    bool is_gone(Index side) const { return corners_[side] == no_index; }
+    Index start(Index side) const { return corners_[side]; }
+    Index end(Index side) const { return corners_[next_side(side)]; }
+    Index twin(Index side) const { return twin_[side]; }
+    bool is_locked(Index v) const { return locked_[v]; }
+
+    /// The neighbours of a side's start, its end first; false if its facets are not one whole fan.
+    bool ring_of(Index side, std::vector<Index>& ring) const;
+
+    /// Whether the start of a side may become its end, at a place: a 2-manifold stays one (link condition),
+    /// no facet turns by 40 degrees, none gets thinner than all were. The rings are those of its two ends.
+    bool may_collapse(const std::vector<Index>& ring, const std::vector<Index>& ring_to,
+                      const Vec3& place) const;
+    /// Makes the start of a side its end, at a place, if that may be; false if it may not.
+    bool collapse(Index side, const Vec3& place);
+
+    /// Has the vertex a facet that is not what it was when changes were forgotten? All have at first.
+    bool has_changed(Index v) const { return changed_[v]; }
+    void forget_changes() { changed_.assign(changed_.size(), 0); }
+
+    /// The mesh again: facets that nothing touched whole, others as triangles. Per vertex the one that stands
+    /// for it now; those for which another does are isolated.
+    std::vector<Index> write();
+
+private:
+    void lock_facets();
+    bool is_link(const std::vector<Index>& from, const std::vector<Index>& to) const;
+    bool spares(Index v) const { return facets_[v] > (border_[v] ? 1u : 3u); }
+    bool suits_ring(const Vec3& place, const std::vector<Index>& ring, Index centre, double& thinnest,
+                    double& thinnest_new) const;
+    void touch(Index side);
+    void remove(Index side);
+
+    PolygonMesh& mesh_;
+    std::vector<Index> stands_for_;
+    std::vector<Index> corners_, twin_;           // per side of a triangle; no_index: it is gone
+    std::vector<Index> facet_;                    // per triangle
+    std::vector<Index> facets_;                   // per vertex, how many
+    std::vector<std::uint8_t> border_, locked_;   // per vertex
+    std::vector<std::uint8_t> changed_, touched_; // per vertex; per facet
+    std::vector<Index> ring_, ring_to_, sides_;   // of one collapse
+};
+
+} // namespace hsdm

@@ -1,0 +1,159 @@
+#include "hsdm/adaptive/drop_vertices.hh"
+
+#include "hsdm/adaptive/collapsing_mesh.hh"
+#include "hsdm/adaptive/triangle_shape.hh"
+#include "hsdm/chunks.hh"
+#include "hsdm/quality/mix.hh"
+#include "hsdm/quality/point_triangle.hh"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace hsdm {
+namespace {
+
+constexpr int most_sweeps = 32;
+constexpr std::size_t vertices_per_chunk = 256;
+constexpr double smooth_cosine = 0.95;             // of normals round a vertex with their mean: 18 degrees
+constexpr double along_edge[] = {0.5, 0.25, 0.75}; // where new edges are looked at
+
+/// Of the neighbours of a side's start, its end first.
+Key ring_key(const CollapsingMesh& mesh, Index side) {
+    std::vector<Index> ring;
+    Key key = mesh.ring_of(side, ring);
+    for (Index v : ring) key = mix(key ^ v);
+    return key;
+}
+
+class Dropping {
+public:
+    Dropping(PolygonMesh& mesh, SurfaceBand& fine) : mesh_(mesh), fine_(fine) {}
+
+    std::vector<Drop> run() {
+        for (int sweep = 0; sweep < most_sweeps && drop_once() > 0; ++sweep) {
+        }
+        return std::move(drops_);
+    }
+
+private:
+    /// The start of a side may become its end.
+    struct Collapse {
+        double length;
+        Index side;
+    };
+
+    /// Per vertex one of the sides that start there.
+    std::vector<Index> sides_out() const {
+        std::vector<Index> out(mesh_.vertex_count(), no_index);
+        for (Index s = 0; s < mesh_.side_count(); ++s)
+            if (!mesh_.is_gone(s)) out[mesh_.start(s)] = s;
+        return out;
+    }
+
+    std::size_t drop_once() {
+        std::vector<Collapse> collapses = find_collapses();
+        tbb::parallel_sort(collapses.begin(), collapses.end(), [](const Collapse& a, const Collapse& b) {
+            return a.length != b.length ? a.length < b.length : a.side < b.side;
+        });
+        mesh_.forget_changes();
+        const std::size_t before = drops_.size();
+        for (const Collapse& c : collapses) {
+            // What was measured holds while the facets round both are what they were.
+            if (mesh_.is_gone(c.side) || mesh_.has_changed(mesh_.start(c.side))) continue;
+            const Drop drop{c.side, mesh_.start(c.side), mesh_.end(c.side), ring_key(mesh_, c.side)};
+            if (mesh_.collapse(drop.side, mesh_.at(drop.onto))) drops_.push_back(drop);
+        }
+        return drops_.size() - before;
+    }
+
+    std::vector<Collapse> find_collapses() {
+        const std::vector<Index> out = sides_out();
+        std::vector<std::vector<Collapse>> parts(chunk_count(out.size(), vertices_per_chunk));
+        for_chunks(out.size(), vertices_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+            Index hint = no_index;
+            for (auto v = static_cast<Index>(begin); v < end; ++v)
+                if (out[v] != no_index && mesh_.has_changed(v) && !mesh_.is_locked(v))
+                    add_collapse(out[v], hint, parts[c]);
+        });
+        return joined(parts);
+    }
+
+    /// The first in order of length that may be.
+    void add_collapse(Index first, Index& hint, std::vector<Collapse>& found) {
+        std::vector<Index> ring, ring_to;
+        if (!mesh_.ring_of(first, ring) || !is_smooth(mesh_.start(first), ring)) return;
+        std::vector<Collapse> sides;
+        Index s = first;
+        do {
+            if (!mesh_.is_locked(mesh_.end(s)))
+                sides.push_back({(mesh_.at(mesh_.end(s)) - mesh_.at(mesh_.start(s))).sqrnorm(), s});
+            s = mesh_.twin(previous_side(s));
+        } while (s != first);
+        std::sort(sides.begin(), sides.end(), [](const Collapse& a, const Collapse& b) {
+            return a.length != b.length ? a.length < b.length : a.side < b.side;
+        });
+        for (const Collapse& c : sides) {
+            if (!mesh_.ring_of(c.side, ring) || !mesh_.ring_of(mesh_.twin(c.side), ring_to)) continue;
+            if (!mesh_.may_collapse(ring, ring_to, mesh_.at(ring[0])) || !is_near(c.side, ring, hint))
+                continue;
+            found.push_back(c);
+            return;
+        }
+    }
+
+    bool is_smooth(Index v, const std::vector<Index>& ring) const {
+        const auto normal = [&](std::size_t i) {
+            const Vec3 n =
+                triangle_normal(mesh_.at(v), mesh_.at(ring[i]), mesh_.at(ring[(i + 1) % ring.size()]));
+            return n.sqrnorm() > 0 ? n.normalized() : n;
+        };
+        Vec3 sum(0, 0, 0);
+        for (std::size_t i = 0; i < ring.size(); ++i) sum += normal(i);
+        const double least = smooth_cosine * sum.norm();
+        for (std::size_t i = 0; i < ring.size(); ++i)
+            if (!((normal(i) | sum) >= least)) return false;
+        return true;
+    }
+
+    /// Are the facets that the ring would have, with the side's end in place of its start, near the fine
+    /// surface, and is the start near them?
+    bool is_near(Index side, const std::vector<Index>& ring, Index& hint) {
+        const Vec3 &from = mesh_.at(mesh_.start(side)), &to = mesh_.at(ring[0]);
+        double squared = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 1; i + 1 < ring.size(); ++i)
+            squared = std::min(squared, PreparedTriangle(to, mesh_.at(ring[i]), mesh_.at(ring[i + 1]))
+                                            .nearest(from)
+                                            .squared_distance);
+        if (squared > fine_.tolerance() * fine_.tolerance()) return false;
+        for (const double share : along_edge)
+            for (std::size_t i = 2; i + 1 < ring.size(); ++i)
+                if (!fine_.holds(to + (mesh_.at(ring[i]) - to) * share, hint)) return false;
+        for (std::size_t i = 1; i + 1 < ring.size(); ++i)
+            if (!fine_.holds((to + mesh_.at(ring[i]) + mesh_.at(ring[i + 1])) / 3, hint)) return false;
+        return true;
+    }
+
+    CollapsingMesh mesh_;
+    SurfaceBand& fine_;
+    std::vector<Drop> drops_;
+};
+
+} // namespace
+
+std::vector<Drop> find_drops(PolygonMesh mesh, SurfaceBand& fine) {
+    return Dropping(mesh, fine).run();
+}
+
+std::vector<Index> drop_vertices(PolygonMesh& mesh, std::span<const Drop> drops,
+                                 const std::vector<std::uint8_t>& may_go) {
+    CollapsingMesh collapsing(mesh);
+    for (const Drop& drop : drops)
+        if (may_go[drop.vertex] && may_go[drop.onto] && collapsing.start(drop.side) == drop.vertex
+            && ring_key(collapsing, drop.side) == drop.ring)
+            collapsing.collapse(drop.side, collapsing.at(drop.onto));
+    return collapsing.write();
+}
+
+} // namespace hsdm
