@@ -16,8 +16,9 @@ namespace {
 
 constexpr int most_sweeps = 32;
 constexpr std::size_t vertices_per_chunk = 256;
-constexpr double smooth_cosine = 0.95;             // of normals round a vertex with their mean: 18 degrees
-constexpr double along_edge[] = {0.5, 0.25, 0.75}; // where new edges are looked at
+constexpr double smooth_cosine = 0.95; // of normals round a vertex with their mean: 18 degrees
+constexpr double along_edge[] = {0.5,   0.25,  0.75, 0.125,
+                                 0.375, 0.625, 0.875}; // where new edges are looked at
 
 /// Of the neighbours of a side's start, its end first.
 Key ring_key(const CollapsingMesh& mesh, Index side) {
@@ -130,8 +131,12 @@ private:
         for (const double share : along_edge)
             for (std::size_t i = 2; i + 1 < ring.size(); ++i)
                 if (!fine_.holds(to + (mesh_.at(ring[i]) - to) * share, hint)) return false;
-        for (std::size_t i = 1; i + 1 < ring.size(); ++i)
-            if (!fine_.holds((to + mesh_.at(ring[i]) + mesh_.at(ring[i + 1])) / 3, hint)) return false;
+        for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
+            const Vec3 &p = mesh_.at(ring[i]), &q = mesh_.at(ring[i + 1]), middle = (to + p + q) / 3;
+            if (!fine_.holds(middle, hint)) return false;
+            for (const Vec3& corner : {to, p, q})
+                if (!fine_.holds(0.5 * (middle + corner), hint)) return false;
+        }
         return true;
     }
 

@@ -25,13 +25,21 @@ struct Faults {
     std::vector<Index> vertices; // where they are
 
     bool no_worse_than(const FaultCounts& other) const {
-        return manifold && counts.crossing <= other.crossing && counts.distant <= other.distant;
+        return manifold && counts.crossing <= other.crossing && counts.distant <= other.distant
+               && counts.points <= other.points;
     }
 };
 
 /// Merges vertices of a mesh, and returns per vertex the one that stands for it. A vertex with a tolerance of
 /// 0 is to stay.
 using Merge = std::function<std::vector<Index>(PolygonMesh&, const std::vector<double>& tolerance)>;
+
+/// A way to merge, and how to go on from there.
+struct MergeStep {
+    Merge merge;
+    Diagonals diagonals; ///< of the facets between
+    bool blames_around;  ///< where nothing merged is something wrong, at once what merged beside it is blamed
+};
 
 /// Merges vertices of a mesh as far as nothing gets worse.
 class MergeRounds {
@@ -42,13 +50,13 @@ public:
           options_(options),
           tolerance_(leaves.mesh.vertex_count(), checks.band().tolerance()) {}
 
-    MergedLeaves run(const Merge& merge, Diagonals diagonals) {
+    MergedLeaves run(const MergeStep& step) {
         for (int round = 0; round < options_.rounds; ++round) {
-            merge_once(merge, diagonals);
+            merge_once(step);
             const Faults faults = find_faults();
             result_.faults = faults.counts;
             if (faults.no_worse_than(options_.faults)) return std::move(result_);
-            if (keep_closer(faults.vertices) == 0) break;
+            if (keep_closer(faults.vertices, step.blames_around) == 0) break;
         }
         result_.mesh = leaves_.mesh;
         result_.vertex.resize(leaves_.mesh.vertex_count());
@@ -58,9 +66,9 @@ public:
     }
 
 private:
-    void merge_once(const Merge& merge, Diagonals diagonals) {
+    void merge_once(const MergeStep& step) {
         result_.mesh = leaves_.mesh;
-        std::vector<Index> stands_for = merge(result_.mesh, tolerance_);
+        std::vector<Index> stands_for = step.merge(result_.mesh, tolerance_);
         std::vector<std::uint8_t> merged(stands_for.size(), 0);
         for (Index v = 0; v < stands_for.size(); ++v) merged[stands_for[v]] |= stands_for[v] != v;
         const std::vector<Index> leaf = drop_replaced(result_.mesh, stands_for);
@@ -69,7 +77,7 @@ private:
         // What nothing has changed stays as it is.
         std::vector<std::uint8_t> settled(leaf.size(), 1);
         for (Index v : with_neighbours(has_merged_)) settled[v] = 0;
-        tidy_facets(result_.mesh, checks_.band(), settled, diagonals);
+        tidy_facets(result_.mesh, checks_.band(), settled, step.diagonals);
     }
 
     /// Marked vertices, and those that share facets with them.
@@ -109,10 +117,13 @@ private:
 
     /// What was merged into these vertices is to miss its planes by less or, where nothing was, what was
     /// merged around them. Returns how many vertices of the leaves that concerns.
-    std::size_t keep_closer(const std::vector<Index>& vertices) {
+    std::size_t keep_closer(const std::vector<Index>& vertices, bool blame_around) {
         std::vector<std::uint8_t> wrong(result_.mesh.vertex_count(), 0);
-        std::vector<std::uint8_t> unmerged(wrong.size(), 0); // what is wrong there comes from beside it
-        for (Index v : vertices) (has_merged_[v] ? wrong : unmerged)[v] = 1;
+        std::vector<std::uint8_t> unmerged(wrong.size(), 0);
+        for (Index v : vertices) {
+            wrong[v] = 1;
+            unmerged[v] = blame_around && !has_merged_[v];
+        }
         for (Index v : with_neighbours(unmerged)) wrong[v] = 1;
         for (int ring = 0; ring < most_rings; ++ring) {
             if (const std::size_t count = lower_tolerances(wrong); count > 0) return count;
@@ -160,7 +171,7 @@ MergedLeaves merge_leaves(const LeafMesh& leaves, std::span<const Quadric> plane
     const auto by_planes = [&](PolygonMesh& mesh, const std::vector<double>& tolerance) {
         return merge_vertices(mesh, leaf_planes, tolerance);
     };
-    MergedLeaves merged = MergeRounds(leaves, checks, options).run(by_planes, Diagonals::may_flip);
+    MergedLeaves merged = MergeRounds(leaves, checks, options).run({by_planes, Diagonals::may_flip, false});
 
     const LeafMesh base{std::move(merged.mesh), through(leaves.vertex, merged.vertex)};
     MergeLeavesOptions drop_options = options;
@@ -171,7 +182,7 @@ MergedLeaves merge_leaves(const LeafMesh& leaves, std::span<const Quadric> plane
         for (std::size_t v = 0; v < may_go.size(); ++v) may_go[v] = tolerance[v] >= checks.band().tolerance();
         return drop_vertices(mesh, drops, may_go);
     };
-    MergedLeaves dropped = MergeRounds(base, checks, drop_options).run(by_distance, Diagonals::stay);
+    MergedLeaves dropped = MergeRounds(base, checks, drop_options).run({by_distance, Diagonals::stay, true});
     dropped.vertex = through(merged.vertex, dropped.vertex);
     return dropped;
 }

@@ -9,7 +9,8 @@ namespace hsdm {
 
 struct FaultCounts {
     std::size_t crossing = 0; ///< pairs of facets that intersect
-    std::size_t distant = 0;  ///< places, vertices and points beyond the bound
+    std::size_t distant = 0;  ///< places on the mesh and vertices of the fine one beyond the bound
+    std::size_t points = 0;   ///< points beyond it
 };
 
 struct Findings {
@@ -17,14 +18,13 @@ struct Findings {
     FarPlaces far;
     FarPoints far_points;
 
-    FaultCounts count() const { return {crossing.size(), far.size() + far_points.points.size()}; }
+    FaultCounts count() const { return {crossing.size(), far.size(), far_points.points.size()}; }
 };
 
 /// All that is remembered of one mesh for the next.
 class RoundChecks {
 public:
-    /// As for BoundCheck; `tolerance`, the mesh's units, > 0: the width of the band round the fine mesh, half
-    /// of that of the wide one.
+    /// As for BoundCheck; `tolerance`, the mesh's units, > 0: the width of the band round the fine mesh.
     RoundChecks(const PolygonMesh& fine, std::span<const Vec3> points, double bound, double spacing,
                 double tolerance);
     RoundChecks(const RoundChecks&) = delete;
@@ -36,7 +36,7 @@ public:
     /// Of the mesh last looked at.
     const BoundCheck& bound() const { return bound_; }
     SurfaceBand& band() { return band_; }
-    SurfaceBand& wide_band() { return wide_band_; }
+    SurfaceBand& wide_band() { return wide_band_; } ///< 1.75 times as wide
 
 private:
     BoundCheck bound_;
