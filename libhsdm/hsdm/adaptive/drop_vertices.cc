@@ -20,9 +20,8 @@ constexpr double smooth_cosine = 0.95; // of normals round a vertex with their m
 constexpr double along_edge[] = {0.5,   0.25,  0.75, 0.125,
                                  0.375, 0.625, 0.875}; // where new edges are looked at
 
-/// Of the neighbours of a side's start, its end first.
-Key ring_key(const CollapsingMesh& mesh, Index side) {
-    std::vector<Index> ring;
+/// Of the neighbours of a side's start, its end first; they are left in `ring`.
+Key ring_key(const CollapsingMesh& mesh, Index side, std::vector<Index>& ring) {
     Key key = mesh.ring_of(side, ring);
     for (Index v : ring) key = mix(key ^ v);
     return key;
@@ -45,6 +44,13 @@ private:
         Index side;
     };
 
+    /// What is used from vertex to vertex.
+    struct Room {
+        Index hint = no_index;
+        std::vector<Index> ring, ring_to;
+        std::vector<Collapse> sides;
+    };
+
     /// Per vertex one of the sides that start there.
     std::vector<Index> sides_out() const {
         std::vector<Index> out(mesh_.vertex_count(), no_index);
@@ -63,7 +69,7 @@ private:
         for (const Collapse& c : collapses) {
             // What was measured holds while the facets round both are what they were.
             if (mesh_.is_gone(c.side) || mesh_.has_changed(mesh_.start(c.side))) continue;
-            const Drop drop{c.side, mesh_.start(c.side), mesh_.end(c.side), ring_key(mesh_, c.side)};
+            const Drop drop{c.side, mesh_.start(c.side), mesh_.end(c.side), ring_key(mesh_, c.side, ring_)};
             if (mesh_.collapse(drop.side, mesh_.at(drop.onto))) drops_.push_back(drop);
         }
         return drops_.size() - before;
@@ -73,19 +79,19 @@ private:
         const std::vector<Index> out = sides_out();
         std::vector<std::vector<Collapse>> parts(chunk_count(out.size(), vertices_per_chunk));
         for_chunks(out.size(), vertices_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
-            Index hint = no_index;
+            Room room;
             for (auto v = static_cast<Index>(begin); v < end; ++v)
                 if (out[v] != no_index && mesh_.has_changed(v) && !mesh_.is_locked(v))
-                    add_collapse(out[v], hint, parts[c]);
+                    add_collapse(out[v], room, parts[c]);
         });
         return joined(parts);
     }
 
     /// The first in order of length that may be.
-    void add_collapse(Index first, Index& hint, std::vector<Collapse>& found) {
-        std::vector<Index> ring, ring_to;
+    void add_collapse(Index first, Room& room, std::vector<Collapse>& found) {
+        auto& [hint, ring, ring_to, sides] = room;
         if (!mesh_.ring_of(first, ring) || !is_smooth(mesh_.start(first), ring)) return;
-        std::vector<Collapse> sides;
+        sides.clear();
         Index s = first;
         do {
             if (!mesh_.is_locked(mesh_.end(s)))
@@ -143,6 +149,7 @@ private:
     CollapsingMesh mesh_;
     SurfaceBand& fine_;
     std::vector<Drop> drops_;
+    std::vector<Index> ring_;
 };
 
 } // namespace
@@ -154,9 +161,10 @@ std::vector<Drop> find_drops(PolygonMesh mesh, SurfaceBand& fine) {
 std::vector<Index> drop_vertices(PolygonMesh& mesh, std::span<const Drop> drops,
                                  const std::vector<std::uint8_t>& may_go) {
     CollapsingMesh collapsing(mesh);
+    std::vector<Index> ring;
     for (const Drop& drop : drops)
         if (may_go[drop.vertex] && may_go[drop.onto] && collapsing.start(drop.side) == drop.vertex
-            && ring_key(collapsing, drop.side) == drop.ring)
+            && ring_key(collapsing, drop.side, ring) == drop.ring)
             collapsing.collapse(drop.side, collapsing.at(drop.onto));
     return collapsing.write();
 }
