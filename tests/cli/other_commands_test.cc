@@ -60,6 +60,14 @@ TEST_CASE("process runs modules in order and refuses unknown ones", "[cli]") {
     CHECK_FALSE(exists(folder / "other.ply"));
 }
 
+TEST_CASE("the suite that comes along passes", "[cli]") {
+    const Folder folder;
+    const CommandResult result = run(folder, "regress " HSDM_TESTDATA_DIR "/suite.json");
+    INFO(result.out << result.err);
+    CHECK(result.status == 0);
+    CHECK(result.out.find("4 of 4 within tolerance") != std::string::npos);
+}
+
 TEST_CASE("regress passes within tolerance, fails outside it, and names what missed", "[cli]") {
     const Folder folder;
     folder.write("scan.xyz", xyz(sphere_scan(1000)));
