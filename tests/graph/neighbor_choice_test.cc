@@ -70,7 +70,7 @@ TEST_CASE("a voxel without face neighbours takes its four nearest edge neighbour
     const NeighborMask present = mask({{1, 1, 0}, {-1, 1, 0}, {1, -1, 0}, {-1, -1, 0}, {1, 0, 1}});
     CHECK(choose_neighbors(present, with({1, 1, 0}, 2)) == (present & ~mask({{1, 1, 0}})));
     CHECK(choose_neighbors(present, even()) == (present & ~mask({{1, 0, 1}}))); // ties: the lower bit
-    NeighborOptions more;
+    NeighborChoiceOptions more;
     more.wanted = 5;
     CHECK(choose_neighbors(present, even(), more) == present);
 }
@@ -78,7 +78,7 @@ TEST_CASE("a voxel without face neighbours takes its four nearest edge neighbour
 TEST_CASE("of five and six face neighbours all are kept, or the four nearest if so asked", "[graph]") {
     const NeighborMask six = face_neighbors;
     CHECK(choose_neighbors(six | edge_neighbors, even()) == six);
-    NeighborOptions four;
+    NeighborChoiceOptions four;
     four.max_face_neighbors = 4;
     NeighborDistances d = with({0, 0, 1}, 2);
     d[static_cast<unsigned>(std::countr_zero(mask({{-1, 0, 0}})))] = 3;

@@ -33,7 +33,7 @@ struct Choices {
     }
 };
 
-void check(const NeighborOptions& options) {
+void check(const NeighborChoiceOptions& options) {
     if (options.wanted < 1 || options.wanted > neighbor_count)
         throw OptionError("wanted " + std::to_string(options.wanted) + ": must lie in [1, 18]");
     if (options.max_face_neighbors < std::min(options.wanted, 6) || options.max_face_neighbors > 6)
@@ -43,7 +43,7 @@ void check(const NeighborOptions& options) {
 
 /// The neighbours of one voxel, appended to `out`. Edge neighbours are looked up only if they can matter.
 Index choose(const OctreeLevel& level, const std::vector<Vec3>& positions, Index voxel,
-             const NeighborOptions& options, std::vector<Index>& out) {
+             const NeighborChoiceOptions& options, std::vector<Index>& out) {
     std::array<Index, neighbor_count> found;
     NeighborDistances distance{};
     NeighborMask present = 0;
@@ -67,7 +67,7 @@ Index choose(const OctreeLevel& level, const std::vector<Vec3>& positions, Index
 
 /// Chunks are fixed, so the lists come out alike for any number of threads.
 Choices choose_all(const OctreeLevel& level, const std::vector<Vec3>& positions,
-                   const NeighborOptions& options) {
+                   const NeighborChoiceOptions& options) {
     const std::size_t n = level.size(), chunks = (n + grain - 1) / grain;
     Choices choices;
     choices.first.assign(n + 1, 0);

@@ -28,7 +28,7 @@ struct ConnectivityGraph {
 };
 
 struct GraphOptions {
-    NeighborOptions neighbors;
+    NeighborChoiceOptions neighbors;
     /// The paper connects each vertex with the vertices it chose and calls every edge bi-directional: one
     /// choice makes the edge. True asks for both ends' choice instead.
     bool mutual = false;

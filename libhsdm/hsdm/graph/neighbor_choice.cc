@@ -47,7 +47,7 @@ NeighborMask adjacent_faces(int edge_neighbor) {
 }
 
 NeighborMask choose_neighbors(NeighborMask present, const NeighborDistances& distance,
-                              const NeighborOptions& options) {
+                              const NeighborChoiceOptions& options) {
     const NeighborMask faces = present & face_neighbors;
     const int face_count = std::popcount(faces);
     if (face_count > options.max_face_neighbors) return nearest(faces, options.max_face_neighbors, distance);

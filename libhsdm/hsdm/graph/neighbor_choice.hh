@@ -17,7 +17,7 @@ inline constexpr NeighborMask face_neighbors = 0x3f;
 inline constexpr NeighborMask edge_neighbors = 0x3ffc0;
 inline constexpr int neighbor_count = 18;
 
-struct NeighborOptions {
+struct NeighborChoiceOptions {
     /// Neighbours sought per voxel, in [1, 18]. Edge neighbours are looked at only while face neighbours
     /// are fewer.
     int wanted = 4;
@@ -39,6 +39,6 @@ using NeighborDistances = std::array<double, neighbor_count>;
 /// some voxels end with three neighbours or fewer although others are present.
 /// Where more qualify than are wanted the nearest vertices win, then the lower bit.
 NeighborMask choose_neighbors(NeighborMask present, const NeighborDistances& distance,
-                              const NeighborOptions& options = {});
+                              const NeighborChoiceOptions& options = {});
 
 } // namespace hsdm
