@@ -1,4 +1,4 @@
-# Configures, builds and runs the project beside this file in WORK_DIR, with hsdm found by WAY.
+# Configures and builds the project beside this file in WORK_DIR, with hsdm found by WAY, and runs it if installed.
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT result EQUAL 0)
@@ -13,5 +13,9 @@ endif()
 run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/project -B ${WORK_DIR}/build -G ${GENERATOR}
   -D CMAKE_BUILD_TYPE=None -D CMAKE_CXX_FLAGS=-O0 -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix
   -D WAY=${WAY} -D HSDM_SOURCE_DIR=${HSDM_SOURCE_DIR})
-run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
-run(${WORK_DIR}/build/consumer)
+if(WAY STREQUAL "find_package")
+  run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
+  run(${WORK_DIR}/build/consumer)
+else()
+  run(${CMAKE_COMMAND} --build ${WORK_DIR}/build --target consumer_objects)
+endif()
