@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <functional>
 
 namespace hsdm {
 namespace {
@@ -23,10 +24,21 @@ void keep_only(std::vector<T>& values, const std::vector<Index>& kept) {
 
 } // namespace
 
-Box PointCloud::bounds() const {
+bool all_finite(std::span<const Vec3> positions) {
     return tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, size(), 1 << 16), Box{},
-        [this](const tbb::blocked_range<std::size_t>& range, Box box) {
+        tbb::blocked_range<std::size_t>(0, positions.size(), 1 << 14), true,
+        [&](const tbb::blocked_range<std::size_t>& range, bool finite) {
+            for (std::size_t i = range.begin(); finite && i != range.end(); ++i)
+                finite = is_finite(positions[i]);
+            return finite;
+        },
+        std::logical_and<>());
+}
+
+Box bounds_of(std::span<const Vec3> positions) {
+    return tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, positions.size(), 1 << 16), Box{},
+        [&](const tbb::blocked_range<std::size_t>& range, Box box) {
             for (std::size_t i = range.begin(); i != range.end(); ++i) box.add(positions[i]);
             return box;
         },

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ struct Scalar {
     bool is_label = false;      ///< integers that must not be averaged: a vertex takes the majority's
 };
 
+bool all_finite(std::span<const Vec3> positions);
+Box bounds_of(std::span<const Vec3> positions);
+
 /// Points in the cloud's units, structure of arrays. Optional arrays are empty or hold one entry per point.
 struct PointCloud {
     std::vector<Vec3> positions;
@@ -27,7 +31,7 @@ struct PointCloud {
 
     std::size_t size() const { return positions.size(); }
     bool has_normals() const { return !normals.empty(); }
-    Box bounds() const;
+    Box bounds() const { return bounds_of(positions); }
 };
 
 /// What `drop_nonfinite` removed.

@@ -66,10 +66,7 @@ void validate(const ReconstructOptions& o) {
 class FiniteCloud {
 public:
     explicit FiniteCloud(const PointCloud& cloud) : cloud_(&cloud) {
-        const bool finite = std::all_of(cloud.positions.begin(), cloud.positions.end(), [](const Vec3& p) {
-            return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-        });
-        if (finite) return;
+        if (all_finite(cloud.positions)) return;
         kept_ = cloud;
         dropped_ = drop_nonfinite(kept_).nonfinite;
         cloud_ = &kept_;

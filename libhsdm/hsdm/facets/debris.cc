@@ -4,12 +4,26 @@
 #include "hsdm/disjoint_sets.hh"
 
 #include <array>
+#include <atomic>
 #include <iterator>
 
 namespace hsdm {
 namespace {
 
 constexpr std::size_t facets_per_chunk = 4096;
+
+/// By the vertex that stands for the component.
+std::vector<std::size_t> facets_of_components(const PolygonMesh& mesh, DisjointSets& components) {
+    std::vector<std::size_t> sizes(mesh.vertex_count(), 0);
+    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t first = begin, f = begin; f < end; first = f) { // facets of one come in long runs
+            const Index component = components.find(mesh.facet(f)[0]);
+            while (++f < end && components.find(mesh.facet(f)[0]) == component) continue;
+            std::atomic_ref(sizes[component]).fetch_add(f - first, std::memory_order_relaxed);
+        }
+    });
+    return sizes;
+}
 
 /// Of the components of no more facets than `most`: do they have a border?
 std::vector<std::uint8_t> open_components(const PolygonMesh& mesh, DisjointSets& components,
@@ -42,8 +56,7 @@ std::size_t drop_debris(PolygonMesh& mesh, const DebrisOptions& options) {
         for (std::size_t f = begin; f < end; ++f)
             for (Index v : mesh.facet(f)) components.join(mesh.facet(f)[0], v);
     });
-    std::vector<std::size_t> sizes(mesh.vertex_count(), 0);
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) ++sizes[components.find(mesh.facet(f)[0])];
+    const std::vector<std::size_t> sizes = facets_of_components(mesh, components);
     const auto largest = static_cast<double>(*std::max_element(sizes.begin(), sizes.end()));
     const std::vector<std::uint8_t> open = open_components(mesh, components, sizes, options.most_open);
     std::vector<std::uint8_t> debris(sizes.size(), 0);

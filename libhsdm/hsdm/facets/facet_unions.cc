@@ -1,9 +1,14 @@
 #include "hsdm/facets/facet_unions.hh"
 
+#include "hsdm/chunks.hh"
+
 #include <algorithm>
+#include <atomic>
 
 namespace hsdm {
 namespace {
+
+constexpr std::size_t per_chunk = 1 << 14;
 
 /// The ring of a facet from the corner after v round to the one before it.
 std::vector<Index> without(std::span<const Index> ring, Index v) {
@@ -16,13 +21,23 @@ std::vector<Index> without(std::span<const Index> ring, Index v) {
 } // namespace
 
 VertexFacets facets_at_vertices(const PolygonMesh& mesh) {
-    VertexFacets at{std::vector<std::array<Index, 2>>(mesh.vertex_count()),
-                    std::vector<std::uint8_t>(mesh.vertex_count(), 0)};
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f)
-        for (Index v : mesh.facet(f)) {
-            if (at.count[v] < 2) at.facets[v][at.count[v]] = static_cast<Index>(f);
-            at.count[v] = static_cast<std::uint8_t>(std::min(at.count[v] + 1, 3));
+    const std::size_t n = mesh.vertex_count();
+    VertexFacets at{std::vector<std::array<Index, 2>>(n), std::vector<std::uint8_t>(n)};
+    std::vector<Index> counts(n, 0);
+    for_chunks(mesh.facet_count(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t f = begin; f < end; ++f)
+            for (Index v : mesh.facet(f)) {
+                const Index place = std::atomic_ref(counts[v]).fetch_add(1, std::memory_order_relaxed);
+                if (place < 2) at.facets[v][place] = static_cast<Index>(f);
+            }
+    });
+    for_chunks(n, per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t v = begin; v < end; ++v) {
+            at.count[v] = static_cast<std::uint8_t>(std::min<Index>(counts[v], 3));
+            if (counts[v] == 2) std::ranges::sort(at.facets[v]); // whoever came first
+            if (counts[v] > 2) at.facets[v] = {};
         }
+    });
     return at;
 }
 

@@ -1,5 +1,6 @@
 #include "hsdm/facets/fill_holes.hh"
 
+#include "hsdm/chunks.hh"
 #include "hsdm/facets/area_vector.hh"
 #include "hsdm/facets/facet_links.hh"
 #include "hsdm/facets/split_polygon.hh"
@@ -12,6 +13,8 @@
 
 namespace hsdm {
 namespace {
+
+constexpr std::size_t sides_per_chunk = 1 << 14;
 
 /// A loop around a single facet: closing it would lay a second facet over the same vertices.
 bool is_lone_facet(const PolygonMesh& mesh, std::span<const Index> facets) {
@@ -28,12 +31,12 @@ double diameter(const PolygonMesh& mesh, std::span<const Index> loop) {
 /// Which side without twin follows which around a hole: succ of a side from a to b is one that ends in a.
 class HoleTracer {
 public:
-    explicit HoleTracer(const PolygonMesh& mesh) : mesh_(mesh), links_(link_facets(mesh)) {
+    explicit HoleTracer(const PolygonMesh& mesh)
+        : mesh_(mesh), links_(link_facets(mesh)), open_(sides_without_twin()) {
+        if (open_.empty()) return;
         list_fans();
         next_.assign(mesh.corners.size(), no_index);
-        for (Index c = 0; c < mesh.corners.size(); ++c)
-            if (links_.accepted[links_.facet[c]] && links_.twin[c] == no_index)
-                next_[c] = links_.open_in[links_.vertex[c]];
+        for (Index c : open_) next_[c] = links_.open_in[links_.vertex[c]];
         for (std::size_t begin = 0, end = 0; begin < shared_.size(); begin = end) {
             while (end < shared_.size() && shared_[end].vertex == shared_[begin].vertex) ++end;
             join_fans({shared_.data() + begin, end - begin});
@@ -42,7 +45,7 @@ public:
 
     BoundaryLoops trace() {
         BoundaryLoops loops;
-        for (Index c = 0; c < mesh_.corners.size(); ++c) {
+        for (Index c : open_) {
             path_.clear();
             for (Index at = c; next_[at] != no_index;) {
                 path_.push_back(at);
@@ -61,14 +64,25 @@ private:
         double angle;
     };
 
+    std::vector<Index> sides_without_twin() const {
+        std::vector<std::vector<Index>> parts(chunk_count(mesh_.corners.size(), sides_per_chunk));
+        for_chunks(mesh_.corners.size(), sides_per_chunk,
+                   [&](std::size_t begin, std::size_t end, auto chunk) {
+                       for (std::size_t c = begin; c < end; ++c)
+                           if (links_.twin[c] == no_index && links_.accepted[links_.facet[c]])
+                               parts[chunk].push_back(static_cast<Index>(c));
+                   });
+        return joined(parts);
+    }
+
     Index end(Index side) const { return mesh_.corners[next_side(mesh_, links_.facet[side], side)]; }
 
     void list_fans() {
         std::vector<std::uint8_t> fans(mesh_.vertex_count(), 0);
         for (Index source : links_.source)
             fans[source] = static_cast<std::uint8_t>(std::min(fans[source] + 1, 2));
-        for (Index c = 0; c < mesh_.corners.size(); ++c)
-            if (links_.accepted[links_.facet[c]] && links_.twin[c] == no_index && fans[mesh_.corners[c]] > 1)
+        for (Index c : open_)
+            if (fans[mesh_.corners[c]] > 1)
                 shared_.push_back({mesh_.corners[c], c, links_.open_in[links_.vertex[c]], 0});
         std::stable_sort(shared_.begin(), shared_.end(),
                          [](const Fan& a, const Fan& b) { return a.vertex < b.vertex; });
@@ -124,6 +138,7 @@ private:
 
     const PolygonMesh& mesh_;
     FacetLinks links_;
+    std::vector<Index> open_; ///< sides without twin
     std::vector<Fan> shared_;
     std::vector<Index> next_; ///< per side without twin; cleared as loops are traced
     std::vector<Index> path_;

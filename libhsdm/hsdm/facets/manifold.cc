@@ -1,5 +1,6 @@
 #include "hsdm/facets/manifold.hh"
 
+#include "hsdm/chunks.hh"
 #include "hsdm/octree/radix_sort.hh"
 
 #include <tbb/blocked_range.h>
@@ -232,24 +233,31 @@ private:
 
     void pair_edges() {
         twin_.assign(mesh_.corners.size(), no_index);
-        for (std::size_t v = 0; v < mesh_.vertex_count(); ++v) {
-            for (Index begin = first_at_[v], end = begin; begin < first_at_[v + 1]; begin = end) {
-                while (end < first_at_[v + 1] && upper(by_edge_[end]) == upper(by_edge_[begin])) ++end;
-                if (end - begin == 1) continue;
-                const Index a = by_edge_[begin], b = by_edge_[begin + 1];
-                if (end - begin == 2 && start(a) != start(b)) {
-                    twin_[a] = b;
-                    twin_[b] = a;
-                } else {
-                    complex_.push_back({begin, end});
-                }
-            }
-        }
+        std::vector<std::vector<ComplexEdge>> parts(chunk_count(mesh_.vertex_count(), grain));
+        for_chunks(mesh_.vertex_count(), grain, [&](std::size_t first, std::size_t last, std::size_t chunk) {
+            for (std::size_t v = first; v < last; ++v) pair_edges_at(v, parts[chunk]);
+        });
+        complex_ = joined(parts);
         if (!complex_.empty()) angle_.resize(mesh_.corners.size());
         for (ComplexEdge& edge : complex_) order_by_angle(edge);
         for (ComplexEdge& edge : complex_) {
             edge.outside = bend(edge, true) < bend(edge, false) - 1e-6;
             pair(edge, edge.outside);
+        }
+    }
+
+    /// Of the edges whose lower vertex is v; those of more than two half-edges are left for later.
+    void pair_edges_at(std::size_t v, std::vector<ComplexEdge>& left) {
+        for (Index begin = first_at_[v], end = begin; begin < first_at_[v + 1]; begin = end) {
+            while (end < first_at_[v + 1] && upper(by_edge_[end]) == upper(by_edge_[begin])) ++end;
+            if (end - begin == 1) continue;
+            const Index a = by_edge_[begin], b = by_edge_[begin + 1];
+            if (end - begin == 2 && start(a) != start(b)) {
+                twin_[a] = b;
+                twin_[b] = a;
+            } else {
+                left.push_back({begin, end});
+            }
         }
     }
 

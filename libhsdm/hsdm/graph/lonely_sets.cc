@@ -11,10 +11,21 @@ constexpr std::size_t sets_per_chunk = 1024;
 
 /// Points in a set, the mean that a point sees: full voxels count more than clipped ones.
 double typical_count(const NormalSets& sets) {
+    struct Sum {
+        std::uint64_t points = 0, squares = 0;
+    };
+    std::vector<Sum> sums(chunk_count(sets.sets.size(), sets_per_chunk));
+    for_chunks(sets.sets.size(), sets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        for (std::size_t s = begin; s < end; ++s) {
+            const std::uint64_t count = sets.sets[s].count;
+            sums[chunk].points += count;
+            sums[chunk].squares += count * count;
+        }
+    });
     double points = 0, squares = 0;
-    for (const NormalSet& set : sets.sets) {
-        points += set.count;
-        squares += static_cast<double>(set.count) * set.count;
+    for (const Sum& sum : sums) {
+        points += static_cast<double>(sum.points);
+        squares += static_cast<double>(sum.squares);
     }
     return points > 0 ? squares / points : 0;
 }

@@ -93,22 +93,30 @@ Box box_of_most(const Octree& octree, const PointCloud& cloud) {
     return box;
 }
 
+/// A level's voxels by their first points, and how many points share a typical point's voxel.
+struct Density {
+    int depth = 0;
+    std::vector<Index> first_point;
+    double typical = 0;
+};
+
 /// The finest level on which a typical point shares its voxel with so many.
-OctreeLevel level_of_density(const Octree& octree, double points_per_voxel, double& typical) {
+Density level_of_density(const Octree& octree, double points_per_voxel) {
     const auto counts = count_voxels(octree);
     int depth = morton_levels; // the typical count is above the mean, but not much
     while (depth > 0
            && static_cast<double>(octree.size())
                   < 0.25 * points_per_voxel * static_cast<double>(counts[static_cast<std::size_t>(depth)]))
         --depth;
-    for (OctreeLevel level = extract_level(octree, depth);; level = coarser_level(level, --depth)) {
+    for (;; --depth) {
+        std::vector<Index> first = first_points(octree, depth);
         double squares = 0;
-        for (std::size_t v = 0; v < level.size(); ++v) {
-            const auto count = static_cast<double>(level.first_point[v + 1] - level.first_point[v]);
+        for (std::size_t v = 0; v + 1 < first.size(); ++v) {
+            const auto count = static_cast<double>(first[v + 1] - first[v]);
             squares += count * count;
         }
-        typical = squares / static_cast<double>(octree.size());
-        if (typical >= points_per_voxel || depth == 0) return level;
+        const double typical = squares / static_cast<double>(octree.size());
+        if (typical >= points_per_voxel || depth == 0) return {depth, std::move(first), typical};
     }
 }
 
@@ -166,17 +174,16 @@ std::size_t drop_far_away(Octree& octree, const PointCloud& cloud) {
 }
 
 std::size_t drop_strays(Octree& octree, const StrayOptions& options) {
-    double typical = 0;
-    const OctreeLevel level = level_of_density(octree, options.points_per_voxel, typical);
-    const auto most = static_cast<Index>(std::max(1.0, options.most_share * typical));
+    const Density density = level_of_density(octree, options.points_per_voxel);
+    const std::vector<Index>& first = density.first_point;
+    const auto most = static_cast<Index>(std::max(1.0, options.most_share * density.typical));
     std::vector<Index> sparse;
     std::vector<std::uint8_t> is_sparse(octree.size(), 0);
-    for (std::size_t v = 0; v < level.size(); ++v)
-        if (level.first_point[v + 1] - level.first_point[v] <= most)
-            for (Index i = level.first_point[v]; i < level.first_point[v + 1]; ++i)
-                sparse.push_back(i), is_sparse[i] = 1;
+    for (std::size_t v = 0; v + 1 < first.size(); ++v)
+        if (first[v + 1] - first[v] <= most)
+            for (Index i = first[v]; i < first[v + 1]; ++i) sparse.push_back(i), is_sparse[i] = 1;
     const Neighbors neighbors = find_neighbors_of(octree, sparse, {.count = options.neighbors});
-    const double farthest = options.most_distance * level.voxel_size;
+    const double farthest = options.most_distance * octree.voxel_size(density.depth);
     std::vector<std::uint8_t> stray(octree.size(), 0);
     for_chunks(sparse.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t k = begin; k < end; ++k)

@@ -6,10 +6,8 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
 
 #include <cmath>
-#include <functional>
 #include <numeric>
 #include <tuple>
 
@@ -18,22 +16,15 @@ namespace {
 
 using Range = tbb::blocked_range<std::size_t>;
 constexpr std::size_t grain = 1 << 14;
+constexpr std::size_t ahead = 16; // points asked for before they are needed: their order is not the cloud's
+
+void prefetch(const std::vector<Vec3>& values, Index i) {
+    __builtin_prefetch(&values[i]);
+}
 
 Vec3 unit_or_zero(const Vec3& n) {
     const double length = n.norm();
     return length > 0 && std::isfinite(length) ? n / length : Vec3(0, 0, 0);
-}
-
-/// A sum is finite only if every term is, short of an overflow that no coordinate in use comes near.
-bool all_finite(const PointCloud& cloud) {
-    return tbb::parallel_reduce(
-        Range(0, cloud.size(), grain), true,
-        [&](const Range& range, bool finite) {
-            for (std::size_t i = range.begin(); finite && i != range.end(); ++i)
-                finite = std::isfinite(cloud.positions[i][0] + cloud.positions[i][1] + cloud.positions[i][2]);
-            return finite;
-        },
-        std::logical_and<>());
 }
 
 /// Level-21 code of a position relative to the cube; the cube's far faces belong to the last voxel.
@@ -121,7 +112,7 @@ Octree build_octree(const PointCloud& cloud, const OctreeOptions& options) {
     octree.bounds = cloud.bounds();
     octree.origin = octree.bounds.lo;
     octree.extent = octree.bounds.extent();
-    if (!all_finite(cloud))
+    if (!all_finite(cloud.positions))
         throw Error("the cloud holds coordinates that are not finite; call drop_nonfinite first");
     if (octree.extent <= 0) throw Error("all points are equal; a surface needs points that differ");
     if (options.cube_extent != 0) {
@@ -150,6 +141,8 @@ Octree build_octree(const PointCloud& cloud, const OctreeOptions& options) {
     if (with_normals) octree.normals.resize(keys.size());
     tbb::parallel_for(Range(0, keys.size(), grain), [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            if (i + ahead < range.end()) prefetch(cloud.positions, keys[i + ahead].index);
+            if (with_normals && i + ahead < range.end()) prefetch(cloud.normals, keys[i + ahead].index);
             const Index source = keys[i].index;
             octree.codes[i] = keys[i].code;
             octree.source[i] = source;
@@ -185,6 +178,7 @@ Octree rearranged(const Octree& octree, const std::vector<Vec3>& positions, doub
     if (octree.has_normals()) result.normals.resize(keys.size());
     tbb::parallel_for(Range(0, keys.size(), grain), [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            if (i + ahead < range.end()) prefetch(moved.positions, keys[i + ahead].index);
             const Index from = keys[i].index;
             result.codes[i] = keys[i].code;
             result.source[i] = octree.source[from];
@@ -198,8 +192,7 @@ Octree rearranged(const Octree& octree, const std::vector<Vec3>& positions, doub
 bool fit_to_points(Octree& octree) {
     if (octree.size() == 0) return false;
     constexpr double negligible = 1e-9; // of the box
-    Box box;
-    for (const Vec3& p : octree.positions) box.add(p);
+    const Box box = bounds_of(octree.positions);
     const Box bounds{box.lo + octree.origin, box.hi + octree.origin};
     const double change =
         std::max((bounds.lo - octree.bounds.lo).max_abs(), (bounds.hi - octree.bounds.hi).max_abs());
@@ -211,15 +204,12 @@ bool fit_to_points(Octree& octree) {
 
 namespace {
 
-/// Finds where codes begin to differ after a shift, and makes the voxels of it; first_point_of(i) is the
-/// first point of code i.
-template <class FirstPoint>
-void group_codes(const std::vector<MortonCode>& codes, int shift, FirstPoint first_point_of,
-                 OctreeLevel& level) {
+/// Where codes begin to differ after a shift, and behind these places how many codes there are.
+std::vector<Index> find_runs(const std::vector<MortonCode>& codes, int shift) {
     const std::size_t n = codes.size();
     const std::size_t chunks = (n + grain - 1) / grain;
 
-    // Two passes over fixed chunks: count the voxels that begin in each, then write them at their offset.
+    // Two passes over fixed chunks: count the runs that begin in each, then write them at their offset.
     auto begins = [&](std::size_t i) { return i == 0 || codes[i] >> shift != codes[i - 1] >> shift; };
     std::vector<std::size_t> offset(chunks + 1, 0);
     tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
@@ -228,29 +218,38 @@ void group_codes(const std::vector<MortonCode>& codes, int shift, FirstPoint fir
         offset[chunk + 1] = count;
     });
     std::partial_sum(offset.begin(), offset.end(), offset.begin());
-    level.codes.resize(offset.back());
-    level.first_point.resize(offset.back() + 1);
+    std::vector<Index> runs(offset.back() + 1);
     tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
-        std::size_t voxel = offset[chunk];
-        for (std::size_t i = chunk * grain; i < std::min(n, (chunk + 1) * grain); ++i) {
-            if (!begins(i)) continue;
-            level.codes[voxel] = codes[i] >> shift;
-            level.first_point[voxel++] = first_point_of(i);
-        }
+        std::size_t run = offset[chunk];
+        for (std::size_t i = chunk * grain; i < std::min(n, (chunk + 1) * grain); ++i)
+            if (begins(i)) runs[run++] = static_cast<Index>(i);
     });
-    level.first_point.back() = first_point_of(n);
+    runs.back() = static_cast<Index>(n);
+    return runs;
+}
+
+/// The voxels of a level from its runs of points or of finer voxels.
+void fill_level(const std::vector<MortonCode>& codes, int shift, const std::vector<Index>& runs,
+                OctreeLevel& level) {
+    level.codes.resize(runs.size() - 1);
+    tbb::parallel_for(Range(0, level.codes.size(), grain), [&](const Range& range) {
+        for (std::size_t v = range.begin(); v != range.end(); ++v) level.codes[v] = codes[runs[v]] >> shift;
+    });
     level.build_index();
 }
 
 } // namespace
 
+std::vector<Index> first_points(const Octree& octree, int depth) {
+    return find_runs(octree.codes, 3 * (morton_levels - depth));
+}
+
 OctreeLevel extract_level(const Octree& octree, int depth) {
     OctreeLevel level;
     level.depth = depth;
     level.voxel_size = octree.voxel_size(depth);
-    group_codes(
-        octree.codes, 3 * (morton_levels - depth), [](std::size_t i) { return static_cast<Index>(i); },
-        level);
+    level.first_point = first_points(octree, depth);
+    fill_level(octree.codes, 3 * (morton_levels - depth), level.first_point, level);
     return level;
 }
 
@@ -258,8 +257,10 @@ OctreeLevel coarser_level(const OctreeLevel& finer, int depth) {
     OctreeLevel level;
     level.depth = depth;
     level.voxel_size = finer.voxel_size * static_cast<double>(1u << (finer.depth - depth));
-    group_codes(
-        finer.codes, 3 * (finer.depth - depth), [&](std::size_t i) { return finer.first_point[i]; }, level);
+    const int shift = 3 * (finer.depth - depth);
+    level.first_point = find_runs(finer.codes, shift);
+    fill_level(finer.codes, shift, level.first_point, level);
+    for (Index& first : level.first_point) first = finer.first_point[first];
     return level;
 }
 

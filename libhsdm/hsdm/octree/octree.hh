@@ -80,6 +80,8 @@ private:
 
 /// The voxels of one level of the HSDM, depth in [0, 21]. O(n), parallel.
 OctreeLevel extract_level(const Octree& octree, int depth);
+/// What is `first_point` of that level, without the rest of it.
+std::vector<Index> first_points(const Octree& octree, int depth);
 /// The same from a deeper level, of which only the voxels are looked at. O(voxels), parallel.
 OctreeLevel coarser_level(const OctreeLevel& finer, int depth);
 

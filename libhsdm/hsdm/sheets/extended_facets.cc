@@ -11,6 +11,7 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t edges_per_chunk = 4096;
+constexpr std::size_t values_per_chunk = 1 << 14;
 
 /// Vertices on mesh edges. Two links across one face whose ends are the same two vertices would make one edge
 /// with four facets; a vertex in the middle of all but the first keeps them apart.
@@ -211,25 +212,41 @@ private:
     std::vector<Quad> round_;
 };
 
-void add_all_facets(const PolygonMesh& part, PolygonMesh& mesh) {
-    const auto offset = static_cast<Index>(mesh.corners.size());
-    mesh.corners.insert(mesh.corners.end(), part.corners.begin(), part.corners.end());
-    for (std::size_t f = 1; f < part.first.size(); ++f) mesh.first.push_back(offset + part.first[f]);
+/// The facets of all parts, one part after the other.
+void join_facets(const std::vector<PolygonMesh>& parts, PolygonMesh& mesh) {
+    std::vector<std::size_t> corner(parts.size() + 1, 0), facet(parts.size() + 1, 0);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        corner[i + 1] = corner[i] + parts[i].corners.size();
+        facet[i + 1] = facet[i] + parts[i].facet_count();
+    }
+    mesh.corners.resize(corner.back());
+    mesh.first.resize(facet.back() + 1);
+    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
+        std::ranges::copy(parts[i].corners, mesh.corners.begin() + static_cast<std::ptrdiff_t>(corner[i]));
+        for (std::size_t f = 0; f < parts[i].facet_count(); ++f)
+            mesh.first[facet[i] + f + 1] = static_cast<Index>(corner[i]) + parts[i].first[f + 1];
+    });
+}
+
+template <class To, class From>
+std::vector<To> converted(const std::vector<From>& values) {
+    std::vector<To> result(values.size());
+    for_chunks(values.size(), values_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) result[i] = static_cast<To>(values[i]);
+    });
+    return result;
 }
 
 /// Kind and voxel travel with the vertices as properties while these are split or dropped.
 void add_properties(const VertexPositions& vertices, PolygonMesh& mesh) {
-    std::vector<double> kinds, voxels;
-    for (VertexKind kind : vertices.kinds) kinds.push_back(static_cast<double>(kind));
-    for (Index voxel : vertices.voxel) voxels.push_back(static_cast<double>(voxel));
-    mesh.properties = {{"hsdm_vertex_class", VertexProperty::Type::uint8, std::move(kinds)},
-                       {"voxel", VertexProperty::Type::float64, std::move(voxels)}};
+    mesh.properties = {
+        {"hsdm_vertex_class", VertexProperty::Type::uint8, converted<double>(vertices.kinds)},
+        {"voxel", VertexProperty::Type::float64, converted<double>(vertices.voxel)}};
 }
 
 void take_properties(ExtendedFacets& result) {
-    for (double kind : result.mesh.properties[0].values)
-        result.kinds.push_back(static_cast<VertexKind>(kind));
-    for (double voxel : result.mesh.properties[1].values) result.voxel.push_back(static_cast<Index>(voxel));
+    result.kinds = converted<VertexKind>(result.mesh.properties[0].values);
+    result.voxel = converted<Index>(result.mesh.properties[1].values);
     result.mesh.properties.clear();
 }
 
@@ -271,16 +288,16 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
     const Midpoints midpoints(lattice, sets, crossings, links, fans, h, vertices);
     result.midpoints = midpoints.count();
     const std::size_t edges = crossings.first.size() - 1;
-    std::vector<PolygonMesh> facets(chunk_count(edges, edges_per_chunk)), strips(facets.size());
+    const std::size_t chunks = chunk_count(edges, edges_per_chunk);
+    std::vector<PolygonMesh> parts(2 * chunks); // facets, then strips
     for_chunks(edges, edges_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        FacetBuilder builder(crossings, links, fans, midpoints, vertices, facets[chunk]);
+        FacetBuilder builder(crossings, links, fans, midpoints, vertices, parts[chunk]);
         for (std::size_t e = begin; e < end; ++e)
             builder.add_facets(crossings.first[e], crossings.first[e + 1]);
-        FacetBuilder strip_builder(crossings, links, fans, midpoints, vertices, strips[chunk]);
+        FacetBuilder strip_builder(crossings, links, fans, midpoints, vertices, parts[chunks + chunk]);
         for (Index x = crossings.first[begin]; x < crossings.first[end]; ++x) strip_builder.add_strips(x);
     });
-    for (const auto* parts : {&facets, &strips})
-        for (const PolygonMesh& part : *parts) add_all_facets(part, result.mesh);
+    join_facets(parts, result.mesh);
     for (const std::vector<Index>& cap : fans.caps) result.mesh.add_facet(cap);
 
     result.mesh.positions = std::move(vertices.positions);

@@ -305,16 +305,24 @@ bool joined_nearby(const CornerLattice& lattice, const LocalSheets& sheets, cons
     return false;
 }
 
+std::vector<Index> corners_with_several(const LocalSheets& sheets) {
+    const std::size_t n = sheets.first_member.size() - 1;
+    std::vector<std::vector<Index>> parts(chunk_count(n, corners_per_chunk));
+    for_chunks(n, corners_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto members = sheets.members_at(static_cast<Index>(i));
+            if (std::any_of(members.begin(), members.end(), [](const SheetMember& m) { return m.sheet > 0; }))
+                parts[chunk].push_back(static_cast<Index>(i));
+        }
+    });
+    return joined(parts);
+}
+
 /// Closure: two sets that are one sheet at one corner are one sheet at every corner they share, unless their
 /// normals are so far apart that they only met round the rim of a thin part. Repeats until nothing changes;
 /// only corners with several sheets are looked at, and in rounds, so that the order does not matter.
 void close_sheets(const CornerLattice& lattice, const NormalSets& sets, LocalSheets& sheets) {
-    std::vector<Index> open;
-    for (std::size_t i = 0; i < lattice.size(); ++i) {
-        const auto members = sheets.members_at(static_cast<Index>(i));
-        if (std::any_of(members.begin(), members.end(), [](const SheetMember& m) { return m.sheet > 0; }))
-            open.push_back(static_cast<Index>(i));
-    }
+    const std::vector<Index> open = corners_with_several(sheets);
     struct Merge {
         Index corner;
         std::uint8_t kept, merged;

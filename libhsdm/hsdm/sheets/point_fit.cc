@@ -140,17 +140,26 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
 }
 
 std::vector<double> PointFit::rises(const std::vector<Heights>& heights) const {
+    struct Mean {
+        double square, variance;
+    };
+    std::vector<Mean> means(fans_.size());
+    for_chunks(fans_.size(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t v = begin; v < end; ++v)
+            means[v] = {heights[v].mean() * heights[v].mean(), heights[v].variance()};
+    });
     std::vector<double> rises(fans_.size(), 0);
     for_chunks(fans_.size(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t v = begin; v < end; ++v) {
-            double squares = 0, variance = 0;
+            Mean sum{0, 0};
             for (Node node : fans_.fan(static_cast<Index>(v)))
                 for (unsigned j = 0; j < 4; ++j) {
-                    const Heights& h = heights[fans_.at(node / 4, j, j)];
-                    squares += h.mean() * h.mean();
-                    variance += h.variance();
+                    const Mean& mean = means[fans_.at(node / 4, j, j)];
+                    sum.square += mean.square;
+                    sum.variance += mean.variance;
                 }
-            if (squares > doubt * variance) rises[v] = heights[v].mean() * (1 - doubt * variance / squares);
+            if (sum.square > doubt * sum.variance)
+                rises[v] = heights[v].mean() * (1 - doubt * sum.variance / sum.square);
         }
     });
     return rises;

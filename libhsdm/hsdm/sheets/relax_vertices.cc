@@ -89,26 +89,34 @@ public:
     }
 
 private:
-    std::span<const Index> neighbours(Index fan) const {
-        return {neighbours_.data() + first_[fan], neighbours_.data() + first_[fan + 1]};
+    /// A vertex at the other end of sides of facets, and of how many: an interior edge has two.
+    struct Neighbour {
+        Index vertex, sides;
+    };
+    std::span<const Neighbour> neighbours(Index fan) const {
+        return {neighbours_.data() + 2 * std::size_t{fans_.first[fan]}, neighbour_count_[fan]};
     }
 
-    /// The vertices at the other end of the sides of the facets round each vertex: interior edges count
-    /// twice.
     void list_neighbours() {
-        first_.resize(fans_.size() + 1, 0);
-        for (Index v = 0; v < fans_.size(); ++v)
-            first_[v + 1] = first_[v] + 2 * static_cast<Index>(fans_.fan(v).size());
-        neighbours_.resize(first_.back());
+        neighbours_.resize(2 * fans_.nodes.size());
+        neighbour_count_.resize(fans_.size());
         for_chunks(fans_.size(), fans_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t v = begin; v < end; ++v) {
-                Index* out = neighbours_.data() + first_[v];
+                Neighbour* const first = neighbours_.data() + 2 * std::size_t{fans_.first[v]};
+                Neighbour* last = first;
+                const auto add = [&](Index n) {
+                    Neighbour* const known =
+                        std::find_if(first, last, [n](const Neighbour& other) { return other.vertex == n; });
+                    if (known == last) *last++ = {n, 0};
+                    ++known->sides;
+                };
                 for (Node node : fans_.fan(static_cast<Index>(v))) {
                     const Index x = node / 4;
                     const unsigned j = node % 4;
-                    *out++ = fans_.at(x, (j + 1) % 4, j);
-                    *out++ = fans_.at(x, (j + 3) % 4, (j + 3) % 4);
+                    add(fans_.at(x, (j + 1) % 4, j));
+                    add(fans_.at(x, (j + 3) % 4, (j + 3) % 4));
                 }
+                neighbour_count_[v] = static_cast<Index>(last - first);
             }
         });
     }
@@ -116,8 +124,8 @@ private:
     Vec3 moved_on_sheet(Index fan, double step) const {
         const Vec3& p = vertices_.positions[fan];
         Vec3 mean(0, 0, 0);
-        for (Index n : neighbours(fan)) mean += vertices_.positions[n];
-        const Vec3 way = mean / static_cast<double>(neighbours(fan).size()) - p;
+        for (const Neighbour& n : neighbours(fan)) mean += vertices_.positions[n.vertex] * n.sides;
+        const Vec3 way = mean / static_cast<double>(2 * fans_.fan(fan).size()) - p;
         const Vec3& normal = vertices_.directions[fan];
         return p + (way - normal * (normal | way)) * step;
     }
@@ -134,10 +142,10 @@ private:
             sum += weight;
         };
         if (!vertices_.is_clamped[fan]) add(fan, 1);
-        for (Index n : neighbours(fan)) // each comes twice
+        for (const auto& [n, sides] : neighbours(fan))
             if (vertices_.kinds[n] == VertexKind::smooth && !vertices_.is_clamped[n]
                 && (vertices_.directions[n] | own) > same_sheet_cosine)
-                add(n, 0.5);
+                add(n, 0.5 * sides);
         if (!(sum > 0)) return p;
         normal.normalize();
         return p - normal * (normal | (p - place / sum));
@@ -148,7 +156,7 @@ private:
         const Vec3& p = vertices_.positions[fan];
         const Vec3& along = vertices_.directions[fan];
         double ahead = 0, behind = 0;
-        for (Index n : neighbours(fan)) {
+        for (const auto& [n, sides] : neighbours(fan)) {
             if (vertices_.is_clamped[n]) return p;
             if (vertices_.kinds[n] == VertexKind::smooth) continue;
             const Vec3 way = vertices_.positions[n] - p;
@@ -181,7 +189,8 @@ private:
     VertexPositions& vertices_;
     const std::vector<Vec3> placed_;
     std::vector<Vec3> next_;
-    std::vector<Index> first_, neighbours_;
+    std::vector<Neighbour> neighbours_; // those of a fan begin at twice its first node
+    std::vector<Index> neighbour_count_;
 };
 
 /// The voxel's own set that a smooth vertex belongs to, or null.
