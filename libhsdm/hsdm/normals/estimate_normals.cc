@@ -29,10 +29,85 @@ constexpr double most_variance = 0.01, most_square = 0.33;
 /// From this noise on, about a tenth of the spacing, planes of one neighbourhood are two degrees off.
 constexpr double rough = 0.02;
 
+/// New normals from old ones, whatever the sides of these.
+class Renewal {
+public:
+    /// The estimate's own normals are not looked at.
+    Renewal(const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate,
+            const std::vector<Vec3>& normals)
+        : octree_(octree), neighbors_(neighbors), estimate_(estimate), normals_(normals) {}
+
+    bool differs(Index i, double cosine) const {
+        const auto around = neighbors_.of(i);
+        return std::any_of(around.begin(), around.end(),
+                           [&](Index j) { return std::abs(normals_[i] | normals_[j]) < cosine; });
+    }
+
+    /// The mean over the neighbours whose planes pass through the point; flat ones count most.
+    Vec3 averaged(Index i) const {
+        const Vec3& own = normals_[i];
+        const Neighborhood around(octree_, neighbors_, i);
+        const double inverse = 1 / estimate_.tolerance[i];
+        Vec3 sum = 0.5 * own;
+        for (std::size_t k = 0; k < around.size(); ++k) {
+            const Vec3& other = normals_[around.point(k)];
+            const double cosine = own | other;
+            const double weight = agreement(cosine) * closeness(other | around.offset(k), inverse)
+                                  * closeness(estimate_.spread[around.point(k)], inverse);
+            sum += other * (cosine < 0 ? -weight : weight);
+        }
+        return sum.sqrnorm() > 0 ? sum.normalized() : own;
+    }
+
+    /// A plane has the normal of the neighbours' centroid, not of the point, where the surface is curved.
+    /// Away from creases it is turned towards that of a quadratic surface: not at all up to where the tilt
+    /// between the two is such that their expected errors are equal (twice what noise makes of it), as at the
+    /// border of rough points, almost all of it where that is far exceeded.
+    Vec3 curved(Index i) const {
+        const Vec3& own = normals_[i];
+        const double reach = neighbors_.reach[i];
+        if (estimate_.spread[i] < flat_spread * reach || own.sqrnorm() == 0 || differs(i, cos_crease))
+            return own;
+        const Vec3 u = own.cross(std::abs(own[0]) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)).normalized();
+        const Vec3 v = own.cross(u);
+        const Vec3 x = u / reach, y = v / reach, z = own / reach;
+        HeightSums sums;
+        sums.add(0, 0, 0);
+        for (Index j : neighbors_.of(i)) {
+            const Vec3 d = octree_.positions[j] - octree_.positions[i];
+            sums.add(x | d, y | d, z | d);
+        }
+        const HeightFit fit = sums.fit();
+        const double square = fit.tilt[0] * fit.tilt[0] + fit.tilt[1] * fit.tilt[1];
+        if (square <= 2 * fit.variance || fit.variance > most_variance || square > most_square) return own;
+        const double share = 1 - 2 * fit.variance / square;
+        return (own - (u * fit.tilt[0] + v * fit.tilt[1]) * share).normalized();
+    }
+
+    /// Of all points, what `normal_of` makes of each.
+    template <class NormalOf>
+    std::vector<Vec3> all(const NormalOf& normal_of) const {
+        std::vector<Vec3> renewed(octree_.size());
+        for_chunks(octree_.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i) renewed[i] = normal_of(static_cast<Index>(i));
+        });
+        return renewed;
+    }
+
+private:
+    const Octree& octree_;
+    const Neighbors& neighbors_;
+    const EstimatedNormals& estimate_;
+    const std::vector<Vec3>& normals_;
+};
+
 class Estimation {
 public:
     Estimation(const Octree& octree, const Neighbors& neighbors, EstimatedNormals& result)
-        : octree_(octree), neighbors_(neighbors), result_(result) {}
+        : octree_(octree),
+          neighbors_(neighbors),
+          result_(result),
+          renewal_(octree, neighbors, result, result.normals) {}
 
     void run(const EstimateOptions& options) {
         result_.normals.resize(octree_.size());
@@ -44,12 +119,9 @@ public:
         find_bent();
         for (int round = 0; round < options.rounds; ++round) renew([this](Index i) { return best_plane(i); });
         for (int round = 0; round < options.rounds; ++round)
-            renew([this](Index i) { return differs(i, cos_crease) ? averaged(i) : result_.normals[i]; });
-    }
-
-    void refine() {
-        renew_all([this](Index i) { return curved(i); });
-        if (result_.noise > rough) renew_all([this](Index i) { return averaged(i); });
+            renew([this](Index i) {
+                return renewal_.differs(i, cos_crease) ? renewal_.averaged(i) : result_.normals[i];
+            });
     }
 
 private:
@@ -103,48 +175,6 @@ private:
         for (std::size_t b = 0; b < bent.size(); ++b) result_.normals[bent[b]] = renewed[b];
     }
 
-    /// A plane has the normal of the neighbours' centroid, not of the point, where the surface is curved.
-    /// Away from creases it is turned towards that of a quadratic surface: not at all up to where the tilt
-    /// between the two is such that their expected errors are equal (twice what noise makes of it), as at the
-    /// border of rough points, almost all of it where that is far exceeded.
-    Vec3 curved(Index i) const {
-        const Vec3& own = result_.normals[i];
-        const double reach = neighbors_.reach[i];
-        if (result_.spread[i] < flat_spread * reach || own.sqrnorm() == 0 || differs(i, cos_crease))
-            return own;
-        const Vec3 u = own.cross(std::abs(own[0]) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)).normalized();
-        const Vec3 v = own.cross(u);
-        const Vec3 x = u / reach, y = v / reach, z = own / reach;
-        HeightSums sums;
-        sums.add(0, 0, 0);
-        for (Index j : neighbors_.of(i)) {
-            const Vec3 d = octree_.positions[j] - octree_.positions[i];
-            sums.add(x | d, y | d, z | d);
-        }
-        const HeightFit fit = sums.fit();
-        const double square = fit.tilt[0] * fit.tilt[0] + fit.tilt[1] * fit.tilt[1];
-        if (square <= 2 * fit.variance || fit.variance > most_variance || square > most_square) return own;
-        const double share = 1 - 2 * fit.variance / square;
-        return (own - (u * fit.tilt[0] + v * fit.tilt[1]) * share).normalized();
-    }
-
-    /// New normals for all points, all from the old ones.
-    template <class NormalOf>
-    void renew_all(const NormalOf& normal_of) {
-        std::vector<Vec3> renewed(octree_.size());
-        for_chunks(octree_.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t i = begin; i < end; ++i) renewed[i] = normal_of(static_cast<Index>(i));
-        });
-        result_.normals = std::move(renewed);
-    }
-
-    bool differs(Index i, double cosine) const {
-        const auto around = neighbors_.of(i);
-        return std::any_of(around.begin(), around.end(), [&](Index j) {
-            return std::abs(result_.normals[i] | result_.normals[j]) < cosine;
-        });
-    }
-
     /// How many neighbours the planes with these normals hold that pass through the point.
     static Double2 support(const Neighborhood& around, const VectorPair& normal, double inverse) {
         Double2 sum{};
@@ -165,7 +195,7 @@ private:
 
     Vec3 best_plane(Index i) const {
         const Vec3& own = result_.normals[i];
-        if (!differs(i, cos_differing)) return own;
+        if (!renewal_.differs(i, cos_differing)) return own;
         const Neighborhood around(octree_, neighbors_, i);
         const double inverse = 1 / result_.tolerance[i];
         double most = clear_gain
@@ -198,25 +228,10 @@ private:
         return normal;
     }
 
-    /// The mean over the neighbours whose planes pass through the point; flat ones count most.
-    Vec3 averaged(Index i) const {
-        const Vec3& own = result_.normals[i];
-        const Neighborhood around(octree_, neighbors_, i);
-        const double inverse = 1 / result_.tolerance[i];
-        Vec3 sum = 0.5 * own;
-        for (std::size_t k = 0; k < around.size(); ++k) {
-            const Vec3& other = result_.normals[around.point(k)];
-            const double cosine = own | other;
-            const double weight = agreement(cosine) * closeness(other | around.offset(k), inverse)
-                                  * closeness(result_.spread[around.point(k)], inverse);
-            sum += other * (cosine < 0 ? -weight : weight);
-        }
-        return sum.sqrnorm() > 0 ? sum.normalized() : own;
-    }
-
     const Octree& octree_;
     const Neighbors& neighbors_;
     EstimatedNormals& result_;
+    Renewal renewal_;
 };
 
 void validate(const EstimateOptions& options) {
@@ -239,8 +254,13 @@ EstimatedNormals estimate_normals(const Octree& octree, const Neighbors& neighbo
     return result;
 }
 
-void refine_normals(const Octree& octree, const Neighbors& neighbors, EstimatedNormals& estimate) {
-    Estimation(octree, neighbors, estimate).refine();
+std::vector<Vec3> refined_normals(const Octree& octree, const Neighbors& neighbors,
+                                  const EstimatedNormals& estimate) {
+    const Renewal from_planes(octree, neighbors, estimate, estimate.normals);
+    std::vector<Vec3> curved = from_planes.all([&](Index i) { return from_planes.curved(i); });
+    if (!(estimate.noise > rough)) return curved;
+    const Renewal from_curved(octree, neighbors, estimate, curved);
+    return from_curved.all([&](Index i) { return from_curved.averaged(i); });
 }
 
 } // namespace hsdm

@@ -29,9 +29,10 @@ EstimatedNormals estimate_normals(const Octree& octree, const Neighbors& neighbo
                                   const EstimateOptions& options = {});
 
 /// Away from creases the plane gives way to a quadratic surface as far as that is the better of the two, and
-/// where points are rough all average over their neighbours of the same face. No normal changes its side; to
-/// be called when these are known, for which planes serve better. O(n), parallel.
-void refine_normals(const Octree& octree, const Neighbors& neighbors, EstimatedNormals& estimate);
+/// where points are rough all average over their neighbours of the same face. Each of the same side as it
+/// was; whatever sides the others are of; to find sides, planes serve better. O(n), parallel.
+std::vector<Vec3> refined_normals(const Octree& octree, const Neighbors& neighbors,
+                                  const EstimatedNormals& estimate);
 
 /// For normals that are oriented: each point near a crease, or whose normal stands alone, takes the normal
 /// that most of its neighbours on one plane with it agree on. Turns single points that were oriented wrongly.

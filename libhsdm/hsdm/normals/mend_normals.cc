@@ -105,7 +105,7 @@ std::size_t mend_normals(Octree& octree, const std::optional<Vec3>& sensor) {
     OrientOptions options;
     options.sensor = sensor;
     options.signs_count = true;
-    orient_normals(octree, neighbors, mended, options);
+    turn_normals(orient_normals(octree, neighbors, mended, options), mended.normals);
     const double before = check_normals(octree).contradiction();
     octree.normals.swap(mended.normals);
     if (2 * check_normals(octree).contradiction() > before) { // noise, no flips

@@ -56,8 +56,6 @@ std::vector<Leaf> find_leaves(const std::vector<MortonCode>& codes) {
 struct Candidates {
     std::vector<float> x, y, z; ///< room for more than there are
     std::vector<Index> id;
-    std::vector<float> distance;       ///< squared, of the point at hand
-    std::vector<std::uint64_t> ranked; ///< bits of the squared distance, then the candidate's place
 
     void clear() { id.clear(); }
     void add(const Octree& octree, Index begin, Index end, const Vec3& base) {
@@ -73,23 +71,86 @@ struct Candidates {
             z[c] = static_cast<float>(p[2]);
         }
     }
-    void measure(float px, float py, float pz) {
-        distance.resize(id.size());
-        for (std::size_t c = 0; c < id.size(); ++c) {
-            const float dx = x[c] - px, dy = y[c] - py, dz = z[c] - pz;
-            distance[c] = dx * dx + dy * dy + dz * dz;
+};
+
+/// The candidates nearest to a point. They are counted in rings of equal area, so that hardly a comparison
+/// decides where the processor goes on: all rings but the last wanted are taken whole, and few are on that.
+class Selection {
+public:
+    /// Finds the `wanted` nearest, ties by place, where there are so many. Within the squared distance
+    /// `limit` there should be enough; it costs another look if there are not. Returns the squared distance
+    /// of the farthest.
+    float find(const Candidates& candidates, const std::array<float, 3>& point, std::size_t wanted,
+               float limit) {
+        measure(candidates, point);
+        near_.resize(distance_.size() + 1);
+        if (find_near(limit) < wanted) {
+            const float farthest = *std::max_element(distance_.begin(), distance_.end());
+            limit = std::max(farthest, std::numeric_limits<float>::min());
+            find_near(limit);
+        }
+        count_rings(limit);
+        return take(wanted);
+    }
+    std::span<const Index> places() const { return {near_.data(), count_}; }
+
+private:
+    static constexpr std::size_t rings = 64;
+
+    void measure(const Candidates& candidates, const std::array<float, 3>& point) {
+        distance_.resize(candidates.id.size());
+        const auto [px, py, pz] = point;
+        for (std::size_t c = 0; c < distance_.size(); ++c) {
+            const float dx = candidates.x[c] - px, dy = candidates.y[c] - py, dz = candidates.z[c] - pz;
+            distance_[c] = dx * dx + dy * dy + dz * dz;
         }
     }
-    /// Ranks those closer than the limit; returns how many these are.
-    std::size_t rank_within(float limit) {
-        if (ranked.size() < id.size()) ranked.resize(id.size());
-        std::size_t n = 0;
-        for (std::size_t c = 0; c < id.size(); ++c) {
-            ranked[n] = std::uint64_t{std::bit_cast<std::uint32_t>(distance[c])} << 32 | c;
-            n += distance[c] <= limit;
+
+    std::size_t find_near(float limit) {
+        count_ = 0;
+        for (std::size_t c = 0; c < distance_.size(); ++c) {
+            near_[count_] = static_cast<Index>(c);
+            count_ += distance_[c] <= limit;
         }
-        return n;
+        return count_;
     }
+
+    void count_rings(float limit) {
+        const float scale = rings / limit;
+        ring_.resize(count_);
+        in_ring_.fill(0);
+        for (std::size_t k = 0; k < count_; ++k) {
+            const float ring = std::min(distance_[near_[k]] * scale, rings - 1.0f);
+            ring_[k] = static_cast<std::uint32_t>(ring);
+            ++in_ring_[ring_[k]];
+        }
+    }
+
+    float take(std::size_t wanted) {
+        std::size_t last = 0, before = 0;
+        for (; before + in_ring_[last] < wanted; ++last) before += in_ring_[last];
+        ranked_.resize(count_ + 1);
+        std::size_t taken = 0, on_last = 0;
+        for (std::size_t k = 0; k < count_; ++k) {
+            const Index place = near_[k];
+            ranked_[on_last] = std::uint64_t{std::bit_cast<std::uint32_t>(distance_[place])} << 32 | place;
+            on_last += ring_[k] == last;
+            near_[taken] = place;
+            taken += ring_[k] < last;
+        }
+        const auto nearest = ranked_.begin(), end = nearest + static_cast<std::ptrdiff_t>(wanted - before);
+        std::partial_sort(nearest, end, nearest + static_cast<std::ptrdiff_t>(on_last));
+        for (auto at = nearest; at != end; ++at) near_[taken++] = static_cast<Index>(*at);
+        count_ = taken;
+        return std::bit_cast<float>(static_cast<std::uint32_t>(end[-1] >> 32));
+    }
+
+    std::vector<float> distance_;     // squared, of all candidates
+    std::vector<Index> near_;         // places of those within the limit, then of those taken
+    std::size_t count_ = 0;           // of these
+    std::vector<std::uint32_t> ring_; // of those near
+    std::array<std::uint32_t, rings> in_ring_{};
+    std::vector<std::uint64_t> ranked_; // on the last ring: bits of the squared distance, then the place
 };
 
 class Search {
@@ -106,10 +167,10 @@ public:
         levels_.back() = extract_level(octree, deepest);
         for (auto level = levels_.size() - 1; level-- > 0;)
             levels_[level] = coarser_level(levels_[level + 1], static_cast<int>(level));
-        tbb::enumerable_thread_specific<Candidates> scratch;
+        tbb::enumerable_thread_specific<Scratch> scratch;
         for_chunks(leaves.size(), leaves_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-            Candidates& candidates = scratch.local();
-            for (std::size_t l = begin; l < end; ++l) search_leaf(leaves[l], candidates);
+            Scratch& own = scratch.local();
+            for (std::size_t l = begin; l < end; ++l) search_leaf(leaves[l], own);
         });
         if (points) return;
         result.leaf_first.reserve(leaves.size() + 1);
@@ -118,6 +179,11 @@ public:
     }
 
 private:
+    struct Scratch {
+        Candidates candidates;
+        Selection selection;
+    };
+
     static void keep_leaves_of(const std::vector<Index>& points, std::vector<Leaf>& leaves) {
         std::size_t kept = 0;
         Index slot = 0;
@@ -156,7 +222,8 @@ private:
         return points;
     }
 
-    void search_leaf(const Leaf& leaf, Candidates& candidates) const {
+    void search_leaf(const Leaf& leaf, Scratch& scratch) const {
+        Candidates& candidates = scratch.candidates;
         std::array<Index, 27> voxels;
         std::size_t count = 0;
         int level = leaf.level;
@@ -173,29 +240,25 @@ private:
             }
             candidates.add(octree_, first, last, base);
         }
-        float limit = std::numeric_limits<float>::max();
+        float limit = 0; // not known yet
         if (points_)
             for (Index slot = leaf.slot; slot < points_->size() && (*points_)[slot] < leaf.end; ++slot)
-                limit = search_point((*points_)[slot], slot, base, limit, candidates);
+                limit = search_point((*points_)[slot], slot, base, limit, scratch);
         else
-            for (Index i = leaf.begin; i < leaf.end; ++i) limit = search_point(i, i, base, limit, candidates);
+            for (Index i = leaf.begin; i < leaf.end; ++i) limit = search_point(i, i, base, limit, scratch);
     }
 
     /// Returns a squared distance within which the next point of the leaf will find enough.
-    float search_point(Index i, Index slot, const Vec3& base, float limit, Candidates& candidates) const {
+    float search_point(Index i, Index slot, const Vec3& base, float limit, Scratch& scratch) const {
         const Vec3 p = octree_.positions[i] - base;
-        candidates.measure(static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]));
+        const std::array<float, 3> point{static_cast<float>(p[0]), static_cast<float>(p[1]),
+                                         static_cast<float>(p[2])};
         const std::size_t wanted = result_.count + 1; // the point itself is among them
-        std::size_t within = candidates.rank_within(limit);
-        if (within < wanted) within = candidates.rank_within(std::numeric_limits<float>::infinity());
-        auto& ranked = candidates.ranked;
-        const auto last = ranked.begin() + static_cast<std::ptrdiff_t>(wanted - 1);
-        std::nth_element(ranked.begin(), last, ranked.begin() + static_cast<std::ptrdiff_t>(within));
-        const float farthest = std::bit_cast<float>(static_cast<std::uint32_t>(*last >> 32));
+        const float farthest = scratch.selection.find(scratch.candidates, point, wanted, limit);
         Index* out = result_.index.data() + slot * result_.count;
         std::size_t found = 0;
-        for (std::size_t c = 0; c < wanted; ++c) {
-            const Index id = candidates.id[ranked[c] & 0xffffffffu];
+        for (Index place : scratch.selection.places()) {
+            const Index id = scratch.candidates.id[place];
             if (id != i && found < result_.count) out[found++] = id;
         }
         result_.reach[slot] = std::sqrt(static_cast<double>(farthest));

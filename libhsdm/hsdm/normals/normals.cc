@@ -2,6 +2,8 @@
 
 #include "hsdm/normals/noise.hh"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 
 namespace hsdm {
@@ -29,8 +31,13 @@ NormalsReport make_normals(Octree& octree, const NormalsOptions& options) {
     report.smoothed = smooth_noise(octree, nearest, options.smooth);
     const Neighbors neighbors = choose_neighbors(octree, options.neighbors, std::move(nearest));
     EstimatedNormals estimate = estimate_normals(octree, neighbors, options.estimate);
-    report.orientation = orient_normals(octree, neighbors, estimate, orient);
-    refine_normals(octree, neighbors, estimate);
+    Orientation orientation;
+    std::vector<Vec3> refined;
+    tbb::parallel_invoke([&] { orientation = orient_normals(octree, neighbors, estimate, orient); },
+                         [&] { refined = refined_normals(octree, neighbors, estimate); });
+    turn_normals(orientation, refined);
+    estimate.normals = std::move(refined);
+    report.orientation = orientation.report;
     settle_normals(octree, neighbors, estimate);
     report.noise = estimate.noise;
     report.bent = estimate.bent.size();

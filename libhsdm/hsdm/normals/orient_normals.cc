@@ -4,6 +4,8 @@
 #include "hsdm/normals/outside.hh"
 #include "hsdm/octree/spacing.hh"
 
+#include <tbb/parallel_invoke.h>
+
 #include <cmath>
 
 namespace hsdm {
@@ -55,14 +57,17 @@ bool views_agree(const Patches& patches, const OutsideView& view, const Signs& s
 
 } // namespace
 
-OrientReport orient_normals(const Octree& octree, const Neighbors& neighbors, EstimatedNormals& estimate,
-                            const OrientOptions& options) {
+Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate,
+                           const OrientOptions& options) {
     const Patches patches = build_patches(octree, neighbors, estimate);
-    const OutsideView view = view_outside(octree, patches, estimate_spacing(octree));
-    std::vector<SignedEdge> edges = patch_evidence(octree, neighbors, estimate, patches);
+    OutsideView view;
+    std::vector<SignedEdge> edges;
+    tbb::parallel_invoke([&] { view = view_outside(octree, patches, estimate_spacing(octree)); },
+                         [&] { edges = patch_evidence(octree, neighbors, estimate, patches); });
     const auto outside = static_cast<Index>(patches.size());
     edges.insert(edges.end(), view.facing.begin(), view.facing.end());
-    OrientReport report;
+    Orientation result;
+    OrientReport& report = result.report;
     for (Index p = 0; p < patches.size(); ++p) {
         if (view.votes[p] == 0) continue;
         const auto weight = view_weight * static_cast<float>(patches.counts[p]);
@@ -73,18 +78,25 @@ OrientReport orient_normals(const Octree& octree, const Neighbors& neighbors, Es
     std::vector<std::int8_t> turn = free_signs(patches, signs, options);
     const bool seen = views_agree(patches, view, signs);
     if (seen) turn[signs.component[outside]] = signs.sign[outside];
+    result.turns.resize(octree.size());
     for_chunks(octree.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i) {
             const Index p = patches.of_point[i];
-            if (p != no_index && patches.sign[i] * signs.sign[p] * turn[signs.component[p]] < 0)
-                estimate.normals[i] = -estimate.normals[i];
+            result.turns[i] = p != no_index && patches.sign[i] * signs.sign[p] * turn[signs.component[p]] < 0;
         }
     });
     report.patches = patches.size();
     report.components = signs.components; // the outside, seen by nobody, is one
     for (std::size_t p = 0; p < patches.size(); ++p)
         if (!seen || signs.component[p] != signs.component[outside]) report.by_volume += patches.counts[p];
-    return report;
+    return result;
+}
+
+void turn_normals(const Orientation& orientation, std::vector<Vec3>& normals) {
+    for_chunks(normals.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i)
+            if (orientation.turns[i]) normals[i] = -normals[i];
+    });
 }
 
 } // namespace hsdm

@@ -23,11 +23,20 @@ struct OrientReport {
                                ///< each other
 };
 
-/// Turns the normals, in place. Patches are joined by the evidence of neighbouring points (patch_evidence)
+/// Which normals have to turn, and why.
+struct Orientation {
+    std::vector<std::uint8_t> turns; ///< per point
+    OrientReport report;
+};
+
+/// Patches are joined by the evidence of neighbouring points (patch_evidence)
 /// and of the empty space around and in between (view_outside), the strongest first; a component without a
 /// view of the outside, or with views that contradict each other, is turned towards the sensor, or such that
 /// its signed volume is positive. O(n log n) at worst.
-OrientReport orient_normals(const Octree& octree, const Neighbors& neighbors, EstimatedNormals& estimate,
-                            const OrientOptions& options = {});
+Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate,
+                           const OrientOptions& options = {});
+
+/// Turns normals in place.
+void turn_normals(const Orientation& orientation, std::vector<Vec3>& normals);
 
 } // namespace hsdm

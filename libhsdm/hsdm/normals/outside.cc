@@ -135,15 +135,46 @@ bool between_regions(const Sights& s) {
     return s[0].region != no_index && s[1].region != no_index && s[0].region != s[1].region;
 }
 
-/// Per region +1 outside, -1 inside, 0 unknown: regions that many patches lie between are of opposite kinds.
+/// The patch that another sees before any empty space; no_index if it sees none.
+Index patch_ahead(const Sight& sight, const Patches& patches) {
+    return sight.point == no_index ? no_index : patches.of_point[sight.point];
+}
+
+/// Sheets in a row along a ray face alternately forward and back: surely if the ray meets the sheet head-on,
+/// as patch_evidence weighs a pair of points, while a sheet beside the ray, as the other face of an obtuse
+/// crease near by, says nothing. How much it says; negative if the patches' normals are alike.
+double facing(const Patches& patches, Index p, Index q) {
+    const Vec3 d = patches.centroids[q] - patches.centroids[p];
+    const double cosine = patches.normals[p] | patches.normals[q];
+    const double mirrored = cosine - 2 * (patches.normals[p] | d) * (patches.normals[q] | d) / d.sqrnorm();
+    return mirrored * cosine < 0 ? mirrored : 0;
+}
+
+/// What a patch sees on its side away from another.
+const Sight& far_sight(const std::vector<Sights>& seen, const Patches& patches, Index p, Index other) {
+    const bool ahead = (patches.normals[p] | (patches.centroids[other] - patches.centroids[p])) > 0;
+    return seen[p][ahead ? 1 : 0];
+}
+
+/// Per region +1 outside, -1 inside, 0 unknown: regions that many patches lie between are of opposite kinds;
+/// those with two sheets between them are of one kind, though here and there one is seen from the other
+/// through both, where the gap is no wider than the voxels.
 std::vector<std::int8_t> classify(std::size_t regions, const std::vector<Sights>& seen,
                                   const Patches& patches) {
     std::vector<SignedEdge> between;
-    for (std::size_t p = 0; p < seen.size(); ++p) {
-        if (!between_regions(seen[p])) continue;
-        const auto [a, b] = std::minmax(seen[p][0].region, seen[p][1].region);
+    const auto relate = [&](Index a, Index b, float relation) {
+        if (a != b) between.push_back({std::min(a, b), std::max(a, b), relation, std::abs(relation)});
+    };
+    for (Index p = 0; p < seen.size(); ++p) {
         const auto weight = static_cast<float>(patches.counts[p]);
-        between.push_back({a, b, -weight, weight});
+        if (between_regions(seen[p])) relate(seen[p][0].region, seen[p][1].region, -weight);
+        for (std::size_t side : {0u, 1u}) {
+            const Index q = patch_ahead(seen[p][side], patches);
+            if (q == no_index || q == p || seen[p][1 - side].region == no_index) continue;
+            const Index beyond = far_sight(seen, patches, q, p).region;
+            const auto surely = static_cast<float>(std::abs(facing(patches, p, q)));
+            if (beyond != no_index) relate(seen[p][1 - side].region, beyond, weight * surely);
+        }
     }
     const Signs signs = agglomerate(regions, std::move(between));
     std::vector<std::int8_t> kind(regions, 0);
@@ -153,22 +184,14 @@ std::vector<std::int8_t> classify(std::size_t regions, const std::vector<Sights>
     return kind;
 }
 
-/// Sheets in a row along a ray face alternately forward and back: surely if the ray meets the sheet head-on,
-/// as patch_evidence weighs a pair of points, while a sheet beside the ray, as the other face of an obtuse
-/// crease near by, says nothing.
 std::vector<SignedEdge> facing_patches(const std::vector<Sights>& seen, const Patches& patches) {
     std::vector<SignedEdge> edges;
     for (Index p = 0; p < seen.size(); ++p)
         for (const Sight& sight : seen[p]) {
-            const Index q = sight.point == no_index ? no_index : patches.of_point[sight.point];
+            const Index q = patch_ahead(sight, patches);
             if (q == no_index || q == p) continue;
-            const Vec3 d = patches.centroids[q] - patches.centroids[p];
-            const double cosine = patches.normals[p] | patches.normals[q];
-            const double mirrored =
-                cosine - 2 * (patches.normals[p] | d) * (patches.normals[q] | d) / d.sqrnorm();
-            if (!(mirrored * cosine < 0)) continue;
-            const auto weight = static_cast<float>(patches.counts[p] * mirrored);
-            edges.push_back({std::min(p, q), std::max(p, q), weight, std::abs(weight)});
+            const auto weight = static_cast<float>(patches.counts[p] * facing(patches, p, q));
+            if (weight != 0) edges.push_back({std::min(p, q), std::max(p, q), weight, std::abs(weight)});
         }
     return edges;
 }

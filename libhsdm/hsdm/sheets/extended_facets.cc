@@ -239,9 +239,8 @@ std::vector<To> converted(const std::vector<From>& values) {
 
 /// Kind and voxel travel with the vertices as properties while these are split or dropped.
 void add_properties(const VertexPositions& vertices, PolygonMesh& mesh) {
-    mesh.properties = {
-        {"hsdm_vertex_class", VertexProperty::Type::uint8, converted<double>(vertices.kinds)},
-        {"voxel", VertexProperty::Type::float64, converted<double>(vertices.voxel)}};
+    mesh.properties = {{"hsdm_vertex_class", VertexProperty::Type::uint8, converted<double>(vertices.kinds)},
+                       {"voxel", VertexProperty::Type::float64, converted<double>(vertices.voxel)}};
 }
 
 void take_properties(ExtendedFacets& result) {
