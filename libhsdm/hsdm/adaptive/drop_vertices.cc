@@ -17,8 +17,12 @@ namespace {
 constexpr int most_sweeps = 32;
 constexpr std::size_t vertices_per_chunk = 256;
 constexpr double smooth_cosine = 0.95; // of normals round a vertex with their mean: 18 degrees
-constexpr double along_edge[] = {0.5,   0.25,  0.75, 0.125,
-                                 0.375, 0.625, 0.875}; // where new edges are looked at
+
+/// Where new edges are looked at, and the gap between places looked at before: shares of their length.
+constexpr struct {
+    double share, gap;
+} along_edge[] = {{0.5, 1},      {0.25, 0.5},   {0.75, 0.5},  {0.125, 0.25},
+                  {0.375, 0.25}, {0.625, 0.25}, {0.875, 0.25}};
 
 /// Of the neighbours of a side's start, its end first; they are left in `ring`.
 Key ring_key(const CollapsingMesh& mesh, Index side, std::vector<Index>& ring) {
@@ -29,7 +33,8 @@ Key ring_key(const CollapsingMesh& mesh, Index side, std::vector<Index>& ring) {
 
 class Dropping {
 public:
-    Dropping(PolygonMesh& mesh, SurfaceBand& fine) : mesh_(mesh), fine_(fine) {}
+    Dropping(PolygonMesh& mesh, SurfaceBand& fine, double spacing)
+        : mesh_(mesh), fine_(fine), spacing_(spacing) {}
 
     std::vector<Drop> run() {
         for (int sweep = 0; sweep < most_sweeps && drop_once() > 0; ++sweep) {
@@ -134,28 +139,35 @@ private:
                                             .nearest(from)
                                             .squared_distance);
         if (squared > fine_.tolerance() * fine_.tolerance()) return false;
-        for (const double share : along_edge)
-            for (std::size_t i = 2; i + 1 < ring.size(); ++i)
-                if (!fine_.holds(to + (mesh_.at(ring[i]) - to) * share, hint)) return false;
+        for (const auto& [share, gap] : along_edge)
+            for (std::size_t i = 2; i + 1 < ring.size(); ++i) {
+                const Vec3 edge = mesh_.at(ring[i]) - to;
+                if ((share == 0.5 || is_wide(gap * edge)) && !fine_.holds(to + share * edge, hint))
+                    return false;
+            }
         for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
             const Vec3 &p = mesh_.at(ring[i]), &q = mesh_.at(ring[i + 1]), middle = (to + p + q) / 3;
             if (!fine_.holds(middle, hint)) return false;
             for (const Vec3& corner : {to, p, q})
-                if (!fine_.holds(0.5 * (middle + corner), hint)) return false;
+                if (is_wide(corner - middle) && !fine_.holds(0.5 * (middle + corner), hint)) return false;
         }
         return true;
     }
 
+    /// Is the gap between two places worth a look between them?
+    bool is_wide(const Vec3& gap) const { return gap.sqrnorm() > spacing_ * spacing_; }
+
     CollapsingMesh mesh_;
     SurfaceBand& fine_;
+    double spacing_;
     std::vector<Drop> drops_;
     std::vector<Index> ring_;
 };
 
 } // namespace
 
-std::vector<Drop> find_drops(PolygonMesh mesh, SurfaceBand& fine) {
-    return Dropping(mesh, fine).run();
+std::vector<Drop> find_drops(PolygonMesh mesh, SurfaceBand& fine, double spacing) {
+    return Dropping(mesh, fine, spacing).run();
 }
 
 std::vector<Index> drop_vertices(PolygonMesh& mesh, std::span<const Drop> drops,

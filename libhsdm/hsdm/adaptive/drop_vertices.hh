@@ -15,12 +15,12 @@ struct Drop {
 };
 
 /// Which inner vertices can go where the surface is smooth, each with its shortest edge that may collapse,
-/// those with the shortest first: where it is looked at (along new edges and in the middles of triangles)
-/// what replaces their facets lies in the band, and the vertex no farther from it than the band is wide.
-/// Planes of vertices, by which merge_vertices() goes, refuse a strip of a cylinder that ends between the
-/// vertices of its rims; this takes it. At most 32 sweeps, O(n) each, of fewer vertices; parallel, the same
-/// for any number of threads.
-std::vector<Drop> find_drops(PolygonMesh mesh, SurfaceBand& fine);
+/// those with the shortest first: where it is looked at (along new edges and in the middles of triangles, no
+/// closer than about `spacing`, in the mesh's units) what replaces their facets lies in the band, and the
+/// vertex no farther from it than the band is wide. Planes of vertices, by which merge_vertices() goes,
+/// refuse a strip of a cylinder that ends between the vertices of its rims; this takes it. At most 32 sweeps,
+/// O(n) each, of fewer vertices; parallel, the same for any number of threads.
+std::vector<Drop> find_drops(PolygonMesh mesh, SurfaceBand& fine, double spacing);
 
 /// Takes vertices out of the mesh that they were found for, in that order, but for those, `may_go` being 0,
 /// that are to stay, which no vertex gives way to either, and for those whose facets are then other ones.

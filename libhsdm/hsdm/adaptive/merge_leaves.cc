@@ -176,7 +176,7 @@ MergedLeaves merge_leaves(const LeafMesh& leaves, std::span<const Quadric> plane
     const LeafMesh base{std::move(merged.mesh), through(leaves.vertex, merged.vertex)};
     MergeLeavesOptions drop_options = options;
     drop_options.faults = merged.faults;
-    const std::vector<Drop> drops = find_drops(base.mesh, checks.wide_band());
+    const std::vector<Drop> drops = find_drops(base.mesh, checks.wide_band(), checks.spacing());
     const auto by_distance = [&](PolygonMesh& mesh, const std::vector<double>& tolerance) {
         std::vector<std::uint8_t> may_go(tolerance.size()); // what was wrong once stays
         for (std::size_t v = 0; v < may_go.size(); ++v) may_go[v] = tolerance[v] >= checks.band().tolerance();

@@ -12,7 +12,8 @@ constexpr double wide =
 
 RoundChecks::RoundChecks(const PolygonMesh& fine, std::span<const Vec3> points, double bound, double spacing,
                          double tolerance)
-    : bound_(fine, points, bound, spacing),
+    : spacing_(spacing),
+      bound_(fine, points, bound, spacing),
       band_(bound_.to_fine(), tolerance, fine.vertex_count()),
       wide_band_(bound_.to_fine(), wide * tolerance, fine.vertex_count()) {}
 

@@ -45,7 +45,7 @@ public:
     TidyCounts run(Diagonals diagonals) {
         TidyCounts counts;
         const int sweeps = diagonals == Diagonals::may_flip ? most_sweeps : 0;
-        look_at_edges();
+        if (sweeps > 0) look_at_edges();
         std::vector<std::uint8_t> turned(half_.size(), 1);
         for (int sweep = 0; sweep < sweeps; ++sweep) {
             turned_.assign(half_.size(), 0);

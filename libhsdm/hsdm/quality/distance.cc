@@ -120,23 +120,11 @@ Index MeshDistance::nearest_facet(const Vec3& point) const {
     return triangle == no_index ? no_index : facet_[triangle];
 }
 
-bool MeshDistance::is_beyond(const Vec3& point, double bound, Index& hint) const {
-    const TriangleTree::Nearest nearest = tree_.nearest(point, hint, bound * bound);
-    hint = nearest.block;
-    return std::sqrt(nearest.squared) > bound;
-}
-
-std::vector<Index> MeshDistance::facets_within(std::span<const Vec3> points, double bound) const {
-    std::vector<Index> facets(points.size(), no_index);
-    tbb::parallel_for(std::size_t{0}, (points.size() + chunk - 1) / chunk, [&](std::size_t c) {
-        Index hint = no_index;
-        for (std::size_t i = c * chunk; i < std::min(points.size(), (c + 1) * chunk); ++i) {
-            const TriangleTree::Nearest nearest = tree_.nearest(points[i], hint, bound * bound);
-            hint = nearest.block;
-            if (std::sqrt(nearest.squared) <= bound) facets[i] = facet_[nearest.triangle];
-        }
-    });
-    return facets;
+Index MeshDistance::triangle_within(const Vec3& point, double bound, Index& hint) const {
+    const TriangleTree::Nearest found = tree_.within(point, bound, hint);
+    if (found.block == no_index) return no_index;
+    hint = found.block;
+    return std::sqrt(found.squared) <= bound ? found.triangle : no_index;
 }
 
 Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh, double enough) {

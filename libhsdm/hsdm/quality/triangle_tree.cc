@@ -201,7 +201,8 @@ Double2 TriangleTree::squared_distances(const Pair& pair, const std::array<Doubl
 /// error, cannot come below the best.
 class TriangleTree::Search {
 public:
-    Search(const TriangleTree& tree, const Vec3& given) : tree_(tree) {
+    /// Of what is farther than `most` nothing need be found.
+    Search(const TriangleTree& tree, const Vec3& given, double most = infinity) : tree_(tree) {
         const Vec3 point = given - tree.centre_;
         double rounding = 0;
         for (unsigned k = 0; k < 3; ++k) {
@@ -210,6 +211,7 @@ public:
             rounding += std::abs(point[k] - static_cast<double>(point_[k]));
         }
         slack_ = 102 * rounding * rounding;
+        limit_ = limit(most * most);
     }
 
     void look_at(Index block) {
@@ -221,8 +223,7 @@ public:
         best_.squared = squared;
         best_.block = block;
         lane_ = one[0] == squared ? 0 : one[1] == squared ? 1 : other[0] == squared ? 2 : 3;
-        // No less than the square of the distance and the rounding together, and a little.
-        limit_ = static_cast<float>(1.01 * squared + slack_) + std::numeric_limits<float>::min();
+        limit_ = std::min(limit_, limit(squared));
     }
 
     /// Per child of a node, the squared distance to its box.
@@ -246,6 +247,11 @@ public:
     }
 
 private:
+    /// No less than the square of the distance and the rounding together, and a little.
+    float limit(double squared) const {
+        return static_cast<float>(1.01 * squared + slack_) + std::numeric_limits<float>::min();
+    }
+
     const TriangleTree& tree_;
     std::array<Double2, 3> spread_{};
     std::array<float, 3> point_{};
@@ -262,36 +268,61 @@ std::size_t TriangleTree::size_of(int level) const {
     return (next < level_first_.size() ? level_first_[next] : nodes_.size()) - level_first_[next - 1];
 }
 
+/// All that is below a node, but for what is known, until something is near enough.
+void TriangleTree::descend(Search& search, const Place& from, const Place& known, double enough) const {
+    struct Entry {
+        float squared;
+        Place place;
+    };
+    std::array<Entry, stack_size> stack;
+    std::size_t top = 0;
+    // Nearest child last, so that it is the next one taken.
+    const auto push_children = [&](const Place& node) {
+        const Float4 squared =
+            search.to_children(nodes_[level_first_[static_cast<std::size_t>(node.level)] + node.index]);
+        const std::size_t bottom = top;
+        for (std::size_t i = 0; i < width; ++i) {
+            const Place child{node.level - 1, static_cast<Index>(width * node.index + i)};
+            if (!search.reaches(squared[i])) continue;
+            if (child.index == known.index && child.level == known.level) continue;
+            std::size_t at = top++;
+            for (; at > bottom && stack[at - 1].squared < squared[i]; --at) stack[at] = stack[at - 1];
+            stack[at] = {squared[i], child};
+        }
+    };
+    push_children(from);
+    while (top > 0 && search.squared() > enough) {
+        const auto [squared, place] = stack[--top];
+        if (!search.reaches(squared)) continue;
+        if (squared == infinity && place.index >= size_of(place.level)) continue;
+        if (place.level < 0)
+            search.look_at(place.index);
+        else
+            push_children(place);
+    }
+}
+
 TriangleTree::Nearest TriangleTree::nearest(const Vec3& point, Index hint, double enough) const {
     if (block_count_ == 0) return {};
     Search search(*this, point);
     if (hint != no_index) search.look_at(hint);
-    struct Entry {
-        float squared;
-        Index child; // index in its level, or block
-        int level;   // -1: a block
-    };
-    std::array<Entry, stack_size> stack;
-    std::size_t top = 0;
-    stack[top++] = {0, 0, static_cast<int>(level_first_.size()) - 1};
-    while (top > 0 && search.squared() > enough) {
-        const Entry entry = stack[--top];
-        if (!search.reaches(entry.squared)) continue;
-        if (entry.squared == infinity && entry.child >= size_of(entry.level)) continue;
-        if (entry.level < 0) {
-            if (entry.child != hint) search.look_at(entry.child);
-            continue;
-        }
-        const Float4 squared =
-            search.to_children(nodes_[level_first_[static_cast<std::size_t>(entry.level)] + entry.child]);
-        // Nearest child last, so that it is the next one taken.
-        const std::size_t bottom = top;
-        for (std::size_t i = 0; i < width; ++i) {
-            if (!search.reaches(squared[i])) continue;
-            std::size_t at = top++;
-            for (; at > bottom && stack[at - 1].squared < squared[i]; --at) stack[at] = stack[at - 1];
-            stack[at] = {squared[i], static_cast<Index>(width * entry.child + i), entry.level - 1};
-        }
+    if (search.squared() > enough) descend(search, root(), {-1, hint}, enough);
+    return search.result();
+}
+
+TriangleTree::Nearest TriangleTree::within(const Vec3& point, double bound, Index hint) const {
+    if (block_count_ == 0) return {};
+    Search search(*this, point, bound);
+    const double enough = bound * bound;
+    if (hint == no_index) {
+        descend(search, root(), {-1, hint}, enough);
+        return search.result();
+    }
+    search.look_at(hint);
+    for (Place known{-1, hint}; search.squared() > enough && known.level < root().level;) {
+        const Place up{known.level + 1, known.index / static_cast<Index>(width)};
+        descend(search, up, known, enough);
+        known = up;
     }
     return search.result();
 }
