@@ -201,7 +201,7 @@ private:
         const bool flat = warp(a, b, c, d) <= tolerance_;
         if (!flat && verdict.before == Look::none) verdict.before = look(a, b, hint);
         if (!flat && verdict.before == Look::off) {
-            const double was = fine_.surface()(middle(a, b));
+            const double was = fine_.surface()(middle(a, b), hint);
             verdict.flips = !fine_.surface().is_beyond(middle(c, d), 0.5 * was, hint);
             return verdict;
         }

@@ -25,6 +25,8 @@ public:
     MeshDistance(const PolygonMesh& mesh, const Triangulation& cut);
     /// Distance from a point to the nearest triangle; infinity if the mesh has no facet.
     double operator()(const Vec3& point) const;
+    /// `hint` is no_index or what a call for a point nearby left there: it changes the time alone.
+    double operator()(const Vec3& point, Index& hint) const;
     /// All points; parallel, quickest when neighbours in the list are neighbours in space, the same bits for
     /// any number of threads. Zero for an empty list. Distances up to `enough` may come out larger, though
     /// never above it: whether a bound is kept is known several times sooner than by how much.

@@ -215,15 +215,18 @@ public:
     }
 
     void look_at(Index block) {
-        const Double2 one = squared_distances(tree_.blocks_[block][0], spread_),
-                      other = squared_distances(tree_.blocks_[block][1], spread_),
-                      pairs = min_lanes(one, other);
+        const Double2 one = to_pair(block, 0), other = to_pair(block, 1), pairs = min_lanes(one, other);
         const double squared = std::min(pairs[0], pairs[1]);
         if (!(squared < best_.squared)) return;
-        best_.squared = squared;
-        best_.block = block;
-        lane_ = one[0] == squared ? 0 : one[1] == squared ? 1 : other[0] == squared ? 2 : 3;
-        limit_ = std::min(limit_, limit(squared));
+        const Index lane = one[0] == squared ? 0 : one[1] == squared ? 1 : other[0] == squared ? 2 : 3;
+        take(squared, block * static_cast<Index>(width) + lane);
+    }
+
+    /// At two triangles, one of them at this place.
+    void look_around(Index place) {
+        const Double2 pair = to_pair(place / width, place / 2 % 2);
+        const Index lane = pair[1] < pair[0];
+        take(pair[lane], place - place % 2 + lane);
     }
 
     /// Per child of a node, the squared distance to its box.
@@ -240,13 +243,23 @@ public:
 
     Nearest result() const {
         Nearest best = best_;
-        if (best.block != no_index)
+        if (best.place != no_index)
             best.triangle =
-                tree_.triangle_of_[std::min(best.block * width + lane_, tree_.triangle_of_.size() - 1)];
+                tree_.triangle_of_[std::min<std::size_t>(best.place, tree_.triangle_of_.size() - 1)];
         return best;
     }
 
 private:
+    Double2 to_pair(std::size_t block, std::size_t half) const {
+        return squared_distances(tree_.blocks_[block][half], spread_);
+    }
+
+    void take(double squared, Index place) {
+        best_.squared = squared;
+        best_.place = place;
+        limit_ = std::min(limit_, limit(squared));
+    }
+
     /// No less than the square of the distance and the rounding together, and a little.
     float limit(double squared) const {
         return static_cast<float>(1.01 * squared + slack_) + std::numeric_limits<float>::min();
@@ -258,7 +271,6 @@ private:
     double slack_ = 0;
     float limit_ = infinity;
     Nearest best_;
-    std::size_t lane_ = 0; // of the nearest
 };
 
 /// Nodes or, below them, blocks. Coordinates so large that floats overflow lead to absent ones too.
@@ -269,21 +281,21 @@ std::size_t TriangleTree::size_of(int level) const {
 }
 
 /// All that is below a node, but for what is known, until something is near enough.
-void TriangleTree::descend(Search& search, const Place& from, const Place& known, double enough) const {
+void TriangleTree::descend(Search& search, const Node& from, const Node& known, double enough) const {
     struct Entry {
         float squared;
-        Place place;
+        Node node;
     };
     std::array<Entry, stack_size> stack;
     std::size_t top = 0;
     // Nearest child last, so that it is the next one taken.
-    const auto push_children = [&](const Place& node) {
+    const auto push_children = [&](const Node& node) {
         const Float4 squared =
             search.to_children(nodes_[level_first_[static_cast<std::size_t>(node.level)] + node.index]);
         const std::size_t bottom = top;
-        for (std::size_t i = 0; i < width; ++i) {
-            const Place child{node.level - 1, static_cast<Index>(width * node.index + i)};
-            if (!search.reaches(squared[i])) continue;
+        for (unsigned left = lanes_of(search.reaches(squared)); left != 0; left &= left - 1) {
+            const auto i = static_cast<Index>(std::countr_zero(left));
+            const Node child{node.level - 1, static_cast<Index>(width) * node.index + i};
             if (child.index == known.index && child.level == known.level) continue;
             std::size_t at = top++;
             for (; at > bottom && stack[at - 1].squared < squared[i]; --at) stack[at] = stack[at - 1];
@@ -292,21 +304,22 @@ void TriangleTree::descend(Search& search, const Place& from, const Place& known
     };
     push_children(from);
     while (top > 0 && search.squared() > enough) {
-        const auto [squared, place] = stack[--top];
+        const auto [squared, node] = stack[--top];
         if (!search.reaches(squared)) continue;
-        if (squared == infinity && place.index >= size_of(place.level)) continue;
-        if (place.level < 0)
-            search.look_at(place.index);
+        if (squared == infinity && node.index >= size_of(node.level)) continue;
+        if (node.level < 0)
+            search.look_at(node.index);
         else
-            push_children(place);
+            push_children(node);
     }
 }
 
 TriangleTree::Nearest TriangleTree::nearest(const Vec3& point, Index hint, double enough) const {
     if (block_count_ == 0) return {};
     Search search(*this, point);
-    if (hint != no_index) search.look_at(hint);
-    if (search.squared() > enough) descend(search, root(), {-1, hint}, enough);
+    const Index block = block_of(hint);
+    if (block != no_index) search.look_at(block);
+    if (search.squared() > enough) descend(search, root(), {-1, block}, enough);
     return search.result();
 }
 
@@ -315,12 +328,13 @@ TriangleTree::Nearest TriangleTree::within(const Vec3& point, double bound, Inde
     Search search(*this, point, bound);
     const double enough = bound * bound;
     if (hint == no_index) {
-        descend(search, root(), {-1, hint}, enough);
+        descend(search, root(), {-1, no_index}, enough);
         return search.result();
     }
-    search.look_at(hint);
-    for (Place known{-1, hint}; search.squared() > enough && known.level < root().level;) {
-        const Place up{known.level + 1, known.index / static_cast<Index>(width)};
+    search.look_around(hint);
+    if (search.squared() > enough) search.look_at(block_of(hint));
+    for (Node known{-1, block_of(hint)}; search.squared() > enough && known.level < root().level;) {
+        const Node up{known.level + 1, known.index / static_cast<Index>(width)};
         descend(search, up, known, enough);
         known = up;
     }
@@ -385,7 +399,6 @@ TriangleTree::Nearest TriangleTree::nearest(const Part& part, const Vec3& point)
     if (part.count_ == 0) return search.result();
     const std::size_t nodes = part.count_ / width;
     // Per lane the least, its node in the lowest bits: floats that are not negative are in order as integers.
-    using Int4 = std::int32_t __attribute__((vector_size(16)));
     static_assert(std::has_single_bit(Part::most_nodes));
     constexpr std::int32_t node_bits = Part::most_nodes - 1;
     Int4 least = Int4{} + std::numeric_limits<std::int32_t>::max();
