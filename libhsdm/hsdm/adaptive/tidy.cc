@@ -45,7 +45,7 @@ public:
     TidyCounts run(Diagonals diagonals) {
         TidyCounts counts;
         const int sweeps = diagonals == Diagonals::may_flip ? most_sweeps : 0;
-        if (sweeps > 0) look_at_edges();
+        look_.assign(corners_.size(), Look::none);
         std::vector<std::uint8_t> turned(half_.size(), 1);
         for (int sweep = 0; sweep < sweeps; ++sweep) {
             turned_.assign(half_.size(), 0);
@@ -78,22 +78,7 @@ private:
         return length > 0 ? std::abs(across | (at(c) - at(a))) / length : 0;
     }
 
-    /// Notes which edges that bend are off the fine surface.
-    void look_at_edges() {
-        look_.assign(corners_.size(), Look::none);
-        for_chunks(corners_.size(), sides_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-            Index hint = no_index;
-            for (std::size_t i = begin; i < end; ++i) {
-                const auto s = static_cast<Index>(i);
-                const Index t = twin_[s];
-                if (t == no_index || t < s) continue;
-                const Index a = corners_[s], b = corners_[t];
-                if (warp(a, b, corners_[previous_side(s)], corners_[previous_side(t)]) > tolerance_)
-                    look_[s] = look_[t] = look(a, b, hint);
-            }
-        });
-    }
-
+    /// Whether an edge is on the fine surface, if that was asked.
     enum class Look : std::uint8_t { none, on, off };
     Look look(Index a, Index b, Index& hint) const {
         return fine_.holds(middle(a, b), hint) ? Look::on : Look::off;
