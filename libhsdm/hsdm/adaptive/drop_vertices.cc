@@ -33,8 +33,8 @@ Key ring_key(const CollapsingMesh& mesh, Index side, std::vector<Index>& ring) {
 
 class Dropping {
 public:
-    Dropping(PolygonMesh& mesh, SurfaceBand& fine, double spacing)
-        : mesh_(mesh), fine_(fine), spacing_(spacing) {}
+    Dropping(PolygonMesh& mesh, const MeshDistance& fine, const DropOptions& options)
+        : mesh_(mesh), fine_(fine), options_(options) {}
 
     std::vector<Drop> run() {
         for (int sweep = 0; sweep < most_sweeps && drop_once() > 0; ++sweep) {
@@ -138,36 +138,39 @@ private:
             squared = std::min(squared, PreparedTriangle(to, mesh_.at(ring[i]), mesh_.at(ring[i + 1]))
                                             .nearest(from)
                                             .squared_distance);
-        if (squared > fine_.tolerance() * fine_.tolerance()) return false;
+        if (squared > square(options_.tolerance)) return false;
         for (const auto& [share, gap] : along_edge)
             for (std::size_t i = 2; i + 1 < ring.size(); ++i) {
                 const Vec3 edge = mesh_.at(ring[i]) - to;
-                if ((share == 0.5 || is_wide(gap * edge)) && !fine_.holds(to + share * edge, hint))
-                    return false;
+                if ((share == 0.5 || is_wide(gap * edge)) && is_off(to + share * edge, hint)) return false;
             }
         for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
             const Vec3 &p = mesh_.at(ring[i]), &q = mesh_.at(ring[i + 1]), middle = (to + p + q) / 3;
-            if (!fine_.holds(middle, hint)) return false;
+            if (is_off(middle, hint)) return false;
             for (const Vec3& corner : {to, p, q})
-                if (is_wide(corner - middle) && !fine_.holds(0.5 * (middle + corner), hint)) return false;
+                if (is_wide(corner - middle) && is_off(0.5 * (middle + corner), hint)) return false;
         }
         return true;
     }
 
+    bool is_off(const Vec3& place, Index& hint) const {
+        return fine_.is_beyond(place, options_.tolerance, hint);
+    }
+
     /// Is the gap between two places worth a look between them?
-    bool is_wide(const Vec3& gap) const { return gap.sqrnorm() > spacing_ * spacing_; }
+    bool is_wide(const Vec3& gap) const { return gap.sqrnorm() > square(options_.spacing); }
 
     CollapsingMesh mesh_;
-    SurfaceBand& fine_;
-    double spacing_;
+    const MeshDistance& fine_;
+    const DropOptions& options_;
     std::vector<Drop> drops_;
     std::vector<Index> ring_;
 };
 
 } // namespace
 
-std::vector<Drop> find_drops(PolygonMesh mesh, SurfaceBand& fine, double spacing) {
-    return Dropping(mesh, fine, spacing).run();
+std::vector<Drop> find_drops(PolygonMesh mesh, const MeshDistance& fine, const DropOptions& options) {
+    return Dropping(mesh, fine, options).run();
 }
 
 std::vector<Index> drop_vertices(PolygonMesh& mesh, std::span<const Drop> drops,

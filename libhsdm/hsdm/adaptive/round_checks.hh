@@ -37,13 +37,12 @@ public:
     const BoundCheck& bound() const { return bound_; }
     double spacing() const { return spacing_; }
     SurfaceBand& band() { return band_; }
-    SurfaceBand& wide_band() { return wide_band_; } ///< 1.75 times as wide
 
 private:
     double spacing_;
     BoundCheck bound_;
     CrossingCheck crossing_;
-    SurfaceBand band_, wide_band_;
+    SurfaceBand band_;
 };
 
 } // namespace hsdm
