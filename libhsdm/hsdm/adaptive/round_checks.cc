@@ -8,7 +8,7 @@ RoundChecks::RoundChecks(const PolygonMesh& fine, std::span<const Vec3> points, 
                          double tolerance)
     : spacing_(spacing),
       bound_(fine, points, bound, spacing),
-      band_(bound_.to_fine(), tolerance, fine.vertex_count()) {}
+      band_(bound_.to_fine(), tolerance, 2 * fine.vertex_count()) {}
 
 /// At once, as either has steps that one thread takes alone.
 Findings RoundChecks::look_at(const PolygonMesh& mesh) {

@@ -4,6 +4,7 @@
 #include "hsdm/adaptive/triangle_sides.hh"
 #include "hsdm/chunks.hh"
 #include "hsdm/facets/straight_corners.hh"
+#include "hsdm/quality/mix.hh"
 
 #include <tbb/parallel_sort.h>
 
@@ -46,6 +47,7 @@ public:
         TidyCounts counts;
         const int sweeps = diagonals == Diagonals::may_flip ? most_sweeps : 0;
         look_.assign(corners_.size(), Look::none);
+        if (sweeps > 0) names_ = place_keys(mesh_.positions);
         std::vector<std::uint8_t> turned(half_.size(), 1);
         for (int sweep = 0; sweep < sweeps; ++sweep) {
             turned_.assign(half_.size(), 0);
@@ -173,30 +175,44 @@ private:
     Verdict judge(Index s, Index& hint) const {
         const Index t = twin_[s], a = corners_[s], b = corners_[t], c = corners_[previous_side(s)],
                     d = corners_[previous_side(t)];
-        Verdict verdict{false, look_[s], Look::none};
+        const Look before = look_[s];
         const Vec3 first = triangle_normal(at(c), at(a), at(d)),
                    second = triangle_normal(at(d), at(b), at(c)), sum = first + second;
-        if ((first | sum) <= 0 || (second | sum) <= 0) return verdict;
+        if ((first | sum) <= 0 || (second | sum) <= 0) return {false, before, Look::none};
         const Vec3 old1 = triangle_normal(at(a), at(b), at(c)), old2 = triangle_normal(at(b), at(a), at(d));
         const double old_shape =
             std::min(triangle_shape(at(a), at(b), at(c), old1), triangle_shape(at(b), at(a), at(d), old2));
         const double new_shape =
             std::min(triangle_shape(at(c), at(a), at(d), first), triangle_shape(at(d), at(b), at(c), second));
-        if (new_shape < std::min(least_shape, old_shape)) return verdict;
-        const bool flat = warp(a, b, c, d) <= tolerance_;
-        if (!flat && verdict.before == Look::none) verdict.before = look(a, b, hint);
-        if (!flat && verdict.before == Look::off) {
+        if (new_shape < std::min(least_shape, old_shape)) return {false, before, Look::none};
+        const bool gains =
+            new_shape >= better_shape * old_shape
+            && (first | second) >= flip_cosine * first.norm() * second.norm()
+            && (old_shape <= least_shape || (old1 | old2) >= flip_cosine * old1.norm() * old2.norm());
+        if (warp(a, b, c, d) <= tolerance_) return {gains, before, before};
+        if (before != Look::none) return judge_bent({a, b, c, d}, before, gains, hint);
+        // What is not known yet follows from the four places alone.
+        Key key = gains;
+        for (Index v : {a, b, c, d}) key = mix(key ^ names_[v]);
+        const unsigned known = fine_.remembered(key, [&] {
+            const Verdict verdict = judge_bent({a, b, c, d}, Look::none, gains, hint);
+            return unsigned{verdict.flips} + 2 * static_cast<unsigned>(verdict.before)
+                   + 8 * unsigned{verdict.after == Look::on};
+        });
+        return {known % 2 == 1, static_cast<Look>(known / 2 % 4), known / 8 == 1 ? Look::on : Look::none};
+    }
+
+    /// The two triangles at a-b, their other corners c and d, are not in a plane; would their shape gain?
+    Verdict judge_bent(const std::array<Index, 4>& corners, Look before, bool gains, Index& hint) const {
+        const auto [a, b, c, d] = corners;
+        if (before == Look::none) before = look(a, b, hint);
+        if (before == Look::off) {
             const double was = fine_.surface()(middle(a, b), hint);
-            verdict.flips = !fine_.surface().is_beyond(middle(c, d), 0.5 * was, hint);
-            return verdict;
+            return {!fine_.surface().is_beyond(middle(c, d), 0.5 * was, hint), before, Look::none};
         }
-        if (new_shape < better_shape * old_shape) return verdict;
-        if ((first | second) < flip_cosine * first.norm() * second.norm()) return verdict;
-        if ((old1 | old2) < flip_cosine * old1.norm() * old2.norm() && old_shape > least_shape)
-            return verdict;
-        verdict.after = flat ? verdict.before : look(c, d, hint);
-        verdict.flips = flat || verdict.after == Look::on;
-        return verdict;
+        if (!gains) return {false, before, Look::none};
+        const Look after = look(c, d, hint);
+        return {after == Look::on, before, after};
     }
 
     /// Lays the diagonal of the two triangles at side s the other way if that is better.
@@ -311,6 +327,7 @@ private:
     std::vector<Index> facet_;         // per triangle, the facet it was cut from
     std::vector<Index> twin_;          // per side of a triangle
     std::vector<Look> look_;           // per side
+    std::vector<Key> names_;           // per vertex, of its place
     std::vector<Verdict> verdicts_;    // per side, as of the sweep's start
     std::vector<std::uint8_t> turned_; // per triangle, in this sweep
     Index hint_ = no_index;
