@@ -17,12 +17,8 @@ namespace {
 constexpr int most_sweeps = 32;
 constexpr std::size_t vertices_per_chunk = 256;
 constexpr double smooth_cosine = 0.95; // of normals round a vertex with their mean: 18 degrees
-
-/// Where new edges are looked at, and the gap between places looked at before: shares of their length.
-constexpr struct {
-    double share, gap;
-} along_edge[] = {{0.5, 1},      {0.25, 0.5},   {0.75, 0.5},  {0.125, 0.25},
-                  {0.375, 0.25}, {0.625, 0.25}, {0.875, 0.25}};
+constexpr double along_edge[] = {0.5,   0.25,  0.75, 0.125,
+                                 0.375, 0.625, 0.875}; // where new edges are looked at
 
 /// Of the neighbours of a side's start, its end first; they are left in `ring`.
 Key ring_key(const CollapsingMesh& mesh, Index side, std::vector<Index>& ring) {
@@ -33,8 +29,8 @@ Key ring_key(const CollapsingMesh& mesh, Index side, std::vector<Index>& ring) {
 
 class Dropping {
 public:
-    Dropping(PolygonMesh& mesh, const MeshDistance& fine, const DropOptions& options)
-        : mesh_(mesh), fine_(fine), options_(options) {}
+    Dropping(PolygonMesh& mesh, const MeshDistance& fine, double tolerance)
+        : mesh_(mesh), fine_(fine), tolerance_(tolerance) {}
 
     std::vector<Drop> run() {
         for (int sweep = 0; sweep < most_sweeps && drop_once() > 0; ++sweep) {
@@ -138,39 +134,32 @@ private:
             squared = std::min(squared, PreparedTriangle(to, mesh_.at(ring[i]), mesh_.at(ring[i + 1]))
                                             .nearest(from)
                                             .squared_distance);
-        if (squared > square(options_.tolerance)) return false;
-        for (const auto& [share, gap] : along_edge)
-            for (std::size_t i = 2; i + 1 < ring.size(); ++i) {
-                const Vec3 edge = mesh_.at(ring[i]) - to;
-                if ((share == 0.5 || is_wide(gap * edge)) && is_off(to + share * edge, hint)) return false;
-            }
+        if (squared > tolerance_ * tolerance_) return false;
+        for (const double share : along_edge)
+            for (std::size_t i = 2; i + 1 < ring.size(); ++i)
+                if (is_off(to + (mesh_.at(ring[i]) - to) * share, hint)) return false;
         for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
             const Vec3 &p = mesh_.at(ring[i]), &q = mesh_.at(ring[i + 1]), middle = (to + p + q) / 3;
             if (is_off(middle, hint)) return false;
             for (const Vec3& corner : {to, p, q})
-                if (is_wide(corner - middle) && is_off(0.5 * (middle + corner), hint)) return false;
+                if (is_off(0.5 * (middle + corner), hint)) return false;
         }
         return true;
     }
 
-    bool is_off(const Vec3& place, Index& hint) const {
-        return fine_.is_beyond(place, options_.tolerance, hint);
-    }
-
-    /// Is the gap between two places worth a look between them?
-    bool is_wide(const Vec3& gap) const { return gap.sqrnorm() > square(options_.spacing); }
+    bool is_off(const Vec3& place, Index& hint) const { return fine_.is_beyond(place, tolerance_, hint); }
 
     CollapsingMesh mesh_;
     const MeshDistance& fine_;
-    const DropOptions& options_;
+    double tolerance_;
     std::vector<Drop> drops_;
     std::vector<Index> ring_;
 };
 
 } // namespace
 
-std::vector<Drop> find_drops(PolygonMesh mesh, const MeshDistance& fine, const DropOptions& options) {
-    return Dropping(mesh, fine, options).run();
+std::vector<Drop> find_drops(PolygonMesh mesh, const MeshDistance& fine, double tolerance) {
+    return Dropping(mesh, fine, tolerance).run();
 }
 
 std::vector<Index> drop_vertices(PolygonMesh& mesh, std::span<const Drop> drops,

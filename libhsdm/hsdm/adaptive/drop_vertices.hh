@@ -8,11 +8,6 @@
 
 namespace hsdm {
 
-struct DropOptions {
-    double tolerance = 0; ///< of distances, the mesh's units, > 0
-    double spacing = 0;   ///< the mesh's units, >= 0: between places no farther apart none is looked at
-};
-
 /// A vertex to be taken out by collapsing an edge onto another.
 struct Drop {
     Index side; ///< of the triangles that the mesh is cut into
@@ -26,7 +21,7 @@ struct Drop {
 /// that. Planes of vertices, by which merge_vertices() goes, refuse a strip of a cylinder that ends between
 /// the vertices of its rims; this takes it. At most 32 sweeps, O(n) each, of fewer vertices; parallel, the
 /// same for any number of threads.
-std::vector<Drop> find_drops(PolygonMesh mesh, const MeshDistance& fine, const DropOptions& options);
+std::vector<Drop> find_drops(PolygonMesh mesh, const MeshDistance& fine, double tolerance);
 
 /// Takes vertices out of the mesh that they were found for, in that order, but for those, `may_go` being 0,
 /// that are to stay, which no vertex gives way to either, and for those whose facets are then other ones.

@@ -179,8 +179,7 @@ MergedLeaves merge_leaves(const LeafMesh& leaves, std::span<const Quadric> plane
     MergeLeavesOptions drop_options = options;
     drop_options.faults = merged.faults;
     const std::vector<Drop> drops =
-        find_drops(base.mesh, checks.bound().to_fine(),
-                   {.tolerance = wide * checks.band().tolerance(), .spacing = checks.spacing()});
+        find_drops(base.mesh, checks.bound().to_fine(), wide * checks.band().tolerance());
     const auto by_distance = [&](PolygonMesh& mesh, const std::vector<double>& tolerance) {
         std::vector<std::uint8_t> may_go(tolerance.size()); // what was wrong once stays
         for (std::size_t v = 0; v < may_go.size(); ++v) may_go[v] = tolerance[v] >= checks.band().tolerance();

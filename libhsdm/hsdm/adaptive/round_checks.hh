@@ -35,11 +35,9 @@ public:
 
     /// Of the mesh last looked at.
     const BoundCheck& bound() const { return bound_; }
-    double spacing() const { return spacing_; }
     SurfaceBand& band() { return band_; }
 
 private:
-    double spacing_;
     BoundCheck bound_;
     CrossingCheck crossing_;
     SurfaceBand band_;
