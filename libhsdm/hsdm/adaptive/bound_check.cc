@@ -150,8 +150,9 @@ std::vector<Index> BoundCheck::far_facets(const PolygonMesh& mesh) {
             return std::any_of(places.begin(), places.end(),
                                [&](const Vec3& place) { return to_fine_.is_beyond(place, bound_, hint); });
         });
-    const std::vector<Index> facet = facet_of_triangle(cut_);
-    for (Index& t : far) t = facet[t];
+    for (Index& t : far) // becomes its facet
+        t = static_cast<Index>(std::upper_bound(cut_.first.begin(), cut_.first.end(), t) - cut_.first.begin()
+                               - 1);
     far.erase(std::unique(far.begin(), far.end()), far.end());
     return far;
 }

@@ -54,7 +54,7 @@ public:
             judge_all(turned);
             std::size_t flipped = 0;
             for (Index s = 0; s < corners_.size(); ++s)
-                if (is_due(s, turned)) flipped += flip(s);
+                if (waits_[s / 3] && is_due(s, turned)) flipped += flip(s);
             counts.flipped += flipped;
             turned.swap(turned_);
             if (flipped == 0) break;
@@ -165,10 +165,15 @@ private:
 
     void judge_all(const std::vector<std::uint8_t>& turned) {
         verdicts_.resize(corners_.size());
+        waits_.assign(half_.size(), 0);
         for_chunks(corners_.size(), sides_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             Index hint = no_index;
-            for (auto s = static_cast<Index>(begin); s < end; ++s)
-                if (is_due(s, turned)) verdicts_[s] = judge(s, hint);
+            for (auto s = static_cast<Index>(begin); s < end; ++s) {
+                if (!is_due(s, turned)) continue;
+                verdicts_[s] = judge(s, hint);
+                look_[s] = look_[twin_[s]] = verdicts_[s].before;
+                waits_[s / 3] |= verdicts_[s].flips;
+            }
         });
     }
 
@@ -192,7 +197,7 @@ private:
         if (warp(a, b, c, d) <= tolerance_) return {gains, before, before};
         if (before != Look::none) return judge_bent({a, b, c, d}, before, gains, hint);
         // What is not known yet follows from the four places alone.
-        Key key = gains;
+        Key key = 1;
         for (Index v : {a, b, c, d}) key = mix(key ^ names_[v]);
         const unsigned known = fine_.remembered(key, [&] {
             const Verdict verdict = judge_bent({a, b, c, d}, Look::none, gains, hint);
@@ -236,6 +241,8 @@ private:
                    look_ad = look_[next_side(t)], look_db = look_[previous_side(t)];
         const Index one = s - s % 3, two = t - t % 3;
         turned_[one / 3] = turned_[two / 3] = 1;
+        for (const Index side : {one, two, ca, bc, ad, db})
+            if (side != no_index) waits_[side / 3] = 1;
         const auto place = [&](Index from, std::array<Index, 3> corners) {
             for (Index k = 0; k < 3; ++k) corners_[from + k] = corners[k];
         };
@@ -330,6 +337,7 @@ private:
     std::vector<Key> names_;           // per vertex, of its place
     std::vector<Verdict> verdicts_;    // per side, as of the sweep's start
     std::vector<std::uint8_t> turned_; // per triangle, in this sweep
+    std::vector<std::uint8_t> waits_;  // per triangle, has it sides to be turned or judged anew?
     Index hint_ = no_index;
     std::vector<Index> facets_, least_facets_; // per vertex: three, or one at a border
 };
