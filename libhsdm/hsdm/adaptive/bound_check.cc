@@ -64,7 +64,8 @@ void add_places(const std::array<Vec3, 3>& corners, const std::array<bool, 3>& t
         const double up = static_cast<double>(r) / rows;
         const Vec3 left = a + (c - a) * up, right = b + (c - b) * up;
         const int columns = steps(length * (1 - up));
-        for (int k = 0; k <= columns; ++k) {
+        for (int i = 0; i <= columns; ++i) {
+            const int k = r % 2 == 0 ? i : columns - i; // to and fro: each beside the one before
             const bool on_left = k == 0, on_right = k == columns;
             if (r == 0 && (on_left || on_right || !takes_ab)) continue;
             if ((on_left && !takes_ca) || (on_right && !takes_bc)) continue;

@@ -17,8 +17,7 @@ namespace {
 constexpr int most_sweeps = 32;
 constexpr std::size_t vertices_per_chunk = 256;
 constexpr double smooth_cosine = 0.95; // of normals round a vertex with their mean: 18 degrees
-constexpr double along_edge[] = {0.5,   0.25,  0.75, 0.125,
-                                 0.375, 0.625, 0.875}; // where new edges are looked at
+constexpr double along_edge[] = {0.125, 0.25, 0.375, 0.625, 0.75, 0.875}; // and at the middle, before all
 
 /// Of the neighbours of a side's start, its end first; they are left in `ring`.
 Key ring_key(const CollapsingMesh& mesh, Index side, std::vector<Index>& ring) {
@@ -135,8 +134,11 @@ private:
                                             .nearest(from)
                                             .squared_distance);
         if (squared > tolerance_ * tolerance_) return false;
-        for (const double share : along_edge)
-            for (std::size_t i = 2; i + 1 < ring.size(); ++i)
+        // First where most that fail do, then place by place, each beside the one before.
+        for (std::size_t i = 2; i + 1 < ring.size(); ++i)
+            if (is_off(to + (mesh_.at(ring[i]) - to) * 0.5, hint)) return false;
+        for (std::size_t i = 2; i + 1 < ring.size(); ++i)
+            for (const double share : along_edge)
                 if (is_off(to + (mesh_.at(ring[i]) - to) * share, hint)) return false;
         for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
             const Vec3 &p = mesh_.at(ring[i]), &q = mesh_.at(ring[i + 1]), middle = (to + p + q) / 3;
