@@ -45,8 +45,7 @@ bool on_rim(const PolygonMesh& mesh, Index v) {
 TEST_CASE("a tube keeps the vertices of its rims alone", "[adaptive]") {
     const PolygonMesh fine = tube(48, 12);
     const MeshDistance surface(fine);
-    SurfaceBand band(surface, 0.03, 1000);
-    const std::vector<Drop> drops = find_drops(fine, band);
+    const std::vector<Drop> drops = find_drops(fine, surface, 0.03);
     PolygonMesh mesh = fine;
     std::vector<Index> stands_for =
         drop_vertices(mesh, drops, std::vector<std::uint8_t>(fine.vertex_count(), 1));
@@ -69,8 +68,7 @@ TEST_CASE("a tube keeps the vertices of its rims alone", "[adaptive]") {
 TEST_CASE("vertices that may not go stay, and nothing is joined to them", "[adaptive]") {
     const PolygonMesh fine = tube(24, 9);
     const MeshDistance surface(fine);
-    SurfaceBand band(surface, 0.1, 1000);
-    const std::vector<Drop> drops = find_drops(fine, band);
+    const std::vector<Drop> drops = find_drops(fine, surface, 0.1);
     std::vector<std::uint8_t> may_go(fine.vertex_count(), 1);
     REQUIRE(drops.size() > 20);
     for (std::size_t i = 0; i < drops.size(); i += 3) may_go[drops[i].vertex] = 0;
@@ -92,9 +90,8 @@ TEST_CASE("any number of threads finds the same vertices to drop", "[adaptive]")
     const MeshDistance surface(fine);
     const auto sides = [&](std::size_t threads) {
         tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        SurfaceBand band(surface, 0.01, 1000);
         std::vector<Index> found;
-        for (const Drop& drop : find_drops(fine, band)) found.push_back(drop.side);
+        for (const Drop& drop : find_drops(fine, surface, 0.01)) found.push_back(drop.side);
         return found;
     };
     const std::vector<Index> one = sides(1);

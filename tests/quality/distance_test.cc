@@ -176,6 +176,30 @@ TEST_CASE("points that rounding alone keeps off a triangle are found on it, alon
         const std::vector<Vec3> points(20, Vec3(off, 0, 0));
         CHECK(points_to_mesh(points, mesh).max <= 2e-15);
         CHECK(MeshDistance(mesh)(points[0]) <= 2e-15);
+        Index hint = no_index;
+        CHECK(!MeshDistance(mesh).is_beyond(points[0], 2e-15, hint));
+    }
+}
+
+TEST_CASE("a triangle near enough is found just where there is one, wherever the search begins",
+          "[distance]") {
+    for (const std::size_t triangles : {1u, 5u, 17u, 70u, 1500u}) {
+        const PolygonMesh mesh = random_triangles(triangles, 15);
+        const MeshDistance distance(mesh);
+        Index hint = no_index;
+        for (const Vec3& p : random_points(500, 16, 1.5)) { // none near the one before
+            const double least = distance(p);
+            const Index found = distance.triangle_within(p, 1.000001 * least, hint);
+            REQUIRE(found != no_index);
+            const auto ring = mesh.facet(found);
+            CHECK(static_cast<double>(triangle_distance(p, mesh.positions[ring[0]], mesh.positions[ring[1]],
+                                                        mesh.positions[ring[2]]))
+                  < 1.000002 * least);
+            CHECK(distance.is_beyond(p, 0.999999 * least, hint));
+            CHECK(distance(p, hint) == least);
+            Index none = no_index;
+            CHECK(!distance.is_beyond(p, 1.000001 * least, none));
+        }
     }
 }
 
@@ -205,6 +229,8 @@ TEST_CASE("distances are the same bits with one thread and with many", "[distanc
 TEST_CASE("no facet means infinitely far, no point means zero", "[distance]") {
     PolygonMesh empty;
     CHECK(std::isinf(MeshDistance(empty)(Vec3(1, 2, 3))));
+    Index hint = no_index;
+    CHECK(MeshDistance(empty).is_beyond(Vec3(1, 2, 3), 1e9, hint));
     const std::vector<Vec3> one{{1, 2, 3}};
     CHECK(std::isinf(points_to_mesh(one, empty).max));
     CHECK(points_to_mesh({}, random_triangles(3, 1)).max == 0);

@@ -64,7 +64,8 @@ void add_places(const std::array<Vec3, 3>& corners, const std::array<bool, 3>& t
         const double up = static_cast<double>(r) / rows;
         const Vec3 left = a + (c - a) * up, right = b + (c - b) * up;
         const int columns = steps(length * (1 - up));
-        for (int k = 0; k <= columns; ++k) {
+        for (int i = 0; i <= columns; ++i) {
+            const int k = r % 2 == 0 ? i : columns - i; // to and fro: each beside the one before
             const bool on_left = k == 0, on_right = k == columns;
             if (r == 0 && (on_left || on_right || !takes_ab)) continue;
             if ((on_left && !takes_ca) || (on_right && !takes_bc)) continue;
@@ -95,35 +96,35 @@ BoundCheck::BoundCheck(const PolygonMesh& fine, std::span<const Vec3> points, do
     : fine_(fine), points_(points), bound_(bound), spacing_(spacing), to_fine_(fine) {
     const std::vector<Key> names = place_keys(fine.positions);
     fine_names_ = KeySet(names);
-    fine_keys_ = KeySet(facet_keys(fine, names));
+    fine_keys_ = KeySet(triangle_keys(triangulate(fine), names));
 }
 
 FarPlaces BoundCheck::find_far(const PolygonMesh& mesh) {
-    to_mesh_.emplace(mesh);
+    cut_ = triangulate(mesh);
+    to_mesh_.emplace(mesh, cut_);
     names_ = place_keys(mesh.positions);
-    keys_ = facet_keys(mesh, names_);
+    keys_ = triangle_keys(cut_, names_);
     present_ = KeySet(keys_);
     return {far_from(fine_.positions, near_vertex_), far_vertices(mesh), far_facets(mesh)};
 }
 
-/// A place that was near a facet still is if the facet has stayed: `near` keeps its key.
+/// A place that was near a triangle still is if that has stayed: `near` keeps its key.
 std::vector<Index> BoundCheck::far_from(std::span<const Vec3> places, std::vector<Key>& near) const {
     near.resize(places.size(), no_key);
     std::vector<std::vector<Index>> parts(chunk_count(places.size(), places_per_chunk));
     for_chunks(places.size(), places_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
-        for (std::size_t i = begin; i < end; ++i)
-            if (!present_.contains(near[i])) parts[c].push_back(static_cast<Index>(i));
+        Index hint = no_index;
+        Key last = no_key; // places beside each other are near the same triangle
+        bool is_present = false;
+        for (std::size_t i = begin; i < end; ++i) {
+            if (near[i] != last) is_present = present_.contains(last = near[i]);
+            if (is_present) continue;
+            const Index triangle = to_mesh_->triangle_within(places[i], bound_, hint);
+            near[i] = triangle == no_index ? no_key : keys_[triangle];
+            if (triangle == no_index) parts[c].push_back(static_cast<Index>(i));
+        }
     });
-    const std::vector<Index> doubtful = joined(parts);
-    std::vector<Vec3> at(doubtful.size());
-    for (std::size_t i = 0; i < at.size(); ++i) at[i] = places[doubtful[i]];
-    const std::vector<Index> facets = to_mesh_->facets_within(at, bound_);
-    std::vector<Index> far;
-    for (std::size_t i = 0; i < at.size(); ++i) {
-        near[doubtful[i]] = facets[i] == no_index ? no_key : keys_[facets[i]];
-        if (facets[i] == no_index) far.push_back(doubtful[i]);
-    }
-    return far;
+    return joined(parts);
 }
 
 /// The fine mesh's own vertices need no look.
@@ -135,22 +136,26 @@ std::vector<Index> BoundCheck::far_vertices(const PolygonMesh& mesh) {
 
 std::vector<Index> BoundCheck::far_facets(const PolygonMesh& mesh) {
     const std::vector<std::uint8_t> border = border_vertices(mesh);
-    const Triangulation cut = triangulate(mesh);
     std::vector<Key> keys = keys_; // which sides are looked at depends on borders too
-    for (std::size_t f = 0; f < keys.size(); ++f) {
+    for (std::size_t t = 0; t < keys.size(); ++t) {
         Key at_border = 0;
-        for (Index v : mesh.facet(f)) at_border = 2 * at_border + border[v];
-        if (at_border != 0) keys[f] = mix(keys[f] ^ at_border);
+        for (Index v : cut_.triangles[t]) at_border = 2 * at_border + border[v];
+        if (at_border != 0) keys[t] = mix(keys[t] ^ at_border);
     }
-    return far_of(std::move(keys), near_keys_, [&](Index f, Index& hint, std::vector<Vec3>& places) {
-        if (fine_keys_.contains(keys_[f])) return false;
-        places.clear();
-        for (Index t = cut.first[f]; t < cut.first[f + 1]; ++t)
-            add_places(corners_of(mesh, cut.triangles[t]), sides_of(cut.triangles[t], border, names_),
+    std::vector<Index> far =
+        far_of(std::move(keys), near_keys_, [&](Index t, Index& hint, std::vector<Vec3>& places) {
+            if (fine_keys_.contains(keys_[t])) return false;
+            places.clear();
+            add_places(corners_of(mesh, cut_.triangles[t]), sides_of(cut_.triangles[t], border, names_),
                        spacing_, places);
-        return std::any_of(places.begin(), places.end(),
-                           [&](const Vec3& place) { return to_fine_.is_beyond(place, bound_, hint); });
-    });
+            return std::any_of(places.begin(), places.end(),
+                               [&](const Vec3& place) { return to_fine_.is_beyond(place, bound_, hint); });
+        });
+    for (Index& t : far) // becomes its facet
+        t = static_cast<Index>(std::upper_bound(cut_.first.begin(), cut_.first.end(), t) - cut_.first.begin()
+                               - 1);
+    far.erase(std::unique(far.begin(), far.end()), far.end());
+    return far;
 }
 
 FarPoints BoundCheck::find_far_points() {

@@ -24,7 +24,7 @@ struct FarPoints {
 };
 
 /// Compares one mesh after the other with the same fine mesh and points, and measures again only what may
-/// have changed: facets of two meshes are the same if their corners are at the same places.
+/// have changed: triangles of two meshes are the same if their corners are at the same places.
 class BoundCheck {
 public:
     /// `fine` and `points` must outlive it; bound > 0. `spacing` > 0: of places looked at on a facet.
@@ -49,11 +49,12 @@ private:
     double bound_, spacing_;
     MeshDistance to_fine_;
     std::optional<MeshDistance> to_mesh_;
-    KeySet fine_names_, fine_keys_;             // of the fine mesh's vertices and facets
+    Triangulation cut_;                         // of the mesh
+    KeySet fine_names_, fine_keys_;             // of the fine mesh's vertices and triangles
     std::vector<Key> names_, keys_;             // of the mesh's
-    KeySet present_;                            // keys of its facets
+    KeySet present_;                            // keys of its triangles
     KeySet near_names_, near_keys_;             // of those found near the fine mesh
-    std::vector<Key> near_vertex_, near_point_; // of a facet that a fine vertex, a point is near to
+    std::vector<Key> near_vertex_, near_point_; // of a triangle that a fine vertex, a point is near to
     std::vector<double> off_fine_;              // per point, from the fine mesh; -1: not known
 };
 

@@ -8,7 +8,10 @@
 #include "hsdm/chunks.hh"
 #include "hsdm/errors.hh"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
+#include <optional>
 
 namespace hsdm {
 namespace {
@@ -33,11 +36,16 @@ public:
         : fine_(fine),
           points_(points),
           options_(options),
-          tree_(build_cell_tree(fine.positions, extent, depth)),
-          planes_(vertex_planes(fine)),
-          checks_(fine, points, options.max_error, spacing * extent / static_cast<double>(1u << depth),
-                  tolerance()) {
-        clusters_ = build_clusters(fine, tree_, planes_, tolerance());
+          tree_(build_cell_tree(fine.positions, extent, depth)) {
+        tbb::parallel_invoke( // either has steps that one thread takes alone
+            [&] {
+                planes_ = vertex_planes(fine);
+                clusters_ = build_clusters(fine, tree_, planes_, tolerance());
+            },
+            [&] {
+                checks_.emplace(fine, points, options.max_error,
+                                spacing * extent / static_cast<double>(1u << depth), tolerance());
+            });
     }
 
     AdaptiveMesh run() {
@@ -51,7 +59,7 @@ public:
         if (options_.measure) {
             const std::size_t samples =
                 std::clamp(2 * result_.mesh.facet_count(), fewest_samples, most_samples);
-            result_.to_fine = checks_.bound().to_fine()(sample_surface(result_.mesh, samples));
+            result_.to_fine = checks_->bound().to_fine()(sample_surface(result_.mesh, samples));
         }
         result_.vertex = std::move(vertex_);
         return std::move(result_);
@@ -66,8 +74,8 @@ private:
         const std::size_t troubled = split_troubled();
         result_.topology_splits += troubled;
         if (troubled > 0) return troubled; // all else needs a 2-manifold
-        tidy_facets(result_.mesh, checks_.band(), own());
-        const Findings found = checks_.look_at(result_.mesh);
+        tidy_facets(result_.mesh, checks_->band(), own());
+        const Findings found = checks_->look_at(result_.mesh);
         faults_ = found.count();
         set_beyond(found.far_points);
         const std::size_t crossing = split_intersecting(found), distant = split_distant(found);
@@ -80,7 +88,7 @@ private:
     void merge() {
         LeafMesh leaves{std::move(result_.mesh), std::move(vertex_)};
         MergedLeaves merged =
-            merge_leaves(leaves, planes_, checks_, {.faults = faults_, .rounds = options_.rounds});
+            merge_leaves(leaves, planes_, *checks_, {.faults = faults_, .rounds = options_.rounds});
         result_.mesh = std::move(merged.mesh);
         result_.merged = leaves.mesh.vertex_count() - result_.mesh.vertex_count();
         set_beyond(merged.far_points);
@@ -114,7 +122,7 @@ private:
         for (CellLevel& level : tree_.levels)
             if (&level != &tree_.levels.back()) level.whole.assign(level.whole.size(), 0);
         collapse();
-        set_beyond(checks_.far_points(result_.mesh));
+        set_beyond(checks_->far_points(result_.mesh));
     }
 
     /// The leaf and the cluster of every fine vertex.
@@ -267,7 +275,7 @@ private:
     std::size_t split_near(const Vec3& point) {
         const std::size_t splits = split_around(point);
         if (splits > 0) return splits;
-        const Index facet = checks_.bound().nearest_facet(point);
+        const Index facet = checks_->bound().nearest_facet(point);
         return facet == no_index ? 0 : split_facet(facet);
     }
 
@@ -309,7 +317,7 @@ private:
     std::vector<Index> vertex_;  // per fine vertex, the vertex of the result
     std::vector<Place> coarse_;  // per vertex of the result
     std::vector<Index> pinched_; // facets of the fine mesh with opposite corners in one vertex
-    RoundChecks checks_;
+    std::optional<RoundChecks> checks_;
     FaultCounts faults_; // of the last round, whether leaves could be smaller there or not
     AdaptiveMesh result_;
 };

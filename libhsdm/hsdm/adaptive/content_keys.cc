@@ -10,6 +10,17 @@ namespace {
 
 constexpr std::size_t keys_per_chunk = 2048;
 
+Key ring_key(std::span<const Index> ring, std::span<const Key> places) {
+    std::size_t least = 0;
+    for (std::size_t i = 1; i < ring.size(); ++i)
+        if (places[ring[i]] < places[ring[least]]) least = i;
+    Key key = ring.size();
+    for (std::size_t i = least; i < ring.size(); ++i) key = mix(key ^ places[ring[i]]);
+    for (std::size_t i = 0; i < least; ++i) key = mix(key ^ places[ring[i]]);
+    // How a ring is cut depends on where it starts.
+    return ring.size() > 3 ? mix(key ^ least) : key;
+}
+
 } // namespace
 
 Key place_key(const Vec3& place) {
@@ -29,17 +40,15 @@ std::vector<Key> place_keys(std::span<const Vec3> places) {
 std::vector<Key> facet_keys(const PolygonMesh& mesh, std::span<const Key> places) {
     std::vector<Key> keys(mesh.facet_count());
     for_chunks(keys.size(), keys_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t f = begin; f < end; ++f) {
-            const auto ring = mesh.facet(f);
-            std::size_t least = 0;
-            for (std::size_t i = 1; i < ring.size(); ++i)
-                if (places[ring[i]] < places[ring[least]]) least = i;
-            Key key = ring.size();
-            for (std::size_t i = 0; i < ring.size(); ++i)
-                key = mix(key ^ places[ring[(least + i) % ring.size()]]);
-            // How a ring is cut depends on where it starts.
-            keys[f] = ring.size() > 3 ? mix(key ^ least) : key;
-        }
+        for (std::size_t f = begin; f < end; ++f) keys[f] = ring_key(mesh.facet(f), places);
+    });
+    return keys;
+}
+
+std::vector<Key> triangle_keys(const Triangulation& cut, std::span<const Key> places) {
+    std::vector<Key> keys(cut.size());
+    for_chunks(keys.size(), keys_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t t = begin; t < end; ++t) keys[t] = ring_key(cut.triangles[t], places);
     });
     return keys;
 }

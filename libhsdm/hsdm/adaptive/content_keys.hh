@@ -2,7 +2,7 @@
 // Numbers that are the same for the same places and facets, whatever their indices: what is known of one mesh
 // is known of whatever the next has from it.
 
-#include "hsdm/polygon_mesh.hh"
+#include "hsdm/facets/triangulate.hh"
 
 #include <cstdint>
 
@@ -19,6 +19,8 @@ std::vector<Key> place_keys(std::span<const Vec3> places);
 /// Facets are the same if their vertices are, in the same order, and whoever cuts them gets the same
 /// triangles. `places`: keys of the vertices. O(corners), parallel.
 std::vector<Key> facet_keys(const PolygonMesh& mesh, std::span<const Key> places);
+/// Triangles that facets of the mesh are cut into.
+std::vector<Key> triangle_keys(const Triangulation& cut, std::span<const Key> places);
 
 /// A set of keys, no_key never among them.
 class KeySet {

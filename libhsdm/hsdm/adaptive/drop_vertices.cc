@@ -17,8 +17,7 @@ namespace {
 constexpr int most_sweeps = 32;
 constexpr std::size_t vertices_per_chunk = 256;
 constexpr double smooth_cosine = 0.95; // of normals round a vertex with their mean: 18 degrees
-constexpr double along_edge[] = {0.5,   0.25,  0.75, 0.125,
-                                 0.375, 0.625, 0.875}; // where new edges are looked at
+constexpr double along_edge[] = {0.125, 0.25, 0.375, 0.625, 0.75, 0.875}; // and at the middle, before all
 
 /// Of the neighbours of a side's start, its end first; they are left in `ring`.
 Key ring_key(const CollapsingMesh& mesh, Index side, std::vector<Index>& ring) {
@@ -29,7 +28,8 @@ Key ring_key(const CollapsingMesh& mesh, Index side, std::vector<Index>& ring) {
 
 class Dropping {
 public:
-    Dropping(PolygonMesh& mesh, SurfaceBand& fine) : mesh_(mesh), fine_(fine) {}
+    Dropping(PolygonMesh& mesh, const MeshDistance& fine, double tolerance)
+        : mesh_(mesh), fine_(fine), tolerance_(tolerance) {}
 
     std::vector<Drop> run() {
         for (int sweep = 0; sweep < most_sweeps && drop_once() > 0; ++sweep) {
@@ -49,6 +49,7 @@ private:
         Index hint = no_index;
         std::vector<Index> ring, ring_to;
         std::vector<Collapse> sides;
+        std::vector<Vec3> normals;
     };
 
     /// Per vertex one of the sides that start there.
@@ -89,8 +90,8 @@ private:
 
     /// The first in order of length that may be.
     void add_collapse(Index first, Room& room, std::vector<Collapse>& found) {
-        auto& [hint, ring, ring_to, sides] = room;
-        if (!mesh_.ring_of(first, ring) || !is_smooth(mesh_.start(first), ring)) return;
+        auto& [hint, ring, ring_to, sides, normals] = room;
+        if (!mesh_.ring_of(first, ring) || !is_smooth(mesh_.start(first), ring, normals)) return;
         sides.clear();
         Index s = first;
         do {
@@ -102,60 +103,70 @@ private:
             return a.length != b.length ? a.length < b.length : a.side < b.side;
         });
         for (const Collapse& c : sides) {
-            if (!mesh_.ring_of(c.side, ring) || !mesh_.ring_of(mesh_.twin(c.side), ring_to)) continue;
-            if (!mesh_.may_collapse(ring, ring_to, mesh_.at(ring[0])) || !is_near(c.side, ring, hint))
-                continue;
+            if (!mesh_.ring_of(c.side, ring) || !stays_near(mesh_.at(mesh_.start(c.side)), ring)) continue;
+            if (!mesh_.ring_of(mesh_.twin(c.side), ring_to)) continue;
+            if (!mesh_.may_collapse(ring, ring_to, mesh_.at(ring[0])) || !is_near(ring, hint)) continue;
             found.push_back(c);
             return;
         }
     }
 
-    bool is_smooth(Index v, const std::vector<Index>& ring) const {
-        const auto normal = [&](std::size_t i) {
+    bool is_smooth(Index v, const std::vector<Index>& ring, std::vector<Vec3>& normals) const {
+        normals.clear();
+        Vec3 sum(0, 0, 0);
+        for (std::size_t i = 0; i < ring.size(); ++i) {
             const Vec3 n =
                 triangle_normal(mesh_.at(v), mesh_.at(ring[i]), mesh_.at(ring[(i + 1) % ring.size()]));
-            return n.sqrnorm() > 0 ? n.normalized() : n;
-        };
-        Vec3 sum(0, 0, 0);
-        for (std::size_t i = 0; i < ring.size(); ++i) sum += normal(i);
+            normals.push_back(n.sqrnorm() > 0 ? n.normalized() : n);
+            sum += normals.back();
+        }
         const double least = smooth_cosine * sum.norm();
-        for (std::size_t i = 0; i < ring.size(); ++i)
-            if (!((normal(i) | sum) >= least)) return false;
-        return true;
+        return std::all_of(normals.begin(), normals.end(),
+                           [&](const Vec3& normal) { return (normal | sum) >= least; });
     }
 
-    /// Are the facets that the ring would have, with the side's end in place of its start, near the fine
-    /// surface, and is the start near them?
-    bool is_near(Index side, const std::vector<Index>& ring, Index& hint) {
-        const Vec3 &from = mesh_.at(mesh_.start(side)), &to = mesh_.at(ring[0]);
+    /// Is a vertex near the facets that the ring would have without it, fanned out from its first?
+    bool stays_near(const Vec3& vertex, const std::vector<Index>& ring) const {
         double squared = std::numeric_limits<double>::infinity();
         for (std::size_t i = 1; i + 1 < ring.size(); ++i)
-            squared = std::min(squared, PreparedTriangle(to, mesh_.at(ring[i]), mesh_.at(ring[i + 1]))
-                                            .nearest(from)
-                                            .squared_distance);
-        if (squared > fine_.tolerance() * fine_.tolerance()) return false;
-        for (const double share : along_edge)
-            for (std::size_t i = 2; i + 1 < ring.size(); ++i)
-                if (!fine_.holds(to + (mesh_.at(ring[i]) - to) * share, hint)) return false;
+            squared = std::min(squared,
+                               PreparedTriangle(mesh_.at(ring[0]), mesh_.at(ring[i]), mesh_.at(ring[i + 1]))
+                                   .nearest(vertex)
+                                   .squared_distance);
+        return squared <= tolerance_ * tolerance_;
+    }
+
+    /// Are these facets near the fine surface?
+    bool is_near(const std::vector<Index>& ring, Index& hint) const {
+        const Vec3& to = mesh_.at(ring[0]);
+        // First where most that fail do, then place by place, each beside the one before.
+        for (std::size_t i = 2; i + 1 < ring.size(); ++i)
+            if (is_off(to + (mesh_.at(ring[i]) - to) * 0.5, hint)) return false;
+        for (std::size_t i = 2; i + 1 < ring.size(); ++i)
+            for (const double share : along_edge)
+                if (is_off(to + (mesh_.at(ring[i]) - to) * share, hint)) return false;
         for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
             const Vec3 &p = mesh_.at(ring[i]), &q = mesh_.at(ring[i + 1]), middle = (to + p + q) / 3;
-            if (!fine_.holds(middle, hint)) return false;
+            if (is_off(middle, hint)) return false;
             for (const Vec3& corner : {to, p, q})
-                if (!fine_.holds(0.5 * (middle + corner), hint)) return false;
+                if (is_off(0.5 * (middle + corner), hint)) return false;
         }
         return true;
     }
 
+    bool is_off(const Vec3& place, Index& hint) const { return fine_.is_beyond(place, tolerance_, hint); }
+
     CollapsingMesh mesh_;
-    SurfaceBand& fine_;
+    const MeshDistance& fine_;
+    double tolerance_;
     std::vector<Drop> drops_;
     std::vector<Index> ring_;
 };
 
 } // namespace
 
-std::vector<Drop> find_drops(PolygonMesh mesh, SurfaceBand& fine) {
-    return Dropping(mesh, fine).run();
+std::vector<Drop> find_drops(PolygonMesh mesh, const MeshDistance& fine, double tolerance) {
+    return Dropping(mesh, fine, tolerance).run();
 }
 
 std::vector<Index> drop_vertices(PolygonMesh& mesh, std::span<const Drop> drops,

@@ -1,7 +1,8 @@
 #pragma once
 // Vertices that a surface does without, by measured distances.
 
-#include "hsdm/adaptive/surface_band.hh"
+#include "hsdm/adaptive/content_keys.hh"
+#include "hsdm/quality/distance.hh"
 
 #include <span>
 
@@ -16,11 +17,11 @@ struct Drop {
 
 /// Which inner vertices can go where the surface is smooth, each with its shortest edge that may collapse,
 /// those with the shortest first: where it is looked at (along new edges and in the middles of triangles)
-/// what replaces their facets lies in the band, and the vertex no farther from it than the band is wide.
-/// Planes of vertices, by which merge_vertices() goes, refuse a strip of a cylinder that ends between the
-/// vertices of its rims; this takes it. At most 32 sweeps, O(n) each, of fewer vertices; parallel, the same
-/// for any number of threads.
-std::vector<Drop> find_drops(PolygonMesh mesh, SurfaceBand& fine);
+/// what replaces their facets is no farther than the tolerance from the fine surface, nor is the vertex from
+/// that. Planes of vertices, by which merge_vertices() goes, refuse a strip of a cylinder that ends between
+/// the vertices of its rims; this takes it. At most 32 sweeps, O(n) each, of fewer vertices; parallel, the
+/// same for any number of threads.
+std::vector<Drop> find_drops(PolygonMesh mesh, const MeshDistance& fine, double tolerance);
 
 /// Takes vertices out of the mesh that they were found for, in that order, but for those, `may_go` being 0,
 /// that are to stay, which no vertex gives way to either, and for those whose facets are then other ones.

@@ -3,18 +3,10 @@
 #include <tbb/parallel_invoke.h>
 
 namespace hsdm {
-namespace {
-
-constexpr double wide =
-    1.75; // times the tolerance: with twice as much, places between those looked at go far
-
-} // namespace
 
 RoundChecks::RoundChecks(const PolygonMesh& fine, std::span<const Vec3> points, double bound, double spacing,
                          double tolerance)
-    : bound_(fine, points, bound, spacing),
-      band_(bound_.to_fine(), tolerance, fine.vertex_count()),
-      wide_band_(bound_.to_fine(), wide * tolerance, fine.vertex_count()) {}
+    : bound_(fine, points, bound, spacing), band_(bound_.to_fine(), tolerance, 2 * fine.vertex_count()) {}
 
 /// At once, as either has steps that one thread takes alone.
 Findings RoundChecks::look_at(const PolygonMesh& mesh) {

@@ -36,12 +36,11 @@ public:
     /// Of the mesh last looked at.
     const BoundCheck& bound() const { return bound_; }
     SurfaceBand& band() { return band_; }
-    SurfaceBand& wide_band() { return wide_band_; } ///< 1.75 times as wide
 
 private:
     BoundCheck bound_;
     CrossingCheck crossing_;
-    SurfaceBand band_, wide_band_;
+    SurfaceBand band_;
 };
 
 } // namespace hsdm

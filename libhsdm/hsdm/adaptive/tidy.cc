@@ -4,6 +4,7 @@
 #include "hsdm/adaptive/triangle_sides.hh"
 #include "hsdm/chunks.hh"
 #include "hsdm/facets/straight_corners.hh"
+#include "hsdm/quality/mix.hh"
 
 #include <tbb/parallel_sort.h>
 
@@ -45,14 +46,15 @@ public:
     TidyCounts run(Diagonals diagonals) {
         TidyCounts counts;
         const int sweeps = diagonals == Diagonals::may_flip ? most_sweeps : 0;
-        look_at_edges();
+        look_.assign(corners_.size(), Look::none);
+        if (sweeps > 0) names_ = place_keys(mesh_.positions);
         std::vector<std::uint8_t> turned(half_.size(), 1);
         for (int sweep = 0; sweep < sweeps; ++sweep) {
             turned_.assign(half_.size(), 0);
             judge_all(turned);
             std::size_t flipped = 0;
             for (Index s = 0; s < corners_.size(); ++s)
-                if (is_due(s, turned)) flipped += flip(s);
+                if (waits_[s / 3] && is_due(s, turned)) flipped += flip(s);
             counts.flipped += flipped;
             turned.swap(turned_);
             if (flipped == 0) break;
@@ -78,22 +80,7 @@ private:
         return length > 0 ? std::abs(across | (at(c) - at(a))) / length : 0;
     }
 
-    /// Notes which edges that bend are off the fine surface.
-    void look_at_edges() {
-        look_.assign(corners_.size(), Look::none);
-        for_chunks(corners_.size(), sides_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-            Index hint = no_index;
-            for (std::size_t i = begin; i < end; ++i) {
-                const auto s = static_cast<Index>(i);
-                const Index t = twin_[s];
-                if (t == no_index || t < s) continue;
-                const Index a = corners_[s], b = corners_[t];
-                if (warp(a, b, corners_[previous_side(s)], corners_[previous_side(t)]) > tolerance_)
-                    look_[s] = look_[t] = look(a, b, hint);
-            }
-        });
-    }
-
+    /// Whether an edge is on the fine surface, if that was asked.
     enum class Look : std::uint8_t { none, on, off };
     Look look(Index a, Index b, Index& hint) const {
         return fine_.holds(middle(a, b), hint) ? Look::on : Look::off;
@@ -178,40 +165,59 @@ private:
 
     void judge_all(const std::vector<std::uint8_t>& turned) {
         verdicts_.resize(corners_.size());
+        waits_.assign(half_.size(), 0);
         for_chunks(corners_.size(), sides_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             Index hint = no_index;
-            for (auto s = static_cast<Index>(begin); s < end; ++s)
-                if (is_due(s, turned)) verdicts_[s] = judge(s, hint);
+            for (auto s = static_cast<Index>(begin); s < end; ++s) {
+                if (!is_due(s, turned)) continue;
+                verdicts_[s] = judge(s, hint);
+                look_[s] = look_[twin_[s]] = verdicts_[s].before;
+                waits_[s / 3] |= verdicts_[s].flips;
+            }
         });
     }
 
     Verdict judge(Index s, Index& hint) const {
         const Index t = twin_[s], a = corners_[s], b = corners_[t], c = corners_[previous_side(s)],
                     d = corners_[previous_side(t)];
-        Verdict verdict{false, look_[s], Look::none};
+        const Look before = look_[s];
         const Vec3 first = triangle_normal(at(c), at(a), at(d)),
                    second = triangle_normal(at(d), at(b), at(c)), sum = first + second;
-        if ((first | sum) <= 0 || (second | sum) <= 0) return verdict;
+        if ((first | sum) <= 0 || (second | sum) <= 0) return {false, before, Look::none};
         const Vec3 old1 = triangle_normal(at(a), at(b), at(c)), old2 = triangle_normal(at(b), at(a), at(d));
         const double old_shape =
             std::min(triangle_shape(at(a), at(b), at(c), old1), triangle_shape(at(b), at(a), at(d), old2));
         const double new_shape =
             std::min(triangle_shape(at(c), at(a), at(d), first), triangle_shape(at(d), at(b), at(c), second));
-        if (new_shape < std::min(least_shape, old_shape)) return verdict;
-        const bool flat = warp(a, b, c, d) <= tolerance_;
-        if (!flat && verdict.before == Look::none) verdict.before = look(a, b, hint);
-        if (!flat && verdict.before == Look::off) {
-            const double was = fine_.surface()(middle(a, b));
-            verdict.flips = !fine_.surface().is_beyond(middle(c, d), 0.5 * was, hint);
-            return verdict;
+        if (new_shape < std::min(least_shape, old_shape)) return {false, before, Look::none};
+        const bool gains =
+            new_shape >= better_shape * old_shape
+            && (first | second) >= flip_cosine * first.norm() * second.norm()
+            && (old_shape <= least_shape || (old1 | old2) >= flip_cosine * old1.norm() * old2.norm());
+        if (warp(a, b, c, d) <= tolerance_) return {gains, before, before};
+        if (before != Look::none) return judge_bent({a, b, c, d}, before, gains, hint);
+        // What is not known yet follows from the four places alone.
+        Key key = 1;
+        for (Index v : {a, b, c, d}) key = mix(key ^ names_[v]);
+        const unsigned known = fine_.remembered(key, [&] {
+            const Verdict verdict = judge_bent({a, b, c, d}, Look::none, gains, hint);
+            return unsigned{verdict.flips} + 2 * static_cast<unsigned>(verdict.before)
+                   + 8 * unsigned{verdict.after == Look::on};
+        });
+        return {known % 2 == 1, static_cast<Look>(known / 2 % 4), known / 8 == 1 ? Look::on : Look::none};
+    }
+
+    /// The two triangles at a-b, their other corners c and d, are not in a plane; would their shape gain?
+    Verdict judge_bent(const std::array<Index, 4>& corners, Look before, bool gains, Index& hint) const {
+        const auto [a, b, c, d] = corners;
+        if (before == Look::none) before = look(a, b, hint);
+        if (before == Look::off) {
+            const double was = fine_.surface()(middle(a, b), hint);
+            return {!fine_.surface().is_beyond(middle(c, d), 0.5 * was, hint), before, Look::none};
         }
-        if (new_shape < better_shape * old_shape) return verdict;
-        if ((first | second) < flip_cosine * first.norm() * second.norm()) return verdict;
-        if ((old1 | old2) < flip_cosine * old1.norm() * old2.norm() && old_shape > least_shape)
-            return verdict;
-        verdict.after = flat ? verdict.before : look(c, d, hint);
-        verdict.flips = flat || verdict.after == Look::on;
-        return verdict;
+        if (!gains) return {false, before, Look::none};
+        const Look after = look(c, d, hint);
+        return {after == Look::on, before, after};
     }
 
     /// Lays the diagonal of the two triangles at side s the other way if that is better.
@@ -235,6 +241,8 @@ private:
                    look_ad = look_[next_side(t)], look_db = look_[previous_side(t)];
         const Index one = s - s % 3, two = t - t % 3;
         turned_[one / 3] = turned_[two / 3] = 1;
+        for (const Index side : {one, two, ca, bc, ad, db})
+            if (side != no_index) waits_[side / 3] = 1;
         const auto place = [&](Index from, std::array<Index, 3> corners) {
             for (Index k = 0; k < 3; ++k) corners_[from + k] = corners[k];
         };
@@ -326,8 +334,10 @@ private:
     std::vector<Index> facet_;         // per triangle, the facet it was cut from
     std::vector<Index> twin_;          // per side of a triangle
     std::vector<Look> look_;           // per side
+    std::vector<Key> names_;           // per vertex, of its place
     std::vector<Verdict> verdicts_;    // per side, as of the sweep's start
     std::vector<std::uint8_t> turned_; // per triangle, in this sweep
+    std::vector<std::uint8_t> waits_;  // per triangle, has it sides to be turned or judged anew?
     Index hint_ = no_index;
     std::vector<Index> facets_, least_facets_; // per vertex: three, or one at a border
 };

@@ -29,7 +29,7 @@ public:
         if (i >= end_) begin_at(i);
         const TriangleTree::Nearest nearest =
             has_part_ ? tree_.nearest(part_, points_[i]) : tree_.nearest(points_[i], hint_);
-        hint_ = nearest.block;
+        hint_ = nearest.place;
         return nearest;
     }
 
@@ -85,6 +85,12 @@ double MeshDistance::operator()(const Vec3& point) const {
     return std::sqrt(tree_.nearest(point).squared);
 }
 
+double MeshDistance::operator()(const Vec3& point, Index& hint) const {
+    const TriangleTree::Nearest nearest = tree_.nearest(point, hint);
+    hint = nearest.place;
+    return std::sqrt(nearest.squared);
+}
+
 Distance MeshDistance::operator()(std::span<const Vec3> points, double enough) const {
     Distance distance;
     if (points.empty()) return distance;
@@ -97,7 +103,7 @@ Distance MeshDistance::operator()(std::span<const Vec3> points, double enough) c
             // One triangle that is near enough is found sooner than all that could be nearer.
             const TriangleTree::Nearest nearest =
                 enough > 0 ? tree_.nearest(points[i], hint, enough * enough) : packets(i);
-            hint = nearest.block;
+            hint = nearest.place;
             const double d = std::sqrt(nearest.squared);
             sums.sum += d;
             sums.squares += nearest.squared;
@@ -120,23 +126,11 @@ Index MeshDistance::nearest_facet(const Vec3& point) const {
     return triangle == no_index ? no_index : facet_[triangle];
 }
 
-bool MeshDistance::is_beyond(const Vec3& point, double bound, Index& hint) const {
-    const TriangleTree::Nearest nearest = tree_.nearest(point, hint, bound * bound);
-    hint = nearest.block;
-    return std::sqrt(nearest.squared) > bound;
-}
-
-std::vector<Index> MeshDistance::facets_within(std::span<const Vec3> points, double bound) const {
-    std::vector<Index> facets(points.size(), no_index);
-    tbb::parallel_for(std::size_t{0}, (points.size() + chunk - 1) / chunk, [&](std::size_t c) {
-        Index hint = no_index;
-        for (std::size_t i = c * chunk; i < std::min(points.size(), (c + 1) * chunk); ++i) {
-            const TriangleTree::Nearest nearest = tree_.nearest(points[i], hint, bound * bound);
-            hint = nearest.block;
-            if (std::sqrt(nearest.squared) <= bound) facets[i] = facet_[nearest.triangle];
-        }
-    });
-    return facets;
+Index MeshDistance::triangle_within(const Vec3& point, double bound, Index& hint) const {
+    const TriangleTree::Nearest found = tree_.within(point, bound, hint);
+    if (found.place == no_index) return no_index;
+    hint = found.place;
+    return std::sqrt(found.squared) <= bound ? found.triangle : no_index;
 }
 
 Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh, double enough) {

@@ -21,22 +21,27 @@ class MeshDistance {
 public:
     /// O(t log t), parallel. The mesh need not outlive it.
     explicit MeshDistance(const PolygonMesh& mesh);
+    /// As above, of a mesh that is cut already.
+    MeshDistance(const PolygonMesh& mesh, const Triangulation& cut);
     /// Distance from a point to the nearest triangle; infinity if the mesh has no facet.
     double operator()(const Vec3& point) const;
+    /// `hint` is no_index or what a call for a point nearby left there: it changes the time alone.
+    double operator()(const Vec3& point, Index& hint) const;
     /// All points; parallel, quickest when neighbours in the list are neighbours in space, the same bits for
     /// any number of threads. Zero for an empty list. Distances up to `enough` may come out larger, though
     /// never above it: whether a bound is kept is known several times sooner than by how much.
     Distance operator()(std::span<const Vec3> points, double enough = 0) const;
-    /// Per point a facet no farther than `bound`, or no_index if there is none. Several times quicker than
-    /// distances where few are.
-    std::vector<Index> facets_within(std::span<const Vec3> points, double bound) const;
     /// The facet nearest to a point, or no_index if the mesh has none.
     Index nearest_facet(const Vec3& point) const;
-    /// One point; `hint` is no_index or what the call for a point nearby left there.
-    bool is_beyond(const Vec3& point, double bound, Index& hint) const;
+    /// A triangle of the cut mesh no farther than `bound`, or no_index if there is none; several times
+    /// quicker than distances. `hint` is no_index or what the call for a point nearby left there: which
+    /// triangle depends on it.
+    Index triangle_within(const Vec3& point, double bound, Index& hint) const;
+    bool is_beyond(const Vec3& point, double bound, Index& hint) const {
+        return triangle_within(point, bound, hint) == no_index;
+    }
 
 private:
-    explicit MeshDistance(const PolygonMesh& mesh, const Triangulation& cut);
     TriangleTree tree_;
     std::vector<Index> facet_; // per triangle
 };

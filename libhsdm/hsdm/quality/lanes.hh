@@ -7,6 +7,7 @@ namespace hsdm {
 
 using Double2 = double __attribute__((vector_size(16)));
 using Float4 = float __attribute__((vector_size(16)));
+using Int4 = int __attribute__((vector_size(16)));
 
 template <class Lanes>
 inline Lanes min_lanes(Lanes a, Lanes b) {
@@ -31,6 +32,14 @@ inline bool any(Lanes held) {
     using Long2 = long long __attribute__((vector_size(16)));
     const auto halves = reinterpret_cast<Long2>(held);
     return (halves[0] | halves[1]) != 0;
+}
+
+/// A bit for each of four lanes where a comparison holds.
+inline unsigned lanes_of(Int4 held) {
+    using Long2 = long long __attribute__((vector_size(16)));
+    const auto halves = reinterpret_cast<Long2>(held & Int4{1, 2, 4, 8});
+    const auto bits = static_cast<unsigned long long>(halves[0] | halves[1]);
+    return static_cast<unsigned>(bits | bits >> 32) & 15;
 }
 
 } // namespace hsdm

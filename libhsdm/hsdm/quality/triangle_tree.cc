@@ -201,7 +201,8 @@ Double2 TriangleTree::squared_distances(const Pair& pair, const std::array<Doubl
 /// error, cannot come below the best.
 class TriangleTree::Search {
 public:
-    Search(const TriangleTree& tree, const Vec3& given) : tree_(tree) {
+    /// Of what is farther than `most` nothing need be found.
+    Search(const TriangleTree& tree, const Vec3& given, double most = infinity) : tree_(tree) {
         const Vec3 point = given - tree.centre_;
         double rounding = 0;
         for (unsigned k = 0; k < 3; ++k) {
@@ -210,19 +211,22 @@ public:
             rounding += std::abs(point[k] - static_cast<double>(point_[k]));
         }
         slack_ = 102 * rounding * rounding;
+        limit_ = limit(most * most);
     }
 
     void look_at(Index block) {
-        const Double2 one = squared_distances(tree_.blocks_[block][0], spread_),
-                      other = squared_distances(tree_.blocks_[block][1], spread_),
-                      pairs = min_lanes(one, other);
+        const Double2 one = to_pair(block, 0), other = to_pair(block, 1), pairs = min_lanes(one, other);
         const double squared = std::min(pairs[0], pairs[1]);
         if (!(squared < best_.squared)) return;
-        best_.squared = squared;
-        best_.block = block;
-        lane_ = one[0] == squared ? 0 : one[1] == squared ? 1 : other[0] == squared ? 2 : 3;
-        // No less than the square of the distance and the rounding together, and a little.
-        limit_ = static_cast<float>(1.01 * squared + slack_) + std::numeric_limits<float>::min();
+        const Index lane = one[0] == squared ? 0 : one[1] == squared ? 1 : other[0] == squared ? 2 : 3;
+        take(squared, block * static_cast<Index>(width) + lane);
+    }
+
+    /// At two triangles, one of them at this place.
+    void look_around(Index place) {
+        const Double2 pair = to_pair(place / width, place / 2 % 2);
+        const Index lane = pair[1] < pair[0];
+        take(pair[lane], place - place % 2 + lane);
     }
 
     /// Per child of a node, the squared distance to its box.
@@ -239,20 +243,34 @@ public:
 
     Nearest result() const {
         Nearest best = best_;
-        if (best.block != no_index)
+        if (best.place != no_index)
             best.triangle =
-                tree_.triangle_of_[std::min(best.block * width + lane_, tree_.triangle_of_.size() - 1)];
+                tree_.triangle_of_[std::min<std::size_t>(best.place, tree_.triangle_of_.size() - 1)];
         return best;
     }
 
 private:
+    Double2 to_pair(std::size_t block, std::size_t half) const {
+        return squared_distances(tree_.blocks_[block][half], spread_);
+    }
+
+    void take(double squared, Index place) {
+        best_.squared = squared;
+        best_.place = place;
+        limit_ = std::min(limit_, limit(squared));
+    }
+
+    /// No less than the square of the distance and the rounding together, and a little.
+    float limit(double squared) const {
+        return static_cast<float>(1.01 * squared + slack_) + std::numeric_limits<float>::min();
+    }
+
     const TriangleTree& tree_;
     std::array<Double2, 3> spread_{};
     std::array<float, 3> point_{};
     double slack_ = 0;
     float limit_ = infinity;
     Nearest best_;
-    std::size_t lane_ = 0; // of the nearest
 };
 
 /// Nodes or, below them, blocks. Coordinates so large that floats overflow lead to absent ones too.
@@ -262,36 +280,63 @@ std::size_t TriangleTree::size_of(int level) const {
     return (next < level_first_.size() ? level_first_[next] : nodes_.size()) - level_first_[next - 1];
 }
 
-TriangleTree::Nearest TriangleTree::nearest(const Vec3& point, Index hint, double enough) const {
-    if (block_count_ == 0) return {};
-    Search search(*this, point);
-    if (hint != no_index) search.look_at(hint);
+/// All that is below a node, but for what is known, until something is near enough.
+void TriangleTree::descend(Search& search, const Node& from, const Node& known, double enough) const {
     struct Entry {
         float squared;
-        Index child; // index in its level, or block
-        int level;   // -1: a block
+        Node node;
     };
     std::array<Entry, stack_size> stack;
     std::size_t top = 0;
-    stack[top++] = {0, 0, static_cast<int>(level_first_.size()) - 1};
-    while (top > 0 && search.squared() > enough) {
-        const Entry entry = stack[--top];
-        if (!search.reaches(entry.squared)) continue;
-        if (entry.squared == infinity && entry.child >= size_of(entry.level)) continue;
-        if (entry.level < 0) {
-            if (entry.child != hint) search.look_at(entry.child);
-            continue;
-        }
+    // Nearest child last, so that it is the next one taken.
+    const auto push_children = [&](const Node& node) {
         const Float4 squared =
-            search.to_children(nodes_[level_first_[static_cast<std::size_t>(entry.level)] + entry.child]);
-        // Nearest child last, so that it is the next one taken.
+            search.to_children(nodes_[level_first_[static_cast<std::size_t>(node.level)] + node.index]);
         const std::size_t bottom = top;
-        for (std::size_t i = 0; i < width; ++i) {
-            if (!search.reaches(squared[i])) continue;
+        for (unsigned left = lanes_of(search.reaches(squared)); left != 0; left &= left - 1) {
+            const auto i = static_cast<Index>(std::countr_zero(left));
+            const Node child{node.level - 1, static_cast<Index>(width) * node.index + i};
+            if (child.index == known.index && child.level == known.level) continue;
             std::size_t at = top++;
             for (; at > bottom && stack[at - 1].squared < squared[i]; --at) stack[at] = stack[at - 1];
-            stack[at] = {squared[i], static_cast<Index>(width * entry.child + i), entry.level - 1};
+            stack[at] = {squared[i], child};
         }
+    };
+    push_children(from);
+    while (top > 0 && search.squared() > enough) {
+        const auto [squared, node] = stack[--top];
+        if (!search.reaches(squared)) continue;
+        if (squared == infinity && node.index >= size_of(node.level)) continue;
+        if (node.level < 0)
+            search.look_at(node.index);
+        else
+            push_children(node);
+    }
+}
+
+TriangleTree::Nearest TriangleTree::nearest(const Vec3& point, Index hint, double enough) const {
+    if (block_count_ == 0) return {};
+    Search search(*this, point);
+    const Index block = block_of(hint);
+    if (block != no_index) search.look_at(block);
+    if (search.squared() > enough) descend(search, root(), {-1, block}, enough);
+    return search.result();
+}
+
+TriangleTree::Nearest TriangleTree::within(const Vec3& point, double bound, Index hint) const {
+    if (block_count_ == 0) return {};
+    Search search(*this, point, bound);
+    const double enough = bound * bound;
+    if (hint == no_index) {
+        descend(search, root(), {-1, no_index}, enough);
+        return search.result();
+    }
+    search.look_around(hint);
+    if (search.squared() > enough) search.look_at(block_of(hint));
+    for (Node known{-1, block_of(hint)}; search.squared() > enough && known.level < root().level;) {
+        const Node up{known.level + 1, known.index / static_cast<Index>(width)};
+        descend(search, up, known, enough);
+        known = up;
     }
     return search.result();
 }
@@ -354,7 +399,6 @@ TriangleTree::Nearest TriangleTree::nearest(const Part& part, const Vec3& point)
     if (part.count_ == 0) return search.result();
     const std::size_t nodes = part.count_ / width;
     // Per lane the least, its node in the lowest bits: floats that are not negative are in order as integers.
-    using Int4 = std::int32_t __attribute__((vector_size(16)));
     static_assert(std::has_single_bit(Part::most_nodes));
     constexpr std::int32_t node_bits = Part::most_nodes - 1;
     Int4 least = Int4{} + std::numeric_limits<std::int32_t>::max();

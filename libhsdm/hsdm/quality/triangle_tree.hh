@@ -21,15 +21,18 @@ public:
     /// O(t log t), parallel; the same tree for any number of threads. Nothing given need outlive it.
     TriangleTree(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
 
-    /// A squared distance, the nearest triangle, and the block that holds it.
+    /// A squared distance, the nearest triangle, and its place in the tree.
     struct Nearest {
         double squared = std::numeric_limits<double>::infinity();
-        Index block = no_index, triangle = no_index;
+        Index place = no_index, triangle = no_index;
     };
-    /// Nearest triangle to a point in the mesh's own coordinates. `hint` is a block to begin with (the answer
+    /// Nearest triangle to a point in the mesh's own coordinates. `hint` is a place to begin at (the answer
     /// for a point nearby), or no_index: it changes the time, never the distance. Any triangle whose squared
     /// distance is no more than `enough` will do.
     Nearest nearest(const Vec3& point, Index hint = no_index, double enough = 0) const;
+    /// A triangle whose distance, the root of `squared`, is no more than `bound` where there is one. With a
+    /// hint nearby several times quicker than the nearest one, as the search goes up from there.
+    Nearest within(const Vec3& point, double bound, Index hint = no_index) const;
 
     /// Blocks in a part of space, to look through instead of the whole tree.
     class Part;
@@ -49,6 +52,7 @@ public:
 
 private:
     static constexpr std::size_t width = 4;
+    static Index block_of(Index place) { return place == no_index ? no_index : place / width; }
 
     /// Boxes of four children; an absent child's box is empty.
     struct Boxes {
@@ -73,6 +77,13 @@ private:
     void fill_blocks(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
     void build_levels(std::vector<Boxes>& block_boxes);
     std::size_t size_of(int level) const;
+    /// A node, or below them a block.
+    struct Node {
+        int level; ///< -1: of the blocks
+        Index index;
+    };
+    Node root() const { return {static_cast<int>(level_first_.size()) - 1, 0}; }
+    void descend(Search& search, const Node& from, const Node& known, double enough) const;
     static void put(Pair& pair, std::size_t lane, const Vec3& a, const Vec3& ab, const Vec3& ac);
     LaneBoxes boxes_of(const Pair& pair) const;
     void pair_up(Index block, Index other, std::vector<TrianglePair>& pairs) const;
