@@ -143,7 +143,7 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
 void add_text_options(CLI::App& app, ReconstructArguments& a) {
     const std::string files = "Files";
     app.add_option("--input-format", a.read.format, "the input's format, where no extension names it")
-        ->check(CLI::IsMember({"ply", "xyz", "csv", "pts", "ptx", "pwn", "off", "obj", "stl"}))
+        ->check(CLI::IsMember({"ply", "pcd", "xyz", "csv", "pts", "ptx", "pwn", "off", "obj", "stl"}))
         ->type_name("FORMAT")
         ->group(files);
     app.add_option("--columns", a.read.columns, "columns of a text file, e.g. x,y,z,nx,ny,nz,r,g,b,_")
@@ -153,8 +153,8 @@ void add_text_options(CLI::App& app, ReconstructArguments& a) {
 
 void add_file_options(CLI::App& app, ReconstructArguments& a) {
     app.add_option("input", a.inputs,
-                   "point files (PLY, XYZ, TXT, ASC, CSV, PTS, PTX, PWN; the vertices of OFF, OBJ, "
-                   "STL); - is standard input")
+                   "point files (PLY, PCD, XYZ, TXT, ASC, CSV, PTS, PTX, PWN; the vertices of OFF, "
+                   "OBJ, STL); - is standard input")
         ->required()
         ->type_name("INPUT...");
     const std::string files = "Files";

@@ -18,7 +18,9 @@ struct Scalar {
     bool is_label = false;      ///< integers that must not be averaged: a vertex takes the majority's
 };
 
+/// Whether no coordinate is NaN or Inf. O(n), parallel.
 bool all_finite(std::span<const Vec3> positions);
+/// The box of positions; empty if there are none. O(n), parallel.
 Box bounds_of(std::span<const Vec3> positions);
 
 /// Points in the cloud's units, structure of arrays. Optional arrays are empty or hold one entry per point.

@@ -67,6 +67,20 @@ TEST_CASE("triangles of a flat sheet become quads again", "[adaptive]") {
     CHECK(measure_topology(mesh).euler == 1);
 }
 
+TEST_CASE("what is remembered of one mesh changes nothing in the next", "[adaptive]") {
+    const PolygonMesh mesh =
+        cut_in_two(sheet([](double x, double y) { return 0.06 * std::sin(2 * x) * std::cos(3 * y); }));
+    const MeshDistance surface(sheet([](double x, double y) { return 0.02 * x * y / 6; }));
+    SurfaceBand band(surface, 0.05, mesh.vertex_count());
+    const std::vector<std::uint8_t> settled(mesh.vertex_count(), 0);
+    PolygonMesh first = mesh, second = mesh;
+    const TidyCounts once = tidy_facets(first, band, settled), again = tidy_facets(second, band, settled);
+    CHECK(once.flipped > 0);
+    CHECK(again.flipped == once.flipped);
+    CHECK(second.corners == first.corners);
+    CHECK(second.first == first.first);
+}
+
 TEST_CASE("quads across a crease are cut along it", "[adaptive]") {
     // A roof whose ridge runs along the diagonals from (x, x) to (x + 1, x + 1).
     PolygonMesh mesh = sheet([](double x, double y) { return -std::abs(x - y); });

@@ -26,6 +26,15 @@ std::string binary_ply(bool big) {
     return text + bytes_of(std::uint8_t(1)) + bytes_of(std::int32_t(0), big);
 }
 
+std::string binary_pcd() {
+    std::string text = "VERSION .7\nFIELDS x y z _ stamp rgba\nSIZE 4 8 2 1 8 4\nTYPE F F I U U U\n"
+                       "COUNT 1 1 1 3 1 1\nWIDTH 2\nHEIGHT 2\nDATA binary\n";
+    for (int i = 0; i < 4; ++i)
+        text += bytes_of(static_cast<float>(i)) + bytes_of(0.5 * i) + bytes_of(static_cast<std::int16_t>(i))
+                + "abc" + bytes_of(std::uint64_t(i)) + bytes_of(std::uint32_t(i));
+    return text;
+}
+
 std::string list_ply() {
     std::string text =
         "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty list int short "
@@ -84,6 +93,10 @@ std::vector<NamedContent> valid_point_files() {
         {"b.ply", binary_ply(false)},
         {"c.ply", binary_ply(true)},
         {"d.ply", list_ply()},
+        {"a.pcd", "# .PCD v.7\nVERSION .7\nFIELDS x y z rgb normal_x normal_y normal_z\nSIZE 4 4 4 4 4 4 4\n"
+                  "TYPE F F F U F F F\nWIDTH 3\nHEIGHT 1\nVIEWPOINT 1 2 3 1 0 0 0\nPOINTS 3\nDATA ascii\n"
+                  "1 2 3 255 0 0 1\nnan 5 6 65280 0 1 0\n4 5 6 7 1 0 0\n"},
+        {"b.pcd", binary_pcd()},
     };
 }
 
@@ -111,6 +124,9 @@ std::string damaged(const std::string& content, support::Random& random) {
         "element vertex 9\n",
         "property list int int q\n",
         "property double x\n",
+        "COUNT 1 1 1 999\n",
+        "POINTS 9\n",
+        "DATA binary\n",
         "p 1 2 3\n",
         "v 1 2 3\n",
         " ",
@@ -151,7 +167,7 @@ std::string fuzz_reading(std::uint64_t seed, int rounds) {
     const auto files = valid_point_files();
     support::Random random(seed);
     const std::string columns[] = {"", "", "", "x,y,z", "_,z,y,x,label", "x,y,z,nx,ny,nz,r,g,b"};
-    const std::string formats[] = {"",    "",    "",    "ply", "xyz", "off",
+    const std::string formats[] = {"",    "",    "",    "ply", "pcd", "xyz",  "off",
                                    "obj", "stl", "pts", "ptx", "pwn", "hoppe"};
     for (int round = 0; round < rounds; ++round)
         for (const NamedContent& file : files) {

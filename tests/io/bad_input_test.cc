@@ -119,8 +119,6 @@ TEST_CASE("binary files of other kinds are refused by their kind", "[io]") {
     CHECK(error_of("a.las", std::string("LASF\0\0\1\2", 8))
           == "a.las: is a LAS or LAZ file, which is not read; convert it to PLY or XYZ text");
     CHECK(error_of("a.xyz", "\x1f\x8b\x08").find("is a gzip file") != std::string::npos);
-    CHECK(error_of("a.pcd", "# .PCD v.7\nVERSION .7\nFIELDS x y z\n").find("is a PCD file")
-          != std::string::npos);
     CHECK(error_of("a.csv", std::string("\xff\xfe"
                                         "1\0 \0",
                                         6))

@@ -1,5 +1,6 @@
 #include "hsdm/errors.hh"
 #include "hsdm/normals/estimate_normals.hh"
+#include "support/random.hh"
 #include "support/sample.hh"
 
 #include <catch2/catch.hpp>
@@ -86,6 +87,28 @@ TEST_CASE("noise between far scan lines is no curvature", "[normals]") {
     for (std::size_t i = 0; i < octree.size(); ++i)
         turned += std::abs(plain.normals[i] | refined[i]) < std::cos(15 * degree);
     CHECK(turned < octree.size() / 200);
+}
+
+TEST_CASE("refined normals do not depend on the sides of the others", "[normals]") {
+    const Octree octree =
+        build_octree(support::sample(support::mechanical_part(), {.points = 15000, .position_noise = 0.003}));
+    const Neighbors neighbors = find_neighbors(octree);
+    EstimatedNormals estimate = estimate_normals(octree, neighbors);
+    const std::vector<Vec3> refined = refined_normals(octree, neighbors, estimate);
+    support::Random random(6);
+    std::vector<double> side(octree.size());
+    for (std::size_t i = 0; i < octree.size(); ++i) {
+        side[i] = random.uniform(0, 1) < 0.5 ? -1 : 1;
+        estimate.normals[i] *= side[i];
+    }
+    const std::vector<Vec3> turned = refined_normals(octree, neighbors, estimate);
+    std::size_t different = 0, changed = 0;
+    for (std::size_t i = 0; i < octree.size(); ++i) {
+        different += turned[i] != refined[i] * side[i];
+        changed += turned[i] != estimate.normals[i];
+    }
+    CHECK(different == 0);
+    CHECK(changed > octree.size() / 2);
 }
 
 TEST_CASE("neighbours on a line give no normal", "[normals]") {

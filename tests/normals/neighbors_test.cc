@@ -75,6 +75,26 @@ TEST_CASE("many points in one place cost no more than others and have neighbours
     }
 }
 
+TEST_CASE("equal points have neighbours, and so have points whose squared distances no float can hold",
+          "[normals]") {
+    support::Random random(5);
+    for (double size : {1e-30, 1.0, 1e30, 1e45}) {
+        PointCloud cloud;
+        for (int i = 0; i < 40; ++i) cloud.positions.emplace_back(0, 0, 0);
+        for (int i = 0; i < 300; ++i) cloud.positions.push_back(random.direction() * size);
+        const Octree octree = build_octree(cloud, {.merge_duplicates = false});
+        const Neighbors neighbors = find_neighbors(octree);
+        for (Index i = 0; i < octree.size(); ++i) {
+            const std::vector<Index> found = sorted(neighbors.of(i));
+            CHECK(std::adjacent_find(found.begin(), found.end()) == found.end());
+            CHECK(found.back() < octree.size());
+            if (size >= 1 && octree.positions[i] == -octree.origin) // the nearest are those in the same place
+                CHECK(std::ranges::all_of(
+                    found, [&](Index j) { return octree.positions[j] == octree.positions[i]; }));
+        }
+    }
+}
+
 TEST_CASE("two parts too far apart for one octree cost no more than others", "[normals][slow]") {
     support::Random random(5);
     PointCloud cloud;

@@ -142,7 +142,7 @@ std::vector<Index> BoundCheck::far_facets(const PolygonMesh& mesh) {
         for (Index v : cut_.triangles[t]) at_border = 2 * at_border + border[v];
         if (at_border != 0) keys[t] = mix(keys[t] ^ at_border);
     }
-    std::vector<Index> far =
+    std::vector<Index> facets =
         far_of(std::move(keys), near_keys_, [&](Index t, Index& hint, std::vector<Vec3>& places) {
             if (fine_keys_.contains(keys_[t])) return false;
             places.clear();
@@ -151,11 +151,9 @@ std::vector<Index> BoundCheck::far_facets(const PolygonMesh& mesh) {
             return std::any_of(places.begin(), places.end(),
                                [&](const Vec3& place) { return to_fine_.is_beyond(place, bound_, hint); });
         });
-    for (Index& t : far) // becomes its facet
-        t = static_cast<Index>(std::upper_bound(cut_.first.begin(), cut_.first.end(), t) - cut_.first.begin()
-                               - 1);
-    far.erase(std::unique(far.begin(), far.end()), far.end());
-    return far;
+    for (Index& t : facets) t = to_mesh_->facet_of(t);
+    facets.erase(std::unique(facets.begin(), facets.end()), facets.end());
+    return facets;
 }
 
 FarPoints BoundCheck::find_far_points() {

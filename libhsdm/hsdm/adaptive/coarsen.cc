@@ -11,6 +11,7 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace hsdm {
@@ -326,8 +327,8 @@ private:
 
 AdaptiveMesh coarsen(const PolygonMesh& fine, std::span<const Vec3> points, double extent, int depth,
                      const CoarsenOptions& options) {
-    if (!(options.max_error > 0))
-        throw OptionError("max_error " + std::to_string(options.max_error) + ": must be positive");
+    if (!(options.max_error > 0 && std::isfinite(options.max_error)))
+        throw OptionError("max_error " + std::to_string(options.max_error) + ": must be positive and finite");
     if (options.rounds < 1)
         throw OptionError("rounds " + std::to_string(options.rounds) + ": must be 1 or more");
     return Coarsening(fine, points, extent, depth, options).run();

@@ -17,9 +17,8 @@ namespace {
 
 constexpr double least_share = 0.2; // of the tolerance: what goes wrong below is not merged
 constexpr double few_leaves = 0.02; // of all: so few need not be merged
-constexpr double wide =
-    1.75; // times the tolerance, for drops: with twice as much, places between those looked at go far
-constexpr int most_rings = 4; // of facets around something wrong
+constexpr double drop_share = 1.75; // of the tolerance: with twice that, places not looked at go far
+constexpr int most_rings = 4;       // of facets around something wrong
 
 struct Faults {
     FaultCounts counts;
@@ -179,7 +178,7 @@ MergedLeaves merge_leaves(const LeafMesh& leaves, std::span<const Quadric> plane
     MergeLeavesOptions drop_options = options;
     drop_options.faults = merged.faults;
     const std::vector<Drop> drops =
-        find_drops(base.mesh, checks.bound().to_fine(), wide * checks.band().tolerance());
+        find_drops(base.mesh, checks.bound().to_fine(), drop_share * checks.band().tolerance());
     const auto by_distance = [&](PolygonMesh& mesh, const std::vector<double>& tolerance) {
         std::vector<std::uint8_t> may_go(tolerance.size()); // what was wrong once stays
         for (std::size_t v = 0; v < may_go.size(); ++v) may_go[v] = tolerance[v] >= checks.band().tolerance();

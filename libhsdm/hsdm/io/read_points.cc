@@ -10,7 +10,7 @@ namespace hsdm {
 namespace io {
 namespace {
 
-enum class Format { unknown, table, ply, ptx, off, obj, hoppe, stl };
+enum class Format { unknown, table, ply, pcd, ptx, off, obj, hoppe, stl };
 
 struct KnownName {
     std::string_view name;
@@ -21,6 +21,7 @@ struct KnownName {
 /// Extensions, which are also the values of ReadOptions::format.
 constexpr KnownName known_names[] = {
     {"ply", Format::ply},
+    {"pcd", Format::pcd},
     {"xyz", Format::table},
     {"csv", Format::table},
     {"txt", Format::table},
@@ -42,7 +43,6 @@ struct Magic {
 constexpr Magic unread[] = {
     {"LASF", "a LAS or LAZ file"},
     {"ASTM-E57", "an E57 file"},
-    {"# .PCD", "a PCD file"},
     {"\x1f\x8b", "a gzip file"},
     {"PK\x03\x04", "a ZIP file"},
     {"glTF", "a glTF file"},
@@ -102,6 +102,7 @@ Format recognise(const SourceBytes& bytes) {
     const std::string_view view = text.view();
     if (view.starts_with("ply") && view.size() > 3 && (is_blank(view[3]) || view[3] == '\n'))
         return Format::ply;
+    if (is_pcd(text)) return Format::pcd;
     if (is_binary_stl(bytes) || is_text_stl(bytes)) return Format::stl;
     if (is_binary(text)) return Format::unknown;
     return is_ptx(text) ? Format::ptx : recognise_lines(text);
@@ -146,6 +147,8 @@ PointFile read_as(const SourceBytes& bytes, Format format, TableKind kind, const
     switch (format) {
     case Format::ply:
         return read_ply(bytes);
+    case Format::pcd:
+        return read_pcd(bytes);
     case Format::ptx:
         return read_ptx(bytes);
     case Format::off:
@@ -168,7 +171,7 @@ PointFile read_points(const SourceBytes& bytes, const ReadOptions& options) {
     const KnownName* forced = find_name(lower(options.format));
     if (!options.format.empty() && !forced)
         throw OptionError("format " + quoted(options.format)
-                          + ": known are ply, xyz, csv, txt, asc, pts, ptx, pwn, off, obj, stl, hoppe");
+                          + ": known are ply, pcd, xyz, csv, txt, asc, pts, ptx, pwn, off, obj, stl, hoppe");
     const KnownName* named = forced ? forced : find_name(extension_of(bytes.name()));
     const TableKind kind = named ? named->kind : TableKind::plain;
     const Format format = forced ? forced->format : recognise(bytes);

@@ -1,6 +1,6 @@
 #pragma once
-// Point files -> PointCloud. PLY, XYZ / TXT / ASC / CSV, PTS, PTX, PWN, Hoppe's `p x y z`, vertices of OFF,
-// OBJ, STL.
+// Point files -> PointCloud. PLY, PCD, XYZ / TXT / ASC / CSV, PTS, PTX, PWN, Hoppe's `p x y z`, vertices of
+// OFF, OBJ, STL.
 
 #include "hsdm/point_cloud.hh"
 
@@ -9,8 +9,8 @@
 namespace hsdm {
 
 struct ReadOptions {
-    /// "ply", "xyz" (or "txt", "asc", "csv": the same), "pts", "ptx", "pwn", "off", "obj", "stl", "hoppe";
-    /// empty: by the content where that is a sure sign, else by the file's extension.
+    /// "ply", "pcd", "xyz" (or "txt", "asc", "csv": the same), "pts", "ptx", "pwn", "off", "obj", "stl",
+    /// "hoppe"; empty: by the content where that is a sure sign, else by the file's extension.
     std::string format;
     /// Tables only: what each column is, e.g. "x,y,z,nx,ny,nz,r,g,b,_" (`_` is skipped); empty: told by a
     /// header line, else from the values. Throws OptionError if it cannot be.
@@ -25,9 +25,9 @@ struct PointFile {
 };
 
 /// Reads the points of a file; "-" is standard input. Coordinates that are not finite are kept (see
-/// drop_nonfinite). Throws Error `FILE:LINE: what, and what to do` if the file cannot be opened, is empty,
-/// truncated or malformed; OptionError for options that no file could satisfy. O(bytes), parallel; binary PLY
-/// files are not held in memory as a whole.
+/// drop_nonfinite), but for pixels of a PCD file. Throws Error `FILE:LINE: what, and what to do` if the file
+/// cannot be opened, is empty, truncated or malformed; OptionError for options that no file could satisfy.
+/// O(bytes), parallel; binary PLY files are not held in memory as a whole.
 PointFile read_points(const std::string& path, const ReadOptions& options = {});
 
 } // namespace hsdm

@@ -29,8 +29,8 @@ EstimatedNormals estimate_normals(const Octree& octree, const Neighbors& neighbo
                                   const EstimateOptions& options = {});
 
 /// Away from creases the plane gives way to a quadratic surface as far as that is the better of the two, and
-/// where points are rough all average over their neighbours of the same face. Each of the same side as it
-/// was; whatever sides the others are of; to find sides, planes serve better. O(n), parallel.
+/// where points are rough all average over their neighbours of the same face. Every normal keeps its side,
+/// and does not depend on the sides of the others; to find these, planes serve better. O(n), parallel.
 std::vector<Vec3> refined_normals(const Octree& octree, const Neighbors& neighbors,
                                   const EstimatedNormals& estimate);
 

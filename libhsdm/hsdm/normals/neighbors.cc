@@ -7,6 +7,7 @@
 
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 namespace hsdm {
 namespace {
@@ -85,9 +86,9 @@ public:
         measure(candidates, point);
         near_.resize(distance_.size() + 1);
         if (find_near(limit) < wanted) {
-            const float farthest = *std::max_element(distance_.begin(), distance_.end());
-            limit = std::max(farthest, std::numeric_limits<float>::min());
-            find_near(limit);
+            limit = *std::max_element(distance_.begin(), distance_.end());
+            count_ = distance_.size();
+            std::iota(near_.begin(), near_.end(), Index{0});
         }
         count_rings(limit);
         return take(wanted);
@@ -120,8 +121,9 @@ private:
         ring_.resize(count_);
         in_ring_.fill(0);
         for (std::size_t k = 0; k < count_; ++k) {
-            const float ring = std::min(distance_[near_[k]] * scale, rings - 1.0f);
-            ring_[k] = static_cast<std::uint32_t>(ring);
+            const float ring = distance_[near_[k]] * scale;
+            // Where distances underflow or overflow, what is no number belongs to the last ring, too.
+            ring_[k] = ring < rings - 1.0f ? static_cast<std::uint32_t>(ring) : rings - 1;
             ++in_ring_[ring_[k]];
         }
     }

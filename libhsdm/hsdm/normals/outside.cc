@@ -163,7 +163,8 @@ std::vector<std::int8_t> classify(std::size_t regions, const std::vector<Sights>
                                   const Patches& patches) {
     std::vector<SignedEdge> between;
     const auto relate = [&](Index a, Index b, float relation) {
-        if (a != b) between.push_back({std::min(a, b), std::max(a, b), relation, std::abs(relation)});
+        if (a != b && relation != 0)
+            between.push_back({std::min(a, b), std::max(a, b), relation, std::abs(relation)});
     };
     for (Index p = 0; p < seen.size(); ++p) {
         const auto weight = static_cast<float>(patches.counts[p]);

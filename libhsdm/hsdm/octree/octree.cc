@@ -141,8 +141,10 @@ Octree build_octree(const PointCloud& cloud, const OctreeOptions& options) {
     if (with_normals) octree.normals.resize(keys.size());
     tbb::parallel_for(Range(0, keys.size(), grain), [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            if (i + ahead < range.end()) prefetch(cloud.positions, keys[i + ahead].index);
-            if (with_normals && i + ahead < range.end()) prefetch(cloud.normals, keys[i + ahead].index);
+            if (i + ahead < range.end()) {
+                prefetch(cloud.positions, keys[i + ahead].index);
+                if (with_normals) prefetch(cloud.normals, keys[i + ahead].index);
+            }
             const Index source = keys[i].index;
             octree.codes[i] = keys[i].code;
             octree.source[i] = source;
@@ -260,7 +262,10 @@ OctreeLevel coarser_level(const OctreeLevel& finer, int depth) {
     const int shift = 3 * (finer.depth - depth);
     level.first_point = find_runs(finer.codes, shift);
     fill_level(finer.codes, shift, level.first_point, level);
-    for (Index& first : level.first_point) first = finer.first_point[first];
+    tbb::parallel_for(Range(0, level.first_point.size(), grain), [&](const Range& range) {
+        for (std::size_t v = range.begin(); v != range.end(); ++v)
+            level.first_point[v] = finer.first_point[level.first_point[v]];
+    });
     return level;
 }
 

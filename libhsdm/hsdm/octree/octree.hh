@@ -80,10 +80,10 @@ private:
 
 /// The voxels of one level of the HSDM, depth in [0, 21]. O(n), parallel.
 OctreeLevel extract_level(const Octree& octree, int depth);
-/// What is `first_point` of that level, without the rest of it.
-std::vector<Index> first_points(const Octree& octree, int depth);
 /// The same from a deeper level, of which only the voxels are looked at. O(voxels), parallel.
 OctreeLevel coarser_level(const OctreeLevel& finer, int depth);
+/// What is `first_point` of extract_level, without the rest of the level. O(n), parallel.
+std::vector<Index> first_points(const Octree& octree, int depth);
 
 /// Offsets of the 6 face, 12 edge and 8 corner neighbours: 6-, 18- and 26-adjacency is the first 6, 18, 26.
 extern const std::array<VoxelCoord, 26> neighbor_offsets;

@@ -37,6 +37,8 @@ public:
     /// quicker than distances. `hint` is no_index or what the call for a point nearby left there: which
     /// triangle depends on it.
     Index triangle_within(const Vec3& point, double bound, Index& hint) const;
+    /// The facet that a triangle of the cut mesh was cut from.
+    Index facet_of(Index triangle) const { return facet_[triangle]; }
     bool is_beyond(const Vec3& point, double bound, Index& hint) const {
         return triangle_within(point, bound, hint) == no_index;
     }

@@ -30,8 +30,9 @@ public:
     /// for a point nearby), or no_index: it changes the time, never the distance. Any triangle whose squared
     /// distance is no more than `enough` will do.
     Nearest nearest(const Vec3& point, Index hint = no_index, double enough = 0) const;
-    /// A triangle whose distance, the root of `squared`, is no more than `bound` where there is one. With a
-    /// hint nearby several times quicker than the nearest one, as the search goes up from there.
+    /// A triangle whose distance, the root of `squared`, is no more than `bound` where there is one, else one
+    /// that is farther, or none. With a hint nearby several times quicker than the nearest one, as the search
+    /// goes up from there.
     Nearest within(const Vec3& point, double bound, Index hint = no_index) const;
 
     /// Blocks in a part of space, to look through instead of the whole tree.

@@ -213,7 +213,8 @@ private:
 };
 
 /// The facets of all parts, one part after the other.
-void join_facets(const std::vector<PolygonMesh>& parts, PolygonMesh& mesh) {
+PolygonMesh joined_facets(const std::vector<PolygonMesh>& parts) {
+    PolygonMesh mesh;
     std::vector<std::size_t> corner(parts.size() + 1, 0), facet(parts.size() + 1, 0);
     for (std::size_t i = 0; i < parts.size(); ++i) {
         corner[i + 1] = corner[i] + parts[i].corners.size();
@@ -226,6 +227,7 @@ void join_facets(const std::vector<PolygonMesh>& parts, PolygonMesh& mesh) {
         for (std::size_t f = 0; f < parts[i].facet_count(); ++f)
             mesh.first[facet[i] + f + 1] = static_cast<Index>(corner[i]) + parts[i].first[f + 1];
     });
+    return mesh;
 }
 
 template <class To, class From>
@@ -296,7 +298,7 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
         FacetBuilder strip_builder(crossings, links, fans, midpoints, vertices, parts[chunks + chunk]);
         for (Index x = crossings.first[begin]; x < crossings.first[end]; ++x) strip_builder.add_strips(x);
     });
-    join_facets(parts, result.mesh);
+    result.mesh = joined_facets(parts);
     for (const std::vector<Index>& cap : fans.caps) result.mesh.add_facet(cap);
 
     result.mesh.positions = std::move(vertices.positions);

@@ -140,23 +140,23 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
 }
 
 std::vector<double> PointFit::rises(const std::vector<Heights>& heights) const {
-    struct Mean {
-        double square, variance;
+    struct Moments {
+        double square, variance; // of the mean
     };
-    std::vector<Mean> means(fans_.size());
+    std::vector<Moments> of_mean(fans_.size());
     for_chunks(fans_.size(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t v = begin; v < end; ++v)
-            means[v] = {heights[v].mean() * heights[v].mean(), heights[v].variance()};
+            of_mean[v] = {heights[v].mean() * heights[v].mean(), heights[v].variance()};
     });
     std::vector<double> rises(fans_.size(), 0);
     for_chunks(fans_.size(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t v = begin; v < end; ++v) {
-            Mean sum{0, 0};
+            Moments sum{0, 0};
             for (Node node : fans_.fan(static_cast<Index>(v)))
                 for (unsigned j = 0; j < 4; ++j) {
-                    const Mean& mean = means[fans_.at(node / 4, j, j)];
-                    sum.square += mean.square;
-                    sum.variance += mean.variance;
+                    const Moments& other = of_mean[fans_.at(node / 4, j, j)];
+                    sum.square += other.square;
+                    sum.variance += other.variance;
                 }
             if (sum.square > doubt * sum.variance)
                 rises[v] = heights[v].mean() * (1 - doubt * sum.variance / sum.square);
