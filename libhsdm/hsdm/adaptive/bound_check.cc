@@ -93,10 +93,15 @@ std::vector<Index> far_of(std::vector<Key> keys, KeySet& near, const IsFar& is_f
 } // namespace
 
 BoundCheck::BoundCheck(const PolygonMesh& fine, std::span<const Vec3> points, double bound, double spacing)
-    : fine_(fine), points_(points), bound_(bound), spacing_(spacing), to_fine_(fine) {
+    : fine_(fine),
+      points_(points),
+      bound_(bound),
+      spacing_(spacing),
+      cut_(triangulate(fine)),
+      to_fine_(fine, cut_) {
     const std::vector<Key> names = place_keys(fine.positions);
     fine_names_ = KeySet(names);
-    fine_keys_ = KeySet(triangle_keys(triangulate(fine), names));
+    fine_keys_ = KeySet(triangle_keys(cut_, names));
 }
 
 FarPlaces BoundCheck::find_far(const PolygonMesh& mesh) {

@@ -47,9 +47,9 @@ private:
     const PolygonMesh& fine_;
     std::span<const Vec3> points_;
     double bound_, spacing_;
+    Triangulation cut_; // of the mesh; before the first one, of the fine mesh
     MeshDistance to_fine_;
     std::optional<MeshDistance> to_mesh_;
-    Triangulation cut_;                         // of the mesh
     KeySet fine_names_, fine_keys_;             // of the fine mesh's vertices and triangles
     std::vector<Key> names_, keys_;             // of the mesh's
     KeySet present_;                            // keys of its triangles

@@ -1,6 +1,7 @@
 #include "hsdm/adaptive/crossing_check.hh"
 
 #include "hsdm/chunks.hh"
+#include "hsdm/point_cloud.hh"
 #include "hsdm/quality/self_intersections.hh"
 
 #include <algorithm>
@@ -78,9 +79,7 @@ private:
 
 /// Marked facets and those whose boxes may touch theirs, ascending.
 std::vector<Index> with_touching(const PolygonMesh& mesh, const std::vector<std::uint8_t>& marked) {
-    Box whole;
-    for (const Vec3& p : mesh.positions) whole.add(p);
-    BoxGrid grid(whole);
+    BoxGrid grid(bounds_of(mesh.positions));
     for (std::size_t f = 0; f < marked.size(); ++f)
         if (marked[f]) grid.add(box_of(mesh, f));
     grid.sum_up();
