@@ -12,6 +12,7 @@
 #include "hsdm/quality/distance.hh"
 #include "hsdm/quality/topology.hh"
 
+#include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 
 #include <cmath>
@@ -300,7 +301,9 @@ std::vector<Vec3> points_as_read(const PointCloud& cloud, const Octree& octree) 
 /// Distances up to `enough` may come out larger, though not above it.
 void measure_error(std::span<const Vec3> points, const Octree& octree, const PolygonMesh& facets,
                    double enough, Report& report) {
-    const Distance distance = points_to_mesh(points, facets, enough);
+    const bool by_cells = report.grid.kind == "uniform"; // facets are as large as voxels
+    const Distance distance = by_cells ? points_to_mesh_by_cells(points, facets, report.grid.voxel_size)
+                                       : points_to_mesh(points, facets, enough);
     report.error.points_to_mesh_max = distance.max;
     report.error.points_to_mesh_mean = distance.mean;
     report.error.points_to_mesh_rms = distance.rms;
@@ -312,18 +315,23 @@ void measure_error(std::span<const Vec3> points, const Octree& octree, const Pol
 void drop_and_measure(const std::vector<Vec3>& points, const Octree& octree,
                       const ReconstructOptions& options, PolygonMesh& facets, FeatureHints& hints,
                       Report& report) {
-    const bool bounded = report.grid.max_error > 0;
-    if (bounded || (options.measure && !options.min_component))
-        measure_error(points, octree, facets, options.measure ? 0 : report.grid.max_error, report);
+    bool measured = report.grid.max_error > 0;
+    if (measured) measure_error(points, octree, facets, options.measure ? 0 : report.grid.max_error, report);
     check_error_kept(report);
-    if (!options.measure) report.error = {};
     if (options.min_component) {
         const Islands islands = drop_islands(facets, hints, *options.min_component);
         note_islands(islands, report);
-        if (options.measure && (!bounded || islands.components > 0))
-            measure_error(points, octree, facets, 0, report);
+        measured = measured && islands.components == 0;
     }
-    if (options.measure) measure_mesh(facets, report);
+    if (!options.measure) {
+        report.error = {};
+        return;
+    }
+    tbb::parallel_invoke(
+        [&] {
+            if (!measured) measure_error(points, octree, facets, 0, report);
+        },
+        [&] { measure_mesh(facets, report); });
 }
 
 /// Phase 3 on the mesh, in the cloud's own coordinates.

@@ -251,3 +251,65 @@ TEST_CASE("surface samples lie on the mesh, in proportion to its area", "[distan
     CHECK(low == Approx(1000).margin(60));
     CHECK(sample_surface(mesh, 4000) == samples);
 }
+
+namespace {
+
+/// Quads over a grid of unit steps, their corners off by up to `rough` in every direction.
+PolygonMesh crumpled_sheet(int side, double rough, unsigned seed, const Vec3& at) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> off(-rough, rough);
+    PolygonMesh mesh;
+    for (int i = 0; i <= side; ++i)
+        for (int k = 0; k <= side; ++k)
+            mesh.positions.push_back(at + Vec3(i + off(random), k + off(random), off(random)));
+    const auto vertex = [&](int i, int k) { return static_cast<Index>(i * (side + 1) + k); };
+    for (int i = 0; i < side; ++i)
+        for (int k = 0; k < side; ++k)
+            mesh.add_facet(
+                std::array{vertex(i, k), vertex(i + 1, k), vertex(i + 1, k + 1), vertex(i, k + 1)});
+    return mesh;
+}
+
+} // namespace
+
+TEST_CASE("cells find the same distances as the tree, whatever their size", "[distance]") {
+    for (const double rough : {0.0, 0.3, 1.0}) {
+        PolygonMesh mesh = crumpled_sheet(20, rough, 17, {-7, 0.5, 0});
+        mesh.positions[50] = mesh.positions[51] = mesh.positions[52]; // facets without area
+        std::vector<Vec3> points;
+        for (const double near : {0.02, 0.5, 3.0}) // within a cell, in the next one, beyond
+            for (const Vec3& p : random_points(700, 18, 1))
+                points.push_back(Vec3(3 + 10 * p[0], 10.5 + 10 * p[1], near * p[2]));
+        const MeshDistance single(mesh);
+        const Distance by_tree = points_to_mesh(points, mesh);
+        for (const double cell : {0.01, 0.3, 1.0, 1.7, 100.0}) {
+            const Distance by_cells = points_to_mesh_by_cells(points, mesh, cell);
+            CHECK(by_cells.max == Approx(by_tree.max).epsilon(1e-12));
+            CHECK(by_cells.mean == Approx(by_tree.mean).epsilon(1e-12));
+            CHECK(by_cells.farthest == by_tree.farthest);
+        }
+        for (std::size_t i = 0; i < points.size(); i += 20) {
+            const Distance alone = points_to_mesh_by_cells({&points[i], 1}, mesh, 1);
+            CHECK(alone.max == Approx(single(points[i])).epsilon(1e-9).margin(1e-12));
+        }
+    }
+}
+
+TEST_CASE("cells measure triangles of all shapes, also those that lie in the walls between them",
+          "[distance]") {
+    PolygonMesh mesh = random_triangles(400, 19);
+    for (Vec3& p : mesh.positions)
+        if (std::abs(p[0]) < 0.3) p[0] = 0.25; // a wall
+    std::vector<Vec3> points = random_points(2000, 20, 1.2);
+    for (std::size_t i = 0; i < points.size(); i += 3) points[i][0] = 0.25;
+    const Distance by_tree = points_to_mesh(points, mesh);
+    for (const double cell : {0.25, 0.5}) {
+        const Distance by_cells = points_to_mesh_by_cells(points, mesh, cell);
+        CHECK(by_cells.max == Approx(by_tree.max).epsilon(1e-12));
+        CHECK(by_cells.rms == Approx(by_tree.rms).epsilon(1e-12));
+        tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+        CHECK(points_to_mesh_by_cells(points, mesh, cell).rms == by_cells.rms);
+    }
+    CHECK(points_to_mesh_by_cells({}, mesh, 1).max == 0);
+    CHECK(std::isinf(points_to_mesh_by_cells(points, {}, 1).max));
+}

@@ -184,3 +184,32 @@ TEST_CASE("meeting does not depend on which triangle is named first, nor on the 
 TEST_CASE("an empty mesh does not intersect itself", "[self_intersections]") {
     CHECK(pairs(PolygonMesh{}) == 0);
 }
+
+TEST_CASE("cells leave out no facets that intersect", "[self_intersections]") {
+    std::size_t meeting = 0, clear = 0;
+    for (unsigned seed = 0; seed < 60; ++seed) {
+        std::mt19937_64 random(seed);
+        const double rough = 0.02 * seed;
+        std::uniform_real_distribution<double> off(-rough, rough);
+        constexpr Index side = 9;
+        PolygonMesh mesh; // two sheets of quads above each other, one facet in ten missing
+        for (int sheet = 0; sheet < 2; ++sheet)
+            for (Index i = 0; i < side * side; ++i)
+                mesh.positions.push_back(Vec3(0.1 + i % side, 0.3 + i / side, sheet)
+                                         + Vec3(off(random), off(random), off(random)));
+        for (Index v = 0; v + side + 1 < mesh.vertex_count(); ++v)
+            if (v % side + 1 < side && v % (side * side) < side * (side - 1) && random() % 10 > 0)
+                mesh.add_facet(std::array{v, v + 1, v + side + 1, v + side});
+        if (seed % 3 == 0) mesh.add_facet(std::array<Index, 5>{0, 1, 2, side + 2, side}); // beside others
+        const SelfIntersections all = find_self_intersections(mesh);
+        (all.facet_pairs.empty() ? clear : meeting) += 1;
+        for (const double cell : {0.4, 1.0, 1.6}) {
+            const SelfIntersections found = find_self_intersections(mesh, cell);
+            CHECK(found.facet_pairs == all.facet_pairs);
+            CHECK(found.triangle_pairs == all.triangle_pairs);
+            CHECK(found.skipped == all.skipped);
+        }
+    }
+    CHECK(meeting > 20);
+    CHECK(clear > 5);
+}

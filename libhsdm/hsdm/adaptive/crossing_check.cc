@@ -1,6 +1,7 @@
 #include "hsdm/adaptive/crossing_check.hh"
 
 #include "hsdm/chunks.hh"
+#include "hsdm/facets/part_of.hh"
 #include "hsdm/point_cloud.hh"
 #include "hsdm/quality/self_intersections.hh"
 
@@ -89,23 +90,6 @@ std::vector<Index> with_touching(const PolygonMesh& mesh, const std::vector<std:
             if (marked[f] || grid.touches(box_of(mesh, f))) parts[c].push_back(static_cast<Index>(f));
     });
     return joined(parts);
-}
-
-/// Some facets of a mesh and their vertices.
-PolygonMesh part_of(const PolygonMesh& mesh, const std::vector<Index>& facets) {
-    PolygonMesh part;
-    std::vector<Index> number(mesh.vertex_count(), no_index);
-    for (Index f : facets) {
-        for (Index v : mesh.facet(f)) {
-            if (number[v] == no_index) {
-                number[v] = static_cast<Index>(part.positions.size());
-                part.positions.push_back(mesh.positions[v]);
-            }
-            part.corners.push_back(number[v]);
-        }
-        part.first.push_back(static_cast<Index>(part.corners.size()));
-    }
-    return part;
 }
 
 } // namespace

@@ -10,6 +10,8 @@ struct UntangleOptions {
     double step = 0.5; ///< (0, 1]: share of the way a vertex moves to the mean of its neighbours in a round
     double reach =
         0; ///< how far a vertex may move in all, in the mesh's units; 0: as far as the rounds take it
+    double cell_size =
+        0;             ///< what facets are about as large as, to find intersections sooner; 0: nothing known
     double nearby = 0; ///< facets this close to a moved one are checked against it, in the mesh's units, > 0
 };
 

@@ -38,6 +38,7 @@ public:
 
 private:
     void mark_candidates(const std::vector<Vec3>& facet_normals);
+    std::vector<unsigned char> facets_near_candidates() const;
     void confirm(const std::vector<Vec3>& areas, const std::vector<Vec3>& facet_normals);
     std::size_t count_sharp_edges() const;
     void classify_vertices(const std::vector<Vec3>& facet_normals, FeatureCounts& counts);

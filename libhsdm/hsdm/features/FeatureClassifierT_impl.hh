@@ -77,10 +77,38 @@ void FeatureClassifierT<Mesh>::mark_candidates(const std::vector<Vec3>& facet_no
     });
 }
 
+/// Per facet, 1 for those whose normals smoothing can bring to an edge in question; empty if there is none.
+template <class Mesh>
+std::vector<unsigned char> FeatureClassifierT<Mesh>::facets_near_candidates() const {
+    std::vector<unsigned char> near(mesh_.n_faces(), 0);
+    std::vector<OpenMesh::FaceHandle> ring, next;
+    const auto add = [&](OpenMesh::FaceHandle f, std::vector<OpenMesh::FaceHandle>& to) {
+        if (!f.is_valid() || near[index_of(f)]) return;
+        near[index_of(f)] = 1;
+        to.push_back(f);
+    };
+    for (std::size_t i = 0; i < mesh_.n_edges(); ++i) {
+        const OpenMesh::EdgeHandle e(static_cast<int>(i));
+        const auto& status = mesh_.status(e);
+        if (status.deleted() || status.locked() || !status.feature()) continue;
+        for (unsigned side : {0u, 1u}) add(mesh_.face_handle(mesh_.halfedge_handle(e, side)), ring);
+    }
+    if (ring.empty()) return {};
+    for (int round = 0; round < options_.confirmation_rounds; ++round, ring.swap(next)) {
+        next.clear();
+        for (const auto f : ring)
+            for (const auto h : mesh_.fh_range(f))
+                add(mesh_.face_handle(mesh_.opposite_halfedge_handle(h)), next);
+    }
+    return near;
+}
+
 template <class Mesh>
 void FeatureClassifierT<Mesh>::confirm(const std::vector<Vec3>& areas,
                                        const std::vector<Vec3>& facet_normals) {
-    const FacetNeighbours neighbours = facet_neighbours(mesh_, StatusBits::ignore);
+    const std::vector<unsigned char> near = facets_near_candidates();
+    if (near.empty()) return;
+    const FacetNeighbours neighbours = facet_neighbours(mesh_, StatusBits::ignore, near);
     std::vector<double> weights(areas.size());
     for_each_handle<OpenMesh::FaceHandle>(
         weights.size(), [&](OpenMesh::FaceHandle f) { weights[index_of(f)] = areas[index_of(f)].norm(); });

@@ -42,10 +42,12 @@ std::vector<Vec3> facet_area_vectors(const Mesh& mesh);
 
 /// The facets across the edges of each facet, as normal_filter.hh wants them. If the status bits are obeyed,
 /// feature edges part their facets and a locked facet has no neighbours, so that its normal stays. The mesh
-/// must have edge and face status. O(corners), parallel.
+/// must have edge and face status. `among`: empty for all facets, or per facet, 0 for those that need no
+/// neighbours. O(corners), parallel.
 enum class StatusBits { obey, ignore };
 template <class Mesh>
-FacetNeighbours facet_neighbours(const Mesh& mesh, StatusBits bits);
+FacetNeighbours facet_neighbours(const Mesh& mesh, StatusBits bits,
+                                 const std::vector<unsigned char>& among = {});
 
 /// The facets around one vertex, gathered again and again in the same memory.
 template <class Mesh>

@@ -17,9 +17,10 @@ std::vector<Vec3> facet_area_vectors(const Mesh& mesh) {
 }
 
 template <class Mesh>
-FacetNeighbours facet_neighbours(const Mesh& mesh, StatusBits bits) {
+FacetNeighbours facet_neighbours(const Mesh& mesh, StatusBits bits, const std::vector<unsigned char>& among) {
     const auto is_fixed = [&](OpenMesh::FaceHandle f) {
-        return mesh.status(f).deleted() || (bits == StatusBits::obey && mesh.status(f).locked());
+        return mesh.status(f).deleted() || (!among.empty() && !among[index_of(f)])
+               || (bits == StatusBits::obey && mesh.status(f).locked());
     };
     FacetNeighbours result;
     result.first.assign(mesh.n_faces() + 1, 0);

@@ -1,5 +1,8 @@
 #include "hsdm/quality/distance.hh"
 
+#include "hsdm/chunks.hh"
+#include "hsdm/quality/cell_search.hh"
+
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -74,6 +77,32 @@ struct Sums {
     std::size_t farthest = 0;
 };
 
+/// Of the distances whose squares squares() tells: a function of a point's index, made anew for each chunk.
+template <class Squares>
+Distance sum_up(std::size_t points, Squares squares) {
+    if (points == 0) return {};
+    std::vector<Sums> chunks(chunk_count(points, chunk));
+    for_chunks(points, chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+        auto squared = squares();
+        Sums sums;
+        for (std::size_t i = begin; i < end; ++i) {
+            const double s = squared(i), d = std::sqrt(s);
+            sums.sum += d;
+            sums.squares += s;
+            if (d > sums.max) sums.max = d, sums.farthest = i;
+        }
+        chunks[c] = sums;
+    });
+    Sums total;
+    for (const Sums& sums : chunks) {
+        total.sum += sums.sum;
+        total.squares += sums.squares;
+        if (sums.max > total.max) total.max = sums.max, total.farthest = sums.farthest;
+    }
+    const auto n = static_cast<double>(points);
+    return {total.max, total.sum / n, std::sqrt(total.squares / n), total.farthest};
+}
+
 } // namespace
 
 MeshDistance::MeshDistance(const PolygonMesh& mesh) : MeshDistance(mesh, triangulate(mesh)) {}
@@ -92,33 +121,18 @@ double MeshDistance::operator()(const Vec3& point, Index& hint) const {
 }
 
 Distance MeshDistance::operator()(std::span<const Vec3> points, double enough) const {
-    Distance distance;
-    if (points.empty()) return distance;
-    std::vector<Sums> chunks((points.size() + chunk - 1) / chunk);
-    tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t c) {
-        Sums sums;
-        Packets packets(tree_, points);
-        Index hint = no_index;
-        for (std::size_t i = c * chunk; i < std::min(points.size(), (c + 1) * chunk); ++i) {
-            // One triangle that is near enough is found sooner than all that could be nearer.
-            const TriangleTree::Nearest nearest =
-                enough > 0 ? tree_.nearest(points[i], hint, enough * enough) : packets(i);
-            hint = nearest.place;
-            const double d = std::sqrt(nearest.squared);
-            sums.sum += d;
-            sums.squares += nearest.squared;
-            if (d > sums.max) sums.max = d, sums.farthest = i;
-        }
-        chunks[c] = sums;
+    // One triangle that is near enough is found sooner than all that could be nearer.
+    if (enough > 0)
+        return sum_up(points.size(), [&] {
+            return [&, hint = no_index](std::size_t i) mutable {
+                const TriangleTree::Nearest nearest = tree_.nearest(points[i], hint, enough * enough);
+                hint = nearest.place;
+                return nearest.squared;
+            };
+        });
+    return sum_up(points.size(), [&] {
+        return [packets = Packets(tree_, points)](std::size_t i) mutable { return packets(i).squared; };
     });
-    Sums total;
-    for (const Sums& sums : chunks) {
-        total.sum += sums.sum;
-        total.squares += sums.squares;
-        if (sums.max > total.max) total.max = sums.max, total.farthest = sums.farthest;
-    }
-    const auto n = static_cast<double>(points.size());
-    return {total.max, total.sum / n, std::sqrt(total.squares / n), total.farthest};
 }
 
 Index MeshDistance::nearest_facet(const Vec3& point) const {
@@ -135,6 +149,31 @@ Index MeshDistance::triangle_within(const Vec3& point, double bound, Index& hint
 
 Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh, double enough) {
     return MeshDistance(mesh)(points, enough);
+}
+
+/// What no cell beside a point's own tells is left to the tree, which is rarely built.
+Distance points_to_mesh_by_cells(std::span<const Vec3> points, const PolygonMesh& mesh, double cell_size) {
+    const FacetCells cells(mesh, cell_size);
+    if (!cells.usable()) return points_to_mesh(points, mesh);
+    const Triangulation cut = triangulate(mesh);
+    std::vector<double> squared(points.size());
+    std::vector<std::vector<Index>> left(chunk_count(points.size(), chunk));
+    for_chunks(points.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+        CellSearch search(mesh, cut, cells);
+        for (std::size_t i = begin; i < end; ++i) {
+            squared[i] = search.squared_distance(points[i]);
+            if (squared[i] == infinity) left[c].push_back(static_cast<Index>(i));
+        }
+    });
+    const std::vector<Index> far = joined(left);
+    if (!far.empty()) {
+        const MeshDistance by_tree(mesh, cut);
+        tbb::parallel_for(std::size_t{0}, far.size(), [&](std::size_t i) {
+            const double d = by_tree(points[far[i]]);
+            squared[far[i]] = d * d;
+        });
+    }
+    return sum_up(points.size(), [&] { return [&](std::size_t i) { return squared[i]; }; });
 }
 
 std::vector<Vec3> sample_surface(const PolygonMesh& mesh, std::size_t count) {

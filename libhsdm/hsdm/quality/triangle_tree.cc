@@ -116,7 +116,7 @@ void TriangleTree::fill_blocks(const std::vector<Vec3>& positions, const std::ve
                 const Triangle& t = triangles[triangle_of_[place]];
                 const Vec3 p0 = positions[t[0]] - centre_, p1 = positions[t[1]] - centre_,
                            p2 = positions[t[2]] - centre_;
-                put(blocks_[b][lane / 2], lane % 2, p0, p1 - p0, p2 - p0);
+                blocks_[b][lane / 2].put(lane % 2, p0, p1 - p0, p2 - p0);
                 for (const Vec3& p : {p0, p1, p2}) box.add(p);
             }
             for (unsigned k = 0; k < 3; ++k) {
@@ -133,20 +133,6 @@ void TriangleTree::fill_blocks(const std::vector<Vec3>& positions, const std::ve
         block_size_ += std::sqrt(squared) / static_cast<double>(blocks);
     }
     build_levels(boxes);
-}
-
-void TriangleTree::put(Pair& pair, std::size_t lane, const Vec3& a, const Vec3& ab, const Vec3& ac) {
-    for (unsigned k = 0; k < 3; ++k) {
-        pair.a[k][lane] = a[k];
-        pair.ab[k][lane] = ab[k];
-        pair.ac[k][lane] = ac[k];
-    }
-    auto reciprocal = [](double x) { return x > std::numeric_limits<double>::min() ? 1 / x : 0; };
-    const double bb = ab.sqrnorm(), cc = ac.sqrnorm(), bc = ab | ac;
-    pair.per_ab[lane] = reciprocal(bb);
-    pair.per_ac[lane] = reciprocal(cc);
-    pair.per_bc[lane] = reciprocal((ac - ab).sqrnorm());
-    pair.per_area[lane] = reciprocal(bb * cc - bc * bc);
 }
 
 void TriangleTree::build_levels(std::vector<Boxes>& level) {
@@ -168,33 +154,6 @@ void TriangleTree::build_levels(std::vector<Boxes>& level) {
             }
         level.swap(parents);
     }
-}
-
-/// For each triangle: the point's foot on the plane if it lies inside, and the nearest point of each side.
-/// All of them are points of the triangle, so the least of their distances is right even where a degenerate
-/// triangle makes the foot meaningless. No branches: all lanes at once.
-Double2 TriangleTree::squared_distances(const Pair& pair, const std::array<Double2, 3>& point) {
-    const auto& [bx, by, bz] = pair.ab;
-    const auto& [cx, cy, cz] = pair.ac;
-    const Double2 px = point[0] - pair.a[0], py = point[1] - pair.a[1], pz = point[2] - pair.a[2];
-    const Double2 qx = px - bx, qy = py - by, qz = pz - bz;
-    const Double2 ex = cx - bx, ey = cy - by, ez = cz - bz;
-    const Double2 pb = px * bx + py * by + pz * bz, pc = px * cx + py * cy + pz * cz;
-
-    const Double2 tb = clamp01(pb * pair.per_ab), tc = clamp01(pc * pair.per_ac);
-    const Double2 te = clamp01((qx * ex + qy * ey + qz * ez) * pair.per_bc);
-    const Double2 to_ab = square(px - tb * bx) + square(py - tb * by) + square(pz - tb * bz);
-    const Double2 to_ac = square(px - tc * cx) + square(py - tc * cy) + square(pz - tc * cz);
-    const Double2 to_bc = square(qx - te * ex) + square(qy - te * ey) + square(qz - te * ez);
-    const Double2 to_sides = min_lanes(to_ab, min_lanes(to_ac, to_bc));
-
-    const Double2 bb = bx * bx + by * by + bz * bz, cc = cx * cx + cy * cy + cz * cz;
-    const Double2 bc = bx * cx + by * cy + bz * cz;
-    const Double2 s = (cc * pb - bc * pc) * pair.per_area, t = (bb * pc - bc * pb) * pair.per_area;
-    const Double2 to_foot =
-        square(px - s * bx - t * cx) + square(py - s * by - t * cy) + square(pz - s * bz - t * cz);
-    const Double2 inside = min_lanes(min_lanes(s, t), 1 - s - t);
-    return inside >= 0 ? min_lanes(to_foot, to_sides) : to_sides;
 }
 
 /// The nearest triangle to a point so far. A box is skipped when even the float point, moved by its rounding
@@ -251,7 +210,7 @@ public:
 
 private:
     Double2 to_pair(std::size_t block, std::size_t half) const {
-        return squared_distances(tree_.blocks_[block][half], spread_);
+        return tree_.blocks_[block][half].squared_distances(spread_);
     }
 
     void take(double squared, Index place) {
@@ -421,7 +380,7 @@ TriangleTree::Nearest TriangleTree::nearest(const Part& part, const Vec3& point)
     return search.result();
 }
 
-TriangleTree::LaneBoxes TriangleTree::boxes_of(const Pair& pair) const {
+TriangleTree::LaneBoxes TriangleTree::boxes_of(const TwoTriangles& pair) const {
     LaneBoxes boxes;
     for (std::size_t k = 0; k < 3; ++k) {
         const Double2 b = pair.a[k] + pair.ab[k], c = pair.a[k] + pair.ac[k];

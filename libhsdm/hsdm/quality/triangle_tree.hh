@@ -2,7 +2,7 @@
 // A hierarchy of boxes over triangles: nearest triangle to a point, pairs of triangles that may touch.
 
 #include "hsdm/facets/triangulate.hh"
-#include "hsdm/quality/lanes.hh"
+#include "hsdm/quality/two_triangles.hh"
 
 #include <array>
 #include <memory>
@@ -59,14 +59,8 @@ private:
     struct Boxes {
         std::array<Float4, 3> lo, hi;
     };
-    /// Two triangles: corner a, the sides from it, and reciprocals of the squared lengths of the three sides
-    /// and of the squared doubled area, zero where there is none.
-    struct Pair {
-        std::array<Double2, 3> a, ab, ac;
-        Double2 per_ab, per_ac, per_bc, per_area;
-    };
     /// Four triangles; a block not full repeats its last one.
-    using Block = std::array<Pair, 2>;
+    using Block = std::array<TwoTriangles, 2>;
 
     class Search;
 
@@ -85,10 +79,8 @@ private:
     };
     Node root() const { return {static_cast<int>(level_first_.size()) - 1, 0}; }
     void descend(Search& search, const Node& from, const Node& known, double enough) const;
-    static void put(Pair& pair, std::size_t lane, const Vec3& a, const Vec3& ab, const Vec3& ac);
-    LaneBoxes boxes_of(const Pair& pair) const;
+    LaneBoxes boxes_of(const TwoTriangles& pair) const;
     void pair_up(Index block, Index other, std::vector<TrianglePair>& pairs) const;
-    static Double2 squared_distances(const Pair& pair, const std::array<Double2, 3>& point);
 
     Vec3 centre_{0, 0, 0};
     double rounding_ = 0; // bound on the error of a + ab in a block

@@ -96,7 +96,7 @@ private:
         double rise = 0, run = 0;
         for (const Point& q : points_) {
             const double dx = q.x - p.x, dy = q.y - p.y, mean = 0.5 * (p.direction + q.direction);
-            if (std::hypot(dx, dy) > chord * level_.voxel_size) continue;
+            if (dx * dx + dy * dy > chord * chord * level_.voxel_size * level_.voxel_size) continue;
             const double forward = dx * std::cos(mean) - dy * std::sin(mean);
             const double up = dx * std::sin(mean) + dy * std::cos(mean);
             rise += forward >= 0 ? up : -up;
@@ -116,71 +116,54 @@ struct Tally {
     std::size_t sharp = 0, smooth = 0, middle = 0, tilted = 0;
 };
 
-class EdgeJudge {
+/// The facets of a mesh as their sheets see them: facing where the points' normals point.
+class SheetFacets {
 public:
-    EdgeJudge(const Octree& octree, const OctreeLevel& level, const NormalSets& sets, const PolygonMesh& mesh,
-              std::span<const Index> voxel, std::span<const Index> set, double crease_angle, bool turned)
-        : sets_(sets),
-          mesh_(mesh),
-          voxel_(voxel),
-          set_(set),
-          crease_angle_(crease_angle),
-          facing_(turned ? -1 : 1),
-          points_(octree, level) {}
+    SheetFacets(const OctreeLevel& level, const NormalSets& sets, const PolygonMesh& mesh,
+                std::span<const Index> voxel, bool turned)
+        : level_(level), sets_(sets), mesh_(mesh), voxel_(voxel), normals_(mesh.facet_count()) {
+        for_chunks(normals_.size(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t f = begin; f < end; ++f)
+                normals_[f] = unit(area_vector(mesh, mesh.facet(f))) * (turned ? -1 : 1);
+        });
+    }
 
-    /// The edge of facets f and g from a to b.
-    EdgeHint judge(Index f, Index g, Index a, Index b, Tally& tally) {
-        const Fold facets(normal(f), normal(g));
-        if (!(facets.angle >= least_fold * crease_angle_)) return EdgeHint::none;
-        const bool two_sheets = set_[f] != set_[g];
-        Fold fold = two_sheets ? Fold(sheet_normal(f, facets.from), sheet_normal(g, facets.to)) : facets;
-        if (fold.angle < crease_angle_) fold = facets;
-        if (fold.angle < crease_angle_) return EdgeHint::none;
-        gather_voxels(f, g);
-        points_.gather(fold, voxels_, mesh_.positions[a], mesh_.positions[b]);
-        if (points_.empty()) return EdgeHint::none;
-        const bool crease = points_.crease();
-        ++(crease ? tally.sharp : tally.smooth);
-        if (!crease) points_.count_tilted(tally.middle, tally.tilted);
-        return crease ? EdgeHint::sharp : EdgeHint::smooth;
+    const Vec3& normal(Index f) const { return normals_[f]; }
+    /// The set whose sheet a facet is part of: among the sets in its vertices' voxels the one whose plane
+    /// lies nearest in direction and place, or no_index if none faces its way to 60 degrees.
+    Index set(Index f) const;
+    const Vec3& sheet_normal(Index set, const Vec3& otherwise) const {
+        return set != no_index ? sets_.sets[set].normal : otherwise;
+    }
+    /// Of the vertices of two facets, ascending, each once.
+    void voxels_of(Index f, Index g, std::vector<Index>& voxels) const {
+        voxels.clear();
+        for (Index facet : {f, g})
+            for (Index v : mesh_.facet(facet)) voxels.push_back(voxel_[v]);
+        std::sort(voxels.begin(), voxels.end());
+        voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
     }
 
 private:
-    Vec3 normal(Index f) const { return unit(area_vector(mesh_, mesh_.facet(f))) * facing_; }
-    Vec3 sheet_normal(Index f, const Vec3& otherwise) const {
-        return set_[f] != no_index ? sets_.sets[set_[f]].normal : otherwise;
-    }
-
-    void gather_voxels(Index f, Index g) {
-        voxels_.clear();
-        for (Index facet : {f, g})
-            for (Index v : mesh_.facet(facet)) voxels_.push_back(voxel_[v]);
-        std::sort(voxels_.begin(), voxels_.end());
-        voxels_.erase(std::unique(voxels_.begin(), voxels_.end()), voxels_.end());
-    }
-
+    const OctreeLevel& level_;
     const NormalSets& sets_;
     const PolygonMesh& mesh_;
-    std::span<const Index> voxel_, set_;
-    double crease_angle_, facing_;
-    FoldPoints points_;
-    std::vector<Index> voxels_;
+    std::span<const Index> voxel_;
+    std::vector<Vec3> normals_;
 };
 
-Index nearest_set(const PolygonMesh& mesh, std::size_t f, std::span<const Index> voxel,
-                  const NormalSets& sets, double voxel_size, double facing) {
-    const auto facet = mesh.facet(f);
-    const Vec3 normal = unit(area_vector(mesh, facet)) * facing;
+Index SheetFacets::set(Index f) const {
+    const auto facet = mesh_.facet(f);
     Vec3 centre(0, 0, 0);
-    for (Index v : facet) centre += mesh.positions[v];
+    for (Index v : facet) centre += mesh_.positions[v];
     centre /= static_cast<double>(facet.size());
     Index best = no_index;
     double least = std::numeric_limits<double>::infinity();
     for (Index v : facet)
-        for (Index s = sets.first[voxel[v]]; s < sets.first[voxel[v] + 1]; ++s) {
-            const NormalSet& set = sets.sets[s];
-            const Vec3 arm = (centre - set.centroid) / voxel_size;
-            const double cosine = set.normal | normal;
+        for (Index s = sets_.first[voxel_[v]]; s < sets_.first[voxel_[v] + 1]; ++s) {
+            const NormalSet& set = sets_.sets[s];
+            const Vec3 arm = (centre - set.centroid) / level_.voxel_size;
+            const double cosine = set.normal | normals_[f];
             if (cosine < least_cosine) continue;
             // Of one sheet's sets the nearest: a twentieth tells them apart and sways nothing else.
             const double cost = 1 - cosine + std::abs(set.normal | arm) + 0.05 * arm.norm();
@@ -189,17 +172,42 @@ Index nearest_set(const PolygonMesh& mesh, std::size_t f, std::span<const Index>
     return best;
 }
 
-} // namespace
+class EdgeJudge {
+public:
+    EdgeJudge(const Octree& octree, const OctreeLevel& level, const SheetFacets& facets, double crease_angle)
+        : facets_(facets),
+          crease_angle_(crease_angle),
+          flat_(std::cos(least_fold * crease_angle) + 1e-9), // so that rounding decides nothing here
+          points_(octree, level) {}
 
-std::vector<Index> facet_sets(const PolygonMesh& mesh, std::span<const Index> voxel, const OctreeLevel& level,
-                              const NormalSets& sets, bool turned) {
-    std::vector<Index> result(mesh.facet_count());
-    for_chunks(result.size(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t f = begin; f < end; ++f)
-            result[f] = nearest_set(mesh, f, voxel, sets, level.voxel_size, turned ? -1 : 1);
-    });
-    return result;
-}
+    /// The edge of facets f and g from a to b.
+    EdgeHint judge(Index f, Index g, const Vec3& a, const Vec3& b, Tally& tally) {
+        if ((facets_.normal(f) | facets_.normal(g)) > flat_) return EdgeHint::none;
+        const Fold facets(facets_.normal(f), facets_.normal(g));
+        if (!(facets.angle >= least_fold * crease_angle_)) return EdgeHint::none;
+        const Index one = facets_.set(f), other = facets_.set(g);
+        Fold fold = one != other
+                        ? Fold(facets_.sheet_normal(one, facets.from), facets_.sheet_normal(other, facets.to))
+                        : facets;
+        if (fold.angle < crease_angle_) fold = facets;
+        if (fold.angle < crease_angle_) return EdgeHint::none;
+        facets_.voxels_of(f, g, voxels_);
+        points_.gather(fold, voxels_, a, b);
+        if (points_.empty()) return EdgeHint::none;
+        const bool crease = points_.crease();
+        ++(crease ? tally.sharp : tally.smooth);
+        if (!crease) points_.count_tilted(tally.middle, tally.tilted);
+        return crease ? EdgeHint::sharp : EdgeHint::smooth;
+    }
+
+private:
+    const SheetFacets& facets_;
+    double crease_angle_, flat_;
+    FoldPoints points_;
+    std::vector<Index> voxels_;
+};
+
+} // namespace
 
 SheetFeatures sheet_features(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
                              const PolygonMesh& mesh, std::span<const Index> voxel, double crease_angle,
@@ -207,17 +215,18 @@ SheetFeatures sheet_features(const Octree& octree, const OctreeLevel& level, con
     SheetFeatures result;
     auto& sides = result.hints.sides;
     sides.assign(mesh.corners.size(), EdgeHint::none);
-    const std::vector<Index> set = facet_sets(mesh, voxel, level, sets, turned);
+    const SheetFacets facets(level, sets, mesh, voxel, turned);
     const FacetLinks links = link_facets(mesh);
     constexpr std::size_t sides_per_chunk = 4 * facets_per_chunk;
     std::vector<Tally> tallies(chunk_count(sides.size(), sides_per_chunk));
     for_chunks(sides.size(), sides_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        EdgeJudge judge(octree, level, sets, mesh, voxel, set, crease_angle, turned);
+        EdgeJudge judge(octree, level, facets, crease_angle);
         for (std::size_t c = begin; c < end; ++c) {
             const Index twin = links.twin[c];
             if (twin == no_index || twin < c) continue;
-            sides[c] = sides[twin] = judge.judge(links.facet[c], links.facet[twin], mesh.corners[c],
-                                                 mesh.corners[twin], tallies[chunk]);
+            sides[c] = sides[twin] =
+                judge.judge(links.facet[c], links.facet[twin], mesh.positions[mesh.corners[c]],
+                            mesh.positions[mesh.corners[twin]], tallies[chunk]);
         }
     });
     std::size_t middle = 0, tilted = 0;

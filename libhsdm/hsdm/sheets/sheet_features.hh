@@ -15,14 +15,9 @@ struct SheetFeatures {
     std::size_t doubtful = 0; ///< taken for smooth, but the cloud's normals do not agree with its positions
 };
 
-/// Per facet the set whose sheet it is part of: among the sets in its vertices' voxels the one whose plane
-/// lies nearest in direction and place, or no_index if none faces its way to 60 degrees. `voxel` is the voxel
-/// of each vertex; `turned` says that the facets face against the points' normals. O(facets), parallel.
-std::vector<Index> facet_sets(const PolygonMesh& mesh, std::span<const Index> voxel, const OctreeLevel& level,
-                              const NormalSets& sets, bool turned);
-
 /// Judges the edges of a 2-manifold that fold it by at least 0.7 of `crease_angle` (radians) by the points
 /// around them: at a crease their normals are those of the two sheets, on a bend they lie in between as well.
+/// `voxel` is the voxel of each vertex; `turned` says that the facets face against the points' normals.
 /// Departs from section 3.3, which knows facets only. Boundary edges and edges without points get no hint.
 /// O(folded edges), parallel; the result does not depend on the number of threads.
 SheetFeatures sheet_features(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,

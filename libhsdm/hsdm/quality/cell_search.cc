@@ -1,0 +1,151 @@
+#include "hsdm/quality/cell_search.hh"
+
+#include "hsdm/quality/two_triangles.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double farthest =
+    1 - 2 * FacetCells::rounding;   // in cells: those beside one hold all that is nearer
+constexpr double least_sine = 1e-6; // of a triangle's corner: flatter ones have no reliable normal
+constexpr double sure = 1 + 1e-9;   // factor on squares: far above rounding
+
+using Lanes = std::array<Double2, 3>;
+
+Double2 dot(const Lanes& a, const Lanes& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Lanes minus(const Lanes& a, const Lanes& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+Lanes cross(const Lanes& a, const Lanes& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+Lanes scaled(const Lanes& a, Double2 factor) {
+    return {a[0] * factor, a[1] * factor, a[2] * factor};
+}
+Double2 root(Double2 x) {
+    return Double2{std::sqrt(x[0]), std::sqrt(x[1])};
+}
+
+} // namespace
+
+/// All facets that reach into a ball are listed in the cells that it reaches into.
+double CellSearch::squared_distance(const Vec3& point) {
+    const FacetCells::Place place = cells_.place(point);
+    const VoxelCoord cell = FacetCells::cell_of(place);
+    if (cell != cell_) enter(cell);
+    const Lanes spread{Double2{} + point[0], Double2{} + point[1], Double2{} + point[2]};
+    double squared = nearest_in(centre, spread, infinity);
+    const double reach = std::min(std::sqrt(squared) / cells_.cell_size(), farthest) + FacetCells::rounding;
+    CellRange beside;
+    bool inside = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double from_wall = place[k] - cell[k];
+        beside.lo[k] = from_wall < reach ? 0 : 1;
+        beside.hi[k] = from_wall + reach < 1 ? 1 : 2;
+        inside &= beside.lo[k] == beside.hi[k];
+    }
+    if (inside) return squared;
+    beside.for_each([&](const VoxelCoord& c) {
+        const auto slot = static_cast<std::size_t>(c[0] + 3 * c[1] + 9 * c[2]);
+        if (slot != centre) squared = nearest_in(slot, spread, squared);
+    });
+    return std::sqrt(squared) <= farthest * cells_.cell_size() ? squared : infinity;
+}
+
+void CellSearch::enter(const VoxelCoord& cell) {
+    cell_ = cell;
+    around_.fill({});
+    bounds_.clear();
+    facets_ = {};
+    load(centre);
+}
+
+/// Of a slot's triangles and what is `squared` away already. A triangle is no nearer than its plane and the
+/// farthest of the lines of its sides that the point lies beyond, and beyond none it is as near as its plane.
+double CellSearch::nearest_in(std::size_t slot, const Lanes& point, double squared) {
+    if (!around_[slot].loaded) load(slot);
+    const Slice slice = around_[slot];
+    if (low_.size() < slice.end) low_.resize(slice.end);
+    Double2 least = Double2{} + squared;
+    for (std::size_t i = slice.begin; i < slice.end; ++i) {
+        const Bounds& b = bounds_[i];
+        const Lanes arm = minus(point, b.corner);
+        const Double2 height = dot(arm, b.normal);
+        const Double2 beyond =
+            max_lanes(max_lanes(dot(arm, b.out[0]), dot(arm, b.out[1])), dot(arm, b.out[2]) - b.across);
+        const Double2 low = square(height) + square(max_lanes(beyond, Double2{}));
+        low_[i] = beyond > 0 ? low : Double2{} + infinity;
+        least = min_lanes(least, beyond > 0 ? Double2{} + infinity : low);
+    }
+    squared = std::min(least[0], least[1]);
+    for (std::size_t i = slice.begin; i < slice.end; ++i)
+        if (std::min(low_[i][0], low_[i][1]) < sure * squared)
+            squared = std::min(squared, exactly(bounds_[i], point));
+    return squared;
+}
+
+double CellSearch::exactly(const Bounds& bounds, const Lanes& point) const {
+    TwoTriangles two;
+    for (std::size_t lane = 0; lane < 2; ++lane) {
+        const auto& [a, b, c] = cut_.triangles[bounds.triangle[lane]];
+        const Vec3& corner = mesh_.positions[a];
+        two.put(lane, corner, mesh_.positions[b] - corner, mesh_.positions[c] - corner);
+    }
+    const Double2 squared = two.squared_distances(point);
+    return std::min(squared[0], squared[1]);
+}
+
+/// A facet listed in the cell itself need not be looked at again.
+void CellSearch::load(std::size_t slot) {
+    const auto s = static_cast<std::int32_t>(slot);
+    const VoxelCoord c{cell_[0] + s % 3 - 1, cell_[1] + s / 3 % 3 - 1, cell_[2] + s / 9 - 1};
+    const Index cell = std::ranges::min(c) < 0 ? no_index : cells_.find(c);
+    const std::size_t begin = bounds_.size();
+    std::size_t lane = 0;
+    const auto list = cell == no_index ? std::span<const Index>{} : cells_.facets(cell);
+    for (Index f : list) {
+        if (std::ranges::find(facets_, f) != facets_.end()) continue;
+        for (Index t = cut_.first[f]; t < cut_.first[f + 1]; ++t, lane = 1 - lane) {
+            if (lane == 0)
+                bounds_.emplace_back().triangle = {t, t};
+            else
+                bounds_.back().triangle[1] = t;
+        }
+    }
+    for (std::size_t i = begin; i < bounds_.size(); ++i) prepare(bounds_[i]);
+    if (slot == centre) facets_ = list;
+    around_[slot] = {true, begin, bounds_.size()};
+}
+
+void CellSearch::prepare(Bounds& bounds) const {
+    Lanes ab, ac;
+    for (std::size_t lane = 0; lane < 2; ++lane) {
+        const auto& [ia, ib, ic] = cut_.triangles[bounds.triangle[lane]];
+        const Vec3 &a = mesh_.positions[ia], &b = mesh_.positions[ib], &c = mesh_.positions[ic];
+        for (unsigned k = 0; k < 3; ++k) {
+            bounds.corner[k][lane] = a[k];
+            ab[k][lane] = b[k] - a[k];
+            ac[k][lane] = c[k] - a[k];
+        }
+    }
+    const Lanes bc = minus(ac, ab), normal = cross(ab, ac);
+    const Double2 area = dot(normal, normal), bb = dot(ab, ab), cc = dot(ac, ac);
+    // One that is thin is beyond its sides by nothing at all, wherever: no bound excludes it.
+    const auto thin = area <= least_sine * least_sine * bb * cc;
+    const auto unit = [&](const Lanes& way, Double2 squared) {
+        return scaled(way, thin ? Double2{} : 1 / root(squared));
+    };
+    bounds.normal = unit(normal, area);
+    bounds.out[0] = unit(cross(ab, normal), area * bb);
+    bounds.out[1] = unit(cross(normal, ac), area * cc);
+    bounds.out[2] = unit(cross(bc, normal), area * dot(bc, bc));
+    bounds.across = thin ? Double2{} - std::numeric_limits<double>::min() : dot(bounds.out[2], ab);
+}
+
+} // namespace hsdm
