@@ -52,7 +52,7 @@ void note_counts(const ExtendedFacets& facets, Report& report) {
 /// Facets face where the points' normals point. If these point into a closed solid, the whole surface is
 /// turned.
 bool turn_outward(PolygonMesh& mesh) {
-    if (signed_volume(mesh) >= 0 || !measure_topology(mesh).closed()) return false;
+    if (signed_volume(mesh) >= 0 || !measure_connectivity(mesh).closed()) return false;
     for (std::size_t f = 0; f < mesh.facet_count(); ++f)
         std::reverse(mesh.corners.begin() + mesh.first[f], mesh.corners.begin() + mesh.first[f + 1]);
     return true;
@@ -60,7 +60,7 @@ bool turn_outward(PolygonMesh& mesh) {
 
 } // namespace
 
-PolygonMesh extended_method(const MethodInput& in, Report& report, FeatureHints& hints) {
+PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledge& known) {
     const NormalSets sets = in.phases.run("sets", 0.2, report.seconds.graph, [&] {
         NormalSets all = build_normal_sets(in.octree, in.level, {.merge_layers = in.options.merge_layers});
         const RelationTest related({}, in.level.voxel_size);
@@ -77,12 +77,13 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FeatureHints&
     report.rejected["normals_turned"] = turned ? in.octree.size() : 0;
     if (in.options.classify) {
         SheetFeatures features = in.phases.run("sheet features", 0.5, report.seconds.features, [&] {
-            return sheet_features(in.octree, in.level, sets, facets.mesh, facets.voxel,
+            known.links = link_facets(facets.mesh);
+            return sheet_features(in.octree, in.level, sets, facets.mesh, *known.links, facets.voxel,
                                   in.options.crease_angle, turned);
         });
         report.rejected["edges_bent"] = features.smooth;
         report.rejected["edges_doubtful"] = features.doubtful;
-        hints = std::move(features.hints);
+        known.hints = std::move(features.hints);
     }
     facets.mesh.properties = average_attributes(in.cloud, in.octree, in.level, facets.voxel);
     if (!in.options.debug_dir.empty()) {

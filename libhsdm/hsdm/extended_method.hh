@@ -2,13 +2,22 @@
 // Phase 2 by the extended method, section 3.4.2: graph and facets from normal-consistent sets.
 
 #include "hsdm/basic_method.hh"
+#include "hsdm/facets/facet_links.hh"
 #include "hsdm/features/feature_hints.hh"
+
+#include <optional>
 
 namespace hsdm {
 
+/// What is known of facets beside themselves, as long as they stay as they are.
+struct FacetKnowledge {
+    FeatureHints hints;
+    std::optional<FacetLinks> links;
+};
+
 /// Facets relative to the octree's origin, an oriented 2-manifold with the vertices' properties. The octree
-/// must have normals. Adds its seconds (graph, facets) and what each stage counted to the report. Throws
-/// Cancelled.
-PolygonMesh extended_method(const MethodInput& input, Report& report, FeatureHints& hints);
+/// must have normals. Adds its seconds (graph, facets) and what each stage counted to the report. Fills in
+/// `known` if features are asked for. Throws Cancelled.
+PolygonMesh extended_method(const MethodInput& input, Report& report, FacetKnowledge& known);
 
 } // namespace hsdm

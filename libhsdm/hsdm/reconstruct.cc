@@ -272,7 +272,7 @@ void note_islands(const Islands& islands, Report& report) {
 }
 
 void measure_mesh(const PolygonMesh& facets, Report& report) {
-    const Topology t = measure_topology(facets);
+    const Topology t = measure_connectivity(facets);
     Report::Mesh& m = report.mesh;
     m.vertices = t.vertices;
     m.edges = t.edges;
@@ -313,14 +313,15 @@ void measure_error(std::span<const Vec3> points, const Octree& octree, const Pol
 /// Drops small components if asked to, and measures what is left. A bound is checked before: it is one for
 /// the points of what is dropped too.
 void drop_and_measure(const std::vector<Vec3>& points, const Octree& octree,
-                      const ReconstructOptions& options, PolygonMesh& facets, FeatureHints& hints,
+                      const ReconstructOptions& options, PolygonMesh& facets, FacetKnowledge& known,
                       Report& report) {
     bool measured = report.grid.max_error > 0;
     if (measured) measure_error(points, octree, facets, options.measure ? 0 : report.grid.max_error, report);
     check_error_kept(report);
     if (options.min_component) {
-        const Islands islands = drop_islands(facets, hints, *options.min_component);
+        const Islands islands = drop_islands(facets, known.hints, *options.min_component);
         note_islands(islands, report);
+        known.links.reset();
         measured = measured && islands.components == 0;
     }
     if (!options.measure) {
@@ -372,8 +373,8 @@ void reconstruct_level(const PointCloud& cloud, const Octree& octree, int depth,
     report.grid.leaves_per_level.back() = level.size();
 
     const MethodInput input{cloud, octree, level, options, phases};
-    FeatureHints hints;
-    PolygonMesh facets = method_for(options) == Method::extended ? extended_method(input, report, hints)
+    FacetKnowledge known;
+    PolygonMesh facets = method_for(options) == Method::extended ? extended_method(input, report, known)
                                                                  : basic_method(input, report);
     if (facets.facet_count() == 0)
         throw Error("no facet came out of " + std::to_string(level.size()) + " voxels at depth "
@@ -384,21 +385,22 @@ void reconstruct_level(const PointCloud& cloud, const Octree& octree, int depth,
     if (wants_adaptive(options)) {
         facets = phases.run("adaptive", 0.5, seconds.facets,
                             [&] { return adaptive_grid(input, points, facets, report); });
-        hints = {}; // they are those of the fine facets
+        known = {}; // of the fine facets
     }
     phases.run("error", 0.6, seconds.error,
-               [&] { drop_and_measure(points, octree, options, facets, hints, report); });
+               [&] { drop_and_measure(points, octree, options, facets, known, report); });
 
     points = {};
     phases.run("mesh", 0.85, seconds.mesh, [&] {
         for (Vec3& p : facets.positions) p += octree.origin;
-        const std::size_t rejected = to_mesh(facets, result.mesh).rejected;
+        if (!known.links) known.links = link_facets(facets);
+        const std::size_t rejected = to_mesh(facets, *known.links, result.mesh).rejected;
         report.rejected["to_mesh"] = rejected;
-        if (rejected > 0) hints = {}; // they are counted by facets
+        if (rejected > 0) known.hints = {}; // they are counted by facets
     });
     if (options.classify)
         phases.run("features", 0.9, seconds.features,
-                   [&] { find_features(result.mesh, options, hints, report); });
+                   [&] { find_features(result.mesh, options, known.hints, report); });
     report.peak_memory_bytes = peak_memory();
     result.report = std::move(report);
 }

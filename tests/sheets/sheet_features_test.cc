@@ -38,7 +38,8 @@ struct Part {
             for (std::size_t f = 0; f < facets.mesh.facet_count(); ++f)
                 std::reverse(facets.mesh.corners.begin() + facets.mesh.first[f],
                              facets.mesh.corners.begin() + facets.mesh.first[f + 1]);
-        features = sheet_features(octree, level, sets, facets.mesh, facets.voxel, crease_angle, turned);
+        features = sheet_features(octree, level, sets, facets.mesh, link_facets(facets.mesh), facets.voxel,
+                                  crease_angle, turned);
     }
 
     PolyMesh by_sheets(FeatureCounts& counts) const {

@@ -1,6 +1,5 @@
 #include "hsdm/facets/to_mesh.hh"
 
-#include "hsdm/facets/facet_links.hh"
 #include "hsdm/features/facet_normal.hh"
 #include "hsdm/features/vertex_normals.hh"
 
@@ -252,7 +251,10 @@ void read_properties(const PolyMesh& mesh, const Selection& selection, PolygonMe
 } // namespace
 
 ToMeshCounts to_mesh(const PolygonMesh& facets, PolyMesh& mesh) {
-    const FacetLinks links = link_facets(facets);
+    return to_mesh(facets, link_facets(facets), mesh);
+}
+
+ToMeshCounts to_mesh(const PolygonMesh& facets, const FacetLinks& links, PolyMesh& mesh) {
     write_connectivity(facets, links, mesh);
     write_geometry(facets, links, mesh);
     write_properties(facets, links, mesh);

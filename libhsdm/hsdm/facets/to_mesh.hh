@@ -1,6 +1,7 @@
 #pragma once
 // Facets -> OpenMesh and back. The only door between the flat facet lists and a half-edge mesh.
 
+#include "hsdm/facets/facet_links.hh"
 #include "hsdm/mesh_types.hh"
 #include "hsdm/polygon_mesh.hh"
 
@@ -26,6 +27,8 @@ struct ToMeshResult {
 ToMeshResult to_mesh(const PolygonMesh& facets);
 /// The same in an empty mesh where it is to stay: meshes of OpenMesh cannot be moved, only copied.
 ToMeshCounts to_mesh(const PolygonMesh& facets, PolyMesh& mesh);
+/// The same where the facets' links are known.
+ToMeshCounts to_mesh(const PolygonMesh& facets, const FacetLinks& links, PolyMesh& mesh);
 
 /// The mesh's polygons without deleted elements and isolated vertices; its vertex normals if it has them; its
 /// named vertex properties of type uint8, int32, float and double. `hsdm_normals` comes as nine of type

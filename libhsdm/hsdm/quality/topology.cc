@@ -245,7 +245,7 @@ double signed_volume(const PolygonMesh& mesh) {
     });
 }
 
-Topology measure_topology(const PolygonMesh& mesh) {
+Topology measure_connectivity(const PolygonMesh& mesh) {
     Topology topology;
     topology.faces = mesh.facet_count();
     for (std::size_t f = 0; f < topology.faces; ++f) {
@@ -276,6 +276,11 @@ Topology measure_topology(const PolygonMesh& mesh) {
     topology.boundary_loops = count_boundary_loops(loops, groups, fans);
     topology.euler =
         static_cast<long>(on_surface) - static_cast<long>(topology.edges) + static_cast<long>(loops.count);
+    return topology;
+}
+
+Topology measure_topology(const PolygonMesh& mesh) {
+    Topology topology = measure_connectivity(mesh);
     topology.degenerate_facets = count_degenerate(mesh);
     topology.duplicate_facets = count_duplicates(mesh);
     topology.signed_volume = signed_volume(mesh);

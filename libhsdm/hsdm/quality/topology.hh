@@ -30,6 +30,8 @@ struct Topology {
 
 /// O(facets), flat arrays and one sort.
 Topology measure_topology(const PolygonMesh& mesh);
+/// All of it but degenerate_facets, duplicate_facets and signed_volume, which are left 0.
+Topology measure_connectivity(const PolygonMesh& mesh);
 
 /// Volume enclosed by a closed mesh, negative if its facets face inwards; of an open one that of the cone
 /// over it from the centre of its box. O(facets), parallel; the same bits for any number of threads.

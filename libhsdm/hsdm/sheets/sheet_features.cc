@@ -2,7 +2,6 @@
 
 #include "hsdm/chunks.hh"
 #include "hsdm/facets/area_vector.hh"
-#include "hsdm/facets/facet_links.hh"
 #include "hsdm/features/facet_normal.hh"
 
 #include <cmath>
@@ -210,13 +209,12 @@ private:
 } // namespace
 
 SheetFeatures sheet_features(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
-                             const PolygonMesh& mesh, std::span<const Index> voxel, double crease_angle,
-                             bool turned) {
+                             const PolygonMesh& mesh, const FacetLinks& links, std::span<const Index> voxel,
+                             double crease_angle, bool turned) {
     SheetFeatures result;
     auto& sides = result.hints.sides;
     sides.assign(mesh.corners.size(), EdgeHint::none);
     const SheetFacets facets(level, sets, mesh, voxel, turned);
-    const FacetLinks links = link_facets(mesh);
     constexpr std::size_t sides_per_chunk = 4 * facets_per_chunk;
     std::vector<Tally> tallies(chunk_count(sides.size(), sides_per_chunk));
     for_chunks(sides.size(), sides_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
