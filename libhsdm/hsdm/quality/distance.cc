@@ -168,9 +168,12 @@ Distance points_to_mesh_by_cells(std::span<const Vec3> points, const PolygonMesh
     const std::vector<Index> far = joined(left);
     if (!far.empty()) {
         const MeshDistance by_tree(mesh, cut);
-        tbb::parallel_for(std::size_t{0}, far.size(), [&](std::size_t i) {
-            const double d = by_tree(points[far[i]]);
-            squared[far[i]] = d * d;
+        for_chunks(far.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            Index hint = no_index;
+            for (std::size_t i = begin; i < end; ++i) {
+                const double d = by_tree(points[far[i]], hint);
+                squared[far[i]] = d * d;
+            }
         });
     }
     return sum_up(points.size(), [&] { return [&](std::size_t i) { return squared[i]; }; });
