@@ -20,7 +20,7 @@ std::array<double, 3> eigenvalues(const Symmetric& m) {
         x * (y * z - m[4] * m[4]) - m[3] * (m[3] * z - m[4] * m[5]) + m[5] * (m[3] * m[4] - y * m[5]);
     const double angle = std::acos(std::clamp(determinant / (2 * p * p * p), -1.0, 1.0)) / 3;
     const double largest = mean + 2 * p * std::cos(angle);
-    const double smallest = mean + 2 * p * std::cos(angle + 2 * std::numbers::pi / 3);
+    const double smallest = mean - p * (std::cos(angle) + std::numbers::sqrt3 * std::sin(angle));
     return {smallest, 3 * mean - largest - smallest, largest};
 }
 
