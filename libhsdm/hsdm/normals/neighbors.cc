@@ -227,8 +227,7 @@ public:
         std::vector<Leaf> leaves = find_leaves(octree.codes);
         if (points) keep_leaves_of(*points, leaves);
         if (leaves.empty()) return;
-        int deepest = 0;
-        for (const Leaf& leaf : leaves) deepest = std::max(deepest, leaf.level);
+        const int deepest = deepest_level(leaves);
         levels_.resize(static_cast<std::size_t>(deepest) + 1);
         levels_.back() = extract_level(octree, deepest);
         for (auto level = levels_.size() - 1; level-- > 0;)
@@ -250,6 +249,18 @@ private:
         Candidates candidates;
         Selection selection;
     };
+
+    /// The leaves' deepest level, or for a few leaves not that but the one above: a voxel of this has eight
+    /// of them at most.
+    static int deepest_level(const std::vector<Leaf>& leaves) {
+        constexpr std::size_t few = 64; // one in so many
+        std::array<std::size_t, morton_levels + 1> count{};
+        for (const Leaf& leaf : leaves) ++count[static_cast<std::size_t>(leaf.level)];
+        int deepest = morton_levels;
+        while (count[static_cast<std::size_t>(deepest)] == 0) --deepest;
+        const bool spared = few * count[static_cast<std::size_t>(deepest)] < leaves.size();
+        return deepest < morton_levels && spared ? deepest - 1 : deepest;
+    }
 
     static void keep_leaves_of(const std::vector<Index>& points, std::vector<Leaf>& leaves) {
         std::size_t kept = 0;
@@ -297,7 +308,7 @@ private:
     void find_candidates(const Leaf& leaf, Candidates& candidates) const {
         std::array<Index, 27> voxels;
         std::size_t count = 0;
-        for (int level = leaf.level;; --level) {
+        for (int level = std::min(leaf.level, static_cast<int>(levels_.size()) - 1);; --level) {
             const MortonCode code = octree_.codes[leaf.begin] >> (3 * (morton_levels - level));
             if (candidates.level == level && candidates.code == code && level < morton_levels) return;
             if (around(code, level, voxels, count) < candidates_per_neighbor * result_.count && level > 0)
