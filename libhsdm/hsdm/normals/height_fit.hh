@@ -24,8 +24,7 @@ public:
     HeightFit fit() const;
 
 private:
-    static constexpr std::size_t terms = 6; // 1, x, y, x x, x y, y y
-    double count_ = 0;
+    static constexpr std::size_t terms = 6;           // 1, x, y, x x, x y, y y
     std::array<std::array<Double2, 5>, 5> moments_{}; // of x^i y^j, i + j <= 4
     std::array<Double2, terms> heights_{};            // of the terms times z
     Double2 squares_{};
@@ -33,8 +32,7 @@ private:
 
 inline void HeightSums::add(Double2 x, Double2 y, Double2 z) {
     const Double2 xx = x * x, xy = x * y, yy = y * y;
-    count_ += 1;
-    moments_[1][0] += x, moments_[0][1] += y;
+    moments_[0][0] += 1, moments_[1][0] += x, moments_[0][1] += y;
     moments_[2][0] += xx, moments_[1][1] += xy, moments_[0][2] += yy;
     moments_[3][0] += xx * x, moments_[2][1] += xx * y, moments_[1][2] += x * yy, moments_[0][3] += yy * y;
     moments_[4][0] += xx * xx, moments_[3][1] += xx * xy, moments_[2][2] += xx * yy;
