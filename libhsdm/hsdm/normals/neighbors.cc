@@ -2,6 +2,7 @@
 
 #include "hsdm/chunks.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/io/huge_pages.hh"
 #include "hsdm/quality/lanes.hh"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -372,6 +373,8 @@ Neighbors search(const Octree& octree, const std::vector<Index>* points, const N
     Neighbors result;
     result.count = std::min(static_cast<std::size_t>(options.count), octree.size() - 1);
     const std::size_t size = points ? points->size() : octree.size();
+    result.index.reserve(size * result.count);
+    io::advise_huge_pages(result.index.data(), size * result.count * sizeof(Index));
     result.index.resize(size * result.count);
     result.reach.resize(size);
     const Search done(octree, points, result);
