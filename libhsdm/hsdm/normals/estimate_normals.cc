@@ -164,11 +164,10 @@ private:
             for (std::size_t i = begin; i < end; i += 2) {
                 const std::array<Index, 2> points{static_cast<Index>(i),
                                                   static_cast<Index>(std::min(i + 1, end - 1))};
-                const std::array<PlaneSums, 2> sums = sums_of(points);
+                const std::array<PlaneFit, 2> fits = fit_planes(sums_of(points));
                 for (std::size_t lane = 0; lane < 2; ++lane) {
-                    const PlaneFit fit = fit_plane(sums[lane]);
-                    result_.normals[points[lane]] = fit.normal;
-                    result_.spread[points[lane]] = std::sqrt(fit.variance);
+                    result_.normals[points[lane]] = fits[lane].normal;
+                    result_.spread[points[lane]] = std::sqrt(fits[lane].variance);
                 }
             }
         });
