@@ -54,9 +54,9 @@ TEST_CASE("points of a line or of one place span no plane", "[normals]") {
 
 TEST_CASE("planes fitted two at a time are those fitted one by one", "[normals]") {
     support::Random random(3);
-    for (int trial = 0; trial < 100; ++trial) {
+    for (std::size_t trial = 0; trial < 100; ++trial) {
         std::array<PlaneSums, 2> sums;
-        const double flatness = std::pow(10, -trial % 20);
+        const double flatness = std::pow(0.1, trial % 20);
         for (int i = 0; i < 10; ++i) {
             sums[trial % 2].add(Vec3(random.gauss(), random.gauss(), random.gauss()), 1);
             sums[1 - trial % 2].add(Vec3(random.gauss(), random.gauss(), flatness * random.gauss()), 1);
