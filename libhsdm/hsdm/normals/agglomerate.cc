@@ -85,7 +85,7 @@ void sort_and_merge(std::vector<SignedEdge>& edges, std::size_t nodes) {
     edges.swap(sorted);
 }
 
-/// The evidence's strength and the edge's place as one number: the smaller, the stronger, ties by place.
+/// The evidence's strength, and below it the edge's place: the smaller, the stronger, ties by place.
 std::uint64_t rank_of(const SignedEdge& e, std::size_t place) {
     const float strength = e.total > 0 ? e.weight / e.total * e.weight : 0;
     return std::uint64_t{~std::bit_cast<std::uint32_t>(strength)} << 32 | place;

@@ -69,7 +69,7 @@ public:
                 renewed[i] = normals_[i];
                 if (may_be_curved(static_cast<Index>(i))) bent[count++] = static_cast<Index>(i);
             }
-            bent[count] = bent[count - (count > 0)];
+            if (count % 2 == 1) bent[count] = bent[count - 1]; // the last one, of an odd number, twice
             for (std::size_t b = 0; b < count; b += 2) {
                 const std::array<Vec3, 2> found = curved({bent[b], bent[b + 1]});
                 for (std::size_t lane = 0; lane < 2; ++lane) renewed[bent[b + lane]] = found[lane];

@@ -97,6 +97,7 @@ public:
     /// of the farthest.
     float find(const Candidates& candidates, const std::array<float, 3>& point, std::size_t wanted,
                float limit) {
+        limit = std::min(limit, beyond_all);
         find_near(candidates, point, limit);
         if (count_ < wanted) {
             all_are_near(candidates.id.size());

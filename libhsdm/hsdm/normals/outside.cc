@@ -81,8 +81,8 @@ public:
 
     /// Empty space counts if it is seen at two places: one voxel may be empty by chance.
     Sight look(const Vec3& from, const Vec3& along) const {
-        constexpr int steps = 5; // of half a voxel
-        Index last = occupied, searched = no_index;
+        constexpr int steps = 5;                    // of half a voxel
+        Index last = occupied, searched = no_index; // most voxels are met twice
         for (int step = 0; step <= steps; ++step) {
             const VoxelCoord c = voxel_at(from + along * (0.5 * step * level_.voxel_size));
             const Index region = space_.region(c);
