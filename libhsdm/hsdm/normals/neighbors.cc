@@ -57,6 +57,18 @@ std::vector<Leaf> find_leaves(const std::vector<MortonCode>& codes) {
     return leaves;
 }
 
+/// Where few leaves are on the deepest level, that is not worth making: they are sought in the voxels one
+/// level above, each of which holds eight of them at most.
+void spare_deepest_level(std::vector<Leaf>& leaves) {
+    constexpr std::size_t few = 64; // one in so many
+    int deepest = 0;
+    for (const Leaf& leaf : leaves) deepest = std::max(deepest, leaf.level);
+    const auto count = std::count_if(leaves.begin(), leaves.end(),
+                                     [deepest](const Leaf& leaf) { return leaf.level == deepest; });
+    if (deepest == morton_levels || few * static_cast<std::size_t>(count) >= leaves.size()) return;
+    for (Leaf& leaf : leaves) leaf.level = std::min(leaf.level, deepest - 1);
+}
+
 constexpr std::size_t lanes = 4;
 
 Float4 lanes_at(const std::vector<float>& values, std::size_t place) {
@@ -227,9 +239,11 @@ public:
     Search(const Octree& octree, const std::vector<Index>* points, Neighbors& result)
         : octree_(octree), points_(points), result_(result) {
         std::vector<Leaf> leaves = find_leaves(octree.codes);
+        spare_deepest_level(leaves);
         if (points) keep_leaves_of(*points, leaves);
         if (leaves.empty()) return;
-        const int deepest = deepest_level(leaves);
+        int deepest = 0;
+        for (const Leaf& leaf : leaves) deepest = std::max(deepest, leaf.level);
         levels_.resize(static_cast<std::size_t>(deepest) + 1);
         levels_.back() = extract_level(octree, deepest);
         for (auto level = levels_.size() - 1; level-- > 0;)
@@ -251,18 +265,6 @@ private:
         Candidates candidates;
         Selection selection;
     };
-
-    /// The leaves' deepest level, or for a few leaves not that but the one above: a voxel of this has eight
-    /// of them at most.
-    static int deepest_level(const std::vector<Leaf>& leaves) {
-        constexpr std::size_t few = 64; // one in so many
-        std::array<std::size_t, morton_levels + 1> count{};
-        for (const Leaf& leaf : leaves) ++count[static_cast<std::size_t>(leaf.level)];
-        int deepest = morton_levels;
-        while (count[static_cast<std::size_t>(deepest)] == 0) --deepest;
-        const bool spared = few * count[static_cast<std::size_t>(deepest)] < leaves.size();
-        return deepest < morton_levels && spared ? deepest - 1 : deepest;
-    }
 
     static void keep_leaves_of(const std::vector<Index>& points, std::vector<Leaf>& leaves) {
         std::size_t kept = 0;
@@ -310,7 +312,7 @@ private:
     void find_candidates(const Leaf& leaf, Candidates& candidates) const {
         std::array<Index, 27> voxels;
         std::size_t count = 0;
-        for (int level = std::min(leaf.level, static_cast<int>(levels_.size()) - 1);; --level) {
+        for (int level = leaf.level;; --level) {
             const MortonCode code = octree_.codes[leaf.begin] >> (3 * (morton_levels - level));
             if (candidates.level == level && candidates.code == code && level < morton_levels) return;
             if (around(code, level, voxels, count) < candidates_per_neighbor * result_.count && level > 0)
