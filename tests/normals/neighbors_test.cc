@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 using namespace hsdm;
 
@@ -49,6 +50,26 @@ TEST_CASE("neighbours on an evenly sampled surface are the nearest points", "[no
               >= (octree.positions[expected.back()] - octree.positions[i]).norm() * (1 - 1e-6));
     }
     CHECK(missed * 500 < compared); // the 27 voxels are cut off square: a few are missed at density changes
+}
+
+TEST_CASE("among points at equal distances, as on a grid, any of the nearest are neighbours", "[normals]") {
+    constexpr int side = 40, border = 6;
+    PointCloud cloud;
+    for (int x = 0; x < side; ++x)
+        for (int y = 0; y < side; ++y) cloud.positions.emplace_back(x, y, 0);
+    const Octree octree = build_octree(cloud);
+    const Neighbors neighbors = find_neighbors(octree);
+    for (Index i = 0; i < octree.size(); ++i) {
+        const Vec3& p = octree.positions[i];
+        if (std::min(p[0], p[1]) < border || std::max(p[0], p[1]) > side - border) continue;
+        const std::vector<Index> found = sorted(neighbors.of(i));
+        CHECK(std::adjacent_find(found.begin(), found.end()) == found.end());
+        // 4 neighbours at 1, 4 at sqrt 2, 4 at 2 and 4 of the 8 at sqrt 5
+        double squares = 0;
+        for (Index j : found) squares += (octree.positions[j] - p).sqrnorm();
+        CHECK(squares == Approx(4 * (1 + 2 + 4 + 5)));
+        CHECK(neighbors.reach[i] == Approx(std::sqrt(5)));
+    }
 }
 
 TEST_CASE("a cloud smaller than a neighbourhood has all other points as neighbours", "[normals]") {

@@ -1,7 +1,6 @@
 #include "hsdm/normals/agglomerate.hh"
 
 #include "hsdm/chunks.hh"
-#include "hsdm/octree/radix_sort.hh"
 
 #include <tbb/parallel_sort.h>
 
@@ -60,51 +59,50 @@ private:
     std::vector<std::int8_t> sign_;
 };
 
-double strength(const SignedEdge& e) {
-    return e.total > 0 ? static_cast<double>(e.weight) * e.weight / e.total : 0;
-}
-
-std::uint64_t key_of(const SignedEdge& e, int bits) {
-    return std::uint64_t{e.a} << bits | e.b;
-}
-
 /// Sorts by both ends and adds up edges between the same nodes.
 void sort_and_merge(std::vector<SignedEdge>& edges, std::size_t nodes) {
-    const int bits = static_cast<int>(std::bit_width(nodes));
-    std::vector<CodeIndex> keys(edges.size());
-    for (std::size_t e = 0; e < edges.size(); ++e) keys[e] = {key_of(edges[e], bits), static_cast<Index>(e)};
-    radix_sort(keys, 2 * bits);
-    std::vector<SignedEdge> merged;
-    merged.reserve(edges.size());
-    for (const CodeIndex& key : keys) {
-        const SignedEdge& e = edges[key.index];
-        if (merged.empty() || merged.back().a != e.a || merged.back().b != e.b) {
-            merged.push_back(e);
+    constexpr std::size_t nodes_per_chunk = 4096;
+    std::vector<Index> end(nodes + 1, 0); // of each node's edges, once they are there
+    for (const SignedEdge& e : edges) ++end[e.a + 1];
+    counts_to_first(end);
+    std::vector<SignedEdge> sorted(edges.size());
+    for (const SignedEdge& e : edges) sorted[end[e.a]++] = e;
+    for_chunks(nodes, nodes_per_chunk, [&](std::size_t begin, std::size_t last, std::size_t) {
+        for (std::size_t v = begin; v < last; ++v)
+            std::sort(sorted.begin() + (v == 0 ? 0 : end[v - 1]), sorted.begin() + end[v],
+                      [](const SignedEdge& e, const SignedEdge& f) { return e.b < f.b; });
+    });
+    std::size_t kept = 0;
+    for (const SignedEdge& e : sorted) {
+        if (kept == 0 || sorted[kept - 1].a != e.a || sorted[kept - 1].b != e.b) {
+            sorted[kept++] = e;
         } else {
-            merged.back().weight += e.weight;
-            merged.back().total += e.total;
+            sorted[kept - 1].weight += e.weight;
+            sorted[kept - 1].total += e.total;
         }
     }
-    edges.swap(merged);
+    sorted.resize(kept);
+    edges.swap(sorted);
 }
 
-/// The edge that each node has the strongest evidence by, strongest first; ties by place.
+/// The evidence's strength, and below it the edge's place: the smaller, the stronger, ties by place.
+std::uint64_t rank_of(const SignedEdge& e, std::size_t place) {
+    const float strength = e.total > 0 ? e.weight / e.total * e.weight : 0;
+    return std::uint64_t{~std::bit_cast<std::uint32_t>(strength)} << 32 | place;
+}
+
+/// The edge that each node has the strongest evidence by, strongest first.
 std::vector<Index> picked_edges(const std::vector<SignedEdge>& edges, std::size_t nodes) {
-    std::vector<Index> best(nodes, no_index);
-    const auto stronger = [&](Index e, Index than) {
-        if (than == no_index) return true;
-        const double s = strength(edges[e]), t = strength(edges[than]);
-        return s != t ? s > t : e < than;
-    };
-    for (Index e = 0; e < edges.size(); ++e) {
-        if (strength(edges[e]) <= 0) continue;
-        if (stronger(e, best[edges[e].a])) best[edges[e].a] = e;
-        if (stronger(e, best[edges[e].b])) best[edges[e].b] = e;
+    const std::uint64_t none = rank_of({}, 0);
+    std::vector<std::uint64_t> best(nodes, none);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        const std::uint64_t rank = rank_of(edges[e], e);
+        for (Index v : {edges[e].a, edges[e].b}) best[v] = std::min(best[v], rank);
     }
-    std::erase(best, no_index);
-    tbb::parallel_sort(best.begin(), best.end(), stronger);
+    std::erase(best, none);
+    tbb::parallel_sort(best.begin(), best.end());
     best.erase(std::unique(best.begin(), best.end()), best.end());
-    return best;
+    return {best.begin(), best.end()};
 }
 
 /// The edges between the roots of their ends, the evidence turned with these; without what became internal.

@@ -59,29 +59,23 @@ public:
         return sum.sqrnorm() > 0 ? sum.normalized() : own;
     }
 
-    /// A plane has the normal of the neighbours' centroid, not of the point, where the surface is curved.
-    /// Away from creases it is turned towards that of a quadratic surface: not at all up to where the tilt
-    /// between the two is such that their expected errors are equal (twice what noise makes of it), as at the
-    /// border of rough points, almost all of it where that is far exceeded.
-    Vec3 curved(Index i) const {
-        const Vec3& own = normals_[i];
-        const double reach = neighbors_.reach[i];
-        if (estimate_.spread[i] < flat_spread * reach || own.sqrnorm() == 0 || differs(i, cos_crease))
-            return own;
-        const Vec3 u = own.cross(std::abs(own[0]) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)).normalized();
-        const Vec3 v = own.cross(u);
-        const Vec3 x = u / reach, y = v / reach, z = own / reach;
-        HeightSums sums;
-        sums.add(0, 0, 0);
-        for (Index j : neighbors_.of(i)) {
-            const Vec3 d = octree_.positions[j] - octree_.positions[i];
-            sums.add(x | d, y | d, z | d);
-        }
-        const HeightFit fit = sums.fit();
-        const double square = fit.tilt[0] * fit.tilt[0] + fit.tilt[1] * fit.tilt[1];
-        if (square <= 2 * fit.variance || fit.variance > most_variance || square > most_square) return own;
-        const double share = 1 - 2 * fit.variance / square;
-        return (own - (u * fit.tilt[0] + v * fit.tilt[1]) * share).normalized();
+    /// Away from creases, where points are not too flat: what `curved` makes of them.
+    std::vector<Vec3> all_curved() const {
+        std::vector<Vec3> renewed(octree_.size());
+        for_chunks(octree_.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            std::array<Index, points_per_chunk + 1> bent;
+            std::size_t count = 0;
+            for (std::size_t i = begin; i < end; ++i) {
+                renewed[i] = normals_[i];
+                if (may_be_curved(static_cast<Index>(i))) bent[count++] = static_cast<Index>(i);
+            }
+            if (count % 2 == 1) bent[count] = bent[count - 1]; // the last one, of an odd number, twice
+            for (std::size_t b = 0; b < count; b += 2) {
+                const std::array<Vec3, 2> found = curved({bent[b], bent[b + 1]});
+                for (std::size_t lane = 0; lane < 2; ++lane) renewed[bent[b + lane]] = found[lane];
+            }
+        });
+        return renewed;
     }
 
     /// Of all points, what `normal_of` makes of each.
@@ -95,6 +89,46 @@ public:
     }
 
 private:
+    bool may_be_curved(Index i) const {
+        return !(estimate_.spread[i] < flat_spread * neighbors_.reach[i] || normals_[i].sqrnorm() == 0
+                 || differs(i, cos_crease));
+    }
+
+    /// A plane has the normal of the neighbours' centroid, not of the point, where the surface is curved.
+    /// Away from creases it is turned towards that of a quadratic surface: not at all up to where the tilt
+    /// between the two is such that their expected errors are equal (twice what noise makes of it), as at the
+    /// border of rough points, almost all of it where that is far exceeded.
+    std::array<Vec3, 2> curved(const std::array<Index, 2>& points) const {
+        std::array<Vec3, 2> u, v, x, y, z;
+        for (std::size_t lane = 0; lane < 2; ++lane) {
+            const Vec3& own = normals_[points[lane]];
+            u[lane] = own.cross(std::abs(own[0]) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)).normalized();
+            v[lane] = own.cross(u[lane]);
+            const double reach = neighbors_.reach[points[lane]];
+            x[lane] = u[lane] / reach, y[lane] = v[lane] / reach, z[lane] = own / reach;
+        }
+        const VectorPair xs(x[0], x[1]), ys(y[0], y[1]), zs(z[0], z[1]);
+        const NeighborhoodPair around(octree_, neighbors_, points);
+        HeightSums sums;
+        sums.add(Double2{}, Double2{}, Double2{});
+        for (std::size_t k = 0; k < around.size(); ++k) {
+            const VectorPair d = around.offset(k);
+            sums.add(xs | d, ys | d, zs | d);
+        }
+        const HeightFit fit = sums.fit();
+        std::array<Vec3, 2> result;
+        for (std::size_t lane = 0; lane < 2; ++lane)
+            result[lane] =
+                turned(normals_[points[lane]], u[lane] * fit.tilt[0][lane] + v[lane] * fit.tilt[1][lane],
+                       fit.variance[lane]);
+        return result;
+    }
+    static Vec3 turned(const Vec3& own, const Vec3& tilt, double variance) {
+        const double square = tilt.sqrnorm();
+        if (square <= 2 * variance || variance > most_variance || square > most_square) return own;
+        return (own - tilt * (1 - 2 * variance / square)).normalized();
+    }
+
     const Octree& octree_;
     const Neighbors& neighbors_;
     const EstimatedNormals& estimate_;
@@ -127,15 +161,38 @@ public:
 private:
     void fit_all() {
         for_chunks(octree_.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t i = begin; i < end; ++i) {
-                PlaneSums sums;
-                sums.add(Vec3(0, 0, 0), 1);
-                for (Index j : neighbors_.of(i)) sums.add(octree_.positions[j] - octree_.positions[i], 1);
-                const PlaneFit fit = fit_plane(sums);
-                result_.normals[i] = fit.normal;
-                result_.spread[i] = std::sqrt(fit.variance);
+            for (std::size_t i = begin; i < end; i += 2) {
+                const std::array<Index, 2> points{static_cast<Index>(i),
+                                                  static_cast<Index>(std::min(i + 1, end - 1))};
+                const std::array<PlaneFit, 2> fits = fit_planes(sums_of(points));
+                for (std::size_t lane = 0; lane < 2; ++lane) {
+                    result_.normals[points[lane]] = fits[lane].normal;
+                    result_.spread[points[lane]] = std::sqrt(fits[lane].variance);
+                }
             }
         });
+    }
+
+    /// Over two points and their neighbours.
+    std::array<PlaneSums, 2> sums_of(const std::array<Index, 2>& points) const {
+        const NeighborhoodPair around(octree_, neighbors_, points);
+        std::array<Double2, 3> first{};
+        std::array<Double2, 6> second{};
+        for (std::size_t k = 0; k < around.size(); ++k) {
+            const VectorPair d = around.offset(k);
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                first[axis] += d[axis];
+                second[axis] += d[axis] * d[axis];
+                second[3 + axis] += d[axis] * d[(axis + 1) % 3];
+            }
+        }
+        std::array<PlaneSums, 2> sums;
+        for (std::size_t lane = 0; lane < 2; ++lane) {
+            sums[lane].weight = static_cast<double>(1 + around.size());
+            sums[lane].first = {first[0][lane], first[1][lane], first[2][lane]};
+            for (std::size_t m = 0; m < second.size(); ++m) sums[lane].second[m] = second[m][lane];
+        }
+        return sums;
     }
 
     /// Not below the spread of the flattest neighbour: where the whole neighbourhood is rough, that is no
@@ -257,7 +314,7 @@ EstimatedNormals estimate_normals(const Octree& octree, const Neighbors& neighbo
 std::vector<Vec3> refined_normals(const Octree& octree, const Neighbors& neighbors,
                                   const EstimatedNormals& estimate) {
     const Renewal from_planes(octree, neighbors, estimate, estimate.normals);
-    std::vector<Vec3> curved = from_planes.all([&](Index i) { return from_planes.curved(i); });
+    std::vector<Vec3> curved = from_planes.all_curved();
     if (!(estimate.noise > rough)) return curved;
     const Renewal from_curved(octree, neighbors, estimate, curved);
     return from_curved.all([&](Index i) { return from_curved.averaged(i); });

@@ -28,14 +28,36 @@ inline Double2 agreement(Double2 cosine) {
     return max_lanes(Double2{}, cosine * cosine - least_agreement) / (1 - least_agreement);
 }
 
-/// Two vectors side by side: what is asked of one is asked of both at once.
+/// Two vectors side by side, one in each lane: what is asked of one is asked of both at once.
 class VectorPair {
 public:
     VectorPair(const Vec3& a, const Vec3& b) : lanes_{{{a[0], b[0]}, {a[1], b[1]}, {a[2], b[2]}}} {}
+    Double2 operator[](std::size_t axis) const { return lanes_[axis]; }
     Double2 operator|(const Vec3& v) const { return lanes_[0] * v[0] + lanes_[1] * v[1] + lanes_[2] * v[2]; }
+    Double2 operator|(const VectorPair& v) const {
+        return lanes_[0] * v[0] + lanes_[1] * v[1] + lanes_[2] * v[2];
+    }
 
 private:
     std::array<Double2, 3> lanes_;
+};
+
+/// The neighbours of two points, each as seen from its own.
+class NeighborhoodPair {
+public:
+    NeighborhoodPair(const Octree& octree, const Neighbors& neighbors, const std::array<Index, 2>& points)
+        : octree_(octree), points_(points), around_{neighbors.of(points[0]), neighbors.of(points[1])} {}
+    std::size_t size() const { return around_[0].size(); }
+    VectorPair offset(std::size_t k) const { return {offset(k, 0), offset(k, 1)}; }
+
+private:
+    Vec3 offset(std::size_t k, std::size_t lane) const {
+        return octree_.positions[around_[lane][k]] - octree_.positions[points_[lane]];
+    }
+
+    const Octree& octree_;
+    std::array<Index, 2> points_;
+    std::array<std::span<const Index>, 2> around_;
 };
 
 /// The neighbours of one point as seen from it.

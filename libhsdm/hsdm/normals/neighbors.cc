@@ -2,12 +2,16 @@
 
 #include "hsdm/chunks.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/io/huge_pages.hh"
+#include "hsdm/quality/lanes.hh"
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
-#include <numeric>
+#include <cstring>
+#include <limits>
 
 namespace hsdm {
 namespace {
@@ -53,17 +57,39 @@ std::vector<Leaf> find_leaves(const std::vector<MortonCode>& codes) {
     return leaves;
 }
 
-/// The candidates of one leaf, relative to its first point: float suffices to rank distances.
+/// Where few leaves are on the deepest level, that is not worth making: they are sought in the voxels one
+/// level above, each of which holds eight of them at most.
+void spare_deepest_level(std::vector<Leaf>& leaves) {
+    constexpr std::size_t few = 64; // one in so many
+    int deepest = 0;
+    for (const Leaf& leaf : leaves) deepest = std::max(deepest, leaf.level);
+    const auto count = std::count_if(leaves.begin(), leaves.end(),
+                                     [deepest](const Leaf& leaf) { return leaf.level == deepest; });
+    if (deepest == morton_levels || few * static_cast<std::size_t>(count) >= leaves.size()) return;
+    for (Leaf& leaf : leaves) leaf.level = std::min(leaf.level, deepest - 1);
+}
+
+constexpr std::size_t lanes = 4;
+
+Float4 lanes_at(const std::vector<float>& values, std::size_t place) {
+    Float4 result;
+    std::memcpy(&result, values.data() + place, sizeof(result));
+    return result;
+}
+
+/// The points of the voxels around one, relative to that one's first: float suffices to rank distances.
 struct Candidates {
+    int level = -1; ///< of the voxel in the middle, and its code: leaves in it next to each other share them
+    MortonCode code = 0;
+    Vec3 base{0, 0, 0};
     std::vector<float> x, y, z; ///< room for more than there are
     std::vector<Index> id;
 
-    void clear() { id.clear(); }
-    void add(const Octree& octree, Index begin, Index end, const Vec3& base) {
+    void add(const Octree& octree, Index begin, Index end) {
         const std::size_t old = id.size(), size = old + (end - begin);
         id.resize(size);
         for (std::vector<float>* axis : {&x, &y, &z})
-            if (axis->size() < size) axis->resize(2 * size);
+            if (axis->size() < size + lanes) axis->resize(2 * size + lanes);
         for (std::size_t c = old; c < size; ++c) {
             const Index i = id[c] = begin + static_cast<Index>(c - old);
             const Vec3 p = octree.positions[i] - base;
@@ -74,8 +100,8 @@ struct Candidates {
     }
 };
 
-/// The candidates nearest to a point. They are counted in rings of equal area, so that hardly a comparison
-/// decides where the processor goes on: all rings but the last wanted are taken whole, and few are on that.
+/// The candidates nearest to a point: a squared distance is sought that just as many do not exceed as are
+/// wanted, so that hardly a comparison decides where the processor goes on, and nothing is sorted.
 class Selection {
 public:
     /// Finds the `wanted` nearest, ties by place, where there are so many. Within the squared distance
@@ -83,76 +109,128 @@ public:
     /// of the farthest.
     float find(const Candidates& candidates, const std::array<float, 3>& point, std::size_t wanted,
                float limit) {
-        measure(candidates, point);
-        near_.resize(distance_.size() + 1);
-        if (find_near(limit) < wanted) {
-            limit = *std::max_element(distance_.begin(), distance_.end());
-            count_ = distance_.size();
-            std::iota(near_.begin(), near_.end(), Index{0});
+        limit = std::min(limit, beyond_all);
+        find_near(candidates, point, limit);
+        if (count_ < wanted) {
+            all_are_near(candidates.id.size());
+            limit = farthest_within(beyond_all);
         }
-        count_rings(limit);
-        return take(wanted);
+        return take(wanted, limit);
     }
     std::span<const Index> places() const { return {near_.data(), count_}; }
 
 private:
-    static constexpr std::size_t rings = 64;
+    /// Distances that overflow, and what is no number, count as this.
+    static constexpr float beyond_all = std::numeric_limits<float>::max();
 
-    void measure(const Candidates& candidates, const std::array<float, 3>& point) {
-        distance_.resize(candidates.id.size());
-        const auto [px, py, pz] = point;
-        for (std::size_t c = 0; c < distance_.size(); ++c) {
-            const float dx = candidates.x[c] - px, dy = candidates.y[c] - py, dz = candidates.z[c] - pz;
-            distance_[c] = dx * dx + dy * dy + dz * dz;
-        }
-    }
-
-    std::size_t find_near(float limit) {
+    void find_near(const Candidates& candidates, const std::array<float, 3>& point, float limit) {
+        constexpr std::size_t bits = 64;
+        const std::size_t size = candidates.id.size();
+        distance_.resize(padded(size));
+        near_.resize(size + lanes);
+        near_distance_.resize(size + 2 * lanes);
+        const std::array<Float4, 3> p{Float4{} + point[0], Float4{} + point[1], Float4{} + point[2]};
         count_ = 0;
-        for (std::size_t c = 0; c < distance_.size(); ++c) {
-            near_[count_] = static_cast<Index>(c);
-            count_ += distance_[c] <= limit;
+        for (std::size_t begin = 0; begin < size; begin += bits) {
+            std::uint64_t within = 0;
+            for (std::size_t c = begin; c < std::min(begin + bits, size); c += lanes) {
+                const Float4 squared = square(lanes_at(candidates.x, c) - p[0])
+                                       + square(lanes_at(candidates.y, c) - p[1])
+                                       + square(lanes_at(candidates.z, c) - p[2]);
+                std::memcpy(distance_.data() + c, &squared, sizeof(squared));
+                within |= std::uint64_t{lanes_of(squared <= limit)} << (c - begin);
+            }
+            if (size < begin + bits) within &= (std::uint64_t{1} << (size - begin)) - 1;
+            append(begin, within);
         }
-        return count_;
+        fill_up();
+    }
+    void append(std::size_t begin, std::uint64_t within) {
+        std::size_t count = count_;
+        for (; within != 0; within &= within - 1) {
+            const std::size_t c = begin + static_cast<std::size_t>(std::countr_zero(within));
+            near_[count] = static_cast<Index>(c);
+            near_distance_[count++] = distance_[c];
+        }
+        count_ = count;
+    }
+    void all_are_near(std::size_t size) {
+        count_ = size;
+        for (std::size_t c = 0; c < size; ++c) {
+            near_[c] = static_cast<Index>(c);
+            near_distance_[c] = distance_[c] < beyond_all ? distance_[c] : beyond_all;
+        }
+        fill_up();
+    }
+    /// Lanes behind the last are beyond any limit.
+    void fill_up() {
+        for (std::size_t k = count_; k < padded(count_); ++k)
+            near_distance_[k] = std::numeric_limits<float>::infinity();
+    }
+    static std::size_t padded(std::size_t size) { return (size + lanes - 1) / lanes * lanes; }
+
+    /// Of those near, `below` lie within `low` and more than wanted, if not just as many, within `high`.
+    /// Where points are spread evenly over a surface, their number grows with the squared distance.
+    float take(std::size_t wanted, float high) {
+        constexpr int most_looks = 8; // more where distances are equal would be in vain
+        float low = -1;
+        std::size_t below = 0, within = count_;
+        for (int look = 0; look < most_looks && within > wanted; ++look) {
+            const float least = std::max(low, 0.0f);
+            const float share = static_cast<float>(wanted - below) / static_cast<float>(within - below);
+            const float middle = least + (high - least) * share;
+            if (const std::size_t found = count_within(middle); found < wanted)
+                low = middle, below = found;
+            else
+                high = middle, within = found;
+        }
+        if (within == wanted) {
+            const float farthest = farthest_within(high);
+            keep(high);
+            return farthest;
+        }
+        rank(low, high);
+        keep(low);
+        for (std::size_t r = 0; count_ < wanted; ++r) near_[count_++] = ranked_[r].second;
+        return ranked_[wanted - below - 1].first;
     }
 
-    void count_rings(float limit) {
-        const float scale = rings / limit;
-        ring_.resize(count_);
-        in_ring_.fill(0);
+    /// Those near that are beyond one distance and within the other, nearest first.
+    void rank(float low, float high) {
+        ranked_.clear();
+        for (std::size_t k = 0; k < count_; ++k)
+            if (near_distance_[k] > low && near_distance_[k] <= high)
+                ranked_.emplace_back(near_distance_[k], near_[k]);
+        std::sort(ranked_.begin(), ranked_.end());
+    }
+    void keep(float limit) {
+        std::size_t kept = 0;
         for (std::size_t k = 0; k < count_; ++k) {
-            const float ring = distance_[near_[k]] * scale;
-            // Where distances underflow or overflow, what is no number belongs to the last ring, too.
-            ring_[k] = ring < rings - 1.0f ? static_cast<std::uint32_t>(ring) : rings - 1;
-            ++in_ring_[ring_[k]];
+            near_[kept] = near_[k];
+            kept += near_distance_[k] <= limit;
         }
+        count_ = kept;
     }
 
-    float take(std::size_t wanted) {
-        std::size_t last = 0, before = 0;
-        for (; before + in_ring_[last] < wanted; ++last) before += in_ring_[last];
-        ranked_.resize(count_ + 1);
-        std::size_t taken = 0, on_last = 0;
-        for (std::size_t k = 0; k < count_; ++k) {
-            const Index place = near_[k];
-            ranked_[on_last] = std::uint64_t{std::bit_cast<std::uint32_t>(distance_[place])} << 32 | place;
-            on_last += ring_[k] == last;
-            near_[taken] = place;
-            taken += ring_[k] < last;
+    std::size_t count_within(float limit) const {
+        Int4 sum{};
+        for (std::size_t k = 0; k < count_; k += lanes) sum -= lanes_at(near_distance_, k) <= limit;
+        return static_cast<std::size_t>(sum[0] + sum[1] + sum[2] + sum[3]);
+    }
+    float farthest_within(float limit) const {
+        Float4 most{};
+        for (std::size_t k = 0; k < count_; k += lanes) {
+            const Float4 distance = lanes_at(near_distance_, k);
+            most = max_lanes(most, distance <= limit ? distance : Float4{});
         }
-        const auto nearest = ranked_.begin(), end = nearest + static_cast<std::ptrdiff_t>(wanted - before);
-        std::partial_sort(nearest, end, nearest + static_cast<std::ptrdiff_t>(on_last));
-        for (auto at = nearest; at != end; ++at) near_[taken++] = static_cast<Index>(*at);
-        count_ = taken;
-        return std::bit_cast<float>(static_cast<std::uint32_t>(end[-1] >> 32));
+        return std::max(std::max(most[0], most[1]), std::max(most[2], most[3]));
     }
 
-    std::vector<float> distance_;     // squared, of all candidates
-    std::vector<Index> near_;         // places of those within the limit, then of those taken
-    std::size_t count_ = 0;           // of these
-    std::vector<std::uint32_t> ring_; // of those near
-    std::array<std::uint32_t, rings> in_ring_{};
-    std::vector<std::uint64_t> ranked_; // on the last ring: bits of the squared distance, then the place
+    std::vector<float> distance_;      // squared, of all candidates
+    std::vector<Index> near_;          // places of those within the limit, then of those taken
+    std::size_t count_ = 0;            // of these
+    std::vector<float> near_distance_; // of those within the limit
+    std::vector<std::pair<float, Index>> ranked_;
 };
 
 class Search {
@@ -161,6 +239,7 @@ public:
     Search(const Octree& octree, const std::vector<Index>* points, Neighbors& result)
         : octree_(octree), points_(points), result_(result) {
         std::vector<Leaf> leaves = find_leaves(octree.codes);
+        spare_deepest_level(leaves);
         if (points) keep_leaves_of(*points, leaves);
         if (leaves.empty()) return;
         int deepest = 0;
@@ -172,7 +251,8 @@ public:
         tbb::enumerable_thread_specific<Scratch> scratch;
         for_chunks(leaves.size(), leaves_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             Scratch& own = scratch.local();
-            for (std::size_t l = begin; l < end; ++l) search_leaf(leaves[l], own);
+            float limit = 0; // not known yet
+            for (std::size_t l = begin; l < end; ++l) limit = search_leaf(leaves[l], limit, own);
         });
         if (points) return;
         result.leaf_first.reserve(leaves.size() + 1);
@@ -197,10 +277,9 @@ private:
         leaves.resize(kept);
     }
 
-    /// The voxels around the leaf at one level; returns how many points they hold.
-    std::size_t around(const Leaf& leaf, int level, std::array<Index, 27>& voxels, std::size_t& count) const {
+    /// The voxels around one, and that itself; returns how many points they hold.
+    std::size_t around(MortonCode code, int level, std::array<Index, 27>& voxels, std::size_t& count) const {
         const OctreeLevel& grid = levels_[static_cast<std::size_t>(level)];
-        const MortonCode code = octree_.codes[leaf.begin] >> (3 * (morton_levels - level));
         const VoxelCoord centre = morton_decode(code);
         const std::int32_t side = std::int32_t{1} << level;
         std::array<std::array<MortonCode, 3>, 3> part; // per axis and step, its bits of the code
@@ -210,49 +289,67 @@ private:
                 part[axis][static_cast<std::size_t>(step + 1)] =
                     c < 0 || c >= side ? beyond : detail::spread_bits(static_cast<std::uint64_t>(c)) << axis;
             }
-        std::size_t points = 0;
-        count = 0;
+        std::array<MortonCode, 27> codes;
+        std::size_t asked = 0;
         for (MortonCode z : part[2])
             for (MortonCode y : part[1])
                 for (MortonCode x : part[0]) {
-                    const MortonCode neighbor = x | y | z;
-                    const Index v = neighbor < beyond ? grid.find(neighbor) : no_index;
-                    if (v == no_index) continue;
-                    voxels[count++] = v;
-                    points += grid.first_point[v + 1] - grid.first_point[v];
+                    codes[asked] = x | y | z;
+                    if (codes[asked] < beyond) grid.prefetch(codes[asked++]);
                 }
+        std::size_t points = 0;
+        count = 0;
+        for (std::size_t k = 0; k < asked; ++k) {
+            const Index v = grid.find(codes[k]);
+            if (v == no_index) continue;
+            voxels[count++] = v;
+            points += grid.first_point[v + 1] - grid.first_point[v];
+        }
         return points;
     }
 
-    void search_leaf(const Leaf& leaf, Scratch& scratch) const {
-        Candidates& candidates = scratch.candidates;
+    /// The candidates of a leaf: of the finest level that has enough, often those of the leaf before.
+    void find_candidates(const Leaf& leaf, Candidates& candidates) const {
         std::array<Index, 27> voxels;
         std::size_t count = 0;
-        int level = leaf.level;
-        while (around(leaf, level, voxels, count) < candidates_per_neighbor * result_.count && level > 0)
-            --level;
-        const Vec3 base = octree_.positions[leaf.begin];
-        const OctreeLevel& grid = levels_[static_cast<std::size_t>(level)];
-        candidates.clear();
-        for (std::size_t v = 0; v < count; ++v) {
-            Index first = grid.first_point[voxels[v]], last = grid.first_point[voxels[v] + 1];
-            if (level == morton_levels && last - first > 2 * crowd) { // those next to the leaf in order
+        for (int level = leaf.level;; --level) {
+            const MortonCode code = octree_.codes[leaf.begin] >> (3 * (morton_levels - level));
+            if (candidates.level == level && candidates.code == code && level < morton_levels) return;
+            if (around(code, level, voxels, count) < candidates_per_neighbor * result_.count && level > 0)
+                continue;
+            candidates.level = level;
+            candidates.code = code;
+            return gather(leaf, {voxels.data(), count}, candidates);
+        }
+    }
+
+    void gather(const Leaf& leaf, std::span<const Index> voxels, Candidates& candidates) const {
+        const OctreeLevel& grid = levels_[static_cast<std::size_t>(candidates.level)];
+        candidates.base = octree_.positions[grid.first_point[grid.find(candidates.code)]];
+        candidates.id.clear();
+        for (Index v : voxels) {
+            Index first = grid.first_point[v], last = grid.first_point[v + 1];
+            if (candidates.level == morton_levels && last - first > 2 * crowd) { // next to the leaf in order
                 first = std::clamp(leaf.begin, first + crowd / 2, last - 3 * crowd / 2) - crowd / 2;
                 last = first + 2 * crowd;
             }
-            candidates.add(octree_, first, last, base);
+            candidates.add(octree_, first, last);
         }
-        float limit = 0; // not known yet
-        if (points_)
-            for (Index slot = leaf.slot; slot < points_->size() && (*points_)[slot] < leaf.end; ++slot)
-                limit = search_point((*points_)[slot], slot, base, limit, scratch);
-        else
-            for (Index i = leaf.begin; i < leaf.end; ++i) limit = search_point(i, i, base, limit, scratch);
     }
 
-    /// Returns a squared distance within which the next point of the leaf will find enough.
-    float search_point(Index i, Index slot, const Vec3& base, float limit, Scratch& scratch) const {
-        const Vec3 p = octree_.positions[i] - base;
+    /// Takes and returns a squared distance within which the next point should find enough.
+    float search_leaf(const Leaf& leaf, float limit, Scratch& scratch) const {
+        find_candidates(leaf, scratch.candidates);
+        if (points_)
+            for (Index slot = leaf.slot; slot < points_->size() && (*points_)[slot] < leaf.end; ++slot)
+                limit = search_point((*points_)[slot], slot, limit, scratch);
+        else
+            for (Index i = leaf.begin; i < leaf.end; ++i) limit = search_point(i, i, limit, scratch);
+        return limit;
+    }
+
+    float search_point(Index i, Index slot, float limit, Scratch& scratch) const {
+        const Vec3 p = octree_.positions[i] - scratch.candidates.base;
         const std::array<float, 3> point{static_cast<float>(p[0]), static_cast<float>(p[1]),
                                          static_cast<float>(p[2])};
         const std::size_t wanted = result_.count + 1; // the point itself is among them
@@ -279,6 +376,8 @@ Neighbors search(const Octree& octree, const std::vector<Index>* points, const N
     Neighbors result;
     result.count = std::min(static_cast<std::size_t>(options.count), octree.size() - 1);
     const std::size_t size = points ? points->size() : octree.size();
+    result.index.reserve(size * result.count);
+    io::advise_huge_pages(result.index.data(), size * result.count * sizeof(Index));
     result.index.resize(size * result.count);
     result.reach.resize(size);
     const Search done(octree, points, result);

@@ -33,23 +33,23 @@ Roughness roughness(const Octree& octree, const Neighbors& neighbors, std::size_
             count > 0 ? std::sqrt(nearest[count - 1].first) : 0};
 }
 
-double lower_third(std::vector<double>& values) {
+double lower_third(std::vector<double> values) {
     if (values.empty()) return 0;
     const auto lower = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 3);
     std::nth_element(values.begin(), lower, values.end());
     return *lower;
 }
 
-/// Calls measure(point, place) for a sample of the points; returns its lower third.
+/// What measure(point) says of a sample of the points.
 template <class Measure>
-double lower_third_of_sample(const Octree& octree, const Measure& measure) {
+auto sampled(const Octree& octree, const Measure& measure) {
     constexpr std::size_t samples = 1 << 14, samples_per_chunk = 1024;
     const std::size_t stride = octree.size() / samples + 1;
-    std::vector<double> values((octree.size() + stride - 1) / stride, 0);
+    std::vector<decltype(measure(0))> values((octree.size() + stride - 1) / stride);
     for_chunks(values.size(), samples_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t r = begin; r < end; ++r) values[r] = measure(r * stride);
     });
-    return lower_third(values);
+    return values;
 }
 
 /// Every fourth point along the Morton curve: as even as all of them.
@@ -66,9 +66,9 @@ Octree thinned(const Octree& octree) {
 } // namespace
 
 double estimate_noise(const Octree& octree, const Neighbors& neighbors) {
-    return lower_third_of_sample(octree, [&](std::size_t i) {
+    return lower_third(sampled(octree, [&](std::size_t i) {
         return neighbors.reach[i] > 0 ? roughness(octree, neighbors, 6, i).distance / neighbors.reach[i] : 0;
-    });
+    }));
 }
 
 double noise_deviation(const Octree& octree, const Neighbors& neighbors) {
@@ -80,14 +80,14 @@ double noise_deviation(const Octree& octree, const Neighbors& neighbors) {
     };
     double deviation = 0;
     for (const Scale& scale : {Scale{6, 0.15, 1.3}, Scale{12, 0.2, 1.13}}) {
-        const auto measured = [&](std::size_t i) { return roughness(octree, neighbors, scale.few, i); };
-        const double relative = lower_third_of_sample(octree, [&](std::size_t i) {
-            const Roughness r = measured(i);
-            return r.reach > 0 ? r.distance / r.reach : 0;
-        });
-        deviation = scale.deviation
-                    * lower_third_of_sample(octree, [&](std::size_t i) { return measured(i).distance; });
-        if (relative < scale.small) return deviation;
+        std::vector<double> distances, relative; // to the reach
+        for (const Roughness& r :
+             sampled(octree, [&](std::size_t i) { return roughness(octree, neighbors, scale.few, i); })) {
+            distances.push_back(r.distance);
+            relative.push_back(r.reach > 0 ? r.distance / r.reach : 0);
+        }
+        deviation = scale.deviation * lower_third(std::move(distances));
+        if (lower_third(std::move(relative)) < scale.small) return deviation;
     }
     if (octree.size() < 4 * fewest) return deviation; // a quarter of them is looked at next
     const Octree thin = thinned(octree);

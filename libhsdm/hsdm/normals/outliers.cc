@@ -62,7 +62,7 @@ std::vector<std::uint8_t> find_outliers(const Octree& octree, const Neighbors& n
             // Is the reach more times the neighbours' median? Then it is so for more than half of them.
             const auto is_stretched = [&](double times) {
                 std::size_t count = 0;
-                for (Index n : around) count += reach / neighbors.reach[n] > times;
+                for (Index n : around) count += reach > times * neighbors.reach[n];
                 return count > around.size() / 2;
             };
             if (sparseness > options.most_sparseness || is_stretched(options.most_stretch))

@@ -81,14 +81,16 @@ public:
 
     /// Empty space counts if it is seen at two places: one voxel may be empty by chance.
     Sight look(const Vec3& from, const Vec3& along) const {
-        constexpr int steps = 5; // of half a voxel
-        Index last = occupied;
+        constexpr int steps = 5;                    // of half a voxel
+        Index last = occupied, searched = no_index; // most voxels are met twice
         for (int step = 0; step <= steps; ++step) {
             const VoxelCoord c = voxel_at(from + along * (0.5 * step * level_.voxel_size));
             const Index region = space_.region(c);
             if (region == occupied) {
-                const Index point = sheet_ahead(level_.find(c), from, along);
+                const Index voxel = level_.find(c);
+                const Index point = voxel == searched ? no_index : sheet_ahead(voxel, from, along);
                 if (point != no_index) return {no_index, point};
+                searched = voxel;
             } else if (region == last) {
                 return {region, no_index};
             }

@@ -101,35 +101,28 @@ private:
 /// where the chord is slanted.
 constexpr double near_pair = 0.45;
 
+/// Evidence added up edge by edge, but for edges that another one of their place came in between: these are
+/// there twice.
 class EdgeList {
 public:
-    /// Adds to one of the latest edges, where the same two patches mostly are, or appends.
     void add(Index a, Index b, double weight) {
         if (b < a) std::swap(a, b);
+        std::size_t& place = place_[(spread * a + b) % places];
+        if (place >= edges.size() || edges[place].a != a || edges[place].b != b) {
+            place = edges.size();
+            edges.push_back({a, b, 0, 0});
+        }
         const auto w = static_cast<float>(weight);
-        const std::size_t e = place(a, b);
-        if (e == edges.size()) edges.push_back({a, b, 0, 0});
-        edges[e].weight += w;
-        edges[e].total += std::abs(w);
+        edges[place].weight += w;
+        edges[place].total += std::abs(w);
     }
 
     std::vector<SignedEdge> edges;
 
 private:
-    static constexpr std::size_t latest = 32, places = 256;
+    static constexpr std::size_t places = 1024, spread = 37;
 
-    bool joins(std::size_t e, Index a, Index b) const { return edges[e].a == a && edges[e].b == b; }
-
-    /// Of these patches' edge, or behind the last where none of the latest is theirs.
-    std::size_t place(Index a, Index b) {
-        std::size_t& last = place_[(7 * a + b) % places];
-        if (last < edges.size() && last + latest > edges.size() && joins(last, a, b)) return last;
-        for (std::size_t e = edges.size(); e > 0 && e + latest > edges.size(); --e)
-            if (joins(e - 1, a, b)) return last = e - 1;
-        return last = edges.size();
-    }
-
-    std::array<std::size_t, places> place_{}; // where edges of such patches were last
+    std::array<std::size_t, places> place_{}; // where the last edge of such patches is
 };
 
 } // namespace

@@ -1,55 +1,84 @@
 #include "hsdm/normals/plane_fit.hh"
 
+#include "hsdm/quality/lanes.hh"
+
 #include <cmath>
-#include <numbers>
 
 namespace hsdm {
 namespace {
 
-/// Symmetric 3 x 3: xx, yy, zz, xy, yz, zx.
-using Symmetric = std::array<double, 6>;
+/// Symmetric 3 x 3, two of them at once: xx, yy, zz, xy, yz, zx.
+using Symmetric = std::array<Double2, 6>;
 
-/// Eigenvalues in ascending order, by the trigonometric solution of the characteristic cubic.
-std::array<double, 3> eigenvalues(const Symmetric& m) {
-    const double mean = (m[0] + m[1] + m[2]) / 3;
-    const double x = m[0] - mean, y = m[1] - mean, z = m[2] - mean;
-    const double off = m[3] * m[3] + m[4] * m[4] + m[5] * m[5];
-    const double p = std::sqrt((x * x + y * y + z * z + 2 * off) / 6);
-    if (p == 0) return {mean, mean, mean};
-    const double determinant =
-        x * (y * z - m[4] * m[4]) - m[3] * (m[3] * z - m[4] * m[5]) + m[5] * (m[3] * m[4] - y * m[5]);
-    const double angle = std::acos(std::clamp(determinant / (2 * p * p * p), -1.0, 1.0)) / 3;
-    const double largest = mean + 2 * p * std::cos(angle);
-    const double smallest = mean + 2 * p * std::cos(angle + 2 * std::numbers::pi / 3);
-    return {smallest, 3 * mean - largest - smallest, largest};
+/// The cofactors, whose columns are the cross products of the matrix's columns.
+Symmetric cofactors(const Symmetric& m) {
+    return {m[1] * m[2] - m[4] * m[4], m[2] * m[0] - m[5] * m[5], m[0] * m[1] - m[3] * m[3],
+            m[4] * m[5] - m[3] * m[2], m[5] * m[3] - m[4] * m[0], m[3] * m[4] - m[5] * m[1]};
 }
 
-/// The eigenvector of an eigenvalue that is not repeated: perpendicular to the rows of m - value.
-Vec3 eigenvector(const Symmetric& m, double value) {
-    const Vec3 a(m[0] - value, m[3], m[5]), b(m[3], m[1] - value, m[4]), c(m[5], m[4], m[2] - value);
-    const Vec3 ab = a % b, bc = b % c, ca = c % a;
-    const double lab = ab.sqrnorm(), lbc = bc.sqrnorm(), lca = ca.sqrnorm();
-    const Vec3& longest = lab >= lbc && lab >= lca ? ab : lbc >= lca ? bc : ca;
-    const double length = longest.norm();
-    return length > 0 ? longest / length : Vec3(0, 0, 0);
+/// The smallest eigenvalue of matrices of trace 1 that have no negative one. Newton's method from 0 on comes
+/// up to it from below: in three or four steps where points lie near a plane, and where it is repeated, half
+/// of the way with each. What becomes of one does not depend on the other.
+Double2 smallest_eigenvalue(const Symmetric& m) {
+    constexpr int most_steps = 48;
+    constexpr double negligible = 1e-15, least_slope = 1e-10; // below that, rounding decides about both
+    const Symmetric c = cofactors(m);
+    const Double2 minors = c[0] + c[1] + c[2], determinant = m[0] * c[0] + m[3] * c[3] + m[5] * c[5];
+    Double2 value{};
+    auto rises = value == value;
+    for (int step = 0; step < most_steps && any(rises); ++step) {
+        const Double2 rest = determinant - ((value - 1) * value + minors) * value;
+        const Double2 slope = (3 * value - 2) * value + minors;
+        rises &= (rest > negligible * slope) & (slope > least_slope);
+        value = rises ? value + rest / slope : value;
+    }
+    return value;
 }
 
 } // namespace
 
-PlaneFit fit_plane(const PlaneSums& sums) {
-    PlaneFit fit;
-    if (!(sums.weight > 0)) return fit;
-    const Vec3 c = fit.centroid = sums.first / sums.weight;
-    Symmetric m;
-    for (std::size_t k = 0; k < 6; ++k) m[k] = sums.second[k] / sums.weight;
-    m[0] -= c[0] * c[0], m[1] -= c[1] * c[1], m[2] -= c[2] * c[2];
-    m[3] -= c[0] * c[1], m[4] -= c[1] * c[2], m[5] -= c[2] * c[0];
-    const auto values = eigenvalues(m);
-    fit.variance = std::max(0.0, values[0]);
-    fit.width = std::max(0.0, values[1]);
+std::array<PlaneFit, 2> fit_planes(const std::array<PlaneSums, 2>& sums) {
     constexpr double negligible = 1e-12;
-    if (values[1] - values[0] > negligible * values[2]) fit.normal = eigenvector(m, values[0]);
-    return fit;
+    const auto both = [&](const auto& value_of) { return Double2{value_of(sums[0]), value_of(sums[1])}; };
+    const Double2 weight = both([](const PlaneSums& s) { return s.weight; });
+    std::array<Double2, 3> centre;
+    for (unsigned k = 0; k < 3; ++k)
+        centre[k] = both([k](const PlaneSums& s) { return s.first[k]; }) / weight;
+    Symmetric m;
+    for (unsigned k = 0; k < 6; ++k)
+        m[k] = both([k](const PlaneSums& s) { return s.second[k]; }) / weight
+               - centre[k % 3] * centre[k < 3 ? k : (k + 1) % 3];
+    const Double2 trace = m[0] + m[1] + m[2];
+    for (Double2& entry : m) entry /= trace;
+    const Double2 value = smallest_eigenvalue(m);
+    for (unsigned k = 0; k < 3; ++k) m[k] -= value;
+    // Where the eigenvalue is not repeated, all columns are multiples of its eigenvector, by its components.
+    const Symmetric c = cofactors(m);
+    const auto x_most = (c[0] >= c[1]) & (c[0] >= c[2]), y_most = c[1] >= c[2];
+    const std::array<Double2, 3> column{x_most   ? c[0]
+                                        : y_most ? c[3]
+                                                 : c[5],
+                                        x_most   ? c[3]
+                                        : y_most ? c[1]
+                                                 : c[4],
+                                        x_most   ? c[5]
+                                        : y_most ? c[4]
+                                                 : c[2]};
+    const Double2 gap = c[0] + c[1] + c[2]; // to the other eigenvalues, multiplied
+    std::array<PlaneFit, 2> fits;
+    for (std::size_t lane = 0; lane < 2; ++lane) {
+        if (!(weight[lane] > 0)) continue;
+        fits[lane].centroid = {centre[0][lane], centre[1][lane], centre[2][lane]};
+        if (!(trace[lane] > 0)) continue;
+        fits[lane].variance = value[lane] * trace[lane];
+        if (gap[lane] > negligible)
+            fits[lane].normal = Vec3(column[0][lane], column[1][lane], column[2][lane]).normalized();
+    }
+    return fits;
+}
+
+PlaneFit fit_plane(const PlaneSums& sums) {
+    return fit_planes({sums, sums})[0];
 }
 
 } // namespace hsdm

@@ -26,10 +26,11 @@ struct PlaneFit {
     Vec3 centroid{0, 0, 0}; ///< relative to the same base
     Vec3 normal{0, 0, 0};   ///< unit, of either sign; (0, 0, 0) if the points span no plane
     double variance = 0;    ///< mean squared distance from the plane
-    double width = 0;       ///< the smaller of the two variances within the plane
 };
 
 /// The plane with the least weighted sum of squared distances. O(1).
 PlaneFit fit_plane(const PlaneSums& sums);
+/// Of two sets of points, in little more time than one; what becomes of one does not depend on the other.
+std::array<PlaneFit, 2> fit_planes(const std::array<PlaneSums, 2>& sums);
 
 } // namespace hsdm

@@ -28,6 +28,9 @@ public:
         while (slots_[slot].place != 0 && slots_[slot].code != code) slot = (slot + 1) & (slots_.size() - 1);
         return slots_[slot].place - 1; // no_index where there is none
     }
+    void prefetch(MortonCode code) const {
+        if (!slots_.empty()) __builtin_prefetch(&slots_[slot_of(code)]);
+    }
 
 private:
     struct Slot {

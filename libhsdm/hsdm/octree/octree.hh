@@ -70,6 +70,8 @@ public:
     /// The voxel at a coordinate, or no_index where none is occupied or the coordinate lies outside. O(1).
     Index find(const VoxelCoord& c) const;
     Index find(MortonCode code) const { return index_.find(code); }
+    /// Said of several codes before the first is sought, their ways to memory are one.
+    void prefetch(MortonCode code) const { index_.prefetch(code); }
 
     /// To be called once codes are final; find() needs it.
     void build_index() { index_.build(codes); }

@@ -36,10 +36,14 @@ inline bool any(Lanes held) {
 
 /// A bit for each of four lanes where a comparison holds.
 inline unsigned lanes_of(Int4 held) {
+#ifdef __SSE2__
+    return static_cast<unsigned>(__builtin_ia32_movmskps(reinterpret_cast<Float4>(held)));
+#else
     using Long2 = long long __attribute__((vector_size(16)));
     const auto halves = reinterpret_cast<Long2>(held & Int4{1, 2, 4, 8});
     const auto bits = static_cast<unsigned long long>(halves[0] | halves[1]);
     return static_cast<unsigned>(bits | bits >> 32) & 15;
+#endif
 }
 
 } // namespace hsdm
