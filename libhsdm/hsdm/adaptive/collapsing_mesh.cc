@@ -92,11 +92,13 @@ bool CollapsingMesh::collapse(Index side, const Vec3& place) {
     const Index from = start(side), to = end(side);
     if (!ring_of(side, ring_) || !ring_of(twin_[side], ring_to_)) return false;
     if (!may_collapse(ring_, ring_to_, place)) return false;
-    if (place != at(to)) touch(twin_[side]);
+    if (place != at(to)) {
+        touch(twin_[side]);
+        for (Index v : ring_to_) changed_[v] = 1;
+    }
     touch(side);
     mesh_.positions[to] = place;
     for (Index v : ring_) changed_[v] = 1;
-    for (Index v : ring_to_) changed_[v] = 1;
     stands_for_[from] = to;
     facets_[to] = facets_[to] + facets_[from] - 4;
     --facets_[ring_[1]];

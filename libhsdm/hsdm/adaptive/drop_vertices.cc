@@ -9,15 +9,14 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
-#include <limits>
 
 namespace hsdm {
 namespace {
 
 constexpr int most_sweeps = 32;
-constexpr std::size_t vertices_per_chunk = 256;
+constexpr std::size_t vertices_per_chunk = 256, collapses_per_chunk = 32;
 constexpr double smooth_cosine = 0.95; // of normals round a vertex with their mean: 18 degrees
-constexpr double along_edge[] = {0.125, 0.25, 0.375, 0.625, 0.75, 0.875}; // and at the middle, before all
+constexpr double along_edge[] = {0.125, 0.25, 0.375, 0.625, 0.75, 0.875}; // and at the middle, before
 
 /// Of the neighbours of a side's start, its end first; they are left in `ring`.
 Key ring_key(const CollapsingMesh& mesh, Index side, std::vector<Index>& ring) {
@@ -29,10 +28,14 @@ Key ring_key(const CollapsingMesh& mesh, Index side, std::vector<Index>& ring) {
 class Dropping {
 public:
     Dropping(PolygonMesh& mesh, const MeshDistance& fine, double tolerance)
-        : mesh_(mesh), fine_(fine), tolerance_(tolerance) {}
+        : mesh_(mesh),
+          fine_(fine),
+          tolerance_(tolerance),
+          waits_(mesh_.vertex_count(), 0),
+          too_far_(mesh_.side_count(), 0) {}
 
     std::vector<Drop> run() {
-        for (int sweep = 0; sweep < most_sweeps && drop_once() > 0; ++sweep) {
+        for (int sweep = 0; sweep < most_sweeps && drop_once(); ++sweep) {
         }
         return std::move(drops_);
     }
@@ -42,6 +45,7 @@ private:
     struct Collapse {
         double length;
         Index side;
+        Index hint; ///< for places on what replaces its facets
     };
 
     /// What is used from vertex to vertex.
@@ -60,20 +64,24 @@ private:
         return out;
     }
 
-    std::size_t drop_once() {
+    /// Most places are looked at only when it is settled who goes: half of those that might have to wait.
+    bool drop_once() {
         std::vector<Collapse> collapses = find_collapses();
         tbb::parallel_sort(collapses.begin(), collapses.end(), [](const Collapse& a, const Collapse& b) {
             return a.length != b.length ? a.length < b.length : a.side < b.side;
         });
+        keep_apart(collapses);
+        measure(collapses);
         mesh_.forget_changes();
-        const std::size_t before = drops_.size();
         for (const Collapse& c : collapses) {
-            // What was measured holds while the facets round both are what they were.
-            if (mesh_.is_gone(c.side) || mesh_.has_changed(mesh_.start(c.side))) continue;
+            if (too_far_[c.side]) continue;
             const Drop drop{c.side, mesh_.start(c.side), mesh_.end(c.side), ring_key(mesh_, c.side, ring_)};
-            if (mesh_.collapse(drop.side, mesh_.at(drop.onto))) drops_.push_back(drop);
+            if (mesh_.collapse(drop.side, mesh_.at(drop.onto)))
+                drops_.push_back(drop);
+            else
+                waits_[drop.vertex] = 1;
         }
-        return drops_.size() - before;
+        return !collapses.empty();
     }
 
     std::vector<Collapse> find_collapses() {
@@ -82,21 +90,22 @@ private:
         for_chunks(out.size(), vertices_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
             Room room;
             for (auto v = static_cast<Index>(begin); v < end; ++v)
-                if (out[v] != no_index && mesh_.has_changed(v) && !mesh_.is_locked(v))
+                if (out[v] != no_index && (mesh_.has_changed(v) || waits_[v]) && !mesh_.is_locked(v))
                     add_collapse(out[v], room, parts[c]);
         });
         return joined(parts);
     }
 
-    /// The first in order of length that may be.
+    /// The first in order of length that may be, as far as the middles of new edges tell.
     void add_collapse(Index first, Room& room, std::vector<Collapse>& found) {
         auto& [hint, ring, ring_to, sides, normals] = room;
         if (!mesh_.ring_of(first, ring) || !is_smooth(mesh_.start(first), ring, normals)) return;
         sides.clear();
         Index s = first;
         do {
-            if (!mesh_.is_locked(mesh_.end(s)))
-                sides.push_back({(mesh_.at(mesh_.end(s)) - mesh_.at(mesh_.start(s))).sqrnorm(), s});
+            if (mesh_.has_changed(mesh_.start(s))) too_far_[s] = 0;
+            if (!mesh_.is_locked(mesh_.end(s)) && !too_far_[s])
+                sides.push_back({(mesh_.at(mesh_.end(s)) - mesh_.at(mesh_.start(s))).sqrnorm(), s, no_index});
             s = mesh_.twin(previous_side(s));
         } while (s != first);
         std::sort(sides.begin(), sides.end(), [](const Collapse& a, const Collapse& b) {
@@ -105,10 +114,38 @@ private:
         for (const Collapse& c : sides) {
             if (!mesh_.ring_of(c.side, ring) || !stays_near(mesh_.at(mesh_.start(c.side)), ring)) continue;
             if (!mesh_.ring_of(mesh_.twin(c.side), ring_to)) continue;
-            if (!mesh_.may_collapse(ring, ring_to, mesh_.at(ring[0])) || !is_near(ring, hint)) continue;
-            found.push_back(c);
+            if (!mesh_.may_collapse(ring, ring_to, mesh_.at(ring[0])) || !has_near_middles(ring, hint))
+                continue;
+            found.push_back({c.length, c.side, hint});
             return;
         }
+    }
+
+    /// Lets those wait whose facets one before them changes.
+    void keep_apart(std::vector<Collapse>& collapses) {
+        std::vector<std::uint8_t> taken(mesh_.vertex_count(), 0);
+        waits_.assign(waits_.size(), 0);
+        std::erase_if(collapses, [&](const Collapse& c) {
+            const Index start = mesh_.start(c.side);
+            waits_[start] = taken[start];
+            if (taken[start]) return true;
+            mesh_.ring_of(c.side, ring_);
+            for (Index v : ring_) taken[v] = 1;
+            return false;
+        });
+    }
+
+    /// Finds out which are too far off; their vertices may have others.
+    void measure(const std::vector<Collapse>& collapses) {
+        for_chunks(collapses.size(), collapses_per_chunk,
+                   [&](std::size_t begin, std::size_t end, std::size_t) {
+                       std::vector<Index> ring;
+                       for (std::size_t i = begin; i < end; ++i) {
+                           const Index side = collapses[i].side;
+                           mesh_.ring_of(side, ring);
+                           too_far_[side] = waits_[mesh_.start(side)] = !is_near(ring, collapses[i].hint);
+                       }
+                   });
     }
 
     bool is_smooth(Index v, const std::vector<Index>& ring, std::vector<Vec3>& normals) const {
@@ -127,21 +164,26 @@ private:
 
     /// Is a vertex near the facets that the ring would have without it, fanned out from its first?
     bool stays_near(const Vec3& vertex, const std::vector<Index>& ring) const {
-        double squared = std::numeric_limits<double>::infinity();
         for (std::size_t i = 1; i + 1 < ring.size(); ++i)
-            squared = std::min(squared,
-                               PreparedTriangle(mesh_.at(ring[0]), mesh_.at(ring[i]), mesh_.at(ring[i + 1]))
-                                   .nearest(vertex)
-                                   .squared_distance);
-        return squared <= tolerance_ * tolerance_;
+            if (PreparedTriangle(mesh_.at(ring[0]), mesh_.at(ring[i]), mesh_.at(ring[i + 1]))
+                    .nearest(vertex)
+                    .squared_distance
+                <= tolerance_ * tolerance_)
+                return true;
+        return false;
     }
 
-    /// Are these facets near the fine surface?
-    bool is_near(const std::vector<Index>& ring, Index& hint) const {
+    /// Are the middles of edges from a ring's first vertex near the fine surface? Most that fail do there.
+    bool has_near_middles(const std::vector<Index>& ring, Index& hint) const {
         const Vec3& to = mesh_.at(ring[0]);
-        // First where most that fail do, then place by place, each beside the one before.
         for (std::size_t i = 2; i + 1 < ring.size(); ++i)
             if (is_off(to + (mesh_.at(ring[i]) - to) * 0.5, hint)) return false;
+        return true;
+    }
+
+    /// Are these facets, place by place, each beside the one before?
+    bool is_near(const std::vector<Index>& ring, Index hint) const {
+        const Vec3& to = mesh_.at(ring[0]);
         for (std::size_t i = 2; i + 1 < ring.size(); ++i)
             for (const double share : along_edge)
                 if (is_off(to + (mesh_.at(ring[i]) - to) * share, hint)) return false;
@@ -160,6 +202,8 @@ private:
     const MeshDistance& fine_;
     double tolerance_;
     std::vector<Drop> drops_;
+    std::vector<std::uint8_t> waits_;   // per vertex, to be looked at again though nothing changed
+    std::vector<std::uint8_t> too_far_; // per side, as measured since its start changed
     std::vector<Index> ring_;
 };
 
