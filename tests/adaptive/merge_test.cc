@@ -66,7 +66,9 @@ PolygonMesh frame(int n) {
 }
 
 std::vector<Index> merged(PolygonMesh& mesh, double tolerance) {
-    return merge_vertices(mesh, vertex_planes(mesh), std::vector<double>(mesh.vertex_count(), tolerance));
+    std::vector<Merger> mergers;
+    return merge_vertices(mesh, vertex_planes(mesh), std::vector<double>(mesh.vertex_count(), tolerance),
+                          mergers);
 }
 
 std::size_t kept(const std::vector<Index>& stands_for) {
@@ -121,7 +123,9 @@ TEST_CASE("vertices without tolerance stay, and so do facets with nothing to mer
     std::vector<double> tolerance(mesh.vertex_count(), 0);
     for (Index v = 0; v < tolerance.size(); ++v)
         if (mesh.positions[v][2] > 2.5) tolerance[v] = 0.01;
-    const std::vector<Index> stands_for = merge_vertices(mesh, vertex_planes(mesh), tolerance);
+    std::vector<Merger> mergers;
+    const std::vector<Index> stands_for = merge_vertices(mesh, vertex_planes(mesh), tolerance, mergers);
+    CHECK(mergers.size() == before.vertex_count() - kept(stands_for));
     CHECK(kept(stands_for) < before.vertex_count());
     for (Index v = 0; v < tolerance.size(); ++v)
         if (tolerance[v] == 0) CHECK(stands_for[v] == v);
@@ -129,6 +133,33 @@ TEST_CASE("vertices without tolerance stay, and so do facets with nothing to mer
     for (std::size_t f = 0; f < mesh.facet_count(); ++f) quads += mesh.facet(f).size() == 4;
     CHECK(quads >= 32);
     CHECK(measure_topology(mesh).euler == 2);
+}
+
+TEST_CASE("mergers are repeated as far as tolerances allow", "[adaptive]") {
+    const PolygonMesh before = frame(10);
+    const std::vector<Quadric> planes = vertex_planes(before);
+    std::vector<double> tolerance(before.vertex_count(), 1.0);
+    std::vector<Merger> mergers;
+    PolygonMesh found = before, again = before, fewer = before;
+    merge_vertices(found, planes, tolerance, mergers);
+    repeat_mergers(again, planes, tolerance, mergers);
+    CHECK(again.corners == found.corners);
+    CHECK(again.positions == found.positions);
+
+    for (Index v = 0; v < tolerance.size(); v += 5) tolerance[v] = 0;
+    for (Index v = 1; v < tolerance.size(); v += 5) tolerance[v] = 0.01;
+    const std::vector<Index> stands_for = repeat_mergers(fewer, planes, tolerance, mergers);
+    CHECK(kept(stands_for) > before.vertex_count() - mergers.size());
+    CHECK(kept(stands_for) < before.vertex_count());
+    std::vector<Quadric> joint(before.vertex_count());
+    for (Index v = 0; v < stands_for.size(); ++v) joint[stands_for[v]] += planes[v];
+    for (Index v = 0; v < stands_for.size(); ++v) {
+        if (tolerance[v] == 0) CHECK(stands_for[v] == v);
+        if (stands_for[v] != v) CHECK(tolerance[stands_for[v]] > 0);
+        if (tolerance[v] == 0.01) CHECK(joint[stands_for[v]].rms(fewer.positions[stands_for[v]]) <= 0.011);
+    }
+    CHECK(troubled_vertices(fewer).empty());
+    CHECK(measure_topology(fewer).euler == 0);
 }
 
 TEST_CASE("vertices at a border stay", "[adaptive]") {

@@ -26,7 +26,7 @@ public:
             if (mesh_.is_locked(v)) tolerance_[v] = 0;
     }
 
-    std::vector<Index> run() {
+    std::vector<Index> run(std::vector<Merger>& mergers) {
         for (const bool may_move : {false, true}) {
             may_move_ = may_move;
             is_first_ = true;
@@ -34,6 +34,15 @@ public:
             for (int sweep = 0; sweep < most_sweeps && merge_once() > 0; ++sweep) {
             }
         }
+        mergers = std::move(done_);
+        return mesh_.write();
+    }
+
+    std::vector<Index> repeat(std::span<const Merger> mergers) {
+        for (const Merger& m : mergers)
+            if (mesh_.start(m.side) == m.vertex && mesh_.end(m.side) == m.onto
+                && meet(m.vertex, m.onto, m.place))
+                merge(m.side, m.place);
         return mesh_.write();
     }
 
@@ -41,7 +50,7 @@ private:
     const Vec3& at(Index v) const { return mesh_.at(v); }
 
     /// The start of a side may merge into its end, at a place.
-    struct Merger {
+    struct Candidate {
         double length;
         Index side;
         Vec3 place;
@@ -51,15 +60,15 @@ private:
     /// Vertices merge once in a sweep, those across short edges first: a few sweeps make large facets of
     /// even size.
     std::size_t merge_once() {
-        std::vector<Merger> mergers = find_mergers();
-        tbb::parallel_sort(mergers.begin(), mergers.end(), [](const Merger& a, const Merger& b) {
+        std::vector<Candidate> candidates = find_candidates();
+        tbb::parallel_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
             return a.length != b.length ? a.length < b.length : a.side < b.side;
         });
         is_first_ = false;
         mesh_.forget_changes();
         moved_.assign(moved_.size(), 0);
         std::size_t merged = 0;
-        for (const Merger& m : mergers) {
+        for (const Candidate& m : candidates) {
             if (mesh_.is_gone(m.side) || moved_[mesh_.start(m.side)] || moved_[mesh_.end(m.side)]) continue;
             merged += merge(m.side, m.place)
                       || (m.either_way && merge(mesh_.twin(m.side), at(mesh_.start(m.side))));
@@ -67,20 +76,20 @@ private:
         return merged;
     }
 
-    std::vector<Merger> find_mergers() {
-        std::vector<std::vector<Merger>> parts(chunk_count(mesh_.side_count(), sides_per_chunk));
+    std::vector<Candidate> find_candidates() {
+        std::vector<std::vector<Candidate>> parts(chunk_count(mesh_.side_count(), sides_per_chunk));
         for_chunks(mesh_.side_count(), sides_per_chunk,
                    [&](std::size_t begin, std::size_t end, std::size_t c) {
                        for (auto s = static_cast<Index>(begin); s < end; ++s)
                            if (!mesh_.is_gone(s) && mesh_.twin(s) != no_index && s < mesh_.twin(s))
-                               add_merger(s, parts[c]);
+                               add_candidate(s, parts[c]);
                    });
         return joined(parts);
     }
 
     /// Looks again at edges near which something changed, but at those whose planes were missed only if one
     /// of the vertices did.
-    void add_merger(Index s, std::vector<Merger>& mergers) {
+    void add_candidate(Index s, std::vector<Candidate>& candidates) {
         const Index a = mesh_.start(s), b = mesh_.end(s);
         if (!is_first_ && !mesh_.has_changed(a) && !mesh_.has_changed(b)) return;
         if (missed_[s] && !moved_[a] && !moved_[b]) return;
@@ -88,9 +97,9 @@ private:
         const bool there = holds(a, b), here = holds(b, a);
         missed_[s] = 0;
         if (there || here)
-            mergers.push_back({length, there ? s : mesh_.twin(s), there ? at(b) : at(a), there && here});
+            candidates.push_back({length, there ? s : mesh_.twin(s), there ? at(b) : at(a), there && here});
         else if (const std::optional<Vec3> place = may_move_ ? place_for(a, b) : std::nullopt)
-            mergers.push_back({length, s, *place, false});
+            candidates.push_back({length, s, *place, false});
         else
             missed_[s] = 1;
     }
@@ -110,16 +119,22 @@ private:
         Quadric both = planes_[a];
         both += planes_[b];
         const Vec3 place = both.minimum();
-        const double reach = (at(b) - at(a)).sqrnorm(), most = std::min(tolerance_[a], tolerance_[b]);
+        const double reach = (at(b) - at(a)).sqrnorm();
         if ((place - at(a)).sqrnorm() > reach || (place - at(b)).sqrnorm() > reach) return std::nullopt;
-        if (planes_[a].rms(place) > most || planes_[b].rms(place) > most) return std::nullopt;
-        return place;
+        return meet(a, b, place) ? std::optional(place) : std::nullopt;
+    }
+
+    /// Do the planes of both meet at a place?
+    bool meet(Index a, Index b, const Vec3& place) const {
+        const double most = std::min(tolerance_[a], tolerance_[b]);
+        return most > 0 && planes_[a].rms(place) <= most && planes_[b].rms(place) <= most;
     }
 
     /// Merges the start of a side into its end, at a place, if the facets round them allow.
     bool merge(Index side, const Vec3& place) {
         const Index from = mesh_.start(side), to = mesh_.end(side);
         if (!mesh_.collapse(side, place)) return false;
+        done_.push_back({side, from, to, place});
         moved_[to] = 1;
         planes_[to] += planes_[from];
         tolerance_[to] = std::min(tolerance_[to], tolerance_[from]);
@@ -129,6 +144,7 @@ private:
     CollapsingMesh mesh_;
     std::vector<Quadric> planes_;
     std::vector<double> tolerance_;
+    std::vector<Merger> done_;
     bool may_move_ = false, is_first_ = true;
     std::vector<std::uint8_t> moved_;  // per vertex, in the last sweep
     std::vector<std::uint8_t> missed_; // per side, are the planes of both ends missed everywhere?
@@ -137,8 +153,13 @@ private:
 } // namespace
 
 std::vector<Index> merge_vertices(PolygonMesh& mesh, std::vector<Quadric> planes,
-                                  std::vector<double> tolerance) {
-    return Merging(mesh, std::move(planes), std::move(tolerance)).run();
+                                  std::vector<double> tolerance, std::vector<Merger>& mergers) {
+    return Merging(mesh, std::move(planes), std::move(tolerance)).run(mergers);
+}
+
+std::vector<Index> repeat_mergers(PolygonMesh& mesh, std::vector<Quadric> planes,
+                                  std::vector<double> tolerance, std::span<const Merger> mergers) {
+    return Merging(mesh, std::move(planes), std::move(tolerance)).repeat(mergers);
 }
 
 } // namespace hsdm

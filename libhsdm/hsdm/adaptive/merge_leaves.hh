@@ -28,7 +28,7 @@ struct MergedLeaves {
 /// Merges vertices by their planes, then drops those that the surface does without, where a 2-manifold
 /// remains, no more is beyond the bound of `checks` and no more facets intersect than before, and cuts and
 /// joins facets anew. What is merged where something is wrong has to keep closer to its planes, or stays as
-/// it was, and all is merged anew; where rounds do not suffice the mesh stays as it was before them.
+/// it was, and all else is merged again; where rounds do not suffice the mesh stays as it was before them.
 /// `planes`: per vertex of the fine mesh.
 MergedLeaves merge_leaves(const LeafMesh& leaves, std::span<const Quadric> planes, RoundChecks& checks,
                           const MergeLeavesOptions& options);
