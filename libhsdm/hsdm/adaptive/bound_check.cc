@@ -1,5 +1,6 @@
 #include "hsdm/adaptive/bound_check.hh"
 
+#include "hsdm/adaptive/border_vertices.hh"
 #include "hsdm/chunks.hh"
 #include "hsdm/facets/triangulate.hh"
 #include "hsdm/quality/mix.hh"
@@ -14,20 +15,6 @@ namespace {
 constexpr std::size_t places_per_chunk = 2048;
 constexpr std::size_t far_per_chunk = 64; // distances of places that are far take long
 constexpr std::size_t keys_per_chunk = 512;
-
-/// Vertices at a border: each vertex of a whole fan is as often behind the one in the middle as before it.
-std::vector<std::uint8_t> border_vertices(const PolygonMesh& mesh) {
-    std::vector<std::int64_t> balance(mesh.vertex_count(), 0);
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-        const auto ring = mesh.facet(f);
-        Index before = ring.back();
-        for (std::size_t i = 0; i < ring.size(); before = ring[i++])
-            balance[ring[i]] += std::int64_t{ring[(i + 1) % ring.size()]} - std::int64_t{before};
-    }
-    std::vector<std::uint8_t> border(balance.size());
-    std::transform(balance.begin(), balance.end(), border.begin(), [](std::int64_t b) { return b != 0; });
-    return border;
-}
 
 std::array<Vec3, 3> corners_of(const PolygonMesh& mesh, const Triangle& t) {
     return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};

@@ -1,5 +1,6 @@
 #include "hsdm/adaptive/clusters.hh"
 
+#include "hsdm/adaptive/border_vertices.hh"
 #include "hsdm/adaptive/parts.hh"
 #include "hsdm/chunks.hh"
 #include "hsdm/disjoint_sets.hh"
@@ -7,7 +8,7 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
-#include <cmath>
+#include <numeric>
 
 namespace hsdm {
 namespace {
@@ -26,14 +27,9 @@ public:
           quadrics_(std::move(planes)),
           euler_(mesh.vertex_count(), 1) {
         for (Index v = 0; v < current_.size(); ++v) current_[v] = v;
-        for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-            const auto ring = mesh.facet(f);
-            facets_.push_back(static_cast<Index>(f));
-            for (std::size_t i = 0; i < ring.size(); ++i)
-                edges_.emplace_back(std::minmax(ring[i], ring[(i + 1) % ring.size()]));
-        }
-        tbb::parallel_sort(edges_.begin(), edges_.end());
-        edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
+        facets_.resize(mesh.facet_count());
+        std::iota(facets_.begin(), facets_.end(), Index{0});
+        gather_edges();
     }
 
     std::vector<ClusterLevel> run() {
@@ -45,6 +41,26 @@ public:
     }
 
 private:
+    /// Two facets have an edge one way each, unless it is at the border.
+    void gather_edges() {
+        const std::vector<std::uint8_t> border = border_vertices(mesh_);
+        std::vector<std::pair<Index, Index>> beside; // perhaps there
+        edges_.reserve(mesh_.corners.size() / 2);
+        for (std::size_t f = 0; f < mesh_.facet_count(); ++f) {
+            const auto ring = mesh_.facet(f);
+            Index a = ring.back();
+            for (const Index b : ring) {
+                if (border[a] && border[b])
+                    beside.emplace_back(std::minmax(a, b));
+                else if (a < b)
+                    edges_.emplace_back(a, b);
+                a = b;
+            }
+        }
+        std::sort(beside.begin(), beside.end());
+        edges_.insert(edges_.end(), beside.begin(), std::unique(beside.begin(), beside.end()));
+    }
+
     /// Cells whose children are all whole.
     std::vector<std::uint8_t> eligible_cells(std::size_t level) const {
         const CellLevel& below = tree_.levels[level + 1];

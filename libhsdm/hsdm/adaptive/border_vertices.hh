@@ -1,0 +1,13 @@
+#pragma once
+// Where an open surface ends.
+
+#include "hsdm/polygon_mesh.hh"
+
+#include <cstdint>
+
+namespace hsdm {
+
+/// Per vertex of an oriented 2-manifold, is it at a border? O(corners).
+std::vector<std::uint8_t> border_vertices(const PolygonMesh& mesh);
+
+} // namespace hsdm
