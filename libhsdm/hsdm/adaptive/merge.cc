@@ -27,27 +27,43 @@ public:
     }
 
     std::vector<Index> run(std::vector<Merger>& mergers) {
-        for (const bool may_move : {false, true}) {
-            may_move_ = may_move;
-            is_first_ = true;
-            missed_.assign(mesh_.side_count(), 0);
-            for (int sweep = 0; sweep < most_sweeps && merge_once() > 0; ++sweep) {
-            }
-        }
+        if (mergers.empty())
+            merge_all();
+        else
+            repeat(mergers);
         mergers = std::move(done_);
-        return mesh_.write();
-    }
-
-    std::vector<Index> repeat(std::span<const Merger> mergers) {
-        for (const Merger& m : mergers)
-            if (mesh_.start(m.side) == m.vertex && mesh_.end(m.side) == m.onto
-                && meet(m.vertex, m.onto, m.place))
-                merge(m.side, m.place);
         return mesh_.write();
     }
 
 private:
     const Vec3& at(Index v) const { return mesh_.at(v); }
+
+    void merge_all() {
+        for (const bool may_move : {false, true}) {
+            may_move_ = may_move;
+            is_first_ = true;
+            missed_.assign(mesh_.side_count(), 0);
+            sweep();
+        }
+    }
+
+    /// Others are found where one cannot be repeated.
+    void repeat(const std::vector<Merger>& mergers) {
+        std::vector<std::uint8_t> refused(mesh_.vertex_count(), 0);
+        for (const Merger& m : mergers)
+            if (mesh_.start(m.side) != m.vertex || mesh_.end(m.side) != m.onto
+                || !meet(m.vertex, m.onto, m.place) || !merge(m.side, m.place))
+                refused[m.vertex] = refused[m.onto] = 1;
+        may_move_ = true;
+        moved_ = std::move(refused);
+        missed_.assign(mesh_.side_count(), 1);
+        sweep();
+    }
+
+    void sweep() {
+        for (int sweep = 0; sweep < most_sweeps && merge_once() > 0; ++sweep) {
+        }
+    }
 
     /// The start of a side may merge into its end, at a place.
     struct Candidate {
@@ -155,11 +171,6 @@ private:
 std::vector<Index> merge_vertices(PolygonMesh& mesh, std::vector<Quadric> planes,
                                   std::vector<double> tolerance, std::vector<Merger>& mergers) {
     return Merging(mesh, std::move(planes), std::move(tolerance)).run(mergers);
-}
-
-std::vector<Index> repeat_mergers(PolygonMesh& mesh, std::vector<Quadric> planes,
-                                  std::vector<double> tolerance, std::span<const Merger> mergers) {
-    return Merging(mesh, std::move(planes), std::move(tolerance)).repeat(mergers);
 }
 
 } // namespace hsdm

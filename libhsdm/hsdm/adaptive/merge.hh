@@ -5,7 +5,6 @@
 #include "hsdm/adaptive/quadric.hh"
 #include "hsdm/polygon_mesh.hh"
 
-#include <span>
 #include <vector>
 
 namespace hsdm {
@@ -23,14 +22,10 @@ struct Merger {
 /// for both from then on. A 2-manifold keeps its topology (link condition), no facet turns, none gets thinner
 /// than all were; what changes comes out as triangles. `planes` and `tolerance` have an entry per vertex, and
 /// so has the result: the vertex that stands for it now, itself or one that it was merged into (it is
-/// isolated then). `mergers`: what was done. O(n log n) in each of two times 32 sweeps at most, of
-/// fewer edges each.
+/// isolated then). `mergers`: those made; if there are some before, of the same mesh with larger tolerances,
+/// these are repeated as far as tolerances allow and others are looked for only beside those that cannot be.
+/// O(n log n) in each of two times 32 sweeps at most, of fewer edges each.
 std::vector<Index> merge_vertices(PolygonMesh& mesh, std::vector<Quadric> planes,
                                   std::vector<double> tolerance, std::vector<Merger>& mergers);
-
-/// As above, but of the mesh that they were found in, with other tolerances: none but `mergers` are made, in
-/// that order, as far as these and the mesh by then allow. O(n).
-std::vector<Index> repeat_mergers(PolygonMesh& mesh, std::vector<Quadric> planes,
-                                  std::vector<double> tolerance, std::span<const Merger> mergers);
 
 } // namespace hsdm

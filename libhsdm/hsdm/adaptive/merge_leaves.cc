@@ -169,10 +169,9 @@ MergedLeaves merge_leaves(const LeafMesh& leaves, std::span<const Quadric> plane
                           const MergeLeavesOptions& options) {
     std::vector<Quadric> leaf_planes(leaves.mesh.vertex_count());
     for (std::size_t v = 0; v < planes.size(); ++v) leaf_planes[leaves.vertex[v]] += planes[v];
-    std::vector<Merger> mergers; // found once, as a round allows fewer than the one before
+    std::vector<Merger> mergers; // of the round before, which most are again
     const auto by_planes = [&](PolygonMesh& mesh, const std::vector<double>& tolerance) {
-        return mergers.empty() ? merge_vertices(mesh, leaf_planes, tolerance, mergers)
-                               : repeat_mergers(mesh, leaf_planes, tolerance, mergers);
+        return merge_vertices(mesh, leaf_planes, tolerance, mergers);
     };
     MergedLeaves merged = MergeRounds(leaves, checks, options).run({by_planes, Diagonals::may_flip, false});
 
