@@ -3,6 +3,7 @@
 #include "hsdm/chunks.hh"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 
 namespace hsdm {
@@ -48,24 +49,25 @@ TriangleSides link_triangles(std::span<const Index> corners, const PolygonMesh& 
     SidesByVertex by = gather_sides(corners, others, vertex_count);
     TriangleSides result{std::vector<Index>(corners.size(), no_index),
                          std::vector<std::uint8_t>(vertex_count, 0)};
+    // Edges of other chunks may end at the same border.
+    const auto mark = [&](Index v) { std::atomic_ref(result.border[v]).store(1, std::memory_order_relaxed); };
     for_chunks(vertex_count, vertices_per_chunk, [&](std::size_t low, std::size_t last, std::size_t) {
-        for (; low < last; ++low)
-            std::sort(by.sides.begin() + static_cast<std::ptrdiff_t>(by.first[low]),
-                      by.sides.begin() + static_cast<std::ptrdiff_t>(by.first[low + 1]),
-                      [](const Side& a, const Side& b) {
-                          return a.high != b.high ? a.high < b.high : a.side < b.side;
-                      });
-    });
-    for (Index low = 0; low < vertex_count; ++low)
-        for (std::size_t begin = by.first[low], end = begin; begin < by.first[low + 1]; begin = end) {
-            const Index high = by.sides[begin].high;
-            while (end < by.first[low + 1] && by.sides[end].high == high) ++end;
-            if (end - begin == 1) result.border[low] = result.border[high] = 1;
-            const Index s = by.sides[begin].side, t = by.sides[end - 1].side;
-            if (end - begin != 2 || t == no_index || corners[s] == corners[t]) continue;
-            result.twin[s] = t;
-            result.twin[t] = s;
+        for (; low < last; ++low) {
+            const std::span sides =
+                std::span(by.sides).subspan(by.first[low], by.first[low + 1] - by.first[low]);
+            std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+                return a.high != b.high ? a.high < b.high : a.side < b.side;
+            });
+            for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+                while (end < sides.size() && sides[end].high == sides[begin].high) ++end;
+                if (end - begin == 1) mark(static_cast<Index>(low)), mark(sides[begin].high);
+                const Index s = sides[begin].side, t = sides[end - 1].side;
+                if (end - begin != 2 || t == no_index || corners[s] == corners[t]) continue;
+                result.twin[s] = t;
+                result.twin[t] = s;
+            }
         }
+    });
     return result;
 }
 
