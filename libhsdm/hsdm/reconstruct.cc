@@ -321,8 +321,10 @@ void drop_and_measure(const std::vector<Vec3>& points, const Octree& octree,
     if (options.min_component) {
         const Islands islands = drop_islands(facets, known.hints, *options.min_component);
         note_islands(islands, report);
-        known.links.reset();
-        measured = measured && islands.components == 0;
+        if (islands.components > 0) {
+            known.links.reset();
+            measured = false;
+        }
     }
     if (!options.measure) {
         report.error = {};

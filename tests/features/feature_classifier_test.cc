@@ -378,3 +378,39 @@ TEST_CASE("a hint is for the side of the facet it is listed at, and hints of ano
     }
     CHECK_THROWS_AS(classify_features(mesh, {}, FeatureHints{{5, EdgeHint::sharp}}), Error);
 }
+
+TEST_CASE("edges are confirmed as if all facets were smoothed, not only those near them") {
+    FeatureOptions options;
+    std::size_t confirmed = 0, refused = 0;
+    for (const double slope : {0.3, 0.45, 0.6, 1.0})
+        for (int rounds = 1; rounds <= 4; ++rounds) {
+            options.confirmation_rounds = rounds;
+            PolyMeshD mesh = build<PolyMeshD>(
+                noisy(sheet(14, [&](Index x, Index) { return slope * std::abs(x - 7.0); }), 0.12));
+            std::vector<double> weights;
+            std::vector<Vec3> normals;
+            for (const Vec3& area : facet_area_vectors(mesh)) {
+                weights.push_back(area.norm());
+                normals.push_back(unit_or_zero(area));
+            }
+            std::vector<Vec3> smoothed = normals;
+            const FacetNeighbours neighbours = facet_neighbours(mesh, StatusBits::ignore);
+            for (int round = 0; round < rounds; ++round)
+                filter_normals(neighbours, weights, detail::confirming_similarity * options.crease_angle, 0,
+                               smoothed);
+            FeatureClassifierT<PolyMeshD> classifier(mesh);
+            classifier.initialize(options);
+            classifier.classify();
+            const double candidate = std::cos(options.crease_angle);
+            const double sure = std::cos(detail::confirmed_share * options.crease_angle);
+            for (const auto e : mesh.edges()) {
+                const bool expected =
+                    detail::exceeds(mesh, e, normals, candidate) && detail::exceeds(mesh, e, smoothed, sure);
+                CHECK(mesh.status(e).feature() == expected);
+                confirmed += expected;
+                refused += detail::exceeds(mesh, e, normals, candidate) && !expected;
+            }
+        }
+    CHECK(confirmed > 20);
+    CHECK(refused > 20);
+}

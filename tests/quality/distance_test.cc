@@ -1,4 +1,6 @@
 #include "hsdm/quality/distance.hh"
+#include "hsdm/quality/facet_cells.hh"
+#include "hsdm/quality/self_intersections.hh"
 
 #include <catch2/catch.hpp>
 #include <tbb/global_control.h>
@@ -282,7 +284,8 @@ TEST_CASE("cells find the same distances as the tree, whatever their size", "[di
                 points.push_back(Vec3(3 + 10 * p[0], 10.5 + 10 * p[1], near * p[2]));
         const MeshDistance single(mesh);
         const Distance by_tree = points_to_mesh(points, mesh);
-        for (const double cell : {0.01, 0.3, 1.0, 1.7, 100.0}) {
+        for (const double cell : {1.0, 1.7, 4.0}) CHECK(FacetCells(mesh, cell).usable());
+        for (const double cell : {0.01, 0.7, 1.0, 1.7, 4.0, 100.0, 0.0, -1.0}) {
             const Distance by_cells = points_to_mesh_by_cells(points, mesh, cell);
             CHECK(by_cells.max == Approx(by_tree.max).epsilon(1e-12));
             CHECK(by_cells.mean == Approx(by_tree.mean).epsilon(1e-12));
@@ -310,6 +313,32 @@ TEST_CASE("cells measure triangles of all shapes, also those that lie in the wal
         tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
         CHECK(points_to_mesh_by_cells(points, mesh, cell).rms == by_cells.rms);
     }
+    CHECK(FacetCells(mesh, 0.5).usable());
     CHECK(points_to_mesh_by_cells({}, mesh, 1).max == 0);
     CHECK(std::isinf(points_to_mesh_by_cells(points, {}, 1).max));
+}
+
+TEST_CASE("cells pass over facets without corners, and over those that are nowhere", "[distance]") {
+    PolygonMesh mesh = crumpled_sheet(8, 0.2, 21, {0, 0, 0});
+    const std::vector<Vec3> points = random_points(200, 22, 8);
+    const double expected = points_to_mesh_by_cells(points, mesh, 1).max;
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const Vec3& p : {Vec3(nan, nan, nan), Vec3(nan, 1, 1)}) {
+        PolygonMesh broken = mesh;
+        const auto first = static_cast<Index>(broken.vertex_count());
+        for (int i = 0; i < 3; ++i) broken.positions.push_back(p);
+        broken.add_facet(std::array<Index, 3>{first, first + 1, first + 2});
+        broken.add_facet({});
+        broken.add_facet(std::array<Index, 2>{0, 1});
+        CHECK(FacetCells(broken, 1).usable());
+        CHECK(points_to_mesh_by_cells(points, broken, 1).max == expected);
+        CHECK(find_self_intersections(broken, 1).facet_pairs == find_self_intersections(mesh, 1).facet_pairs);
+    }
+}
+
+TEST_CASE("cells that hold crowds of facets are not used", "[distance]") {
+    const PolygonMesh mesh = crumpled_sheet(60, 0.2, 23, {0, 0, 0});
+    CHECK(FacetCells(mesh, 1).usable());
+    CHECK_FALSE(FacetCells(mesh, 30).usable());
+    CHECK_FALSE(FacetCells(mesh, 0.1).usable());
 }

@@ -1,3 +1,4 @@
+#include "hsdm/quality/facet_cells.hh"
 #include "hsdm/quality/orientation.hh"
 #include "hsdm/quality/self_intersections.hh"
 #include "hsdm/quality/triangles_meet.hh"
@@ -203,7 +204,8 @@ TEST_CASE("cells leave out no facets that intersect", "[self_intersections]") {
         if (seed % 3 == 0) mesh.add_facet(std::array<Index, 5>{0, 1, 2, side + 2, side}); // beside others
         const SelfIntersections all = find_self_intersections(mesh);
         (all.facet_pairs.empty() ? clear : meeting) += 1;
-        for (const double cell : {0.4, 1.0, 1.6}) {
+        for (const double cell : {1.2, 1.6, 2.1}) {
+            CHECK(FacetCells(mesh, cell).usable());
             const SelfIntersections found = find_self_intersections(mesh, cell);
             CHECK(found.facet_pairs == all.facet_pairs);
             CHECK(found.triangle_pairs == all.triangle_pairs);

@@ -110,18 +110,15 @@ void validate(const UntangleOptions& options) {
         throw OptionError("step " + std::to_string(options.step) + ": must lie in (0, 1]");
     if (!(options.nearby > 0))
         throw OptionError("nearby " + std::to_string(options.nearby) + ": must be positive");
-    if (options.cell_size < 0)
-        throw OptionError("cell_size " + std::to_string(options.cell_size) + ": must be 0 or more");
     if (options.reach < 0)
         throw OptionError("reach " + std::to_string(options.reach) + ": must be 0 or more");
 }
 
 } // namespace
 
-UntangleCounts untangle(PolygonMesh& mesh, const UntangleOptions& options) {
+UntangleCounts untangle(PolygonMesh& mesh, const UntangleOptions& options, double cell_size) {
     validate(options);
-    SelfIntersections found = options.cell_size > 0 ? find_self_intersections(mesh, options.cell_size)
-                                                    : find_self_intersections(mesh);
+    SelfIntersections found = find_self_intersections(mesh, cell_size);
     UntangleCounts counts;
     counts.before = counts.after = found.triangle_pairs;
     if (found.triangle_pairs == 0 || options.rounds == 0) return counts;

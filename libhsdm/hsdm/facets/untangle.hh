@@ -10,8 +10,6 @@ struct UntangleOptions {
     double step = 0.5; ///< (0, 1]: share of the way a vertex moves to the mean of its neighbours in a round
     double reach =
         0; ///< how far a vertex may move in all, in the mesh's units; 0: as far as the rounds take it
-    double cell_size =
-        0;             ///< what facets are about as large as, to find intersections sooner; 0: nothing known
     double nearby = 0; ///< facets this close to a moved one are checked against it, in the mesh's units, > 0
 };
 
@@ -24,7 +22,8 @@ struct UntangleCounts {
 /// Moves the vertices of facets that intersect others towards the mean of their neighbours, round by round,
 /// as long as that leaves fewer intersections; only the neighbourhood of the trouble is looked at again.
 /// Connectivity is untouched. O(t log t) for the search, then O(the neighbourhoods) a round; the same for any
-/// number of threads. Throws OptionError.
-UntangleCounts untangle(PolygonMesh& mesh, const UntangleOptions& options);
+/// number of threads. `cell_size`: the edge of cells about as large as the facets, to find intersections
+/// sooner; 0 if there is no such size. Throws OptionError.
+UntangleCounts untangle(PolygonMesh& mesh, const UntangleOptions& options, double cell_size = 0);
 
 } // namespace hsdm

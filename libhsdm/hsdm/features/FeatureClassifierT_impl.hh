@@ -94,7 +94,7 @@ std::vector<unsigned char> FeatureClassifierT<Mesh>::facets_near_candidates() co
         for (unsigned side : {0u, 1u}) add(mesh_.face_handle(mesh_.halfedge_handle(e, side)), ring);
     }
     if (ring.empty()) return {};
-    for (int round = 0; round < options_.confirmation_rounds; ++round, ring.swap(next)) {
+    for (int round = 1; round < options_.confirmation_rounds; ++round, ring.swap(next)) {
         next.clear();
         for (const auto f : ring)
             for (const auto h : mesh_.fh_range(f))

@@ -11,8 +11,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double farthest =
     1 - 2 * FacetCells::rounding;   // in cells: those beside one hold all that is nearer
-constexpr double least_sine = 1e-6; // of a triangle's corner: flatter ones have no reliable normal
-constexpr double sure = 1 + 1e-9;   // factor on squares: far above rounding
+constexpr double least_sine = 1e-4; // of a triangle's corner: the normals of flatter ones are not relied on
+constexpr double sure = 1 + 1e-9;   // factor on squares; rounding beyond it is 1e-12 of a triangle's size
 
 using Lanes = std::array<Double2, 3>;
 
@@ -110,7 +110,7 @@ void CellSearch::load(std::size_t slot) {
     std::size_t lane = 0;
     const auto list = cell == no_index ? std::span<const Index>{} : cells_.facets(cell);
     for (Index f : list) {
-        if (std::ranges::find(facets_, f) != facets_.end()) continue;
+        if (std::ranges::binary_search(facets_, f)) continue;
         for (Index t = cut_.first[f]; t < cut_.first[f + 1]; ++t, lane = 1 - lane) {
             if (lane == 0)
                 bounds_.emplace_back().triangle = {t, t};
@@ -136,16 +136,16 @@ void CellSearch::prepare(Bounds& bounds) const {
     }
     const Lanes bc = minus(ac, ab), normal = cross(ab, ac);
     const Double2 area = dot(normal, normal), bb = dot(ab, ab), cc = dot(ac, ac);
-    // One that is thin is beyond its sides by nothing at all, wherever: no bound excludes it.
-    const auto thin = area <= least_sine * least_sine * bb * cc;
+    const auto regular = area > least_sine * least_sine * bb * cc;
     const auto unit = [&](const Lanes& way, Double2 squared) {
-        return scaled(way, thin ? Double2{} : 1 / root(squared));
+        return scaled(way, regular ? 1 / root(squared) : Double2{});
     };
     bounds.normal = unit(normal, area);
-    bounds.out[0] = unit(cross(ab, normal), area * bb);
-    bounds.out[1] = unit(cross(normal, ac), area * cc);
-    bounds.out[2] = unit(cross(bc, normal), area * dot(bc, bc));
-    bounds.across = thin ? Double2{} - std::numeric_limits<double>::min() : dot(bounds.out[2], ab);
+    bounds.out[0] = unit(cross(ab, bounds.normal), bb);
+    bounds.out[1] = unit(cross(bounds.normal, ac), cc);
+    bounds.out[2] = unit(cross(bc, bounds.normal), dot(bc, bc));
+    // Any other is beyond its sides by nothing at all, wherever: no bound excludes it.
+    bounds.across = regular ? dot(bounds.out[2], ab) : Double2{} - std::numeric_limits<double>::min();
 }
 
 } // namespace hsdm

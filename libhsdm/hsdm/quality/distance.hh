@@ -52,9 +52,10 @@ private:
 /// `enough` as above.
 Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh, double enough = 0);
 
-/// The same by cells of edge `cell_size` > 0, one with a corner at the origin: several times quicker where
-/// facets are about as large as cells and the points of a cell follow each other in the list, as in a mesh of
-/// a uniform octree level and its voxels. Distances may differ from those of the tree by rounding.
+/// The same by cells of edge `cell_size`, one with a corner at the origin: in half the time where facets are
+/// about as large as cells and the points of a cell follow each other in the list, as in a mesh of a uniform
+/// octree level and its voxels; by the tree where facets are much larger or smaller. Distances may differ
+/// from those of the tree by rounding.
 Distance points_to_mesh_by_cells(std::span<const Vec3> points, const PolygonMesh& mesh, double cell_size);
 
 /// Points spread evenly over the mesh's area, deterministic: for the other direction of a Hausdorff distance.

@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t facets_per_chunk = 4096, entries_per_chunk = 16384;
 constexpr double most_cells = 16; // per facet in the mean; four or so where facets span the voxels of a grid
+constexpr std::size_t most_facets = 64; // per cell, as well
 
 CellRange range_of(const FacetCells& cells, const PolygonMesh& mesh, std::size_t facet) {
     Box box;
@@ -37,11 +38,12 @@ FacetCells::FacetCells(const PolygonMesh& mesh, double size) : size_(size), per_
                });
     radix_sort(entries, 3 * std::bit_width(static_cast<std::uint32_t>(std::ranges::max(last_))));
     group(entries);
-    usable_ = true;
+    usable_ = facet_.size() <= most_facets * this->size();
 }
 
 /// Leaves an empty cell on every side, where whatever lies outside goes.
 bool FacetCells::fit(const Box& box) {
+    if (!(size_ > 0)) return false;
     constexpr double most = (1 << morton_levels) - 1;
     for (unsigned k = 0; k < 3; ++k) {
         const double first = std::floor(box.lo[k] * per_size_) - 1;

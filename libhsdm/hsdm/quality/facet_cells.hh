@@ -14,7 +14,11 @@ namespace hsdm {
 struct CellRange {
     VoxelCoord lo, hi;
 
-    double count() const { return (hi[0] - lo[0] + 1.0) * (hi[1] - lo[1] + 1.0) * (hi[2] - lo[2] + 1.0); }
+    double count() const {
+        double n = 1;
+        for (std::size_t k = 0; k < 3; ++k) n *= std::max(0.0, hi[k] - lo[k] + 1.0);
+        return n;
+    }
     template <class F>
     void for_each(F&& visit) const {
         for (VoxelCoord c = lo; c[2] <= hi[2]; ++c[2])
@@ -32,7 +36,8 @@ public:
     /// parallel; the same for any number of threads. The mesh need not outlive it.
     FacetCells(const PolygonMesh& mesh, double size);
 
-    /// False if facets span too many cells for lists to be of use, or there is none: nothing is listed.
+    /// False if there are too many cells to a facet or facets to a cell for lists to be of use, or none at
+    /// all: the lists are then not to be asked.
     bool usable() const { return usable_; }
     std::size_t size() const { return first_.size() - 1; }
     /// Ascending.

@@ -75,13 +75,12 @@ std::uint32_t turns_at(const PolygonMesh& mesh, std::span<const Index> facet, st
         const Vec3 next = arm(i);
         const double part = area(last, next);
         sum += part;
-        least = std::min(least, part);
+        least = std::min({least, part, area(first, next)}); // a sum of steps could come round
         longest = std::max(longest, next.sqrnorm());
         last = next;
     }
-    const double whole = area(first, last);
-    least = std::min(least, whole);
-    if (n == 4) least = std::min(least, sum - whole); // what a cut beside this corner leaves: not folded
+    if (n == 4)
+        least = std::min(least, sum - area(first, last)); // what a cut beside this corner leaves: not folded
     const bool left =
         least > 0 && least * least > least_area * least_area * longest * longest * sight.direction.sqrnorm();
     return !left ? 2 : (first | sight.side) < 0 && (last | sight.side) >= 0;

@@ -18,7 +18,8 @@ namespace hsdm {
 namespace {
 
 using FacetPair = std::array<Index, 2>;
-constexpr std::size_t blocks_per_chunk = 64, cells_per_chunk = 4096;
+constexpr std::size_t blocks_per_chunk = 64;
+constexpr std::size_t cells_per_chunk = 4096;
 
 class Finder {
 public:
@@ -121,7 +122,7 @@ std::vector<Index> facets_in_doubt(const PolygonMesh& mesh, const FacetCells& ce
         }
     });
     std::vector<Index> doubtful = joined(parts);
-    std::sort(doubtful.begin(), doubtful.end());
+    tbb::parallel_sort(doubtful.begin(), doubtful.end());
     doubtful.erase(std::unique(doubtful.begin(), doubtful.end()), doubtful.end());
     return doubtful;
 }

@@ -19,8 +19,9 @@ struct SelfIntersections {
 /// predicates, so neither rounding nor the number of threads changes the answer. O(t log t + pairs of
 /// triangles with overlapping boxes), parallel.
 SelfIntersections find_self_intersections(const PolygonMesh& mesh);
-/// The same, several times quicker where most facets are about as large as cells of edge `cell_size` > 0, one
-/// of them with a corner at the origin, as facets and voxels of a uniform octree level are.
+/// The same, several times quicker where most facets are about as large as cells of edge `cell_size`, one of
+/// them with a corner at the origin, as facets and voxels of a uniform octree level are; else in little more
+/// time. No size (0) will do.
 SelfIntersections find_self_intersections(const PolygonMesh& mesh, double cell_size);
 
 } // namespace hsdm

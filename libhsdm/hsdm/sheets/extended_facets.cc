@@ -318,8 +318,7 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
     UntangleOptions untangle_options = options.untangle;
     untangle_options.reach *= h;
     untangle_options.nearby *= h;
-    untangle_options.cell_size = h;
-    result.intersections = untangle(result.mesh, untangle_options);
+    result.intersections = untangle(result.mesh, untangle_options, h);
     take_properties(result);
     result.crossings = crossings.crossings.size();
     result.beyond_crease = crossings.dropped_beyond_crease;

@@ -131,8 +131,8 @@ public:
     /// The set whose sheet a facet is part of: among the sets in its vertices' voxels the one whose plane
     /// lies nearest in direction and place, or no_index if none faces its way to 60 degrees.
     Index set(Index f) const;
-    const Vec3& sheet_normal(Index set, const Vec3& otherwise) const {
-        return set != no_index ? sets_.sets[set].normal : otherwise;
+    const Vec3& sheet_normal(Index of_set, const Vec3& otherwise) const {
+        return of_set != no_index ? sets_.sets[of_set].normal : otherwise;
     }
     /// Of the vertices of two facets, ascending, each once.
     void voxels_of(Index f, Index g, std::vector<Index>& voxels) const {
