@@ -36,7 +36,8 @@ FacetCells::FacetCells(const PolygonMesh& mesh, double size) : size_(size), per_
                            entries[at++] = {morton_encode(c), static_cast<Index>(f)};
                        });
                });
-    radix_sort(entries, 3 * std::bit_width(static_cast<std::uint32_t>(std::ranges::max(last_))));
+    const int bits = static_cast<int>(std::bit_width(static_cast<std::uint32_t>(std::ranges::max(last_))));
+    radix_sort(entries, 3 * bits);
     group(entries);
     usable_ = facet_.size() <= most_facets * this->size();
 }
