@@ -85,6 +85,7 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
         report.rejected["edges_doubtful"] = features.doubtful;
         known.hints = std::move(features.hints);
     }
+    known.cells = std::move(facets.cells);
     facets.mesh.properties = average_attributes(in.cloud, in.octree, in.level, facets.voxel);
     if (!in.options.debug_dir.empty()) {
         PolygonMesh placed = facets.mesh;

@@ -4,6 +4,7 @@
 #include "hsdm/basic_method.hh"
 #include "hsdm/facets/facet_links.hh"
 #include "hsdm/features/feature_hints.hh"
+#include "hsdm/quality/facet_cells.hh"
 
 #include <optional>
 
@@ -13,11 +14,12 @@ namespace hsdm {
 struct FacetKnowledge {
     FeatureHints hints;
     std::optional<FacetLinks> links;
+    std::optional<FacetCells> cells; ///< the voxels
 };
 
 /// Facets relative to the octree's origin, an oriented 2-manifold with the vertices' properties. The octree
 /// must have normals. Adds its seconds (graph, facets) and what each stage counted to the report. Fills in
-/// `known` if features are asked for. Throws Cancelled.
+/// what of `known` it comes to know. Throws Cancelled.
 PolygonMesh extended_method(const MethodInput& input, Report& report, FacetKnowledge& known);
 
 } // namespace hsdm

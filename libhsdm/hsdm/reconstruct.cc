@@ -300,9 +300,10 @@ std::vector<Vec3> points_as_read(const PointCloud& cloud, const Octree& octree) 
 
 /// Distances up to `enough` may come out larger, though not above it.
 void measure_error(std::span<const Vec3> points, const Octree& octree, const PolygonMesh& facets,
-                   double enough, Report& report) {
+                   FacetKnowledge& known, double enough, Report& report) {
     const bool by_cells = report.grid.kind == "uniform"; // facets are as large as voxels
-    const Distance distance = by_cells ? points_to_mesh_by_cells(points, facets, report.grid.voxel_size)
+    if (by_cells && !known.cells) known.cells.emplace(facets, report.grid.voxel_size);
+    const Distance distance = by_cells ? points_to_mesh_by_cells(points, facets, *known.cells)
                                        : points_to_mesh(points, facets, enough);
     report.error.points_to_mesh_max = distance.max;
     report.error.points_to_mesh_mean = distance.mean;
@@ -316,13 +317,15 @@ void drop_and_measure(const std::vector<Vec3>& points, const Octree& octree,
                       const ReconstructOptions& options, PolygonMesh& facets, FacetKnowledge& known,
                       Report& report) {
     bool measured = report.grid.max_error > 0;
-    if (measured) measure_error(points, octree, facets, options.measure ? 0 : report.grid.max_error, report);
+    if (measured)
+        measure_error(points, octree, facets, known, options.measure ? 0 : report.grid.max_error, report);
     check_error_kept(report);
     if (options.min_component) {
         const Islands islands = drop_islands(facets, known.hints, *options.min_component);
         note_islands(islands, report);
         if (islands.components > 0) {
             known.links.reset();
+            known.cells.reset();
             measured = false;
         }
     }
@@ -332,7 +335,7 @@ void drop_and_measure(const std::vector<Vec3>& points, const Octree& octree,
     }
     tbb::parallel_invoke(
         [&] {
-            if (!measured) measure_error(points, octree, facets, 0, report);
+            if (!measured) measure_error(points, octree, facets, known, 0, report);
         },
         [&] { measure_mesh(facets, report); });
 }
@@ -385,9 +388,9 @@ void reconstruct_level(const PointCloud& cloud, const Octree& octree, int depth,
     std::vector<Vec3> points;
     if (options.measure || wants_adaptive(options)) points = points_as_read(cloud, octree);
     if (wants_adaptive(options)) {
+        known = {}; // of the fine facets
         facets = phases.run("adaptive", 0.5, seconds.facets,
                             [&] { return adaptive_grid(input, points, facets, report); });
-        known = {}; // of the fine facets
     }
     phases.run("error", 0.6, seconds.error,
                [&] { drop_and_measure(points, octree, options, facets, known, report); });

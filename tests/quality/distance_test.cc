@@ -286,13 +286,13 @@ TEST_CASE("cells find the same distances as the tree, whatever their size", "[di
         const Distance by_tree = points_to_mesh(points, mesh);
         for (const double cell : {1.0, 1.7, 4.0}) CHECK(FacetCells(mesh, cell).usable());
         for (const double cell : {0.01, 0.7, 1.0, 1.7, 4.0, 100.0, 0.0, -1.0}) {
-            const Distance by_cells = points_to_mesh_by_cells(points, mesh, cell);
+            const Distance by_cells = points_to_mesh_by_cells(points, mesh, FacetCells(mesh, cell));
             CHECK(by_cells.max == Approx(by_tree.max).epsilon(1e-12));
             CHECK(by_cells.mean == Approx(by_tree.mean).epsilon(1e-12));
             CHECK(by_cells.farthest == by_tree.farthest);
         }
         for (std::size_t i = 0; i < points.size(); i += 20) {
-            const Distance alone = points_to_mesh_by_cells({&points[i], 1}, mesh, 1);
+            const Distance alone = points_to_mesh_by_cells({&points[i], 1}, mesh, FacetCells(mesh, 1));
             CHECK(alone.max == Approx(single(points[i])).epsilon(1e-9).margin(1e-12));
         }
     }
@@ -307,21 +307,21 @@ TEST_CASE("cells measure triangles of all shapes, also those that lie in the wal
     for (std::size_t i = 0; i < points.size(); i += 3) points[i][0] = 0.25;
     const Distance by_tree = points_to_mesh(points, mesh);
     for (const double cell : {0.25, 0.5}) {
-        const Distance by_cells = points_to_mesh_by_cells(points, mesh, cell);
+        const Distance by_cells = points_to_mesh_by_cells(points, mesh, FacetCells(mesh, cell));
         CHECK(by_cells.max == Approx(by_tree.max).epsilon(1e-12));
         CHECK(by_cells.rms == Approx(by_tree.rms).epsilon(1e-12));
         tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-        CHECK(points_to_mesh_by_cells(points, mesh, cell).rms == by_cells.rms);
+        CHECK(points_to_mesh_by_cells(points, mesh, FacetCells(mesh, cell)).rms == by_cells.rms);
     }
     CHECK(FacetCells(mesh, 0.5).usable());
-    CHECK(points_to_mesh_by_cells({}, mesh, 1).max == 0);
-    CHECK(std::isinf(points_to_mesh_by_cells(points, {}, 1).max));
+    CHECK(points_to_mesh_by_cells({}, mesh, FacetCells(mesh, 1)).max == 0);
+    CHECK(std::isinf(points_to_mesh_by_cells(points, {}, FacetCells(PolygonMesh(), 1)).max));
 }
 
 TEST_CASE("cells pass over facets without corners, and over those that are nowhere", "[distance]") {
     PolygonMesh mesh = crumpled_sheet(8, 0.2, 21, {0, 0, 0});
     const std::vector<Vec3> points = random_points(200, 22, 8);
-    const double expected = points_to_mesh_by_cells(points, mesh, 1).max;
+    const double expected = points_to_mesh_by_cells(points, mesh, FacetCells(mesh, 1)).max;
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     for (const Vec3& p : {Vec3(nan, nan, nan), Vec3(nan, 1, 1)}) {
         PolygonMesh broken = mesh;
@@ -331,8 +331,9 @@ TEST_CASE("cells pass over facets without corners, and over those that are nowhe
         broken.add_facet({});
         broken.add_facet(std::array<Index, 2>{0, 1});
         CHECK(FacetCells(broken, 1).usable());
-        CHECK(points_to_mesh_by_cells(points, broken, 1).max == expected);
-        CHECK(find_self_intersections(broken, 1).facet_pairs == find_self_intersections(mesh, 1).facet_pairs);
+        CHECK(points_to_mesh_by_cells(points, broken, FacetCells(broken, 1)).max == expected);
+        CHECK(find_self_intersections(broken, FacetCells(broken, 1)).facet_pairs
+              == find_self_intersections(mesh, FacetCells(mesh, 1)).facet_pairs);
     }
 }
 

@@ -205,8 +205,9 @@ TEST_CASE("cells leave out no facets that intersect", "[self_intersections]") {
         const SelfIntersections all = find_self_intersections(mesh);
         (all.facet_pairs.empty() ? clear : meeting) += 1;
         for (const double cell : {1.2, 1.6, 2.1}) {
-            CHECK(FacetCells(mesh, cell).usable());
-            const SelfIntersections found = find_self_intersections(mesh, cell);
+            const FacetCells cells(mesh, cell);
+            CHECK(cells.usable());
+            const SelfIntersections found = find_self_intersections(mesh, cells);
             CHECK(found.facet_pairs == all.facet_pairs);
             CHECK(found.triangle_pairs == all.triangle_pairs);
             CHECK(found.skipped == all.skipped);

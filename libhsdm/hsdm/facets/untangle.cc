@@ -116,9 +116,9 @@ void validate(const UntangleOptions& options) {
 
 } // namespace
 
-UntangleCounts untangle(PolygonMesh& mesh, const UntangleOptions& options, double cell_size) {
+UntangleCounts untangle(PolygonMesh& mesh, const UntangleOptions& options, const FacetCells* cells) {
     validate(options);
-    SelfIntersections found = find_self_intersections(mesh, cell_size);
+    SelfIntersections found = cells ? find_self_intersections(mesh, *cells) : find_self_intersections(mesh);
     UntangleCounts counts;
     counts.before = counts.after = found.triangle_pairs;
     if (found.triangle_pairs == 0 || options.rounds == 0) return counts;

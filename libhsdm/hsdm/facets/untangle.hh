@@ -1,7 +1,7 @@
 #pragma once
 // Self-intersections that vertex positions cause, taken back by moving those vertices.
 
-#include "hsdm/polygon_mesh.hh"
+#include "hsdm/quality/facet_cells.hh"
 
 namespace hsdm {
 
@@ -22,8 +22,8 @@ struct UntangleCounts {
 /// Moves the vertices of facets that intersect others towards the mean of their neighbours, round by round,
 /// as long as that leaves fewer intersections; only the neighbourhood of the trouble is looked at again.
 /// Connectivity is untouched. O(t log t) for the search, then O(the neighbourhoods) a round; the same for any
-/// number of threads. `cell_size`: the edge of cells about as large as the facets, to find intersections
-/// sooner; 0 if there is no such size. Throws OptionError.
-UntangleCounts untangle(PolygonMesh& mesh, const UntangleOptions& options, double cell_size = 0);
+/// number of threads. `cells`: the mesh's, if its facets are about as large, to find intersections sooner;
+/// they are the mesh's still if none is moved. Throws OptionError.
+UntangleCounts untangle(PolygonMesh& mesh, const UntangleOptions& options, const FacetCells* cells = nullptr);
 
 } // namespace hsdm

@@ -152,8 +152,8 @@ Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh, d
 }
 
 /// What no cell beside a point's own tells is left to the tree, which is rarely built.
-Distance points_to_mesh_by_cells(std::span<const Vec3> points, const PolygonMesh& mesh, double cell_size) {
-    const FacetCells cells(mesh, cell_size);
+Distance points_to_mesh_by_cells(std::span<const Vec3> points, const PolygonMesh& mesh,
+                                 const FacetCells& cells) {
     if (!cells.usable()) return points_to_mesh(points, mesh);
     const Triangulation cut = triangulate(mesh);
     std::vector<double> squared(points.size());

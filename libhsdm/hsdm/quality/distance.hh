@@ -2,6 +2,7 @@
 // Section 4: how far the points are from the mesh, exactly.
 
 #include "hsdm/polygon_mesh.hh"
+#include "hsdm/quality/facet_cells.hh"
 #include "hsdm/quality/triangle_tree.hh"
 
 #include <span>
@@ -52,11 +53,11 @@ private:
 /// `enough` as above.
 Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh, double enough = 0);
 
-/// The same by cells of edge `cell_size`, one with a corner at the origin: in half the time where facets are
-/// about as large as cells and the points of a cell follow each other in the list, as in a mesh of a uniform
-/// octree level and its voxels; by the tree where facets are much larger or smaller. Distances may differ
-/// from those of the tree by rounding.
-Distance points_to_mesh_by_cells(std::span<const Vec3> points, const PolygonMesh& mesh, double cell_size);
+/// The same by the cells of the mesh: in half the time where facets are about as large as cells and the
+/// points of a cell follow each other in the list, as in a mesh of a uniform octree level and its voxels; by
+/// the tree where cells are not usable. Distances may differ from those of the tree by rounding.
+Distance points_to_mesh_by_cells(std::span<const Vec3> points, const PolygonMesh& mesh,
+                                 const FacetCells& cells);
 
 /// Points spread evenly over the mesh's area, deterministic: for the other direction of a Hausdorff distance.
 std::vector<Vec3> sample_surface(const PolygonMesh& mesh, std::size_t count);

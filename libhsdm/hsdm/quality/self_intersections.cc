@@ -3,7 +3,6 @@
 #include "hsdm/chunks.hh"
 #include "hsdm/facets/part_of.hh"
 #include "hsdm/facets/weld.hh"
-#include "hsdm/quality/facet_cells.hh"
 #include "hsdm/quality/flat_fans.hh"
 #include "hsdm/quality/triangle_tree.hh"
 #include "hsdm/quality/triangles_meet.hh"
@@ -133,8 +132,7 @@ SelfIntersections find_self_intersections(const PolygonMesh& mesh) {
     return Finder(mesh).run();
 }
 
-SelfIntersections find_self_intersections(const PolygonMesh& mesh, double cell_size) {
-    const FacetCells cells(mesh, cell_size);
+SelfIntersections find_self_intersections(const PolygonMesh& mesh, const FacetCells& cells) {
     if (!cells.usable()) return find_self_intersections(mesh);
     const std::vector<Index> doubtful = facets_in_doubt(mesh, cells);
     SelfIntersections found = find_self_intersections(part_of(mesh, doubtful));

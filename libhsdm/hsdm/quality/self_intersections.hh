@@ -2,6 +2,7 @@
 // Where a mesh passes through itself.
 
 #include "hsdm/polygon_mesh.hh"
+#include "hsdm/quality/facet_cells.hh"
 
 #include <array>
 
@@ -19,9 +20,8 @@ struct SelfIntersections {
 /// predicates, so neither rounding nor the number of threads changes the answer. O(t log t + pairs of
 /// triangles with overlapping boxes), parallel.
 SelfIntersections find_self_intersections(const PolygonMesh& mesh);
-/// The same, several times quicker where most facets are about as large as cells of edge `cell_size`, one of
-/// them with a corner at the origin, as facets and voxels of a uniform octree level are; else in little more
-/// time. No size (0) will do.
-SelfIntersections find_self_intersections(const PolygonMesh& mesh, double cell_size);
+/// The same, several times quicker by the cells of a mesh whose facets are about as large as they are, such
+/// as those of a uniform octree level and its voxels.
+SelfIntersections find_self_intersections(const PolygonMesh& mesh, const FacetCells& cells);
 
 } // namespace hsdm

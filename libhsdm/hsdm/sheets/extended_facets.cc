@@ -318,7 +318,9 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
     UntangleOptions untangle_options = options.untangle;
     untangle_options.reach *= h;
     untangle_options.nearby *= h;
-    result.intersections = untangle(result.mesh, untangle_options, h);
+    result.cells.emplace(result.mesh, h);
+    result.intersections = untangle(result.mesh, untangle_options, &*result.cells);
+    if (result.intersections.moved > 0) result.cells.reset();
     take_properties(result);
     result.crossings = crossings.crossings.size();
     result.beyond_crease = crossings.dropped_beyond_crease;

@@ -7,6 +7,8 @@
 #include "hsdm/facets/untangle.hh"
 #include "hsdm/sheets/relax_vertices.hh"
 
+#include <optional>
+
 namespace hsdm {
 
 struct ExtendedOptions {
@@ -31,7 +33,8 @@ struct ExtendedFacets {
     std::size_t debris = 0;         ///< facets of splinters, removed
     FillHolesCounts holes;
     UntangleCounts intersections;
-    ManifoldCounts manifold; ///< what the last check still had to mend
+    std::optional<FacetCells> cells; ///< the mesh's, by voxels; empty if it was moved since
+    ManifoldCounts manifold;         ///< what the last check still had to mend
 };
 
 ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
