@@ -36,4 +36,11 @@ struct PolygonMesh {
     }
 };
 
+/// Of the positions of a facet's corners.
+inline Box box_of(const PolygonMesh& mesh, std::size_t facet) {
+    Box box;
+    for (Index v : mesh.facet(facet)) box.add(mesh.positions[v]);
+    return box;
+}
+
 } // namespace hsdm

@@ -12,12 +12,6 @@ namespace {
 
 constexpr std::size_t facets_per_chunk = 4096;
 
-Box box_of(const PolygonMesh& mesh, std::size_t facet) {
-    Box box;
-    for (Index v : mesh.facet(facet)) box.add(mesh.positions[v]);
-    return box;
-}
-
 /// Whether a box may touch one of others: some cell of a grid has a part of both. Counts are summed up along
 /// the axes, so that a large box takes no longer than a small one.
 class BoxGrid {

@@ -1,20 +1,23 @@
 #include "hsdm/facets/part_of.hh"
 
+#include <utility>
+
 namespace hsdm {
 
-PolygonMesh part_of(const PolygonMesh& mesh, const std::vector<Index>& facets) {
+PolygonMesh part_of(const PolygonMesh& mesh, const std::vector<Index>& facets, std::vector<Index>* number) {
     PolygonMesh part;
-    std::vector<Index> number(mesh.vertex_count(), no_index);
+    std::vector<Index> in_part(mesh.vertex_count(), no_index);
     for (Index f : facets) {
         for (Index v : mesh.facet(f)) {
-            if (number[v] == no_index) {
-                number[v] = static_cast<Index>(part.positions.size());
+            if (in_part[v] == no_index) {
+                in_part[v] = static_cast<Index>(part.positions.size());
                 part.positions.push_back(mesh.positions[v]);
             }
-            part.corners.push_back(number[v]);
+            part.corners.push_back(in_part[v]);
         }
         part.first.push_back(static_cast<Index>(part.corners.size()));
     }
+    if (number) *number = std::move(in_part);
     return part;
 }
 

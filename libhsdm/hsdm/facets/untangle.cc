@@ -1,18 +1,13 @@
 #include "hsdm/facets/untangle.hh"
 
 #include "hsdm/errors.hh"
+#include "hsdm/facets/part_of.hh"
 #include "hsdm/quality/self_intersections.hh"
 
 #include <algorithm>
 
 namespace hsdm {
 namespace {
-
-Box box_of(const PolygonMesh& mesh, Index facet) {
-    Box box;
-    for (Index v : mesh.facet(facet)) box.add(mesh.positions[v]);
-    return box;
-}
 
 bool overlap(const Box& a, const Box& b, double margin) {
     for (unsigned k = 0; k < 3; ++k)
@@ -32,17 +27,17 @@ public:
                   [](const Box& a, const Box& b) { return a.lo[0] < b.lo[0]; });
         double widest = 0;
         for (const Box& box : trouble) widest = std::max(widest, box.hi[0] - box.lo[0]);
-        of_vertex_.assign(mesh.vertex_count(), no_index);
         for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-            const Box box = box_of(mesh, static_cast<Index>(f));
+            const Box box = box_of(mesh, f);
             const auto first = std::lower_bound(trouble.begin(), trouble.end(), box.lo[0] - nearby - widest,
                                                 [](const Box& b, double x) { return b.lo[0] < x; });
             for (auto t = first; t != trouble.end() && t->lo[0] <= box.hi[0] + nearby; ++t)
                 if (overlap(*t, box, nearby)) {
-                    add(mesh, static_cast<Index>(f));
+                    facets_.push_back(static_cast<Index>(f));
                     break;
                 }
         }
+        part = part_of(mesh, facets_, &of_vertex_);
         // A vertex with facets outside must stay: its neighbours are not all here.
         inner_.assign(part.vertex_count(), 1);
         std::size_t next = 0;
@@ -62,25 +57,13 @@ public:
     bool inner(Index v) const { return inner_[v] != 0; }
 
     void write_back(PolygonMesh& mesh) const {
-        for (std::size_t v = 0; v < vertices_.size(); ++v) mesh.positions[vertices_[v]] = part.positions[v];
+        for (std::size_t v = 0; v < of_vertex_.size(); ++v)
+            if (of_vertex_[v] != no_index) mesh.positions[v] = part.positions[of_vertex_[v]];
     }
 
 private:
-    void add(const PolygonMesh& mesh, Index facet) {
-        facets_.push_back(facet);
-        std::vector<Index> ring;
-        for (Index v : mesh.facet(facet)) {
-            if (of_vertex_[v] == no_index) {
-                of_vertex_[v] = static_cast<Index>(vertices_.size());
-                vertices_.push_back(v);
-                part.positions.push_back(mesh.positions[v]);
-            }
-            ring.push_back(of_vertex_[v]);
-        }
-        part.add_facet(ring);
-    }
-
-    std::vector<Index> of_vertex_, vertices_, facets_;
+    std::vector<Index> facets_;    // of the part, in the mesh
+    std::vector<Index> of_vertex_; // per vertex of the mesh, that of the part or no_index
     std::vector<std::uint8_t> inner_;
 };
 

@@ -3,7 +3,7 @@
 // them.
 
 #include "hsdm/normals/neighbors.hh"
-#include "hsdm/quality/lanes.hh"
+#include "hsdm/quality/vector_pair.hh"
 
 #include <array>
 
@@ -27,20 +27,6 @@ inline double agreement(double cosine) {
 inline Double2 agreement(Double2 cosine) {
     return max_lanes(Double2{}, cosine * cosine - least_agreement) / (1 - least_agreement);
 }
-
-/// Two vectors side by side, one in each lane: what is asked of one is asked of both at once.
-class VectorPair {
-public:
-    VectorPair(const Vec3& a, const Vec3& b) : lanes_{{{a[0], b[0]}, {a[1], b[1]}, {a[2], b[2]}}} {}
-    Double2 operator[](std::size_t axis) const { return lanes_[axis]; }
-    Double2 operator|(const Vec3& v) const { return lanes_[0] * v[0] + lanes_[1] * v[1] + lanes_[2] * v[2]; }
-    Double2 operator|(const VectorPair& v) const {
-        return lanes_[0] * v[0] + lanes_[1] * v[1] + lanes_[2] * v[2];
-    }
-
-private:
-    std::array<Double2, 3> lanes_;
-};
 
 /// The neighbours of two points, each as seen from its own.
 class NeighborhoodPair {

@@ -14,20 +14,6 @@ constexpr double farthest =
 constexpr double least_sine = 1e-4; // of a triangle's corner: the normals of flatter ones are not relied on
 constexpr double sure = 1 + 1e-9;   // factor on squares; rounding beyond it is 1e-12 of a triangle's size
 
-using Lanes = std::array<Double2, 3>;
-
-Double2 dot(const Lanes& a, const Lanes& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Lanes minus(const Lanes& a, const Lanes& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Lanes cross(const Lanes& a, const Lanes& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Lanes scaled(const Lanes& a, Double2 factor) {
-    return {a[0] * factor, a[1] * factor, a[2] * factor};
-}
 Double2 root(Double2 x) {
     return Double2{std::sqrt(x[0]), std::sqrt(x[1])};
 }
@@ -39,8 +25,8 @@ double CellSearch::squared_distance(const Vec3& point) {
     const FacetCells::Place place = cells_.place(point);
     const VoxelCoord cell = FacetCells::cell_of(place);
     if (cell != cell_) enter(cell);
-    const Lanes spread{Double2{} + point[0], Double2{} + point[1], Double2{} + point[2]};
-    double squared = nearest_in(centre, spread, infinity);
+    const VectorPair twice(point, point);
+    double squared = nearest_in(centre, twice, infinity);
     const double reach = std::min(std::sqrt(squared) / cells_.cell_size(), farthest) + FacetCells::rounding;
     CellRange beside;
     bool inside = true;
@@ -53,7 +39,7 @@ double CellSearch::squared_distance(const Vec3& point) {
     if (inside) return squared;
     beside.for_each([&](const VoxelCoord& c) {
         const auto slot = static_cast<std::size_t>(c[0] + 3 * c[1] + 9 * c[2]);
-        if (slot != centre) squared = nearest_in(slot, spread, squared);
+        if (slot != centre) squared = nearest_in(slot, twice, squared);
     });
     return std::sqrt(squared) <= farthest * cells_.cell_size() ? squared : infinity;
 }
@@ -68,17 +54,17 @@ void CellSearch::enter(const VoxelCoord& cell) {
 
 /// Of a slot's triangles and what is `squared` away already. A triangle is no nearer than its plane and the
 /// farthest of the lines of its sides that the point lies beyond, and beyond none it is as near as its plane.
-double CellSearch::nearest_in(std::size_t slot, const Lanes& point, double squared) {
+double CellSearch::nearest_in(std::size_t slot, const VectorPair& point, double squared) {
     if (!around_[slot].loaded) load(slot);
     const Slice slice = around_[slot];
     if (low_.size() < slice.end) low_.resize(slice.end);
     Double2 least = Double2{} + squared;
     for (std::size_t i = slice.begin; i < slice.end; ++i) {
         const Bounds& b = bounds_[i];
-        const Lanes arm = minus(point, b.corner);
-        const Double2 height = dot(arm, b.normal);
+        const VectorPair arm = point - b.corner;
+        const Double2 height = arm | b.normal;
         const Double2 beyond =
-            max_lanes(max_lanes(dot(arm, b.out[0]), dot(arm, b.out[1])), dot(arm, b.out[2]) - b.across);
+            max_lanes(max_lanes(arm | b.out[0], arm | b.out[1]), (arm | b.out[2]) - b.across);
         const Double2 low = square(height) + square(max_lanes(beyond, Double2{}));
         low_[i] = beyond > 0 ? low : Double2{} + infinity;
         least = min_lanes(least, beyond > 0 ? Double2{} + infinity : low);
@@ -90,14 +76,14 @@ double CellSearch::nearest_in(std::size_t slot, const Lanes& point, double squar
     return squared;
 }
 
-double CellSearch::exactly(const Bounds& bounds, const Lanes& point) const {
+double CellSearch::exactly(const Bounds& bounds, const VectorPair& point) const {
     TwoTriangles two;
     for (std::size_t lane = 0; lane < 2; ++lane) {
         const auto& [a, b, c] = cut_.triangles[bounds.triangle[lane]];
         const Vec3& corner = mesh_.positions[a];
         two.put(lane, corner, mesh_.positions[b] - corner, mesh_.positions[c] - corner);
     }
-    const Double2 squared = two.squared_distances(point);
+    const Double2 squared = two.squared_distances({point[0], point[1], point[2]});
     return std::min(squared[0], squared[1]);
 }
 
@@ -124,28 +110,24 @@ void CellSearch::load(std::size_t slot) {
 }
 
 void CellSearch::prepare(Bounds& bounds) const {
-    Lanes ab, ac;
-    for (std::size_t lane = 0; lane < 2; ++lane) {
-        const auto& [ia, ib, ic] = cut_.triangles[bounds.triangle[lane]];
-        const Vec3 &a = mesh_.positions[ia], &b = mesh_.positions[ib], &c = mesh_.positions[ic];
-        for (unsigned k = 0; k < 3; ++k) {
-            bounds.corner[k][lane] = a[k];
-            ab[k][lane] = b[k] - a[k];
-            ac[k][lane] = c[k] - a[k];
-        }
-    }
-    const Lanes bc = minus(ac, ab), normal = cross(ab, ac);
-    const Double2 area = dot(normal, normal), bb = dot(ab, ab), cc = dot(ac, ac);
+    const auto corners = [&](std::size_t k) {
+        return VectorPair(mesh_.positions[cut_.triangles[bounds.triangle[0]][k]],
+                          mesh_.positions[cut_.triangles[bounds.triangle[1]][k]]);
+    };
+    bounds.corner = corners(0);
+    const VectorPair ab = corners(1) - bounds.corner, ac = corners(2) - bounds.corner, bc = ac - ab;
+    const VectorPair normal = ab % ac;
+    const Double2 area = normal | normal, bb = ab | ab, cc = ac | ac;
     const auto regular = area > least_sine * least_sine * bb * cc;
-    const auto unit = [&](const Lanes& way, Double2 squared) {
-        return scaled(way, regular ? 1 / root(squared) : Double2{});
+    const auto unit = [&](const VectorPair& way, Double2 squared) {
+        return way * (regular ? 1 / root(squared) : Double2{});
     };
     bounds.normal = unit(normal, area);
-    bounds.out[0] = unit(cross(ab, bounds.normal), bb);
-    bounds.out[1] = unit(cross(bounds.normal, ac), cc);
-    bounds.out[2] = unit(cross(bc, bounds.normal), dot(bc, bc));
+    bounds.out[0] = unit(ab % bounds.normal, bb);
+    bounds.out[1] = unit(bounds.normal % ac, cc);
+    bounds.out[2] = unit(bc % bounds.normal, bc | bc);
     // Any other is beyond its sides by nothing at all, wherever: no bound excludes it.
-    bounds.across = regular ? dot(bounds.out[2], ab) : Double2{} - std::numeric_limits<double>::min();
+    bounds.across = regular ? bounds.out[2] | ab : Double2{} - std::numeric_limits<double>::min();
 }
 
 } // namespace hsdm

@@ -3,7 +3,7 @@
 
 #include "hsdm/facets/triangulate.hh"
 #include "hsdm/quality/facet_cells.hh"
-#include "hsdm/quality/lanes.hh"
+#include "hsdm/quality/vector_pair.hh"
 
 namespace hsdm {
 
@@ -18,12 +18,11 @@ public:
     double squared_distance(const Vec3& point);
 
 private:
-    using Lanes = std::array<Double2, 3>;
     /// Two triangles as a corner, the unit normal and, in the plane, unit vectors out over the sides that
     /// begin at the corner (0, 1) and the one across (2), which lies `across` farther out.
     struct Bounds {
-        Lanes corner, normal;
-        std::array<Lanes, 3> out;
+        VectorPair corner, normal;
+        std::array<VectorPair, 3> out;
         Double2 across;
         std::array<Index, 2> triangle;
     };
@@ -34,8 +33,8 @@ private:
     static constexpr std::size_t centre = 13; // of 3 x 3 x 3
 
     void enter(const VoxelCoord& cell);
-    double nearest_in(std::size_t slot, const Lanes& point, double squared);
-    double exactly(const Bounds& bounds, const Lanes& point) const;
+    double nearest_in(std::size_t slot, const VectorPair& point, double squared);
+    double exactly(const Bounds& bounds, const VectorPair& point) const;
     void load(std::size_t slot);
     void prepare(Bounds& bounds) const;
 

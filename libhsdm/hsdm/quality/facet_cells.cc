@@ -16,8 +16,7 @@ constexpr double most_cells = 16; // per facet in the mean; four or so where fac
 constexpr std::size_t most_facets = 64; // per cell, as well
 
 CellRange range_of(const FacetCells& cells, const PolygonMesh& mesh, std::size_t facet) {
-    Box box;
-    for (Index v : mesh.facet(facet)) box.add(mesh.positions[v]);
+    const Box box = box_of(mesh, facet);
     return {cells.cell_of(cells.place(box.lo)), cells.cell_of(cells.place(box.hi))};
 }
 
