@@ -143,7 +143,7 @@ std::vector<Index> BoundCheck::far_facets(const PolygonMesh& mesh) {
             return std::any_of(places.begin(), places.end(),
                                [&](const Vec3& place) { return to_fine_.is_beyond(place, bound_, hint); });
         });
-    for (Index& t : facets) t = to_mesh_->facet_of(t);
+    for (Index& t : facets) t = to_mesh_->distance().facet_of(t);
     facets.erase(std::unique(facets.begin(), facets.end()), facets.end());
     return facets;
 }
@@ -167,7 +167,7 @@ FarPoints BoundCheck::find_far_points() {
     // The largest distance of all is the fine mesh's, if that is beyond the bound.
     std::vector<double> off(missed.size());
     for_chunks(missed.size(), far_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i) off[i] = (*to_mesh_)(points_[missed[i]]);
+        for (std::size_t i = begin; i < end; ++i) off[i] = to_mesh_->distance()(points_[missed[i]]);
     });
     for (std::size_t i = 0; i < missed.size(); ++i)
         if (off[i] > farthest) found.points.push_back(missed[i]);
@@ -179,7 +179,7 @@ void BoundCheck::measure_to_fine(const std::vector<Index>& far) {
     if (!far.empty()) off_fine_.resize(points_.size(), -1);
     for_chunks(far.size(), far_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i)
-            if (double& off = off_fine_[far[i]]; off < 0) off = to_fine_(points_[far[i]]);
+            if (double& off = off_fine_[far[i]]; off < 0) off = to_fine_.distance()(points_[far[i]]);
     });
 }
 

@@ -2,7 +2,7 @@
 // Where a coarse mesh is farther from a fine one, or from points, than a bound.
 
 #include "hsdm/adaptive/content_keys.hh"
-#include "hsdm/quality/distance.hh"
+#include "hsdm/quality/surface_walk.hh"
 
 #include <optional>
 
@@ -34,9 +34,9 @@ public:
 
     /// From the mesh last compared.
     FarPoints find_far_points();
-    Index nearest_facet(const Vec3& place) const { return to_mesh_->nearest_facet(place); }
+    Index nearest_facet(const Vec3& place) const { return to_mesh_->distance().nearest_facet(place); }
     const Vec3& point(Index p) const { return points_[p]; }
-    const MeshDistance& to_fine() const { return to_fine_; }
+    const SurfaceWalk& to_fine() const { return to_fine_; }
 
 private:
     std::vector<Index> far_from(std::span<const Vec3> places, std::vector<Key>& near) const;
@@ -48,8 +48,8 @@ private:
     std::span<const Vec3> points_;
     double bound_, spacing_;
     Triangulation cut_; // of the mesh; before the first one, of the fine mesh
-    MeshDistance to_fine_;
-    std::optional<MeshDistance> to_mesh_;
+    SurfaceWalk to_fine_;
+    std::optional<SurfaceWalk> to_mesh_;
     KeySet fine_names_, fine_keys_;             // of the fine mesh's vertices and triangles
     std::vector<Key> names_, keys_;             // of the mesh's
     KeySet present_;                            // keys of its triangles

@@ -60,7 +60,7 @@ public:
         if (options_.measure) {
             const std::size_t samples =
                 std::clamp(2 * result_.mesh.facet_count(), fewest_samples, most_samples);
-            result_.to_fine = checks_->bound().to_fine()(sample_surface(result_.mesh, samples));
+            result_.to_fine = checks_->bound().to_fine().distance()(sample_surface(result_.mesh, samples));
         }
         result_.vertex = std::move(vertex_);
         return std::move(result_);

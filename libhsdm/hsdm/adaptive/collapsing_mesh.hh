@@ -1,7 +1,7 @@
 #pragma once
 // The triangles of a 2-manifold while edges collapse.
 
-#include "hsdm/adaptive/triangle_sides.hh"
+#include "hsdm/facets/triangle_sides.hh"
 
 namespace hsdm {
 

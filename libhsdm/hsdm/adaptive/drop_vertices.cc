@@ -27,7 +27,7 @@ Key ring_key(const CollapsingMesh& mesh, Index side, std::vector<Index>& ring) {
 
 class Dropping {
 public:
-    Dropping(PolygonMesh& mesh, const MeshDistance& fine, double tolerance)
+    Dropping(PolygonMesh& mesh, const SurfaceWalk& fine, double tolerance)
         : mesh_(mesh),
           fine_(fine),
           tolerance_(tolerance),
@@ -199,7 +199,7 @@ private:
     bool is_off(const Vec3& place, Index& hint) const { return fine_.is_beyond(place, tolerance_, hint); }
 
     CollapsingMesh mesh_;
-    const MeshDistance& fine_;
+    const SurfaceWalk& fine_;
     double tolerance_;
     std::vector<Drop> drops_;
     std::vector<std::uint8_t> waits_;   // per vertex, to be looked at again though nothing changed
@@ -209,7 +209,7 @@ private:
 
 } // namespace
 
-std::vector<Drop> find_drops(PolygonMesh mesh, const MeshDistance& fine, double tolerance) {
+std::vector<Drop> find_drops(PolygonMesh mesh, const SurfaceWalk& fine, double tolerance) {
     return Dropping(mesh, fine, tolerance).run();
 }
 

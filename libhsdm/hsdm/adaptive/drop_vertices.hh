@@ -2,7 +2,7 @@
 // Vertices that a surface does without, by measured distances.
 
 #include "hsdm/adaptive/content_keys.hh"
-#include "hsdm/quality/distance.hh"
+#include "hsdm/quality/surface_walk.hh"
 
 #include <span>
 
@@ -21,7 +21,7 @@ struct Drop {
 /// that. Planes of vertices, by which merge_vertices() goes, refuse a strip of a cylinder that ends between
 /// the vertices of its rims; this takes it. At most 32 sweeps, O(n) each, of fewer vertices; parallel, the
 /// same for any number of threads.
-std::vector<Drop> find_drops(PolygonMesh mesh, const MeshDistance& fine, double tolerance);
+std::vector<Drop> find_drops(PolygonMesh mesh, const SurfaceWalk& fine, double tolerance);
 
 /// Takes vertices out of the mesh that they were found for, in that order, but for those, `may_go` being 0,
 /// that are to stay, which no vertex gives way to either, and for those whose facets are then other ones.

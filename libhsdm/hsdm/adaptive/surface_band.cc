@@ -4,7 +4,7 @@
 
 namespace hsdm {
 
-SurfaceBand::SurfaceBand(const MeshDistance& surface, double tolerance, std::size_t places)
+SurfaceBand::SurfaceBand(const SurfaceWalk& surface, double tolerance, std::size_t places)
     : surface_(surface),
       tolerance_(tolerance),
       known_(std::bit_ceil(2 * places + 2)),

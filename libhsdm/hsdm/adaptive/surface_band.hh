@@ -2,7 +2,7 @@
 // Which places lie on a surface, within a tolerance.
 
 #include "hsdm/adaptive/content_keys.hh"
-#include "hsdm/quality/distance.hh"
+#include "hsdm/quality/surface_walk.hh"
 
 #include <atomic>
 
@@ -12,9 +12,9 @@ namespace hsdm {
 class SurfaceBand {
 public:
     /// `surface` must outlive it; `places`: about as many are remembered, in 16 to 32 bytes each.
-    SurfaceBand(const MeshDistance& surface, double tolerance, std::size_t places);
+    SurfaceBand(const SurfaceWalk& surface, double tolerance, std::size_t places);
 
-    /// Is the place no more than the tolerance off the surface? `hint` as for MeshDistance. From any thread.
+    /// Is the place no more than the tolerance off the surface? `hint` as for SurfaceWalk. From any thread.
     bool holds(const Vec3& place, Index& hint);
 
     /// What `find()` returns, below 16, which must follow from the surface and from what the key stands for.
@@ -22,11 +22,11 @@ public:
     template <class Find>
     unsigned remembered(Key key, const Find& find);
 
-    const MeshDistance& surface() const { return surface_; }
+    const SurfaceWalk& surface() const { return surface_; }
     double tolerance() const { return tolerance_; }
 
 private:
-    const MeshDistance& surface_;
+    const SurfaceWalk& surface_;
     double tolerance_;
     std::vector<std::atomic<Key>> known_; // a power of two: keys, their last bits the answer
     int shift_;

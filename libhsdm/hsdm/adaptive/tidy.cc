@@ -1,7 +1,7 @@
 #include "hsdm/adaptive/tidy.hh"
 
 #include "hsdm/adaptive/triangle_shape.hh"
-#include "hsdm/adaptive/triangle_sides.hh"
+#include "hsdm/facets/triangle_sides.hh"
 #include "hsdm/chunks.hh"
 #include "hsdm/facets/straight_corners.hh"
 #include "hsdm/quality/mix.hh"
@@ -212,7 +212,7 @@ private:
         const auto [a, b, c, d] = corners;
         if (before == Look::none) before = look(a, b, hint);
         if (before == Look::off) {
-            const double was = fine_.surface()(middle(a, b), hint);
+            const double was = fine_.surface().distance()(middle(a, b), hint);
             return {!fine_.surface().is_beyond(middle(c, d), 0.5 * was, hint), before, Look::none};
         }
         if (!gains) return {false, before, Look::none};

@@ -32,7 +32,7 @@ public:
         if (i >= end_) begin_at(i);
         const TriangleTree::Nearest nearest =
             has_part_ ? tree_.nearest(part_, points_[i]) : tree_.nearest(points_[i], hint_);
-        hint_ = nearest.place;
+        hint_ = nearest.triangle;
         return nearest;
     }
 
@@ -116,7 +116,7 @@ double MeshDistance::operator()(const Vec3& point) const {
 
 double MeshDistance::operator()(const Vec3& point, Index& hint) const {
     const TriangleTree::Nearest nearest = tree_.nearest(point, hint);
-    hint = nearest.place;
+    hint = nearest.triangle;
     return std::sqrt(nearest.squared);
 }
 
@@ -126,7 +126,7 @@ Distance MeshDistance::operator()(std::span<const Vec3> points, double enough) c
         return sum_up(points.size(), [&] {
             return [&, hint = no_index](std::size_t i) mutable {
                 const TriangleTree::Nearest nearest = tree_.nearest(points[i], hint, enough * enough);
-                hint = nearest.place;
+                hint = nearest.triangle;
                 return nearest.squared;
             };
         });
@@ -142,8 +142,8 @@ Index MeshDistance::nearest_facet(const Vec3& point) const {
 
 Index MeshDistance::triangle_within(const Vec3& point, double bound, Index& hint) const {
     const TriangleTree::Nearest found = tree_.within(point, bound, hint);
-    if (found.place == no_index) return no_index;
-    hint = found.place;
+    if (found.triangle == no_index) return no_index;
+    hint = found.triangle;
     return std::sqrt(found.squared) <= bound ? found.triangle : no_index;
 }
 

@@ -100,7 +100,13 @@ void TriangleTree::order(const std::vector<Vec3>& positions, const std::vector<T
     });
     split(items.data(), items.data() + items.size());
     triangle_of_.resize(items.size());
-    for (std::size_t i = 0; i < items.size(); ++i) triangle_of_[i] = items[i].triangle;
+    place_of_.resize(items.size());
+    tbb::parallel_for(Range(0, items.size(), grain), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            triangle_of_[i] = items[i].triangle;
+            place_of_[items[i].triangle] = static_cast<Index>(i);
+        }
+    });
 }
 
 void TriangleTree::fill_blocks(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
@@ -176,7 +182,7 @@ public:
     void look_at(Index block) {
         const Double2 one = to_pair(block, 0), other = to_pair(block, 1), pairs = min_lanes(one, other);
         const double squared = std::min(pairs[0], pairs[1]);
-        if (!(squared < best_.squared)) return;
+        if (!(squared < squared_)) return;
         const Index lane = one[0] == squared ? 0 : one[1] == squared ? 1 : other[0] == squared ? 2 : 3;
         take(squared, block * static_cast<Index>(width) + lane);
     }
@@ -198,14 +204,11 @@ public:
     }
 
     auto reaches(auto squared) const { return squared <= limit_; } // a float, or four
-    double squared() const { return best_.squared; }
+    double squared() const { return squared_; }
 
     Nearest result() const {
-        Nearest best = best_;
-        if (best.place != no_index)
-            best.triangle =
-                tree_.triangle_of_[std::min<std::size_t>(best.place, tree_.triangle_of_.size() - 1)];
-        return best;
+        if (place_ == no_index) return {};
+        return {squared_, tree_.triangle_of_[std::min<std::size_t>(place_, tree_.triangle_of_.size() - 1)]};
     }
 
 private:
@@ -214,8 +217,8 @@ private:
     }
 
     void take(double squared, Index place) {
-        best_.squared = squared;
-        best_.place = place;
+        squared_ = squared;
+        place_ = place;
         limit_ = std::min(limit_, limit(squared));
     }
 
@@ -229,7 +232,8 @@ private:
     std::array<float, 3> point_{};
     double slack_ = 0;
     float limit_ = infinity;
-    Nearest best_;
+    double squared_ = std::numeric_limits<double>::infinity();
+    Index place_ = no_index; // in the tree's order
 };
 
 /// Nodes or, below them, blocks. Coordinates so large that floats overflow lead to absent ones too.
@@ -290,7 +294,7 @@ TriangleTree::Nearest TriangleTree::within(const Vec3& point, double bound, Inde
         descend(search, root(), {-1, no_index}, enough);
         return search.result();
     }
-    search.look_around(hint);
+    search.look_around(place_of_[hint]);
     if (search.squared() > enough) search.look_at(block_of(hint));
     for (Node known{-1, block_of(hint)}; search.squared() > enough && known.level < root().level;) {
         const Node up{known.level + 1, known.index / static_cast<Index>(width)};

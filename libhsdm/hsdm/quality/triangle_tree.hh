@@ -21,12 +21,12 @@ public:
     /// O(t log t), parallel; the same tree for any number of threads. Nothing given need outlive it.
     TriangleTree(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
 
-    /// A squared distance, the nearest triangle, and its place in the tree.
+    /// A squared distance and the nearest triangle.
     struct Nearest {
         double squared = std::numeric_limits<double>::infinity();
-        Index place = no_index, triangle = no_index;
+        Index triangle = no_index;
     };
-    /// Nearest triangle to a point in the mesh's own coordinates. `hint` is a place to begin at (the answer
+    /// Nearest triangle to a point in the mesh's own coordinates. `hint` is a triangle to begin at (the answer
     /// for a point nearby), or no_index: it changes the time, never the distance. Any triangle whose squared
     /// distance is no more than `enough` will do.
     Nearest nearest(const Vec3& point, Index hint = no_index, double enough = 0) const;
@@ -53,7 +53,7 @@ public:
 
 private:
     static constexpr std::size_t width = 4;
-    static Index block_of(Index place) { return place == no_index ? no_index : place / width; }
+    Index block_of(Index triangle) const { return triangle == no_index ? no_index : place_of_[triangle] / width; }
 
     /// Boxes of four children; an absent child's box is empty.
     struct Boxes {
@@ -86,6 +86,7 @@ private:
     double rounding_ = 0; // bound on the error of a + ab in a block
     double block_size_ = 0;
     std::vector<Index> triangle_of_; // by place in the order: the triangle's own index
+    std::vector<Index> place_of_;    // ... and the other way
     std::size_t block_count_ = 0;
     std::unique_ptr<Block[]> blocks_;      // no vector: threads fill fresh memory sooner than one clears it
     std::vector<Boxes> nodes_;             // level 0 first, the root last

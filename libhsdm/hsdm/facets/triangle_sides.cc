@@ -1,4 +1,4 @@
-#include "hsdm/adaptive/triangle_sides.hh"
+#include "hsdm/facets/triangle_sides.hh"
 
 #include "hsdm/chunks.hh"
 
