@@ -8,13 +8,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace hsdm {
 namespace {
 
 constexpr std::size_t places_per_chunk = 2048;
 constexpr std::size_t far_per_chunk = 64; // distances of places that are far take long
-constexpr std::size_t keys_per_chunk = 512;
+constexpr std::size_t keys_per_chunk = 512, triangles_per_chunk = 1024;
 
 std::array<Vec3, 3> corners_of(const PolygonMesh& mesh, const Triangle& t) {
     return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
@@ -93,27 +94,46 @@ BoundCheck::BoundCheck(const PolygonMesh& fine, std::span<const Vec3> points, do
 
 FarPlaces BoundCheck::find_far(const PolygonMesh& mesh) {
     cut_ = triangulate(mesh);
-    to_mesh_.emplace(mesh, cut_);
     names_ = place_keys(mesh.positions);
-    keys_ = triangle_keys(cut_, names_);
-    present_ = KeySet(keys_);
+    const std::vector<Key> keys_before = std::exchange(keys_, triangle_keys(cut_, names_));
+    const std::optional<SurfaceWalk> before = std::move(to_mesh_);
+    to_mesh_.emplace(mesh, cut_);
+    if (before) follow_triangles(*before, keys_before);
     return {far_from(fine_.positions, near_vertex_), far_vertices(mesh), far_facets(mesh)};
 }
 
-/// A place that was near a triangle still is if that has stayed: `near` keeps its key.
-std::vector<Index> BoundCheck::far_from(std::span<const Vec3> places, std::vector<Key>& near) const {
-    near.resize(places.size(), no_key);
+void BoundCheck::follow_triangles(const SurfaceWalk& before, std::span<const Key> keys_before) {
+    const KeyIndex present(keys_);
+    followed_.resize(keys_before.size());
+    for_chunks(followed_.size(), triangles_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        Index hint = no_index;
+        for (std::size_t t = begin; t < end; ++t) {
+            Followed& now = followed_[t];
+            now.same = present.find(keys_before[t]);
+            if (now.same == no_index)
+                to_mesh_->triangle_within(before.middle(static_cast<Index>(t)), bound_, hint);
+            else
+                hint = now.same;
+            now.near = hint;
+        }
+    });
+}
+
+/// A place that was near a triangle still is if that has stayed.
+std::vector<Index> BoundCheck::far_from(std::span<const Vec3> places, std::vector<Index>& near) const {
+    near.resize(places.size(), no_index);
     std::vector<std::vector<Index>> parts(chunk_count(places.size(), places_per_chunk));
     for_chunks(places.size(), places_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
         Index hint = no_index;
-        Key last = no_key; // places beside each other are near the same triangle
-        bool is_present = false;
         for (std::size_t i = begin; i < end; ++i) {
-            if (near[i] != last) is_present = present_.contains(last = near[i]);
-            if (is_present) continue;
-            const Index triangle = to_mesh_->triangle_within(places[i], bound_, hint);
-            near[i] = triangle == no_index ? no_key : keys_[triangle];
-            if (triangle == no_index) parts[c].push_back(static_cast<Index>(i));
+            if (near[i] != no_index) {
+                const Followed& now = followed_[near[i]];
+                near[i] = now.same;
+                if (now.same != no_index) continue;
+                hint = now.near;
+            }
+            near[i] = to_mesh_->triangle_within(places[i], bound_, hint);
+            if (near[i] == no_index) parts[c].push_back(static_cast<Index>(i));
         }
     });
     return joined(parts);

@@ -39,7 +39,14 @@ public:
     const SurfaceWalk& to_fine() const { return to_fine_; }
 
 private:
-    std::vector<Index> far_from(std::span<const Vec3> places, std::vector<Key>& near) const;
+    /// What has become of a triangle.
+    struct Followed {
+        Index same = no_index; ///< the one with the same corners
+        Index near = no_index; ///< one that is near its middle, or some way from it
+    };
+
+    void follow_triangles(const SurfaceWalk& before, std::span<const Key> keys_before);
+    std::vector<Index> far_from(std::span<const Vec3> places, std::vector<Index>& near) const;
     std::vector<Index> far_vertices(const PolygonMesh& mesh);
     std::vector<Index> far_facets(const PolygonMesh& mesh);
     void measure_to_fine(const std::vector<Index>& far);
@@ -50,12 +57,12 @@ private:
     Triangulation cut_; // of the mesh; before the first one, of the fine mesh
     SurfaceWalk to_fine_;
     std::optional<SurfaceWalk> to_mesh_;
-    KeySet fine_names_, fine_keys_;             // of the fine mesh's vertices and triangles
-    std::vector<Key> names_, keys_;             // of the mesh's
-    KeySet present_;                            // keys of its triangles
-    KeySet near_names_, near_keys_;             // of those found near the fine mesh
-    std::vector<Key> near_vertex_, near_point_; // of a triangle that a fine vertex, a point is near to
-    std::vector<double> off_fine_;              // per point, from the fine mesh; -1: not known
+    KeySet fine_names_, fine_keys_;               // of the fine mesh's vertices and triangles
+    std::vector<Key> names_, keys_;               // of the mesh's
+    std::vector<Followed> followed_;              // per triangle of the mesh before
+    KeySet near_names_, near_keys_;               // of those found near the fine mesh
+    std::vector<Index> near_vertex_, near_point_; // the triangle that a fine vertex, a point is near to
+    std::vector<double> off_fine_;                // per point, from the fine mesh; -1: not known
 };
 
 } // namespace hsdm

@@ -56,6 +56,17 @@ std::vector<Key> triangle_keys(const Triangulation& cut, std::span<const Key> pl
 KeySet::KeySet(std::size_t most)
     : slots_(std::bit_ceil(2 * most + 2), no_key), shift_(64 - std::countr_zero(slots_.size())) {}
 
+KeyIndex::KeyIndex(std::span<const Key> keys)
+    : keys_(keys),
+      slots_(std::bit_ceil(2 * keys.size() + 2), no_index),
+      shift_(64 - std::countr_zero(slots_.size())) {
+    for (Index i = 0; i < keys.size(); ++i) {
+        if (keys[i] == no_key) continue;
+        Index& slot = slots_[slot_of(keys[i])];
+        if (slot == no_index) slot = i;
+    }
+}
+
 KeySet::KeySet(std::span<const Key> keys) : KeySet(keys.size()) {
     for (const Key key : keys) insert(key);
 }

@@ -45,4 +45,26 @@ private:
     int shift_;
 };
 
+/// Where in a list each key is.
+class KeyIndex {
+public:
+    /// The list must outlive it.
+    explicit KeyIndex(std::span<const Key> keys);
+
+    /// The first place of the key, or no_index where it is not in the list or no_key. O(1).
+    Index find(Key key) const { return key == no_key ? no_index : slots_[slot_of(key)]; }
+
+private:
+    std::size_t slot_of(Key key) const {
+        std::size_t slot = key >> shift_;
+        while (slots_[slot] != no_index && keys_[slots_[slot]] != key)
+            slot = (slot + 1) & (slots_.size() - 1);
+        return slot;
+    }
+
+    std::span<const Key> keys_;
+    std::vector<Index> slots_; // a power of two, at most half of them taken
+    int shift_;
+};
+
 } // namespace hsdm

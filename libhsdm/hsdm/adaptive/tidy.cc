@@ -1,9 +1,9 @@
 #include "hsdm/adaptive/tidy.hh"
 
 #include "hsdm/adaptive/triangle_shape.hh"
-#include "hsdm/facets/triangle_sides.hh"
 #include "hsdm/chunks.hh"
 #include "hsdm/facets/straight_corners.hh"
+#include "hsdm/facets/triangle_sides.hh"
 #include "hsdm/quality/mix.hh"
 
 #include <tbb/parallel_sort.h>

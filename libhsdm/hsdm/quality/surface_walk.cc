@@ -5,7 +5,7 @@
 namespace hsdm {
 namespace {
 
-constexpr int most_steps = 12;         // by then the tree is quicker
+constexpr int most_steps = 12;              // by then the tree is quicker
 constexpr double least_squared_sine = 1e-8; // of a triangle's corner: flatter ones are left to the tree
 
 std::vector<Index> twins_of(const PolygonMesh& mesh, const Triangulation& cut) {
@@ -30,7 +30,8 @@ Index SurfaceWalk::triangle_within(const Vec3& place, double bound, Index& hint)
     return distance_.triangle_within(place, bound, hint);
 }
 
-/// Over the side that the place is farthest beyond, until it is beyond none, or back again beyond the last.
+/// Over the side that the place is farthest beyond, by shares of the corner across, until it is beyond none,
+/// or back again beyond the last.
 SurfaceWalk::Walked SurfaceWalk::walk(const Vec3& place, double squared_bound, Index from) const {
     Index back = no_index; // the side of the triangle that leads where it was come from
     for (int step = 0; step < most_steps; ++step) {
@@ -46,12 +47,8 @@ SurfaceWalk::Walked SurfaceWalk::walk(const Vec3& place, double squared_bound, I
             const double height = (ab % ac) | arm;
             return {from, height * height <= squared_bound * area};
         }
-        // How far beyond each side, squared.
-        const double beyond[] = {to_c < 0 ? to_c * to_c / bb : 0,
-                                 to_a < 0 ? to_a * to_a / (bb + cc - 2 * bc) : 0,
-                                 to_b < 0 ? to_b * to_b / cc : 0};
-        const Index k = beyond[0] >= beyond[1] ? (beyond[0] >= beyond[2] ? 0 : 2)
-                                               : (beyond[1] >= beyond[2] ? 1 : 2);
+        Index k = to_c < to_a ? 0 : 1;
+        if (to_b < std::min(to_a, to_c)) k = 2;
         const Index side = 3 * from + k, next = twin_[side];
         if (next == no_index || side == back) {
             const Vec3 start = k == 0 ? arm : k == 1 ? arm - ab : arm - ac;

@@ -19,6 +19,10 @@ public:
     bool is_beyond(const Vec3& place, double bound, Index& hint) const {
         return triangle_within(place, bound, hint) == no_index;
     }
+    Vec3 middle(Index triangle) const {
+        const auto& [a, b, c] = triangles_[triangle];
+        return (positions_[a] + positions_[b] + positions_[c]) / 3;
+    }
     /// From the same triangles; takes the same hints.
     const MeshDistance& distance() const { return distance_; }
 

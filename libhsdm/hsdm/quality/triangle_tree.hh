@@ -26,9 +26,9 @@ public:
         double squared = std::numeric_limits<double>::infinity();
         Index triangle = no_index;
     };
-    /// Nearest triangle to a point in the mesh's own coordinates. `hint` is a triangle to begin at (the answer
-    /// for a point nearby), or no_index: it changes the time, never the distance. Any triangle whose squared
-    /// distance is no more than `enough` will do.
+    /// Nearest triangle to a point in the mesh's own coordinates. `hint` is a triangle to begin at (the
+    /// answer for a point nearby), or no_index: it changes the time, never the distance. Any triangle whose
+    /// squared distance is no more than `enough` will do.
     Nearest nearest(const Vec3& point, Index hint = no_index, double enough = 0) const;
     /// A triangle whose distance, the root of `squared`, is no more than `bound` where there is one, else one
     /// that is farther, or none. With a hint nearby several times quicker than the nearest one, as the search
@@ -53,7 +53,9 @@ public:
 
 private:
     static constexpr std::size_t width = 4;
-    Index block_of(Index triangle) const { return triangle == no_index ? no_index : place_of_[triangle] / width; }
+    Index block_of(Index triangle) const {
+        return triangle == no_index ? no_index : place_of_[triangle] / width;
+    }
 
     /// Boxes of four children; an absent child's box is empty.
     struct Boxes {
