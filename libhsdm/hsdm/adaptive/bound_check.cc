@@ -97,7 +97,7 @@ FarPlaces BoundCheck::find_far(const PolygonMesh& mesh) {
     names_ = place_keys(mesh.positions);
     const std::vector<Key> keys_before = std::exchange(keys_, triangle_keys(cut_, names_));
     const std::optional<SurfaceWalk> before = std::move(to_mesh_);
-    to_mesh_.emplace(mesh, cut_);
+    to_mesh_.emplace(mesh, cut_, TriangleTree::Order::given);
     if (before) follow_triangles(*before, keys_before);
     return {far_from(fine_.positions, near_vertex_), far_vertices(mesh), far_facets(mesh)};
 }

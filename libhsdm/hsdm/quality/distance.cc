@@ -107,8 +107,8 @@ Distance sum_up(std::size_t points, Squares squares) {
 
 MeshDistance::MeshDistance(const PolygonMesh& mesh) : MeshDistance(mesh, triangulate(mesh)) {}
 
-MeshDistance::MeshDistance(const PolygonMesh& mesh, const Triangulation& cut)
-    : tree_(mesh.positions, cut.triangles), facet_(facet_of_triangle(cut)) {}
+MeshDistance::MeshDistance(const PolygonMesh& mesh, const Triangulation& cut, TriangleTree::Order order)
+    : tree_(mesh.positions, cut.triangles, order), facet_(facet_of_triangle(cut)) {}
 
 double MeshDistance::operator()(const Vec3& point) const {
     return std::sqrt(tree_.nearest(point).squared);

@@ -23,7 +23,8 @@ public:
     /// O(t log t), parallel. The mesh need not outlive it.
     explicit MeshDistance(const PolygonMesh& mesh);
     /// As above, of a mesh that is cut already.
-    MeshDistance(const PolygonMesh& mesh, const Triangulation& cut);
+    MeshDistance(const PolygonMesh& mesh, const Triangulation& cut,
+                 TriangleTree::Order order = TriangleTree::Order::compact);
     /// Distance from a point to the nearest triangle; infinity if the mesh has no facet.
     double operator()(const Vec3& point) const;
     /// `hint` is no_index or what a call for a point nearby left there: it changes the time alone.

@@ -15,11 +15,11 @@ std::vector<Index> twins_of(const PolygonMesh& mesh, const Triangulation& cut) {
 
 } // namespace
 
-SurfaceWalk::SurfaceWalk(const PolygonMesh& mesh, const Triangulation& cut)
+SurfaceWalk::SurfaceWalk(const PolygonMesh& mesh, const Triangulation& cut, TriangleTree::Order order)
     : positions_(mesh.positions),
       triangles_(cut.triangles),
       twin_(twins_of(mesh, cut)),
-      distance_(mesh, cut) {}
+      distance_(mesh, cut, order) {}
 
 Index SurfaceWalk::triangle_within(const Vec3& place, double bound, Index& hint) const {
     if (hint != no_index) {

@@ -11,10 +11,11 @@ namespace hsdm {
 class SurfaceWalk {
 public:
     /// O(t log t), parallel. Nothing given need outlive it.
-    SurfaceWalk(const PolygonMesh& mesh, const Triangulation& cut);
+    SurfaceWalk(const PolygonMesh& mesh, const Triangulation& cut,
+                TriangleTree::Order order = TriangleTree::Order::compact);
 
-    /// A triangle of the cut mesh no farther than `bound`, or no_index if there is none. `hint` is no_index or
-    /// what the call for a place nearby left there: which triangle depends on it.
+    /// A triangle of the cut mesh no farther than `bound`, or no_index if there is none. `hint` is no_index
+    /// or what the call for a place nearby left there: which triangle depends on it.
     Index triangle_within(const Vec3& place, double bound, Index& hint) const;
     bool is_beyond(const Vec3& place, double bound, Index& hint) const {
         return triangle_within(place, bound, hint) == no_index;

@@ -68,7 +68,8 @@ void split(Item* begin, Item* end) {
 
 } // namespace
 
-TriangleTree::TriangleTree(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
+TriangleTree::TriangleTree(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+                           Order order) {
     if (triangles.empty()) return;
     const Box box = tbb::parallel_reduce(
         Range(0, triangles.size(), grain), Box{},
@@ -83,11 +84,12 @@ TriangleTree::TriangleTree(const std::vector<Vec3>& positions, const std::vector
         });
     centre_ = box.lo + box.size() / 2;
     rounding_ = 4 * std::numeric_limits<double>::epsilon() * box.diagonal();
-    order(positions, triangles);
+    set_order(positions, triangles, order);
     fill_blocks(positions, triangles);
 }
 
-void TriangleTree::order(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
+void TriangleTree::set_order(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+                             Order order) {
     std::vector<Item> items(triangles.size());
     tbb::parallel_for(Range(0, items.size(), grain), [&](const Range& range) {
         for (std::size_t t = range.begin(); t != range.end(); ++t) {
@@ -98,7 +100,7 @@ void TriangleTree::order(const std::vector<Vec3>& positions, const std::vector<T
             items[t].triangle = static_cast<Index>(t);
         }
     });
-    split(items.data(), items.data() + items.size());
+    if (order == Order::compact) split(items.data(), items.data() + items.size());
     triangle_of_.resize(items.size());
     place_of_.resize(items.size());
     tbb::parallel_for(Range(0, items.size(), grain), [&](const Range& range) {

@@ -18,8 +18,13 @@ using TrianglePair = std::array<Index, 2>;
 /// floats rounded outwards.
 class TriangleTree {
 public:
+    /// Triangles that follow each other in the list are to lie close together, or compact: they are put in an
+    /// order in which they do, which takes most of the time, and queries a fraction.
+    enum class Order { compact, given };
+
     /// O(t log t), parallel; the same tree for any number of threads. Nothing given need outlive it.
-    TriangleTree(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
+    TriangleTree(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+                 Order order = Order::compact);
 
     /// A squared distance and the nearest triangle.
     struct Nearest {
@@ -70,7 +75,7 @@ private:
         std::array<Double2, 3> lo, hi;
     };
 
-    void order(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
+    void set_order(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles, Order order);
     void fill_blocks(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
     void build_levels(std::vector<Boxes>& block_boxes);
     std::size_t size_of(int level) const;
