@@ -32,7 +32,10 @@ public:
           fine_(fine),
           tolerance_(tolerance),
           waits_(mesh_.vertex_count(), 0),
-          too_far_(mesh_.side_count(), 0) {}
+          too_far_(mesh_.side_count(), 0),
+          beside_(mesh_.vertex_count(), no_index) {
+        find_beside();
+    }
 
     std::vector<Drop> run() {
         for (int sweep = 0; sweep < most_sweeps && drop_once(); ++sweep) {
@@ -50,11 +53,20 @@ private:
 
     /// What is used from vertex to vertex.
     struct Room {
-        Index hint = no_index;
         std::vector<Index> ring, ring_to;
         std::vector<Collapse> sides;
         std::vector<Vec3> normals;
     };
+
+    void find_beside() {
+        for_chunks(beside_.size(), vertices_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            Index hint = no_index;
+            for (auto v = static_cast<Index>(begin); v < end; ++v) {
+                fine_.triangle_within(mesh_.at(v), tolerance_, hint);
+                beside_[v] = hint;
+            }
+        });
+    }
 
     /// Per vertex one of the sides that start there.
     std::vector<Index> sides_out() const {
@@ -98,7 +110,7 @@ private:
 
     /// The first in order of length that may be, as far as the middles of new edges tell.
     void add_collapse(Index first, Room& room, std::vector<Collapse>& found) {
-        auto& [hint, ring, ring_to, sides, normals] = room;
+        auto& [ring, ring_to, sides, normals] = room;
         if (!mesh_.ring_of(first, ring) || !is_smooth(mesh_.start(first), ring, normals)) return;
         sides.clear();
         Index s = first;
@@ -112,6 +124,7 @@ private:
             return a.length != b.length ? a.length < b.length : a.side < b.side;
         });
         for (const Collapse& c : sides) {
+            Index hint = beside_[mesh_.start(c.side)];
             if (!mesh_.ring_of(c.side, ring) || !stays_near(mesh_.at(mesh_.start(c.side)), ring)) continue;
             if (!mesh_.ring_of(mesh_.twin(c.side), ring_to)) continue;
             if (!mesh_.may_collapse(ring, ring_to, mesh_.at(ring[0])) || !has_near_middles(ring, hint))
@@ -196,7 +209,8 @@ private:
         return true;
     }
 
-    bool is_off(const Vec3& place, Index& hint) const { return fine_.is_beyond(place, tolerance_, hint); }
+    /// From the surface beside what is to go: what is near another sheet does not replace this one.
+    bool is_off(const Vec3& place, Index& hint) const { return !fine_.leads_within(place, tolerance_, hint); }
 
     CollapsingMesh mesh_;
     const SurfaceWalk& fine_;
@@ -204,6 +218,7 @@ private:
     std::vector<Drop> drops_;
     std::vector<std::uint8_t> waits_;   // per vertex, to be looked at again though nothing changed
     std::vector<std::uint8_t> too_far_; // per side, as measured since its start changed
+    std::vector<Index> beside_;         // per vertex, a triangle of the fine surface
     std::vector<Index> ring_;
 };
 

@@ -181,19 +181,24 @@ private:
         const Index t = twin_[s], a = corners_[s], b = corners_[t], c = corners_[previous_side(s)],
                     d = corners_[previous_side(t)];
         const Look before = look_[s];
-        const Vec3 first = triangle_normal(at(c), at(a), at(d)),
-                   second = triangle_normal(at(d), at(b), at(c)), sum = first + second;
+        const Vec3 ab = at(b) - at(a), bc = at(c) - at(b), ca = at(a) - at(c), ad = at(d) - at(a),
+                   db = at(b) - at(d), cd = at(d) - at(c);
+        const Vec3 first = ca % cd, second = cd % db, sum = first + second;
         if ((first | sum) <= 0 || (second | sum) <= 0) return {false, before, Look::none};
-        const Vec3 old1 = triangle_normal(at(a), at(b), at(c)), old2 = triangle_normal(at(b), at(a), at(d));
+        const Vec3 old1 = ca % ab, old2 = ab % db;
+        const double first_norm = first.norm(), second_norm = second.norm(), old1_norm = old1.norm(),
+                     old2_norm = old2.norm();
+        const double ab2 = ab.sqrnorm(), bc2 = bc.sqrnorm(), ca2 = ca.sqrnorm(), ad2 = ad.sqrnorm(),
+                     db2 = db.sqrnorm(), cd2 = cd.sqrnorm();
         const double old_shape =
-            std::min(triangle_shape(at(a), at(b), at(c), old1), triangle_shape(at(b), at(a), at(d), old2));
-        const double new_shape =
-            std::min(triangle_shape(at(c), at(a), at(d), first), triangle_shape(at(d), at(b), at(c), second));
+            std::min(triangle_shape(old1_norm, ab2 + bc2 + ca2), triangle_shape(old2_norm, ab2 + ad2 + db2));
+        const double new_shape = std::min(triangle_shape(first_norm, ca2 + ad2 + cd2),
+                                          triangle_shape(second_norm, db2 + bc2 + cd2));
         if (new_shape < std::min(least_shape, old_shape)) return {false, before, Look::none};
         const bool gains =
             new_shape >= better_shape * old_shape
-            && (first | second) >= flip_cosine * first.norm() * second.norm()
-            && (old_shape <= least_shape || (old1 | old2) >= flip_cosine * old1.norm() * old2.norm());
+            && (first | second) >= flip_cosine * first_norm * second_norm
+            && (old_shape <= least_shape || (old1 | old2) >= flip_cosine * old1_norm * old2_norm);
         if (warp(a, b, c, d) <= tolerance_) return {gains, before, before};
         if (before != Look::none) return judge_bent({a, b, c, d}, before, gains, hint);
         // What is not known yet follows from the four places alone.
@@ -272,12 +277,13 @@ private:
                     d = corners_[previous_side(t)];
         const Vec3 one = triangle_normal(at(a), at(b), at(c)), two = triangle_normal(at(b), at(a), at(d));
         if (c == d || (one | two) < join_cosine * one.norm() * two.norm()) return std::nullopt;
-        const std::array<Index, 4> ring{a, d, b, c};
+        const std::array<Vec3, 4> along{at(d) - at(a), at(b) - at(d), at(c) - at(b), at(a) - at(c)};
+        std::array<double, 4> length;
+        for (std::size_t i = 0; i < 4; ++i) length[i] = along[i].norm();
         const Vec3 up = (one + two).normalized();
         double least = 1;
-        for (std::size_t i = 0; i < 4; ++i) {
-            const Vec3 &p = at(ring[i]), &q = at(ring[(i + 1) % 4]), &r = at(ring[(i + 3) % 4]);
-            const double sine = (((q - p) % (r - p)) | up) / ((q - p).norm() * (r - p).norm());
+        for (std::size_t i = 0, before = 3; i < 4; before = i++) {
+            const double sine = ((along[before] % along[i]) | up) / (length[before] * length[i]);
             if (!(sine >= least_corner)) return std::nullopt; // not a number where corners coincide
             least = std::min(least, sine);
         }

@@ -14,13 +14,13 @@ inline Vec3 triangle_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
     return (b - a) % (c - a);
 }
 
-/// 1 for an equilateral triangle, 0 for a flat one; `normal` as above.
-inline double triangle_shape(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal) {
-    const double sides = (b - a).sqrnorm() + (c - b).sqrnorm() + (a - c).sqrnorm();
-    return sides > 0 ? 2 * std::sqrt(3.0) * normal.norm() / sides : 0;
+/// 1 for an equilateral triangle, 0 for a flat one, by twice its area and the squares of its sides together.
+inline double triangle_shape(double twice_area, double squares) {
+    return squares > 0 ? 2 * std::sqrt(3.0) * twice_area / squares : 0;
 }
 inline double triangle_shape(const Vec3& a, const Vec3& b, const Vec3& c) {
-    return triangle_shape(a, b, c, triangle_normal(a, b, c));
+    return triangle_shape(triangle_normal(a, b, c).norm(),
+                          (b - a).sqrnorm() + (c - b).sqrnorm() + (a - c).sqrnorm());
 }
 
 } // namespace hsdm

@@ -23,11 +23,20 @@ SurfaceWalk::SurfaceWalk(const PolygonMesh& mesh, const Triangulation& cut, Tria
 
 Index SurfaceWalk::triangle_within(const Vec3& place, double bound, Index& hint) const {
     if (hint != no_index) {
-        const auto [triangle, is_near] = walk(place, bound * bound, hint);
+        const auto [triangle, end] = walk(place, bound * bound, hint);
         hint = triangle;
-        if (is_near) return triangle;
+        if (end == End::near) return triangle;
     }
     return distance_.triangle_within(place, bound, hint);
+}
+
+bool SurfaceWalk::leads_within(const Vec3& place, double bound, Index& hint) const {
+    if (hint != no_index) {
+        const auto [triangle, end] = walk(place, bound * bound, hint);
+        hint = triangle;
+        if (end != End::lost) return end == End::near;
+    }
+    return distance_.triangle_within(place, bound, hint) != no_index;
 }
 
 /// Over the side that the place is farthest beyond, by shares of the corner across, until it is beyond none,
@@ -41,11 +50,11 @@ SurfaceWalk::Walked SurfaceWalk::walk(const Vec3& place, double squared_bound, I
         const double bb = ab | ab, cc = ac | ac, bc = ab | ac, pb = arm | ab, pc = arm | ac;
         // The foot on the plane, in shares of the sides from a and of the third, times `area`.
         const double area = bb * cc - bc * bc;
-        if (!(area > least_squared_sine * bb * cc)) return {from, false};
+        if (!(area > least_squared_sine * bb * cc)) return {from, End::lost};
         const double to_b = cc * pb - bc * pc, to_c = bb * pc - bc * pb, to_a = area - to_b - to_c;
         if (to_a >= 0 && to_b >= 0 && to_c >= 0) {
             const double height = (ab % ac) | arm;
-            return {from, height * height <= squared_bound * area};
+            return {from, height * height <= squared_bound * area ? End::near : End::far};
         }
         Index k = to_c < to_a ? 0 : 1;
         if (to_b < std::min(to_a, to_c)) k = 2;
@@ -54,12 +63,12 @@ SurfaceWalk::Walked SurfaceWalk::walk(const Vec3& place, double squared_bound, I
             const Vec3 start = k == 0 ? arm : k == 1 ? arm - ab : arm - ac;
             const Vec3 along = k == 0 ? ab : k == 1 ? ac - ab : -ac;
             const double share = std::clamp((start | along) / along.sqrnorm(), 0.0, 1.0);
-            return {from, (start - along * share).sqrnorm() <= squared_bound};
+            return {from, (start - along * share).sqrnorm() <= squared_bound ? End::near : End::far};
         }
         back = next;
         from = next / 3;
     }
-    return {from, false};
+    return {from, End::lost};
 }
 
 } // namespace hsdm

@@ -20,6 +20,9 @@ public:
     bool is_beyond(const Vec3& place, double bound, Index& hint) const {
         return triangle_within(place, bound, hint) == no_index;
     }
+    /// Is the part of the surface that a walk from `hint` leads to no farther than `bound`? Another may be:
+    /// not to look for one is quicker where many places are far.
+    bool leads_within(const Vec3& place, double bound, Index& hint) const;
     Vec3 middle(Index triangle) const {
         const auto& [a, b, c] = triangles_[triangle];
         return (positions_[a] + positions_[b] + positions_[c]) / 3;
@@ -28,9 +31,10 @@ public:
     const MeshDistance& distance() const { return distance_; }
 
 private:
+    enum class End { near, far, lost };
     struct Walked {
         Index triangle;
-        bool is_near;
+        End end;
     };
     Walked walk(const Vec3& place, double squared_bound, Index from) const;
 
