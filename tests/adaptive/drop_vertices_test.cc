@@ -44,11 +44,10 @@ bool on_rim(const PolygonMesh& mesh, Index v) {
 
 TEST_CASE("a tube keeps the vertices of its rims alone", "[adaptive]") {
     const PolygonMesh fine = tube(48, 12);
-    const MeshDistance surface(fine);
-    const std::vector<Drop> drops = find_drops(fine, surface, 0.03);
-    PolygonMesh mesh = fine;
-    std::vector<Index> stands_for =
-        drop_vertices(mesh, drops, std::vector<std::uint8_t>(fine.vertex_count(), 1));
+    const SurfaceWalk surface(fine);
+    const std::vector<Drop> drops = find_drops(CollapsingMesh(fine), surface, 0.03);
+    auto [mesh, stands_for] =
+        drop_vertices(CollapsingMesh(fine), drops, std::vector<std::uint8_t>(fine.vertex_count(), 1));
     std::size_t inner = 0;
     for (Index v = 0; v < stands_for.size(); ++v) {
         if (on_rim(fine, v)) CHECK(stands_for[v] == v); // a crease of 90 degrees
@@ -61,19 +60,18 @@ TEST_CASE("a tube keeps the vertices of its rims alone", "[adaptive]") {
     CHECK(topology.euler == 2);
     CHECK(topology.misoriented_edges + topology.nonmanifold_edges + topology.degenerate_facets == 0);
     CHECK(find_self_intersections(mesh).facet_pairs.empty());
-    CHECK(surface(sample_surface(mesh, 20000)).max < 1.2 * 0.03);
+    CHECK(surface.distance()(sample_surface(mesh, 20000)).max < 1.2 * 0.03);
     CHECK(points_to_mesh(fine.positions, mesh).max < 1.2 * 0.03);
 }
 
 TEST_CASE("vertices that may not go stay, and nothing is joined to them", "[adaptive]") {
     const PolygonMesh fine = tube(24, 9);
-    const MeshDistance surface(fine);
-    const std::vector<Drop> drops = find_drops(fine, surface, 0.1);
+    const SurfaceWalk surface(fine);
+    const std::vector<Drop> drops = find_drops(CollapsingMesh(fine), surface, 0.1);
     std::vector<std::uint8_t> may_go(fine.vertex_count(), 1);
     REQUIRE(drops.size() > 20);
     for (std::size_t i = 0; i < drops.size(); i += 3) may_go[drops[i].vertex] = 0;
-    PolygonMesh mesh = fine;
-    const std::vector<Index> stands_for = drop_vertices(mesh, drops, may_go);
+    const std::vector<Index> stands_for = drop_vertices(CollapsingMesh(fine), drops, may_go).stands_for;
     std::size_t gone = 0;
     for (Index v = 0; v < stands_for.size(); ++v) {
         if (stands_for[v] == v) continue;
@@ -87,11 +85,11 @@ TEST_CASE("vertices that may not go stay, and nothing is joined to them", "[adap
 
 TEST_CASE("any number of threads finds the same vertices to drop", "[adaptive]") {
     const PolygonMesh fine = tube(200, 60);
-    const MeshDistance surface(fine);
+    const SurfaceWalk surface(fine);
     const auto sides = [&](std::size_t threads) {
         tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
         std::vector<Index> found;
-        for (const Drop& drop : find_drops(fine, surface, 0.01)) found.push_back(drop.side);
+        for (const Drop& drop : find_drops(CollapsingMesh(fine), surface, 0.01)) found.push_back(drop.side);
         return found;
     };
     const std::vector<Index> one = sides(1);

@@ -67,8 +67,10 @@ PolygonMesh frame(int n) {
 
 std::vector<Index> merged(PolygonMesh& mesh, double tolerance) {
     std::vector<Merger> mergers;
-    return merge_vertices(mesh, vertex_planes(mesh), std::vector<double>(mesh.vertex_count(), tolerance),
-                          mergers);
+    const std::vector<double> tolerances(mesh.vertex_count(), tolerance);
+    CollapsedMesh collapsed = merge_vertices(CollapsingMesh(mesh), vertex_planes(mesh), tolerances, mergers);
+    mesh = std::move(collapsed.mesh);
+    return std::move(collapsed.stands_for);
 }
 
 std::size_t kept(const std::vector<Index>& stands_for) {
@@ -124,7 +126,8 @@ TEST_CASE("vertices without tolerance stay, and so do facets with nothing to mer
     for (Index v = 0; v < tolerance.size(); ++v)
         if (mesh.positions[v][2] > 2.5) tolerance[v] = 0.01;
     std::vector<Merger> mergers;
-    const std::vector<Index> stands_for = merge_vertices(mesh, vertex_planes(mesh), tolerance, mergers);
+    const std::vector<Index> stands_for =
+        merge_vertices(CollapsingMesh(before), vertex_planes(before), tolerance, mergers).stands_for;
     CHECK(mergers.size() == before.vertex_count() - kept(stands_for));
     CHECK(kept(stands_for) < before.vertex_count());
     for (Index v = 0; v < tolerance.size(); ++v)
@@ -140,17 +143,17 @@ TEST_CASE("mergers are repeated as far as tolerances allow", "[adaptive]") {
     const std::vector<Quadric> planes = vertex_planes(before);
     std::vector<double> tolerance(before.vertex_count(), 1.0);
     std::vector<Merger> mergers;
-    PolygonMesh found = before, again = before, fewer = before;
-    const std::size_t most = kept(merge_vertices(found, planes, tolerance, mergers));
-    merge_vertices(again, planes, tolerance, mergers);
-    CHECK(again.corners == found.corners);
-    CHECK(again.positions == found.positions);
+    const CollapsingMesh start(before);
+    const CollapsedMesh found = merge_vertices(start, planes, tolerance, mergers);
+    const CollapsedMesh again = merge_vertices(start, planes, tolerance, mergers);
+    CHECK(again.mesh.corners == found.mesh.corners);
+    CHECK(again.mesh.positions == found.mesh.positions);
 
     for (Index v = 0; v < tolerance.size(); v += 5) tolerance[v] = 0;
     for (Index v = 1; v < tolerance.size(); v += 5) tolerance[v] = 0.01;
-    const std::vector<Index> stands_for = merge_vertices(fewer, planes, tolerance, mergers);
+    const auto [fewer, stands_for] = merge_vertices(start, planes, tolerance, mergers);
     CHECK(kept(stands_for) == before.vertex_count() - mergers.size());
-    CHECK(kept(stands_for) > most);
+    CHECK(kept(stands_for) > kept(found.stands_for));
     CHECK(kept(stands_for) < before.vertex_count() / 2);
     std::vector<Quadric> joint(before.vertex_count());
     for (Index v = 0; v < stands_for.size(); ++v) joint[stands_for[v]] += planes[v];

@@ -12,7 +12,7 @@ TEST_CASE("a band holds the same places however often it is asked, with room for
     PolygonMesh square;
     square.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)};
     square.add_facet(std::array<Index, 4>{0, 1, 2, 3});
-    const MeshDistance surface(square);
+    const SurfaceWalk surface(square);
     for (const std::size_t room : {std::size_t{0}, std::size_t{100}, std::size_t{10000}}) {
         INFO("room " << room);
         SurfaceBand band(surface, 0.5, room);

@@ -30,7 +30,7 @@ PolygonMesh sheet(const Height& height) {
 
 TidyCounts tidied(PolygonMesh& mesh, const PolygonMesh& fine, bool settled = false) {
     constexpr double tolerance = 0.05;
-    const MeshDistance surface(fine);
+    const SurfaceWalk surface(fine);
     SurfaceBand band(surface, tolerance, mesh.vertex_count());
     return tidy_facets(mesh, band, std::vector<std::uint8_t>(mesh.vertex_count(), settled));
 }
@@ -70,7 +70,7 @@ TEST_CASE("triangles of a flat sheet become quads again", "[adaptive]") {
 TEST_CASE("what is remembered of one mesh changes nothing in the next", "[adaptive]") {
     const PolygonMesh mesh =
         cut_in_two(sheet([](double x, double y) { return 0.06 * std::sin(2 * x) * std::cos(3 * y); }));
-    const MeshDistance surface(sheet([](double x, double y) { return 0.02 * x * y / 6; }));
+    const SurfaceWalk surface(sheet([](double x, double y) { return 0.02 * x * y / 6; }));
     SurfaceBand band(surface, 0.05, mesh.vertex_count());
     const std::vector<std::uint8_t> settled(mesh.vertex_count(), 0);
     PolygonMesh first = mesh, second = mesh;

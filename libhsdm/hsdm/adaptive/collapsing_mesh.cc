@@ -14,8 +14,9 @@ constexpr double turn_cosine = 0.77;    // normals turn by less than 40 degrees
 
 } // namespace
 
-CollapsingMesh::CollapsingMesh(PolygonMesh& mesh)
+CollapsingMesh::CollapsingMesh(const PolygonMesh& mesh)
     : mesh_(mesh),
+      positions_(mesh.positions),
       stands_for_(mesh.vertex_count()),
       facets_(mesh.vertex_count(), 0),
       locked_(mesh.vertex_count(), 0),
@@ -97,7 +98,7 @@ bool CollapsingMesh::collapse(Index side, const Vec3& place) {
         for (Index v : ring_to_) changed_[v] = 1;
     }
     touch(side);
-    mesh_.positions[to] = place;
+    positions_[to] = place;
     for (Index v : ring_) changed_[v] = 1;
     stands_for_[from] = to;
     facets_[to] = facets_[to] + facets_[from] - 4;
@@ -131,19 +132,20 @@ void CollapsingMesh::remove(Index side) {
         for (const Index corner : {gone, next_side(gone), previous_side(gone)}) corners_[corner] = no_index;
 }
 
-std::vector<Index> CollapsingMesh::write() {
+CollapsedMesh CollapsingMesh::write() {
     PolygonMesh kept;
+    kept.corners.reserve(corners_.size());
+    kept.first.reserve(facet_.size() + 1);
     Index t = 0;
     for (std::size_t f = 0; f < mesh_.facet_count(); ++f) {
         if (!touched_[f]) kept.add_facet(mesh_.facet(f));
         for (; t < facet_.size() && facet_[t] == f; ++t)
             if (touched_[f] && !is_gone(3 * t)) kept.add_facet({&corners_[3 * t], 3});
     }
-    mesh_.corners = std::move(kept.corners);
-    mesh_.first = std::move(kept.first);
+    kept.positions = std::move(positions_);
     for (Index& v : stands_for_)
         while (stands_for_[v] != v) v = stands_for_[v];
-    return std::move(stands_for_);
+    return {std::move(kept), std::move(stands_for_)};
 }
 
 } // namespace hsdm

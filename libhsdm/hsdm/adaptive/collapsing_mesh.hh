@@ -5,14 +5,22 @@
 
 namespace hsdm {
 
+/// What is left of a mesh. Vertices for which others stand are isolated.
+struct CollapsedMesh {
+    PolygonMesh mesh;
+    std::vector<Index> stands_for; ///< per vertex the one that stands for it now: itself or another
+};
+
 /// A mesh, cut into triangles, of which inner vertices merge into neighbours. Side s runs from start(s) to
-/// end(s). Facets whose diagonals are edges of others too stay whole: their vertices are locked.
+/// end(s). Facets whose diagonals are edges of others too stay whole: their vertices are locked. To begin
+/// anew, copy it before.
 class CollapsingMesh {
 public:
-    explicit CollapsingMesh(PolygonMesh& mesh);
+    /// The mesh must outlive it; it stays as it is.
+    explicit CollapsingMesh(const PolygonMesh& mesh);
 
-    const Vec3& at(Index v) const { return mesh_.positions[v]; }
-    std::size_t vertex_count() const { return mesh_.vertex_count(); }
+    const Vec3& at(Index v) const { return positions_[v]; }
+    std::size_t vertex_count() const { return positions_.size(); }
     std::size_t side_count() const { return corners_.size(); }
     bool is_gone(Index side) const { return corners_[side] == no_index; }
     Index start(Index side) const { return corners_[side]; }
@@ -34,9 +42,8 @@ public:
     bool has_changed(Index v) const { return changed_[v]; }
     void forget_changes() { changed_.assign(changed_.size(), 0); }
 
-    /// The mesh again: facets that nothing touched whole, others as triangles. Per vertex the one that stands
-    /// for it now; those for which another does are isolated.
-    std::vector<Index> write();
+    /// Facets that nothing touched whole, others as triangles. To be called once, at the end.
+    CollapsedMesh write();
 
 private:
     void lock_facets();
@@ -47,7 +54,8 @@ private:
     void touch(Index side);
     void remove(Index side);
 
-    PolygonMesh& mesh_;
+    const PolygonMesh& mesh_; // whose facets they are
+    std::vector<Vec3> positions_;
     std::vector<Index> stands_for_;
     std::vector<Index> corners_, twin_;           // per side of a triangle; no_index: it is gone
     std::vector<Index> facet_;                    // per triangle

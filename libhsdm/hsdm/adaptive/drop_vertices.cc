@@ -1,6 +1,5 @@
 #include "hsdm/adaptive/drop_vertices.hh"
 
-#include "hsdm/adaptive/collapsing_mesh.hh"
 #include "hsdm/adaptive/triangle_shape.hh"
 #include "hsdm/chunks.hh"
 #include "hsdm/quality/mix.hh"
@@ -27,8 +26,8 @@ Key ring_key(const CollapsingMesh& mesh, Index side, std::vector<Index>& ring) {
 
 class Dropping {
 public:
-    Dropping(PolygonMesh& mesh, const SurfaceWalk& fine, double tolerance)
-        : mesh_(mesh),
+    Dropping(CollapsingMesh mesh, const SurfaceWalk& fine, double tolerance)
+        : mesh_(std::move(mesh)),
           fine_(fine),
           tolerance_(tolerance),
           waits_(mesh_.vertex_count(), 0),
@@ -224,19 +223,18 @@ private:
 
 } // namespace
 
-std::vector<Drop> find_drops(PolygonMesh mesh, const SurfaceWalk& fine, double tolerance) {
-    return Dropping(mesh, fine, tolerance).run();
+std::vector<Drop> find_drops(CollapsingMesh mesh, const SurfaceWalk& fine, double tolerance) {
+    return Dropping(std::move(mesh), fine, tolerance).run();
 }
 
-std::vector<Index> drop_vertices(PolygonMesh& mesh, std::span<const Drop> drops,
-                                 const std::vector<std::uint8_t>& may_go) {
-    CollapsingMesh collapsing(mesh);
+CollapsedMesh drop_vertices(CollapsingMesh mesh, std::span<const Drop> drops,
+                            const std::vector<std::uint8_t>& may_go) {
     std::vector<Index> ring;
     for (const Drop& drop : drops)
-        if (may_go[drop.vertex] && may_go[drop.onto] && collapsing.start(drop.side) == drop.vertex
-            && ring_key(collapsing, drop.side, ring) == drop.ring)
-            collapsing.collapse(drop.side, collapsing.at(drop.onto));
-    return collapsing.write();
+        if (may_go[drop.vertex] && may_go[drop.onto] && mesh.start(drop.side) == drop.vertex
+            && ring_key(mesh, drop.side, ring) == drop.ring)
+            mesh.collapse(drop.side, mesh.at(drop.onto));
+    return mesh.write();
 }
 
 } // namespace hsdm

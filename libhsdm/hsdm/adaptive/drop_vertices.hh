@@ -1,6 +1,7 @@
 #pragma once
 // Vertices that a surface does without, by measured distances.
 
+#include "hsdm/adaptive/collapsing_mesh.hh"
 #include "hsdm/adaptive/content_keys.hh"
 #include "hsdm/quality/surface_walk.hh"
 
@@ -21,12 +22,12 @@ struct Drop {
 /// that. Planes of vertices, by which merge_vertices() goes, refuse a strip of a cylinder that ends between
 /// the vertices of its rims; this takes it. At most 32 sweeps, O(n) each, of fewer vertices; parallel, the
 /// same for any number of threads.
-std::vector<Drop> find_drops(PolygonMesh mesh, const SurfaceWalk& fine, double tolerance);
+std::vector<Drop> find_drops(CollapsingMesh mesh, const SurfaceWalk& fine, double tolerance);
 
 /// Takes vertices out of the mesh that they were found for, in that order, but for those, `may_go` being 0,
 /// that are to stay, which no vertex gives way to either, and for those whose facets are then other ones.
-/// Returns per vertex the one that stands for it. O(n).
-std::vector<Index> drop_vertices(PolygonMesh& mesh, std::span<const Drop> drops,
-                                 const std::vector<std::uint8_t>& may_go);
+/// O(n).
+CollapsedMesh drop_vertices(CollapsingMesh mesh, std::span<const Drop> drops,
+                            const std::vector<std::uint8_t>& may_go);
 
 } // namespace hsdm

@@ -1,6 +1,5 @@
 #include "hsdm/adaptive/merge.hh"
 
-#include "hsdm/adaptive/collapsing_mesh.hh"
 #include "hsdm/chunks.hh"
 
 #include <tbb/parallel_sort.h>
@@ -17,8 +16,8 @@ constexpr double free_share = 0.1; // of the tolerance: "about as well"
 
 class Merging {
 public:
-    Merging(PolygonMesh& mesh, std::vector<Quadric> planes, std::vector<double> tolerance)
-        : mesh_(mesh),
+    Merging(CollapsingMesh mesh, std::vector<Quadric> planes, std::vector<double> tolerance)
+        : mesh_(std::move(mesh)),
           planes_(std::move(planes)),
           tolerance_(std::move(tolerance)),
           moved_(mesh_.vertex_count(), 1) {
@@ -26,7 +25,7 @@ public:
             if (mesh_.is_locked(v)) tolerance_[v] = 0;
     }
 
-    std::vector<Index> run(std::vector<Merger>& mergers) {
+    CollapsedMesh run(std::vector<Merger>& mergers) {
         if (mergers.empty())
             merge_all();
         else
@@ -168,9 +167,9 @@ private:
 
 } // namespace
 
-std::vector<Index> merge_vertices(PolygonMesh& mesh, std::vector<Quadric> planes,
-                                  std::vector<double> tolerance, std::vector<Merger>& mergers) {
-    return Merging(mesh, std::move(planes), std::move(tolerance)).run(mergers);
+CollapsedMesh merge_vertices(CollapsingMesh mesh, std::vector<Quadric> planes, std::vector<double> tolerance,
+                             std::vector<Merger>& mergers) {
+    return Merging(std::move(mesh), std::move(planes), std::move(tolerance)).run(mergers);
 }
 
 } // namespace hsdm

@@ -2,8 +2,8 @@
 // Vertices merged into neighbours that lie on all of their planes: over flat ground, along straight creases,
 // along a cylinder. Leaves are cubes; facets need not be.
 
+#include "hsdm/adaptive/collapsing_mesh.hh"
 #include "hsdm/adaptive/quadric.hh"
-#include "hsdm/polygon_mesh.hh"
 
 #include <vector>
 
@@ -20,12 +20,11 @@ struct Merger {
 /// by no more than the smaller `tolerance` of both (root mean square, the mesh's units; a vertex with 0
 /// stays, and nothing merges into it); the neighbour moves there unless it is as good where it is, and stands
 /// for both from then on. A 2-manifold keeps its topology (link condition), no facet turns, none gets thinner
-/// than all were; what changes comes out as triangles. `planes` and `tolerance` have an entry per vertex, and
-/// so has the result: the vertex that stands for it now, itself or one that it was merged into (it is
-/// isolated then). `mergers`: those made; if there are some before, of the same mesh with larger tolerances,
+/// than all were; what changes comes out as triangles. `planes` and `tolerance` have an entry per vertex.
+/// `mergers`: those made; if there are some before, of the same mesh with larger tolerances,
 /// these are repeated as far as tolerances allow and others are looked for only beside those that cannot be.
 /// O(n log n) in each of two times 32 sweeps at most, of fewer edges each.
-std::vector<Index> merge_vertices(PolygonMesh& mesh, std::vector<Quadric> planes,
-                                  std::vector<double> tolerance, std::vector<Merger>& mergers);
+CollapsedMesh merge_vertices(CollapsingMesh mesh, std::vector<Quadric> planes, std::vector<double> tolerance,
+                             std::vector<Merger>& mergers);
 
 } // namespace hsdm

@@ -31,9 +31,8 @@ struct Faults {
     }
 };
 
-/// Merges vertices of a mesh, and returns per vertex the one that stands for it. A vertex with a tolerance of
-/// 0 is to stay.
-using Merge = std::function<std::vector<Index>(PolygonMesh&, const std::vector<double>& tolerance)>;
+/// The leaves' mesh with vertices merged. A vertex with a tolerance of 0 is to stay.
+using Merge = std::function<CollapsedMesh(const std::vector<double>& tolerance)>;
 
 /// A way to merge, and how to go on from there.
 struct MergeStep {
@@ -68,8 +67,8 @@ public:
 
 private:
     void merge_once(const MergeStep& step) {
-        result_.mesh = leaves_.mesh;
-        std::vector<Index> stands_for = step.merge(result_.mesh, tolerance_);
+        auto [mesh, stands_for] = step.merge(tolerance_);
+        result_.mesh = std::move(mesh);
         std::vector<std::uint8_t> merged(stands_for.size(), 0);
         for (Index v = 0; v < stands_for.size(); ++v) merged[stands_for[v]] |= stands_for[v] != v;
         const std::vector<Index> leaf = drop_replaced(result_.mesh, stands_for);
@@ -170,20 +169,22 @@ MergedLeaves merge_leaves(const LeafMesh& leaves, std::span<const Quadric> plane
     std::vector<Quadric> leaf_planes(leaves.mesh.vertex_count());
     for (std::size_t v = 0; v < planes.size(); ++v) leaf_planes[leaves.vertex[v]] += planes[v];
     std::vector<Merger> mergers; // of the round before, which most are again
-    const auto by_planes = [&](PolygonMesh& mesh, const std::vector<double>& tolerance) {
-        return merge_vertices(mesh, leaf_planes, tolerance, mergers);
+    const CollapsingMesh unmerged(leaves.mesh);
+    const auto by_planes = [&](const std::vector<double>& tolerance) {
+        return merge_vertices(unmerged, leaf_planes, tolerance, mergers);
     };
     MergedLeaves merged = MergeRounds(leaves, checks, options).run({by_planes, Diagonals::may_flip, false});
 
     const LeafMesh base{std::move(merged.mesh), through(leaves.vertex, merged.vertex)};
     MergeLeavesOptions drop_options = options;
     drop_options.faults = merged.faults;
+    const CollapsingMesh undropped(base.mesh);
     const std::vector<Drop> drops =
-        find_drops(base.mesh, checks.bound().to_fine(), drop_share * checks.band().tolerance());
-    const auto by_distance = [&](PolygonMesh& mesh, const std::vector<double>& tolerance) {
+        find_drops(undropped, checks.bound().to_fine(), drop_share * checks.band().tolerance());
+    const auto by_distance = [&](const std::vector<double>& tolerance) {
         std::vector<std::uint8_t> may_go(tolerance.size()); // what was wrong once stays
         for (std::size_t v = 0; v < may_go.size(); ++v) may_go[v] = tolerance[v] >= checks.band().tolerance();
-        return drop_vertices(mesh, drops, may_go);
+        return drop_vertices(undropped, drops, may_go);
     };
     MergedLeaves dropped = MergeRounds(base, checks, drop_options).run({by_distance, Diagonals::stay, true});
     dropped.vertex = through(merged.vertex, dropped.vertex);

@@ -2,6 +2,7 @@
 
 #include "hsdm/chunks.hh"
 #include "hsdm/quality/cell_search.hh"
+#include "hsdm/quality/surface_walk.hh"
 
 #include <tbb/parallel_for.h>
 
@@ -120,16 +121,7 @@ double MeshDistance::operator()(const Vec3& point, Index& hint) const {
     return std::sqrt(nearest.squared);
 }
 
-Distance MeshDistance::operator()(std::span<const Vec3> points, double enough) const {
-    // One triangle that is near enough is found sooner than all that could be nearer.
-    if (enough > 0)
-        return sum_up(points.size(), [&] {
-            return [&, hint = no_index](std::size_t i) mutable {
-                const TriangleTree::Nearest nearest = tree_.nearest(points[i], hint, enough * enough);
-                hint = nearest.triangle;
-                return nearest.squared;
-            };
-        });
+Distance MeshDistance::operator()(std::span<const Vec3> points) const {
     return sum_up(points.size(), [&] {
         return [packets = Packets(tree_, points)](std::size_t i) mutable { return packets(i).squared; };
     });
@@ -148,7 +140,13 @@ Index MeshDistance::triangle_within(const Vec3& point, double bound, Index& hint
 }
 
 Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh, double enough) {
-    return MeshDistance(mesh)(points, enough);
+    if (!(enough > 0)) return MeshDistance(mesh)(points);
+    const SurfaceWalk surface(mesh, triangulate(mesh), TriangleTree::Order::given);
+    return sum_up(points.size(), [&] {
+        return [&, hint = no_index](std::size_t i) mutable {
+            return square(surface.distance_enough(points[i], enough, hint));
+        };
+    });
 }
 
 /// What no cell beside a point's own tells is left to the tree, which is rarely built.

@@ -30,9 +30,8 @@ public:
     /// `hint` is no_index or what a call for a point nearby left there: it changes the time alone.
     double operator()(const Vec3& point, Index& hint) const;
     /// All points; parallel, quickest when neighbours in the list are neighbours in space, the same bits for
-    /// any number of threads. Zero for an empty list. Distances up to `enough` may come out larger, though
-    /// never above it: whether a bound is kept is known several times sooner than by how much.
-    Distance operator()(std::span<const Vec3> points, double enough = 0) const;
+    /// any number of threads. Zero for an empty list.
+    Distance operator()(std::span<const Vec3> points) const;
     /// The facet nearest to a point, or no_index if the mesh has none.
     Index nearest_facet(const Vec3& point) const;
     /// A triangle of the cut mesh no farther than `bound`, or no_index if there is none; several times
@@ -51,7 +50,8 @@ private:
 };
 
 /// Every point against its nearest triangle, through the tree; parallel, the same bits for any thread count.
-/// `enough` as above.
+/// Distances up to `enough` may come out larger, though never above it: whether a bound is kept is known
+/// several times sooner than by how much.
 Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh, double enough = 0);
 
 /// The same by the cells of the mesh: in half the time where facets are about as large as cells and the

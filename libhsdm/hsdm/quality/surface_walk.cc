@@ -15,6 +15,8 @@ std::vector<Index> twins_of(const PolygonMesh& mesh, const Triangulation& cut) {
 
 } // namespace
 
+SurfaceWalk::SurfaceWalk(const PolygonMesh& mesh) : SurfaceWalk(mesh, triangulate(mesh)) {}
+
 SurfaceWalk::SurfaceWalk(const PolygonMesh& mesh, const Triangulation& cut, TriangleTree::Order order)
     : positions_(mesh.positions),
       triangles_(cut.triangles),
@@ -23,7 +25,7 @@ SurfaceWalk::SurfaceWalk(const PolygonMesh& mesh, const Triangulation& cut, Tria
 
 Index SurfaceWalk::triangle_within(const Vec3& place, double bound, Index& hint) const {
     if (hint != no_index) {
-        const auto [triangle, end] = walk(place, bound * bound, hint);
+        const auto [triangle, end, squared] = walk(place, bound * bound, hint);
         hint = triangle;
         if (end == End::near) return triangle;
     }
@@ -32,11 +34,20 @@ Index SurfaceWalk::triangle_within(const Vec3& place, double bound, Index& hint)
 
 bool SurfaceWalk::leads_within(const Vec3& place, double bound, Index& hint) const {
     if (hint != no_index) {
-        const auto [triangle, end] = walk(place, bound * bound, hint);
+        const auto [triangle, end, squared] = walk(place, bound * bound, hint);
         hint = triangle;
         if (end != End::lost) return end == End::near;
     }
     return distance_.triangle_within(place, bound, hint) != no_index;
+}
+
+double SurfaceWalk::distance_enough(const Vec3& place, double enough, Index& hint) const {
+    if (hint != no_index) {
+        const auto [triangle, end, squared] = walk(place, enough * enough, hint);
+        hint = triangle;
+        if (end == End::near) return std::sqrt(squared);
+    }
+    return distance_(place, hint);
 }
 
 /// Over the side that the place is farthest beyond, by shares of the corner across, until it is beyond none,
@@ -50,11 +61,11 @@ SurfaceWalk::Walked SurfaceWalk::walk(const Vec3& place, double squared_bound, I
         const double bb = ab | ab, cc = ac | ac, bc = ab | ac, pb = arm | ab, pc = arm | ac;
         // The foot on the plane, in shares of the sides from a and of the third, times `area`.
         const double area = bb * cc - bc * bc;
-        if (!(area > least_squared_sine * bb * cc)) return {from, End::lost};
+        if (!(area > least_squared_sine * bb * cc)) return {from, End::lost, 0};
         const double to_b = cc * pb - bc * pc, to_c = bb * pc - bc * pb, to_a = area - to_b - to_c;
         if (to_a >= 0 && to_b >= 0 && to_c >= 0) {
-            const double height = (ab % ac) | arm;
-            return {from, height * height <= squared_bound * area ? End::near : End::far};
+            const double height = (ab % ac) | arm, squared = height * height / area;
+            return {from, squared <= squared_bound ? End::near : End::far, squared};
         }
         Index k = to_c < to_a ? 0 : 1;
         if (to_b < std::min(to_a, to_c)) k = 2;
@@ -63,12 +74,13 @@ SurfaceWalk::Walked SurfaceWalk::walk(const Vec3& place, double squared_bound, I
             const Vec3 start = k == 0 ? arm : k == 1 ? arm - ab : arm - ac;
             const Vec3 along = k == 0 ? ab : k == 1 ? ac - ab : -ac;
             const double share = std::clamp((start | along) / along.sqrnorm(), 0.0, 1.0);
-            return {from, (start - along * share).sqrnorm() <= squared_bound ? End::near : End::far};
+            const double squared = (start - along * share).sqrnorm();
+            return {from, squared <= squared_bound ? End::near : End::far, squared};
         }
         back = next;
         from = next / 3;
     }
-    return {from, End::lost};
+    return {from, End::lost, 0};
 }
 
 } // namespace hsdm

@@ -10,6 +10,7 @@ namespace hsdm {
 /// a few triangles apart.
 class SurfaceWalk {
 public:
+    explicit SurfaceWalk(const PolygonMesh& mesh);
     /// O(t log t), parallel. Nothing given need outlive it.
     SurfaceWalk(const PolygonMesh& mesh, const Triangulation& cut,
                 TriangleTree::Order order = TriangleTree::Order::compact);
@@ -23,6 +24,8 @@ public:
     /// Is the part of the surface that a walk from `hint` leads to no farther than `bound`? Another may be:
     /// not to look for one is quicker where many places are far.
     bool leads_within(const Vec3& place, double bound, Index& hint) const;
+    /// From a triangle no farther than `enough` where one is known soon, else from the nearest.
+    double distance_enough(const Vec3& place, double enough, Index& hint) const;
     Vec3 middle(Index triangle) const {
         const auto& [a, b, c] = triangles_[triangle];
         return (positions_[a] + positions_[b] + positions_[c]) / 3;
@@ -35,6 +38,7 @@ private:
     struct Walked {
         Index triangle;
         End end;
+        double squared; ///< distance, where it is near
     };
     Walked walk(const Vec3& place, double squared_bound, Index from) const;
 

@@ -279,12 +279,12 @@ void TriangleTree::descend(Search& search, const Node& from, const Node& known, 
     }
 }
 
-TriangleTree::Nearest TriangleTree::nearest(const Vec3& point, Index hint, double enough) const {
+TriangleTree::Nearest TriangleTree::nearest(const Vec3& point, Index hint) const {
     if (block_count_ == 0) return {};
     Search search(*this, point);
     const Index block = block_of(hint);
     if (block != no_index) search.look_at(block);
-    if (search.squared() > enough) descend(search, root(), {-1, block}, enough);
+    descend(search, root(), {-1, block}, 0);
     return search.result();
 }
 

@@ -32,9 +32,8 @@ public:
         Index triangle = no_index;
     };
     /// Nearest triangle to a point in the mesh's own coordinates. `hint` is a triangle to begin at (the
-    /// answer for a point nearby), or no_index: it changes the time, never the distance. Any triangle whose
-    /// squared distance is no more than `enough` will do.
-    Nearest nearest(const Vec3& point, Index hint = no_index, double enough = 0) const;
+    /// answer for a point nearby), or no_index: it changes the time, never the distance.
+    Nearest nearest(const Vec3& point, Index hint = no_index) const;
     /// A triangle whose distance, the root of `squared`, is no more than `bound` where there is one, else one
     /// that is farther, or none. With a hint nearby several times quicker than the nearest one, as the search
     /// goes up from there.
