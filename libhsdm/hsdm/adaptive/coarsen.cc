@@ -75,7 +75,7 @@ private:
         const std::size_t troubled = split_troubled();
         result_.topology_splits += troubled;
         if (troubled > 0) return troubled; // all else needs a 2-manifold
-        tidy_facets(result_.mesh, checks_->band(), own());
+        tidy_facets(result_.mesh, checks_->band(), own(), Diagonals::may_flip, tidied_);
         const Findings found = checks_->look_at(result_.mesh);
         faults_ = found.count();
         set_beyond(found.far_points);
@@ -318,6 +318,7 @@ private:
     std::vector<Index> vertex_;  // per fine vertex, the vertex of the result
     std::vector<Place> coarse_;  // per vertex of the result
     std::vector<Index> pinched_; // facets of the fine mesh with opposite corners in one vertex
+    TidiedGroups tidied_;        // in the round before
     std::optional<RoundChecks> checks_;
     FaultCounts faults_; // of the last round, whether leaves could be smaller there or not
     AdaptiveMesh result_;

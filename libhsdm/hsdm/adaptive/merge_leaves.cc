@@ -77,7 +77,7 @@ private:
         // What nothing has changed stays as it is.
         std::vector<std::uint8_t> settled(leaf.size(), 1);
         for (Index v : with_neighbours(has_merged_)) settled[v] = 0;
-        tidy_facets(result_.mesh, checks_.band(), settled, step.diagonals);
+        tidy_facets(result_.mesh, checks_.band(), settled, step.diagonals, tidied_);
     }
 
     /// Marked vertices, and those that share facets with them.
@@ -152,6 +152,7 @@ private:
     const MergeLeavesOptions& options_;
     std::vector<double> tolerance_;        // per vertex of the leaves
     std::vector<std::uint8_t> has_merged_; // per vertex of the result
+    TidiedGroups tidied_;                  // in the round before
     MergedLeaves result_;
 };
 

@@ -2,6 +2,7 @@
 
 #include "hsdm/adaptive/triangle_shape.hh"
 #include "hsdm/chunks.hh"
+#include "hsdm/disjoint_sets.hh"
 #include "hsdm/facets/straight_corners.hh"
 #include "hsdm/facets/triangle_sides.hh"
 #include "hsdm/quality/mix.hh"
@@ -28,14 +29,22 @@ constexpr double was_quad = 0.3;     // added to the corner's sine of what was a
 
 class Tidying {
 public:
-    Tidying(PolygonMesh& mesh, SurfaceBand& fine, std::span<const std::uint8_t> settled)
-        : mesh_(mesh), fine_(fine), tolerance_(fine.tolerance()), facets_(mesh.vertex_count(), 0) {
+    Tidying(PolygonMesh& mesh, SurfaceBand& fine, std::span<const std::uint8_t> settled, TidiedGroups& before)
+        : mesh_(mesh),
+          fine_(fine),
+          before_(before),
+          tolerance_(fine.tolerance()),
+          names_(place_keys(mesh.positions)),
+          vertices_(names_),
+          facet_names_(facet_keys(mesh, names_)),
+          facets_(mesh.vertex_count(), 0) {
         std::vector<std::uint8_t> whole(mesh.facet_count());
         for (std::size_t f = 0; f < whole.size(); ++f) {
             const auto ring = mesh.facet(f);
             whole[f] =
                 ring.size() > 4 || std::all_of(ring.begin(), ring.end(), [&](Index v) { return settled[v]; });
         }
+        group_ = before_.find(mesh, facet_names_, vertices_, names_, whole);
         // A diagonal may be an edge of other facets already: such quads are not cut.
         do cut_all(whole);
         while (keep_whole(whole));
@@ -47,7 +56,7 @@ public:
         TidyCounts counts;
         const int sweeps = diagonals == Diagonals::may_flip ? most_sweeps : 0;
         look_.assign(corners_.size(), Look::none);
-        if (sweeps > 0) names_ = place_keys(mesh_.positions);
+        united_.emplace(half_.size());
         std::vector<std::uint8_t> turned(half_.size(), 1);
         for (int sweep = 0; sweep < sweeps; ++sweep) {
             turned_.assign(half_.size(), 0);
@@ -60,6 +69,7 @@ public:
             if (flipped == 0) break;
         }
         counts.joined = join();
+        before_ = std::move(now_);
         mesh_.corners = std::move(kept_.corners);
         mesh_.first = std::move(kept_.first);
         return counts;
@@ -88,12 +98,20 @@ private:
 
     void cut_all(const std::vector<std::uint8_t>& whole) {
         kept_ = {};
+        now_ = {};
         half_.clear();
         facet_.clear();
+        std::vector<std::uint8_t> seen(before_.size(), 0);
         for (std::size_t f = 0; f < whole.size(); ++f) {
             const auto ring = mesh_.facet(f);
             if (whole[f]) {
                 kept_.add_facet(ring);
+                continue;
+            }
+            if (const Index group = group_[f]; group != no_index) {
+                if (seen[group]++) continue;
+                before_.append(group, vertices_, kept_);
+                now_.copy(before_, group);
                 continue;
             }
             facet_.resize(facet_.size() + ring.size() - 2, static_cast<Index>(f));
@@ -246,6 +264,7 @@ private:
                    look_ad = look_[next_side(t)], look_db = look_[previous_side(t)];
         const Index one = s - s % 3, two = t - t % 3;
         turned_[one / 3] = turned_[two / 3] = 1;
+        united_->join(one / 3, two / 3);
         for (const Index side : {one, two, ca, bc, ad, db})
             if (side != no_index) waits_[side / 3] = 1;
         const auto place = [&](Index from, std::array<Index, 3> corners) {
@@ -318,29 +337,80 @@ private:
             --facets_[a], --facets_[b];
             partner[s / 3] = s;
             partner[t / 3] = t;
+            united_->join(s / 3, t / 3);
             ++joined;
         }
-        for (Index f = 0; f < half_.size(); ++f) {
-            const Index s = partner[f];
-            if (s == no_index)
-                kept_.add_facet(std::array{corners_[3 * f], corners_[3 * f + 1], corners_[3 * f + 2]});
-            else if (s < twin_[s])
-                kept_.add_facet(std::array{corners_[s], corners_[previous_side(twin_[s])],
-                                           corners_[next_side(s)], corners_[previous_side(s)]});
-        }
+        add_groups(partner);
         return joined;
+    }
+
+    /// What is left of the triangles, group by group.
+    void add_groups(const std::vector<Index>& partner) {
+        const auto [first, members] = groups();
+        std::vector<Key> facets;
+        for (std::size_t g = 0; g + 1 < first.size(); ++g) {
+            const auto group = std::span(members).subspan(first[g], first[g + 1] - first[g]);
+            facets.clear();
+            for (Index t : group)
+                if (t == 0 || facet_[t - 1] != facet_[t]) facets.push_back(facet_names_[facet_[t]]);
+            now_.begin(facets);
+            for (Index t : group) {
+                const Index s = partner[t];
+                if (s == no_index)
+                    add_to_group(std::array{corners_[3 * t], corners_[3 * t + 1], corners_[3 * t + 2]});
+                else if (s < twin_[s])
+                    add_to_group(std::array{corners_[s], corners_[previous_side(twin_[s])],
+                                            corners_[next_side(s)], corners_[previous_side(s)]});
+            }
+        }
+    }
+
+    void add_to_group(std::span<const Index> ring) {
+        kept_.add_facet(ring);
+        now_.add_ring(ring, names_);
+    }
+
+    /// Triangles that were flipped or joined together, and halves of the same quad.
+    struct Groups {
+        std::vector<Index> first, members;
+    };
+    Groups groups() {
+        Groups result;
+        std::vector<Index> number(half_.size());
+        Index count = 0;
+        for (Index t = 0; t < number.size(); ++t) { // the least member stands for all
+            if (t > 0 && facet_[t - 1] == facet_[t]) united_->join(t - 1, t);
+        }
+        for (Index t = 0; t < number.size(); ++t) {
+            const Index least = united_->find(t);
+            number[t] = least == t ? count++ : number[least];
+        }
+        // Two to the right, so that filling the triangles in moves them to their places.
+        result.first.assign(count + 2, 0);
+        result.members.resize(number.size());
+        for (Index n : number) ++result.first[n + 2];
+        counts_to_first(result.first);
+        for (Index t = 0; t < number.size(); ++t) result.members[result.first[number[t] + 1]++] = t;
+        result.first.pop_back();
+        return result;
     }
 
     PolygonMesh& mesh_;
     SurfaceBand& fine_;
+    TidiedGroups& before_;
+    TidiedGroups now_;
     double tolerance_;
-    PolygonMesh kept_;                 // facets that are done
-    std::vector<Index> corners_;       // three per triangle
+    std::vector<Key> names_;             // per vertex, of its place
+    KeyIndex vertices_;                  // by names
+    std::vector<Key> facet_names_;       // per facet
+    std::vector<Index> group_;           // per facet, of those that became before what they are to become
+    std::optional<DisjointSets> united_; // triangles that were turned or joined together
+    PolygonMesh kept_;                   // facets that are done
+    std::vector<Index> corners_;         // three per triangle
     std::vector<std::uint8_t> half_;   // per triangle, is it half of a former quad, the diagonal its side 0?
     std::vector<Index> facet_;         // per triangle, the facet it was cut from
     std::vector<Index> twin_;          // per side of a triangle
     std::vector<Look> look_;           // per side
-    std::vector<Key> names_;           // per vertex, of its place
     std::vector<Verdict> verdicts_;    // per side, as of the sweep's start
     std::vector<std::uint8_t> turned_; // per triangle, in this sweep
     std::vector<std::uint8_t> waits_;  // per triangle, has it sides to be turned or judged anew?
@@ -352,7 +422,13 @@ private:
 
 TidyCounts tidy_facets(PolygonMesh& mesh, SurfaceBand& fine, std::span<const std::uint8_t> settled,
                        Diagonals diagonals) {
-    const TidyCounts counts = Tidying(mesh, fine, settled).run(diagonals);
+    TidiedGroups none;
+    return tidy_facets(mesh, fine, settled, diagonals, none);
+}
+
+TidyCounts tidy_facets(PolygonMesh& mesh, SurfaceBand& fine, std::span<const std::uint8_t> settled,
+                       Diagonals diagonals, TidiedGroups& before) {
+    const TidyCounts counts = Tidying(mesh, fine, settled, before).run(diagonals);
     cut_straight_corners(mesh, reflex);
     return counts;
 }

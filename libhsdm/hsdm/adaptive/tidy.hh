@@ -2,6 +2,7 @@
 // Facets over leaves of different size, cut and joined anew over the same vertices.
 
 #include "hsdm/adaptive/surface_band.hh"
+#include "hsdm/adaptive/tidied_groups.hh"
 
 #include <span>
 
@@ -20,6 +21,12 @@ struct TidyCounts {
 /// tolerance off a plane, counts as on it. A 2-manifold remains one with the same vertices; facets of which
 /// all vertices are `settled`, and those of more than four corners, stay. At the end quads with a reflex
 /// corner, wherever they are, are cut in two. O(corners log corners).
+///
+/// `before`: what became of another mesh's facets, with the same surface and kind of diagonals; where this
+/// one has the same it becomes the same, and only what changed, and what is beside it, is looked at. It is
+/// replaced by what this mesh's became.
+TidyCounts tidy_facets(PolygonMesh& mesh, SurfaceBand& fine, std::span<const std::uint8_t> settled,
+                       Diagonals diagonals, TidiedGroups& before);
 TidyCounts tidy_facets(PolygonMesh& mesh, SurfaceBand& fine, std::span<const std::uint8_t> settled,
                        Diagonals diagonals = Diagonals::may_flip);
 
