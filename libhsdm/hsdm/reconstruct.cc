@@ -388,9 +388,10 @@ void reconstruct_level(const PointCloud& cloud, const Octree& octree, int depth,
     std::vector<Vec3> points;
     if (options.measure || wants_adaptive(options)) points = points_as_read(cloud, octree);
     if (wants_adaptive(options)) {
+        facets = phases.run("adaptive", 0.5, seconds.facets, [&] {
+            return adaptive_grid(input, points, facets, known.cells ? &*known.cells : nullptr, report);
+        });
         known = {}; // of the fine facets
-        facets = phases.run("adaptive", 0.5, seconds.facets,
-                            [&] { return adaptive_grid(input, points, facets, report); });
     }
     phases.run("error", 0.6, seconds.error,
                [&] { drop_and_measure(points, octree, options, facets, known, report); });

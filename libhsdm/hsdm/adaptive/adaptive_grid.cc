@@ -34,10 +34,10 @@ bool wants_adaptive(const ReconstructOptions& options) {
 }
 
 PolygonMesh adaptive_grid(const MethodInput& in, std::span<const Vec3> points, const PolygonMesh& fine,
-                          Report& report) {
+                          const FacetCells* cells, Report& report) {
     const double bound = error_bound(in);
     AdaptiveMesh coarse = coarsen(fine, points, in.octree.extent, in.level.depth,
-                                  {.max_error = bound, .measure = in.options.measure});
+                                  {.max_error = bound, .measure = in.options.measure}, cells);
     report.grid.kind = "adaptive";
     report.grid.leaves_per_level = coarse.leaves_per_level;
     report.grid.balance_splits = coarse.balance_splits;

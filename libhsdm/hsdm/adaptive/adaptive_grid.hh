@@ -2,6 +2,7 @@
 // The adaptive grid as a step of the pipeline, with its part of the report.
 
 #include "hsdm/basic_method.hh"
+#include "hsdm/quality/facet_cells.hh"
 
 #include <span>
 
@@ -14,9 +15,9 @@ bool wants_adaptive(const ReconstructOptions& options);
 /// properties are means over the fine vertices that a vertex stands for, of labels the majority's. The bound
 /// is kept at `points`, which are those that the error is measured from: where they were read, whatever the
 /// octree's have been moved to. Notes in the report the bound, how many points the fine mesh misses by more,
-/// and the distance of the result from it.
+/// and the distance of the result from it. `cells`, of the fine mesh, if they are known, save time.
 PolygonMesh adaptive_grid(const MethodInput& input, std::span<const Vec3> points, const PolygonMesh& fine,
-                          Report& report);
+                          const FacetCells* cells, Report& report);
 
 /// Throws Error if a point was measured farther from the final mesh than the bound and none was announced.
 void check_error_kept(const Report& report);

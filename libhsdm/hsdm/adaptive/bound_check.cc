@@ -80,13 +80,14 @@ std::vector<Index> far_of(std::vector<Key> keys, KeySet& near, const IsFar& is_f
 
 } // namespace
 
-BoundCheck::BoundCheck(const PolygonMesh& fine, std::span<const Vec3> points, double bound, double spacing)
+BoundCheck::BoundCheck(const PolygonMesh& fine, const FacetCells* cells, std::span<const Vec3> points,
+                       double bound, double spacing)
     : fine_(fine),
       points_(points),
       bound_(bound),
       spacing_(spacing),
       cut_(triangulate(fine)),
-      to_fine_(fine, cut_) {
+      to_fine_(cells && cells->usable() ? SurfaceWalk(fine, cut_, *cells) : SurfaceWalk(fine, cut_)) {
     const std::vector<Key> names = place_keys(fine.positions);
     fine_names_ = KeySet(names);
     fine_keys_ = KeySet(triangle_keys(cut_, names));
@@ -163,7 +164,7 @@ std::vector<Index> BoundCheck::far_facets(const PolygonMesh& mesh) {
             return std::any_of(places.begin(), places.end(),
                                [&](const Vec3& place) { return to_fine_.is_beyond(place, bound_, hint); });
         });
-    for (Index& t : facets) t = to_mesh_->distance().facet_of(t);
+    for (Index& t : facets) t = to_mesh_->tree().facet_of(t);
     facets.erase(std::unique(facets.begin(), facets.end()), facets.end());
     return facets;
 }
@@ -187,7 +188,7 @@ FarPoints BoundCheck::find_far_points() {
     // The largest distance of all is the fine mesh's, if that is beyond the bound.
     std::vector<double> off(missed.size());
     for_chunks(missed.size(), far_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i) off[i] = to_mesh_->distance()(points_[missed[i]]);
+        for (std::size_t i = begin; i < end; ++i) off[i] = to_mesh_->tree()(points_[missed[i]]);
     });
     for (std::size_t i = 0; i < missed.size(); ++i)
         if (off[i] > farthest) found.points.push_back(missed[i]);
@@ -198,8 +199,9 @@ FarPoints BoundCheck::find_far_points() {
 void BoundCheck::measure_to_fine(const std::vector<Index>& far) {
     if (!far.empty()) off_fine_.resize(points_.size(), -1);
     for_chunks(far.size(), far_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        Index hint = no_index;
         for (std::size_t i = begin; i < end; ++i)
-            if (double& off = off_fine_[far[i]]; off < 0) off = to_fine_.distance()(points_[far[i]]);
+            if (double& off = off_fine_[far[i]]; off < 0) off = to_fine_.distance(points_[far[i]], hint);
     });
 }
 

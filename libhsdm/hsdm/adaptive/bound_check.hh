@@ -28,13 +28,15 @@ struct FarPoints {
 class BoundCheck {
 public:
     /// `fine` and `points` must outlive it; bound > 0. `spacing` > 0: of places looked at on a facet.
-    BoundCheck(const PolygonMesh& fine, std::span<const Vec3> points, double bound, double spacing);
+    /// `cells`: of the fine mesh, which then must outlive it, or null.
+    BoundCheck(const PolygonMesh& fine, const FacetCells* cells, std::span<const Vec3> points, double bound,
+               double spacing);
 
     FarPlaces find_far(const PolygonMesh& mesh);
 
     /// From the mesh last compared.
     FarPoints find_far_points();
-    Index nearest_facet(const Vec3& place) const { return to_mesh_->distance().nearest_facet(place); }
+    Index nearest_facet(const Vec3& place) const { return to_mesh_->tree().nearest_facet(place); }
     const Vec3& point(Index p) const { return points_[p]; }
     const SurfaceWalk& to_fine() const { return to_fine_; }
 

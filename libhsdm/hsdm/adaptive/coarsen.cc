@@ -33,7 +33,7 @@ struct Place {
 class Coarsening {
 public:
     Coarsening(const PolygonMesh& fine, std::span<const Vec3> points, double extent, int depth,
-               const CoarsenOptions& options)
+               const CoarsenOptions& options, const FacetCells* cells)
         : fine_(fine),
           points_(points),
           options_(options),
@@ -44,7 +44,7 @@ public:
                 clusters_ = build_clusters(fine, tree_, planes_, tolerance());
             },
             [&] {
-                checks_.emplace(fine, points, options.max_error,
+                checks_.emplace(fine, cells, points, options.max_error,
                                 spacing * extent / static_cast<double>(1u << depth), tolerance());
             });
     }
@@ -60,7 +60,7 @@ public:
         if (options_.measure) {
             const std::size_t samples =
                 std::clamp(2 * result_.mesh.facet_count(), fewest_samples, most_samples);
-            result_.to_fine = checks_->bound().to_fine().distance()(sample_surface(result_.mesh, samples));
+            result_.to_fine = checks_->bound().to_fine().tree()(sample_surface(result_.mesh, samples));
         }
         result_.vertex = std::move(vertex_);
         return std::move(result_);
@@ -327,12 +327,12 @@ private:
 } // namespace
 
 AdaptiveMesh coarsen(const PolygonMesh& fine, std::span<const Vec3> points, double extent, int depth,
-                     const CoarsenOptions& options) {
+                     const CoarsenOptions& options, const FacetCells* cells) {
     if (!(options.max_error > 0 && std::isfinite(options.max_error)))
         throw OptionError("max_error " + std::to_string(options.max_error) + ": must be positive and finite");
     if (options.rounds < 1)
         throw OptionError("rounds " + std::to_string(options.rounds) + ": must be 1 or more");
-    return Coarsening(fine, points, extent, depth, options).run();
+    return Coarsening(fine, points, extent, depth, options, cells).run();
 }
 
 } // namespace hsdm

@@ -38,8 +38,8 @@ struct AdaptiveMesh {
 /// fine vertices within max_error of the result and it of the fine mesh. Facets are cut and joined anew where
 /// that suits their shape. If `rounds` or the cells do not suffice the fine mesh itself comes out. `points`
 /// and the mesh are relative to the least corner of the cube, `extent` is its edge, `depth` the level of the
-/// fine mesh. O(n log n). Throws OptionError.
+/// fine mesh. `cells`, of the fine mesh, if they are known, save time. O(n log n). Throws OptionError.
 AdaptiveMesh coarsen(const PolygonMesh& fine, std::span<const Vec3> points, double extent, int depth,
-                     const CoarsenOptions& options);
+                     const CoarsenOptions& options, const FacetCells* cells = nullptr);
 
 } // namespace hsdm

@@ -4,9 +4,10 @@
 
 namespace hsdm {
 
-RoundChecks::RoundChecks(const PolygonMesh& fine, std::span<const Vec3> points, double bound, double spacing,
-                         double tolerance)
-    : bound_(fine, points, bound, spacing), band_(bound_.to_fine(), tolerance, 2 * fine.vertex_count()) {}
+RoundChecks::RoundChecks(const PolygonMesh& fine, const FacetCells* cells, std::span<const Vec3> points,
+                         double bound, double spacing, double tolerance)
+    : bound_(fine, cells, points, bound, spacing),
+      band_(bound_.to_fine(), tolerance, 2 * fine.vertex_count()) {}
 
 /// At once, as either has steps that one thread takes alone.
 Findings RoundChecks::look_at(const PolygonMesh& mesh) {

@@ -25,8 +25,8 @@ struct Findings {
 class RoundChecks {
 public:
     /// As for BoundCheck; `tolerance`, the mesh's units, > 0: the width of the band round the fine mesh.
-    RoundChecks(const PolygonMesh& fine, std::span<const Vec3> points, double bound, double spacing,
-                double tolerance);
+    RoundChecks(const PolygonMesh& fine, const FacetCells* cells, std::span<const Vec3> points, double bound,
+                double spacing, double tolerance);
     RoundChecks(const RoundChecks&) = delete;
 
     Findings look_at(const PolygonMesh& mesh);

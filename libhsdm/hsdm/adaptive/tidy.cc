@@ -235,7 +235,7 @@ private:
         const auto [a, b, c, d] = corners;
         if (before == Look::none) before = look(a, b, hint);
         if (before == Look::off) {
-            const double was = fine_.surface().distance()(middle(a, b), hint);
+            const double was = fine_.surface().distance(middle(a, b), hint);
             return {!fine_.surface().is_beyond(middle(c, d), 0.5 * was, hint), before, Look::none};
         }
         if (!gains) return {false, before, Look::none};

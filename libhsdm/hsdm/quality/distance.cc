@@ -144,7 +144,7 @@ Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh, d
     const SurfaceWalk surface(mesh, triangulate(mesh), TriangleTree::Order::given);
     return sum_up(points.size(), [&] {
         return [&, hint = no_index](std::size_t i) mutable {
-            return square(surface.distance_enough(points[i], enough, hint));
+            return square(surface.distance(points[i], hint, enough));
         };
     });
 }

@@ -3,17 +3,24 @@
 
 #include "hsdm/quality/distance.hh"
 
+#include <memory>
+
 namespace hsdm {
 
 /// Looks for a triangle that is near enough by going over sides from the one found for the place before, and
-/// only where that leads nowhere through the tree. Several times quicker than the tree alone where places are
-/// a few triangles apart.
+/// only where that leads nowhere in the cells of the facets or, without such cells, through the tree. Several
+/// times quicker than the tree alone where places are a few triangles apart.
 class SurfaceWalk {
 public:
     explicit SurfaceWalk(const PolygonMesh& mesh);
     /// O(t log t), parallel. Nothing given need outlive it.
     SurfaceWalk(const PolygonMesh& mesh, const Triangulation& cut,
                 TriangleTree::Order order = TriangleTree::Order::compact);
+    /// With cells of the mesh that are usable(). O(t), parallel; the tree is built when it is asked for. Mesh
+    /// and cells must outlive it.
+    SurfaceWalk(const PolygonMesh& mesh, const Triangulation& cut, const FacetCells& cells);
+    ~SurfaceWalk();
+    SurfaceWalk(SurfaceWalk&&) noexcept;
 
     /// A triangle of the cut mesh no farther than `bound`, or no_index if there is none. `hint` is no_index
     /// or what the call for a place nearby left there: which triangle depends on it.
@@ -24,14 +31,14 @@ public:
     /// Is the part of the surface that a walk from `hint` leads to no farther than `bound`? Another may be:
     /// not to look for one is quicker where many places are far.
     bool leads_within(const Vec3& place, double bound, Index& hint) const;
-    /// From a triangle no farther than `enough` where one is known soon, else from the nearest.
-    double distance_enough(const Vec3& place, double enough, Index& hint) const;
+    /// From the nearest triangle, or, where one is known soon, from any no farther than `enough`.
+    double distance(const Vec3& place, Index& hint, double enough = 0) const;
     Vec3 middle(Index triangle) const {
         const auto& [a, b, c] = triangles_[triangle];
         return (positions_[a] + positions_[b] + positions_[c]) / 3;
     }
-    /// From the same triangles; takes the same hints.
-    const MeshDistance& distance() const { return distance_; }
+    /// Of the same triangles. From any thread.
+    const MeshDistance& tree() const;
 
 private:
     enum class End { near, far, lost };
@@ -42,10 +49,21 @@ private:
     };
     Walked walk(const Vec3& place, double squared_bound, Index from) const;
 
+    struct Found {
+        Index triangle = no_index;
+        double squared = std::numeric_limits<double>::infinity();
+    };
+    Found search_cells(const Vec3& place, double reach, double enough) const;
+    bool is_in_reach(double distance) const;
+
     std::vector<Vec3> positions_;
     std::vector<Triangle> triangles_;
     std::vector<Index> twin_; // per side of a triangle
-    MeshDistance distance_;
+    const PolygonMesh* mesh_ = nullptr;
+    const FacetCells* cells_ = nullptr; // or none
+    std::vector<Index> first_;          // with cells: the triangles of each facet
+    struct Tree;
+    std::unique_ptr<Tree> tree_;
 };
 
 } // namespace hsdm
