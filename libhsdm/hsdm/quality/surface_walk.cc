@@ -107,17 +107,20 @@ bool SurfaceWalk::leads_within(const Vec3& place, double bound, Index& hint) con
 }
 
 double SurfaceWalk::distance(const Vec3& place, Index& hint, double enough) const {
-    if (enough > 0 && hint != no_index) {
+    double most = cells_ ? farthest * cells_->cell_size() : 0; // is worth a search
+    if (hint != no_index) {
         const auto [triangle, end, squared] = walk(place, enough * enough, hint);
         hint = triangle;
         if (end == End::near) return std::sqrt(squared);
+        if (end == End::far) most = std::min(most, 1.000001 * std::sqrt(squared));
     }
-    for (double cells = 0.5; cells_ && cells <= farthest; cells *= 2)
-        if (const Found found = search_cells(place, cells * cells_->cell_size(), enough);
-            found.triangle != no_index) {
-            hint = found.triangle;
-            return std::sqrt(found.squared);
-        }
+    for (double tried = 0; tried < most;) {
+        tried = std::min(most, std::max(2 * tried, 0.5 * cells_->cell_size()));
+        const Found found = search_cells(place, tried, enough);
+        if (found.triangle == no_index) continue;
+        hint = found.triangle;
+        return std::sqrt(found.squared);
+    }
     return tree()(place, hint);
 }
 
