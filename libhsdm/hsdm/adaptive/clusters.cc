@@ -13,7 +13,7 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t clusters_per_chunk = 1024;
+constexpr std::size_t clusters_per_chunk = 1024, edges_per_chunk = 8192;
 
 /// Builds each level of clusters from the one below it. An edge or facet is looked at on the levels where it
 /// joins different clusters, so the lists shrink by a factor of two and more per level.
@@ -75,10 +75,12 @@ private:
         const auto& parent_cell = tree_.levels[level + 1].parent;
         const auto cell_of = [&](Index cluster) { return parent_cell[below.cell[cluster]]; };
         DisjointSets joined(below.size());
-        for (const auto& [a, b] : edges_) {
-            const Index i = current_[a], j = current_[b];
-            if (i != no_index && j != no_index && cell_of(i) == cell_of(j)) joined.join(i, j);
-        }
+        for_chunks(edges_.size(), edges_per_chunk, [&](std::size_t e, std::size_t end, std::size_t) {
+            for (; e < end; ++e) {
+                const Index i = current_[edges_[e].first], j = current_[edges_[e].second];
+                if (i != no_index && j != no_index && cell_of(i) == cell_of(j)) joined.join(i, j);
+            }
+        });
         const std::vector<Index> part = divide(joined, below, eligible, level);
         ClusterLevel here;
         below.parent.assign(below.size(), no_index);

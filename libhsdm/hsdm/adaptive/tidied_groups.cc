@@ -30,6 +30,7 @@ void TidiedGroups::copy(const TidiedGroups& other, Index group) {
 std::vector<Index> TidiedGroups::find(const PolygonMesh& mesh, std::span<const Key> facets,
                                       const KeyIndex& vertices, std::span<const Key> places,
                                       const std::vector<std::uint8_t>& whole) const {
+    if (size() == 0) return std::vector<Index>(facets.size(), no_index);
     std::vector<Index> group_of(facets_.size());
     for (Index g = 0; g < size(); ++g)
         std::fill(group_of.begin() + first_facet_[g], group_of.begin() + first_facet_[g + 1], g);

@@ -5,6 +5,7 @@
 #include "hsdm/facets/area_vector.hh"
 
 #include <algorithm>
+#include <atomic>
 
 namespace hsdm {
 namespace {
@@ -30,8 +31,14 @@ void for_each_side(const PolygonMesh& mesh, const F& visit) {
     }
 }
 
-/// Those of an edge one after the other, by ascending corners.
-std::vector<Side> sorted_sides(const PolygonMesh& mesh) {
+/// Of every edge, those one after the other, by ascending corners; those of the edges whose lower vertex is v
+/// from first[v] to first[v + 1].
+struct SortedSides {
+    std::vector<Side> sides;
+    std::vector<Index> first;
+};
+
+SortedSides sorted_sides(const PolygonMesh& mesh) {
     std::vector<Side> sides(mesh.corners.size());
     // Two to the right, so that filling the sides in moves them to their places.
     std::vector<Index> first(mesh.vertex_count() + 2, 0);
@@ -45,7 +52,7 @@ std::vector<Side> sorted_sides(const PolygonMesh& mesh) {
                           return a.high != b.high ? a.high < b.high : a.corner < b.corner;
                       });
     });
-    return sides;
+    return {std::move(sides), std::move(first)};
 }
 
 std::vector<Index> flat_facets(const PolygonMesh& mesh) {
@@ -65,21 +72,27 @@ std::vector<Index> flat_facets(const PolygonMesh& mesh) {
 } // namespace
 
 std::vector<Index> troubled_vertices(const PolygonMesh& mesh) {
-    const std::vector<Side> sides = sorted_sides(mesh);
+    const auto [sides, first] = sorted_sides(mesh);
     std::vector<std::uint8_t> troubled(mesh.vertex_count(), 0), border(mesh.vertex_count(), 0);
     DisjointSets fans(mesh.corners.size());
-    for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
-        const Side& a = sides[begin];
-        while (end < sides.size() && sides[end].low == a.low && sides[end].high == a.high) ++end;
-        if (end - begin == 1) {
-            border[a.low] = border[a.high] = 1;
-        } else if (const Side& b = sides[begin + 1]; end - begin == 2 && a.forward != b.forward) {
-            fans.join(a.corner, b.next);
-            fans.join(a.next, b.corner);
-        } else {
-            troubled[a.low] = troubled[a.high] = 1;
+    // Edges of other chunks may end at the same vertex.
+    const auto mark = [](std::vector<std::uint8_t>& marks, const Side& side) {
+        for (Index v : {side.low, side.high}) std::atomic_ref(marks[v]).store(1, std::memory_order_relaxed);
+    };
+    for_chunks(mesh.vertex_count(), vertices_per_chunk, [&](std::size_t v, std::size_t last, std::size_t) {
+        for (std::size_t begin = first[v], end = begin; begin < first[last]; begin = end) {
+            const Side& a = sides[begin];
+            while (end < first[last] && sides[end].low == a.low && sides[end].high == a.high) ++end;
+            if (end - begin == 1) {
+                mark(border, a);
+            } else if (const Side& b = sides[begin + 1]; end - begin == 2 && a.forward != b.forward) {
+                fans.join(a.corner, b.next);
+                fans.join(a.next, b.corner);
+            } else {
+                mark(troubled, a);
+            }
         }
-    }
+    });
     std::vector<Index> root(mesh.vertex_count(), no_index), facets(mesh.vertex_count(), 0);
     for (Index c = 0; c < mesh.corners.size(); ++c) {
         const Index v = mesh.corners[c];
