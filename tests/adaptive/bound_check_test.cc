@@ -36,7 +36,7 @@ PolygonMesh quad_over(const PolygonMesh& roof, std::array<Index, 4> corners) {
 
 TEST_CASE("a facet over the fine mesh's own vertices is looked at", "[adaptive]") {
     const PolygonMesh fine = roof();
-    BoundCheck check(fine, {}, 0.1, 1);
+    BoundCheck check(fine, nullptr, {}, 0.1, 1);
     CHECK(check.find_far(fine).size() == 0);
     // From eaves to eaves, under the ridge.
     const FarPlaces under =
@@ -53,7 +53,7 @@ TEST_CASE("a facet over the fine mesh's own vertices is looked at", "[adaptive]"
 TEST_CASE("what was near a facet that has gone is measured again, in any order of vertices", "[adaptive]") {
     const PolygonMesh fine = roof();
     const std::vector<Vec3> points = {Vec3(1.5, 4, 0.375), Vec3(6.5, 4, 0.375), Vec3(6.5, 4, 3)};
-    BoundCheck check(fine, points, 0.1, 1);
+    BoundCheck check(fine, nullptr, points, 0.1, 1);
     const std::array<Index, 4> left{0, 4, side * (side - 1) + 4, side * (side - 1)};
     const std::array<Index, 4> right{4, side - 1, side * side - 1, side * (side - 1) + 4};
     PolygonMesh both = quad_over(fine, left);
@@ -78,7 +78,7 @@ TEST_CASE("what was near a facet that has gone is measured again, in any order o
 
 TEST_CASE("what was far from the fine mesh is so each time", "[adaptive]") {
     const PolygonMesh fine = roof();
-    BoundCheck check(fine, {}, 0.1, 1);
+    BoundCheck check(fine, nullptr, {}, 0.1, 1);
     PolygonMesh lifted = fine;
     for (Vec3& p : lifted.positions) p[2] += p[0] < 3.5 ? 0.05 : 0.2;
     const FarPlaces first = check.find_far(lifted), second = check.find_far(lifted);

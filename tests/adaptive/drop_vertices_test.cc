@@ -60,7 +60,7 @@ TEST_CASE("a tube keeps the vertices of its rims alone", "[adaptive]") {
     CHECK(topology.euler == 2);
     CHECK(topology.misoriented_edges + topology.nonmanifold_edges + topology.degenerate_facets == 0);
     CHECK(find_self_intersections(mesh).facet_pairs.empty());
-    CHECK(surface.distance()(sample_surface(mesh, 20000)).max < 1.2 * 0.03);
+    CHECK(surface.tree()(sample_surface(mesh, 20000)).max < 1.2 * 0.03);
     CHECK(points_to_mesh(fine.positions, mesh).max < 1.2 * 0.03);
 }
 

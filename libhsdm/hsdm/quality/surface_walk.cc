@@ -1,6 +1,8 @@
 #include "hsdm/quality/surface_walk.hh"
 
+#include "hsdm/chunks.hh"
 #include "hsdm/facets/triangle_sides.hh"
+#include "hsdm/point_cloud.hh"
 #include "hsdm/quality/point_triangle.hh"
 
 #include <tbb/collaborative_call_once.h>
@@ -12,8 +14,9 @@ namespace hsdm {
 namespace {
 
 constexpr int most_steps = 12;              // by then a search is quicker
-constexpr double least_squared_sine = 1e-8; // of a triangle's corner: flatter ones are not walked over
-constexpr double farthest = 3;              // cells: what is farther is left to the tree
+constexpr double least_squared_sine = 1e-4; // of a triangle's corner: flatter ones are not walked over
+constexpr std::size_t triangles_per_chunk = 4096;
+constexpr double farthest = 3; // cells: what is farther is left to the tree
 
 std::vector<Index> twins_of(const PolygonMesh& mesh, const Triangulation& cut) {
     const std::span corners(cut.triangles.empty() ? nullptr : cut.triangles.front().data(), 3 * cut.size());
@@ -37,6 +40,7 @@ SurfaceWalk::SurfaceWalk(const PolygonMesh& mesh, const Triangulation& cut, Tria
       triangles_(cut.triangles),
       twin_(twins_of(mesh, cut)),
       tree_(std::make_unique<Tree>()) {
+    make_steps();
     tree_->distance.emplace(mesh, cut, order);
 }
 
@@ -47,7 +51,9 @@ SurfaceWalk::SurfaceWalk(const PolygonMesh& mesh, const Triangulation& cut, cons
       mesh_(&mesh),
       cells_(&cells),
       first_(cut.first),
-      tree_(std::make_unique<Tree>()) {}
+      tree_(std::make_unique<Tree>()) {
+    make_steps();
+}
 
 const MeshDistance& SurfaceWalk::tree() const {
     if (cells_) tbb::collaborative_call_once(tree_->once, [&] { tree_->distance.emplace(*mesh_); });
@@ -76,7 +82,7 @@ SurfaceWalk::Found SurfaceWalk::search_cells(const Vec3& place, double reach, do
                 const Vec3 normal = (b - a) % (d - a);
                 const double height = normal | (place - a);
                 if (height * height > (1 + 1e-9) * limit * normal.sqrnorm()) continue;
-                const double squared = PreparedTriangle(a, b, d).nearest(place).squared_distance;
+                const double squared = squared_distance(place, t);
                 if (squared > limit || squared >= found.squared) continue;
                 found = {t, squared};
                 limit = squared;
@@ -87,7 +93,7 @@ SurfaceWalk::Found SurfaceWalk::search_cells(const Vec3& place, double reach, do
 
 Index SurfaceWalk::triangle_within(const Vec3& place, double bound, Index& hint) const {
     if (hint != no_index) {
-        const auto [triangle, end, squared] = walk(place, bound * bound, hint);
+        const auto [triangle, end] = walk(place, bound, hint);
         hint = triangle;
         if (end == End::near) return triangle;
     }
@@ -99,7 +105,7 @@ Index SurfaceWalk::triangle_within(const Vec3& place, double bound, Index& hint)
 
 bool SurfaceWalk::leads_within(const Vec3& place, double bound, Index& hint) const {
     if (hint != no_index) {
-        const auto [triangle, end, squared] = walk(place, bound * bound, hint);
+        const auto [triangle, end] = walk(place, bound, hint);
         hint = triangle;
         if (end != End::lost) return end == End::near;
     }
@@ -109,10 +115,11 @@ bool SurfaceWalk::leads_within(const Vec3& place, double bound, Index& hint) con
 double SurfaceWalk::distance(const Vec3& place, Index& hint, double enough) const {
     double most = cells_ ? farthest * cells_->cell_size() : 0; // is worth a search
     if (hint != no_index) {
-        const auto [triangle, end, squared] = walk(place, enough * enough, hint);
+        const auto [triangle, end] = walk(place, enough, hint);
         hint = triangle;
-        if (end == End::near) return std::sqrt(squared);
-        if (end == End::far) most = std::min(most, 1.000001 * std::sqrt(squared));
+        const double there = end == End::lost ? most : std::sqrt(squared_distance(place, triangle));
+        if (end == End::near) return there;
+        most = std::min(most, 1.000001 * there);
     }
     for (double tried = 0; tried < most;) {
         tried = std::min(most, std::max(2 * tried, 0.5 * cells_->cell_size()));
@@ -124,37 +131,77 @@ double SurfaceWalk::distance(const Vec3& place, Index& hint, double enough) cons
     return tree()(place, hint);
 }
 
+/// A triangle as single floats, relative to the centre: the corner a, how the shares of the other two corners
+/// grow, the unit normal, and the sides beyond. Where there is no area to speak of the normal is infinite.
+struct alignas(64) SurfaceWalk::Step {
+    std::array<float, 3> a, to_b, to_c, normal;
+    std::array<Index, 3> twin;
+};
+
+void SurfaceWalk::make_steps() {
+    const Box box = bounds_of(positions_);
+    centre_ = 0.5 * (box.lo + box.hi);
+    rounding_ = 16 * std::numeric_limits<float>::epsilon() * static_cast<float>(box.diagonal());
+    steps_ = std::make_unique_for_overwrite<Step[]>(triangles_.size());
+    for_chunks(triangles_.size(), triangles_per_chunk, [&](std::size_t t, std::size_t end, std::size_t) {
+        for (; t < end; ++t) {
+            const auto& [ia, ib, ic] = triangles_[t];
+            const Vec3 &a = positions_[ia], ab = positions_[ib] - a, ac = positions_[ic] - a;
+            const Vec3 normal = ab % ac;
+            const double area = normal.sqrnorm();
+            const bool flat = !(area > least_squared_sine * ab.sqrnorm() * ac.sqrnorm());
+            const Vec3 to_b = flat ? Vec3(0, 0, 0) : (ac % normal) / area;
+            const Vec3 to_c = flat ? Vec3(0, 0, 0) : (normal % ab) / area;
+            const Vec3 up = flat ? Vec3(Box::inf, Box::inf, Box::inf) : normal / std::sqrt(area);
+            Step& step = steps_[t];
+            for (unsigned k = 0; k < 3; ++k) {
+                step.a[k] = static_cast<float>(a[k] - centre_[k]);
+                step.to_b[k] = static_cast<float>(to_b[k]);
+                step.to_c[k] = static_cast<float>(to_c[k]);
+                step.normal[k] = static_cast<float>(up[k]);
+                step.twin[k] = twin_[3 * t + k];
+            }
+        }
+    });
+}
+
 /// Over the side that the place is farthest beyond, by shares of the corner across, until it is beyond none,
 /// or back again beyond the last.
-SurfaceWalk::Walked SurfaceWalk::walk(const Vec3& place, double squared_bound, Index from) const {
+SurfaceWalk::Walked SurfaceWalk::walk(const Vec3& place, double bound, Index from) const {
+    const Vec3 given = place - centre_;
+    const std::array<float, 3> p{static_cast<float>(given[0]), static_cast<float>(given[1]),
+                                 static_cast<float>(given[2])};
+    const float surely = static_cast<float>(bound) - rounding_;
     Index back = no_index; // the side of the triangle that leads where it was come from
-    for (int step = 0; step < most_steps; ++step) {
-        const auto& [ia, ib, ic] = triangles_[from];
-        const Vec3& a = positions_[ia];
-        const Vec3 ab = positions_[ib] - a, ac = positions_[ic] - a, arm = place - a;
-        const double bb = ab | ab, cc = ac | ac, bc = ab | ac, pb = arm | ab, pc = arm | ac;
-        // The foot on the plane, in shares of the sides from a and of the third, times `area`.
-        const double area = bb * cc - bc * bc;
-        if (!(area > least_squared_sine * bb * cc)) return {from, End::lost, 0};
-        const double to_b = cc * pb - bc * pc, to_c = bb * pc - bc * pb, to_a = area - to_b - to_c;
-        if (to_a >= 0 && to_b >= 0 && to_c >= 0) {
-            const double height = (ab % ac) | arm, squared = height * height / area;
-            return {from, squared <= squared_bound ? End::near : End::far, squared};
+    for (int count = 0; count < most_steps; ++count) {
+        const Step& step = steps_[from];
+        const float x = p[0] - step.a[0], y = p[1] - step.a[1], z = p[2] - step.a[2];
+        const float b = x * step.to_b[0] + y * step.to_b[1] + z * step.to_b[2];
+        const float c = x * step.to_c[0] + y * step.to_c[1] + z * step.to_c[2];
+        const float a = 1 - b - c;
+        if (std::min(a, std::min(b, c)) >= 0) {
+            const float height = x * step.normal[0] + y * step.normal[1] + z * step.normal[2];
+            if (std::abs(height) <= surely) return {from, End::near};
+            return {from, at_end(place, bound, from)};
         }
-        Index k = to_c < to_a ? 0 : 1;
-        if (to_b < std::min(to_a, to_c)) k = 2;
-        const Index side = 3 * from + k, next = twin_[side];
-        if (next == no_index || side == back) {
-            const Vec3 start = k == 0 ? arm : k == 1 ? arm - ab : arm - ac;
-            const Vec3 along = k == 0 ? ab : k == 1 ? ac - ab : -ac;
-            const double share = std::clamp((start | along) / along.sqrnorm(), 0.0, 1.0);
-            const double squared = (start - along * share).sqrnorm();
-            return {from, squared <= squared_bound ? End::near : End::far, squared};
-        }
+        Index k = c < a ? 0 : 1;
+        if (b < std::min(a, c)) k = 2;
+        const Index side = 3 * from + k, next = step.twin[k];
+        if (next == no_index || side == back) return {from, at_end(place, bound, from)};
         back = next;
         from = next / 3;
     }
-    return {from, End::lost, 0};
+    return {from, End::lost};
+}
+
+SurfaceWalk::End SurfaceWalk::at_end(const Vec3& place, double bound, Index triangle) const {
+    if (std::isinf(steps_[triangle].normal[0])) return End::lost;
+    return squared_distance(place, triangle) <= bound * bound ? End::near : End::far;
+}
+
+double SurfaceWalk::squared_distance(const Vec3& place, Index triangle) const {
+    const auto& [a, b, c] = triangles_[triangle];
+    return PreparedTriangle(positions_[a], positions_[b], positions_[c]).nearest(place).squared_distance;
 }
 
 } // namespace hsdm

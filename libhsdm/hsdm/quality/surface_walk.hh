@@ -45,9 +45,11 @@ private:
     struct Walked {
         Index triangle;
         End end;
-        double squared; ///< distance, where it is near
     };
-    Walked walk(const Vec3& place, double squared_bound, Index from) const;
+    void make_steps();
+    Walked walk(const Vec3& place, double bound, Index from) const;
+    End at_end(const Vec3& place, double bound, Index triangle) const;
+    double squared_distance(const Vec3& place, Index triangle) const;
 
     struct Found {
         Index triangle = no_index;
@@ -62,6 +64,10 @@ private:
     const PolygonMesh* mesh_ = nullptr;
     const FacetCells* cells_ = nullptr; // or none
     std::vector<Index> first_;          // with cells: the triangles of each facet
+    Vec3 centre_{0, 0, 0};
+    float rounding_ = 0;
+    struct Step;
+    std::unique_ptr<Step[]> steps_; // per triangle
     struct Tree;
     std::unique_ptr<Tree> tree_;
 };
