@@ -1,6 +1,7 @@
 #include "hsdm/adaptive/tidy.hh"
 #include "hsdm/adaptive/trouble.hh"
 #include "hsdm/quality/topology.hh"
+#include "support/random.hh"
 
 #include <catch2/catch.hpp>
 
@@ -141,4 +142,41 @@ TEST_CASE("keys are found where they are first in a list", "[adaptive]") {
     CHECK(index.find(no_key) == no_index);
     CHECK(index.find(8) == no_index);
     CHECK(KeyIndex({}).find(7) == no_index);
+}
+
+TEST_CASE("a group of hundreds of facets comes once", "[adaptive]") {
+    constexpr Index across = 600, rows = 6;
+    PolygonMesh mesh;
+    for (Index y = 0; y < rows; ++y)
+        for (Index x = 0; x < across; ++x) mesh.positions.emplace_back(x + 2.0 * y, y, 0);
+    for (Index y = 0; y + 1 < rows; ++y)
+        for (Index x = 0; x + 1 < across; ++x) {
+            const Index v = y * across + x;
+            mesh.add_facet(std::array{v, v + 1, v + across + 1, v + across});
+        }
+    TidiedGroups groups;
+    PolygonMesh first = mesh, second = mesh;
+    tidy(first, groups);
+    REQUIRE(groups.size() < 256); // of 2,995 facets
+    tidy(second, groups);
+    CHECK(rings(second) == rings(first));
+    CHECK(troubled_vertices(second).empty());
+}
+
+TEST_CASE("changes here and there leave no vertex in trouble", "[adaptive]") {
+    support::Random random(11);
+    TidiedGroups groups;
+    PolygonMesh mesh = sheet();
+    for (int round = 0; round < 200; ++round) {
+        PolygonMesh now = mesh;
+        tidy(now, groups);
+        CHECK(troubled_vertices(now).empty());
+        CHECK(measure_topology(now).euler == 1);
+        for (int k = 0; k < 5; ++k) {
+            const auto v = static_cast<std::size_t>(random.uniform() * side * side);
+            mesh.positions[v] =
+                sheet().positions[v]
+                + 0.9 * Vec3(random.uniform() - 0.5, random.uniform() - 0.5, 0.2 * random.uniform());
+        }
+    }
 }

@@ -135,3 +135,22 @@ TEST_CASE("far from the surface a walk with cells falls back on the tree", "[dis
         CHECK(surface.is_beyond(p, 0.999 * exact(p), hint));
     }
 }
+
+TEST_CASE("triangles without area are found in their cells", "[distance]") {
+    support::Random random(13);
+    for (int trial = 0; trial < 200; ++trial) {
+        const Vec3 a(random.uniform(), random.uniform(), random.uniform());
+        const Vec3 way(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
+        PolygonMesh mesh;
+        mesh.positions = {a, a + way, a + random.uniform() * way};
+        mesh.add_facet(std::array<Index, 3>{0, 1, 2});
+        const FacetCells cells(mesh, 0.5);
+        REQUIRE(cells.usable());
+        const SurfaceWalk surface(mesh, triangulate(mesh), cells);
+        for (int k = 0; k < 10; ++k) {
+            const Vec3 p = a + 0.6 * Vec3(random.uniform(), random.uniform(), random.uniform());
+            Index hint = no_index;
+            CHECK(!surface.is_beyond(p, 1.01 * MeshDistance(mesh)(p), hint));
+        }
+    }
+}

@@ -34,7 +34,7 @@ public:
 
     FarPlaces find_far(const PolygonMesh& mesh);
 
-    /// From the mesh last compared.
+    /// From the mesh last compared. To be called once after each find_far().
     FarPoints find_far_points();
     Index nearest_facet(const Vec3& place) const { return to_mesh_->tree().nearest_facet(place); }
     const Vec3& point(Index p) const { return points_[p]; }

@@ -208,7 +208,7 @@ private:
         return true;
     }
 
-    /// From the surface beside what is to go: what is near another sheet does not replace this one.
+    /// From the surface beside what is to go: what is near another sheet hardly replaces this one.
     bool is_off(const Vec3& place, Index& hint) const { return !fine_.leads_within(place, tolerance_, hint); }
 
     CollapsingMesh mesh_;

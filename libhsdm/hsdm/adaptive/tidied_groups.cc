@@ -43,7 +43,8 @@ std::vector<Index> TidiedGroups::find(const PolygonMesh& mesh, std::span<const K
     }
     std::vector<std::uint8_t> changed(mesh.vertex_count(), 0);
     for (Index v = 0; v < changed.size(); ++v)
-        if (const Index first = vertices.find(places[v]); first != v) changed[v] = changed[first] = 1;
+        if (const Index first = vertices.find(places[v]); first != v && first != no_index)
+            changed[v] = changed[first] = 1;
     for (std::size_t f = 0; f < group.size(); ++f)
         if (!whole[f] && (group[f] == no_index || missing[group[f]] != 0))
             for (Index v : mesh.facet(f)) changed[v] = 1;

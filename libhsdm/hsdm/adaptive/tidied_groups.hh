@@ -18,9 +18,11 @@ public:
     /// Appends a group of another collection.
     void copy(const TidiedGroups& other, Index group);
 
-    /// Per facet of a mesh its group here, or no_index: for a group may only stand for facets that are all
-    /// there, share no vertex with a facet that is in no such group, and have none in the place of another.
-    /// Facets marked `whole` are in no group, and do no harm to those beside them. O(facets).
+    /// Per facet of a mesh its group here, or no_index. A group is taken whose facets are all there and share
+    /// no vertex with one that is in none or in a group not all of which is there, nor has any vertex the
+    /// place of another. Facets marked `whole` are in no group, and those beside them may be. What groups
+    /// became may not go together, as they were beside others then: that is for the caller to find out.
+    /// O(facets).
     std::vector<Index> find(const PolygonMesh& mesh, std::span<const Key> facets, const KeyIndex& vertices,
                             std::span<const Key> places, const std::vector<std::uint8_t>& whole) const;
     /// Adds what a group became to a mesh with such vertices.

@@ -36,8 +36,7 @@ public:
           tolerance_(fine.tolerance()),
           names_(place_keys(mesh.positions)),
           vertices_(names_),
-          facet_names_(facet_keys(mesh, names_)),
-          facets_(mesh.vertex_count(), 0) {
+          facet_names_(facet_keys(mesh, names_)) {
         std::vector<std::uint8_t> whole(mesh.facet_count());
         for (std::size_t f = 0; f < whole.size(); ++f) {
             const auto ring = mesh.facet(f);
@@ -45,11 +44,10 @@ public:
                 ring.size() > 4 || std::all_of(ring.begin(), ring.end(), [&](Index v) { return settled[v]; });
         }
         group_ = before_.find(mesh, facet_names_, vertices_, names_, whole);
-        // A diagonal may be an edge of other facets already: such quads are not cut.
-        do cut_all(whole);
-        while (keep_whole(whole));
-        for (Index v : corners_) ++facets_[v];
-        for (Index v : kept_.corners) ++facets_[v];
+        cut_what_is_new(whole);
+        if (is_sound() || kept_.facet_count() == 0) return;
+        group_.assign(group_.size(), no_index);
+        cut_what_is_new(std::move(whole));
     }
 
     TidyCounts run(Diagonals diagonals) {
@@ -96,6 +94,24 @@ private:
         return fine_.holds(middle(a, b), hint) ? Look::on : Look::off;
     }
 
+    void cut_what_is_new(std::vector<std::uint8_t> whole) {
+        // A diagonal may be an edge of other facets already: such quads are not cut.
+        do cut_all(whole);
+        while (keep_whole(whole));
+        facets_.assign(mesh_.vertex_count(), 0);
+        for (Index v : corners_) ++facets_[v];
+        for (Index v : kept_.corners) ++facets_[v];
+    }
+
+    /// What groups became beside others they need not become beside these: one may count on an edge that
+    /// another took out, or on a facet that another gave to a vertex.
+    bool is_sound() const {
+        if (crowded_) return false;
+        for (std::size_t v = 0; v < facets_.size(); ++v)
+            if (facets_[v] > 0 && facets_[v] < least_facets_[v]) return false;
+        return true;
+    }
+
     void cut_all(const std::vector<std::uint8_t>& whole) {
         kept_ = {};
         now_ = {};
@@ -109,7 +125,8 @@ private:
                 continue;
             }
             if (const Index group = group_[f]; group != no_index) {
-                if (seen[group]++) continue;
+                if (seen[group]) continue;
+                seen[group] = 1;
                 before_.append(group, vertices_, kept_);
                 now_.copy(before_, group);
                 continue;
@@ -155,6 +172,7 @@ private:
     void link() {
         TriangleSides sides = link_triangles(corners_, kept_, mesh_.vertex_count());
         twin_ = std::move(sides.twin);
+        crowded_ = sides.crowded;
         least_facets_.resize(mesh_.vertex_count());
         for (std::size_t v = 0; v < least_facets_.size(); ++v) least_facets_[v] = sides.border[v] ? 1 : 3;
     }
@@ -378,10 +396,9 @@ private:
         Groups result;
         std::vector<Index> number(half_.size());
         Index count = 0;
+        for (Index t = 1; t < number.size(); ++t)
+            if (facet_[t - 1] == facet_[t]) united_->join(t - 1, t);
         for (Index t = 0; t < number.size(); ++t) { // the least member stands for all
-            if (t > 0 && facet_[t - 1] == facet_[t]) united_->join(t - 1, t);
-        }
-        for (Index t = 0; t < number.size(); ++t) {
             const Index least = united_->find(t);
             number[t] = least == t ? count++ : number[least];
         }
@@ -410,6 +427,7 @@ private:
     std::vector<std::uint8_t> half_;   // per triangle, is it half of a former quad, the diagonal its side 0?
     std::vector<Index> facet_;         // per triangle, the facet it was cut from
     std::vector<Index> twin_;          // per side of a triangle
+    bool crowded_ = false;             // has some edge more than two facets?
     std::vector<Look> look_;           // per side
     std::vector<Verdict> verdicts_;    // per side, as of the sweep's start
     std::vector<std::uint8_t> turned_; // per triangle, in this sweep

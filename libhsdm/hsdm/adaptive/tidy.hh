@@ -23,8 +23,8 @@ struct TidyCounts {
 /// corner, wherever they are, are cut in two. O(corners log corners).
 ///
 /// `before`: what became of another mesh's facets, with the same surface and kind of diagonals; where this
-/// one has the same it becomes the same, and only what changed, and what is beside it, is looked at. It is
-/// replaced by what this mesh's became.
+/// one has the same it becomes the same, and only what changed, and what is beside it, is looked at; unless
+/// that does not go together, when all is looked at. It is replaced by what this mesh's became.
 TidyCounts tidy_facets(PolygonMesh& mesh, SurfaceBand& fine, std::span<const std::uint8_t> settled,
                        Diagonals diagonals, TidiedGroups& before);
 TidyCounts tidy_facets(PolygonMesh& mesh, SurfaceBand& fine, std::span<const std::uint8_t> settled,

@@ -14,6 +14,7 @@ constexpr std::size_t vertices_per_chunk = 1024;
 /// Of sides by their lower vertex.
 struct Side {
     Index high, side; // no_index: of another facet
+    bool upwards;     // to the higher vertex
 };
 
 struct SidesByVertex {
@@ -37,7 +38,7 @@ SidesByVertex gather_sides(std::span<const Index> corners, const PolygonMesh& ot
     by.sides.resize(by.first.back());
     std::vector<std::size_t> next(by.first.begin(), by.first.end() - 1);
     for_each_side([&](Index a, Index b, Index side) {
-        by.sides[next[std::min(a, b)]++] = {std::max(a, b), side};
+        by.sides[next[std::min(a, b)]++] = {std::max(a, b), side, a < b};
     });
     return by;
 }
@@ -49,6 +50,7 @@ TriangleSides link_triangles(std::span<const Index> corners, const PolygonMesh& 
     SidesByVertex by = gather_sides(corners, others, vertex_count);
     TriangleSides result{std::vector<Index>(corners.size(), no_index),
                          std::vector<std::uint8_t>(vertex_count, 0)};
+    std::atomic<bool> crowded = false;
     // Edges of other chunks may end at the same border.
     const auto mark = [&](Index v) { std::atomic_ref(result.border[v]).store(1, std::memory_order_relaxed); };
     for_chunks(vertex_count, vertices_per_chunk, [&](std::size_t low, std::size_t last, std::size_t) {
@@ -62,12 +64,15 @@ TriangleSides link_triangles(std::span<const Index> corners, const PolygonMesh& 
                 while (end < sides.size() && sides[end].high == sides[begin].high) ++end;
                 if (end - begin == 1) mark(static_cast<Index>(low)), mark(sides[begin].high);
                 const Index s = sides[begin].side, t = sides[end - 1].side;
+                if (end - begin > 2 || (end - begin == 2 && sides[begin].upwards == sides[end - 1].upwards))
+                    crowded.store(true, std::memory_order_relaxed);
                 if (end - begin != 2 || t == no_index || corners[s] == corners[t]) continue;
                 result.twin[s] = t;
                 result.twin[t] = s;
             }
         }
     });
+    result.crowded = crowded;
     return result;
 }
 

@@ -16,6 +16,7 @@ inline Index previous_side(Index s) {
 struct TriangleSides {
     std::vector<Index> twin;          ///< per side, the one that runs the other way, or no_index
     std::vector<std::uint8_t> border; ///< per vertex
+    bool crowded = false;             ///< has some edge more than two sides, or two that run the same way?
 };
 
 /// Sides that not just two triangles share, one running either way, have no twin; nor have those shared with

@@ -25,6 +25,13 @@ std::vector<Index> twins_of(const PolygonMesh& mesh, const Triangulation& cut) {
 
 } // namespace
 
+/// A triangle as single floats, relative to the centre: the corner a, how the shares of the other two corners
+/// grow, the unit normal, and the sides beyond. Where there is no area to speak of the normal is infinite.
+struct alignas(64) SurfaceWalk::Step {
+    std::array<float, 3> a, to_b, to_c, normal;
+    std::array<Index, 3> twin;
+};
+
 struct SurfaceWalk::Tree {
     tbb::collaborative_once_flag once;
     std::optional<MeshDistance> distance;
@@ -79,9 +86,11 @@ SurfaceWalk::Found SurfaceWalk::search_cells(const Vec3& place, double reach, do
             for (Index t = first_[f]; t < first_[f + 1]; ++t) {
                 const auto& [ia, ib, ic] = triangles_[t];
                 const Vec3 &a = positions_[ia], &b = positions_[ib], &d = positions_[ic];
-                const Vec3 normal = (b - a) % (d - a);
-                const double height = normal | (place - a);
-                if (height * height > (1 + 1e-9) * limit * normal.sqrnorm()) continue;
+                const Vec3 ab = b - a, ad = d - a, normal = ab % ad;
+                const double height = normal | (place - a), area = normal.sqrnorm();
+                if (area > least_squared_sine * ab.sqrnorm() * ad.sqrnorm()
+                    && height * height > (1 + 1e-9) * limit * area)
+                    continue;
                 const double squared = squared_distance(place, t);
                 if (squared > limit || squared >= found.squared) continue;
                 found = {t, squared};
@@ -97,6 +106,10 @@ Index SurfaceWalk::triangle_within(const Vec3& place, double bound, Index& hint)
         hint = triangle;
         if (end == End::near) return triangle;
     }
+    return search(place, bound, hint);
+}
+
+Index SurfaceWalk::search(const Vec3& place, double bound, Index& hint) const {
     if (!is_in_reach(bound)) return tree().triangle_within(place, bound, hint);
     const Found found = search_cells(place, bound, bound);
     if (found.triangle != no_index) hint = found.triangle;
@@ -109,7 +122,7 @@ bool SurfaceWalk::leads_within(const Vec3& place, double bound, Index& hint) con
         hint = triangle;
         if (end != End::lost) return end == End::near;
     }
-    return triangle_within(place, bound, hint) != no_index;
+    return search(place, bound, hint) != no_index;
 }
 
 double SurfaceWalk::distance(const Vec3& place, Index& hint, double enough) const {
@@ -131,17 +144,13 @@ double SurfaceWalk::distance(const Vec3& place, Index& hint, double enough) cons
     return tree()(place, hint);
 }
 
-/// A triangle as single floats, relative to the centre: the corner a, how the shares of the other two corners
-/// grow, the unit normal, and the sides beyond. Where there is no area to speak of the normal is infinite.
-struct alignas(64) SurfaceWalk::Step {
-    std::array<float, 3> a, to_b, to_c, normal;
-    std::array<Index, 3> twin;
-};
-
 void SurfaceWalk::make_steps() {
     const Box box = bounds_of(positions_);
     centre_ = 0.5 * (box.lo + box.hi);
-    rounding_ = 16 * std::numeric_limits<float>::epsilon() * static_cast<float>(box.diagonal());
+    // Of a place and a corner, half the diagonal away at most, over the least sine: sideways at a sharp
+    // corner.
+    rounding_ = static_cast<float>(2 * std::numeric_limits<float>::epsilon() * box.diagonal()
+                                   / std::sqrt(least_squared_sine));
     steps_ = std::make_unique_for_overwrite<Step[]>(triangles_.size());
     for_chunks(triangles_.size(), triangles_per_chunk, [&](std::size_t t, std::size_t end, std::size_t) {
         for (; t < end; ++t) {

@@ -22,14 +22,16 @@ public:
     ~SurfaceWalk();
     SurfaceWalk(SurfaceWalk&&) noexcept;
 
-    /// A triangle of the cut mesh no farther than `bound`, or no_index if there is none. `hint` is no_index
-    /// or what the call for a place nearby left there: which triangle depends on it.
+    /// A triangle of the cut mesh no farther than `bound` >= 0, or no_index if there is none. `hint` is
+    /// no_index or what a call of this surface's, best for a place nearby, left there: which triangle depends
+    /// on it.
     Index triangle_within(const Vec3& place, double bound, Index& hint) const;
     bool is_beyond(const Vec3& place, double bound, Index& hint) const {
         return triangle_within(place, bound, hint) == no_index;
     }
     /// Is the part of the surface that a walk from `hint` leads to no farther than `bound`? Another may be:
-    /// not to look for one is quicker where many places are far.
+    /// not to look for one is quicker where many places are far. It is looked for where the walk is too long
+    /// or comes to a flat triangle.
     bool leads_within(const Vec3& place, double bound, Index& hint) const;
     /// From the nearest triangle, or, where one is known soon, from any no farther than `enough`.
     double distance(const Vec3& place, Index& hint, double enough = 0) const;
@@ -57,6 +59,7 @@ private:
     };
     Found search_cells(const Vec3& place, double reach, double enough) const;
     bool is_in_reach(double distance) const;
+    Index search(const Vec3& place, double bound, Index& hint) const;
 
     std::vector<Vec3> positions_;
     std::vector<Triangle> triangles_;
