@@ -180,3 +180,29 @@ TEST_CASE("changes here and there leave no vertex in trouble", "[adaptive]") {
         }
     }
 }
+
+TEST_CASE("groups that do not go together are not taken", "[adaptive]") {
+    enum : Index { a, b, c, d, e, f, g };
+    PolygonMesh mesh;
+    mesh.positions = {{0, 0, 0.1}, {-1, 0, 0}, {1, -1, 0}, {1, 1, 0}, {3, 0, 0}, {3, 2, 0}, {5, 1, 0}};
+    for (const Triangle& t : {Triangle{a, b, c}, {a, c, d}, {a, d, b}, {d, c, e}, {d, e, f}, {f, e, g}})
+        mesh.add_facet(t);
+    const std::vector<Key> places = place_keys(mesh.positions), facets = facet_keys(mesh, places);
+    TidiedGroups groups;
+    // The edge ab became cd where cd had become ae, which it does not while feg is another facet.
+    groups.begin(std::array{facets[0], facets[2]});
+    groups.add_ring(std::array<Index, 3>{d, c, a}, places);
+    groups.add_ring(std::array<Index, 3>{c, d, b}, places);
+    groups.begin(std::array{facets[1], facets[3]});
+    groups.add_ring(std::array<Index, 3>{a, c, e}, places);
+    groups.add_ring(std::array<Index, 3>{a, e, d}, places);
+    const std::vector<std::uint8_t> settled{0, 0, 0, 1, 1, 1, 0};
+    const std::vector<Index> found = groups.find(mesh, facets, KeyIndex(places), places, {0, 0, 0, 0, 1, 0});
+    REQUIRE(found == std::vector<Index>{0, no_index, 0, no_index, no_index, no_index});
+    const PolygonMesh fine = mesh;
+    const SurfaceWalk surface(fine);
+    SurfaceBand band(surface, 0.01, mesh.vertex_count());
+    tidy_facets(mesh, band, settled, Diagonals::may_flip, groups);
+    CHECK(troubled_vertices(mesh).empty());
+    CHECK(measure_topology(mesh).euler == 1);
+}
