@@ -72,7 +72,9 @@ std::vector<Index> flat_facets(const PolygonMesh& mesh) {
 } // namespace
 
 std::vector<Index> troubled_vertices(const PolygonMesh& mesh) {
-    const auto [sides, first] = sorted_sides(mesh);
+    const SortedSides sorted = sorted_sides(mesh);
+    const auto& sides = sorted.sides;
+    const auto& first = sorted.first;
     std::vector<std::uint8_t> troubled(mesh.vertex_count(), 0), border(mesh.vertex_count(), 0);
     DisjointSets fans(mesh.corners.size());
     // Edges of other chunks may end at the same vertex.
