@@ -64,7 +64,7 @@ std::vector<Vec3> places_about(const PolygonMesh& mesh, std::size_t count) {
 }
 
 /// Every answer against the tree's, where triangles are looked up in cells and where they are not.
-void compare(const PolygonMesh& mesh, double cell_size) {
+void check_against_tree(const PolygonMesh& mesh, double cell_size) {
     const MeshDistance exact(mesh);
     const FacetCells cells(mesh, cell_size);
     REQUIRE(cells.usable());
@@ -100,12 +100,12 @@ void compare(const PolygonMesh& mesh, double cell_size) {
 } // namespace
 
 TEST_CASE("walks find what the tree finds on a tube", "[distance]") {
-    compare(tube(24, 9, 3), 1);
-    compare(tube(24, 9, 0.3), 0.8); // its other side is in the same cell
+    check_against_tree(tube(24, 9, 3), 1);
+    check_against_tree(tube(24, 9, 0.3), 0.8); // its other side is in the same cell
 }
 
 TEST_CASE("where there is nothing to walk over triangles are found all the same", "[distance]") {
-    compare(loose(40), 2);
+    check_against_tree(loose(40), 2);
 }
 
 TEST_CASE("a walk leads along a sheet, not across to another", "[distance]") {

@@ -55,8 +55,7 @@ PolygonMesh adaptive_grid(const MethodInput& in, std::span<const Vec3> points, c
 
 void check_error_kept(const Report& report) {
     if (report.grid.max_error == 0 || report.grid.points_beyond > 0) return;
-    constexpr double rounding = 1e-9; // distances are measured in more than one way
-    if (report.error.points_to_mesh_max <= (1 + rounding) * report.grid.max_error) return;
+    if (report.error.points_to_mesh_max <= report.grid.max_error) return;
     char text[160];
     std::snprintf(text, sizeof text,
                   "max_error %.6g: not kept, a point is %.6g from the mesh; ask for a larger one, or for a "

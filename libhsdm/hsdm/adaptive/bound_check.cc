@@ -13,6 +13,7 @@
 namespace hsdm {
 namespace {
 
+constexpr double rounding = 1e-9; // of the bound: whoever measures in another way is to find it kept
 constexpr std::size_t places_per_chunk = 2048;
 constexpr std::size_t far_per_chunk = 64; // distances of places that are far take long
 constexpr std::size_t keys_per_chunk = 512, triangles_per_chunk = 1024;
@@ -84,7 +85,7 @@ BoundCheck::BoundCheck(const PolygonMesh& fine, const FacetCells* cells, std::sp
                        double bound, double spacing)
     : fine_(fine),
       points_(points),
-      bound_(bound),
+      bound_((1 - rounding) * bound),
       spacing_(spacing),
       cut_(triangulate(fine)),
       to_fine_(cells && cells->usable() ? SurfaceWalk(fine, cut_, *cells) : SurfaceWalk(fine, cut_)) {

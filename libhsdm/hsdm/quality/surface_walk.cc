@@ -43,23 +43,19 @@ SurfaceWalk::SurfaceWalk(SurfaceWalk&&) noexcept = default;
 SurfaceWalk::SurfaceWalk(const PolygonMesh& mesh) : SurfaceWalk(mesh, triangulate(mesh)) {}
 
 SurfaceWalk::SurfaceWalk(const PolygonMesh& mesh, const Triangulation& cut, TriangleTree::Order order)
-    : positions_(mesh.positions),
-      triangles_(cut.triangles),
-      twin_(twins_of(mesh, cut)),
-      tree_(std::make_unique<Tree>()) {
-    make_steps();
+    : positions_(mesh.positions), triangles_(cut.triangles), tree_(std::make_unique<Tree>()) {
+    make_steps(twins_of(mesh, cut));
     tree_->distance.emplace(mesh, cut, order);
 }
 
 SurfaceWalk::SurfaceWalk(const PolygonMesh& mesh, const Triangulation& cut, const FacetCells& cells)
     : positions_(mesh.positions),
       triangles_(cut.triangles),
-      twin_(twins_of(mesh, cut)),
       mesh_(&mesh),
       cells_(&cells),
       first_(cut.first),
       tree_(std::make_unique<Tree>()) {
-    make_steps();
+    make_steps(twins_of(mesh, cut));
 }
 
 const MeshDistance& SurfaceWalk::tree() const {
@@ -144,7 +140,7 @@ double SurfaceWalk::distance(const Vec3& place, Index& hint, double enough) cons
     return tree()(place, hint);
 }
 
-void SurfaceWalk::make_steps() {
+void SurfaceWalk::make_steps(const std::vector<Index>& twin) {
     const Box box = bounds_of(positions_);
     centre_ = 0.5 * (box.lo + box.hi);
     // Of a place and a corner, half the diagonal away at most, over the least sine: sideways at a sharp
@@ -168,7 +164,7 @@ void SurfaceWalk::make_steps() {
                 step.to_b[k] = static_cast<float>(to_b[k]);
                 step.to_c[k] = static_cast<float>(to_c[k]);
                 step.normal[k] = static_cast<float>(up[k]);
-                step.twin[k] = twin_[3 * t + k];
+                step.twin[k] = twin[3 * t + k];
             }
         }
     });

@@ -48,7 +48,7 @@ private:
         Index triangle;
         End end;
     };
-    void make_steps();
+    void make_steps(const std::vector<Index>& twin); // per side of a triangle
     Walked walk(const Vec3& place, double bound, Index from) const;
     End at_end(const Vec3& place, double bound, Index triangle) const;
     double squared_distance(const Vec3& place, Index triangle) const;
@@ -63,7 +63,6 @@ private:
 
     std::vector<Vec3> positions_;
     std::vector<Triangle> triangles_;
-    std::vector<Index> twin_; // per side of a triangle
     const PolygonMesh* mesh_ = nullptr;
     const FacetCells* cells_ = nullptr; // or none
     std::vector<Index> first_;          // with cells: the triangles of each facet
