@@ -105,9 +105,9 @@ private:
             bar.show(phase, 0.1 + 0.85 * share);
             return !interrupted();
         };
+        const std::size_t points = file.cloud.size();
         const auto write = [&](std::span<Reconstruction> results) {
-            points_ += file.cloud.size();
-            file.cloud = PointCloud(); // its memory serves the writers
+            points_ += points;
             for (Reconstruction& result : results) {
                 bar.show("write", 0.97);
                 result.report.input.file = input;
@@ -117,11 +117,11 @@ private:
         };
         if (levels_) {
             std::vector<Reconstruction> results = named(name, [&] {
-                return reconstruct_levels(file.cloud, levels_->first, levels_->second, options);
+                return reconstruct_levels(std::move(file.cloud), levels_->first, levels_->second, options);
             });
             write(results);
         } else {
-            Reconstruction result = named(name, [&] { return reconstruct(file.cloud, options); });
+            Reconstruction result = named(name, [&] { return reconstruct(std::move(file.cloud), options); });
             write({&result, 1});
         }
     }

@@ -127,8 +127,8 @@ Outcome run_case(const Case& one) {
         ReadOptions read;
         ReconstructOptions options = options_of(one, read);
         options.progress = [](const char*, double) { return !interrupted(); };
-        const PointFile file = read_points(one.input, read);
-        Reconstruction result = reconstruct(file.cloud, options);
+        PointFile file = read_points(one.input, read);
+        Reconstruction result = reconstruct(std::move(file.cloud), options);
         result.report.input.file = one.input;
         outcome.report = Json::parse(to_json(result.report));
         for (const auto& [key, expected] : one.expect.items()) {

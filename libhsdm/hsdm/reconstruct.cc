@@ -66,21 +66,34 @@ void validate(const ReconstructOptions& o) {
 /// The cloud without its points that are not finite: the caller's own where it has none.
 class FiniteCloud {
 public:
-    explicit FiniteCloud(const PointCloud& cloud) : cloud_(&cloud) {
+    /// `ours`: the cloud, if the caller leaves it to us, or null.
+    FiniteCloud(const PointCloud& cloud, PointCloud* ours) : cloud_(&cloud), ours_(ours) {
         if (all_finite(cloud.positions)) return;
-        kept_ = cloud;
-        dropped_ = drop_nonfinite(kept_).nonfinite;
-        cloud_ = &kept_;
-        if (2 * dropped_ > cloud.size())
-            throw Error(std::to_string(dropped_) + " of " + std::to_string(cloud.size())
+        const std::size_t count = cloud.size();
+        if (!ours_) {
+            copy_ = cloud;
+            cloud_ = ours_ = &copy_;
+        }
+        dropped_ = drop_nonfinite(*ours_).nonfinite;
+        if (2 * dropped_ > count)
+            throw Error(std::to_string(dropped_) + " of " + std::to_string(count)
                         + " points have coordinates that are not finite; check how the file was exported");
     }
     const PointCloud& operator*() const { return *cloud_; }
     std::size_t dropped() const { return dropped_; }
+    /// Of a cloud that is ours nobody asks for the normals again.
+    Octree octree(const OctreeOptions& options) {
+        return ours_ ? build_octree_taking_normals(*ours_, options) : build_octree(*cloud_, options);
+    }
+    /// Frees what nobody asks for any more, if it is ours.
+    void release_positions() {
+        if (ours_) ours_->positions = std::vector<Vec3>();
+    }
 
 private:
     const PointCloud* cloud_;
-    PointCloud kept_;
+    PointCloud* ours_;
+    PointCloud copy_;
     std::size_t dropped_ = 0;
 };
 
@@ -108,18 +121,19 @@ void check_spread(const Octree& octree) {
 /// Phase 1 with its report.
 class Decomposition {
 public:
-    Decomposition(const PointCloud& cloud, const ReconstructOptions& options, const Phases& phases) {
+    Decomposition(FiniteCloud& finite, const ReconstructOptions& options, const Phases& phases) {
+        const PointCloud& cloud = *finite;
+        report.input.has_normals = cloud.has_normals();
         OctreeOptions octree_options;
         octree_options.placement = CubePlacement::centred;
         octree_options.use_normals = options.normals != NormalSource::estimate;
-        octree = phases.run("octree", 0, report.seconds.octree,
-                            [&] { return build_octree(cloud, octree_options); });
+        octree =
+            phases.run("octree", 0, report.seconds.octree, [&] { return finite.octree(octree_options); });
         far_away_ = drop_far_away(octree, cloud);
         if (far_away_ > 0) report.rejected["points_outlying"] = far_away_;
         check_spread(octree);
         report.input.points = cloud.size();
         report.input.merged_duplicates = octree.merged_duplicates;
-        report.input.has_normals = cloud.has_normals();
         report.input.bbox = octree.bounds;
         report.input.spacing = estimate_spacing(octree);
     }
@@ -188,6 +202,12 @@ public:
         }));
     }
 
+    /// Have points been moved off the places where the cloud has them?
+    bool has_moved() const { return moved_; }
+
+    /// Once the last facets are made nobody asks for them.
+    void release_normals() { octree.normals = std::vector<Vec3>(); }
+
     Octree octree;
     Report report;
 
@@ -247,10 +267,10 @@ std::string name_of(Holes holes) {
     return holes == Holes::keep ? "keep" : holes == Holes::close ? "close" : "auto";
 }
 
-void note_options(const PointCloud& cloud, const ReconstructOptions& options, Report& report) {
+void note_options(bool estimate, const ReconstructOptions& options, Report& report) {
     const bool extended = method_for(options) == Method::extended;
     report.options["method"] = extended ? "extended" : "basic";
-    report.options["normals"] = must_estimate(cloud, options) ? "estimate" : extended ? "given" : "none";
+    report.options["normals"] = estimate ? "estimate" : extended ? "given" : "none";
     report.options["grid"] = wants_adaptive(options) ? "adaptive" : "uniform";
     if (options.max_error)
         report.options["max-error"] = options.max_error->of_diagonal
@@ -288,7 +308,7 @@ void measure_mesh(const PolygonMesh& facets, Report& report) {
     m.closed = t.closed();
 }
 
-/// The octree's points where the cloud has them, wherever they have been moved since, relative to its origin.
+/// The octree's points where the cloud has them, relative to its origin.
 std::vector<Vec3> points_as_read(const PointCloud& cloud, const Octree& octree) {
     std::vector<Vec3> points(octree.size());
     for_chunks(points.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -313,9 +333,8 @@ void measure_error(std::span<const Vec3> points, const Octree& octree, const Pol
 
 /// Drops small components if asked to, and measures what is left. A bound is checked before: it is one for
 /// the points of what is dropped too.
-void drop_and_measure(const std::vector<Vec3>& points, const Octree& octree,
-                      const ReconstructOptions& options, PolygonMesh& facets, FacetKnowledge& known,
-                      Report& report) {
+void drop_and_measure(std::span<const Vec3> points, const Octree& octree, const ReconstructOptions& options,
+                      PolygonMesh& facets, FacetKnowledge& known, Report& report) {
     bool measured = report.grid.max_error > 0;
     if (measured)
         measure_error(points, octree, facets, known, options.measure ? 0 : report.grid.max_error, report);
@@ -365,9 +384,11 @@ std::size_t peak_memory() {
     return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
 }
 
-/// Phases 2 and 3 on one level of a decomposition.
-void reconstruct_level(const PointCloud& cloud, const Octree& octree, int depth, Report report,
+/// Phases 2 and 3 on one level of a decomposition, or on its `last` one.
+void reconstruct_level(const PointCloud& cloud, Decomposition& decomposition, int depth, bool last,
                        const ReconstructOptions& options, const Phases& phases, Reconstruction& result) {
+    const Octree& octree = decomposition.octree;
+    Report report = decomposition.report;
     Report::Seconds& seconds = report.seconds;
     const OctreeLevel level =
         phases.run("voxels", 0.15, seconds.octree, [&] { return extract_level(octree, depth); });
@@ -381,12 +402,15 @@ void reconstruct_level(const PointCloud& cloud, const Octree& octree, int depth,
     FacetKnowledge known;
     PolygonMesh facets = method_for(options) == Method::extended ? extended_method(input, report, known)
                                                                  : basic_method(input, report);
+    if (last) decomposition.release_normals();
     if (facets.facet_count() == 0)
         throw Error("no facet came out of " + std::to_string(level.size()) + " voxels at depth "
                     + std::to_string(depth)
                     + "; try another depth, or check that the points sample a surface");
-    std::vector<Vec3> points;
-    if (options.measure || wants_adaptive(options)) points = points_as_read(cloud, octree);
+    std::vector<Vec3> as_read;
+    if (decomposition.has_moved() && (options.measure || wants_adaptive(options)))
+        as_read = points_as_read(cloud, octree);
+    const std::span<const Vec3> points = decomposition.has_moved() ? as_read : octree.positions;
     if (wants_adaptive(options)) {
         facets = phases.run("adaptive", 0.5, seconds.facets, [&] {
             return adaptive_grid(input, points, facets, known.cells ? &*known.cells : nullptr, report);
@@ -396,7 +420,7 @@ void reconstruct_level(const PointCloud& cloud, const Octree& octree, int depth,
     phases.run("error", 0.6, seconds.error,
                [&] { drop_and_measure(points, octree, options, facets, known, report); });
 
-    points = {};
+    as_read = std::vector<Vec3>();
     phases.run("mesh", 0.85, seconds.mesh, [&] {
         for (Vec3& p : facets.positions) p += octree.origin;
         if (!known.links) known.links = link_facets(facets);
@@ -411,19 +435,21 @@ void reconstruct_level(const PointCloud& cloud, const Octree& octree, int depth,
     result.report = std::move(report);
 }
 
-/// One result per level of the range, or one of the level that the options choose.
-void run(const PointCloud& cloud, const ReconstructOptions& options, std::optional<std::pair<int, int>> range,
-         std::span<Reconstruction> results) {
+/// One result per level of the range, or one of the level that the options choose. `ours`: the cloud, if the
+/// caller leaves it to us, or null.
+void run(const PointCloud& cloud, PointCloud* ours, const ReconstructOptions& options,
+         std::optional<std::pair<int, int>> range, std::span<Reconstruction> results) {
     const auto start = std::chrono::steady_clock::now();
-    const FiniteCloud finite(cloud);
+    FiniteCloud finite(cloud, ours);
     if (options.normals == NormalSource::given && !(*finite).has_normals())
         throw Error("normals given were asked for, but the cloud has none");
-    Decomposition decomposition(*finite, options, Phases(options, 0, 1));
+    const bool estimate = must_estimate(*finite, options);
+    Decomposition decomposition(finite, options, Phases(options, 0, 1));
     Report& report = decomposition.report;
     report.input.dropped_nonfinite = finite.dropped();
     report.threads = tbb::this_task_arena::max_concurrency();
-    note_options(*finite, options, report);
-    if (must_estimate(*finite, options))
+    note_options(estimate, options, report);
+    if (estimate)
         decomposition.provide_normals(*finite, Phases(options, 0, 1));
     else if (method_for(options) == Method::extended)
         decomposition.check_given_normals(*finite, Phases(options, 0, 1));
@@ -441,31 +467,31 @@ void run(const PointCloud& cloud, const ReconstructOptions& options, std::option
         const int depth = range->first + static_cast<int>(i);
         const auto level_start = i == 0 ? start : std::chrono::steady_clock::now();
         decomposition.smooth_for_depth(depth, phases);
-        reconstruct_level(*finite, decomposition.octree, depth, report, options, phases, results[i]);
+        const bool last = i + 1 == results.size();
+        if (last && !decomposition.has_moved()) finite.release_positions();
+        reconstruct_level(*finite, decomposition, depth, last, options, phases, results[i]);
         results[i].report.seconds.total =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - level_start).count();
     }
 }
 
 /// At most options.threads threads, for this call alone.
-void run_in_arena(const PointCloud& cloud, const ReconstructOptions& options,
+void run_in_arena(const PointCloud& cloud, PointCloud* ours, const ReconstructOptions& options,
                   std::optional<std::pair<int, int>> range, std::span<Reconstruction> results) {
-    if (options.threads == 0) return run(cloud, options, range, results);
+    if (options.threads == 0) return run(cloud, ours, options, range, results);
     tbb::task_arena arena(options.threads);
-    arena.execute([&] { run(cloud, options, range, results); });
+    arena.execute([&] { run(cloud, ours, options, range, results); });
 }
 
-} // namespace
-
-Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& options) {
+Reconstruction run_once(const PointCloud& cloud, PointCloud* ours, const ReconstructOptions& options) {
     validate(options);
     Reconstruction result;
-    run_in_arena(cloud, options, std::nullopt, {&result, 1});
+    run_in_arena(cloud, ours, options, std::nullopt, {&result, 1});
     return result;
 }
 
-std::vector<Reconstruction> reconstruct_levels(const PointCloud& cloud, int first_depth, int last_depth,
-                                               const ReconstructOptions& options) {
+std::vector<Reconstruction> run_levels(const PointCloud& cloud, PointCloud* ours, int first_depth,
+                                       int last_depth, const ReconstructOptions& options) {
     validate(options);
     if (options.depth || options.voxel_size || options.max_error)
         throw OptionError(
@@ -476,8 +502,30 @@ std::vector<Reconstruction> reconstruct_levels(const PointCloud& cloud, int firs
         throw OptionError("levels " + std::to_string(first_depth) + ":" + std::to_string(last_depth)
                           + ": the first depth must not be above the last");
     std::vector<Reconstruction> results(static_cast<std::size_t>(last_depth - first_depth) + 1);
-    run_in_arena(cloud, options, std::pair(first_depth, last_depth), results);
+    run_in_arena(cloud, ours, options, std::pair(first_depth, last_depth), results);
     return results;
+}
+
+} // namespace
+
+Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& options) {
+    return run_once(cloud, nullptr, options);
+}
+
+Reconstruction reconstruct(PointCloud&& cloud, const ReconstructOptions& options) {
+    PointCloud ours = std::move(cloud);
+    return run_once(ours, &ours, options);
+}
+
+std::vector<Reconstruction> reconstruct_levels(const PointCloud& cloud, int first_depth, int last_depth,
+                                               const ReconstructOptions& options) {
+    return run_levels(cloud, nullptr, first_depth, last_depth, options);
+}
+
+std::vector<Reconstruction> reconstruct_levels(PointCloud&& cloud, int first_depth, int last_depth,
+                                               const ReconstructOptions& options) {
+    PointCloud ours = std::move(cloud);
+    return run_levels(ours, &ours, first_depth, last_depth, options);
 }
 
 } // namespace hsdm

@@ -152,3 +152,20 @@ TEST_CASE("a centred cube has the cloud's box in its middle and holds every poin
     for (const Vec3& p : octree.positions) inside &= p.min() >= 0 && p.max() <= octree.extent;
     CHECK(inside);
 }
+
+TEST_CASE("an octree that takes the cloud's normals is the same", "[octree]") {
+    PointCloud cloud = random_cloud(3000, 5);
+    cloud.normals = random_cloud(3000, 6).positions;
+    for (bool use_normals : {true, false}) {
+        PointCloud taken = cloud;
+        const Octree kept = build_octree(cloud, {.use_normals = use_normals});
+        const Octree took = build_octree_taking_normals(taken, {.use_normals = use_normals});
+        CHECK(took.codes == kept.codes);
+        CHECK(took.source == kept.source);
+        CHECK(took.positions == kept.positions);
+        CHECK(took.normals == kept.normals);
+        CHECK(took.has_normals() == use_normals);
+        CHECK(taken.normals.empty());
+        CHECK(taken.positions == cloud.positions);
+    }
+}

@@ -88,8 +88,11 @@ private:
     /// Makes do with fewer vertices than leaves.
     void merge() {
         LeafMesh leaves{std::move(result_.mesh), std::move(vertex_)};
+        std::vector<Quadric> leaf_planes(leaves.mesh.vertex_count());
+        for (std::size_t v = 0; v < planes_.size(); ++v) leaf_planes[leaves.vertex[v]] += planes_[v];
+        planes_ = std::vector<Quadric>();
         MergedLeaves merged =
-            merge_leaves(leaves, planes_, *checks_, {.faults = faults_, .rounds = options_.rounds});
+            merge_leaves(leaves, leaf_planes, *checks_, {.faults = faults_, .rounds = options_.rounds});
         result_.mesh = std::move(merged.mesh);
         result_.merged = leaves.mesh.vertex_count() - result_.mesh.vertex_count();
         set_beyond(merged.far_points);

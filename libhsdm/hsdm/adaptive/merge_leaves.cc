@@ -165,14 +165,12 @@ std::vector<Index> through(const std::vector<Index>& first, const std::vector<In
 
 } // namespace
 
-MergedLeaves merge_leaves(const LeafMesh& leaves, std::span<const Quadric> planes, RoundChecks& checks,
+MergedLeaves merge_leaves(const LeafMesh& leaves, const std::vector<Quadric>& planes, RoundChecks& checks,
                           const MergeLeavesOptions& options) {
-    std::vector<Quadric> leaf_planes(leaves.mesh.vertex_count());
-    for (std::size_t v = 0; v < planes.size(); ++v) leaf_planes[leaves.vertex[v]] += planes[v];
     std::vector<Merger> mergers; // of the round before, which most are again
     const CollapsingMesh unmerged(leaves.mesh);
     const auto by_planes = [&](const std::vector<double>& tolerance) {
-        return merge_vertices(unmerged, leaf_planes, tolerance, mergers);
+        return merge_vertices(unmerged, planes, tolerance, mergers);
     };
     MergedLeaves merged = MergeRounds(leaves, checks, options).run({by_planes, Diagonals::may_flip, false});
 

@@ -27,6 +27,20 @@ Vec3 unit_or_zero(const Vec3& n) {
     return length > 0 && std::isfinite(length) ? n / length : Vec3(0, 0, 0);
 }
 
+/// What becomes of the values at these places.
+template <class Change>
+std::vector<Vec3> gathered(const std::vector<Vec3>& values, const std::vector<Index>& places,
+                           const Change& change) {
+    std::vector<Vec3> result(places.size());
+    tbb::parallel_for(Range(0, places.size(), grain), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            if (i + ahead < range.end()) prefetch(values, places[i + ahead]);
+            result[i] = change(values[places[i]]);
+        }
+    });
+    return result;
+}
+
 /// Level-21 code of a position relative to the cube; the cube's far faces belong to the last voxel.
 MortonCode code_of(const Vec3& relative, double scale) {
     constexpr double last = (1 << morton_levels) - 1;
@@ -104,9 +118,8 @@ std::size_t merge_equal(const PointCloud& cloud, bool with_normals, std::vector<
     return merged;
 }
 
-} // namespace
-
-Octree build_octree(const PointCloud& cloud, const OctreeOptions& options) {
+/// `ours`: the cloud, if its normals are left to us, or null.
+Octree build(const PointCloud& cloud, PointCloud* ours, const OctreeOptions& options) {
     if (cloud.size() == 0) throw Error("the cloud holds no point; nothing can be reconstructed");
     Octree octree;
     octree.bounds = cloud.bounds();
@@ -135,24 +148,31 @@ Octree build_octree(const PointCloud& cloud, const OctreeOptions& options) {
     order_points(cloud, with_normals, keys);
     if (options.merge_duplicates) octree.merged_duplicates = merge_equal(cloud, with_normals, keys);
 
+    // One array after the other, and what has been read goes: this is where large clouds need most memory.
     octree.codes.resize(keys.size());
     octree.source.resize(keys.size());
-    octree.positions.resize(keys.size());
-    if (with_normals) octree.normals.resize(keys.size());
     tbb::parallel_for(Range(0, keys.size(), grain), [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            if (i + ahead < range.end()) {
-                prefetch(cloud.positions, keys[i + ahead].index);
-                if (with_normals) prefetch(cloud.normals, keys[i + ahead].index);
-            }
-            const Index source = keys[i].index;
             octree.codes[i] = keys[i].code;
-            octree.source[i] = source;
-            octree.positions[i] = cloud.positions[source] - octree.origin;
-            if (with_normals) octree.normals[i] = unit_or_zero(cloud.normals[source]);
+            octree.source[i] = keys[i].index;
         }
     });
+    keys = std::vector<CodeIndex>();
+    if (with_normals) octree.normals = gathered(cloud.normals, octree.source, unit_or_zero);
+    if (ours) ours->normals = std::vector<Vec3>();
+    octree.positions =
+        gathered(cloud.positions, octree.source, [&](const Vec3& p) { return p - octree.origin; });
     return octree;
+}
+
+} // namespace
+
+Octree build_octree(const PointCloud& cloud, const OctreeOptions& options) {
+    return build(cloud, nullptr, options);
+}
+
+Octree build_octree_taking_normals(PointCloud& cloud, const OctreeOptions& options) {
+    return build(cloud, &cloud, options);
 }
 
 Octree rearranged(const Octree& octree, const std::vector<Vec3>& positions, double extent) {

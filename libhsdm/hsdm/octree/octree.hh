@@ -44,6 +44,8 @@ struct Octree {
 /// empty, holds a non-finite coordinate, or all its points are equal;
 /// OptionError if cube_extent is given but smaller than the cloud.
 Octree build_octree(const PointCloud& cloud, const OctreeOptions& options = {});
+/// The same in less memory: the cloud loses its normals as soon as the octree has them.
+Octree build_octree_taking_normals(PointCloud& cloud, const OctreeOptions& options = {});
 
 /// The octree's points at other positions (relative to its origin, in its order), in the Morton order of a
 /// cube of the given extent: its own, or one about the middle of the cloud's box. Points outside the cube

@@ -230,6 +230,24 @@ PolygonMesh joined_facets(const std::vector<PolygonMesh>& parts) {
     return mesh;
 }
 
+/// The facets round all grid edges, then the strips at rims and the caps of fans.
+PolygonMesh add_facets(const Crossings& crossings, const Links& links, const Fans& fans,
+                       const Midpoints& midpoints, const VertexPositions& vertices) {
+    const std::size_t edges = crossings.first.size() - 1;
+    const std::size_t chunks = chunk_count(edges, edges_per_chunk);
+    std::vector<PolygonMesh> parts(2 * chunks); // facets, then strips
+    for_chunks(edges, edges_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        FacetBuilder builder(crossings, links, fans, midpoints, vertices, parts[chunk]);
+        for (std::size_t e = begin; e < end; ++e)
+            builder.add_facets(crossings.first[e], crossings.first[e + 1]);
+        FacetBuilder strip_builder(crossings, links, fans, midpoints, vertices, parts[chunks + chunk]);
+        for (Index x = crossings.first[begin]; x < crossings.first[end]; ++x) strip_builder.add_strips(x);
+    });
+    PolygonMesh mesh = joined_facets(parts);
+    for (const std::vector<Index>& cap : fans.caps) mesh.add_facet(cap);
+    return mesh;
+}
+
 template <class To, class From>
 std::vector<To> converted(const std::vector<From>& values) {
     std::vector<To> result(values.size());
@@ -262,18 +280,19 @@ std::size_t merge_corners(std::span<const EdgeCollapse> edges, PolygonMesh& mesh
     return count;
 }
 
-} // namespace
-
-ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
-                                    const ExtendedOptions& options) {
-    ExtendedFacets result;
+/// The facets round all crossed grid edges, and what is to be merged of their vertices. What they are made of
+/// ends with it: it is the largest part of the memory.
+std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
+                                       const ExtendedOptions& options, ExtendedFacets& result) {
     const double h = level.voxel_size;
     const RelationTest related(options.relation, h);
     CornerLattice lattice = build_corner_lattice(level);
-    LocalSheets local = group_local_sheets(lattice, sets, related, h);
-    extend_lattice(lattice, local, level);
-    Crossings crossings = settle_crossings(
-        lattice, local, sets, find_crossings(lattice, local, sets, related, h, options.crossing), h);
+    Crossings crossings = [&] {
+        LocalSheets local = group_local_sheets(lattice, sets, related, h);
+        extend_lattice(lattice, local, level);
+        return settle_crossings(lattice, local, sets,
+                                find_crossings(lattice, local, sets, related, h, options.crossing), h);
+    }();
     Links links = pair_crossings(lattice, crossings, sets, related);
     for (int round = 0; round < 3 && trim_unsupported(crossings, links) > 0; ++round)
         links = pair_crossings(lattice, crossings, sets, related);
@@ -282,28 +301,35 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
     const Fans fans = build_fans(lattice, crossings, links);
     VertexPositions vertices = place_vertices(level, lattice, sets, related, crossings, fans);
     extend_borders(level, lattice, sets, crossings, fans, vertices);
+    lattice.index = {}; // the last to look for corners was that
     relax_vertices(octree, level, lattice, crossings, fans, options.relax, vertices);
     separate_sides(crossings, fans, h, vertices.positions);
-    const std::vector<EdgeCollapse> to_corners = shared_corners(lattice, crossings, fans, h, vertices);
+    std::vector<EdgeCollapse> to_corners = shared_corners(lattice, crossings, fans, h, vertices);
 
     const Midpoints midpoints(lattice, sets, crossings, links, fans, h, vertices);
-    result.midpoints = midpoints.count();
-    const std::size_t edges = crossings.first.size() - 1;
-    const std::size_t chunks = chunk_count(edges, edges_per_chunk);
-    std::vector<PolygonMesh> parts(2 * chunks); // facets, then strips
-    for_chunks(edges, edges_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        FacetBuilder builder(crossings, links, fans, midpoints, vertices, parts[chunk]);
-        for (std::size_t e = begin; e < end; ++e)
-            builder.add_facets(crossings.first[e], crossings.first[e + 1]);
-        FacetBuilder strip_builder(crossings, links, fans, midpoints, vertices, parts[chunks + chunk]);
-        for (Index x = crossings.first[begin]; x < crossings.first[end]; ++x) strip_builder.add_strips(x);
-    });
-    result.mesh = joined_facets(parts);
-    for (const std::vector<Index>& cap : fans.caps) result.mesh.add_facet(cap);
-
+    result.mesh = add_facets(crossings, links, fans, midpoints, vertices);
     result.mesh.positions = std::move(vertices.positions);
     add_properties(vertices, result.mesh);
-    result.corners_merged = merge_corners(to_corners, result.mesh);
+    result.midpoints = midpoints.count();
+    result.crossings = crossings.crossings.size();
+    result.beyond_crease = crossings.dropped_beyond_crease;
+    result.settled = crossings.settled;
+    result.trimmed = crossings.trimmed;
+    result.tips = crossings.tips;
+    result.open = links.open;
+    result.rims = links.rims;
+    result.cut = fans.cut;
+    result.clamped = vertices.clamped;
+    return to_corners;
+}
+
+} // namespace
+
+ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
+                                    const ExtendedOptions& options) {
+    ExtendedFacets result;
+    const double h = level.voxel_size;
+    result.corners_merged = merge_corners(build_facets(octree, level, sets, options, result), result.mesh);
     result.debris = drop_debris(result.mesh, options.debris);
     if (options.fill) {
         FillHolesOptions holes = options.holes;
@@ -322,15 +348,6 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
     result.intersections = untangle(result.mesh, untangle_options, &*result.cells);
     if (result.intersections.moved > 0) result.cells.reset();
     take_properties(result);
-    result.crossings = crossings.crossings.size();
-    result.beyond_crease = crossings.dropped_beyond_crease;
-    result.settled = crossings.settled;
-    result.trimmed = crossings.trimmed;
-    result.tips = crossings.tips;
-    result.open = links.open;
-    result.rims = links.rims;
-    result.cut = fans.cut;
-    result.clamped = vertices.clamped;
     return result;
 }
 
