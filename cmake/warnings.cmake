@@ -23,6 +23,16 @@ function(hsdm_includes_openmesh_kernel)
   endforeach()
 endfunction()
 
+# hsdm_compile_fast(TARGET...): with sanitizers these are compiled without optimisation, in a third of the time.
+# For what shares no templates with the library: of two compilations of one the linker takes either.
+function(hsdm_compile_fast)
+  if(HSDM_SANITIZE)
+    foreach(target ${ARGN})
+      target_compile_options(${target} PRIVATE -O0)
+    endforeach()
+  endif()
+endfunction()
+
 # hsdm_sanitize(LIBRARY): builds the library, and all that links it, with the sanitizers of HSDM_SANITIZE (a
 # list for -fsanitize=, e.g. "address,undefined"; empty: none). For the project's own test builds.
 set(HSDM_SANITIZE "" CACHE STRING "Sanitizers to build with")
