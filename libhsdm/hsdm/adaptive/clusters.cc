@@ -8,16 +8,53 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
+#include <span>
 
 namespace hsdm {
 namespace {
 
-constexpr std::size_t clusters_per_chunk = 1024, edges_per_chunk = 8192;
+constexpr std::size_t clusters_per_chunk = 1024, edges_per_chunk = 8192, facets_per_chunk = 8192;
+
+/// The members of groups, each group's in ascending order.
+class Members {
+public:
+    /// `group`: per member, below `count` or no_index.
+    Members(const std::vector<Index>& group, std::size_t count) : first_(count + 1, 0) {
+        for (Index g : group)
+            if (g != no_index) ++first_[g + 1];
+        counts_to_first(first_);
+        members_.resize(first_.back());
+        std::vector<Index> next(first_.begin(), first_.end() - 1);
+        for (Index i = 0; i < group.size(); ++i)
+            if (group[i] != no_index) members_[next[group[i]]++] = i;
+    }
+    std::span<const Index> of(std::size_t group) const {
+        return {members_.data() + first_[group], members_.data() + first_[group + 1]};
+    }
+
+private:
+    std::vector<Index> first_, members_;
+};
+
+/// What of a list is to be kept, in its order; keep() is asked once of each, from many threads.
+template <class T, class Keep>
+std::vector<T> kept(const std::vector<T>& list, std::size_t per_chunk, const Keep& keep) {
+    std::vector<std::vector<T>> parts(chunk_count(list.size(), per_chunk));
+    for_chunks(list.size(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        for (std::size_t i = begin; i < end; ++i)
+            if (keep(list[i])) parts[chunk].push_back(list[i]);
+    });
+    return joined(parts);
+}
 
 /// Builds each level of clusters from the one below it. An edge or facet is looked at on the levels where it
 /// joins different clusters, so the lists shrink by a factor of two and more per level.
 class Gathering {
+    using Edge = std::pair<Index, Index>;
+    using Edges = std::vector<Edge>;
+
 public:
     Gathering(const PolygonMesh& mesh, CellTree& tree, std::vector<Quadric> planes, double tolerance)
         : mesh_(mesh),
@@ -44,19 +81,23 @@ private:
     /// Two facets have an edge one way each, unless it is at the border.
     void gather_edges() {
         const std::vector<std::uint8_t> border = border_vertices(mesh_);
-        std::vector<std::pair<Index, Index>> beside; // perhaps there
-        edges_.reserve(mesh_.corners.size() / 2);
-        for (std::size_t f = 0; f < mesh_.facet_count(); ++f) {
-            const auto ring = mesh_.facet(f);
-            Index a = ring.back();
-            for (const Index b : ring) {
-                if (border[a] && border[b])
-                    beside.emplace_back(std::minmax(a, b));
-                else if (a < b)
-                    edges_.emplace_back(a, b);
-                a = b;
-            }
-        }
+        std::vector<Edges> parts(chunk_count(mesh_.facet_count(), facets_per_chunk)), at_border(parts.size());
+        for_chunks(mesh_.facet_count(), facets_per_chunk,
+                   [&](std::size_t f, std::size_t end, std::size_t chunk) {
+                       for (; f < end; ++f) {
+                           const auto ring = mesh_.facet(f);
+                           Index a = ring.back();
+                           for (const Index b : ring) {
+                               if (border[a] && border[b])
+                                   at_border[chunk].emplace_back(std::minmax(a, b));
+                               else if (a < b)
+                                   parts[chunk].emplace_back(a, b);
+                               a = b;
+                           }
+                       }
+                   });
+        edges_ = hsdm::joined(parts);
+        Edges beside = hsdm::joined(at_border); // perhaps there
         std::sort(beside.begin(), beside.end());
         edges_.insert(edges_.end(), beside.begin(), std::unique(beside.begin(), beside.end()));
     }
@@ -105,17 +146,17 @@ private:
                               const std::vector<std::uint8_t>& eligible, std::size_t level) {
         const auto& parent_cell = tree_.levels[level + 1].parent;
         std::vector<Index> part(below.size());
-        std::vector<Quadric> planes(below.size());
-        for (Index i = 0; i < below.size(); ++i) {
-            part[i] = joined.find(i);
-            if (eligible[parent_cell[below.cell[i]]]) planes[part[i]] += quadrics_[i];
-        }
+        for_chunks(part.size(), clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i) part[i] = joined.find(static_cast<Index>(i));
+        });
+        const Members members(part, part.size());
         std::vector<std::uint8_t> missed(below.size(), 0);
         for_chunks(below.size(), clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t i = begin; i < end; ++i) {
                 const Index cell = parent_cell[below.cell[i]];
-                if (part[i] == i && eligible[cell])
-                    missed[i] = planes[i].rms(place_in(planes[i], box_of(cell, level))) > tolerance_;
+                if (part[i] != i || !eligible[cell]) continue;
+                const Quadric planes = sum_of(members.of(i));
+                missed[i] = planes.rms(place_in(planes, box_of(cell, level))) > tolerance_;
             }
         });
         divide_missed(missed, below, level, part);
@@ -129,10 +170,13 @@ private:
             if (missed[part[i]]) members.emplace_back(part[i], i);
         tbb::parallel_sort(members.begin(), members.end());
         std::vector<std::array<Index, 3>> sides; // piece, and two of its members that touch
-        for (const auto& [a, b] : edges_) {
-            const Index i = current_[a], j = current_[b];
-            if (i != no_index && j != no_index && i != j && part[i] == part[j] && missed[part[i]])
-                sides.push_back({part[i], std::min(i, j), std::max(i, j)});
+        const auto is_inside = [&](const Edge& edge) {
+            const Index i = current_[edge.first], j = current_[edge.second];
+            return i != no_index && j != no_index && i != j && part[i] == part[j] && missed[part[i]];
+        };
+        for (const Edge& edge : kept(edges_, edges_per_chunk, is_inside)) {
+            const Index i = current_[edge.first], j = current_[edge.second];
+            sides.push_back({part[i], std::min(i, j), std::max(i, j)});
         }
         tbb::parallel_sort(sides.begin(), sides.end());
         sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
@@ -180,23 +224,28 @@ private:
     /// Sums up what the clusters below carry, and lets go of edges and facets that lie in one cluster or can
     /// no more do so.
     void rise(const ClusterLevel& below, std::size_t count) {
+        const Members members(below.parent, count);
         std::vector<Quadric> quadrics(count);
         std::vector<int> euler(count, 0);
-        for (Index i = 0; i < below.size(); ++i)
-            if (const Index p = below.parent[i]; p != no_index) {
-                quadrics[p] += quadrics_[i];
-                euler[p] += euler_[i];
+        for_chunks(count, clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i) {
+                quadrics[i] = sum_of(members.of(i));
+                for (Index member : members.of(i)) euler[i] += euler_[member];
             }
+        });
+        const auto change = [&](Index cluster, int by) {
+            std::atomic_ref(euler[cluster]).fetch_add(by, std::memory_order_relaxed);
+        };
         for_chunks(current_.size(), clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t v = begin; v < end; ++v)
                 if (current_[v] != no_index) current_[v] = below.parent[current_[v]];
         });
-        std::erase_if(edges_, [&](const std::pair<Index, Index>& edge) {
+        edges_ = kept(edges_, edges_per_chunk, [&](const Edge& edge) {
             const Index i = current_[edge.first], j = current_[edge.second];
-            if (i != no_index && i == j) --euler[i];
-            return i == no_index || j == no_index || i == j;
+            if (i != no_index && i == j) change(i, -1);
+            return i != no_index && j != no_index && i != j;
         });
-        std::erase_if(facets_, [&](Index f) {
+        facets_ = kept(facets_, facets_per_chunk, [&](Index f) {
             const auto ring = mesh_.facet(f);
             const Index first = current_[ring[0]];
             bool one = true, any_lost = false;
@@ -204,11 +253,17 @@ private:
                 one = one && current_[v] == first;
                 any_lost = any_lost || current_[v] == no_index;
             }
-            if (one && !any_lost) ++euler[first];
-            return one || any_lost;
+            if (one && !any_lost) change(first, 1);
+            return !one && !any_lost;
         });
         quadrics_ = std::move(quadrics);
         euler_ = std::move(euler);
+    }
+
+    Quadric sum_of(std::span<const Index> members) const {
+        Quadric sum;
+        for (Index member : members) sum += quadrics_[member];
+        return sum;
     }
 
     void decide(ClusterLevel& here, const std::vector<std::uint8_t>& eligible, std::size_t level) {
@@ -241,7 +296,7 @@ private:
     CellTree& tree_;
     double tolerance_;
     std::vector<Index> current_; // per vertex, its cluster of the level reached
-    std::vector<std::pair<Index, Index>> edges_;
+    Edges edges_;
     std::vector<Index> facets_;
     std::vector<Quadric> quadrics_; // per cluster of the level reached
     std::vector<int> euler_;        // vertices - edges + facets of the surface inside each cluster
