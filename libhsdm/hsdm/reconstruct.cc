@@ -244,7 +244,7 @@ private:
         if (cube < extent)
             throw OptionError("voxel_size " + text_of(voxel_size) + ": must be at least "
                               + text_of(extent / (1 << deepest)) + ", the cloud's extent over 2^16");
-        octree = rearranged(octree, octree.positions, cube);
+        rearrange(octree, std::move(octree.positions), cube);
         return depth;
     }
 

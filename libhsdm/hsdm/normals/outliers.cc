@@ -169,7 +169,7 @@ std::size_t drop_far_away(Octree& octree, const PointCloud& cloud) {
     octree.origin = bounds.lo;
     for (std::size_t i = 0; i < octree.size(); ++i)
         octree.positions[i] = cloud.positions[octree.source[i]] - octree.origin;
-    octree = rearranged(octree, octree.positions, bounds.extent());
+    rearrange(octree, std::move(octree.positions), bounds.extent());
     return count;
 }
 

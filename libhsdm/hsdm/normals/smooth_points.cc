@@ -154,7 +154,7 @@ double smooth_points(Octree& octree, double noise) {
         if (found > clearly_less * noise || found == 0) break;
         noise = found;
     }
-    octree = rearranged(octree, moved, octree.extent);
+    rearrange(octree, std::move(moved), octree.extent);
     return noise;
 }
 

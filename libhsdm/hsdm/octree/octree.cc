@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <tuple>
 
 namespace hsdm {
@@ -18,23 +19,19 @@ using Range = tbb::blocked_range<std::size_t>;
 constexpr std::size_t grain = 1 << 14;
 constexpr std::size_t ahead = 16; // points asked for before they are needed: their order is not the cloud's
 
-void prefetch(const std::vector<Vec3>& values, Index i) {
-    __builtin_prefetch(&values[i]);
-}
-
 Vec3 unit_or_zero(const Vec3& n) {
     const double length = n.norm();
     return length > 0 && std::isfinite(length) ? n / length : Vec3(0, 0, 0);
 }
 
 /// What becomes of the values at these places.
-template <class Change>
-std::vector<Vec3> gathered(const std::vector<Vec3>& values, const std::vector<Index>& places,
-                           const Change& change) {
-    std::vector<Vec3> result(places.size());
+template <class T, class Change>
+std::vector<T> gathered(const std::vector<T>& values, const std::vector<Index>& places,
+                        const Change& change) {
+    std::vector<T> result(places.size());
     tbb::parallel_for(Range(0, places.size(), grain), [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            if (i + ahead < range.end()) prefetch(values, places[i + ahead]);
+            if (i + ahead < range.end()) __builtin_prefetch(&values[places[i + ahead]]);
             result[i] = change(values[places[i]]);
         }
     });
@@ -74,13 +71,14 @@ int sort_by_cells(std::vector<CodeIndex>& keys) {
     return in_cell;
 }
 
-/// Orders points by code, then position, then normal. Cells are sorted by digits; few points of a surface
-/// share one, and those few are compared.
-void order_points(const PointCloud& cloud, bool with_normals, std::vector<CodeIndex>& keys) {
+/// Orders points by code, then position, then normal if there are some. Cells are sorted by digits; few
+/// points of a surface share one, and those few are compared.
+void order_points(std::span<const Vec3> positions, std::span<const Vec3> normals,
+                  std::vector<CodeIndex>& keys) {
     const int in_cell = sort_by_cells(keys);
     const auto key = [&](Index i) {
-        const Vec3& p = cloud.positions[i];
-        const Vec3 n = with_normals ? cloud.normals[i] : Vec3(0, 0, 0);
+        const Vec3& p = positions[i];
+        const Vec3 n = normals.empty() ? Vec3(0, 0, 0) : normals[i];
         return std::tuple(p[0], p[1], p[2], n[0], n[1], n[2], i);
     };
     const auto same_cell = [in_cell](const CodeIndex& a, const CodeIndex& b) {
@@ -107,15 +105,30 @@ void order_points(const PointCloud& cloud, bool with_normals, std::vector<CodeIn
 }
 
 /// Removes points equal to their predecessor in position and normal; equal points are neighbours by now.
-std::size_t merge_equal(const PointCloud& cloud, bool with_normals, std::vector<CodeIndex>& keys) {
+std::size_t merge_equal(std::span<const Vec3> positions, std::span<const Vec3> normals,
+                        std::vector<CodeIndex>& keys) {
     auto equal = [&](const CodeIndex& a, const CodeIndex& b) {
-        return a.code == b.code && cloud.positions[a.index] == cloud.positions[b.index]
-               && (!with_normals || cloud.normals[a.index] == cloud.normals[b.index]);
+        return a.code == b.code && positions[a.index] == positions[b.index]
+               && (normals.empty() || normals[a.index] == normals[b.index]);
     };
     const auto end = std::unique(keys.begin(), keys.end(), equal);
     const auto merged = static_cast<std::size_t>(keys.end() - end);
     keys.erase(end, keys.end());
     return merged;
+}
+
+/// Which point comes where, and its code; the keys go, as this is where large clouds need most memory.
+std::vector<Index> take_order(std::vector<CodeIndex>& keys, std::vector<MortonCode>& codes) {
+    std::vector<Index> order(keys.size());
+    codes.resize(keys.size());
+    tbb::parallel_for(Range(0, keys.size(), grain), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            codes[i] = keys[i].code;
+            order[i] = keys[i].index;
+        }
+    });
+    keys = std::vector<CodeIndex>();
+    return order;
 }
 
 /// `ours`: the cloud, if its normals are left to us, or null.
@@ -145,19 +158,10 @@ Octree build(const PointCloud& cloud, PointCloud* ours, const OctreeOptions& opt
         for (std::size_t i = range.begin(); i != range.end(); ++i)
             keys[i] = {code_of(cloud.positions[i] - octree.origin, scale), static_cast<Index>(i)};
     });
-    order_points(cloud, with_normals, keys);
-    if (options.merge_duplicates) octree.merged_duplicates = merge_equal(cloud, with_normals, keys);
-
-    // One array after the other, and what has been read goes: this is where large clouds need most memory.
-    octree.codes.resize(keys.size());
-    octree.source.resize(keys.size());
-    tbb::parallel_for(Range(0, keys.size(), grain), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            octree.codes[i] = keys[i].code;
-            octree.source[i] = keys[i].index;
-        }
-    });
-    keys = std::vector<CodeIndex>();
+    const std::span<const Vec3> normals = with_normals ? cloud.normals : std::span<const Vec3>();
+    order_points(cloud.positions, normals, keys);
+    if (options.merge_duplicates) octree.merged_duplicates = merge_equal(cloud.positions, normals, keys);
+    octree.source = take_order(keys, octree.codes);
     if (with_normals) octree.normals = gathered(cloud.normals, octree.source, unit_or_zero);
     if (ours) ours->normals = std::vector<Vec3>();
     octree.positions =
@@ -175,40 +179,26 @@ Octree build_octree_taking_normals(PointCloud& cloud, const OctreeOptions& optio
     return build(cloud, &cloud, options);
 }
 
-Octree rearranged(const Octree& octree, const std::vector<Vec3>& positions, double extent) {
-    Octree result;
-    result.bounds = octree.bounds;
-    result.merged_duplicates = octree.merged_duplicates;
-    result.extent = extent;
-    result.origin = extent == octree.extent ? octree.origin : centred_origin(octree.bounds, extent);
-    const Vec3 shift = octree.origin - result.origin;
-    PointCloud moved;
-    moved.positions.resize(octree.size());
-    moved.normals = octree.normals;
+void rearrange(Octree& octree, std::vector<Vec3> positions, double extent) {
+    octree.positions = {};
+    const Vec3 before = octree.origin;
+    if (extent != octree.extent) octree.origin = centred_origin(octree.bounds, extent);
+    octree.extent = extent;
+    const Vec3 shift = before - octree.origin;
     const double scale = static_cast<double>(1 << morton_levels) / extent;
-    std::vector<CodeIndex> keys(octree.size());
+    std::vector<CodeIndex> keys(positions.size());
     tbb::parallel_for(Range(0, keys.size(), grain), [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            moved.positions[i] = positions[i] + shift;
-            keys[i] = {code_of(moved.positions[i], scale), static_cast<Index>(i)};
+            positions[i] += shift;
+            keys[i] = {code_of(positions[i], scale), static_cast<Index>(i)};
         }
     });
-    order_points(moved, octree.has_normals(), keys);
-    result.codes.resize(keys.size());
-    result.source.resize(keys.size());
-    result.positions.resize(keys.size());
-    if (octree.has_normals()) result.normals.resize(keys.size());
-    tbb::parallel_for(Range(0, keys.size(), grain), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            if (i + ahead < range.end()) prefetch(moved.positions, keys[i + ahead].index);
-            const Index from = keys[i].index;
-            result.codes[i] = keys[i].code;
-            result.source[i] = octree.source[from];
-            result.positions[i] = moved.positions[from];
-            if (octree.has_normals()) result.normals[i] = octree.normals[from];
-        }
-    });
-    return result;
+    order_points(positions, octree.normals, keys);
+    const std::vector<Index> order = take_order(keys, octree.codes);
+    const auto same = [](const auto& value) { return value; };
+    octree.source = gathered(octree.source, order, same);
+    if (octree.has_normals()) octree.normals = gathered(octree.normals, order, same);
+    octree.positions = gathered(positions, order, same);
 }
 
 bool fit_to_points(Octree& octree) {
@@ -220,7 +210,7 @@ bool fit_to_points(Octree& octree) {
         std::max((bounds.lo - octree.bounds.lo).max_abs(), (bounds.hi - octree.bounds.hi).max_abs());
     if (!(bounds.extent() > 0) || change <= negligible * bounds.extent()) return false;
     octree.bounds = bounds;
-    octree = rearranged(octree, octree.positions, bounds.extent());
+    rearrange(octree, std::move(octree.positions), bounds.extent());
     return true;
 }
 

@@ -47,11 +47,11 @@ Octree build_octree(const PointCloud& cloud, const OctreeOptions& options = {});
 /// The same in less memory: the cloud loses its normals as soon as the octree has them.
 Octree build_octree_taking_normals(PointCloud& cloud, const OctreeOptions& options = {});
 
-/// The octree's points at other positions (relative to its origin, in its order), in the Morton order of a
-/// cube of the given extent: its own, or one about the middle of the cloud's box. Points outside the cube
-/// fall to its outermost voxels; none is merged, normals stay with their points, `source` and `bounds` refer
-/// to the cloud as before. O(n), parallel.
-Octree rearranged(const Octree& octree, const std::vector<Vec3>& positions, double extent);
+/// Puts the octree's points at other positions (relative to its origin, in its order; its own, moved, where
+/// they stay), in the Morton order of a cube of the given extent: its own, or one about the middle of the
+/// cloud's box. Points outside the cube fall to its outermost voxels; none is merged, normals stay with their
+/// points, `source` and `bounds` refer to the cloud as before. O(n), parallel.
+void rearrange(Octree& octree, std::vector<Vec3> positions, double extent);
 
 /// After points were removed: `bounds` becomes the box of those left, and they are rearranged in the cube of
 /// its longest side about its middle. Leaves the octree as it is, and returns false, if the box has stayed
