@@ -23,9 +23,9 @@ function(hsdm_includes_openmesh_kernel)
   endforeach()
 endfunction()
 
-# hsdm_compile_fast(TARGET...): with sanitizers these are compiled without optimisation, in a third of the time.
-# For what shares no templates with the library: of two compilations of one the linker takes either.
-function(hsdm_compile_fast)
+# hsdm_unoptimised_with_sanitizers(TARGET...): these take a third of the time to compile then. Of inline functions
+# the linker may take their copies for the library too, so it is not for targets that compute much.
+function(hsdm_unoptimised_with_sanitizers)
   if(HSDM_SANITIZE)
     foreach(target ${ARGN})
       target_compile_options(${target} PRIVATE -O0)

@@ -3,9 +3,11 @@
 #include <hsdm/io/write_mesh.hh>
 #include <hsdm/reconstruct.hh>
 
+#include <utility>
+
 int main() {
-    const hsdm::PointFile scan = hsdm::read_points("scan.ply");
-    const hsdm::Reconstruction part = hsdm::reconstruct(scan.cloud, {.depth = 6});
+    hsdm::PointFile scan = hsdm::read_points("scan.ply");
+    const hsdm::Reconstruction part = hsdm::reconstruct(std::move(scan.cloud), {.depth = 6});
     hsdm::write_mesh("part.stl", hsdm::to_polygons(part.mesh), hsdm::MeshFormat::stl);
     return part.report.mesh.closed ? 0 : 1;
 }

@@ -9,7 +9,7 @@ namespace hsdm {
 
 /// What a method works on: one level of a decomposed cloud.
 struct MethodInput {
-    const PointCloud& cloud;
+    const PointCloud& cloud; ///< for its colours and scalars: the rest may have been freed
     const Octree& octree;
     const OctreeLevel& level;
     const ReconstructOptions& options;

@@ -63,15 +63,20 @@ void validate(const ReconstructOptions& o) {
         throw OptionError("normals estimate: the basic method uses no normals; use the extended one");
 }
 
-/// The cloud without its points that are not finite: the caller's own where it has none.
-class FiniteCloud {
+/// The caller's cloud, or one that is left to us, which gives its memory back as soon as nobody asks for it.
+class InputCloud {
 public:
-    /// `ours`: the cloud, if the caller leaves it to us, or null.
-    FiniteCloud(const PointCloud& cloud, PointCloud* ours) : cloud_(&cloud), ours_(ours) {
-        if (all_finite(cloud.positions)) return;
-        const std::size_t count = cloud.size();
+    explicit InputCloud(const PointCloud& kept) : cloud_(&kept) {}
+    explicit InputCloud(PointCloud& left) : cloud_(&left), ours_(&left) {}
+    InputCloud(const InputCloud&) = delete;
+    InputCloud& operator=(const InputCloud&) = delete;
+
+    /// In a copy of our own, if it is the caller's and has such points.
+    void drop_nonfinite_points() {
+        if (all_finite(cloud_->positions)) return;
+        const std::size_t count = cloud_->size();
         if (!ours_) {
-            copy_ = cloud;
+            copy_ = *cloud_;
             cloud_ = ours_ = &copy_;
         }
         dropped_ = drop_nonfinite(*ours_).nonfinite;
@@ -81,18 +86,22 @@ public:
     }
     const PointCloud& operator*() const { return *cloud_; }
     std::size_t dropped() const { return dropped_; }
-    /// Of a cloud that is ours nobody asks for the normals again.
-    Octree octree(const OctreeOptions& options) {
+    /// The normals go with it.
+    Octree take_octree(const OctreeOptions& options) {
         return ours_ ? build_octree_taking_normals(*ours_, options) : build_octree(*cloud_, options);
     }
-    /// Frees what nobody asks for any more, if it is ours.
     void release_positions() {
         if (ours_) ours_->positions = std::vector<Vec3>();
+    }
+    void release_attributes() {
+        if (!ours_) return;
+        ours_->colors = decltype(ours_->colors)();
+        ours_->scalars = std::vector<Scalar>();
     }
 
 private:
     const PointCloud* cloud_;
-    PointCloud* ours_;
+    PointCloud* ours_ = nullptr;
     PointCloud copy_;
     std::size_t dropped_ = 0;
 };
@@ -121,14 +130,14 @@ void check_spread(const Octree& octree) {
 /// Phase 1 with its report.
 class Decomposition {
 public:
-    Decomposition(FiniteCloud& finite, const ReconstructOptions& options, const Phases& phases) {
-        const PointCloud& cloud = *finite;
-        report.input.has_normals = cloud.has_normals();
+    Decomposition(InputCloud& input, const ReconstructOptions& options, const Phases& phases) {
+        const PointCloud& cloud = *input;
+        report.input.has_normals = cloud.has_normals(); // before the octree takes them
         OctreeOptions octree_options;
         octree_options.placement = CubePlacement::centred;
         octree_options.use_normals = options.normals != NormalSource::estimate;
         octree =
-            phases.run("octree", 0, report.seconds.octree, [&] { return finite.octree(octree_options); });
+            phases.run("octree", 0, report.seconds.octree, [&] { return input.take_octree(octree_options); });
         far_away_ = drop_far_away(octree, cloud);
         if (far_away_ > 0) report.rejected["points_outlying"] = far_away_;
         check_spread(octree);
@@ -202,8 +211,9 @@ public:
         }));
     }
 
-    /// Have points been moved off the places where the cloud has them?
+    /// Have points been moved off the places where the cloud has them, and may they be?
     bool has_moved() const { return moved_; }
+    bool may_move() const { return noise_ > 0; }
 
     /// Once the last facets are made nobody asks for them.
     void release_normals() { octree.normals = std::vector<Vec3>(); }
@@ -384,8 +394,8 @@ std::size_t peak_memory() {
     return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
 }
 
-/// Phases 2 and 3 on one level of a decomposition, or on its `last` one.
-void reconstruct_level(const PointCloud& cloud, Decomposition& decomposition, int depth, bool last,
+/// Phases 2 and 3 on one level of a decomposition; on the `last` one what is not needed any more is let go.
+void reconstruct_level(InputCloud& cloud, Decomposition& decomposition, int depth, bool last,
                        const ReconstructOptions& options, const Phases& phases, Reconstruction& result) {
     const Octree& octree = decomposition.octree;
     Report report = decomposition.report;
@@ -398,18 +408,22 @@ void reconstruct_level(const PointCloud& cloud, Decomposition& decomposition, in
     report.grid.leaves_per_level.assign(static_cast<std::size_t>(depth) + 1, 0);
     report.grid.leaves_per_level.back() = level.size();
 
-    const MethodInput input{cloud, octree, level, options, phases};
+    const MethodInput input{*cloud, octree, level, options, phases};
     FacetKnowledge known;
     PolygonMesh facets = method_for(options) == Method::extended ? extended_method(input, report, known)
                                                                  : basic_method(input, report);
-    if (last) decomposition.release_normals();
+    if (last) {
+        decomposition.release_normals();
+        cloud.release_attributes();
+    }
     if (facets.facet_count() == 0)
         throw Error("no facet came out of " + std::to_string(level.size()) + " voxels at depth "
                     + std::to_string(depth)
                     + "; try another depth, or check that the points sample a surface");
     std::vector<Vec3> as_read;
     if (decomposition.has_moved() && (options.measure || wants_adaptive(options)))
-        as_read = points_as_read(cloud, octree);
+        as_read = points_as_read(*cloud, octree);
+    if (last) cloud.release_positions();
     const std::span<const Vec3> points = decomposition.has_moved() ? as_read : octree.positions;
     if (wants_adaptive(options)) {
         facets = phases.run("adaptive", 0.5, seconds.facets, [&] {
@@ -435,24 +449,24 @@ void reconstruct_level(const PointCloud& cloud, Decomposition& decomposition, in
     result.report = std::move(report);
 }
 
-/// One result per level of the range, or one of the level that the options choose. `ours`: the cloud, if the
-/// caller leaves it to us, or null.
-void run(const PointCloud& cloud, PointCloud* ours, const ReconstructOptions& options,
-         std::optional<std::pair<int, int>> range, std::span<Reconstruction> results) {
+/// One result per level of the range, or one of the level that the options choose.
+void run(InputCloud& cloud, const ReconstructOptions& options, std::optional<std::pair<int, int>> range,
+         std::span<Reconstruction> results) {
     const auto start = std::chrono::steady_clock::now();
-    FiniteCloud finite(cloud, ours);
-    if (options.normals == NormalSource::given && !(*finite).has_normals())
+    cloud.drop_nonfinite_points();
+    if (options.normals == NormalSource::given && !(*cloud).has_normals())
         throw Error("normals given were asked for, but the cloud has none");
-    const bool estimate = must_estimate(*finite, options);
-    Decomposition decomposition(finite, options, Phases(options, 0, 1));
+    const bool estimate = must_estimate(*cloud, options); // before the octree takes the normals
+    Decomposition decomposition(cloud, options, Phases(options, 0, 1));
     Report& report = decomposition.report;
-    report.input.dropped_nonfinite = finite.dropped();
+    report.input.dropped_nonfinite = cloud.dropped();
     report.threads = tbb::this_task_arena::max_concurrency();
     note_options(estimate, options, report);
     if (estimate)
-        decomposition.provide_normals(*finite, Phases(options, 0, 1));
+        decomposition.provide_normals(*cloud, Phases(options, 0, 1));
     else if (method_for(options) == Method::extended)
-        decomposition.check_given_normals(*finite, Phases(options, 0, 1));
+        decomposition.check_given_normals(*cloud, Phases(options, 0, 1));
+    if (!decomposition.may_move()) cloud.release_positions();
     if (range) {
         report.options["levels"] = std::to_string(range->first) + ":" + std::to_string(range->second);
         report.options["resolution"] = "as asked by levels";
@@ -468,30 +482,30 @@ void run(const PointCloud& cloud, PointCloud* ours, const ReconstructOptions& op
         const auto level_start = i == 0 ? start : std::chrono::steady_clock::now();
         decomposition.smooth_for_depth(depth, phases);
         const bool last = i + 1 == results.size();
-        if (last && !decomposition.has_moved()) finite.release_positions();
-        reconstruct_level(*finite, decomposition, depth, last, options, phases, results[i]);
+        if (last && !decomposition.has_moved()) cloud.release_positions();
+        reconstruct_level(cloud, decomposition, depth, last, options, phases, results[i]);
         results[i].report.seconds.total =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - level_start).count();
     }
 }
 
 /// At most options.threads threads, for this call alone.
-void run_in_arena(const PointCloud& cloud, PointCloud* ours, const ReconstructOptions& options,
+void run_in_arena(InputCloud& cloud, const ReconstructOptions& options,
                   std::optional<std::pair<int, int>> range, std::span<Reconstruction> results) {
-    if (options.threads == 0) return run(cloud, ours, options, range, results);
+    if (options.threads == 0) return run(cloud, options, range, results);
     tbb::task_arena arena(options.threads);
-    arena.execute([&] { run(cloud, ours, options, range, results); });
+    arena.execute([&] { run(cloud, options, range, results); });
 }
 
-Reconstruction run_once(const PointCloud& cloud, PointCloud* ours, const ReconstructOptions& options) {
+Reconstruction run_once(InputCloud cloud, const ReconstructOptions& options) {
     validate(options);
     Reconstruction result;
-    run_in_arena(cloud, ours, options, std::nullopt, {&result, 1});
+    run_in_arena(cloud, options, std::nullopt, {&result, 1});
     return result;
 }
 
-std::vector<Reconstruction> run_levels(const PointCloud& cloud, PointCloud* ours, int first_depth,
-                                       int last_depth, const ReconstructOptions& options) {
+std::vector<Reconstruction> run_levels(InputCloud cloud, int first_depth, int last_depth,
+                                       const ReconstructOptions& options) {
     validate(options);
     if (options.depth || options.voxel_size || options.max_error)
         throw OptionError(
@@ -502,30 +516,28 @@ std::vector<Reconstruction> run_levels(const PointCloud& cloud, PointCloud* ours
         throw OptionError("levels " + std::to_string(first_depth) + ":" + std::to_string(last_depth)
                           + ": the first depth must not be above the last");
     std::vector<Reconstruction> results(static_cast<std::size_t>(last_depth - first_depth) + 1);
-    run_in_arena(cloud, ours, options, std::pair(first_depth, last_depth), results);
+    run_in_arena(cloud, options, std::pair(first_depth, last_depth), results);
     return results;
 }
 
 } // namespace
 
 Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& options) {
-    return run_once(cloud, nullptr, options);
+    return run_once(InputCloud(cloud), options);
 }
 
 Reconstruction reconstruct(PointCloud&& cloud, const ReconstructOptions& options) {
-    PointCloud ours = std::move(cloud);
-    return run_once(ours, &ours, options);
+    return run_once(InputCloud(cloud), options);
 }
 
 std::vector<Reconstruction> reconstruct_levels(const PointCloud& cloud, int first_depth, int last_depth,
                                                const ReconstructOptions& options) {
-    return run_levels(cloud, nullptr, first_depth, last_depth, options);
+    return run_levels(InputCloud(cloud), first_depth, last_depth, options);
 }
 
 std::vector<Reconstruction> reconstruct_levels(PointCloud&& cloud, int first_depth, int last_depth,
                                                const ReconstructOptions& options) {
-    PointCloud ours = std::move(cloud);
-    return run_levels(ours, &ours, first_depth, last_depth, options);
+    return run_levels(InputCloud(cloud), first_depth, last_depth, options);
 }
 
 } // namespace hsdm

@@ -87,3 +87,16 @@ TEST_CASE("what was far from the fine mesh is so each time", "[adaptive]") {
     CHECK(second.vertices == first.vertices);
     CHECK(second.facets == first.facets);
 }
+
+TEST_CASE("the bound is kept with room for rounding", "[adaptive]") {
+    constexpr double bound = 0.1;
+    const PolygonMesh fine = roof();
+    const Vec3 up = Vec3(-1, 0, 4).normalized(); // from the left slope
+    for (const auto& [distance, far] :
+         {std::pair{(1 - 1e-10) * bound, true}, std::pair{(1 - 1e-8) * bound, false}}) {
+        const std::vector<Vec3> points = {Vec3(2, 4, 0.5) + up * distance};
+        BoundCheck check(fine, nullptr, points, bound, 1);
+        check.find_far(fine);
+        CHECK(check.find_far_points().beyond == (far ? 1 : 0));
+    }
+}

@@ -13,7 +13,7 @@
 namespace hsdm {
 namespace {
 
-constexpr double rounding = 1e-9; // of the bound: whoever measures in another way is to find it kept
+constexpr double rounding = 1e-9; // of the bound: room for whoever measures from the same origin otherwise
 constexpr std::size_t places_per_chunk = 2048;
 constexpr std::size_t far_per_chunk = 64; // distances of places that are far take long
 constexpr std::size_t keys_per_chunk = 512, triangles_per_chunk = 1024;

@@ -91,8 +91,8 @@ private:
         std::vector<Quadric> leaf_planes(leaves.mesh.vertex_count());
         for (std::size_t v = 0; v < planes_.size(); ++v) leaf_planes[leaves.vertex[v]] += planes_[v];
         planes_ = std::vector<Quadric>();
-        MergedLeaves merged =
-            merge_leaves(leaves, leaf_planes, *checks_, {.faults = faults_, .rounds = options_.rounds});
+        MergedLeaves merged = merge_leaves(leaves, std::move(leaf_planes), *checks_,
+                                           {.faults = faults_, .rounds = options_.rounds});
         result_.mesh = std::move(merged.mesh);
         result_.merged = leaves.mesh.vertex_count() - result_.mesh.vertex_count();
         set_beyond(merged.far_points);

@@ -165,7 +165,7 @@ std::vector<Index> through(const std::vector<Index>& first, const std::vector<In
 
 } // namespace
 
-MergedLeaves merge_leaves(const LeafMesh& leaves, const std::vector<Quadric>& planes, RoundChecks& checks,
+MergedLeaves merge_leaves(const LeafMesh& leaves, std::vector<Quadric> planes, RoundChecks& checks,
                           const MergeLeavesOptions& options) {
     std::vector<Merger> mergers; // of the round before, which most are again
     const CollapsingMesh unmerged(leaves.mesh);
@@ -173,6 +173,7 @@ MergedLeaves merge_leaves(const LeafMesh& leaves, const std::vector<Quadric>& pl
         return merge_vertices(unmerged, planes, tolerance, mergers);
     };
     MergedLeaves merged = MergeRounds(leaves, checks, options).run({by_planes, Diagonals::may_flip, false});
+    planes = {}; // dropping asks for distances
 
     const LeafMesh base{std::move(merged.mesh), through(leaves.vertex, merged.vertex)};
     MergeLeavesOptions drop_options = options;

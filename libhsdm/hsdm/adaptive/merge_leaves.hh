@@ -30,7 +30,7 @@ struct MergedLeaves {
 /// joins facets anew. What is merged where something is wrong has to keep closer to its planes, or stays as
 /// it was, and all else is merged again; where rounds do not suffice the mesh stays as it was before them.
 /// `planes`: per vertex of the leaves.
-MergedLeaves merge_leaves(const LeafMesh& leaves, const std::vector<Quadric>& planes, RoundChecks& checks,
+MergedLeaves merge_leaves(const LeafMesh& leaves, std::vector<Quadric> planes, RoundChecks& checks,
                           const MergeLeavesOptions& options);
 
 } // namespace hsdm

@@ -44,7 +44,7 @@ struct Octree {
 /// empty, holds a non-finite coordinate, or all its points are equal;
 /// OptionError if cube_extent is given but smaller than the cloud.
 Octree build_octree(const PointCloud& cloud, const OctreeOptions& options = {});
-/// The same in less memory: the cloud loses its normals as soon as the octree has them.
+/// The same in less memory: the cloud loses its normals, used or not, and keeps all else.
 Octree build_octree_taking_normals(PointCloud& cloud, const OctreeOptions& options = {});
 
 /// Puts the octree's points at other positions (relative to its origin, in its order; its own, moved, where

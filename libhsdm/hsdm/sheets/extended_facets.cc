@@ -230,9 +230,9 @@ PolygonMesh joined_facets(const std::vector<PolygonMesh>& parts) {
     return mesh;
 }
 
-/// The facets round all grid edges, then the strips at rims and the caps of fans.
-PolygonMesh add_facets(const Crossings& crossings, const Links& links, const Fans& fans,
-                       const Midpoints& midpoints, const VertexPositions& vertices) {
+/// The facets round all crossed grid edges, then the strips at rims and the caps of fans.
+PolygonMesh facets_of(const Crossings& crossings, const Links& links, const Fans& fans,
+                      const Midpoints& midpoints, const VertexPositions& vertices) {
     const std::size_t edges = crossings.first.size() - 1;
     const std::size_t chunks = chunk_count(edges, edges_per_chunk);
     std::vector<PolygonMesh> parts(2 * chunks); // facets, then strips
@@ -280,8 +280,8 @@ std::size_t merge_corners(std::span<const EdgeCollapse> edges, PolygonMesh& mesh
     return count;
 }
 
-/// The facets round all crossed grid edges, and what is to be merged of their vertices. What they are made of
-/// ends with it: it is the largest part of the memory.
+/// Builds the facets, and returns which of their edges are to be collapsed. Lattice, crossings and fans, the
+/// largest part of the memory, are gone afterwards.
 std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
                                        const ExtendedOptions& options, ExtendedFacets& result) {
     const double h = level.voxel_size;
@@ -300,14 +300,14 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
         links = pair_crossings(lattice, crossings, sets, related);
     const Fans fans = build_fans(lattice, crossings, links);
     VertexPositions vertices = place_vertices(level, lattice, sets, related, crossings, fans);
+    lattice.index = {}; // place_vertices was the last to look for corners
     extend_borders(level, lattice, sets, crossings, fans, vertices);
-    lattice.index = {}; // the last to look for corners was that
     relax_vertices(octree, level, lattice, crossings, fans, options.relax, vertices);
     separate_sides(crossings, fans, h, vertices.positions);
     std::vector<EdgeCollapse> to_corners = shared_corners(lattice, crossings, fans, h, vertices);
 
     const Midpoints midpoints(lattice, sets, crossings, links, fans, h, vertices);
-    result.mesh = add_facets(crossings, links, fans, midpoints, vertices);
+    result.mesh = facets_of(crossings, links, fans, midpoints, vertices);
     result.mesh.positions = std::move(vertices.positions);
     add_properties(vertices, result.mesh);
     result.midpoints = midpoints.count();
@@ -329,7 +329,8 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
                                     const ExtendedOptions& options) {
     ExtendedFacets result;
     const double h = level.voxel_size;
-    result.corners_merged = merge_corners(build_facets(octree, level, sets, options, result), result.mesh);
+    const std::vector<EdgeCollapse> to_corners = build_facets(octree, level, sets, options, result);
+    result.corners_merged = merge_corners(to_corners, result.mesh);
     result.debris = drop_debris(result.mesh, options.debris);
     if (options.fill) {
         FillHolesOptions holes = options.holes;
