@@ -37,6 +37,7 @@ public:
         : fine_(fine),
           points_(points),
           options_(options),
+          cells_(cells),
           tree_(build_cell_tree(fine.positions, extent, depth)) {
         tbb::parallel_invoke( // either has steps that one thread takes alone
             [&] {
@@ -60,7 +61,7 @@ public:
         if (options_.measure) {
             const std::size_t samples =
                 std::clamp(2 * result_.mesh.facet_count(), fewest_samples, most_samples);
-            result_.to_fine = checks_->bound().to_fine().tree()(sample_surface(result_.mesh, samples));
+            result_.to_fine = distance_to_fine(sample_surface(result_.mesh, samples));
         }
         result_.vertex = std::move(vertex_);
         return std::move(result_);
@@ -115,6 +116,11 @@ private:
                 best = leaf;
         }
         return nearest;
+    }
+
+    Distance distance_to_fine(const std::vector<Vec3>& places) const {
+        if (cells_) return points_to_mesh_by_cells(places, fine_, *cells_);
+        return checks_->bound().to_fine().tree()(places);
     }
 
     void set_beyond(const FarPoints& far) {
@@ -314,6 +320,7 @@ private:
     const PolygonMesh& fine_;
     std::span<const Vec3> points_;
     const CoarsenOptions& options_;
+    const FacetCells* cells_; // of the fine mesh, or null
     CellTree tree_;
     std::vector<Quadric> planes_; // per fine vertex
     std::vector<ClusterLevel> clusters_;
