@@ -67,7 +67,7 @@ void validate(const ReconstructOptions& o) {
 class InputCloud {
 public:
     explicit InputCloud(const PointCloud& kept) : cloud_(&kept) {}
-    explicit InputCloud(PointCloud& left) : cloud_(&left), ours_(&left) {}
+    explicit InputCloud(PointCloud&& left) : cloud_(&left), ours_(&left) {}
     InputCloud(const InputCloud&) = delete;
     InputCloud& operator=(const InputCloud&) = delete;
 
@@ -86,7 +86,7 @@ public:
     }
     const PointCloud& operator*() const { return *cloud_; }
     std::size_t dropped() const { return dropped_; }
-    /// The normals go with it.
+    /// The normals go with it, if they are ours.
     Octree take_octree(const OctreeOptions& options) {
         return ours_ ? build_octree_taking_normals(*ours_, options) : build_octree(*cloud_, options);
     }
@@ -527,7 +527,7 @@ Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& op
 }
 
 Reconstruction reconstruct(PointCloud&& cloud, const ReconstructOptions& options) {
-    return run_once(InputCloud(cloud), options);
+    return run_once(InputCloud(std::move(cloud)), options);
 }
 
 std::vector<Reconstruction> reconstruct_levels(const PointCloud& cloud, int first_depth, int last_depth,
@@ -537,7 +537,7 @@ std::vector<Reconstruction> reconstruct_levels(const PointCloud& cloud, int firs
 
 std::vector<Reconstruction> reconstruct_levels(PointCloud&& cloud, int first_depth, int last_depth,
                                                const ReconstructOptions& options) {
-    return run_levels(InputCloud(cloud), first_depth, last_depth, options);
+    return run_levels(InputCloud(std::move(cloud)), first_depth, last_depth, options);
 }
 
 } // namespace hsdm

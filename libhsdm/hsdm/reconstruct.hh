@@ -76,7 +76,7 @@ struct Reconstruction {
 /// Throws OptionError for an option out of range, Error for a cloud without a surface in it, Cancelled.
 Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& options = {});
 /// The same in less memory, by a third for given normals: each array of a cloud that is moved is freed as
-/// soon as nobody asks for it. What is left of the cloud is unspecified, unless OptionError was thrown.
+/// soon as nobody asks for it. What is left of the cloud is unspecified, whatever is thrown.
 Reconstruction reconstruct(PointCloud&& cloud, const ReconstructOptions& options = {});
 
 /// One octree, one mesh per level first_depth .. last_depth (section 3.2.3, Fig. 9).

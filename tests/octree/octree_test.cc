@@ -169,3 +169,32 @@ TEST_CASE("an octree that takes the cloud's normals is the same", "[octree]") {
         CHECK(taken.positions == cloud.positions);
     }
 }
+
+TEST_CASE("points are put in the order of a larger cube, or at other places", "[octree]") {
+    PointCloud cloud = random_cloud(3000, 7);
+    cloud.normals = random_cloud(3000, 8).positions;
+    Octree octree = build_octree(cloud);
+    const double extent = 2 * octree.extent;
+    rearrange(octree, std::move(octree.positions), extent);
+    const Octree larger = build_octree(cloud, {.cube_extent = extent, .placement = CubePlacement::centred});
+    CHECK(octree.origin == larger.origin);
+    CHECK(octree.codes == larger.codes);
+    CHECK(octree.source == larger.source);
+    CHECK(octree.normals == larger.normals);
+    double off = 0;
+    for (std::size_t i = 0; i < octree.size(); ++i)
+        off = std::max(off, (octree.positions[i] - larger.positions[i]).norm());
+    CHECK(off < 1e-12);
+
+    // Turned about the cube's middle: every point with its own normal and source.
+    std::vector<Vec3> turned;
+    for (const Vec3& p : octree.positions) turned.push_back(Vec3(extent, extent, extent) - p);
+    rearrange(octree, std::move(turned), extent);
+    CHECK(std::is_sorted(octree.codes.begin(), octree.codes.end()));
+    for (std::size_t i = 0; i < octree.size(); ++i) {
+        const Index source = octree.source[i];
+        const Vec3 there = Vec3(extent, extent, extent) - octree.positions[i] + octree.origin;
+        CHECK((there - cloud.positions[source]).norm() < 1e-12);
+        CHECK((octree.normals[i] - cloud.normals[source].normalized()).norm() < 1e-12);
+    }
+}

@@ -23,6 +23,7 @@ std::string lasting(Report report) {
 void check_same(const Reconstruction& a, const Reconstruction& b) {
     const PolygonMesh left = to_polygons(a.mesh), right = to_polygons(b.mesh);
     CHECK(left.facet_count() > 0);
+    CHECK(!left.properties.empty());
     CHECK(left.positions == right.positions);
     CHECK(left.corners == right.corners);
     REQUIRE(left.properties.size() == right.properties.size());
@@ -112,23 +113,33 @@ TEST_CASE("levels of a cloud that is moved are those of one that is kept", "[rec
     }
 }
 
-TEST_CASE("a cloud that is moved gives its memory back before facets are made", "[reconstruct]") {
-    PointCloud cloud = scan();
-    bool made = false;
-    ReconstructOptions options;
-    options.progress = [&](const std::string& phase, double) {
-        if (phase == "facets") {
-            made = true;
-            CHECK(cloud.normals.empty());
-            CHECK(cloud.positions.empty());
-        }
-        return true;
-    };
-    reconstruct(std::move(cloud), options);
-    CHECK(made);
+TEST_CASE("a cloud that is moved gives its memory back as soon as nobody asks for it", "[reconstruct]") {
+    for (double noise : {0.0, 0.02}) {
+        PointCloud cloud = scan(noise);
+        cloud.colors.resize(cloud.size());
+        cloud.scalars = {Scalar{"height", std::vector<double>(cloud.size()), false}};
+        std::size_t phases = 0;
+        ReconstructOptions options;
+        options.progress = [&](const std::string& phase, double) {
+            phases += phase == "facets" || phase == "error";
+            if (phase == "facets") {
+                CHECK(cloud.normals.capacity() == 0);
+                // What is moved is measured where it was.
+                CHECK((cloud.positions.capacity() == 0) == (noise == 0));
+            }
+            if (phase == "error") {
+                CHECK(cloud.positions.capacity() == 0);
+                CHECK(cloud.colors.capacity() == 0);
+                CHECK(cloud.scalars.capacity() == 0);
+            }
+            return true;
+        };
+        reconstruct(std::move(cloud), options);
+        CHECK(phases == 2);
+    }
 }
 
-TEST_CASE("an option out of range leaves a cloud that is moved as it was", "[reconstruct]") {
+TEST_CASE("an option out of any cloud's range leaves one that is moved as it was", "[reconstruct]") {
     PointCloud cloud = scan();
     ReconstructOptions options;
     options.depth = 0;

@@ -96,8 +96,8 @@ private:
                            }
                        }
                    });
-        edges_ = hsdm::joined(parts);
-        Edges beside = hsdm::joined(at_border); // perhaps there
+        edges_ = joined(parts);
+        Edges beside = joined(at_border); // perhaps there
         std::sort(beside.begin(), beside.end());
         edges_.insert(edges_.end(), beside.begin(), std::unique(beside.begin(), beside.end()));
     }

@@ -119,7 +119,8 @@ private:
     }
 
     Distance distance_to_fine(const std::vector<Vec3>& places) const {
-        if (cells_) return points_to_mesh_by_cells(places, fine_, *cells_);
+        if (cells_ && cells_->usable() && options_.max_error < cells_->cell_size()) // else a tree is asked
+            return points_to_mesh_by_cells(places, fine_, *cells_);
         return checks_->bound().to_fine().tree()(places);
     }
 

@@ -173,7 +173,7 @@ MergedLeaves merge_leaves(const LeafMesh& leaves, std::vector<Quadric> planes, R
         return merge_vertices(unmerged, planes, tolerance, mergers);
     };
     MergedLeaves merged = MergeRounds(leaves, checks, options).run({by_planes, Diagonals::may_flip, false});
-    planes = {}; // dropping asks for distances
+    planes = std::vector<Quadric>(); // dropping asks for distances
 
     const LeafMesh base{std::move(merged.mesh), through(leaves.vertex, merged.vertex)};
     MergeLeavesOptions drop_options = options;

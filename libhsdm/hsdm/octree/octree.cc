@@ -180,7 +180,7 @@ Octree build_octree_taking_normals(PointCloud& cloud, const OctreeOptions& optio
 }
 
 void rearrange(Octree& octree, std::vector<Vec3> positions, double extent) {
-    octree.positions = {};
+    octree.positions = std::vector<Vec3>();
     const Vec3 before = octree.origin;
     if (extent != octree.extent) octree.origin = centred_origin(octree.bounds, extent);
     octree.extent = extent;
