@@ -1,10 +1,13 @@
 #include "hsdm/attributes.hh"
 
+#include "hsdm/members.hh"
+
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
 namespace hsdm {
 namespace {
@@ -86,14 +89,7 @@ std::vector<VertexProperty> average_attributes(const PointCloud& cloud, const Oc
 std::vector<VertexProperty> merge_attributes(std::span<const VertexProperty> properties,
                                              std::span<const Index> into, std::size_t count) {
     using Type = VertexProperty::Type;
-    std::vector<Index> first(count + 1, 0);
-    for (Index v : into)
-        if (v != no_index) ++first[v + 1];
-    std::partial_sum(first.begin(), first.end(), first.begin());
-    std::vector<Index> next(first.begin(), first.end() - 1);
-    std::vector<Index> members(first.back());
-    for (Index v = 0; v < into.size(); ++v)
-        if (into[v] != no_index) members[next[into[v]]++] = v;
+    const Members members(into, count);
     std::vector<VertexProperty> result;
     for (const VertexProperty& property : properties) {
         VertexProperty merged{property.name, property.type, std::vector<double>(count)};
@@ -101,7 +97,7 @@ std::vector<VertexProperty> merge_attributes(std::span<const VertexProperty> pro
             std::vector<double> values;
             for (std::size_t v = range.begin(); v != range.end(); ++v) {
                 values.clear();
-                for (Index m = first[v]; m < first[v + 1]; ++m) values.push_back(property.values[members[m]]);
+                for (Index member : members.of(v)) values.push_back(property.values[member]);
                 double& value = merged.values[v];
                 value = property.type == Type::int32 ? majority(values) : mean(values);
                 if (property.type == Type::uint8) value = std::round(value);

@@ -4,6 +4,7 @@
 #include "hsdm/adaptive/parts.hh"
 #include "hsdm/chunks.hh"
 #include "hsdm/disjoint_sets.hh"
+#include "hsdm/members.hh"
 
 #include <tbb/parallel_sort.h>
 
@@ -16,27 +17,6 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t clusters_per_chunk = 1024, edges_per_chunk = 8192, facets_per_chunk = 8192;
-
-/// The members of groups, each group's in ascending order.
-class Members {
-public:
-    /// `group`: per member, below `count` or no_index.
-    Members(const std::vector<Index>& group, std::size_t count) : first_(count + 1, 0) {
-        for (Index g : group)
-            if (g != no_index) ++first_[g + 1];
-        counts_to_first(first_);
-        members_.resize(first_.back());
-        std::vector<Index> next(first_.begin(), first_.end() - 1);
-        for (Index i = 0; i < group.size(); ++i)
-            if (group[i] != no_index) members_[next[group[i]]++] = i;
-    }
-    std::span<const Index> of(std::size_t group) const {
-        return {members_.data() + first_[group], members_.data() + first_[group + 1]};
-    }
-
-private:
-    std::vector<Index> first_, members_;
-};
 
 /// What of a list is to be kept, in its order; keep() is asked once of each, from many threads.
 template <class T, class Keep>
@@ -159,16 +139,12 @@ private:
                 missed[i] = planes.rms(place_in(planes, box_of(cell, level))) > tolerance_;
             }
         });
-        divide_missed(missed, below, level, part);
+        divide_missed(missed, members, below, level, part);
         return part;
     }
 
-    void divide_missed(const std::vector<std::uint8_t>& missed, const ClusterLevel& below, std::size_t level,
-                       std::vector<Index>& part) {
-        std::vector<std::pair<Index, Index>> members; // by the piece's least
-        for (Index i = 0; i < part.size(); ++i)
-            if (missed[part[i]]) members.emplace_back(part[i], i);
-        tbb::parallel_sort(members.begin(), members.end());
+    void divide_missed(const std::vector<std::uint8_t>& missed, const Members& members,
+                       const ClusterLevel& below, std::size_t level, std::vector<Index>& part) {
         std::vector<std::array<Index, 3>> sides; // piece, and two of its members that touch
         const auto is_inside = [&](const Edge& edge) {
             const Index i = current_[edge.first], j = current_[edge.second];
@@ -180,35 +156,29 @@ private:
         }
         tbb::parallel_sort(sides.begin(), sides.end());
         sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
-        std::vector<std::array<std::size_t, 2>> pieces; // where each begins in the two lists
-        for (std::size_t m = 0, s = 0; m < members.size(); ++m) {
-            if (m > 0 && members[m].first == members[m - 1].first) continue;
-            while (s < sides.size() && sides[s][0] < members[m].first) ++s;
-            pieces.push_back({m, s});
+        std::vector<std::pair<Index, std::size_t>> pieces; // and where the sides of each begin
+        std::size_t s = 0;
+        for (Index piece = 0; piece < missed.size(); ++piece) {
+            if (!missed[piece]) continue;
+            while (s < sides.size() && sides[s][0] < piece) ++s;
+            pieces.emplace_back(piece, s);
         }
         const auto& parent_cell = tree_.levels[level + 1].parent;
         for_chunks(pieces.size(), 64, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t p = begin; p < end; ++p) {
-                const auto [first, side] = pieces[p];
-                const Index piece = members[first].first;
-                divide_piece(std::span(members).subspan(first), std::span(sides).subspan(side),
+                const Index piece = pieces[p].first;
+                divide_piece(members.of(piece), std::span(sides).subspan(pieces[p].second),
                              box_of(parent_cell[below.cell[piece]], level), part);
             }
         });
     }
 
-    /// The lists begin with the piece's own entries.
-    void divide_piece(std::span<const std::pair<Index, Index>> members,
-                      std::span<const std::array<Index, 3>> sides, const Box& box,
+    /// The sides begin with the piece's own.
+    void divide_piece(std::span<const Index> own, std::span<const std::array<Index, 3>> sides, const Box& box,
                       std::vector<Index>& part) const {
-        const Index piece = members.front().first;
-        std::vector<Index> own;
+        const Index piece = own.front(); // the least stands for it
         std::vector<Quadric> planes;
-        for (const auto& [of, member] : members) {
-            if (of != piece) break;
-            own.push_back(member);
-            planes.push_back(quadrics_[member]);
-        }
+        for (Index member : own) planes.push_back(quadrics_[member]);
         const auto local = [&](Index i) {
             return static_cast<Index>(std::lower_bound(own.begin(), own.end(), i) - own.begin());
         };

@@ -37,7 +37,6 @@ public:
         : fine_(fine),
           points_(points),
           options_(options),
-          cells_(cells),
           tree_(build_cell_tree(fine.positions, extent, depth)) {
         tbb::parallel_invoke( // either has steps that one thread takes alone
             [&] {
@@ -61,7 +60,8 @@ public:
         if (options_.measure) {
             const std::size_t samples =
                 std::clamp(2 * result_.mesh.facet_count(), fewest_samples, most_samples);
-            result_.to_fine = distance_to_fine(sample_surface(result_.mesh, samples));
+            result_.to_fine =
+                points_to_surface(sample_surface(result_.mesh, samples), checks_->bound().to_fine());
         }
         result_.vertex = std::move(vertex_);
         return std::move(result_);
@@ -116,12 +116,6 @@ private:
                 best = leaf;
         }
         return nearest;
-    }
-
-    Distance distance_to_fine(const std::vector<Vec3>& places) const {
-        if (cells_ && cells_->usable() && options_.max_error < cells_->cell_size()) // else a tree is asked
-            return points_to_mesh_by_cells(places, fine_, *cells_);
-        return checks_->bound().to_fine().tree()(places);
     }
 
     void set_beyond(const FarPoints& far) {
@@ -321,7 +315,6 @@ private:
     const PolygonMesh& fine_;
     std::span<const Vec3> points_;
     const CoarsenOptions& options_;
-    const FacetCells* cells_; // of the fine mesh, or null
     CellTree tree_;
     std::vector<Quadric> planes_; // per fine vertex
     std::vector<ClusterLevel> clusters_;

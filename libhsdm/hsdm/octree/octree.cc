@@ -131,8 +131,8 @@ std::vector<Index> take_order(std::vector<CodeIndex>& keys, std::vector<MortonCo
     return order;
 }
 
-/// `ours`: the cloud, if its normals are left to us, or null.
-Octree build(const PointCloud& cloud, PointCloud* ours, const OctreeOptions& options) {
+/// `ours`: the cloud's normals, if they are left to us, or null.
+Octree build(const PointCloud& cloud, std::vector<Vec3>* ours, const OctreeOptions& options) {
     if (cloud.size() == 0) throw Error("the cloud holds no point; nothing can be reconstructed");
     Octree octree;
     octree.bounds = cloud.bounds();
@@ -163,7 +163,7 @@ Octree build(const PointCloud& cloud, PointCloud* ours, const OctreeOptions& opt
     if (options.merge_duplicates) octree.merged_duplicates = merge_equal(cloud.positions, normals, keys);
     octree.source = take_order(keys, octree.codes);
     if (with_normals) octree.normals = gathered(cloud.normals, octree.source, unit_or_zero);
-    if (ours) ours->normals = std::vector<Vec3>();
+    if (ours) *ours = std::vector<Vec3>();
     octree.positions =
         gathered(cloud.positions, octree.source, [&](const Vec3& p) { return p - octree.origin; });
     return octree;
@@ -176,7 +176,7 @@ Octree build_octree(const PointCloud& cloud, const OctreeOptions& options) {
 }
 
 Octree build_octree_taking_normals(PointCloud& cloud, const OctreeOptions& options) {
-    return build(cloud, &cloud, options);
+    return build(cloud, &cloud.normals, options);
 }
 
 void rearrange(Octree& octree, std::vector<Vec3> positions, double extent) {

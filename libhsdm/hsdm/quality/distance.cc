@@ -139,14 +139,18 @@ Index MeshDistance::triangle_within(const Vec3& point, double bound, Index& hint
     return std::sqrt(found.squared) <= bound ? found.triangle : no_index;
 }
 
-Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh, double enough) {
-    if (!(enough > 0)) return MeshDistance(mesh)(points);
-    const SurfaceWalk surface(mesh, triangulate(mesh), TriangleTree::Order::given);
+Distance points_to_surface(std::span<const Vec3> points, const SurfaceWalk& surface, double enough) {
     return sum_up(points.size(), [&] {
         return [&, hint = no_index](std::size_t i) mutable {
             return square(surface.distance(points[i], hint, enough));
         };
     });
+}
+
+Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh, double enough) {
+    if (!(enough > 0)) return MeshDistance(mesh)(points);
+    return points_to_surface(points, SurfaceWalk(mesh, triangulate(mesh), TriangleTree::Order::given),
+                             enough);
 }
 
 /// What no cell beside a point's own tells is left to the tree, which is rarely built.

@@ -49,6 +49,12 @@ private:
     std::vector<Index> facet_; // per triangle
 };
 
+class SurfaceWalk;
+
+/// Every point against its nearest triangle by walks and searches, parallel, the same bits for any thread
+/// count: for points that lie close to the surface. `enough` as below.
+Distance points_to_surface(std::span<const Vec3> points, const SurfaceWalk& surface, double enough = 0);
+
 /// Every point against its nearest triangle, through the tree; parallel, the same bits for any thread count.
 /// Distances up to `enough` may come out larger, though never above it: whether a bound is kept is known
 /// several times sooner than by how much.

@@ -79,14 +79,7 @@ PointFit::PointFit(const Octree& octree, const OctreeLevel& level, const Fans& f
       level_(level),
       fans_(fans),
       vertices_(vertices),
-      first_(level.size() + 1, 0),
-      of_voxel_(fans.size()) {
-    for (std::size_t v = 0; v < fans.size(); ++v) ++first_[vertices.voxel[v] + 1];
-    for (std::size_t x = 0; x < level.size(); ++x) first_[x + 1] += first_[x];
-    std::vector<Index> next(first_.begin(), first_.end() - 1);
-    for (std::size_t v = 0; v < fans.size(); ++v)
-        of_voxel_[next[vertices.voxel[v]]++] = static_cast<Index>(v);
-}
+      of_voxel_(std::span(vertices.voxel).first(fans.size()), level.size()) {}
 
 void PointFit::gather_beside(Index voxel, std::vector<Index>& fans) const {
     fans.clear();
@@ -94,7 +87,7 @@ void PointFit::gather_beside(Index voxel, std::vector<Index>& fans) const {
     for (std::size_t k = 0; k < 6; ++k) { // the first six are those beside its faces
         const VoxelCoord& d = neighbor_offsets[k];
         const Index x = level_.find({at[0] + d[0], at[1] + d[1], at[2] + d[2]});
-        if (x != no_index) fans.insert(fans.end(), fans_of(x).begin(), fans_of(x).end());
+        if (x != no_index) fans.insert(fans.end(), of_voxel_.of(x).begin(), of_voxel_.of(x).end());
     }
 }
 
@@ -106,8 +99,8 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
         std::vector<Index> beside;
         std::vector<Around> around;
         for (std::size_t x = begin; x < end; ++x) {
-            if (fans_of(x).empty()) gather_beside(static_cast<Index>(x), beside);
-            const std::span<const Index> near = fans_of(x).empty() ? beside : fans_of(x);
+            if (of_voxel_.of(x).empty()) gather_beside(static_cast<Index>(x), beside);
+            const std::span<const Index> near = of_voxel_.of(x).empty() ? beside : of_voxel_.of(x);
             const bool flat = near.size() == 1 && vertices_.kinds[near[0]] == VertexKind::smooth;
             around.clear();
             for (Index fan : near) list_triangles(fan, fans_, positions, around);

@@ -1,6 +1,7 @@
 #pragma once
 // How well the facets round vertices fit the points of their voxels.
 
+#include "hsdm/members.hh"
 #include "hsdm/sheets/vertex_placement.hh"
 
 namespace hsdm {
@@ -39,16 +40,13 @@ private:
         Index fan;
         double weight, height;
     };
-    std::span<const Index> fans_of(std::size_t voxel) const {
-        return {of_voxel_.data() + first_[voxel], of_voxel_.data() + first_[voxel + 1]};
-    }
     void gather_beside(Index voxel, std::vector<Index>& fans) const;
 
     const Octree& octree_;
     const OctreeLevel& level_;
     const Fans& fans_;
     const VertexPositions& vertices_;
-    std::vector<Index> first_, of_voxel_; // voxel x holds the fans of_voxel_[first_[x]] .. [first_[x + 1]]
+    Members of_voxel_; // its fans
 };
 
 } // namespace hsdm
