@@ -1,4 +1,5 @@
 #include "hsdm/adaptive/merge.hh"
+#include "hsdm/adaptive/planar_patches.hh"
 #include "hsdm/adaptive/trouble.hh"
 #include "hsdm/quality/distance.hh"
 #include "hsdm/quality/topology.hh"
@@ -205,4 +206,21 @@ TEST_CASE("a vertex with two fans stays", "[adaptive]") {
         for (Index v : mesh.corners) CHECK(stands_for[v] == v);
         CHECK(measure_topology(mesh).boundary_edges == 0);
     }
+}
+
+TEST_CASE("a vertex moves only as far as its facets allow", "[adaptive]") {
+    const PolygonMesh mesh = cube(6);
+    CollapsingMesh moving(mesh);
+    moving.forget_changes();
+    Index side = 0; // of a vertex amid a face
+    while (moving.at(moving.start(side)) != Vec3(2, 2, 0)) ++side;
+    const Index v = moving.start(side);
+    CHECK(!moving.move(side, Vec3(3.5, 2, 0)));  // past its neighbour
+    CHECK(!moving.move(side, Vec3(2, 2, 0.95))); // facets would turn
+    CHECK(moving.at(v) == Vec3(2, 2, 0));
+    CHECK(!moving.has_changed(v));
+    CHECK(moving.move(side, Vec3(2.2, 2.1, 0)));
+    CHECK(moving.at(v) == Vec3(2.2, 2.1, 0));
+    CHECK(moving.has_changed(v));
+    CHECK(support::faults(moving.write().mesh) == "");
 }

@@ -10,14 +10,14 @@ namespace {
 
 using Adjacent = std::vector<std::pair<Index, Index>>;
 
-struct Plane {
+struct PlaneAt {
     Vec3 normal, point;
 };
 
-Quadric planes(std::initializer_list<Plane> all, const Vec3& at) {
+Quadric planes(std::initializer_list<PlaneAt> all, const Vec3& at) {
     Quadric quadric;
     quadric.add_point(at);
-    for (const Plane& plane : all) quadric.add_plane(plane.normal, plane.point, 1);
+    for (const PlaneAt& plane : all) quadric.add_plane(plane.normal, plane.point, 1);
     return quadric;
 }
 
@@ -31,7 +31,7 @@ Box cell() {
 } // namespace
 
 TEST_CASE("a plate's rim makes two parts, each with its crease", "[adaptive]") {
-    const Plane top{{0, 0, 1}, {0, 0, 0.1}}, bottom{{0, 0, -1}, {0, 0, -0.1}}, rim{{1, 0, 0}, {0.5, 0, 0}};
+    const PlaneAt top{{0, 0, 1}, {0, 0, 0.1}}, bottom{{0, 0, -1}, {0, 0, -0.1}}, rim{{1, 0, 0}, {0.5, 0, 0}};
     const std::vector<Quadric> members = {planes({top}, {0, 0, 0.1}), planes({top, rim}, {0.5, 0, 0.1}),
                                           planes({rim}, {0.5, 0, 0}), planes({rim, bottom}, {0.5, 0, -0.1}),
                                           planes({bottom}, {0, 0, -0.1})};

@@ -55,3 +55,11 @@ TEST_CASE("trouble is found where it is", "[adaptive]") {
     add(back_to_back, {2, 1, 0});
     CHECK(troubled_vertices(back_to_back) == std::vector<Index>{0, 1, 2});
 }
+
+TEST_CASE("a side without length is trouble, whatever area its facet has", "[adaptive]") {
+    PolygonMesh strip;
+    add(strip, {0, 1, 3, 2});
+    add(strip, {2, 3, 5, 4});
+    strip.positions[5] = strip.positions[3];
+    CHECK(troubled_vertices(strip) == std::vector<Index>{2, 3, 4, 5});
+}

@@ -18,6 +18,7 @@ Solid solid_named(const std::string& name, std::uint64_t seed) {
     if (name == "cylinder") return cylinder(0.5, 2);
     if (name == "plate") return box(hsdm::Vec3(1, 1, 0.05));
     if (name == "wedge") return wedge(std::numbers::pi / 6, 1, 1);
+    if (name == "fillet") return rounded_block(0.35);
     if (name == "nested") return nested_spheres(1, 0.8);
     if (name == "part") return mechanical_part();
     return random_solid(seed);
@@ -34,7 +35,7 @@ int main(int argc, char** argv) {
     app.add_option("shape", shape, "the solid; `random` is a tree of solids that --seed chooses")
         ->required()
         ->check(CLI::IsMember(
-            {"sphere", "torus", "box", "cylinder", "plate", "wedge", "nested", "part", "random"}));
+            {"sphere", "torus", "box", "cylinder", "plate", "wedge", "fillet", "nested", "part", "random"}));
     app.add_option("-o,--output", output, "the PLY file to write")->required();
     app.add_option("--points", options.points, "how many points")->capture_default_str();
     app.add_option("--seed", options.seed, "the same seed gives the same file")->capture_default_str();

@@ -104,6 +104,27 @@ bool Solid::sample(Random& random, SurfacePoint& point) const {
     return true;
 }
 
+namespace {
+
+Solid bar_with_rounded_edge(double length, double radius) {
+    const Pose along_x = turned(Vec3(0, 1, 0), std::numbers::pi / 2, Vec3(0, 0.5 - radius, 0.5 - radius));
+    const Solid corner =
+        box(Vec3(length + 1, 2 * radius, 2 * radius)).placed({Pose().rotation, Vec3(0, 0.5, 0.5)});
+    return box(Vec3(length, 1, 1)) - (corner - cylinder(radius, length + 2).placed(along_x));
+}
+
+} // namespace
+
+Solid rounded_block(double radius) {
+    return bar_with_rounded_edge(2, radius);
+}
+
+Solid hollow_step(double radius, double step) {
+    const Vec3 shift(0, 1 - step, 1 - step);
+    return box(Vec3(2, 1, 1))
+           - bar_with_rounded_edge(3, radius).placed(turned(Vec3(1, 0, 0), std::numbers::pi, shift));
+}
+
 Solid nested_spheres(double outer, double inner) {
     return sphere(outer) - sphere(inner);
 }

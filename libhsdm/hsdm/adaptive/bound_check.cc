@@ -13,7 +13,8 @@
 namespace hsdm {
 namespace {
 
-constexpr double rounding = 1e-9; // of the bound: room for whoever measures from the same origin otherwise
+constexpr double rounding = 1e-9;  // of the bound: room for whoever measures from the same origin otherwise
+constexpr double vertex_share = 2; // of the bound, for vertices of the fine mesh
 constexpr std::size_t places_per_chunk = 2048;
 constexpr std::size_t far_per_chunk = 64; // distances of places that are far take long
 constexpr std::size_t keys_per_chunk = 512, triangles_per_chunk = 1024;
@@ -101,7 +102,9 @@ FarPlaces BoundCheck::find_far(const PolygonMesh& mesh) {
     const std::optional<SurfaceWalk> before = std::move(to_mesh_);
     to_mesh_.emplace(mesh, cut_, TriangleTree::Order::given);
     if (before) follow_triangles(*before, keys_before);
-    return {far_from(fine_.positions, near_vertex_), far_vertices(mesh), far_facets(mesh)};
+    FarPlaces far{far_from(fine_.positions, vertex_share * bound_, near_vertex_), far_vertices(mesh), {}, {}};
+    find_far_facets(mesh, far);
+    return far;
 }
 
 void BoundCheck::follow_triangles(const SurfaceWalk& before, std::span<const Key> keys_before) {
@@ -122,7 +125,8 @@ void BoundCheck::follow_triangles(const SurfaceWalk& before, std::span<const Key
 }
 
 /// A place that was near a triangle still is if that has stayed.
-std::vector<Index> BoundCheck::far_from(std::span<const Vec3> places, std::vector<Index>& near) const {
+std::vector<Index> BoundCheck::far_from(std::span<const Vec3> places, double bound,
+                                        std::vector<Index>& near) const {
     near.resize(places.size(), no_index);
     std::vector<std::vector<Index>> parts(chunk_count(places.size(), places_per_chunk));
     for_chunks(places.size(), places_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
@@ -134,7 +138,7 @@ std::vector<Index> BoundCheck::far_from(std::span<const Vec3> places, std::vecto
                 if (now.same != no_index) continue;
                 hint = now.near;
             }
-            near[i] = to_mesh_->triangle_within(places[i], bound_, hint);
+            near[i] = to_mesh_->triangle_within(places[i], bound, hint);
             if (near[i] == no_index) parts[c].push_back(static_cast<Index>(i));
         }
     });
@@ -148,7 +152,7 @@ std::vector<Index> BoundCheck::far_vertices(const PolygonMesh& mesh) {
     });
 }
 
-std::vector<Index> BoundCheck::far_facets(const PolygonMesh& mesh) {
+void BoundCheck::find_far_facets(const PolygonMesh& mesh, FarPlaces& far) {
     const std::vector<std::uint8_t> border = border_vertices(mesh);
     std::vector<Key> keys = keys_; // which sides are looked at depends on borders too
     for (std::size_t t = 0; t < keys.size(); ++t) {
@@ -156,23 +160,33 @@ std::vector<Index> BoundCheck::far_facets(const PolygonMesh& mesh) {
         for (Index v : cut_.triangles[t]) at_border = 2 * at_border + border[v];
         if (at_border != 0) keys[t] = mix(keys[t] ^ at_border);
     }
-    std::vector<Index> facets =
-        far_of(std::move(keys), near_keys_, [&](Index t, Index& hint, std::vector<Vec3>& places) {
-            if (fine_keys_.contains(keys_[t])) return false;
-            places.clear();
-            add_places(corners_of(mesh, cut_.triangles[t]), sides_of(cut_.triangles[t], border, names_),
-                       spacing_, places);
-            return std::any_of(places.begin(), places.end(),
-                               [&](const Vec3& place) { return to_fine_.is_beyond(place, bound_, hint); });
+    const auto far_place = [&](Index t, Index& hint, std::vector<Vec3>& places) {
+        places.clear();
+        add_places(corners_of(mesh, cut_.triangles[t]), sides_of(cut_.triangles[t], border, names_), spacing_,
+                   places);
+        const auto far_one = std::find_if(places.begin(), places.end(), [&](const Vec3& place) {
+            return to_fine_.is_beyond(place, bound_, hint);
         });
-    for (Index& t : facets) t = to_mesh_->tree().facet_of(t);
-    facets.erase(std::unique(facets.begin(), facets.end()), facets.end());
-    return facets;
+        return far_one == places.end() ? nullptr : &*far_one;
+    };
+    const std::vector<Index> triangles =
+        far_of(std::move(keys), near_keys_, [&](Index t, Index& hint, std::vector<Vec3>& places) {
+            return !fine_keys_.contains(keys_[t]) && far_place(t, hint, places);
+        });
+    std::vector<Vec3> places;
+    for (Index t : triangles) {
+        const Index facet = to_mesh_->tree().facet_of(t);
+        if (!far.facets.empty() && far.facets.back() == facet) continue;
+        Index hint = no_index;
+        const Vec3* place = far_place(t, hint, places);
+        far.facets.push_back(facet);
+        far.on_facets.push_back(place ? *place : to_mesh_->middle(t));
+    }
 }
 
 FarPoints BoundCheck::find_far_points() {
     FarPoints found;
-    const std::vector<Index> far = far_from(points_, near_point_);
+    const std::vector<Index> far = far_from(points_, bound_, near_point_);
     measure_to_fine(far);
     std::vector<Index> missed; // by the fine mesh already
     double farthest = 0;

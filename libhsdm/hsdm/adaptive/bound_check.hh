@@ -10,9 +10,10 @@ namespace hsdm {
 
 /// What is farther from the other mesh than the bound.
 struct FarPlaces {
-    std::vector<Index> fine_vertices;
-    std::vector<Index> vertices; ///< of the coarse mesh
-    std::vector<Index> facets;   ///< of the coarse mesh
+    std::vector<Index> fine_vertices; ///< than twice the bound
+    std::vector<Index> vertices;      ///< of the coarse mesh
+    std::vector<Index> facets;        ///< of the coarse mesh
+    std::vector<Vec3> on_facets;      ///< a place on each of them
 
     std::size_t size() const { return fine_vertices.size() + vertices.size() + facets.size(); }
 };
@@ -48,9 +49,9 @@ private:
     };
 
     void follow_triangles(const SurfaceWalk& before, std::span<const Key> keys_before);
-    std::vector<Index> far_from(std::span<const Vec3> places, std::vector<Index>& near) const;
+    std::vector<Index> far_from(std::span<const Vec3> places, double bound, std::vector<Index>& near) const;
     std::vector<Index> far_vertices(const PolygonMesh& mesh);
-    std::vector<Index> far_facets(const PolygonMesh& mesh);
+    void find_far_facets(const PolygonMesh& mesh, FarPlaces& far);
     void measure_to_fine(const std::vector<Index>& far);
 
     const PolygonMesh& fine_;

@@ -3,6 +3,7 @@
 #include "hsdm/adaptive/clusters.hh"
 #include "hsdm/adaptive/dissolve.hh"
 #include "hsdm/adaptive/merge_leaves.hh"
+#include "hsdm/adaptive/planar_patches.hh"
 #include "hsdm/adaptive/tidy.hh"
 #include "hsdm/adaptive/trouble.hh"
 #include "hsdm/chunks.hh"
@@ -21,7 +22,8 @@ constexpr std::size_t vertices_per_chunk = 2048, facets_per_chunk = 8192;
 constexpr std::size_t fewest_samples = 10000, most_samples = 100000;
 constexpr double spacing = 1; // of places on facets, in voxels of the fine mesh
 constexpr double planes_share =
-    0.35; // of the error: what planes of a leaf may be missed by, root mean square
+    0.35;                           // of the error: what planes of a leaf may be missed by, root mean square
+constexpr double patch_share = 0.5; // ... and how far the surface may be off a patch's plane
 
 /// A cluster: a vertex of the result.
 struct Place {
@@ -40,7 +42,8 @@ public:
           tree_(build_cell_tree(fine.positions, extent, depth)) {
         tbb::parallel_invoke( // either has steps that one thread takes alone
             [&] {
-                planes_ = vertex_planes(fine);
+                patches_ = find_planar_patches(fine, patch_share * options.max_error);
+                planes_ = vertex_planes(fine, patches_, tolerance());
                 clusters_ = build_clusters(fine, tree_, planes_, tolerance());
             },
             [&] {
@@ -91,6 +94,9 @@ private:
         LeafMesh leaves{std::move(result_.mesh), std::move(vertex_)};
         std::vector<Quadric> leaf_planes(leaves.mesh.vertex_count());
         for (std::size_t v = 0; v < planes_.size(); ++v) leaf_planes[leaves.vertex[v]] += planes_[v];
+        // Where doublets were dropped a neighbour has their planes too.
+        for (std::size_t v = 0; v < leaf_planes.size(); ++v)
+            leaf_planes[v].drop_shared(leaves.mesh.positions[v], tolerance());
         planes_ = std::vector<Quadric>();
         MergedLeaves merged = merge_leaves(leaves, std::move(leaf_planes), *checks_,
                                            {.faults = faults_, .rounds = options_.rounds});
@@ -316,6 +322,7 @@ private:
     std::span<const Vec3> points_;
     const CoarsenOptions& options_;
     CellTree tree_;
+    PlanarPatches patches_;
     std::vector<Quadric> planes_; // per fine vertex
     std::vector<ClusterLevel> clusters_;
     std::vector<Place> places_;  // per fine vertex

@@ -34,11 +34,12 @@ struct AdaptiveMesh {
 /// Puts one vertex for each piece of a fine mesh in each leaf of a balanced octree. Edges between cells stay
 /// edges, so where leaves of different size meet there are neither cracks nor T-vertices; at the end vertices
 /// merge where fewer do (merge_leaves). The octree is
-/// subdivided until nothing is wrong: facets a 2-manifold, no intersections the fine mesh has not, points and
-/// fine vertices within max_error of the result and it of the fine mesh. Facets are cut and joined anew where
-/// that suits their shape. If `rounds` or the cells do not suffice the fine mesh itself comes out. `points`
-/// and the mesh are relative to the least corner of the cube, `extent` is its edge, `depth` the level of the
-/// fine mesh. `cells`, of the fine mesh, if they are known, save time. O(n log n). Throws OptionError.
+/// subdivided until nothing is wrong: facets a 2-manifold, no intersections the fine mesh has not, points
+/// within max_error of the result, fine vertices within twice that, and it within max_error of the fine mesh.
+/// Facets are cut and joined anew where that suits their shape. If `rounds` or the cells do not suffice the
+/// fine mesh itself comes out. `points` and the mesh are relative to the least corner of the cube, `extent`
+/// is its edge, `depth` the level of the fine mesh. `cells`, of the fine mesh, if they are known, save time.
+/// O(n log n). Throws OptionError.
 AdaptiveMesh coarsen(const PolygonMesh& fine, std::span<const Vec3> points, double extent, int depth,
                      const CoarsenOptions& options, const FacetCells* cells = nullptr);
 

@@ -12,6 +12,19 @@ namespace {
 constexpr std::size_t most_facets = 24; // of a vertex: bounds the work
 constexpr double turn_cosine = 0.77;    // normals turn by less than 40 degrees
 
+bool is_along(const Vec3& a, const Vec3& b) {
+    return (a | b) > turn_cosine * a.norm() * b.norm();
+}
+
+/// A facet that faces another way than all of these may turn to one that does not.
+bool turns(const Vec3& before, const Vec3& after, std::span<const Vec3> faces) {
+    if (is_along(before, after)) return false;
+    const auto faces_along = [&](const Vec3& normal) {
+        return std::any_of(faces.begin(), faces.end(), [&](const Vec3& n) { return is_along(normal, n); });
+    };
+    return faces_along(before) || !faces_along(after);
+}
+
 } // namespace
 
 CollapsingMesh::CollapsingMesh(const PolygonMesh& mesh)
@@ -56,12 +69,12 @@ bool CollapsingMesh::ring_of(Index side, std::vector<Index>& ring) const {
 }
 
 bool CollapsingMesh::may_collapse(const std::vector<Index>& ring, const std::vector<Index>& ring_to,
-                                  const Vec3& place) const {
+                                  const Vec3& place, std::span<const Vec3> faces) const {
     if (!is_link(ring, ring_to)) return false;
     double thinnest = least_shape, thinnest_new = 1;
     const Index to = ring[0];
-    return suits_ring(place, ring, ring_to[0], thinnest, thinnest_new)
-           && (place == at(to) || suits_ring(place, ring_to, to, thinnest, thinnest_new))
+    return suits_ring(place, ring, ring_to[0], faces, thinnest, thinnest_new)
+           && (place == at(to) || suits_ring(place, ring_to, to, faces, thinnest, thinnest_new))
            && thinnest_new >= thinnest;
 }
 
@@ -76,23 +89,26 @@ bool CollapsingMesh::is_link(const std::vector<Index>& from, const std::vector<I
 
 /// The facets round a vertex that keep an area.
 bool CollapsingMesh::suits_ring(const Vec3& place, const std::vector<Index>& ring, Index centre,
-                                double& thinnest, double& thinnest_new) const {
+                                std::span<const Vec3> faces, double& thinnest, double& thinnest_new) const {
     for (std::size_t i = 0; i < ring.size(); ++i)
         thinnest =
             std::min(thinnest, triangle_shape(at(centre), at(ring[i]), at(ring[(i + 1) % ring.size()])));
     for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
         const Vec3 &p = at(ring[i]), &q = at(ring[i + 1]);
+        // One vertex amid three others goes even if they are on a line: nothing there could move before, and
+        // the next collapse along that line takes the needle.
+        if (ring.size() == 3 && !faces.empty() && triangle_shape(place, p, q) < least_shape) continue;
         const Vec3 before = triangle_normal(at(centre), p, q), after = triangle_normal(place, p, q);
-        if (!((before | after) > turn_cosine * before.norm() * after.norm())) return false;
+        if (turns(before, after, faces)) return false;
         thinnest_new = std::min(thinnest_new, triangle_shape(place, p, q));
     }
     return true;
 }
 
-bool CollapsingMesh::collapse(Index side, const Vec3& place) {
+bool CollapsingMesh::collapse(Index side, const Vec3& place, std::span<const Vec3> faces) {
     const Index from = start(side), to = end(side);
     if (!ring_of(side, ring_) || !ring_of(twin_[side], ring_to_)) return false;
-    if (!may_collapse(ring_, ring_to_, place)) return false;
+    if (!may_collapse(ring_, ring_to_, place, faces)) return false;
     if (place != at(to)) {
         touch(twin_[side]);
         for (Index v : ring_to_) changed_[v] = 1;
@@ -105,6 +121,27 @@ bool CollapsingMesh::collapse(Index side, const Vec3& place) {
     --facets_[ring_[1]];
     --facets_[ring_.back()];
     remove(side);
+    return true;
+}
+
+bool CollapsingMesh::move(Index side, const Vec3& place, std::span<const Vec3> faces) {
+    const Index v = start(side);
+    if (locked_[v] || !ring_of(side, ring_)) return false;
+    double thinnest = least_shape;
+    for (std::size_t i = 0; i < ring_.size(); ++i) {
+        if ((place - at(v)).sqrnorm() >= (at(ring_[i]) - at(v)).sqrnorm()) return false;
+        thinnest = std::min(thinnest, triangle_shape(at(v), at(ring_[i]), at(ring_[(i + 1) % ring_.size()])));
+    }
+    for (std::size_t i = 0; i < ring_.size(); ++i) {
+        const Vec3 &p = at(ring_[i]), &q = at(ring_[(i + 1) % ring_.size()]);
+        const Vec3 before = triangle_normal(at(v), p, q), after = triangle_normal(place, p, q);
+        if (turns(before, after, faces)) return false;
+        if (triangle_shape(place, p, q) < thinnest) return false;
+    }
+    touch(side);
+    positions_[v] = place;
+    changed_[v] = 1;
+    for (Index w : ring_) changed_[w] = 1;
     return true;
 }
 

@@ -3,6 +3,8 @@
 
 #include "hsdm/facets/triangle_sides.hh"
 
+#include <span>
+
 namespace hsdm {
 
 /// What is left of a mesh. Vertices for which others stand are isolated.
@@ -33,10 +35,16 @@ public:
 
     /// Whether the start of a side may become its end, at a place: a 2-manifold stays one (link condition),
     /// no facet turns by 40 degrees, none gets thinner than all were. The rings are those of its two ends.
-    bool may_collapse(const std::vector<Index>& ring, const std::vector<Index>& ring_to,
-                      const Vec3& place) const;
+    /// `faces`: the normals that facets there should have, if those are known: then one that has none of them
+    /// may turn to have one, and what a vertex amid three others leaves may be a needle.
+    bool may_collapse(const std::vector<Index>& ring, const std::vector<Index>& ring_to, const Vec3& place,
+                      std::span<const Vec3> faces = {}) const;
     /// Makes the start of a side its end, at a place, if that may be; false if it may not.
-    bool collapse(Index side, const Vec3& place);
+    bool collapse(Index side, const Vec3& place, std::span<const Vec3> faces = {});
+
+    /// Moves the start of a side by less than its shortest side, if no facet turns by 40 degrees (as above)
+    /// or gets thinner than all were.
+    bool move(Index side, const Vec3& place, std::span<const Vec3> faces = {});
 
     /// Has the vertex a facet that is not what it was when changes were forgotten? All have at first.
     bool has_changed(Index v) const { return changed_[v]; }
@@ -49,8 +57,8 @@ private:
     void lock_facets();
     bool is_link(const std::vector<Index>& from, const std::vector<Index>& to) const;
     bool spares(Index v) const { return facets_[v] > (border_[v] ? 1u : 3u); }
-    bool suits_ring(const Vec3& place, const std::vector<Index>& ring, Index centre, double& thinnest,
-                    double& thinnest_new) const;
+    bool suits_ring(const Vec3& place, const std::vector<Index>& ring, Index centre,
+                    std::span<const Vec3> faces, double& thinnest, double& thinnest_new) const;
     void touch(Index side);
     void remove(Index side);
 

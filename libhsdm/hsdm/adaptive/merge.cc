@@ -12,7 +12,8 @@ namespace {
 
 constexpr int most_sweeps = 32; // each leaves two thirds at most of what can merge
 constexpr std::size_t sides_per_chunk = 2048;
-constexpr double free_share = 0.1; // of the tolerance: "about as well"
+constexpr double settled_share = 1e-3; // of the tolerance: "where planes meet"
+constexpr double free_share = 0.1;     // of the tolerance: "about as well"
 
 class Merging {
 public:
@@ -26,16 +27,45 @@ public:
     }
 
     CollapsedMesh run(std::vector<Merger>& mergers) {
+        settle();
         if (mergers.empty())
             merge_all();
         else
             repeat(mergers);
+        settle();
         mergers = std::move(done_);
         return mesh_.write();
     }
 
 private:
     const Vec3& at(Index v) const { return mesh_.at(v); }
+
+    /// Moves vertices of patches to where their planes meet: only what is there lines up with others.
+    void settle() {
+        std::vector<std::uint8_t> seen(mesh_.vertex_count(), 0);
+        for (Index s = 0; s < mesh_.side_count(); ++s) {
+            if (mesh_.is_gone(s)) continue;
+            const Index v = mesh_.start(s);
+            if (seen[v] || !planes_[v].has_shared() || !(tolerance_[v] > 0)) continue;
+            seen[v] = 1;
+            const double was = planes_[v].rms(at(v));
+            if (was <= settled_share * tolerance_[v]) continue;
+            const Vec3 place = planes_[v].minimum();
+            if (planes_[v].rms(place) < was) mesh_.move(s, place, faces_of(v, v));
+        }
+    }
+
+    /// What facets round two vertices that are to be one should face; nothing if not all is known.
+    std::span<const Vec3> faces_of(Index a, Index b) {
+        std::array<Vec3, Quadric::most_shared> of_a, of_b;
+        const std::span<const Vec3> first = planes_[a].shared_normals(of_a);
+        const std::span<const Vec3> second = planes_[b].shared_normals(of_b);
+        faces_.clear();
+        if (first.empty() || second.empty()) return faces_;
+        faces_.assign(first.begin(), first.end());
+        faces_.insert(faces_.end(), second.begin(), second.end());
+        return faces_;
+    }
 
     void merge_all() {
         for (const bool may_move : {false, true}) {
@@ -148,7 +178,7 @@ private:
     /// Merges the start of a side into its end, at a place, if the facets round them allow.
     bool merge(Index side, const Vec3& place) {
         const Index from = mesh_.start(side), to = mesh_.end(side);
-        if (!mesh_.collapse(side, place)) return false;
+        if (!mesh_.collapse(side, place, faces_of(from, to))) return false;
         done_.push_back({side, from, to, place});
         moved_[to] = 1;
         planes_[to] += planes_[from];
@@ -160,6 +190,7 @@ private:
     std::vector<Quadric> planes_;
     std::vector<double> tolerance_;
     std::vector<Merger> done_;
+    std::vector<Vec3> faces_; // of the vertices in hand
     bool may_move_ = false, is_first_ = true;
     std::vector<std::uint8_t> moved_;  // per vertex, in the last sweep
     std::vector<std::uint8_t> missed_; // per side, are the planes of both ends missed everywhere?

@@ -9,8 +9,9 @@ namespace hsdm {
 
 struct FaultCounts {
     std::size_t crossing = 0; ///< pairs of facets that intersect
-    std::size_t distant = 0;  ///< places on the mesh and vertices of the fine one beyond the bound
-    std::size_t points = 0;   ///< points beyond it
+    std::size_t distant =
+        0; ///< places on the mesh beyond the bound, vertices of the fine one beyond twice that
+    std::size_t points = 0; ///< points beyond it
 };
 
 struct Findings {

@@ -254,7 +254,12 @@ private:
         if (before == Look::none) before = look(a, b, hint);
         if (before == Look::off) {
             const double was = fine_.surface().distance(middle(a, b), hint);
-            return {!fine_.surface().is_beyond(middle(c, d), 0.5 * was, hint), before, Look::none};
+            const auto is_beyond = [&](const Vec3& place, double share) {
+                return fine_.surface().is_beyond(place, share * was, hint);
+            };
+            return {!is_beyond(middle(c, d), 0.5) && !is_beyond((at(a) + at(c) + at(d)) / 3, 1)
+                        && !is_beyond((at(b) + at(c) + at(d)) / 3, 1),
+                    before, Look::none};
         }
         if (!gains) return {false, before, Look::none};
         const Look after = look(c, d, hint);

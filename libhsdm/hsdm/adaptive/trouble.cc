@@ -6,12 +6,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 
 namespace hsdm {
 namespace {
 
 constexpr std::size_t vertices_per_chunk = 1024, facets_per_chunk = 2048;
-constexpr double flat = 1e-6; // twice a facet's area over its squared length: less is no area
+constexpr double flat = 1e-6; // twice a facet's area over its squared length, or a side over its length
 
 /// A side of a facet: corner `corner` starts it, `next` ends it.
 struct Side {
@@ -60,10 +61,15 @@ std::vector<Index> flat_facets(const PolygonMesh& mesh) {
     for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t f, std::size_t end, std::size_t c) {
         for (; f < end; ++f) {
             const auto ring = mesh.facet(f);
-            double longest = 0;
-            for (std::size_t i = 1; i < ring.size(); ++i)
-                longest = std::max(longest, (mesh.positions[ring[i]] - mesh.positions[ring[0]]).sqrnorm());
-            if (area_vector(mesh, ring).norm() <= flat * longest) parts[c].push_back(static_cast<Index>(f));
+            double longest = 0, shortest = std::numeric_limits<double>::infinity();
+            Index before = ring.back();
+            for (const Index v : ring) {
+                longest = std::max(longest, (mesh.positions[v] - mesh.positions[ring[0]]).sqrnorm());
+                shortest = std::min(shortest, (mesh.positions[v] - mesh.positions[before]).sqrnorm());
+                before = v;
+            }
+            if (area_vector(mesh, ring).norm() <= flat * longest || shortest <= flat * flat * longest)
+                parts[c].push_back(static_cast<Index>(f));
         }
     });
     return joined(parts);

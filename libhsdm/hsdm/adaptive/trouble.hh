@@ -7,7 +7,8 @@ namespace hsdm {
 
 /// The vertices, ascending, at which facets do not make one proper fan: ends of edges with more than two
 /// facets or two that run the same way, vertices with several fans, inner vertices of only two facets,
-/// corners of facets without area. Empty for a mesh without such. O(corners log corners), parallel.
+/// corners of facets without area or with a side without length. Empty for a mesh without such. O(corners log
+/// corners), parallel.
 std::vector<Index> troubled_vertices(const PolygonMesh& mesh);
 
 } // namespace hsdm

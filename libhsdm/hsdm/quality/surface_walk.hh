@@ -35,6 +35,8 @@ public:
     bool leads_within(const Vec3& place, double bound, Index& hint) const;
     /// From the nearest triangle, or, where one is known soon, from any no farther than `enough`.
     double distance(const Vec3& place, Index& hint, double enough = 0) const;
+    /// Vertices of the mesh.
+    const Triangle& corners(Index triangle) const { return triangles_[triangle]; }
     Vec3 middle(Index triangle) const {
         const auto& [a, b, c] = triangles_[triangle];
         return (positions_[a] + positions_[b] + positions_[c]) / 3;
