@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t vertices_per_chunk = 2048, facets_per_chunk = 8192;
 constexpr std::size_t fewest_samples = 10000, most_samples = 100000;
-constexpr double spacing = 1; // of places on facets, in voxels of the fine mesh
+constexpr double spacing = 0.5; // of places on facets, in voxels of the fine mesh
 constexpr double planes_share =
     0.35;                           // of the error: what planes of a leaf may be missed by, root mean square
 constexpr double patch_share = 0.5; // ... and how far the surface may be off a patch's plane
