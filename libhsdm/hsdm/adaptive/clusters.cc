@@ -36,12 +36,12 @@ class Gathering {
     using Edges = std::vector<Edge>;
 
 public:
-    Gathering(const PolygonMesh& mesh, CellTree& tree, std::vector<Quadric> planes, double tolerance)
+    Gathering(const PolygonMesh& mesh, CellTree& tree, std::span<const Quadric> planes, double tolerance)
         : mesh_(mesh),
           tree_(tree),
           tolerance_(tolerance),
           current_(mesh.vertex_count()),
-          quadrics_(std::move(planes)),
+          planes_(planes),
           euler_(mesh.vertex_count(), 1) {
         for (Index v = 0; v < current_.size(); ++v) current_[v] = v;
         facets_.resize(mesh.facet_count());
@@ -178,7 +178,7 @@ private:
                       std::vector<Index>& part) const {
         const Index piece = own.front(); // the least stands for it
         std::vector<Quadric> planes;
-        for (Index member : own) planes.push_back(quadrics_[member]);
+        for (Index member : own) planes.push_back(planes_[member]);
         const auto local = [&](Index i) {
             return static_cast<Index>(std::lower_bound(own.begin(), own.end(), i) - own.begin());
         };
@@ -195,11 +195,11 @@ private:
     /// no more do so.
     void rise(const ClusterLevel& below, std::size_t count) {
         const Members members(below.parent, count);
-        std::vector<Quadric> quadrics(count);
+        std::vector<Quadric> sums(count);
         std::vector<int> euler(count, 0);
         for_chunks(count, clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t i = begin; i < end; ++i) {
-                quadrics[i] = sum_of(members.of(i));
+                sums[i] = sum_of(members.of(i));
                 for (Index member : members.of(i)) euler[i] += euler_[member];
             }
         });
@@ -226,13 +226,14 @@ private:
             if (one && !any_lost) change(first, 1);
             return !one && !any_lost;
         });
-        quadrics_ = std::move(quadrics);
+        sums_ = std::move(sums);
+        planes_ = sums_;
         euler_ = std::move(euler);
     }
 
     Quadric sum_of(std::span<const Index> members) const {
         Quadric sum;
-        for (Index member : members) sum += quadrics_[member];
+        for (Index member : members) sum += planes_[member];
         return sum;
     }
 
@@ -241,8 +242,8 @@ private:
         std::vector<std::uint8_t> fits(here.size());
         for_chunks(here.size(), clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t i = begin; i < end; ++i) {
-                here.positions[i] = place_in(quadrics_[i], box_of(here.cell[i], level));
-                fits[i] = euler_[i] == 1 && quadrics_[i].rms(here.positions[i]) <= tolerance_;
+                here.positions[i] = place_in(planes_[i], box_of(here.cell[i], level));
+                fits[i] = euler_[i] == 1 && planes_[i].rms(here.positions[i]) <= tolerance_;
             }
         });
         cells.whole = eligible;
@@ -268,15 +269,16 @@ private:
     std::vector<Index> current_; // per vertex, its cluster of the level reached
     Edges edges_;
     std::vector<Index> facets_;
-    std::vector<Quadric> quadrics_; // per cluster of the level reached
-    std::vector<int> euler_;        // vertices - edges + facets of the surface inside each cluster
+    std::span<const Quadric> planes_; // per cluster of the level reached
+    std::vector<Quadric> sums_;       // ... above the deepest level
+    std::vector<int> euler_;          // vertices - edges + facets of the surface inside each cluster
 };
 
 } // namespace
 
-std::vector<ClusterLevel> build_clusters(const PolygonMesh& mesh, CellTree& tree, std::vector<Quadric> planes,
-                                         double tolerance) {
-    return Gathering(mesh, tree, std::move(planes), tolerance).run();
+std::vector<ClusterLevel> build_clusters(const PolygonMesh& mesh, CellTree& tree,
+                                         std::span<const Quadric> planes, double tolerance) {
+    return Gathering(mesh, tree, planes, tolerance).run();
 }
 
 } // namespace hsdm

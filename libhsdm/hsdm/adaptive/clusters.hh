@@ -20,7 +20,7 @@ struct ClusterLevel {
 /// `tolerance` (root mean square, the mesh's units), and what the cluster covers of the surface can shrink to
 /// a point (connected, Euler characteristic 1), so that putting one vertex for it changes no topology. Clears
 /// `whole` of the other cells. `planes`: per vertex. O(vertices * levels), parallel in parts.
-std::vector<ClusterLevel> build_clusters(const PolygonMesh& mesh, CellTree& tree, std::vector<Quadric> planes,
-                                         double tolerance);
+std::vector<ClusterLevel> build_clusters(const PolygonMesh& mesh, CellTree& tree,
+                                         std::span<const Quadric> planes, double tolerance);
 
 } // namespace hsdm
