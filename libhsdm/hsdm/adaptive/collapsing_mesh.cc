@@ -16,13 +16,15 @@ bool is_along(const Vec3& a, const Vec3& b) {
     return (a | b) > turn_cosine * a.norm() * b.norm();
 }
 
-/// A facet that faces another way than all of these may turn to one that does not.
+bool faces_along(const Vec3& normal, std::span<const Vec3> faces) {
+    return std::any_of(faces.begin(), faces.end(), [&](const Vec3& n) { return is_along(normal, n); });
+}
+
+/// A facet that faces another way than all of these may turn to one that does not. One that faces away from
+/// one, as where leaves' vertices have passed each other, must not grow.
 bool turns(const Vec3& before, const Vec3& after, std::span<const Vec3> faces) {
-    if (is_along(before, after)) return false;
-    const auto faces_along = [&](const Vec3& normal) {
-        return std::any_of(faces.begin(), faces.end(), [&](const Vec3& n) { return is_along(normal, n); });
-    };
-    return faces_along(before) || !faces_along(after);
+    if (faces_along(after, faces)) return faces_along(before, faces) && !is_along(before, after);
+    return !is_along(before, after) || (faces_along(-after, faces) && after.sqrnorm() > before.sqrnorm());
 }
 
 } // namespace
@@ -56,6 +58,13 @@ void CollapsingMesh::lock_facets() {
         if (end(s) == (start + 1 == ring.end() ? ring.front() : start[1])) continue;
         for (Index v : ring) locked_[v] = 1;
     }
+}
+
+std::vector<Index> CollapsingMesh::sides_out() const {
+    std::vector<Index> out(vertex_count(), no_index);
+    for (Index s = 0; s < side_count(); ++s)
+        if (!is_gone(s)) out[start(s)] = s;
+    return out;
 }
 
 bool CollapsingMesh::ring_of(Index side, std::vector<Index>& ring) const {
@@ -95,10 +104,10 @@ bool CollapsingMesh::suits_ring(const Vec3& place, const std::vector<Index>& rin
             std::min(thinnest, triangle_shape(at(centre), at(ring[i]), at(ring[(i + 1) % ring.size()])));
     for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
         const Vec3 &p = at(ring[i]), &q = at(ring[i + 1]);
+        const Vec3 before = triangle_normal(at(centre), p, q), after = triangle_normal(place, p, q);
         // One vertex amid three others goes even if they are on a line: nothing there could move before, and
         // the next collapse along that line takes the needle.
         if (ring.size() == 3 && !faces.empty() && triangle_shape(place, p, q) < least_shape) continue;
-        const Vec3 before = triangle_normal(at(centre), p, q), after = triangle_normal(place, p, q);
         if (turns(before, after, faces)) return false;
         thinnest_new = std::min(thinnest_new, triangle_shape(place, p, q));
     }
@@ -143,6 +152,43 @@ bool CollapsingMesh::move(Index side, const Vec3& place, std::span<const Vec3> f
     changed_[v] = 1;
     for (Index w : ring_) changed_[w] = 1;
     return true;
+}
+
+/// Triangles a b c and b a d become c a d and d b c, each in the place of one.
+bool CollapsingMesh::flip(Index side) {
+    const Index other = twin_[side];
+    if (other == no_index) return false;
+    const Index ca = previous_side(side), db = previous_side(other);
+    const Index a = start(side), b = start(other), c = start(ca), d = start(db);
+    if ((locked_[a] && locked_[b]) || !spares(a) || !spares(b) || !ring_of(ca, ring_)) return false;
+    if (std::find(ring_.begin(), ring_.end(), d) != ring_.end()) return false;
+    const Index beyond_ca = twin_[ca], beyond_db = twin_[db];
+    const auto pair_up = [&](Index s, Index t) {
+        twin_[s] = t;
+        if (t != no_index) twin_[t] = s;
+    };
+    corners_[side] = d;
+    corners_[other] = c;
+    pair_up(side, beyond_db);
+    pair_up(other, beyond_ca);
+    pair_up(ca, db);
+    touched_[facet_[side / 3]] = touched_[facet_[other / 3]] = 1;
+    --facets_[a];
+    --facets_[b];
+    ++facets_[c];
+    ++facets_[d];
+    for (Index v : {a, b, c, d}) changed_[v] = 1;
+    return true;
+}
+
+bool CollapsingMesh::unfold(Index side, std::span<const Vec3> faces) {
+    if (twin_[side] == no_index) return false;
+    const Vec3 &a = at(start(side)), &b = at(end(side));
+    const Vec3 &c = at(start(previous_side(side))), &d = at(start(previous_side(twin_[side])));
+    const auto faces_away = [&](const Vec3& n) { return faces_along(-n, faces) && !faces_along(n, faces); };
+    return (faces_away(triangle_normal(a, b, c)) || faces_away(triangle_normal(b, a, d)))
+           && faces_along(triangle_normal(c, a, d), faces) && faces_along(triangle_normal(d, b, c), faces)
+           && flip(side);
 }
 
 /// The facets round the start of a side are not what they were.

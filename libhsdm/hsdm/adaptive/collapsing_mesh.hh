@@ -30,6 +30,8 @@ public:
     Index twin(Index side) const { return twin_[side]; }
     bool is_locked(Index v) const { return locked_[v]; }
 
+    /// Per vertex one of the sides that start there, or no_index.
+    std::vector<Index> sides_out() const;
     /// The neighbours of a side's start, its end first; false if its facets are not one whole fan.
     bool ring_of(Index side, std::vector<Index>& ring) const;
 
@@ -45,6 +47,14 @@ public:
     /// Moves the start of a side by less than its shortest side, if no facet turns by 40 degrees (as above)
     /// or gets thinner than all were.
     bool move(Index side, const Vec3& place, std::span<const Vec3> faces = {});
+
+    /// Lays the edge of a side between the two vertices opposite, if there is none yet, and its ends keep
+    /// three facets. Whether the two triangles are better so is for the caller to know.
+    bool flip(Index side);
+
+    /// Flips the edge of a side beside a triangle that faces away from one of `faces`, if both then face
+    /// along one: where leaves' vertices have passed each other, the surface lies folded on itself.
+    bool unfold(Index side, std::span<const Vec3> faces);
 
     /// Has the vertex a facet that is not what it was when changes were forgotten? All have at first.
     bool has_changed(Index v) const { return changed_[v]; }

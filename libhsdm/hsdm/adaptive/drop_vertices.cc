@@ -67,14 +67,6 @@ private:
         });
     }
 
-    /// Per vertex one of the sides that start there.
-    std::vector<Index> sides_out() const {
-        std::vector<Index> out(mesh_.vertex_count(), no_index);
-        for (Index s = 0; s < mesh_.side_count(); ++s)
-            if (!mesh_.is_gone(s)) out[mesh_.start(s)] = s;
-        return out;
-    }
-
     /// Most places are looked at only when it is settled who goes: half of those that might have to wait.
     bool drop_once() {
         std::vector<Collapse> collapses = find_collapses();
@@ -96,7 +88,7 @@ private:
     }
 
     std::vector<Collapse> find_collapses() {
-        const std::vector<Index> out = sides_out();
+        const std::vector<Index> out = mesh_.sides_out();
         std::vector<std::vector<Collapse>> parts(chunk_count(out.size(), vertices_per_chunk));
         for_chunks(out.size(), vertices_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
             Room room;

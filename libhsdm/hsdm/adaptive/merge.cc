@@ -1,5 +1,6 @@
 #include "hsdm/adaptive/merge.hh"
 
+#include "hsdm/adaptive/straighten.hh"
 #include "hsdm/chunks.hh"
 
 #include <tbb/parallel_sort.h>
@@ -13,6 +14,7 @@ namespace {
 constexpr int most_sweeps = 32; // each leaves two thirds at most of what can merge
 constexpr std::size_t sides_per_chunk = 2048;
 constexpr double settled_share = 1e-3; // of the tolerance: "where planes meet"
+constexpr double straight_share = 0.1; // of the tolerance: "straight", and "flat"
 constexpr double free_share = 0.1;     // of the tolerance: "about as well"
 
 class Merging {
@@ -34,6 +36,8 @@ public:
             repeat(mergers);
         settle();
         mergers = std::move(done_);
+        for (double& tolerance : tolerance_) tolerance *= straight_share;
+        straighten(mesh_, tolerance_);
         return mesh_.write();
     }
 
@@ -53,6 +57,14 @@ private:
             const Vec3 place = planes_[v].minimum();
             if (planes_[v].rms(place) < was) mesh_.move(s, place, faces_of(v, v));
         }
+        for (Index s = 0; s < mesh_.side_count(); ++s)
+            if (!mesh_.is_gone(s)) unfold(s);
+    }
+
+    void unfold(Index side) {
+        const Index a = mesh_.start(side), b = mesh_.end(side);
+        if (planes_[a].has_shared() && planes_[b].has_shared() && tolerance_[a] > 0 && tolerance_[b] > 0)
+            mesh_.unfold(side, faces_of(a, b));
     }
 
     /// What facets round two vertices that are to be one should face; nothing if not all is known.

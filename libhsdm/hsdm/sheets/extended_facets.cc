@@ -2,6 +2,7 @@
 
 #include "hsdm/chunks.hh"
 #include "hsdm/facets/doublets.hh"
+#include "hsdm/sheets/reach_creases.hh"
 #include "hsdm/sheets/settle_crossings.hh"
 #include "hsdm/sheets/shared_corners.hh"
 
@@ -309,6 +310,11 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     const Midpoints midpoints(lattice, sets, crossings, links, fans, h, vertices);
     result.mesh = facets_of(crossings, links, fans, midpoints, vertices);
     result.mesh.positions = std::move(vertices.positions);
+    if (reach_creases(result.mesh, h, vertices) > 0) { // quads may fold elsewhere
+        vertices.positions = std::move(result.mesh.positions);
+        result.mesh = facets_of(crossings, links, fans, midpoints, vertices);
+        result.mesh.positions = std::move(vertices.positions);
+    }
     add_properties(vertices, result.mesh);
     result.midpoints = midpoints.count();
     result.crossings = crossings.crossings.size();

@@ -17,6 +17,7 @@ constexpr double hold = 0.002;        // of the largest eigenvalue: pull to the 
 constexpr double side_gap = 0.02;     // voxels: half the least distance between two sides cut apart
 constexpr double farthest_out = 0.5;  // voxels, of vertices that leave theirs
 constexpr double clear_corner = 0.03; // voxels: root mean square of what a corner's planes may miss it by
+constexpr double clear_crease = 0.01; // ... and a crease's, of a vertex that moves there later
 constexpr double new_sheet_cosine = 0.77; // normals farther apart than 40 degrees belong to different sheets
 
 struct Plane {
@@ -166,6 +167,7 @@ public:
           crosses_(crosses) {}
 
     std::vector<VertexPositions::Beyond> beyond;
+    std::vector<VertexPositions::OnCrease> on_creases;
 
     void place(Index fan, VertexPositions& result) {
         gather(fan);
@@ -179,7 +181,13 @@ public:
         }
         if (!inside(solution.position, problem_) && !may_leave(solution.position)) {
             note_corner(fan, solution);
+            const Vec3 unclamped = solution.position;
             result.is_clamped[fan] = keep_inside(solution);
+            if (result.is_clamped[fan] && sheets == 2
+                && meets_clearly(2, solution, unclamped, clear_crease)) {
+                const auto& normals = SheetNormals(problem_.planes).normals;
+                on_creases.push_back({fan, unclamped, {normals[0], normals[1]}});
+            }
         }
         result.positions[fan] = solution.position;
         const bool upward = (solution.steep | problem_.planes[0].normal) > 0;
@@ -288,11 +296,15 @@ private:
         return true;
     }
 
+    /// Do the planes of as many sheets meet at a position near by?
+    bool meets_clearly(int sheets, const Solution& solution, const Vec3& position, double clear) const {
+        return solution.rank == sheets && inside(position, problem_, -farthest_out)
+               && misfit(position, problem_) <= clear * problem_.size;
+    }
+
     /// For the voxels around, whose own vertices may stand for this corner.
     void note_corner(Index fan, const Solution& solution) {
-        if (solution.rank < 3 || !inside(solution.position, problem_, -farthest_out)
-            || misfit(solution.position, problem_) > clear_corner * problem_.size)
-            return;
+        if (!meets_clearly(3, solution, solution.position, clear_corner)) return;
         const SheetNormals sheets(problem_.planes);
         if (sheets.count < 3) return;
         const VoxelCoord step = step_to(solution.position);
@@ -419,12 +431,15 @@ VertexPositions place_vertices(const OctreeLevel& level, const CornerLattice& la
     result.is_clamped.resize(fans.size());
     const auto crosses = sets_that_cross(lattice, sets, related, crossings, fans);
     std::vector<std::vector<VertexPositions::Beyond>> beyond(chunk_count(fans.size(), fans_per_chunk));
+    std::vector<std::vector<VertexPositions::OnCrease>> on_creases(beyond.size());
     for_chunks(fans.size(), fans_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         Placer placer(level, lattice, sets, related, crossings, fans, crosses);
         for (std::size_t v = begin; v < end; ++v) placer.place(static_cast<Index>(v), result);
         beyond[chunk] = std::move(placer.beyond);
+        on_creases[chunk] = std::move(placer.on_creases);
     });
     result.beyond = joined(beyond);
+    result.on_creases = joined(on_creases);
     result.clamped = static_cast<std::size_t>(std::ranges::count(result.is_clamped, 1));
     return result;
 }

@@ -25,6 +25,13 @@ struct VertexPositions {
         std::uint8_t crossed; ///< bit w: the voxel along the axes of w only has an edge crossed by the sheets
     };
     std::vector<Beyond> beyond; ///< by ascending fan
+    /// Clamped vertices, and where their two sheets meet, up to half a voxel outside.
+    struct OnCrease {
+        Index fan;
+        Vec3 position;
+        std::array<Vec3, 2> normals; ///< of the two sheets
+    };
+    std::vector<OnCrease> on_creases; ///< by ascending fan
 };
 
 /// Least squares over the planes of the fan's crossings and of the voxel's own sets, towards their mean
