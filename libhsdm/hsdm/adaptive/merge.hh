@@ -20,10 +20,10 @@ struct Merger {
 /// by no more than the smaller `tolerance` of both (root mean square, the mesh's units; a vertex with 0
 /// stays, and nothing merges into it); the neighbour moves there unless it is as good where it is, and stands
 /// for both from then on. A 2-manifold keeps its topology (link condition), no facet turns, none gets thinner
-/// than all were; what changes comes out as triangles. `planes` and `tolerance` have an entry per vertex.
-/// `mergers`: those made; if there are some before, of the same mesh with larger tolerances,
-/// these are repeated as far as tolerances allow and others are looked for only beside those that cannot be.
-/// O(n log n) in each of two times 32 sweeps at most, of fewer edges each.
+/// than all were; what changes comes out as triangles. Vertices that then carry nothing go (straighten).
+/// `planes` and `tolerance` have an entry per vertex. `mergers`: those made; if there are some before, of the
+/// same mesh with larger tolerances, these are repeated as far as tolerances allow and others are looked for
+/// only beside those that cannot be. O(n log n) in each of two times 32 sweeps at most, of fewer edges each.
 CollapsedMesh merge_vertices(CollapsingMesh mesh, std::vector<Quadric> planes, std::vector<double> tolerance,
                              std::vector<Merger>& mergers);
 

@@ -18,6 +18,7 @@ constexpr double side_gap = 0.02;     // voxels: half the least distance between
 constexpr double farthest_out = 0.5;  // voxels, of vertices that leave theirs
 constexpr double clear_corner = 0.03; // voxels: root mean square of what a corner's planes may miss it by
 constexpr double clear_crease = 0.01; // ... and a crease's, of a vertex that moves there later
+constexpr double crease_out = 0.25;   // voxels, of such a vertex
 constexpr double new_sheet_cosine = 0.77; // normals farther apart than 40 degrees belong to different sheets
 
 struct Plane {
@@ -184,9 +185,9 @@ public:
             const Vec3 unclamped = solution.position;
             result.is_clamped[fan] = keep_inside(solution);
             if (result.is_clamped[fan] && sheets == 2
-                && meets_clearly(2, solution, unclamped, clear_crease)) {
-                const auto& normals = SheetNormals(problem_.planes).normals;
-                on_creases.push_back({fan, unclamped, {normals[0], normals[1]}});
+                && meet(2, solution, unclamped, crease_out, clear_crease)) {
+                const SheetNormals both(problem_.planes);
+                on_creases.push_back({fan, unclamped, {both.normals[0], both.normals[1]}});
             }
         }
         result.positions[fan] = solution.position;
@@ -296,15 +297,15 @@ private:
         return true;
     }
 
-    /// Do the planes of as many sheets meet at a position near by?
-    bool meets_clearly(int sheets, const Solution& solution, const Vec3& position, double clear) const {
-        return solution.rank == sheets && inside(position, problem_, -farthest_out)
+    /// Do the planes of as many sheets meet there, at most so many voxels outside, and so well?
+    bool meet(int sheets, const Solution& solution, const Vec3& position, double out, double clear) const {
+        return solution.rank == sheets && inside(position, problem_, -out)
                && misfit(position, problem_) <= clear * problem_.size;
     }
 
     /// For the voxels around, whose own vertices may stand for this corner.
     void note_corner(Index fan, const Solution& solution) {
-        if (!meets_clearly(3, solution, solution.position, clear_corner)) return;
+        if (!meet(3, solution, solution.position, farthest_out, clear_corner)) return;
         const SheetNormals sheets(problem_.planes);
         if (sheets.count < 3) return;
         const VoxelCoord step = step_to(solution.position);

@@ -25,7 +25,7 @@ struct VertexPositions {
         std::uint8_t crossed; ///< bit w: the voxel along the axes of w only has an edge crossed by the sheets
     };
     std::vector<Beyond> beyond; ///< by ascending fan
-    /// Clamped vertices, and where their two sheets meet, up to half a voxel outside.
+    /// Clamped vertices, and where their two sheets meet, up to a quarter of a voxel outside.
     struct OnCrease {
         Index fan;
         Vec3 position;
