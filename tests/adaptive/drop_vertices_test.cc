@@ -46,7 +46,7 @@ TEST_CASE("a tube keeps the vertices of its rims alone", "[adaptive]") {
     const PolygonMesh fine = tube(48, 12);
     const SurfaceWalk surface(fine);
     const std::vector<Drop> drops = find_drops(CollapsingMesh(fine), surface, 0.03);
-    auto [mesh, stands_for] =
+    auto [mesh, stands_for, flipped] =
         drop_vertices(CollapsingMesh(fine), drops, std::vector<std::uint8_t>(fine.vertex_count(), 1));
     std::size_t inner = 0;
     for (Index v = 0; v < stands_for.size(); ++v) {

@@ -152,7 +152,7 @@ TEST_CASE("mergers are repeated as far as tolerances allow", "[adaptive]") {
 
     for (Index v = 0; v < tolerance.size(); v += 5) tolerance[v] = 0;
     for (Index v = 1; v < tolerance.size(); v += 5) tolerance[v] = 0.01;
-    const auto [fewer, stands_for] = merge_vertices(start, planes, tolerance, mergers);
+    const auto [fewer, stands_for, flipped] = merge_vertices(start, planes, tolerance, mergers);
     CHECK(kept(stands_for) <= before.vertex_count() - mergers.size()); // some are straightened away
     CHECK(kept(stands_for) > kept(found.stands_for));
     CHECK(kept(stands_for) < before.vertex_count() / 2);

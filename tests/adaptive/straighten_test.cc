@@ -161,3 +161,29 @@ TEST_CASE("where a vertex has passed another the surface is unfolded by edges", 
     CHECK(faces_down(unfolded) == 0);
     check_sound(unfolded, 16);
 }
+
+TEST_CASE("what cannot go leaves edges as they were, at borders too", "[adaptive]") {
+    // A sheet whose vertices but one are at the border or may not give way.
+    PolygonMesh mesh;
+    mesh.positions = {{0, 0, 0}, {4, 0, 0}, {4.5, 2, 0}, {4, 4, 0}, {0, 4, 0}, {-0.5, 2, 0}, {2, 2, 0}};
+    for (Index i = 0; i < 6; ++i) mesh.add_facet(std::array<Index, 3>{6, i, (i + 1) % 6});
+    for (const bool all : {false, true}) {
+        std::vector<double> reach(7, all ? 0.01 : 0.0);
+        reach[6] = 0.01;
+        CollapsingMesh sheet(mesh);
+        CHECK(straighten(sheet, reach) == 0);
+        const CollapsedMesh result = sheet.write();
+        CHECK(result.mesh.corners == mesh.corners);
+        for (Index v = 0; v < 7; ++v) CHECK(result.stands_for[v] == v);
+    }
+    // Amid a star, with points that nothing may merge into: onto one of the others.
+    const PolygonMesh closed = prism(star(4), no_index);
+    std::vector<double> reach(closed.vertex_count(), 0.0);
+    reach[16] = reach[17] = reach[1] = 0.01;
+    CollapsingMesh half(closed);
+    straighten(half, reach);
+    const CollapsedMesh result = half.write();
+    for (Index v = 0; v < closed.vertex_count(); ++v)
+        if (result.stands_for[v] != v) CHECK(reach[result.stands_for[v]] > 0);
+    check_sound(result.mesh, signed_volume(closed));
+}

@@ -9,8 +9,9 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t most_facets = 24; // of a vertex: bounds the work
-constexpr double turn_cosine = 0.77;    // normals turn by less than 40 degrees
+constexpr std::size_t most_facets = 24;  // of a vertex: bounds the work
+constexpr std::size_t most_flipped = 64; // of one that flips give facets
+constexpr double turn_cosine = 0.77;     // normals turn by less than 40 degrees
 
 bool is_along(const Vec3& a, const Vec3& b) {
     return (a | b) > turn_cosine * a.norm() * b.norm();
@@ -36,7 +37,8 @@ CollapsingMesh::CollapsingMesh(const PolygonMesh& mesh)
       facets_(mesh.vertex_count(), 0),
       locked_(mesh.vertex_count(), 0),
       changed_(mesh.vertex_count(), 1),
-      touched_(mesh.facet_count(), 0) {
+      touched_(mesh.facet_count(), 0),
+      flipped_(mesh.vertex_count(), 0) {
     std::iota(stands_for_.begin(), stands_for_.end(), Index{0});
     const Triangulation cut = triangulate(mesh);
     facet_ = facet_of_triangle(cut);
@@ -104,10 +106,10 @@ bool CollapsingMesh::suits_ring(const Vec3& place, const std::vector<Index>& rin
             std::min(thinnest, triangle_shape(at(centre), at(ring[i]), at(ring[(i + 1) % ring.size()])));
     for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
         const Vec3 &p = at(ring[i]), &q = at(ring[i + 1]);
-        const Vec3 before = triangle_normal(at(centre), p, q), after = triangle_normal(place, p, q);
         // One vertex amid three others goes even if they are on a line: nothing there could move before, and
         // the next collapse along that line takes the needle.
         if (ring.size() == 3 && !faces.empty() && triangle_shape(place, p, q) < least_shape) continue;
+        const Vec3 before = triangle_normal(at(centre), p, q), after = triangle_normal(place, p, q);
         if (turns(before, after, faces)) return false;
         thinnest_new = std::min(thinnest_new, triangle_shape(place, p, q));
     }
@@ -154,14 +156,22 @@ bool CollapsingMesh::move(Index side, const Vec3& place, std::span<const Vec3> f
     return true;
 }
 
-/// Triangles a b c and b a d become c a d and d b c, each in the place of one.
 bool CollapsingMesh::flip(Index side) {
     const Index other = twin_[side];
     if (other == no_index) return false;
-    const Index ca = previous_side(side), db = previous_side(other);
+    const Index ca = previous_side(side);
+    const Index a = start(side), b = start(other), c = start(ca), d = start(previous_side(other));
+    if ((locked_[a] && locked_[b]) || (locked_[c] && locked_[d])) return false;
+    if (!spares(a) || !spares(b) || std::max(facets_[c], facets_[d]) >= most_flipped) return false;
+    if (!ring_of(ca, ring_) || std::find(ring_.begin(), ring_.end(), d) != ring_.end()) return false;
+    turn_edge(side);
+    return true;
+}
+
+/// Triangles a b c and b a d become c a d and d b c, each in the place of one.
+void CollapsingMesh::turn_edge(Index side) {
+    const Index other = twin_[side], ca = previous_side(side), db = previous_side(other);
     const Index a = start(side), b = start(other), c = start(ca), d = start(db);
-    if ((locked_[a] && locked_[b]) || !spares(a) || !spares(b) || !ring_of(ca, ring_)) return false;
-    if (std::find(ring_.begin(), ring_.end(), d) != ring_.end()) return false;
     const Index beyond_ca = twin_[ca], beyond_db = twin_[db];
     const auto pair_up = [&](Index s, Index t) {
         twin_[s] = t;
@@ -177,8 +187,7 @@ bool CollapsingMesh::flip(Index side) {
     --facets_[b];
     ++facets_[c];
     ++facets_[d];
-    for (Index v : {a, b, c, d}) changed_[v] = 1;
-    return true;
+    for (Index v : {a, b, c, d}) changed_[v] = flipped_[v] = 1;
 }
 
 bool CollapsingMesh::unfold(Index side, std::span<const Vec3> faces) {
@@ -186,8 +195,8 @@ bool CollapsingMesh::unfold(Index side, std::span<const Vec3> faces) {
     const Vec3 &a = at(start(side)), &b = at(end(side));
     const Vec3 &c = at(start(previous_side(side))), &d = at(start(previous_side(twin_[side])));
     const auto faces_away = [&](const Vec3& n) { return faces_along(-n, faces) && !faces_along(n, faces); };
-    return (faces_away(triangle_normal(a, b, c)) || faces_away(triangle_normal(b, a, d)))
-           && faces_along(triangle_normal(c, a, d), faces) && faces_along(triangle_normal(d, b, c), faces)
+    if (!faces_away(triangle_normal(a, b, c)) && !faces_away(triangle_normal(b, a, d))) return false;
+    return faces_along(triangle_normal(c, a, d), faces) && faces_along(triangle_normal(d, b, c), faces)
            && flip(side);
 }
 
@@ -228,7 +237,7 @@ CollapsedMesh CollapsingMesh::write() {
     kept.positions = std::move(positions_);
     for (Index& v : stands_for_)
         while (stands_for_[v] != v) v = stands_for_[v];
-    return {std::move(kept), std::move(stands_for_)};
+    return {std::move(kept), std::move(stands_for_), std::move(flipped_)};
 }
 
 } // namespace hsdm

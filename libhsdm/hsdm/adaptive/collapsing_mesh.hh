@@ -10,7 +10,8 @@ namespace hsdm {
 /// What is left of a mesh. Vertices for which others stand are isolated.
 struct CollapsedMesh {
     PolygonMesh mesh;
-    std::vector<Index> stands_for; ///< per vertex the one that stands for it now: itself or another
+    std::vector<Index> stands_for;     ///< per vertex the one that stands for it now: itself or another
+    std::vector<std::uint8_t> flipped; ///< per vertex, was an edge of its triangles laid the other way?
 };
 
 /// A mesh, cut into triangles, of which inner vertices merge into neighbours. Side s runs from start(s) to
@@ -38,7 +39,8 @@ public:
     /// Whether the start of a side may become its end, at a place: a 2-manifold stays one (link condition),
     /// no facet turns by 40 degrees, none gets thinner than all were. The rings are those of its two ends.
     /// `faces`: the normals that facets there should have, if those are known: then one that has none of them
-    /// may turn to have one, and what a vertex amid three others leaves may be a needle.
+    /// may turn to have one, one that faces away from one must not grow, and what a vertex amid three others
+    /// leaves may be a needle.
     bool may_collapse(const std::vector<Index>& ring, const std::vector<Index>& ring_to, const Vec3& place,
                       std::span<const Vec3> faces = {}) const;
     /// Makes the start of a side its end, at a place, if that may be; false if it may not.
@@ -48,12 +50,17 @@ public:
     /// or gets thinner than all were.
     bool move(Index side, const Vec3& place, std::span<const Vec3> faces = {});
 
-    /// Lays the edge of a side between the two vertices opposite, if there is none yet, and its ends keep
-    /// three facets. Whether the two triangles are better so is for the caller to know.
+    /// Lays the edge of a side, which is not gone, between the two vertices opposite, if they have none yet,
+    /// the one that faces the side is no border vertex, neither gets more than 64 facets, and the edge's ends
+    /// keep three. Whether the two triangles are better so is for the caller to know. The new edge is that of
+    /// previous_side(side).
     bool flip(Index side);
+    /// Puts back the edge that was flipped last of those that are not back; `laid`: a side of the new one.
+    void take_back_flip(Index laid) { turn_edge(laid); }
 
     /// Flips the edge of a side beside a triangle that faces away from one of `faces`, if both then face
-    /// along one: where leaves' vertices have passed each other, the surface lies folded on itself.
+    /// along one, however thin they are: where leaves' vertices have passed each other, the surface lies
+    /// folded on itself.
     bool unfold(Index side, std::span<const Vec3> faces);
 
     /// Has the vertex a facet that is not what it was when changes were forgotten? All have at first.
@@ -71,6 +78,7 @@ private:
                     std::span<const Vec3> faces, double& thinnest, double& thinnest_new) const;
     void touch(Index side);
     void remove(Index side);
+    void turn_edge(Index side);
 
     const PolygonMesh& mesh_; // whose facets they are
     std::vector<Vec3> positions_;
@@ -80,6 +88,7 @@ private:
     std::vector<Index> facets_;                   // per vertex, how many
     std::vector<std::uint8_t> border_, locked_;   // per vertex
     std::vector<std::uint8_t> changed_, touched_; // per vertex; per facet
+    std::vector<std::uint8_t> flipped_;           // per vertex
     std::vector<Index> ring_, ring_to_, sides_;   // of one collapse
 };
 

@@ -58,7 +58,7 @@ private:
             if (planes_[v].rms(place) < was) mesh_.move(s, place, faces_of(v, v));
         }
         for (Index s = 0; s < mesh_.side_count(); ++s)
-            if (!mesh_.is_gone(s)) unfold(s);
+            if (!mesh_.is_gone(s) && mesh_.twin(s) != no_index && s < mesh_.twin(s)) unfold(s);
     }
 
     void unfold(Index side) {

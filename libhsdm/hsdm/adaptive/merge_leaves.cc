@@ -75,12 +75,12 @@ public:
 
 private:
     void merge_once(const MergeStep& step) {
-        auto [mesh, stands_for] = step.merge(tolerance_);
+        auto [mesh, stands_for, flipped] = step.merge(tolerance_);
         result_.mesh = std::move(mesh);
         std::vector<std::uint8_t> merged(stands_for.size(), 0);
         for (Index v = 0; v < stands_for.size(); ++v)
-            merged[stands_for[v]] |=
-                stands_for[v] != v || result_.mesh.positions[v] != leaves_.mesh.positions[v];
+            merged[stands_for[v]] |= stands_for[v] != v || flipped[v] != 0
+                                     || result_.mesh.positions[v] != leaves_.mesh.positions[v];
         const std::vector<Index> leaf = drop_replaced(result_.mesh, stands_for);
         result_.vertex = std::move(stands_for);
         has_merged_ = picked(merged, leaf);

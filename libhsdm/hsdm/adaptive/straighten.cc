@@ -32,8 +32,7 @@ private:
     /// crease's end, and where its other end is: 0 on a flat place.
     bool may_go(Index side) {
         vertex_ = mesh_.start(side);
-        if (mesh_.is_locked(vertex_) || !gives_way(vertex_) || !mesh_.ring_of(side, ring_)
-            || ring_.size() > most_neighbours)
+        if (!gives_way(vertex_) || !mesh_.ring_of(side, ring_) || ring_.size() > most_neighbours)
             return false;
         normals_.clear();
         for (std::size_t i = 0; i < ring_.size(); ++i)
@@ -54,7 +53,7 @@ private:
     }
 
     /// May others merge into it, and it into others?
-    bool gives_way(Index v) const { return reach_[v] > 0; }
+    bool gives_way(Index v) const { return reach_[v] > 0 && !mesh_.is_locked(v); }
 
     /// Does a crease go straight on at the vertex?
     bool is_straight(const Vec3& a, const Vec3& b) const {
@@ -73,6 +72,7 @@ private:
                     : !turn_edges(0, other_end_, false) || !turn_edges(other_end_, ring_.size(), false))
             return false;
         if (!is_ring) chain_ = {ring_[0], ring_[other_end_]};
+        if (std::ranges::none_of(chain_, [&](Index onto) { return gives_way(onto); })) return false;
         side = side_to(side, chain_[0]);
         flipped_.clear();
         bool goes = true;
@@ -85,7 +85,7 @@ private:
                    return gives_way(onto) && mesh_.collapse(side_to(side, onto), at(onto));
                });
         while (!goes && !flipped_.empty()) {
-            mesh_.flip(flipped_.back());
+            mesh_.take_back_flip(flipped_.back());
             flipped_.pop_back();
         }
         return goes;

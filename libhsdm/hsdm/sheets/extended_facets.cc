@@ -312,6 +312,7 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     result.mesh.positions = std::move(vertices.positions);
     if (reach_creases(result.mesh, h, vertices) > 0) { // quads may fold elsewhere
         vertices.positions = std::move(result.mesh.positions);
+        result.mesh = PolygonMesh(); // before there is another
         result.mesh = facets_of(crossings, links, fans, midpoints, vertices);
         result.mesh.positions = std::move(vertices.positions);
     }

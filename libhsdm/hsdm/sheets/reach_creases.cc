@@ -76,72 +76,108 @@ public:
     Reaching(PolygonMesh& mesh, double voxel_size, const std::vector<VertexPositions::OnCrease>& on_creases)
         : mesh_(mesh),
           voxel_size_(voxel_size),
-          was_(mesh.positions.size()),
-          moved_(mesh.positions.size(), 0) {
-        std::vector<std::uint8_t> wanted(mesh.positions.size(), 0);
-        for (const auto& v : on_creases) wanted[v.fan] = 1;
-        const FacetsAt at(mesh, wanted);
+          on_creases_(on_creases),
+          wanted_(marked(mesh.positions.size(), on_creases)),
+          at_(mesh, wanted_),
+          beside_(facets_beside()),
+          moved_(on_creases.size(), 0) {
+        for (const auto& v : on_creases) was_.push_back(mesh.positions[v.fan]);
+    }
+
+    /// Returns, per wanted vertex, whether it has moved.
+    const std::vector<std::uint8_t>& run() {
         bool any = true; // one that moves may make way for another
         for (int round = 0; round < most_rounds && any; ++round) {
             any = false;
-            for (const auto& v : on_creases) any |= !moved_[v.fan] && move(v, at);
+            for (std::size_t i = 0; i < moved_.size(); ++i)
+                if (!moved_[i] && suits_all(i)) {
+                    mesh_.positions[on_creases_[i].fan] = on_creases_[i].position;
+                    moved_[i] = 1;
+                    any = true;
+                }
         }
+        while (take_back_intersecting()) // each time one at least
+            while (take_back_unsuited()) {
+            }
+        return moved_;
     }
 
-    const std::vector<std::uint8_t>& moved() const { return moved_; }
+private:
+    static std::vector<std::uint8_t> marked(std::size_t count,
+                                            const std::vector<VertexPositions::OnCrease>& vertices) {
+        std::vector<std::uint8_t> result(count, 0);
+        for (const auto& v : vertices) result[v.fan] = 1;
+        return result;
+    }
 
-    /// Facets that share vertices with those that changed are looked at. False if nothing had to go back.
-    bool take_back() {
-        std::vector<std::uint8_t> beside(moved_.size(), 0);
-        for (Index f : FacetsAt(mesh_, moved_).facets())
+    /// Those that share vertices with facets at wanted vertices.
+    std::vector<Index> facets_beside() const {
+        std::vector<std::uint8_t> beside(wanted_.size(), 0);
+        for (Index f : at_.facets())
             for (Index v : mesh_.facet(f)) beside[v] = 1;
-        const std::vector<Index> facets = FacetsAt(mesh_, beside).facets();
+        return FacetsAt(mesh_, beside).facets();
+    }
+
+    bool take_back(std::size_t i) {
+        mesh_.positions[on_creases_[i].fan] = was_[i];
+        moved_[i] = 0;
+        return true;
+    }
+
+    bool take_back_intersecting() {
         bool any = false;
-        for (const auto& pair : find_self_intersections(part_of(mesh_, facets)).facet_pairs)
+        for (const auto& pair : find_self_intersections(part_of(mesh_, beside_)).facet_pairs)
             for (Index f : pair)
-                for (Index v : mesh_.facet(facets[f])) {
-                    if (!moved_[v]) continue;
-                    mesh_.positions[v] = was_[v];
-                    moved_[v] = 0;
-                    any = true;
+                for (Index v : mesh_.facet(beside_[f])) {
+                    if (!wanted_[v]) continue;
+                    const auto at =
+                        std::ranges::lower_bound(on_creases_, v, {}, &VertexPositions::OnCrease::fan);
+                    const auto i = static_cast<std::size_t>(at - on_creases_.begin());
+                    if (moved_[i]) any = take_back(i);
                 }
         return any;
     }
 
-private:
-    bool move(const VertexPositions::OnCrease& to, const FacetsAt& at) {
-        const Vec3 from = mesh_.positions[to.fan];
-        mesh_.positions[to.fan] = to.position;
-        if (!at.all_of(to.fan, [&](Index f) { return suits(f, to, from); })) {
-            mesh_.positions[to.fan] = from;
-            return false;
-        }
-        was_[to.fan] = from;
-        moved_[to.fan] = 1;
-        return true;
+    /// Those whose facets are not what they should be, now that others have gone back.
+    bool take_back_unsuited() {
+        bool any = false;
+        for (std::size_t i = 0; i < moved_.size(); ++i)
+            if (moved_[i] && !suits_all(i)) any = take_back(i);
+        return any;
     }
 
-    bool suits(Index facet, const VertexPositions::OnCrease& to, const Vec3& from) {
-        ring_.clear();
+    bool suits_all(std::size_t i) {
+        return at_.all_of(on_creases_[i].fan, [&](Index f) { return suits(f, i); });
+    }
+
+    /// Are a facet's sides, normal and triangles as they should be with one of its vertices on its crease, or
+    /// no worse than with it where it was?
+    bool suits(Index facet, std::size_t i) {
+        const VertexPositions::OnCrease& to = on_creases_[i];
+        after_.clear();
         before_.clear();
         for (Index v : mesh_.facet(facet)) {
-            const Vec3& p = mesh_.positions[v];
-            before_.push_back(v == to.fan ? from : p);
-            const double side = (p - to.position).norm();
-            if (v != to.fan && side < nearest * voxel_size_ && side < (p - from).norm()) return false;
-            ring_.push_back(p);
+            before_.push_back(v == to.fan ? was_[i] : mesh_.positions[v]);
+            after_.push_back(v == to.fan ? to.position : mesh_.positions[v]);
+            const double side = (after_.back() - to.position).norm();
+            if (v != to.fan && side < nearest * voxel_size_ && side < (after_.back() - was_[i]).norm())
+                return false;
         }
-        const Vec3 now = area_of(ring_), then = area_of(before_);
+        const Vec3 now = area_of(after_), then = area_of(before_);
         if ((now | then) <= turn_cosine * now.norm() * then.norm()) return false;
-        const double is = along(ring_, to.normals);
+        const double is = along(after_, to.normals);
         return is > turn_cosine || is >= along(before_, to.normals);
     }
 
     PolygonMesh& mesh_;
     double voxel_size_;
-    std::vector<Vec3> was_;           // per vertex, where it was if it moved
-    std::vector<Vec3> ring_, before_; // of a facet
-    std::vector<std::uint8_t> moved_; // per vertex
+    const std::vector<VertexPositions::OnCrease>& on_creases_;
+    std::vector<std::uint8_t> wanted_; // per vertex
+    FacetsAt at_;                      // those
+    std::vector<Index> beside_;
+    std::vector<std::uint8_t> moved_;  // per wanted vertex, like
+    std::vector<Vec3> was_;            // where it was
+    std::vector<Vec3> after_, before_; // of a facet
 };
 
 } // namespace
@@ -149,14 +185,10 @@ private:
 std::size_t reach_creases(PolygonMesh& mesh, double voxel_size, VertexPositions& vertices) {
     if (vertices.on_creases.empty()) return 0;
     Reaching reaching(mesh, voxel_size, vertices.on_creases);
-    for (int round = 0; round < most_rounds && reaching.take_back(); ++round) {
-    }
-    std::size_t count = 0;
-    for (const auto& v : vertices.on_creases)
-        if (reaching.moved()[v.fan]) {
-            vertices.is_clamped[v.fan] = 0;
-            ++count;
-        }
+    const std::vector<std::uint8_t>& moved = reaching.run();
+    for (std::size_t i = 0; i < moved.size(); ++i)
+        if (moved[i]) vertices.is_clamped[vertices.on_creases[i].fan] = 0;
+    const auto count = static_cast<std::size_t>(std::ranges::count(moved, 1));
     vertices.clamped -= count;
     return count;
 }

@@ -6,11 +6,12 @@
 
 namespace hsdm {
 
-/// Moves vertices that were kept in their voxels to their creases, one after the other, where each of their
-/// facets then faces along one of the two sheets (45 degrees), or does when cut in triangles, and they come
-/// no closer than a tenth of a voxel to other vertices of these; and back where facets intersect. `mesh`: the
-/// facets, vertices numbered as in `vertices`. Returns how many moved; they are no longer clamped. O(corners
-/// + c log c) for c corners of facets at such vertices and beside.
+/// Moves vertices that were kept in their voxels to their creases, one after the other, where no facet turns
+/// by 45 degrees, each then faces along one of the two sheets (45 degrees), or rather so than before, and
+/// they come no closer than a tenth of a voxel to other vertices of these; and back where facets that share
+/// vertices with theirs intersect. `mesh`: the facets, vertices numbered as in `vertices`. Returns how many
+/// moved; they are no longer clamped. O(corners + c log c) for c corners of facets at such vertices and
+/// beside.
 std::size_t reach_creases(PolygonMesh& mesh, double voxel_size, VertexPositions& vertices);
 
 } // namespace hsdm
