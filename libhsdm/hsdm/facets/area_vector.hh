@@ -14,6 +14,14 @@ inline Vec3 area_vector(const PolygonMesh& mesh, std::span<const Index> facet) {
     return sum;
 }
 
+/// The same of a polygon's corners.
+inline Vec3 area_vector(std::span<const Vec3> corners) {
+    Vec3 sum(0, 0, 0);
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+        sum += (corners[i] - corners[0]) % (corners[i + 1] - corners[0]);
+    return sum;
+}
+
 /// The direction of a vector; zero stays zero.
 inline Vec3 unit(const Vec3& v) {
     const double length = v.norm();

@@ -1,5 +1,6 @@
 #include "hsdm/sheets/reach_creases.hh"
 
+#include "hsdm/facets/area_vector.hh"
 #include "hsdm/facets/part_of.hh"
 #include "hsdm/quality/self_intersections.hh"
 
@@ -43,12 +44,6 @@ public:
 private:
     std::vector<std::pair<Index, Index>> pairs_; // vertex and facet
 };
-
-Vec3 area_of(const std::vector<Vec3>& ring) {
-    Vec3 sum(0, 0, 0);
-    for (std::size_t i = 1; i + 1 < ring.size(); ++i) sum += (ring[i] - ring[0]) % (ring[i + 1] - ring[0]);
-    return sum;
-}
 
 /// The cosine of a facet's normal with the nearer one of two; of a facet of several triangles the least, if
 /// they all end at the corner for which that is largest: with three corners on a crease a quad has a straight
@@ -163,7 +158,7 @@ private:
             if (v != to.fan && side < nearest * voxel_size_ && side < (after_.back() - was_[i]).norm())
                 return false;
         }
-        const Vec3 now = area_of(after_), then = area_of(before_);
+        const Vec3 now = area_vector(after_), then = area_vector(before_);
         if ((now | then) <= turn_cosine * now.norm() * then.norm()) return false;
         const double is = along(after_, to.normals);
         return is > turn_cosine || is >= along(before_, to.normals);
