@@ -1,0 +1,53 @@
+#pragma once
+// What the AtomicFiles of this process are doing: for a program that a signal ends, which must leave nothing
+// half done and say what stands.
+
+#include <cstddef>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace hsdm {
+
+struct FilesWritten {
+    static constexpr std::size_t most_names = 16; ///< a program may write files for ever
+    std::vector<std::string> complete; ///< the first of them, by the names they were given, in order
+    std::size_t complete_count = 0;
+    std::vector<std::string> in_part; ///< streams that were begun, not ended: what they took is gone
+};
+
+/// Removes every temporary of this process, for good: from now on each AtomicFile that is made or committed
+/// waits for ever, so what is returned stays true. The caller must end the process at once. It allocates
+/// nothing. A file with several hard links, which is being overwritten, is waited for.
+const FilesWritten& abandon_files() noexcept;
+
+/// The temporaries of killed runs that were removed (see AtomicFile), once each: what has been told is
+/// forgotten.
+std::vector<std::string> take_removed_leftovers();
+
+/// The books, which AtomicFile keeps. All but lock() must be called with the lock held.
+class FileRegistry {
+public:
+    /// Never destroyed: threads may outlive main().
+    static FileRegistry& of_process();
+
+    std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
+    void add_temporary(const std::string& path) { temporaries_.push_back(path); }
+    void drop_temporary(const std::string& path) noexcept;
+    void begin_stream(const std::string& name);
+    void end_stream(const std::string& name);
+    /// To be called before the file is put in place, since it may throw; take_back() where that fails.
+    void note_complete(const std::string& name);
+    void take_back_complete() noexcept;
+    void note_leftover(std::string path) { leftovers_.push_back(std::move(path)); }
+
+private:
+    friend const FilesWritten& abandon_files() noexcept;
+    friend std::vector<std::string> take_removed_leftovers();
+
+    std::mutex mutex_;
+    std::vector<std::string> temporaries_, leftovers_;
+    FilesWritten written_;
+};
+
+} // namespace hsdm

@@ -1,0 +1,130 @@
+#include "hsdm/io/temporary_file.hh"
+
+#include "hsdm/io/file_registry.hh"
+
+#include <atomic>
+#include <cerrno>
+#include <map>
+#include <mutex>
+#include <string_view>
+#include <utility>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace hsdm {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view suffix = ".tmp";
+
+/// What of a target's name a temporary's has: its suffix must fit into the 255 bytes of a name.
+std::string name_part(const fs::path& target) {
+    constexpr std::size_t longest = 200;
+    return target.filename().string().substr(0, longest);
+}
+
+/// A name beside the target that no other process or thread uses.
+std::string temporary_name(const fs::path& target) {
+    static std::atomic<unsigned> counter{0}; // distinguishes threads; no result depends on it
+    const std::string name = '.' + name_part(target) + '.' + std::to_string(::getpid()) + '-'
+                             + std::to_string(counter++) + std::string(suffix);
+    return (target.parent_path() / name).string();
+}
+
+/// Takes one or more digits from the end.
+bool take_digits(std::string_view& text) {
+    const std::size_t last = text.find_last_not_of("0123456789");
+    const std::size_t kept = last == std::string_view::npos ? 0 : last + 1;
+    const bool any = kept < text.size();
+    text.remove_suffix(text.size() - kept);
+    return any;
+}
+
+bool take(std::string_view& text, std::string_view end) {
+    if (!text.ends_with(end)) return false;
+    text.remove_suffix(end.size());
+    return true;
+}
+
+/// NAME of `.NAME.PID-N.tmp`; empty for other names.
+std::string_view target_of(std::string_view name) {
+    if (!name.starts_with('.')) return {};
+    name.remove_prefix(1);
+    const bool ours =
+        take(name, suffix) && take_digits(name) && take(name, "-") && take_digits(name) && take(name, ".");
+    return ours ? name : std::string_view();
+}
+
+using Leftovers = std::multimap<std::string, fs::path, std::less<>>;
+
+Leftovers find_in(const fs::path& folder) {
+    Leftovers found;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder.empty() ? "." : folder, error), end; !error && entry != end;
+         entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        const std::string_view target = target_of(name);
+        if (!target.empty()) found.emplace(target, folder / name);
+    }
+    return found;
+}
+
+/// True if the name still stands for this file: a process that took it for left behind may have removed it.
+bool still_named(int descriptor) {
+    struct stat status {};
+    return ::fstat(descriptor, &status) == 0 && status.st_nlink > 0;
+}
+
+bool remove_if_left(const fs::path& path) {
+    const int descriptor = ::open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor < 0) return false;
+    struct stat status {};
+    const bool removed = ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode)
+                         && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && still_named(descriptor)
+                         && ::unlink(path.c_str()) == 0;
+    ::close(descriptor);
+    return removed;
+}
+
+} // namespace
+
+TemporaryFile make_temporary(const fs::path& target, unsigned mode) {
+    FileRegistry& registry = FileRegistry::of_process();
+    for (;;) {
+        TemporaryFile made{temporary_name(target), -1};
+        const auto lock = registry.lock();
+        registry.add_temporary(made.path); // first: whatever comes, it will be removed
+        made.descriptor = ::open(made.path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+        const int error = errno;
+        if (made.descriptor >= 0) {
+            while (::flock(made.descriptor, LOCK_EX) != 0 && errno == EINTR) {
+            } // without locks: as it is
+            if (still_named(made.descriptor)) return made;
+            ::close(made.descriptor);
+        }
+        registry.drop_temporary(made.path);
+        if (made.descriptor >= 0 || error == EEXIST) continue;
+        errno = error;
+        return {};
+    }
+}
+
+std::vector<std::string> remove_leftovers(const fs::path& target) {
+    static std::mutex mutex;
+    static std::map<fs::path, Leftovers> folders; // each as it was when this process first wrote there
+    const std::lock_guard lock(mutex);
+    const auto [folder, is_new] = folders.try_emplace(target.parent_path());
+    if (is_new) folder->second = find_in(folder->first);
+    std::vector<std::string> removed;
+    const auto [begin, end] = folder->second.equal_range(name_part(target));
+    for (auto one = begin; one != end; ++one)
+        if (remove_if_left(one->second)) removed.push_back(one->second.string());
+    folder->second.erase(begin, end);
+    return removed;
+}
+
+} // namespace hsdm
