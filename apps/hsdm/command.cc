@@ -1,8 +1,10 @@
 #include "command.hh"
 
+#include "activity.hh"
 #include "interrupt.hh"
 
 #include "hsdm/errors.hh"
+#include "hsdm/io/file_registry.hh"
 #include "hsdm/version.hh"
 
 #include <iostream>
@@ -11,7 +13,7 @@
 namespace hsdm::command {
 namespace {
 
-int guarded(const Run& run) {
+int status_of(const Run& run) {
     try {
         const int status = run();
         std::cout.flush();
@@ -23,16 +25,22 @@ int guarded(const Run& run) {
     } catch (const OptionError& error) {
         complain(error.what());
         return wrong_usage;
-    } catch (const Cancelled&) {
-        complain("cancelled; nothing was left behind");
-        return cancelled;
     } catch (const std::bad_alloc&) {
-        complain("out of memory; use a smaller --depth or a thinned cloud");
+        const std::string file = current_file();
+        complain((file.empty() ? "" : file + ": ") + out_of_memory());
         return failed;
     } catch (const std::exception& error) {
         complain(error.what());
         return failed;
     }
+}
+
+/// What a run that was killed left, and this one found in its way, is not removed in silence.
+int guarded(const Run& run) {
+    const int status = status_of(run);
+    for (const std::string& left : take_removed_leftovers())
+        complain("removed " + left + ", left by a run that was killed");
+    return status;
 }
 
 } // namespace
@@ -51,7 +59,8 @@ int run_command(int argc, char** argv) {
                "  hsdm reconstruct scan.xyz --depth 6 -o part.off --report part.json\n"
                "  hsdm info part.stl\n"
                "  hsdm compare part.off scan.ply\n"
-               "Exit status: 0 all done, 1 an input failed, 2 wrong usage, 130 cancelled.");
+               "Exit status: 0 all done, 1 an input failed, 2 wrong usage,\n             130 cancelled (128 "
+               "+ the signal).");
     Run run;
     add_reconstruct(app, run);
     add_info(app, run);
@@ -65,7 +74,7 @@ int run_command(int argc, char** argv) {
         const int status = app.exit(error, std::cout, std::cerr);
         return status == 0 ? done : wrong_usage;
     }
-    handle_interrupts();
+    handle_signals();
     return guarded(run);
 }
 

@@ -10,7 +10,7 @@
 
 namespace hsdm::command {
 
-enum Exit : int { done = 0, failed = 1, wrong_usage = 2, cancelled = 130 };
+enum Exit : int { done = 0, failed = 1, wrong_usage = 2 }; // and 128 + a signal
 
 /// Wrong usage found after parsing: its message and status 2.
 class UsageError : public std::runtime_error {

@@ -1,47 +1,130 @@
 #include "interrupt.hh"
 
+#include "activity.hh"
 #include "command.hh"
 
+#include "hsdm/io/file_registry.hh"
+
+#include <algorithm>
 #include <csignal>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string_view>
+#include <system_error>
+#include <thread>
+
+#include <poll.h>
+#include <pthread.h>
 #include <unistd.h>
 
 namespace hsdm::command {
 namespace {
 
-// A signal handler reaches nothing but static storage; it belongs to the process, as signals do.
-volatile std::sig_atomic_t noted = 0;
-volatile std::sig_atomic_t end_at_once = 0;
-
-extern "C" void note_interrupt(int) {
-    if (end_at_once || noted) {
-        constexpr char text[] = "hsdm: cancelled\n";
-        [[maybe_unused]] const auto written = write(STDERR_FILENO, text, sizeof text - 1);
-        _exit(cancelled);
+/// One line for standard error, put together without asking for memory: there may be none.
+class LastWords {
+public:
+    LastWords& operator<<(std::string_view text) {
+        const std::size_t count = std::min(text.size(), sizeof text_ - 1 - length_);
+        for (std::size_t i = 0; i < count; ++i) // names may hold anything; a terminal must not obey it
+            text_[length_ + i] =
+                static_cast<unsigned char>(text[i]) < ' ' || text[i] == '\x7f' ? '?' : text[i];
+        length_ += count;
+        return *this;
     }
-    noted = 1;
+
+    /// Past a progress bar on a terminal. A reader that reads no more does not keep the process alive.
+    void say() {
+        constexpr std::string_view wipe = "\r\033[K";
+        constexpr int patience = 100; // milliseconds
+        text_[length_++] = '\n';
+        pollfd error{STDERR_FILENO, POLLOUT, 0};
+        if (poll(&error, 1, patience) != 1) return;
+        if (isatty(STDERR_FILENO) == 1) write_some(wipe);
+        write_some({text_, length_});
+    }
+
+private:
+    static void write_some(std::string_view text) {
+        [[maybe_unused]] const auto written = write(STDERR_FILENO, text.data(), text.size());
+    }
+
+    char text_[4096]; // what a pipe that is ready takes without waiting
+    std::size_t length_ = 0;
+};
+
+void list(LastWords& words, std::string_view title, const std::vector<std::string>& names) {
+    for (const std::string& name : names) words << (&name == &names.front() ? title : ", ") << name;
+}
+
+void say_what_stands(LastWords& words, const FilesWritten& files) {
+    if (files.complete_count == 0 && files.in_part.empty()) words << "; nothing was written";
+    list(words, "; written before: ", files.complete);
+    if (files.complete_count > files.complete.size()) {
+        char more[64];
+        std::snprintf(more, sizeof more, " and %zu more", files.complete_count - files.complete.size());
+        words << more;
+    }
+    list(words, "; in part: ", files.in_part);
+}
+
+[[noreturn]] void end_by_signal(int signal) {
+    const FilesWritten& files = abandon_files();
+    LastWords words;
+    words << "hsdm: cancelled";
+    say_what_stands(words, files);
+    words.say();
+    _exit(128 + signal);
+}
+
+/// Where an exception meets code that lets none through.
+[[noreturn]] void end_by_exception() noexcept {
+    const FilesWritten& files = abandon_files();
+    LastWords words;
+    words << "hsdm: " << current_file() << (*current_file() ? ": " : "");
+    try {
+        if (const auto cause = std::current_exception()) std::rethrow_exception(cause);
+        words << "unexpected end";
+    } catch (const std::bad_alloc&) {
+        words << "out of memory";
+    } catch (const std::exception& error) {
+        words << error.what();
+    } catch (...) {
+        words << "unexpected end";
+    }
+    words << " in phase " << current_phase();
+    say_what_stands(words, files);
+    words.say();
+    _exit(failed);
+}
+
+bool is_ignored(int signal) {
+    struct sigaction action {};
+    return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
 } // namespace
 
-void handle_interrupts() {
-    struct sigaction action = {};
-    action.sa_handler = note_interrupt;
-    action.sa_flags = SA_RESTART;
-    sigemptyset(&action.sa_mask);
-    sigaction(SIGINT, &action, nullptr);
-    sigaction(SIGTERM, &action, nullptr);
-    std::signal(SIGPIPE, SIG_IGN); // a closed pipe is an error of writing, with a message and status 1
-}
-
-bool interrupted() {
-    return noted != 0;
-}
-
-InterruptEndsProcess::InterruptEndsProcess() {
-    end_at_once = 1;
-}
-InterruptEndsProcess::~InterruptEndsProcess() {
-    end_at_once = 0;
+void handle_signals() {
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
+    std::set_terminate(end_by_exception);
+    sigset_t awaited;
+    sigemptyset(&awaited);
+    for (const int signal : {SIGINT, SIGQUIT}) sigaddset(&awaited, signal);
+    for (const int signal : {SIGTERM, SIGHUP, SIGXCPU})
+        if (!is_ignored(signal)) sigaddset(&awaited, signal);
+    pthread_sigmask(SIG_BLOCK, &awaited, nullptr); // every thread that is started inherits it
+    try {
+        std::thread([awaited] {
+            int signal = 0;
+            while (sigwait(&awaited, &signal) != 0) {
+            }
+            end_by_signal(signal);
+        }).detach();
+    } catch (const std::system_error&) { // no room for a thread: the kernel ends the process as usual
+        pthread_sigmask(SIG_UNBLOCK, &awaited, nullptr);
+    }
 }
 
 } // namespace hsdm::command

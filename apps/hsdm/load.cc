@@ -1,6 +1,6 @@
 #include "load.hh"
 
-#include "interrupt.hh"
+#include "activity.hh"
 #include "summary.hh"
 
 #include "hsdm/errors.hh"
@@ -22,7 +22,7 @@ bool may_hold_mesh(const std::string& path) {
 } // namespace
 
 Loaded load(const std::string& path) {
-    const InterruptEndsProcess while_reading;
+    set_activity(path.c_str(), "read");
     Loaded loaded;
     if (may_hold_mesh(path)) {
         loaded.mesh = read_mesh(path);

@@ -1,14 +1,18 @@
 // hsdm process: a mesh through processing modules.
 
+#include "activity.hh"
 #include "command.hh"
-#include "interrupt.hh"
+#include "file_claims.hh"
+#include "reconstruct_output.hh"
 
 #include "hsdm/errors.hh"
 #include "hsdm/facets/to_mesh.hh"
+#include "hsdm/io/output_target.hh"
 #include "hsdm/io/read_mesh.hh"
 #include "hsdm/io/write_mesh.hh"
 #include "hsdm/plugin_loader.hh"
 
+#include <filesystem>
 #include <iostream>
 
 namespace hsdm::command {
@@ -17,7 +21,7 @@ namespace {
 struct ProcessArguments {
     std::string input, output, format;
     std::vector<std::string> modules;
-    bool list = false, ascii = false, quiet = false;
+    bool list = false, ascii = false, quiet = false, in_place = false;
 };
 
 int list_modules() {
@@ -33,42 +37,69 @@ int list_modules() {
     return done;
 }
 
-MeshFormat output_format(const ProcessArguments& a) {
-    try {
-        if (!a.format.empty()) return mesh_format("x." + a.format);
-        return a.output == "-" ? MeshFormat::off : mesh_format(a.output);
-    } catch (const Error& error) {
-        throw UsageError(std::string(error.what()) + "; or name the format with --format");
-    }
-}
+using Step = std::pair<Plugin, PluginRequest>;
 
-int run_process(const ProcessArguments& a) {
-    if (a.list) return list_modules();
-    if (a.input.empty() || a.output.empty() || a.modules.empty())
-        throw UsageError("process needs a mesh, -o FILE and at least one --module NAME");
-    const MeshFormat format = output_format(a);
-    std::vector<std::pair<Plugin, PluginRequest>> steps;
-    for (const std::string& text : a.modules) {
+std::vector<Step> load_steps(const std::vector<std::string>& modules) {
+    std::vector<Step> steps;
+    for (const std::string& text : modules) {
         PluginRequest request = parse_plugin_request(text);
         Plugin plugin = load_plugin(request.name);
         steps.emplace_back(std::move(plugin), std::move(request));
     }
-    const PolygonMesh facets = read_mesh(a.input);
-    if (facets.facet_count() == 0)
-        throw Error(a.input, "holds no faces; reconstruct a mesh from its points first");
-    ToMeshResult built = to_mesh(facets);
-    std::ostream& text = a.output == "-" ? std::cerr : std::cout;
-    if (built.rejected > 0)
-        std::cerr << "hsdm: " << a.input << ": " << built.rejected
-                  << " facets were left out, which no 2-manifold can hold\n";
-    for (const auto& [plugin, request] : steps) {
-        if (interrupted()) throw Cancelled();
-        const std::string summary = plugin.process(built.mesh, request.options);
-        if (!a.quiet) text << plugin.name() << ": " << summary << '\n';
+    return steps;
+}
+
+/// Throws UsageError for an output that would destroy the mesh, unless that is what was asked for.
+void check_claims(const ProcessArguments& a, const std::vector<Step>& steps) {
+    if (a.in_place) return;
+    FileClaims claims;
+    claims.reads("the mesh", a.input);
+    for (const Step& step : steps) claims.reads("the module", step.first.path());
+    claims.writes("-o " + a.output, a.output);
+    if (!a.quiet && !is_standard_output(a.output)) claims.writes("the summary", "-");
+    try {
+        claims.check();
+    } catch (const UsageError& error) {
+        throw UsageError(std::string(error.what()) + ", or overwrite the mesh with --in-place");
     }
+}
+
+ToMeshResult read_input(const std::string& input) {
+    set_activity(input.c_str(), "read");
+    const PolygonMesh facets = read_mesh(input);
+    if (facets.facet_count() == 0)
+        throw Error(input, "holds no faces; reconstruct a mesh from its points first");
+    ToMeshResult built = to_mesh(facets);
+    if (built.rejected > 0)
+        std::cerr << "hsdm: " << input << ": " << built.rejected
+                  << " facets were left out, which no 2-manifold can hold\n";
+    return built;
+}
+
+int run_process(const ProcessArguments& a) {
+    if (a.list) return list_modules();
+    std::error_code ignored;
+    if (a.in_place && !a.output.empty() && !std::filesystem::equivalent(a.input, a.output, ignored))
+        throw UsageError("--in-place writes the mesh's own file, and -o names another; leave one out");
+    if (a.input.empty() || (a.output.empty() && !a.in_place) || a.modules.empty())
+        throw UsageError("process needs a mesh, -o FILE or --in-place, and at least one --module NAME");
+    const std::string& output = a.in_place ? a.input : a.output;
+    const MeshFormat format = format_for(output, a.format);
+    const std::vector<Step> steps = load_steps(a.modules);
+    check_claims(a, steps);
+    check_writable(output);
+    ToMeshResult built = read_input(a.input);
+    std::ostream& text = is_standard_output(output) ? std::cerr : std::cout;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        const auto& [plugin, request] = steps[i];
+        set_phase(a.modules[i].c_str());
+        const std::string summary = plugin.process(built.mesh, request.options);
+        if (!a.quiet) text << plugin.name() << ": " << summary << std::endl;
+    }
+    set_phase("write");
     WriteOptions options;
     options.ascii = a.ascii;
-    write_mesh(a.output, to_polygons(built.mesh), format, options);
+    write_mesh(output, to_polygons(built.mesh), format, options);
     return done;
 }
 
@@ -80,6 +111,7 @@ void add_process(CLI::App& app, Run& run) {
     const auto a = std::make_shared<ProcessArguments>();
     sub->add_option("mesh", a->input, "OFF, STL, PLY or OBJ");
     sub->add_option("-o,--output", a->output, "the mesh to write; - is standard output")->type_name("FILE");
+    sub->add_flag("--in-place", a->in_place, "write the mesh's own file instead");
     sub->add_option("--format", a->format, "its format, where no extension names it")
         ->check(CLI::IsMember({"off", "stl", "ply", "obj", "om"}))
         ->type_name("off|stl|ply|obj|om");

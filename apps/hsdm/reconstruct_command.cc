@@ -1,18 +1,20 @@
 // hsdm reconstruct: clouds in, meshes out.
 
+#include "activity.hh"
 #include "command.hh"
-#include "interrupt.hh"
 #include "reconstruct_arguments.hh"
 #include "reconstruct_output.hh"
 #include "summary.hh"
 
 #include "hsdm/errors.hh"
+#include "hsdm/io/output_target.hh"
 
 #include <nlohmann/json.hpp>
 #include <tbb/global_control.h>
 
 #include <chrono>
 #include <iostream>
+#include <new>
 #include <span>
 
 namespace hsdm::command {
@@ -24,23 +26,37 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Throws Cancelled between two steps after an interrupt.
-void stop_if_interrupted() {
-    if (interrupted()) throw Cancelled();
+ReconstructOptions checked_options(const ReconstructArguments& arguments,
+                                   const std::optional<std::pair<int, int>>& levels) {
+    ReconstructOptions options = arguments.options();
+    if (levels) {
+        check_options(options, levels->first, levels->second);
+    } else {
+        check_options(options);
+    }
+    check_options(arguments.read);
+    return options;
 }
 
-PointFile read_input(const std::string& input, const ReadOptions& options) {
-    const InterruptEndsProcess while_reading;
-    return read_points(input, options);
+/// What make() returns; its errors begin with a name.
+template <class Make>
+auto named(const std::string& name, const Make& make) {
+    try {
+        return make();
+    } catch (const Error& error) {
+        throw Error(name, error.what());
+    } catch (const OptionError& error) {
+        throw OptionError(name + ": " + error.what());
+    }
 }
 
 class ReconstructRun {
 public:
     explicit ReconstructRun(const ReconstructArguments& arguments)
         : arguments_(arguments),
-          options_(arguments.options()),
           levels_(arguments.level_range()),
-          plan_(arguments),
+          options_(checked_options(arguments, levels_)),
+          plan_(arguments, levels_),
           text_(plan_.uses_standard_output() ? std::cerr : std::cout) {
         options_.measure = !arguments.quiet || !arguments.report.empty();
         options_.classify = options_.measure || plan_.writes_features();
@@ -48,20 +64,21 @@ public:
     }
 
     int run() {
+        const std::size_t inputs = arguments_.inputs.size();
         for (const std::string& input : arguments_.inputs) {
-            stop_if_interrupted();
-            if (arguments_.inputs.size() == 1) {
+            if (inputs == 1) {
                 reconstruct_one(input);
             } else {
                 try_one(input);
             }
+            text_ << std::flush; // what is done has been told, whatever comes
         }
-        if (arguments_.inputs.size() > 1 && !arguments_.quiet)
-            text_ << grouped(arguments_.inputs.size() - failures_) << " of "
-                  << grouped(arguments_.inputs.size()) << " inputs done, " << grouped(failures_)
-                  << " failed, " << grouped(points_) << " points, " << grouped(faces_) << " faces\n";
+        if (inputs > 1 && !arguments_.quiet)
+            text_ << grouped(inputs - failed_inputs_) << " of " << grouped(inputs) << " inputs done, "
+                  << grouped(failed_inputs_) << " failed, " << grouped(points_) << " points, "
+                  << grouped(faces_) << " faces\n";
         write_report();
-        return failures_ == 0 ? done : failed;
+        return failed_inputs_ == 0 ? done : failed;
     }
 
 private:
@@ -69,12 +86,8 @@ private:
     void try_one(const std::string& input) {
         try {
             reconstruct_one(input);
-        } catch (const Cancelled&) {
-            throw;
-        } catch (const OptionError&) {
-            throw;
         } catch (const std::exception& error) {
-            ++failures_;
+            ++failed_inputs_;
             complain(error.what());
             nlohmann::ordered_json entry = {{"input", {{"file", input}}}, {"failure", error.what()}};
             reports_.push_back(entry.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
@@ -82,74 +95,104 @@ private:
         }
     }
 
-    /// What make() returns; its errors begin with a name.
-    template <class Make>
-    static auto named(const std::string& name, Make make) {
+    /// When the memory ends, all that the input took of it is free again before anything is said.
+    void reconstruct_one(const std::string& input) {
+        const std::string name = input == "-" ? "standard input" : input;
+        set_activity(input == "-" ? "standard input" : input.c_str(), "read");
+        std::vector<Report> reports;
         try {
-            return make();
-        } catch (const Error& error) {
-            throw Error(name, error.what());
+            reports = make(input, name);
+        } catch (const std::bad_alloc&) {
+            throw Error(name, out_of_memory());
         }
+        bool complete = true;
+        for (const Report& report : reports) complete = tell(name, report) && complete;
+        failed_inputs_ += !complete;
     }
 
-    void reconstruct_one(const std::string& input) {
+    /// Reads, reconstructs and writes one input.
+    std::vector<Report> make(const std::string& input, const std::string& name) {
         const auto start = Clock::now();
-        const std::string name = input == "-" ? "standard input" : input;
         ProgressBar bar(arguments_.progress, name);
         bar.show("read", 0);
-        PointFile file = read_input(input, arguments_.read);
+        PointFile file = read_points(input, arguments_.read);
         const double read_seconds = seconds_since(start);
-        stop_if_interrupted();
+        points_ += file.cloud.size();
         ReconstructOptions options = options_;
+        options.debug_dir = plan_.debug_dir(input);
         options.progress = [&bar](const char* phase, double share) {
+            set_phase(phase);
             bar.show(phase, 0.1 + 0.85 * share);
-            return !interrupted();
+            return true;
         };
-        const std::size_t points = file.cloud.size();
-        const auto write = [&](std::span<Reconstruction> results) {
-            points_ += points;
+        const auto write_all = [&](std::span<Reconstruction> results) {
+            set_phase("write");
+            bar.show("write", 0.97);
+            std::vector<Report> reports;
             for (Reconstruction& result : results) {
-                bar.show("write", 0.97);
                 result.report.input.file = input;
                 result.report.seconds.read = read_seconds;
-                write_one(input, result, start);
+                write_one(result);
+                result.report.seconds.total = seconds_since(start);
+                reports.push_back(std::move(result.report));
             }
+            return reports;
         };
         if (levels_) {
             std::vector<Reconstruction> results = named(name, [&] {
                 return reconstruct_levels(std::move(file.cloud), levels_->first, levels_->second, options);
             });
-            write(results);
-        } else {
-            Reconstruction result = named(name, [&] { return reconstruct(std::move(file.cloud), options); });
-            write({&result, 1});
+            return write_all(results);
         }
+        Reconstruction result = named(name, [&] { return reconstruct(std::move(file.cloud), options); });
+        return write_all({&result, 1});
     }
 
-    void write_one(const std::string& input, Reconstruction& result, Clock::time_point start) {
+    MeshTarget target(const Report& report) const {
+        return plan_.target(report.input.file,
+                            levels_ ? std::optional<int>(report.grid.depth) : std::nullopt);
+    }
+
+    /// Of several levels one that cannot be written does not stop the others.
+    void write_one(Reconstruction& result) const {
         Report& report = result.report;
-        const MeshTarget target =
-            plan_.target(input, levels_ ? std::optional<int>(report.grid.depth) : std::nullopt);
-        const auto write_start = Clock::now();
-        write_outputs(target, result.mesh);
-        report.seconds.write = seconds_since(write_start);
-        report.seconds.total = seconds_since(start);
-        faces_ += report.mesh.faces;
+        if (!report.failure.empty()) return;
+        const auto start = Clock::now();
+        try {
+            write_outputs(target(report), result.mesh);
+        } catch (const Error& error) {
+            if (!levels_) throw;
+            report.failure = error.what();
+        } catch (const std::bad_alloc&) {
+            if (!levels_) throw;
+            report.failure = out_of_memory();
+        }
+        report.seconds.write = seconds_since(start);
+    }
+
+    /// Notes the report and prints a line or a summary; false for a level that failed.
+    bool tell(const std::string& name, const Report& report) {
         reports_.push_back(to_json(report));
-        if (arguments_.quiet) return;
-        const std::string written = target.mesh == "-" ? "standard output" : target.mesh;
-        const bool single = arguments_.inputs.size() == 1 && !levels_;
-        if (single) {
+        if (!report.failure.empty()) {
+            complain(name + ", depth " + std::to_string(report.grid.depth) + ": " + report.failure);
+            return false;
+        }
+        faces_ += report.mesh.faces;
+        if (arguments_.quiet) return true;
+        const std::string written = spoken_name(target(report).mesh);
+        if (arguments_.inputs.size() == 1 && !levels_) {
             print_summary(text_, report, written);
         } else {
             print_line(text_, report, written);
         }
         if (arguments_.verbose) print_details(text_, report);
+        return true;
     }
 
     /// One mesh: its report; several: a list of them in the order they were made.
     void write_report() const {
         if (arguments_.report.empty()) return;
+        set_activity(arguments_.report.c_str(), "write");
         if (arguments_.inputs.size() == 1 && !levels_) {
             write_text(arguments_.report, reports_.front());
             return;
@@ -161,12 +204,12 @@ private:
     }
 
     const ReconstructArguments& arguments_;
-    ReconstructOptions options_;
     std::optional<std::pair<int, int>> levels_;
+    ReconstructOptions options_;
     OutputPlan plan_;
     std::ostream& text_;
     std::vector<std::string> reports_;
-    std::size_t failures_ = 0, points_ = 0, faces_ = 0;
+    std::size_t failed_inputs_ = 0, points_ = 0, faces_ = 0;
 };
 
 } // namespace

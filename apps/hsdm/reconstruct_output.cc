@@ -3,10 +3,11 @@
 #include "hsdm/errors.hh"
 #include "hsdm/facets/to_mesh.hh"
 #include "hsdm/features/features.hh"
+#include "hsdm/graph/phase_geometry.hh"
+#include "hsdm/io/output_target.hh"
 #include "hsdm/io/write_om.hh"
 
 #include <filesystem>
-#include <set>
 #include <unistd.h>
 
 namespace hsdm::command {
@@ -29,9 +30,13 @@ std::string extension(MeshFormat format) {
     }
 }
 
-/// part.off -> part.d5.off
+bool is_file(const std::string& path) {
+    return find_target(path).kind == OutputTarget::Kind::file;
+}
+
+/// part.off -> part.d5.off; a pipe or device takes every level.
 std::string with_depth(const std::string& path, std::optional<int> depth) {
-    if (!depth) return path;
+    if (!depth || !is_file(path)) return path;
     fs::path result(path);
     const fs::path suffix = result.extension();
     result.replace_extension(".d" + std::to_string(*depth) + suffix.string());
@@ -42,30 +47,35 @@ std::string stem(const std::string& input) {
     return input == "-" ? "stdin" : fs::path(input).stem().string();
 }
 
-void check_writable(const std::string& path) {
-    if (path.empty() || path == "-") return;
-    if (fs::is_directory(path)) throw Error(path, "is a folder; name a file in it");
-    fs::path folder = fs::path(path).parent_path();
-    if (folder.empty()) folder = ".";
-    if (!fs::is_directory(folder)) throw Error(path, "the folder does not exist; make it first");
-    if (access(folder.c_str(), W_OK) != 0)
-        throw Error(path, "the folder cannot be written; check its permissions");
+void make_folder(const std::string& folder) {
+    if (folder.empty()) return;
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error || !fs::is_directory(folder, error)) throw Error(folder, "the folder cannot be made");
+    if (access(folder.c_str(), W_OK | X_OK) != 0)
+        throw Error(folder, "the folder cannot be written; check its permissions");
 }
 
 } // namespace
 
-OutputPlan::OutputPlan(const ReconstructArguments& arguments) : arguments_(arguments) {
-    check_combinations();
-    check_inputs();
-    const ReconstructArguments& a = arguments_;
-    const bool named_by_option = !a.format.empty() || a.output == "-" || a.output.empty();
-    const std::string name = named_by_option ? "x." + (a.format.empty() ? "off" : a.format) : a.output;
+MeshFormat format_for(const std::string& output, const std::string& format) {
+    if (!format.empty()) return mesh_format("x." + format);
+    if (output.empty() || output == "-") return MeshFormat::off;
     try {
-        format_ = mesh_format(name);
+        return mesh_format(output);
     } catch (const Error& error) {
+        if (!fs::path(output).has_extension() && !is_file(output)) return MeshFormat::off;
         throw UsageError(std::string(error.what()) + "; or name the format with --format");
     }
-    check_folders();
+}
+
+OutputPlan::OutputPlan(const ReconstructArguments& arguments, std::optional<std::pair<int, int>> levels)
+    : arguments_(arguments), levels_(levels), format_(format_for(arguments.output, arguments.format)) {
+    check_combinations();
+    check_claims();
+    make_folders();
+    for (const std::string* path : {&arguments.output, &arguments.report, &arguments.features})
+        if (!path->empty()) check_writable(*path);
 }
 
 void OutputPlan::check_combinations() const {
@@ -76,42 +86,47 @@ void OutputPlan::check_combinations() const {
         throw UsageError("-o FILE holds one mesh; with several inputs use --out-dir DIR");
     if (a.inputs.size() > 1 && !a.features.empty())
         throw UsageError("--features FILE holds one mesh's; run the inputs one by one");
-    if (!a.levels.empty() && (a.output == "-" || a.features == "-"))
+    if (levels_ && (a.output == "-" || a.features == "-"))
         throw UsageError("--levels makes several files; standard output holds one");
-    const int on_standard_output = (a.output == "-") + (a.report == "-") + (a.features == "-");
-    if (on_standard_output > 1) throw UsageError("only one of the outputs can go to standard output");
 }
 
-void OutputPlan::check_inputs() const {
-    std::set<std::string> written;
+void OutputPlan::check_claims() const {
+    FileClaims claims;
     for (const std::string& input : arguments_.inputs) {
-        if (!arguments_.out_dir.empty() && !written.insert(stem(input)).second)
-            throw UsageError("two inputs would both be written as " + stem(input) + " in "
-                             + arguments_.out_dir + "; run them into folders of their own");
-        std::error_code ignored;
-        for (const std::string* output : {&arguments_.output, &arguments_.report, &arguments_.features})
-            if (!output->empty() && fs::equivalent(input, *output, ignored))
-                throw UsageError(*output + " is the input; writing there would destroy it");
+        claims.reads("the input", input);
+        claim_outputs(input, claims);
+    }
+    if (!arguments_.report.empty()) claims.writes("--report " + arguments_.report, arguments_.report);
+    if (!arguments_.quiet && !uses_standard_output()) claims.writes("the summary", "-");
+    claims.check();
+}
+
+void OutputPlan::claim_outputs(const std::string& input, FileClaims& claims) const {
+    const ReconstructArguments& a = arguments_;
+    const auto [first, last] = levels_.value_or(std::pair(0, 0));
+    for (int depth = first; depth <= last; ++depth) {
+        const MeshTarget made = target(input, levels_ ? std::optional(depth) : std::nullopt);
+        claims.writes(a.output.empty() ? "--out-dir " + a.out_dir : "-o " + a.output, made.mesh);
+        if (!made.features.empty()) claims.writes("--features " + a.features, made.features);
+    }
+    const std::string folder = debug_dir(input);
+    if (folder.empty()) return;
+    const auto depths = levels_ ? *levels_ : std::pair(a.depth.value_or(1), a.depth.value_or(deepest_level));
+    for (int depth = depths.first; depth <= depths.second; ++depth) {
+        const PhaseFiles files = phase_files(folder, depth);
+        for (const std::string& file : {files.voxels, files.graph, files.facets})
+            claims.writes("--debug-dir " + a.debug_dir, file);
     }
 }
 
-void OutputPlan::check_folders() const {
-    const ReconstructArguments& a = arguments_;
-    if (!a.out_dir.empty()) {
-        std::error_code error;
-        fs::create_directories(a.out_dir, error);
-        if (error || !fs::is_directory(a.out_dir)) throw Error(a.out_dir, "the folder cannot be made");
-        if (access(a.out_dir.c_str(), W_OK) != 0)
-            throw Error(a.out_dir, "the folder cannot be written; check its permissions");
-    }
-    for (const std::string* path : {&a.output, &a.report, &a.features}) check_writable(*path);
-    if (a.out_dir.empty()) return;
-    for (const std::string& input : a.inputs) {
-        const std::string mesh = target(input, std::nullopt).mesh;
-        std::error_code ignored;
-        if (fs::equivalent(input, mesh, ignored))
-            throw UsageError(mesh + " is the input; writing there would destroy it");
-    }
+void OutputPlan::make_folders() const {
+    make_folder(arguments_.out_dir);
+    make_folder(arguments_.debug_dir);
+}
+
+std::string OutputPlan::debug_dir(const std::string& input) const {
+    if (arguments_.debug_dir.empty() || arguments_.inputs.size() == 1) return arguments_.debug_dir;
+    return (fs::path(arguments_.debug_dir) / stem(input)).string();
 }
 
 MeshTarget OutputPlan::target(const std::string& input, std::optional<int> depth) const {
@@ -136,7 +151,8 @@ bool OutputPlan::writes_features() const {
 }
 
 bool OutputPlan::uses_standard_output() const {
-    return arguments_.output == "-" || arguments_.report == "-" || arguments_.features == "-";
+    return is_standard_output(arguments_.output) || is_standard_output(arguments_.report)
+           || is_standard_output(arguments_.features);
 }
 
 void write_outputs(const MeshTarget& target, const PolyMesh& mesh) {

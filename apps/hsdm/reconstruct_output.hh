@@ -1,6 +1,7 @@
 #pragma once
 // Where the meshes of `hsdm reconstruct` go, settled and checked before any work.
 
+#include "file_claims.hh"
 #include "reconstruct_arguments.hh"
 
 namespace hsdm::command {
@@ -16,11 +17,15 @@ struct MeshTarget {
 
 class OutputPlan {
 public:
-    /// Throws UsageError for options that do not fit together, Error for a folder that cannot be written.
-    explicit OutputPlan(const ReconstructArguments& arguments);
+    /// Makes the folders. Throws UsageError for options that do not fit together and for outputs that would
+    /// destroy inputs or each other, Error for what cannot be written. `levels` as of level_range(), checked.
+    OutputPlan(const ReconstructArguments& arguments, std::optional<std::pair<int, int>> levels);
 
     /// `depth` is set when --levels names several.
     MeshTarget target(const std::string& input, std::optional<int> depth) const;
+
+    /// Folder for the phases of one input: of several each has its own; empty if none is asked for.
+    std::string debug_dir(const std::string& input) const;
 
     /// True if the mesh is written with properties: normals and classes of vertices, sharp edges.
     bool writes_properties() const;
@@ -32,12 +37,18 @@ public:
 
 private:
     void check_combinations() const;
-    void check_inputs() const;
-    void check_folders() const;
+    void check_claims() const;
+    void claim_outputs(const std::string& input, FileClaims& claims) const;
+    void make_folders() const;
 
     const ReconstructArguments& arguments_;
+    std::optional<std::pair<int, int>> levels_;
     MeshFormat format_ = MeshFormat::off;
 };
+
+/// The format that --format names, else the file's extension; OFF for standard output, and for pipes and
+/// devices without one. Throws UsageError.
+MeshFormat format_for(const std::string& output, const std::string& format);
 
 /// Writes mesh and features. Throws Error.
 void write_outputs(const MeshTarget& target, const PolyMesh& mesh);

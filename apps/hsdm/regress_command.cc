@@ -1,11 +1,13 @@
 // hsdm regress: a list of reconstructions, each with what its report must say. The format is in
 // docs/command.md.
 
+#include "activity.hh"
 #include "command.hh"
-#include "interrupt.hh"
+#include "file_claims.hh"
 #include "reconstruct_arguments.hh"
 
 #include "hsdm/errors.hh"
+#include "hsdm/io/output_target.hh"
 
 #include <nlohmann/json.hpp>
 
@@ -15,6 +17,7 @@
 #include <fstream>
 #include <iomanip>
 #include <iostream>
+#include <new>
 
 namespace hsdm::command {
 namespace {
@@ -126,7 +129,11 @@ Outcome run_case(const Case& one) {
     try {
         ReadOptions read;
         ReconstructOptions options = options_of(one, read);
-        options.progress = [](const char*, double) { return !interrupted(); };
+        options.progress = [](const char* phase, double) {
+            set_phase(phase);
+            return true;
+        };
+        set_activity(one.input.c_str(), "read");
         PointFile file = read_points(one.input, read);
         Reconstruction result = reconstruct(std::move(file.cloud), options);
         result.report.input.file = one.input;
@@ -135,8 +142,8 @@ Outcome run_case(const Case& one) {
             const std::string reason = miss(key, find_key(outcome.report, key), expected);
             if (!reason.empty()) outcome.misses.push_back(reason);
         }
-    } catch (const Cancelled&) {
-        throw;
+    } catch (const std::bad_alloc&) {
+        outcome.misses.push_back(one.input + ": " + out_of_memory());
     } catch (const std::exception& error) {
         outcome.misses.push_back(error.what());
     }
@@ -144,7 +151,7 @@ Outcome run_case(const Case& one) {
     return outcome;
 }
 
-void print_row(const Case& one, const Outcome& outcome, int width) {
+void print_row(std::ostream& out, const Case& one, const Outcome& outcome, int width) {
     const auto count = [&outcome](const char* key) {
         const Json* const value = outcome.report.is_null() ? nullptr : find_key(outcome.report, key);
         return value == nullptr ? std::string("-") : value->dump();
@@ -153,32 +160,49 @@ void print_row(const Case& one, const Outcome& outcome, int width) {
         outcome.report.is_null() ? nullptr : find_key(outcome.report, "error.normalised_max");
     std::ostringstream percent;
     if (error != nullptr) percent << std::setprecision(3) << 100 * error->get<double>();
-    std::cout << (outcome.misses.empty() ? "ok    " : "MISS  ") << std::left << std::setw(width) << one.name
-              << std::right << std::setw(10) << count("mesh.faces") << std::setw(8) << count("mesh.closed")
-              << std::setw(7) << count("mesh.genus") << std::setw(10) << percent.str() << std::setw(9)
-              << std::fixed << std::setprecision(2) << outcome.seconds << std::defaultfloat << '\n';
-    for (const std::string& reason : outcome.misses) std::cout << "      " << reason << '\n';
+    out << (outcome.misses.empty() ? "ok    " : "MISS  ") << std::left << std::setw(width) << one.name
+        << std::right << std::setw(10) << count("mesh.faces") << std::setw(8) << count("mesh.closed")
+        << std::setw(7) << count("mesh.genus") << std::setw(10) << percent.str() << std::setw(9) << std::fixed
+        << std::setprecision(2) << outcome.seconds << std::defaultfloat << '\n';
+    for (const std::string& reason : outcome.misses) out << "      " << reason << '\n';
+    out << std::flush;
+}
+
+/// Throws UsageError for a result that would destroy the suite or a cloud, Error for one that cannot be
+/// written.
+void check_claims(const std::string& path, const std::vector<Case>& cases, const std::string& json_path) {
+    FileClaims claims;
+    claims.reads("the suite", path);
+    for (const Case& one : cases) claims.reads("the input", one.input);
+    if (!json_path.empty()) claims.writes("--json " + json_path, json_path);
+    if (!is_standard_output(json_path)) claims.writes("the table", "-");
+    claims.check();
+    if (!json_path.empty()) check_writable(json_path);
 }
 
 int run_regress(const std::string& path, const std::string& json_path) {
+    set_activity(path.c_str(), "read");
     const std::vector<Case> cases = read_cases(path);
+    check_claims(path, cases, json_path);
+    std::ostream& out = is_standard_output(json_path) ? std::cerr : std::cout;
     std::size_t width = 4;
     for (const Case& one : cases) width = std::max(width, one.name.size());
-    std::cout << "      " << std::left << std::setw(static_cast<int>(width)) << "case" << std::right
-              << "     faces  closed  genus   error %  seconds\n";
+    out << "      " << std::left << std::setw(static_cast<int>(width)) << "case" << std::right
+        << "     faces  closed  genus   error %  seconds\n";
     Json results = Json::array();
     std::size_t missed = 0;
     for (const Case& one : cases) {
         const Outcome outcome = run_case(one);
         missed += !outcome.misses.empty();
-        print_row(one, outcome, static_cast<int>(width));
+        print_row(out, one, outcome, static_cast<int>(width));
         results.push_back({{"name", one.name},
                            {"ok", outcome.misses.empty()},
                            {"misses", outcome.misses},
                            {"seconds", outcome.seconds},
                            {"report", outcome.report}});
     }
-    std::cout << cases.size() - missed << " of " << cases.size() << " within tolerance\n";
+    out << cases.size() - missed << " of " << cases.size() << " within tolerance\n";
+    set_activity(json_path.c_str(), "write");
     if (!json_path.empty())
         write_text(json_path, results.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
     return missed == 0 ? done : failed;

@@ -41,8 +41,7 @@ PolygonMesh basic_method(const MethodInput& in, Report& report) {
     });
     note_counts(facets.counts, report);
     if (!in.options.debug_dir.empty())
-        write_phases(in.options.debug_dir + "/d" + std::to_string(in.level.depth), in.octree, in.level, graph,
-                     facets.mesh);
+        write_phases(in.options.debug_dir, in.octree, in.level, graph, facets.mesh);
     for (Vec3& p : facets.mesh.positions) p -= in.octree.origin;
     return std::move(facets.mesh);
 }

@@ -90,8 +90,8 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
     if (!in.options.debug_dir.empty()) {
         PolygonMesh placed = facets.mesh;
         for (Vec3& p : placed.positions) p += in.octree.origin;
-        write_phases(in.options.debug_dir + "/d" + std::to_string(in.level.depth), in.octree, in.level,
-                     extended_graph(facets.mesh, facets.voxel), placed);
+        write_phases(in.options.debug_dir, in.octree, in.level, extended_graph(facets.mesh, facets.voxel),
+                     placed);
     }
     return std::move(facets.mesh);
 }

@@ -19,10 +19,14 @@ public:
     /// reconstruction is when it starts. Throws Cancelled.
     template <class Work>
     auto run(const char* name, double done, double& seconds, const Work& work) const {
+        current_ = name;
         if (options_.progress && !options_.progress(name, begin_ + (end_ - begin_) * done)) throw Cancelled();
         const Timer timer(seconds);
         return work();
     }
+
+    /// The phase that runs or ran last.
+    const char* current() const { return current_; }
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -38,6 +42,7 @@ private:
 
     const ReconstructOptions& options_;
     double begin_, end_;
+    mutable const char* current_ = "begin"; // told to callers, read by none of the phases
 };
 
 } // namespace hsdm

@@ -16,51 +16,25 @@
 #include <tbb/task_arena.h>
 
 #include <cmath>
+#include <new>
 #include <numbers>
 #include <sys/resource.h>
 
 namespace hsdm {
 namespace {
 
-constexpr int deepest = 16;
 constexpr std::size_t points_per_chunk = 1 << 14;
 
 void check_depth(const std::string& name, int depth) {
-    if (depth < 1 || depth > deepest)
-        throw OptionError(name + " " + std::to_string(depth) + ": must lie in [1, " + std::to_string(deepest)
-                          + "]");
+    if (depth < 1 || depth > deepest_level)
+        throw OptionError(name + " " + std::to_string(depth) + ": must lie in [1, "
+                          + std::to_string(deepest_level) + "]");
 }
 
 std::string text_of(double value) {
     char digits[32];
     std::snprintf(digits, sizeof digits, "%.10g", value);
     return digits;
-}
-
-void validate(const ReconstructOptions& o) {
-    if (!!o.depth + !!o.voxel_size + !!o.max_error > 1)
-        throw OptionError("depth, voxel_size and max_error: at most one of the three says the resolution");
-    if (o.max_error && !(o.max_error->value > 0 && std::isfinite(o.max_error->value)))
-        throw OptionError("max_error " + text_of(o.max_error->value) + ": must be above 0");
-    if (o.max_error && o.grid == Grid::uniform)
-        throw OptionError("max_error: a uniform grid has no bound to keep; use the adaptive one");
-    if (o.depth) check_depth("depth", *o.depth);
-    if (o.voxel_size && !(*o.voxel_size > 0 && std::isfinite(*o.voxel_size)))
-        throw OptionError("voxel_size " + text_of(*o.voxel_size) + ": must be a length above 0");
-    if (o.min_component
-        && !(o.min_component->value >= 0 && std::isfinite(o.min_component->value)
-             && !(o.min_component->of_largest && o.min_component->value > 1)))
-        throw OptionError("min_component " + text_of(o.min_component->value)
-                          + ": must be a number of facets, or a share of the largest of 1 (100 %) at most");
-    if (!(o.crease_angle > 0 && o.crease_angle < std::numbers::pi))
-        throw OptionError("crease_angle " + text_of(o.crease_angle)
-                          + " rad: must lie between 0 and pi (180 degrees)");
-    if (o.normal_smoothing < 0)
-        throw OptionError("normal_smoothing " + std::to_string(o.normal_smoothing) + ": must be 0 or more");
-    if (o.threads < 0)
-        throw OptionError("threads " + std::to_string(o.threads) + ": must be 0 (all) or more");
-    if (o.normals == NormalSource::estimate && o.method == Method::basic)
-        throw OptionError("normals estimate: the basic method uses no normals; use the extended one");
 }
 
 /// The caller's cloud, or one that is left to us, which gives its memory back as soon as nobody asks for it.
@@ -250,10 +224,10 @@ private:
         const double extent = octree.bounds.extent();
         int depth = 1;
         double cube = 2 * voxel_size;
-        for (; cube < extent && depth < deepest; ++depth) cube *= 2;
+        for (; cube < extent && depth < deepest_level; ++depth) cube *= 2;
         if (cube < extent)
             throw OptionError("voxel_size " + text_of(voxel_size) + ": must be at least "
-                              + text_of(extent / (1 << deepest)) + ", the cloud's extent over 2^16");
+                              + text_of(extent / (1 << deepest_level)) + ", the cloud's extent over 2^16");
         rearrange(octree, std::move(octree.positions), cube);
         return depth;
     }
@@ -449,6 +423,17 @@ void reconstruct_level(InputCloud& cloud, Decomposition& decomposition, int dept
     result.report = std::move(report);
 }
 
+Reconstruction failed_level(const Report& report, int depth, const std::exception& error,
+                            const Phases& phases) {
+    Reconstruction result;
+    result.report = report;
+    result.report.grid.depth = depth;
+    result.report.failure = dynamic_cast<const std::bad_alloc*>(&error)
+                                ? std::string("out of memory in phase ") + phases.current()
+                                : error.what();
+    return result;
+}
+
 /// One result per level of the range, or one of the level that the options choose.
 void run(InputCloud& cloud, const ReconstructOptions& options, std::optional<std::pair<int, int>> range,
          std::span<Reconstruction> results) {
@@ -475,6 +460,7 @@ void run(InputCloud& cloud, const ReconstructOptions& options, std::optional<std
         range = {depth, depth};
     }
     const auto count = static_cast<double>(results.size());
+    std::size_t failures = 0;
     for (std::size_t i = 0; i < results.size(); ++i) {
         const double begin = static_cast<double>(i) / count;
         const Phases phases(options, begin, begin + 1 / count);
@@ -483,7 +469,14 @@ void run(InputCloud& cloud, const ReconstructOptions& options, std::optional<std
         decomposition.smooth_for_depth(depth, phases);
         const bool last = i + 1 == results.size();
         if (last && !decomposition.has_moved()) cloud.release_positions();
-        reconstruct_level(cloud, decomposition, depth, last, options, phases, results[i]);
+        try {
+            reconstruct_level(cloud, decomposition, depth, last, options, phases, results[i]);
+        } catch (const Cancelled&) {
+            throw;
+        } catch (const std::exception& error) {
+            if (++failures == results.size()) throw;
+            results[i] = failed_level(decomposition.report, depth, error, phases);
+        }
         results[i].report.seconds.total =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - level_start).count();
     }
@@ -498,7 +491,7 @@ void run_in_arena(InputCloud& cloud, const ReconstructOptions& options,
 }
 
 Reconstruction run_once(InputCloud cloud, const ReconstructOptions& options) {
-    validate(options);
+    check_options(options);
     Reconstruction result;
     run_in_arena(cloud, options, std::nullopt, {&result, 1});
     return result;
@@ -506,7 +499,42 @@ Reconstruction run_once(InputCloud cloud, const ReconstructOptions& options) {
 
 std::vector<Reconstruction> run_levels(InputCloud cloud, int first_depth, int last_depth,
                                        const ReconstructOptions& options) {
-    validate(options);
+    check_options(options, first_depth, last_depth);
+    std::vector<Reconstruction> results(static_cast<std::size_t>(last_depth - first_depth) + 1);
+    run_in_arena(cloud, options, std::pair(first_depth, last_depth), results);
+    return results;
+}
+
+} // namespace
+
+void check_options(const ReconstructOptions& o) {
+    if (!!o.depth + !!o.voxel_size + !!o.max_error > 1)
+        throw OptionError("depth, voxel_size and max_error: at most one of the three says the resolution");
+    if (o.max_error && !(o.max_error->value > 0 && std::isfinite(o.max_error->value)))
+        throw OptionError("max_error " + text_of(o.max_error->value) + ": must be above 0");
+    if (o.max_error && o.grid == Grid::uniform)
+        throw OptionError("max_error: a uniform grid has no bound to keep; use the adaptive one");
+    if (o.depth) check_depth("depth", *o.depth);
+    if (o.voxel_size && !(*o.voxel_size > 0 && std::isfinite(*o.voxel_size)))
+        throw OptionError("voxel_size " + text_of(*o.voxel_size) + ": must be a length above 0");
+    if (o.min_component
+        && !(o.min_component->value >= 0 && std::isfinite(o.min_component->value)
+             && !(o.min_component->of_largest && o.min_component->value > 1)))
+        throw OptionError("min_component " + text_of(o.min_component->value)
+                          + ": must be a number of facets, or a share of the largest of 1 (100 %) at most");
+    if (!(o.crease_angle > 0 && o.crease_angle < std::numbers::pi))
+        throw OptionError("crease_angle " + text_of(o.crease_angle)
+                          + " rad: must lie between 0 and pi (180 degrees)");
+    if (o.normal_smoothing < 0)
+        throw OptionError("normal_smoothing " + std::to_string(o.normal_smoothing) + ": must be 0 or more");
+    if (o.threads < 0)
+        throw OptionError("threads " + std::to_string(o.threads) + ": must be 0 (all) or more");
+    if (o.normals == NormalSource::estimate && o.method == Method::basic)
+        throw OptionError("normals estimate: the basic method uses no normals; use the extended one");
+}
+
+void check_options(const ReconstructOptions& options, int first_depth, int last_depth) {
+    check_options(options);
     if (options.depth || options.voxel_size || options.max_error)
         throw OptionError(
             "levels: they are the resolution; depth, voxel_size and max_error cannot be given beside them");
@@ -515,12 +543,7 @@ std::vector<Reconstruction> run_levels(InputCloud cloud, int first_depth, int la
     if (first_depth > last_depth)
         throw OptionError("levels " + std::to_string(first_depth) + ":" + std::to_string(last_depth)
                           + ": the first depth must not be above the last");
-    std::vector<Reconstruction> results(static_cast<std::size_t>(last_depth - first_depth) + 1);
-    run_in_arena(cloud, options, std::pair(first_depth, last_depth), results);
-    return results;
 }
-
-} // namespace
 
 Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& options) {
     return run_once(InputCloud(cloud), options);

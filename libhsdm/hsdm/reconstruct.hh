@@ -36,6 +36,8 @@ struct MaxError {
     bool of_diagonal = false; ///< a share of the bounding box's diagonal, else the cloud's units
 };
 
+constexpr int deepest_level = 16; ///< of an octree: voxels of 2^-16 of the cube
+
 struct ReconstructOptions {
     /// Resolution: at most one of the three; by default the voxel follows from the points' spacing and
     /// noise (choose_voxel).
@@ -73,13 +75,21 @@ struct Reconstruction {
     Report report;
 };
 
-/// Throws OptionError for an option out of range, Error for a cloud without a surface in it, Cancelled.
+/// Throws OptionError for options that fit no cloud. What follows here does so too, before any work.
+void check_options(const ReconstructOptions& options);
+/// The same for reconstruct_levels().
+void check_options(const ReconstructOptions& options, int first_depth, int last_depth);
+
+/// Throws OptionError for an option out of range, also of this cloud's (voxel_size), Error for a cloud
+/// without a surface in it, Cancelled.
 Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& options = {});
 /// The same in less memory, by a third for given normals: each array of a cloud that is moved is freed as
 /// soon as nobody asks for it. What is left of the cloud is unspecified, whatever is thrown.
 Reconstruction reconstruct(PointCloud&& cloud, const ReconstructOptions& options = {});
 
-/// One octree, one mesh per level first_depth .. last_depth (section 3.2.3, Fig. 9).
+/// One octree, one mesh per level first_depth .. last_depth (section 3.2.3, Fig. 9). A level that fails,
+/// since no facet comes out of it or the memory ends, does not stop the others: its result has an empty mesh
+/// and the reason in report.failure. Throws as reconstruct() does; what the last level failed of, if all do.
 std::vector<Reconstruction> reconstruct_levels(const PointCloud& cloud, int first_depth, int last_depth,
                                                const ReconstructOptions& options = {});
 /// The same in less memory, as reconstruct() of a cloud that is moved.

@@ -61,6 +61,14 @@ Json to_json(const Report::Seconds& s) {
 } // namespace
 
 std::string to_json(const Report& report) {
+    if (!report.failure.empty()) {
+        const Json json = {{"version", version},
+                           {"options", report.options},
+                           {"input", to_json(report.input)},
+                           {"grid", {{"depth", report.grid.depth}}},
+                           {"failure", report.failure}};
+        return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+    }
     const Json json = {
         {"version", version},
         {"options", report.options},

@@ -59,6 +59,7 @@ struct Report {
 
     std::size_t peak_memory_bytes = 0;
     int threads = 0;
+    std::string failure; ///< why there is no mesh (see reconstruct_levels); empty: there is one
 };
 
 /// The report as JSON text, keys as in the command's contract.

@@ -60,6 +60,6 @@ TEST_CASE("the phases are written into a folder", "[graph]") {
     const auto folder = std::filesystem::temp_directory_path() / "hsdm_phases_test" / "deep";
     write_phases(folder.string(), octree, level, extract_graph(octree, level), voxel_cubes(octree, level));
     for (const char* name : {"voxels.obj", "graph.obj", "facets.off"})
-        CHECK(std::filesystem::file_size(folder / name) > 0);
+        CHECK(std::filesystem::file_size(folder / "d3" / name) > 0);
     std::filesystem::remove_all(folder.parent_path());
 }

@@ -51,15 +51,21 @@ std::string graph_obj(const Octree& octree, const ConnectivityGraph& graph) {
     return text;
 }
 
-void write_phases(const std::string& folder, const Octree& octree, const OctreeLevel& level,
+PhaseFiles phase_files(const std::string& debug_dir, int depth) {
+    const std::filesystem::path folder = std::filesystem::path(debug_dir) / ("d" + std::to_string(depth));
+    return {folder.string(), (folder / "voxels.obj").string(), (folder / "graph.obj").string(),
+            (folder / "facets.off").string()};
+}
+
+void write_phases(const std::string& debug_dir, const Octree& octree, const OctreeLevel& level,
                   const ConnectivityGraph& graph, const PolygonMesh& facets) {
-    const std::filesystem::path path(folder);
+    const PhaseFiles files = phase_files(debug_dir, level.depth);
     std::error_code error;
-    std::filesystem::create_directories(path, error);
-    if (error) throw Error(folder, "cannot be made a folder (" + error.message() + "); choose another");
-    write_mesh((path / "voxels.obj").string(), voxel_cubes(octree, level), MeshFormat::obj);
-    write_text((path / "graph.obj").string(), graph_obj(octree, graph));
-    write_mesh((path / "facets.off").string(), facets, MeshFormat::off);
+    std::filesystem::create_directories(files.folder, error);
+    if (error) throw Error(files.folder, "cannot be made a folder (" + error.message() + "); choose another");
+    write_mesh(files.voxels, voxel_cubes(octree, level), MeshFormat::obj);
+    write_text(files.graph, graph_obj(octree, graph));
+    write_mesh(files.facets, facets, MeshFormat::off);
 }
 
 } // namespace hsdm

@@ -15,9 +15,14 @@ PolygonMesh voxel_cubes(const Octree& octree, const OctreeLevel& level);
 /// Fig. 3c: the graph as OBJ text, a vertex per voxel and an `l` line per edge, in the cloud's coordinates.
 std::string graph_obj(const Octree& octree, const ConnectivityGraph& graph);
 
-/// Writes `voxels.obj`, `graph.obj` and `facets.off` into a folder, which is made if it is not there.
-/// Throws Error.
-void write_phases(const std::string& folder, const Octree& octree, const OctreeLevel& level,
+/// What write_phases() writes for a level of this depth: `d5/voxels.obj` etc. in the folder.
+struct PhaseFiles {
+    std::string folder, voxels, graph, facets;
+};
+PhaseFiles phase_files(const std::string& debug_dir, int depth);
+
+/// Writes the three files of the level; folders are made where there are none. Throws Error.
+void write_phases(const std::string& debug_dir, const Octree& octree, const OctreeLevel& level,
                   const ConnectivityGraph& graph, const PolygonMesh& facets);
 
 } // namespace hsdm

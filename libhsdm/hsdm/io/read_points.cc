@@ -1,6 +1,7 @@
 #include "hsdm/io/read_points.hh"
 
 #include "hsdm/errors.hh"
+#include "hsdm/io/columns.hh"
 #include "hsdm/io/formats.hh"
 
 #include <algorithm>
@@ -168,10 +169,8 @@ PointFile read_as(const SourceBytes& bytes, Format format, TableKind kind, const
 
 PointFile read_points(const SourceBytes& bytes, const ReadOptions& options) {
     if (bytes.size() == 0) throw Error(bytes.name(), "is empty; expected points");
+    check_options(options);
     const KnownName* forced = find_name(lower(options.format));
-    if (!options.format.empty() && !forced)
-        throw OptionError("format " + quoted(options.format)
-                          + ": known are ply, pcd, xyz, csv, txt, asc, pts, ptx, pwn, off, obj, stl, hoppe");
     const KnownName* named = forced ? forced : find_name(extension_of(bytes.name()));
     const TableKind kind = named ? named->kind : TableKind::plain;
     const Format format = forced ? forced->format : recognise(bytes);
@@ -185,6 +184,13 @@ PointFile read_points(const SourceBytes& bytes, const ReadOptions& options) {
 }
 
 } // namespace io
+
+void check_options(const ReadOptions& options) {
+    if (!options.format.empty() && !io::find_name(io::lower(options.format)))
+        throw OptionError("format " + io::quoted(options.format)
+                          + ": known are ply, pcd, xyz, csv, txt, asc, pts, ptx, pwn, off, obj, stl, hoppe");
+    if (!options.columns.empty()) io::parse_columns(options.columns);
+}
 
 PointFile read_points(const std::string& path, const ReadOptions& options) {
     return io::read_points(io::SourceBytes::open(path), options);

@@ -24,9 +24,12 @@ struct PointFile {
     std::size_t faces = 0; ///< faces in the file, which were skipped
 };
 
+/// Throws OptionError for options that do not fit it. read_points() does so too.
+void check_options(const ReadOptions& options);
+
 /// Reads the points of a file; "-" is standard input. Coordinates that are not finite are kept (see
 /// drop_nonfinite), but for pixels of a PCD file. Throws Error `FILE:LINE: what, and what to do` if the file
-/// cannot be opened, is empty, truncated or malformed; OptionError for options that no file could satisfy.
+/// cannot be opened, is empty, truncated or malformed; OptionError for options that do not fit it.
 /// O(bytes), parallel; binary PLY files are not held in memory as a whole.
 PointFile read_points(const std::string& path, const ReadOptions& options = {});
 

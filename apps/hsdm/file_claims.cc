@@ -1,0 +1,95 @@
+#include "file_claims.hh"
+
+#include "command.hh"
+
+#include "hsdm/io/output_target.hh"
+
+#include <algorithm>
+#include <filesystem>
+#include <tuple>
+#include <utility>
+
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <unistd.h>
+
+namespace hsdm::command {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_null_device(const struct stat& status) {
+    return S_ISCHR(status.st_mode) && status.st_rdev == makedev(1, 3);
+}
+
+/// What the name stands for, if it is there: "-" for the descriptor `standard`.
+bool status_of(const std::string& path, int standard, struct stat& status) {
+    return path == "-" ? ::fstat(standard, &status) == 0 : ::stat(path.c_str(), &status) == 0;
+}
+
+} // namespace
+
+void FileClaims::add(Claim claim, const std::string& path, int standard) {
+    struct stat status {};
+    if (status_of(path, standard, status)) {
+        if (is_null_device(status)) return;
+        claim.two_way = S_ISCHR(status.st_mode) || S_ISSOCK(status.st_mode);
+    } else {
+        if (path == "-") return; // closed: reading or writing will say so
+        std::error_code ignored;
+        fs::path above = fs::weakly_canonical(fs::absolute(find_target(path).path), ignored), below;
+        do {
+            below = above.filename() / below;
+            above = above.parent_path();
+        } while (::stat(above.c_str(), &status) != 0 && above.has_relative_path());
+        claim.below = below.string();
+    }
+    claim.device = status.st_dev;
+    claim.inode = status.st_ino;
+    claim.order = claims_.size();
+    claims_.push_back(std::move(claim));
+}
+
+void FileClaims::reads(const std::string& what, const std::string& path) {
+    Claim claim;
+    claim.words = path == "-" ? "standard input" : what + ' ' + path;
+    add(std::move(claim), path, STDIN_FILENO);
+}
+
+void FileClaims::writes(const std::string& option, const std::string& path) {
+    Claim claim;
+    claim.writes = true;
+    claim.words = path == "-" || option.ends_with(path) ? option : option + " (" + path + ')';
+    add(std::move(claim), path, STDOUT_FILENO);
+}
+
+void FileClaims::check() const {
+    std::vector<const Claim*> sorted;
+    for (const Claim& claim : claims_) sorted.push_back(&claim);
+    const auto file = [](const Claim* c) { return std::tie(c->device, c->inode, c->below); };
+    std::sort(sorted.begin(), sorted.end(), [&](const Claim* a, const Claim* b) {
+        return std::tuple(file(a), !a->writes, a->order) < std::tuple(file(b), !b->writes, b->order);
+    });
+    const Claim *worst = nullptr, *other = nullptr; // the first in the user's order, not in the inodes'
+    for (std::size_t i = 1; i < sorted.size(); ++i) {
+        const Claim &first = *sorted[i - 1], &second = *sorted[i]; // of one file the writers come first
+        if (file(&first) != file(&second) || !first.writes || (first.two_way && !second.writes)) continue;
+        if (worst && worst->order < first.order) continue;
+        worst = &first;
+        other = &second;
+    }
+    if (!worst) return;
+    if (other->writes)
+        throw UsageError(worst->words + " and " + other->words + " are one file; give each its own");
+    throw UsageError(worst->words + " is " + other->words + ", which would be destroyed; write elsewhere");
+}
+
+bool is_standard_output(const std::string& path) {
+    if (path == "-") return true;
+    struct stat named {
+    }, standard{};
+    return !path.empty() && ::stat(path.c_str(), &named) == 0 && ::fstat(STDOUT_FILENO, &standard) == 0
+           && named.st_dev == standard.st_dev && named.st_ino == standard.st_ino && !is_null_device(named);
+}
+
+} // namespace hsdm::command
