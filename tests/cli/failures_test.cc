@@ -1,1 +1,57 @@
+// One failure does not stop the rest, and is told with file and phase.
+#include "cli/run.hh"
+#include "cli/scan.hh"
 
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+using namespace hsdm;
+using namespace hsdm::test;
+using Json = nlohmann::json;
+
+TEST_CASE("a level that fails leaves the other levels", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan(4000)));
+    // The finest voxels are far smaller than the spacing: there is no facet.
+    const CommandResult result =
+        run(folder, "reconstruct scan.xyz --method basic --levels 4:9 -o part.off --report r.json");
+    CHECK(result.status == 1);
+    CHECK(result.err.find("hsdm: scan.xyz, depth 9: no facet") != std::string::npos);
+    CHECK(read_file(folder / "part.d4.off").starts_with("OFF"));
+    CHECK_FALSE(exists(folder / "part.d9.off"));
+    const Json reports = Json::parse(read_file(folder / "r.json"));
+    REQUIRE(reports.size() == 6);
+    CHECK(reports[0]["mesh"]["closed"] == true);
+    CHECK_FALSE(reports[0].contains("failure"));
+    CHECK(reports[5]["failure"].get<std::string>().starts_with("no facet"));
+    CHECK(reports[5]["grid"]["depth"] == 9);
+    CHECK(reports[5]["input"]["file"] == "scan.xyz");
+    // With nothing but failures it is one of the input.
+    const CommandResult none = run(folder, "reconstruct scan.xyz --method basic --levels 9:10 -o none.off");
+    CHECK(none.status == 1);
+    CHECK(none.err.starts_with("hsdm: scan.xyz: no facet"));
+}
+
+TEST_CASE("options that do not fit one input fail that input alone", "[cli]") {
+    const Folder folder;
+    folder.write("a.xyz", xyz(sphere_scan(500)));
+    folder.write("b.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                          "property float z\nend_header\n0 0 0\n");
+    folder.write("large.xyz", "0 0 0\n1e9 0 0\n0 1e9 0\n0 0 1e9\n1e9 1e9 0\n");
+    for (const char* options : {"a.xyz b.ply --columns x,y,z", "large.xyz a.xyz --voxel-size 0.3"}) {
+        INFO(options);
+        const CommandResult result = run(folder, std::string("reconstruct --out-dir out ") + options);
+        CHECK(result.status == 1);
+        CHECK(result.out.find("1 of 2 inputs done, 1 failed") != std::string::npos);
+        CHECK(read_file(folder / "out/a.off").starts_with("OFF"));
+    }
+    CHECK(run(folder, "reconstruct large.xyz --voxel-size 0.3 -o a.off").status == 2);
+    // What fits no input is refused before any work.
+    const std::string before = folder.list();
+    for (const char* options :
+         {"--columns x,y", "--voxel-size -1", "--levels 3:17", "--crease-degrees 190"}) {
+        INFO(options);
+        CHECK(run(folder, std::string("reconstruct a.xyz b.ply --out-dir none ") + options).status == 2);
+    }
+    CHECK(folder.list() == before);
+}

@@ -1,1 +1,129 @@
+// A signal ends the command at once, wherever it is, and leaves nothing half done.
+#include "cli/run.hh"
+#include "cli/scan.hh"
 
+#include <catch2/catch.hpp>
+
+#include <chrono>
+
+using namespace hsdm;
+using namespace hsdm::test;
+
+namespace {
+
+/// Starts the command in the background, waits until `ready` (a shell condition) holds, sends the signal, and
+/// gives the status and the messages. A pipe `wait` is there, which nobody writes to or reads from.
+CommandResult end_by(const Folder& folder, const std::string& signal, const std::string& arguments,
+                     const std::string& ready) {
+    const CommandResult shell = run(folder,
+                                    arguments + " >out 2>err & command=$!; until " + ready
+                                        + "; do kill -0 $command || break; sleep 0.02; done; kill -" + signal
+                                        + " $command; wait $command; echo $?; rm -f wait",
+                                    "[ -p wait ] || mkfifo wait;");
+    CommandResult result;
+    result.status = std::stoi(shell.out);
+    result.out = read_file(folder / "out");
+    result.err = read_file(folder / "err");
+    return result;
+}
+
+/// True once the command has started to catch signals: the mask of what it blocks has SIGINT.
+const std::string catching = "grep -q 'SigBlk:.*[2367abef]$' /proc/$command/status";
+
+} // namespace
+
+TEST_CASE("every signal that ends a program ends this one with 128 + its number and no file", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan(1000)));
+    const std::pair<const char*, int> signals[] = {
+        {"INT", 130}, {"TERM", 143}, {"HUP", 129}, {"QUIT", 131}, {"XCPU", 152}};
+    for (const auto& [signal, status] : signals) {
+        INFO(signal);
+        // Opened for both, the pipe gives nothing and does not end.
+        const CommandResult result =
+            end_by(folder, signal, "reconstruct - --input-format xyz -o a.off <>wait", catching);
+        CHECK(result.status == status);
+        CHECK(result.err == "hsdm: cancelled; nothing was written\n");
+        CHECK(folder.list() == "err\nout\nscan.xyz\n");
+    }
+}
+
+TEST_CASE("a signal is not kept waiting by work without end", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan(4000)));
+    const std::string work =
+        "reconstruct scan.xyz --depth 5 -o a.ply --smoothing 100000000 --progress always";
+    const auto start = std::chrono::steady_clock::now();
+    const CommandResult result = end_by(folder, "TERM", work, "grep -q features err");
+    CHECK(std::chrono::steady_clock::now() - start
+          < std::chrono::seconds(10)); // with a loaded machine's start
+    CHECK(result.status == 143);
+    CHECK(result.err.ends_with("hsdm: cancelled; nothing was written\n"));
+    CHECK_FALSE(exists(folder / "a.ply"));
+}
+
+TEST_CASE("a signal is not kept waiting by pipes", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan(500)));
+    for (const char* arguments : {"info wait", "compare wait scan.xyz", "compare scan.xyz wait",
+                                  "regress wait", "process wait --module classify-features -o a.off",
+                                  "reconstruct scan.xyz --depth 3 -o wait --format off --quiet"}) {
+        INFO(arguments);
+        const CommandResult result = end_by(folder, "INT", arguments, catching);
+        CHECK(result.status == 130);
+        CHECK(result.err == "hsdm: cancelled; nothing was written\n");
+    }
+}
+
+TEST_CASE("after a signal the message says what stands and what is there in part", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan(500)));
+    const std::string command = "reconstruct scan.xyz --depth 3 --quiet -o a.off ";
+    // The second file waits for a reader.
+    CommandResult result = end_by(folder, "INT", command + "--features wait", "[ -f a.off ]");
+    CHECK(result.status == 130);
+    CHECK(result.err == "hsdm: cancelled; written before: a.off\n");
+    CHECK(exists(folder / "a.off"));
+    // A pipe that is full: some of the mesh was read from it and cannot be taken back.
+    folder.write("scan.xyz", xyz(sphere_scan(4000)));
+    result = end_by(folder, "INT", "reconstruct scan.xyz --depth 5 --quiet -o /dev/fd/3 --format off 3<>wait",
+                    "head -c 3 wait >/dev/null");
+    CHECK(result.status == 130);
+    CHECK(result.err == "hsdm: cancelled; in part: /dev/fd/3\n");
+    CHECK(folder.list() == "a.off\nerr\nout\nscan.xyz\n");
+}
+
+TEST_CASE("a signal that was ignored stays so where shells do not do it for every job", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan(500)));
+    const CommandResult result =
+        run(folder,
+            "reconstruct - --input-format xyz --depth 3 --quiet -o a.off <wait & command=$!; exec 3>wait; "
+            "until "
+                + catching
+                + "; do sleep 0.02; done; kill -HUP $command; cat scan.xyz >&3; exec 3>&-; "
+                  "wait $command; echo $?",
+            "trap '' HUP; mkfifo wait;");
+    CHECK(result.out == "0\n");
+    CHECK(exists(folder / "a.off"));
+}
+
+TEST_CASE("a limit on the size of files is an error of writing, and leaves nothing", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan(4000)));
+    const CommandResult result =
+        run(folder, "reconstruct scan.xyz --depth 5 --quiet -o a.off", "ulimit -f 64;");
+    CHECK(result.status == 1);
+    CHECK(result.err.starts_with("hsdm: a.off: cannot write: File too large"));
+    CHECK(folder.list() == "scan.xyz\n");
+}
+
+TEST_CASE("a run that was killed leaves a temporary file, which the next one removes and names", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan(500)));
+    folder.write(".a.off.4711-0.tmp", "OFF");
+    const CommandResult result = run(folder, "reconstruct scan.xyz --depth 3 --quiet -o a.off");
+    CHECK(result.status == 0);
+    CHECK(result.err == "hsdm: removed .a.off.4711-0.tmp, left by a run that was killed\n");
+    CHECK(folder.list() == "a.off\nscan.xyz\n");
+}
