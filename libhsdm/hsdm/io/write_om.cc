@@ -8,7 +8,10 @@
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <OpenMesh/Core/System/omstream.hh>
 
-#include <sstream>
+#include <array>
+#include <exception>
+#include <ostream>
+#include <streambuf>
 
 namespace hsdm {
 namespace {
@@ -28,6 +31,43 @@ private:
     bool was_enabled_;
 };
 
+/// Hands bytes on to a file as they come. OpenMesh ends the process when a stream refuses bytes, be it that
+/// the disk is full or, with a stream into memory, that the memory is: so this one takes everything, and what
+/// went wrong is thrown once OpenMesh is done.
+class FileBuffer : public std::streambuf {
+public:
+    explicit FileBuffer(AtomicFile& file) : file_(file) {
+        setp(bytes_.data(), bytes_.data() + bytes_.size());
+    }
+
+    /// To be called last. Throws Error.
+    void finish() {
+        sync();
+        if (failure_) std::rethrow_exception(failure_);
+    }
+
+protected:
+    int_type overflow(int_type c) override {
+        sync();
+        if (!traits_type::eq_int_type(c, traits_type::eof())) sputc(traits_type::to_char_type(c));
+        return traits_type::not_eof(c);
+    }
+    int sync() override {
+        try {
+            if (!failure_) file_.write({pbase(), static_cast<std::size_t>(pptr() - pbase())});
+        } catch (...) {
+            failure_ = std::current_exception();
+        }
+        setp(bytes_.data(), bytes_.data() + bytes_.size());
+        return 0;
+    }
+
+private:
+    AtomicFile& file_;
+    std::array<char, 1 << 16> bytes_;
+    std::exception_ptr failure_;
+};
+
 } // namespace
 
 void write_om(const std::string& path, const PolyMesh& mesh) {
@@ -37,11 +77,12 @@ void write_om(const std::string& path, const PolyMesh& mesh) {
     options += Options::Status;
     options += Options::Custom;
     const QuietLog quiet;
-    std::ostringstream content;
-    if (!OpenMesh::IO::write_mesh(mesh, content, ".om", options))
-        throw Error(path, "OpenMesh could not write this mesh as .om; write OFF or PLY instead");
     AtomicFile file(path);
-    file.write(std::move(content).str());
+    FileBuffer buffer(file);
+    std::ostream stream(&buffer);
+    const bool written = OpenMesh::IO::write_mesh(mesh, stream, ".om", options);
+    buffer.finish();
+    if (!written) throw Error(path, "OpenMesh could not write this mesh as .om; write OFF or PLY instead");
     file.commit();
 }
 
