@@ -11,23 +11,26 @@
 namespace hsdm::command {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json json_of(const Distance& distance, double diagonal) {
-    return {{"max", distance.max},
-            {"mean", distance.mean},
-            {"rms", distance.rms},
-            {"normalised_max", diagonal > 0 ? distance.max / diagonal : 0}};
+void fill(JsonText& json, const Distance& distance, double diagonal) {
+    json.begin_object();
+    json.member("max", distance.max);
+    json.member("mean", distance.mean);
+    json.member("rms", distance.rms);
+    json.member("normalised_max", diagonal > 0 ? distance.max / diagonal : 0);
+    json.end();
 }
 
-Json json_of(const std::string& path, const Loaded& loaded) {
-    Json json = {{"file", path}, {"kind", loaded.is_mesh() ? "mesh" : "cloud"}};
+void fill(JsonText& json, const std::string& path, const Loaded& loaded) {
+    json.begin_object();
+    json.member("file", path);
+    json.member("kind", loaded.is_mesh() ? "mesh" : "cloud");
     if (loaded.is_mesh()) {
-        json["mesh"] = topology_json(loaded.mesh);
+        json.key("mesh");
+        fill_topology(json, loaded.mesh);
     } else {
-        json["points"] = loaded.cloud.size();
+        json.member("points", loaded.cloud.size());
     }
-    return json;
+    json.end();
 }
 
 void print(const char* title, const Distance& distance, double diagonal) {
@@ -51,13 +54,20 @@ int run_compare(const std::string& path_a, const std::string& path_b, bool as_js
         throw Error(path_b, "both files hold points without faces; one of the two must be a mesh");
     const Comparison result = compare(a.mesh, b.mesh);
     if (as_json) {
-        const Json json = {{"a", json_of(path_a, a)},
-                           {"b", json_of(path_b, b)},
-                           {"a_to_b", json_of(result.a_to_b, result.diagonal)},
-                           {"b_to_a", json_of(result.b_to_a, result.diagonal)},
-                           {"hausdorff", result.hausdorff()},
-                           {"diagonal", result.diagonal}};
-        std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+        JsonText json;
+        json.begin_object();
+        json.key("a");
+        fill(json, path_a, a);
+        json.key("b");
+        fill(json, path_b, b);
+        json.key("a_to_b");
+        fill(json, result.a_to_b, result.diagonal);
+        json.key("b_to_a");
+        fill(json, result.b_to_a, result.diagonal);
+        json.member("hausdorff", result.hausdorff());
+        json.member("diagonal", result.diagonal);
+        json.end();
+        std::cout << std::move(json).take();
         return done;
     }
     print("a", path_a, a);

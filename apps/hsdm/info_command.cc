@@ -11,12 +11,6 @@
 namespace hsdm::command {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json list(const Vec3& v) {
-    return {v[0], v[1], v[2]};
-}
-
 Box bounds(const std::vector<Vec3>& positions) {
     Box box;
     for (const Vec3& p : positions) box.add(p);
@@ -28,28 +22,38 @@ double spacing(const PointCloud& cloud) {
     return cloud.bounds().extent() > 0 ? estimate_spacing(build_octree(cloud)) : 0;
 }
 
+void fill_cloud(JsonText& json, const Loaded& loaded) {
+    json.begin_object();
+    json.member("points", loaded.cloud.size());
+    json.member("dropped_nonfinite", loaded.dropped.nonfinite);
+    json.member("has_normals", loaded.cloud.has_normals());
+    json.member("bad_normals", loaded.dropped.bad_normals);
+    json.member("has_colors", !loaded.cloud.colors.empty());
+    json.key("scalars");
+    json.begin_array();
+    for (const Scalar& scalar : loaded.cloud.scalars) json.value(scalar.name);
+    json.end();
+    json.member("spacing", spacing(loaded.cloud));
+    if (loaded.cloud.sensor) json.member("sensor", *loaded.cloud.sensor);
+    json.end();
+}
+
 void print_json(const std::string& path, const Loaded& loaded) {
     const Box box = bounds(loaded.mesh.positions);
-    Json json = {{"file", path},
-                 {"kind", loaded.is_mesh() ? "mesh" : "cloud"},
-                 {"bbox_min", list(box.lo)},
-                 {"bbox_max", list(box.hi)},
-                 {"diagonal", box.diagonal()}};
-    if (loaded.is_mesh()) {
-        json["mesh"] = topology_json(loaded.mesh);
-    } else {
-        std::vector<std::string> scalars;
-        for (const Scalar& scalar : loaded.cloud.scalars) scalars.push_back(scalar.name);
-        json["cloud"] = {{"points", loaded.cloud.size()},
-                         {"dropped_nonfinite", loaded.dropped.nonfinite},
-                         {"has_normals", loaded.cloud.has_normals()},
-                         {"bad_normals", loaded.dropped.bad_normals},
-                         {"has_colors", !loaded.cloud.colors.empty()},
-                         {"scalars", scalars},
-                         {"spacing", spacing(loaded.cloud)}};
-        if (loaded.cloud.sensor) json["cloud"]["sensor"] = list(*loaded.cloud.sensor);
-    }
-    std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+    JsonText json;
+    json.begin_object();
+    json.member("file", path);
+    json.member("kind", loaded.is_mesh() ? "mesh" : "cloud");
+    json.member("bbox_min", box.lo);
+    json.member("bbox_max", box.hi);
+    json.member("diagonal", box.diagonal());
+    json.key(loaded.is_mesh() ? "mesh" : "cloud");
+    if (loaded.is_mesh())
+        fill_topology(json, loaded.mesh);
+    else
+        fill_cloud(json, loaded);
+    json.end();
+    std::cout << std::move(json).take();
 }
 
 void print_cloud(const Loaded& loaded) {

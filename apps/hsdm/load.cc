@@ -36,33 +36,35 @@ Loaded load(const std::string& path) {
     return loaded;
 }
 
-nlohmann::ordered_json topology_json(const PolygonMesh& mesh) {
+void fill_topology(JsonText& json, const PolygonMesh& mesh) {
+    json.begin_object();
     const Topology t = measure_topology(mesh);
     const FacetShape shape = measure_shape(mesh);
-    return {{"vertices", t.vertices},
-            {"edges", t.edges},
-            {"faces", t.faces},
-            {"triangles", t.triangles},
-            {"quads", t.quads},
-            {"larger", t.larger},
-            {"components", t.components},
-            {"boundary_loops", t.boundary_loops},
-            {"boundary_edges", t.boundary_edges},
-            {"euler", t.euler},
-            {"genus", t.genus()},
-            {"closed", t.closed()},
-            {"manifold", t.manifold()},
-            {"isolated_vertices", t.isolated_vertices},
-            {"nonmanifold_edges", t.nonmanifold_edges},
-            {"nonmanifold_vertices", t.nonmanifold_vertices},
-            {"misoriented_edges", t.misoriented_edges},
-            {"degenerate_facets", t.degenerate_facets},
-            {"duplicate_facets", t.duplicate_facets},
-            {"signed_volume", t.signed_volume},
-            {"quad_share", shape.quad_share},
-            {"scaled_jacobian_median", shape.scaled_jacobian_median},
-            {"scaled_jacobian_min", shape.scaled_jacobian_min},
-            {"edge_length_mean", shape.edge_length_mean}};
+    json.member("vertices", t.vertices);
+    json.member("edges", t.edges);
+    json.member("faces", t.faces);
+    json.member("triangles", t.triangles);
+    json.member("quads", t.quads);
+    json.member("larger", t.larger);
+    json.member("components", t.components);
+    json.member("boundary_loops", t.boundary_loops);
+    json.member("boundary_edges", t.boundary_edges);
+    json.member("euler", t.euler);
+    json.member("genus", t.genus());
+    json.member("closed", t.closed());
+    json.member("manifold", t.manifold());
+    json.member("isolated_vertices", t.isolated_vertices);
+    json.member("nonmanifold_edges", t.nonmanifold_edges);
+    json.member("nonmanifold_vertices", t.nonmanifold_vertices);
+    json.member("misoriented_edges", t.misoriented_edges);
+    json.member("degenerate_facets", t.degenerate_facets);
+    json.member("duplicate_facets", t.duplicate_facets);
+    json.member("signed_volume", t.signed_volume);
+    json.member("quad_share", shape.quad_share);
+    json.member("scaled_jacobian_median", shape.scaled_jacobian_median);
+    json.member("scaled_jacobian_min", shape.scaled_jacobian_min);
+    json.member("edge_length_mean", shape.edge_length_mean);
+    json.end();
 }
 
 void print_topology(std::ostream& out, const PolygonMesh& mesh) {

@@ -2,9 +2,8 @@
 // A file that may hold a mesh or a cloud.
 
 #include "hsdm/io/read_points.hh"
+#include "hsdm/json_text.hh"
 #include "hsdm/polygon_mesh.hh"
-
-#include <nlohmann/json.hpp>
 
 namespace hsdm::command {
 
@@ -20,7 +19,7 @@ struct Loaded {
 Loaded load(const std::string& path);
 
 /// Counts, topology and shape, in the report's words.
-nlohmann::ordered_json topology_json(const PolygonMesh& mesh);
+void fill_topology(JsonText& json, const PolygonMesh& mesh);
 
 /// Lines for people, each `name  value`.
 void print_topology(std::ostream& out, const PolygonMesh& mesh);

@@ -1,99 +1,133 @@
 #include "hsdm/report.hh"
 
+#include "hsdm/json_text.hh"
 #include "hsdm/version.hh"
-
-#include <nlohmann/json.hpp>
 
 namespace hsdm {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json to_json(const Vec3& v) {
-    return {v[0], v[1], v[2]};
+template <class Value>
+void fill(JsonText& json, const std::map<std::string, Value>& values) {
+    json.begin_object();
+    for (const auto& [name, value] : values) json.member(name, value);
+    json.end();
 }
 
-Json to_json(const Report::Input& input) {
-    return {{"file", input.file},
-            {"points", input.points},
-            {"dropped_nonfinite", input.dropped_nonfinite},
-            {"merged_duplicates", input.merged_duplicates},
-            {"has_normals", input.has_normals},
-            {"bbox_min", to_json(input.bbox.lo)},
-            {"bbox_max", to_json(input.bbox.hi)},
-            {"spacing", input.spacing}};
+void fill(JsonText& json, const Report::Input& input) {
+    json.begin_object();
+    json.member("file", input.file);
+    json.member("points", input.points);
+    json.member("dropped_nonfinite", input.dropped_nonfinite);
+    json.member("merged_duplicates", input.merged_duplicates);
+    json.member("has_normals", input.has_normals);
+    json.member("bbox_min", input.bbox.lo);
+    json.member("bbox_max", input.bbox.hi);
+    json.member("spacing", input.spacing);
+    json.end();
 }
 
-Json to_json(const Report::Grid& grid) {
-    return {{"kind", grid.kind},
-            {"depth", grid.depth},
-            {"voxel_size", grid.voxel_size},
-            {"voxels", grid.voxels},
-            {"leaves_per_level", grid.leaves_per_level},
-            {"sets", grid.sets},
-            {"balance_splits", grid.balance_splits},
-            {"merged", grid.merged},
-            {"max_error", grid.max_error},
-            {"points_beyond", grid.points_beyond}};
+void fill(JsonText& json, const Report::Grid& grid) {
+    json.begin_object();
+    json.member("kind", grid.kind);
+    json.member("depth", grid.depth);
+    json.member("voxel_size", grid.voxel_size);
+    json.member("voxels", grid.voxels);
+    json.member("leaves_per_level", grid.leaves_per_level);
+    json.member("sets", grid.sets);
+    json.member("balance_splits", grid.balance_splits);
+    json.member("merged", grid.merged);
+    json.member("max_error", grid.max_error);
+    json.member("points_beyond", grid.points_beyond);
+    json.end();
 }
 
-Json to_json(const Report::Mesh& mesh) {
-    return {{"vertices", mesh.vertices},
-            {"edges", mesh.edges},
-            {"faces", mesh.faces},
-            {"triangles", mesh.triangles},
-            {"quads", mesh.quads},
-            {"larger", mesh.larger},
-            {"components", mesh.components},
-            {"boundary_loops", mesh.boundary_loops},
-            {"boundary_edges", mesh.boundary_edges},
-            {"euler", mesh.euler},
-            {"genus", mesh.genus},
-            {"closed", mesh.closed}};
+void fill(JsonText& json, const Report::Mesh& mesh) {
+    json.begin_object();
+    json.member("vertices", mesh.vertices);
+    json.member("edges", mesh.edges);
+    json.member("faces", mesh.faces);
+    json.member("triangles", mesh.triangles);
+    json.member("quads", mesh.quads);
+    json.member("larger", mesh.larger);
+    json.member("components", mesh.components);
+    json.member("boundary_loops", mesh.boundary_loops);
+    json.member("boundary_edges", mesh.boundary_edges);
+    json.member("euler", mesh.euler);
+    json.member("genus", mesh.genus);
+    json.member("closed", mesh.closed);
+    json.end();
 }
 
-Json to_json(const Report::Seconds& s) {
-    return {{"read", s.read},     {"normals", s.normals}, {"octree", s.octree},     {"graph", s.graph},
-            {"facets", s.facets}, {"mesh", s.mesh},       {"features", s.features}, {"error", s.error},
-            {"write", s.write},   {"total", s.total}};
+void fill(JsonText& json, const Report::Features& features) {
+    json.begin_object();
+    json.member("sharp_edges", features.sharp_edges);
+    json.member("smooth_vertices", features.smooth_vertices);
+    json.member("edge_vertices", features.edge_vertices);
+    json.member("corner_vertices", features.corner_vertices);
+    json.end();
+}
+
+void fill(JsonText& json, const Report::Error& error) {
+    json.begin_object();
+    json.member("points_to_mesh_max", error.points_to_mesh_max);
+    json.member("points_to_mesh_mean", error.points_to_mesh_mean);
+    json.member("points_to_mesh_rms", error.points_to_mesh_rms);
+    json.member("normalised_max", error.normalised_max);
+    json.member("mesh_to_surface_max", error.mesh_to_surface_max);
+    json.member("mesh_to_surface_mean", error.mesh_to_surface_mean);
+    json.end();
+}
+
+void fill(JsonText& json, const Report::Seconds& s) {
+    json.begin_object();
+    json.member("read", s.read);
+    json.member("normals", s.normals);
+    json.member("octree", s.octree);
+    json.member("graph", s.graph);
+    json.member("facets", s.facets);
+    json.member("mesh", s.mesh);
+    json.member("features", s.features);
+    json.member("error", s.error);
+    json.member("write", s.write);
+    json.member("total", s.total);
+    json.end();
 }
 
 } // namespace
 
 std::string to_json(const Report& report) {
+    JsonText json;
+    json.begin_object();
+    json.member("version", version);
+    json.key("options");
+    fill(json, report.options);
+    json.key("input");
+    fill(json, report.input);
     if (!report.failure.empty()) {
-        const Json json = {{"version", version},
-                           {"options", report.options},
-                           {"input", to_json(report.input)},
-                           {"grid", {{"depth", report.grid.depth}}},
-                           {"failure", report.failure}};
-        return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+        json.key("grid");
+        json.begin_object();
+        json.member("depth", report.grid.depth);
+        json.end();
+        json.member("failure", report.failure);
+        json.end();
+        return std::move(json).take();
     }
-    const Json json = {
-        {"version", version},
-        {"options", report.options},
-        {"input", to_json(report.input)},
-        {"grid", to_json(report.grid)},
-        {"mesh", to_json(report.mesh)},
-        {"features",
-         {{"sharp_edges", report.features.sharp_edges},
-          {"smooth_vertices", report.features.smooth_vertices},
-          {"edge_vertices", report.features.edge_vertices},
-          {"corner_vertices", report.features.corner_vertices}}},
-        {"error",
-         {{"points_to_mesh_max", report.error.points_to_mesh_max},
-          {"points_to_mesh_mean", report.error.points_to_mesh_mean},
-          {"points_to_mesh_rms", report.error.points_to_mesh_rms},
-          {"normalised_max", report.error.normalised_max},
-          {"mesh_to_surface_max", report.error.mesh_to_surface_max},
-          {"mesh_to_surface_mean", report.error.mesh_to_surface_mean}}},
-        {"rejected", report.rejected},
-        {"seconds", to_json(report.seconds)},
-        {"peak_memory_bytes", report.peak_memory_bytes},
-        {"threads", report.threads},
-    };
-    // A file name need not be UTF-8; JSON must be.
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+    json.key("grid");
+    fill(json, report.grid);
+    json.key("mesh");
+    fill(json, report.mesh);
+    json.key("features");
+    fill(json, report.features);
+    json.key("error");
+    fill(json, report.error);
+    json.key("rejected");
+    fill(json, report.rejected);
+    json.key("seconds");
+    fill(json, report.seconds);
+    json.member("peak_memory_bytes", report.peak_memory_bytes);
+    json.member("threads", report.threads);
+    json.end();
+    return std::move(json).take();
 }
 
 } // namespace hsdm

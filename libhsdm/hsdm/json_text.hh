@@ -1,0 +1,62 @@
+#pragma once
+// JSON as it is written, key by key.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+namespace hsdm {
+
+/// Collects a document, two blanks a level. No tree is built: the one of nlohmann's library allocates where
+/// it is destroyed, which ends the process if there is no memory. Appending throws std::bad_alloc and nothing
+/// else; a file name need not be UTF-8, JSON must be: what is not becomes U+FFFD.
+class JsonText {
+public:
+    void begin_object() { open('{'); }
+    void begin_array() { open('['); }
+    void end(); ///< of the innermost object or array
+
+    void key(std::string_view name);
+
+    void value(std::string_view text);
+    void value(const char* text) { value(std::string_view(text)); }
+    void value(double number); ///< the shortest digits that read back the same
+    void value(bool flag);
+    void value(std::int64_t number);
+    void value(std::uint64_t number);
+    void value(int number) { value(std::int64_t(number)); }
+    void value(unsigned number) { value(std::uint64_t(number)); }
+    /// A range of values.
+    template <class Values>
+    requires requires(const Values& v) {
+        v.begin() != v.end();
+    } &&(!std::is_convertible_v<Values, std::string_view>)void value(const Values& values) {
+        begin_array();
+        for (const auto& one : values) value(one);
+        end();
+    }
+    /// A complete document of this class, as a part.
+    void document(std::string_view text);
+
+    template <class Value>
+    void member(std::string_view name, const Value& content) {
+        key(name);
+        value(content);
+    }
+
+    /// The finished document with a line feed behind it.
+    std::string take() && { return std::move(text_ += '\n'); }
+
+private:
+    void open(char bracket);
+    void start_value();
+    void break_line();
+
+    std::string text_, open_; ///< open_: the brackets not closed yet
+    bool empty_ = true;       ///< nothing stands in the innermost yet
+    bool after_key_ = false;
+};
+
+} // namespace hsdm
