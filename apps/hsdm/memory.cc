@@ -12,16 +12,20 @@
 
 namespace {
 
-/// A byte of each page is written. No thread takes up other work here: it could ask for memory in turn.
+/// A byte of each page is written. No thread takes up other work here: it could ask for memory in turn. Where
+/// there is none for the tasks, pages are found when they are used, as they would be without this.
 void touch(unsigned char* memory, std::size_t size) {
     constexpr std::size_t page = 4096, block = std::size_t(1) << 21;
-    tbb::this_task_arena::isolate([&] {
-        tbb::parallel_for(std::size_t{0}, (size + block - 1) / block, [&](std::size_t k) {
-            const std::size_t end = std::min(size, (k + 1) * block);
-            for (std::size_t i = k * block; i < end; i += page)
-                *static_cast<volatile unsigned char*>(memory + i) = 0;
+    try {
+        tbb::this_task_arena::isolate([&] {
+            tbb::parallel_for(std::size_t{0}, (size + block - 1) / block, [&](std::size_t k) {
+                const std::size_t end = std::min(size, (k + 1) * block);
+                for (std::size_t i = k * block; i < end; i += page)
+                    *static_cast<volatile unsigned char*>(memory + i) = 0;
+            });
         });
-    });
+    } catch (const std::bad_alloc&) {
+    }
 }
 
 } // namespace

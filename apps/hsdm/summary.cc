@@ -1,16 +1,17 @@
 #include "summary.hh"
 
+#include <cstdio>
 #include <iomanip>
 #include <ostream>
-#include <sstream>
 
 namespace hsdm::command {
 namespace {
 
+/// Not by a string stream: one that finds no memory is silent and leaves the rest out.
 std::string number(double value, int digits = 4) {
-    std::ostringstream text;
-    text << std::setprecision(digits) << value;
-    return text.str();
+    char text[32];
+    std::snprintf(text, sizeof text, "%.*g", digits, value);
+    return text;
 }
 
 std::string plural(std::size_t count, const std::string& one, const std::string& many) {
@@ -51,9 +52,9 @@ std::string bound_words(const Report& report) {
 }
 
 std::string seconds(double value) {
-    std::ostringstream text;
-    text << std::fixed << std::setprecision(2) << value << " s";
-    return text.str();
+    char text[64];
+    std::snprintf(text, sizeof text, "%.2f s", value);
+    return text;
 }
 
 } // namespace

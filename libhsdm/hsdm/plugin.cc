@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <new>
 #include <string_view>
 
 namespace hsdm {
@@ -76,6 +77,9 @@ int run_plugin(PluginFunction function, PolyMesh& mesh, const PluginOption* opti
     } catch (const OptionError& error) {
         copy_message(error.what(), message, capacity);
         return 2;
+    } catch (const std::bad_alloc&) {
+        copy_message("out of memory", message, capacity);
+        return 1;
     } catch (const std::exception& error) {
         copy_message(error.what(), message, capacity);
         return 1;
