@@ -29,8 +29,7 @@ const char* current_phase() noexcept {
 }
 
 std::string out_of_memory() {
-    return std::string("out of memory in phase ") + current_phase()
-           + "; use a smaller --depth, a larger --max-error or a thinned cloud";
+    return std::string("out of memory in phase ") + current_phase() + memory_advice;
 }
 
 } // namespace hsdm::command

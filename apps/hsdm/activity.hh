@@ -14,6 +14,8 @@ void set_phase(const char* phase) noexcept;
 const char* current_file() noexcept; ///< never null; "" before the first
 const char* current_phase() noexcept;
 
+constexpr const char* memory_advice = "; use a smaller --depth, a larger --max-error or a thinned cloud";
+
 /// `out of memory in phase facets; ...`, to stand behind the file's name.
 std::string out_of_memory();
 

@@ -2,6 +2,7 @@
 
 #include "activity.hh"
 #include "interrupt.hh"
+#include "threads.hh"
 
 #include "hsdm/errors.hh"
 #include "hsdm/io/file_registry.hh"
@@ -13,8 +14,15 @@
 namespace hsdm::command {
 namespace {
 
+/// Asks for none.
+void complain_of_memory() {
+    std::cerr << "hsdm: " << current_file() << (*current_file() ? ": " : "") << "out of memory in phase "
+              << current_phase() << memory_advice << std::endl;
+}
+
 int status_of(const Run& run) {
     try {
+        start_threads();
         const int status = run();
         std::cout.flush();
         if (!std::cout) throw Error("standard output", "could not be written; is the reader still there?");
@@ -26,8 +34,7 @@ int status_of(const Run& run) {
         complain(error.what());
         return wrong_usage;
     } catch (const std::bad_alloc&) {
-        const std::string file = current_file();
-        complain((file.empty() ? "" : file + ": ") + out_of_memory());
+        complain_of_memory();
         return failed;
     } catch (const std::exception& error) {
         complain(error.what());
@@ -43,13 +50,8 @@ int guarded(const Run& run) {
     return status;
 }
 
-} // namespace
-
-void complain(const std::string& message) {
-    std::cerr << "hsdm: " << message << std::endl;
-}
-
-int run_command(int argc, char** argv) {
+/// The subcommand's status, or the one that the arguments deserve.
+int parse_and_run(int argc, char** argv) {
     CLI::App app("hsdm turns scanned point clouds into CAD-ready meshes.", "hsdm");
     app.set_version_flag("--version", std::string("hsdm ") + version);
     app.require_subcommand(1);
@@ -76,6 +78,21 @@ int run_command(int argc, char** argv) {
     }
     handle_signals();
     return guarded(run);
+}
+
+} // namespace
+
+void complain(const std::string& message) {
+    std::cerr << "hsdm: " << message << std::endl;
+}
+
+int run_command(int argc, char** argv) {
+    try {
+        return parse_and_run(argc, argv);
+    } catch (const std::bad_alloc&) { // while the options are set up
+        complain_of_memory();
+        return failed;
+    }
 }
 
 } // namespace hsdm::command

@@ -5,12 +5,12 @@
 #include "reconstruct_arguments.hh"
 #include "reconstruct_output.hh"
 #include "summary.hh"
+#include "threads.hh"
 
 #include "hsdm/errors.hh"
 #include "hsdm/io/output_target.hh"
 
 #include <nlohmann/json.hpp>
-#include <tbb/global_control.h>
 
 #include <chrono>
 #include <iostream>
@@ -227,10 +227,7 @@ void add_reconstruct(CLI::App& app, Run& run) {
                 "  cat scan.xyz | hsdm reconstruct - --input-format xyz -o - --format off > part.off");
     sub->callback([&run, arguments] {
         run = [arguments] {
-            std::optional<tbb::global_control> bound;
-            if (arguments->threads > 0)
-                bound.emplace(tbb::global_control::max_allowed_parallelism,
-                              static_cast<std::size_t>(arguments->threads));
+            if (arguments->threads > 0) bound_threads(arguments->threads);
             return ReconstructRun(*arguments).run();
         };
     });
