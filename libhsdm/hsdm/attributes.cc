@@ -12,8 +12,10 @@
 namespace hsdm {
 namespace {
 
-/// The most frequent value; sorts its argument.
+/// The most frequent finite value, the least of several; leaves these, sorted.
 double majority(std::vector<double>& values) {
+    std::erase_if(values, [](double value) { return !std::isfinite(value); }); // NaN has no order
+    if (values.empty()) return 0;
     std::sort(values.begin(), values.end());
     double best = values.front();
     std::size_t most = 0;
@@ -30,7 +32,13 @@ double mean(const std::vector<double>& values) {
     std::size_t count = 0;
     for (double value : values)
         if (std::isfinite(value)) sum += value, ++count;
-    return count > 0 ? sum / static_cast<double>(count) : std::numeric_limits<double>::quiet_NaN();
+    if (count == 0) return std::numeric_limits<double>::quiet_NaN();
+    const auto n = static_cast<double>(count);
+    if (std::isfinite(sum)) return sum / n;
+    sum = 0;
+    for (double value : values)
+        if (std::isfinite(value)) sum += value / n;
+    return sum;
 }
 
 class VoxelAverages {
@@ -48,7 +56,7 @@ public:
             for (std::size_t v = range.begin(); v != range.end(); ++v) {
                 values.clear();
                 for (Index p = level_.first_point[voxel_[v]]; p < level_.first_point[voxel_[v] + 1]; ++p)
-                    values.push_back(value_of(octree_.source[p]));
+                    values.push_back(value_at(octree_.source[p], is_label, value_of));
                 property.values[v] = is_label ? majority(values) : mean(values);
             }
         });
@@ -56,6 +64,22 @@ public:
     }
 
 private:
+    /// Of a place where the cloud has a point, or several equal ones: these agree on one value in any order.
+    template <class ValueOf>
+    double value_at(Index point, bool is_label, const ValueOf& value_of) const {
+        if (octree_.duplicates.empty()) return value_of(point);
+        const auto [begin, end] = std::equal_range(
+            octree_.duplicates.begin(), octree_.duplicates.end(), Octree::Duplicate{point, 0},
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+        if (begin == end) return value_of(point);
+        std::vector<double> values{value_of(point)};
+        for (auto it = begin; it != end; ++it) values.push_back(value_of(it->other));
+        if (is_label) return majority(values);
+        std::erase_if(values, [](double value) { return !std::isfinite(value); });
+        std::sort(values.begin(), values.end()); // sums depend on their order
+        return mean(values);
+    }
+
     const Octree& octree_;
     const OctreeLevel& level_;
     std::span<const Index> voxel_;
@@ -78,9 +102,13 @@ std::vector<VertexProperty> average_attributes(const PointCloud& cloud, const Oc
             properties.push_back(std::move(channel));
         }
     }
-    for (const Scalar& scalar : cloud.scalars)
+    for (const Scalar& scalar : cloud.scalars) {
+        const auto has_name = [&](const VertexProperty& p) { return p.name == scalar.name; };
+        if (scalar.name.starts_with("hsdm_") || std::any_of(properties.begin(), properties.end(), has_name))
+            continue; // results of another reconstruction, whose names are those of this one's
         properties.push_back(averages(scalar.name, scalar.is_label ? Type::int32 : Type::float64,
                                       scalar.is_label, [&](Index p) { return scalar.values[p]; }));
+    }
     properties.push_back(
         {"hsdm_level", Type::uint8, std::vector<double>(voxel.size(), static_cast<double>(level.depth))});
     return properties;

@@ -32,6 +32,12 @@ void note_counts(const BasicFacets::Counts& counts, Report& report) {
 
 } // namespace
 
+void note_dropped(const std::string& what, const Discarded& discarded, const CloudFrame& frame,
+                  Report& report) {
+    if (discarded.count > 0)
+        report.dropped.push_back({what, discarded.count, frame.to_cloud(discarded.first)});
+}
+
 PolygonMesh basic_method(const MethodInput& in, Report& report) {
     const ConnectivityGraph graph =
         in.phases.run("graph", 0.2, report.seconds.graph, [&] { return extract_graph(in.octree, in.level); });
@@ -41,7 +47,7 @@ PolygonMesh basic_method(const MethodInput& in, Report& report) {
     });
     note_counts(facets.counts, report);
     if (!in.options.debug_dir.empty())
-        write_phases(in.options.debug_dir, in.octree, in.level, graph, facets.mesh);
+        write_phases(in.options.debug_dir, in.octree, in.level, graph, facets.mesh, in.frame);
     for (Vec3& p : facets.mesh.positions) p -= in.octree.origin;
     return std::move(facets.mesh);
 }

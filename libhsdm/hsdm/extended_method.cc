@@ -28,6 +28,11 @@ ExtendedOptions extended_options(const ReconstructOptions& options, double spaci
     return result;
 }
 
+void note_dropped(const std::string& what, Discarded relative, const MethodInput& in, Report& report) {
+    relative.first += in.octree.origin;
+    note_dropped(what, relative, in.frame, report);
+}
+
 void note_counts(const ExtendedFacets& facets, Report& report) {
     report.rejected["crossings_beyond_crease"] = facets.beyond_crease;
     report.rejected["crossings_settled"] = facets.settled;
@@ -37,7 +42,7 @@ void note_counts(const ExtendedFacets& facets, Report& report) {
     report.rejected["corners_merged"] = facets.corners_merged;
     report.rejected["edges_halved"] = facets.midpoints;
     report.rejected["doublets_merged"] = facets.doublets;
-    report.rejected["facets_debris"] = facets.debris;
+    report.rejected["facets_debris"] = facets.debris.count;
     report.rejected["holes_closed"] = facets.holes.closed;
     report.rejected["holes_refused"] = facets.holes.refused;
     report.rejected["facets_degenerate"] = facets.manifold.degenerate;
@@ -64,7 +69,9 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
     const NormalSets sets = in.phases.run("sets", 0.2, report.seconds.graph, [&] {
         NormalSets all = build_normal_sets(in.octree, in.level, {.merge_layers = in.options.merge_layers});
         const RelationTest related({}, in.level.voxel_size);
-        report.rejected["points_stray"] = drop_lonely_sets(in.level, related, all);
+        const Discarded strays = drop_lonely_sets(in.level, related, all);
+        report.rejected["points_stray"] = strays.count;
+        note_dropped("points that no neighbour continues", strays, in, report);
         return all;
     });
     report.grid.sets = sets.sets.size();
@@ -73,6 +80,7 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
         return reconstruct_extended(in.octree, in.level, sets, extended_options(in.options, spacing));
     });
     note_counts(facets, report);
+    note_dropped("facets of splinters", facets.debris, in, report);
     const bool turned = turn_outward(facets.mesh);
     report.rejected["normals_turned"] = turned ? in.octree.size() : 0;
     if (in.options.classify) {
@@ -91,7 +99,7 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
         PolygonMesh placed = facets.mesh;
         for (Vec3& p : placed.positions) p += in.octree.origin;
         write_phases(in.options.debug_dir, in.octree, in.level, extended_graph(facets.mesh, facets.voxel),
-                     placed);
+                     placed, in.frame);
     }
     return std::move(facets.mesh);
 }

@@ -4,14 +4,17 @@
 #include "hsdm/chunks.hh"
 #include "hsdm/extended_method.hh"
 #include "hsdm/facets/to_mesh.hh"
+#include "hsdm/facets/turn_outward.hh"
 #include "hsdm/features/features.hh"
 #include "hsdm/normals/mend_normals.hh"
 #include "hsdm/normals/noise.hh"
 #include "hsdm/normals/normals.hh"
+#include "hsdm/octree/far_points.hh"
 #include "hsdm/octree/spacing.hh"
 #include "hsdm/quality/distance.hh"
 #include "hsdm/quality/topology.hh"
 
+#include <tbb/global_control.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 
@@ -19,10 +22,13 @@
 #include <new>
 #include <numbers>
 #include <sys/resource.h>
+#include <tuple>
 
 namespace hsdm {
 namespace {
 
+constexpr double widest_voxel =
+    1 << 20; // extents of the cloud; all its points share eight voxels long before
 constexpr std::size_t points_per_chunk = 1 << 14;
 
 void check_depth(const std::string& name, int depth) {
@@ -35,6 +41,21 @@ std::string text_of(double value) {
     char digits[32];
     std::snprintf(digits, sizeof digits, "%.10g", value);
     return digits;
+}
+
+/// Throws Error for a cloud that would be read beyond its end.
+void validate(const PointCloud& cloud) {
+    if (cloud.size() >= no_index)
+        throw Error("the cloud holds " + std::to_string(cloud.size())
+                    + " points; fewer than 2^32 - 1 can be told apart");
+    const auto check = [&](const std::string& what, std::size_t count, bool may_lack) {
+        if (count != cloud.size() && !(may_lack && count == 0))
+            throw Error("the cloud holds " + std::to_string(count) + " " + what + " for "
+                        + std::to_string(cloud.size()) + " points; give one for each, or leave them out");
+    };
+    check("normals", cloud.normals.size(), true);
+    check("colours", cloud.colors.size(), true);
+    for (const Scalar& scalar : cloud.scalars) check("values of " + scalar.name, scalar.values.size(), false);
 }
 
 /// The caller's cloud, or one that is left to us, which gives its memory back as soon as nobody asks for it.
@@ -110,10 +131,18 @@ public:
         OctreeOptions octree_options;
         octree_options.placement = CubePlacement::centred;
         octree_options.use_normals = options.normals != NormalSource::estimate;
+        frame = CloudFrame(cloud.bounds());
+        octree_options.unit = frame.unit();
         octree =
             phases.run("octree", 0, report.seconds.octree, [&] { return input.take_octree(octree_options); });
-        far_away_ = drop_far_away(octree, cloud);
+        const Discarded far = drop_far_away(octree, cloud, frame);
+        far_away_ = far.count;
         if (far_away_ > 0) report.rejected["points_outlying"] = far_away_;
+        note_dropped("points far from all others", far, CloudFrame(), report);
+        frame.check_reach();
+        constexpr double voxels_between_parts = 16; // farther than anything reaches from voxel to voxel
+        cut_empty_space(octree, cloud, frame,
+                        voxels_between_parts * options.voxel_size.value_or(0) / frame.unit());
         check_spread(octree);
         report.input.points = cloud.size();
         report.input.merged_duplicates = octree.merged_duplicates;
@@ -144,8 +173,8 @@ public:
             return consistency.doubtful() ? mend_normals(octree, sensor_of(cloud)) : std::size_t{0};
         });
         note_outliers(phases.run("strays", 0.08, report.seconds.normals, [&] {
-            const std::size_t strays = drop_strays(octree);
-            if (strays > 0) fit_to_points(octree);
+            const Discarded strays = drop_strays(octree);
+            if (strays.count > 0) fit_to_points(octree);
             return strays;
         }));
     }
@@ -161,14 +190,14 @@ public:
         if (options.voxel_size) {
             report.options["voxel-size"] = text_of(*options.voxel_size);
             report.options["resolution"] = "as asked by voxel size";
-            return fit_voxels(*options.voxel_size);
+            return fit_voxels(*options.voxel_size / frame.unit());
         }
         if (options.max_error) { // as fine as two spacings only where the error needs it
-            const DepthChoice choice = choose_depth(octree, report.input.spacing, 2);
+            const DepthChoice choice = choose_depth(octree, report.input.spacing, 2, frame.unit());
             report.options["resolution"] = choice.reason;
             return choice.depth;
         }
-        const VoxelChoice choice = choose_voxel(octree, report.input.spacing, noise_);
+        const VoxelChoice choice = choose_voxel(octree, report.input.spacing, noise_, frame.unit());
         report.options["resolution"] = choice.reason;
         return fit_voxels(choice.size);
     }
@@ -192,25 +221,28 @@ public:
     /// Once the last facets are made nobody asks for them.
     void release_normals() { octree.normals = std::vector<Vec3>(); }
 
+    CloudFrame frame;
     Octree octree;
-    Report report;
+    Report report; // lengths and box as the octree has them, until they are told
 
 private:
     /// Outliers make a cloud look sparser and larger than its surface is.
-    void note_outliers(std::size_t count) {
-        report.rejected["points_outlying"] = far_away_ + count;
-        if (count == 0) return;
+    void note_outliers(const Discarded& outliers) {
+        report.rejected["points_outlying"] = far_away_ + outliers.count;
+        note_dropped("points off every surface", outliers, frame, report);
+        if (outliers.count == 0) return;
         report.input.bbox = octree.bounds;
         report.input.spacing = estimate_spacing(octree);
     }
 
     std::optional<Vec3> sensor_of(const PointCloud& cloud) const {
         if (!cloud.sensor) return std::nullopt;
-        return *cloud.sensor - octree.origin;
+        return frame.to_work(*cloud.sensor) - octree.origin;
     }
 
     void note_smoothing(const SmoothReport& smoothed) {
-        report.rejected["points_between_sheets"] = smoothed.between;
+        report.rejected["points_between_sheets"] = smoothed.between.count;
+        note_dropped("noisy points between sheets", smoothed.between, frame, report);
         noise_ = smoothed.noise;
         moved_ = noise_ > 0;
         if (!moved_) return;
@@ -222,12 +254,17 @@ private:
     /// returns N.
     int fit_voxels(double voxel_size) {
         const double extent = octree.bounds.extent();
+        if (voxel_size > widest_voxel * extent)
+            throw OptionError("voxel_size " + text_of(voxel_size * frame.unit()) + ": must be at most "
+                              + text_of(widest_voxel * extent * frame.unit())
+                              + ", a million times the cloud's extent");
         int depth = 1;
         double cube = 2 * voxel_size;
         for (; cube < extent && depth < deepest_level; ++depth) cube *= 2;
         if (cube < extent)
-            throw OptionError("voxel_size " + text_of(voxel_size) + ": must be at least "
-                              + text_of(extent / (1 << deepest_level)) + ", the cloud's extent over 2^16");
+            throw OptionError("voxel_size " + text_of(voxel_size * frame.unit()) + ": must be at least "
+                              + text_of(extent * frame.unit() / (1 << deepest_level))
+                              + ", the cloud's extent over 2^16");
         rearrange(octree, std::move(octree.positions), cube);
         return depth;
     }
@@ -272,7 +309,7 @@ void note_options(bool estimate, const ReconstructOptions& options, Report& repo
 
 void note_islands(const Islands& islands, Report& report) {
     report.rejected["components_small"] = islands.components;
-    report.rejected["facets_of_small_components"] = islands.facets;
+    report.rejected["facets_of_small_components"] = islands.facets.count;
 }
 
 void measure_mesh(const PolygonMesh& facets, Report& report) {
@@ -293,11 +330,11 @@ void measure_mesh(const PolygonMesh& facets, Report& report) {
 }
 
 /// The octree's points where the cloud has them, relative to its origin.
-std::vector<Vec3> points_as_read(const PointCloud& cloud, const Octree& octree) {
+std::vector<Vec3> points_as_read(const PointCloud& cloud, const CloudFrame& frame, const Octree& octree) {
     std::vector<Vec3> points(octree.size());
     for_chunks(points.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i)
-            points[i] = cloud.positions[octree.source[i]] - octree.origin;
+            points[i] = frame.to_work(cloud.positions[octree.source[i]]) - octree.origin;
     });
     return points;
 }
@@ -317,15 +354,18 @@ void measure_error(std::span<const Vec3> points, const Octree& octree, const Pol
 
 /// Drops small components if asked to, and measures what is left. A bound is checked before: it is one for
 /// the points of what is dropped too.
-void drop_and_measure(std::span<const Vec3> points, const Octree& octree, const ReconstructOptions& options,
-                      PolygonMesh& facets, FacetKnowledge& known, Report& report) {
+void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, PolygonMesh& facets,
+                      FacetKnowledge& known, Report& report) {
+    const auto& [octree, options] = std::tie(in.octree, in.options);
     bool measured = report.grid.max_error > 0;
     if (measured)
         measure_error(points, octree, facets, known, options.measure ? 0 : report.grid.max_error, report);
-    check_error_kept(report);
+    check_error_kept(report, in.frame.unit());
     if (options.min_component) {
-        const Islands islands = drop_islands(facets, known.hints, *options.min_component);
+        Islands islands = drop_islands(facets, known.hints, *options.min_component);
         note_islands(islands, report);
+        islands.facets.first += octree.origin;
+        note_dropped("facets of components smaller than asked for", islands.facets, in.frame, report);
         if (islands.components > 0) {
             known.links.reset();
             known.cells.reset();
@@ -343,7 +383,7 @@ void drop_and_measure(std::span<const Vec3> points, const Octree& octree, const 
         [&] { measure_mesh(facets, report); });
 }
 
-/// Phase 3 on the mesh, in the cloud's own coordinates.
+/// Phase 3 on the mesh.
 void find_features(PolyMesh& mesh, const ReconstructOptions& options, const FeatureHints& hints,
                    Report& report) {
     FeatureOptions feature_options;
@@ -359,6 +399,18 @@ void find_features(PolyMesh& mesh, const ReconstructOptions& options, const Feat
     report.features.smooth_vertices = counts.smooth_vertices;
     report.features.edge_vertices = counts.edge_vertices;
     report.features.corner_vertices = counts.corner_vertices;
+}
+
+/// What the stages made and measured goes back into the cloud's own coordinates and units.
+void tell_in_cloud_units(const CloudFrame& frame, PolyMesh& mesh, Report& report) {
+    if (frame.unit() == 1 && !frame.has_cuts()) return;
+    for (const auto v : mesh.vertices()) mesh.set_point(v, frame.to_cloud(mesh.point(v)));
+    report.input.bbox = frame.to_cloud(report.input.bbox);
+    for (double* length : {&report.input.spacing, &report.grid.voxel_size, &report.grid.max_error,
+                           &report.error.points_to_mesh_max, &report.error.points_to_mesh_mean,
+                           &report.error.points_to_mesh_rms, &report.error.mesh_to_surface_max,
+                           &report.error.mesh_to_surface_mean})
+        *length *= frame.unit();
 }
 
 /// Peak of the whole process so far; the kernel counts in KiB.
@@ -382,7 +434,7 @@ void reconstruct_level(InputCloud& cloud, Decomposition& decomposition, int dept
     report.grid.leaves_per_level.assign(static_cast<std::size_t>(depth) + 1, 0);
     report.grid.leaves_per_level.back() = level.size();
 
-    const MethodInput input{*cloud, octree, level, options, phases};
+    const MethodInput input{decomposition.frame, *cloud, octree, level, options, phases};
     FacetKnowledge known;
     PolygonMesh facets = method_for(options) == Method::extended ? extended_method(input, report, known)
                                                                  : basic_method(input, report);
@@ -396,7 +448,7 @@ void reconstruct_level(InputCloud& cloud, Decomposition& decomposition, int dept
                     + "; try another depth, or check that the points sample a surface");
     std::vector<Vec3> as_read;
     if (decomposition.has_moved() && (options.measure || wants_adaptive(options)))
-        as_read = points_as_read(*cloud, octree);
+        as_read = points_as_read(*cloud, decomposition.frame, octree);
     if (last) cloud.release_positions();
     const std::span<const Vec3> points = decomposition.has_moved() ? as_read : octree.positions;
     if (wants_adaptive(options)) {
@@ -405,13 +457,13 @@ void reconstruct_level(InputCloud& cloud, Decomposition& decomposition, int dept
         });
         known = {}; // of the fine facets
     }
-    phases.run("error", 0.6, seconds.error,
-               [&] { drop_and_measure(points, octree, options, facets, known, report); });
+    phases.run("error", 0.6, seconds.error, [&] { drop_and_measure(points, input, facets, known, report); });
 
     as_read = std::vector<Vec3>();
     phases.run("mesh", 0.85, seconds.mesh, [&] {
-        for (Vec3& p : facets.positions) p += octree.origin;
         if (!known.links) known.links = link_facets(facets);
+        report.rejected["facets_turned"] = turn_outward(facets, *known.links, known.hints);
+        for (Vec3& p : facets.positions) p += octree.origin;
         const std::size_t rejected = to_mesh(facets, *known.links, result.mesh).rejected;
         report.rejected["to_mesh"] = rejected;
         if (rejected > 0) known.hints = {}; // they are counted by facets
@@ -419,6 +471,7 @@ void reconstruct_level(InputCloud& cloud, Decomposition& decomposition, int dept
     if (options.classify)
         phases.run("features", 0.9, seconds.features,
                    [&] { find_features(result.mesh, options, known.hints, report); });
+    tell_in_cloud_units(decomposition.frame, result.mesh, report);
     report.peak_memory_bytes = peak_memory();
     result.report = std::move(report);
 }
@@ -438,6 +491,7 @@ Reconstruction failed_level(const Report& report, int depth, const std::exceptio
 void run(InputCloud& cloud, const ReconstructOptions& options, std::optional<std::pair<int, int>> range,
          std::span<Reconstruction> results) {
     const auto start = std::chrono::steady_clock::now();
+    validate(*cloud);
     cloud.drop_nonfinite_points();
     if (options.normals == NormalSource::given && !(*cloud).has_normals())
         throw Error("normals given were asked for, but the cloud has none");
@@ -486,7 +540,9 @@ void run(InputCloud& cloud, const ReconstructOptions& options, std::optional<std
 void run_in_arena(InputCloud& cloud, const ReconstructOptions& options,
                   std::optional<std::pair<int, int>> range, std::span<Reconstruction> results) {
     if (options.threads == 0) return run(cloud, options, range, results);
-    tbb::task_arena arena(options.threads);
+    // More than may run would be a warning that TBB prints.
+    const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    tbb::task_arena arena(static_cast<int>(std::min(static_cast<std::size_t>(options.threads), allowed)));
     arena.execute([&] { run(cloud, options, range, results); });
 }
 

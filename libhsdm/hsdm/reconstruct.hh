@@ -60,7 +60,8 @@ struct ReconstructOptions {
     double crease_angle =
         0.61;                 ///< radians, (0, pi): dihedral angle above which an edge is sharp (35 degrees)
     int normal_smoothing = 3; ///< rounds of anisotropic normal smoothing, >= 0 (section 3.3)
-    int threads = 0;          ///< at most this many; 0: all. The result does not depend on it
+    int threads = 0; ///< at most this many, and no more than TBB may use: as many as there are cores, or
+                     ///< as tbb::global_control says; 0: all of these. The result does not depend on it
     /// What will not be read need not be computed: a third of the time. The facets are the same.
     bool classify = true;       ///< phase 3: sharp edges and classes of vertices; else the mesh has none
     bool vertex_normals = true; ///< phase 3, where there are classes: smoothed normals of vertices
@@ -81,7 +82,7 @@ void check_options(const ReconstructOptions& options);
 void check_options(const ReconstructOptions& options, int first_depth, int last_depth);
 
 /// Throws OptionError for an option out of range, also of this cloud's (voxel_size), Error for a cloud
-/// without a surface in it, Cancelled.
+/// without a surface in it or whose arrays do not fit together, Cancelled.
 Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& options = {});
 /// The same in less memory, by a third for given normals: each array of a cloud that is moved is freed as
 /// soon as nobody asks for it. What is left of the cloud is unspecified, whatever is thrown.

@@ -93,6 +93,18 @@ void fill(JsonText& json, const Report::Seconds& s) {
     json.end();
 }
 
+void fill(JsonText& json, const std::vector<Report::Dropped>& dropped) {
+    json.begin_array();
+    for (const Report::Dropped& d : dropped) {
+        json.begin_object();
+        json.member("what", d.what);
+        json.member("count", d.count);
+        json.member("where", d.where);
+        json.end();
+    }
+    json.end();
+}
+
 } // namespace
 
 std::string to_json(const Report& report) {
@@ -122,6 +134,8 @@ std::string to_json(const Report& report) {
     fill(json, report.error);
     json.key("rejected");
     fill(json, report.rejected);
+    json.key("dropped");
+    fill(json, report.dropped);
     json.key("seconds");
     fill(json, report.seconds);
     json.member("peak_memory_bytes", report.peak_memory_bytes);

@@ -52,6 +52,14 @@ struct Report {
 
     std::map<std::string, std::size_t> rejected; ///< by stage: what it refused, mended or split
 
+    /// Of the input or the surface: what was there and is not in the mesh, and where the first of it was.
+    struct Dropped {
+        std::string what; ///< e.g. "points far from all others"
+        std::size_t count = 0;
+        Vec3 where{0, 0, 0}; ///< in the cloud's coordinates
+    };
+    std::vector<Dropped> dropped;
+
     struct Seconds {
         double read = 0, normals = 0, octree = 0, graph = 0, facets = 0, mesh = 0, features = 0, error = 0,
                write = 0, total = 0;

@@ -66,7 +66,7 @@ TEST_CASE("vertices, their properties and the hints go with their component", "[
         hints.sides.insert(hints.sides.end(), 4, f < 102 ? EdgeHint::smooth : EdgeHint::sharp);
     const Islands dropped = drop_islands(mesh, hints, {11, false});
     CHECK(dropped.components == 2);
-    CHECK(dropped.facets == 12);
+    CHECK(dropped.facets.count == 12);
     CHECK(measure_topology(mesh).isolated_vertices == 0);
     REQUIRE(mesh.properties[0].values.size() == mesh.vertex_count());
     CHECK(mesh.properties[0].values.front() == 100);

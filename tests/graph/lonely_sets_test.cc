@@ -35,7 +35,7 @@ TEST_CASE("strays belong to no set, the surface keeps its points", "[graph]") {
     NormalSets sets = build_normal_sets(octree, level);
     const std::size_t before = sets.sets.size();
     const RelationTest related({}, level.voxel_size);
-    CHECK(drop_lonely_sets(level, related, sets) == 5);
+    CHECK(drop_lonely_sets(level, related, sets).count == 5);
     CHECK(sets.sets.size() == before - 5);
     REQUIRE(sets.first.size() == level.size() + 1);
     CHECK(sets.first.back() == sets.sets.size());
@@ -54,7 +54,7 @@ TEST_CASE("strays belong to no set, the surface keeps its points", "[graph]") {
             CHECK(sets.sets[s].count == counts[s]);
             CHECK(sets.sets[s].normal[2] == Approx(1));
         }
-    CHECK(drop_lonely_sets(level, related, sets) == 0);
+    CHECK(drop_lonely_sets(level, related, sets).count == 0);
 }
 
 TEST_CASE("a lone set of many points is a surface", "[graph]") {
@@ -68,5 +68,5 @@ TEST_CASE("a lone set of many points is a surface", "[graph]") {
     const Octree octree = build_octree(cloud);
     const OctreeLevel level = extract_level(octree, 4);
     NormalSets sets = build_normal_sets(octree, level);
-    CHECK(drop_lonely_sets(level, RelationTest({}, level.voxel_size), sets) == 0);
+    CHECK(drop_lonely_sets(level, RelationTest({}, level.voxel_size), sets).count == 0);
 }

@@ -15,7 +15,7 @@ constexpr double default_error = 0.1; // voxels of the finest level
 double error_bound(const MethodInput& in) {
     if (!in.options.max_error) return default_error * in.level.voxel_size;
     const MaxError& asked = *in.options.max_error;
-    return asked.of_diagonal ? asked.value * in.octree.bounds.diagonal() : asked.value;
+    return asked.of_diagonal ? asked.value * in.octree.bounds.diagonal() : asked.value / in.frame.unit();
 }
 
 /// Of the fine vertices that the coarse ones stand for; levels are their own.
@@ -53,14 +53,14 @@ PolygonMesh adaptive_grid(const MethodInput& in, std::span<const Vec3> points, c
     return std::move(coarse.mesh);
 }
 
-void check_error_kept(const Report& report) {
+void check_error_kept(const Report& report, double unit) {
     if (report.grid.max_error == 0 || report.grid.points_beyond > 0) return;
     if (report.error.points_to_mesh_max <= report.grid.max_error) return;
     char text[160];
     std::snprintf(text, sizeof text,
                   "max_error %.6g: not kept, a point is %.6g from the mesh; ask for a larger one, or for a "
                   "uniform grid",
-                  report.grid.max_error, report.error.points_to_mesh_max);
+                  report.grid.max_error * unit, report.error.points_to_mesh_max * unit);
     throw Error(text);
 }
 

@@ -19,7 +19,8 @@ bool wants_adaptive(const ReconstructOptions& options);
 PolygonMesh adaptive_grid(const MethodInput& input, std::span<const Vec3> points, const PolygonMesh& fine,
                           const FacetCells* cells, Report& report);
 
-/// Throws Error if a point was measured farther from the final mesh than the bound and none was announced.
-void check_error_kept(const Report& report);
+/// Throws Error if a point was measured farther from the final mesh than the bound and none was announced; it
+/// gives lengths times `unit`.
+void check_error_kept(const Report& report, double unit = 1);
 
 } // namespace hsdm

@@ -49,8 +49,8 @@ std::vector<std::uint8_t> open_components(const PolygonMesh& mesh, DisjointSets&
 
 } // namespace
 
-std::size_t drop_debris(PolygonMesh& mesh, const DebrisOptions& options) {
-    if (mesh.facet_count() == 0) return 0;
+Discarded drop_debris(PolygonMesh& mesh, const DebrisOptions& options) {
+    if (mesh.facet_count() == 0) return {};
     DisjointSets components(mesh.vertex_count());
     for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t f = begin; f < end; ++f)
@@ -63,11 +63,16 @@ std::size_t drop_debris(PolygonMesh& mesh, const DebrisOptions& options) {
     for (std::size_t c = 0; c < sizes.size(); ++c)
         debris[c] = sizes[c] > 0 && sizes[c] <= (open[c] ? options.most_open : options.most_facets)
                     && static_cast<double>(sizes[c]) * options.least_ratio <= largest;
-    if (std::none_of(debris.begin(), debris.end(), [](std::uint8_t d) { return d; })) return 0;
+    if (std::none_of(debris.begin(), debris.end(), [](std::uint8_t d) { return d; })) return {};
     PolygonMesh kept;
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f)
-        if (!debris[components.find(mesh.facet(f)[0])]) kept.add_facet(mesh.facet(f));
-    const std::size_t removed = mesh.facet_count() - kept.facet_count();
+    Discarded removed;
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+        const Index v = mesh.facet(f)[0];
+        if (debris[components.find(v)])
+            removed.add({1, mesh.positions[v]});
+        else
+            kept.add_facet(mesh.facet(f));
+    }
     mesh.corners = std::move(kept.corners);
     mesh.first = std::move(kept.first);
     return removed;

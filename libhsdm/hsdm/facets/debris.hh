@@ -1,6 +1,7 @@
 #pragma once
 // Splinters: a few facets on their own beside a surface of many.
 
+#include "hsdm/discarded.hh"
 #include "hsdm/polygon_mesh.hh"
 
 namespace hsdm {
@@ -12,7 +13,7 @@ struct DebrisOptions {
 };
 
 /// Removes the components (facets joined by shared vertices) that are debris beside the largest one, vertices
-/// stay. Returns the number of facets removed. O(facets).
-std::size_t drop_debris(PolygonMesh& mesh, const DebrisOptions& options = {});
+/// stay. Returns the number of facets removed, and where. O(facets).
+Discarded drop_debris(PolygonMesh& mesh, const DebrisOptions& options = {});
 
 } // namespace hsdm

@@ -46,13 +46,15 @@ Islands drop_islands(PolygonMesh& mesh, FeatureHints& hints, const MinComponent&
     PolygonMesh kept;
     std::vector<EdgeHint> sides;
     for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-        if (is_small(components.find(mesh.facet(f)[0]))) continue;
+        if (const Index v = mesh.facet(f)[0]; is_small(components.find(v))) {
+            removed.facets.add({1, mesh.positions[v]});
+            continue;
+        }
         kept.add_facet(mesh.facet(f));
         if (!hints.sides.empty())
             sides.insert(sides.end(), hints.sides.begin() + mesh.first[f],
                          hints.sides.begin() + mesh.first[f + 1]);
     }
-    removed.facets = mesh.facet_count() - kept.facet_count();
     mesh.corners = std::move(kept.corners);
     mesh.first = std::move(kept.first);
     hints.sides = std::move(sides);

@@ -1,6 +1,7 @@
 #pragma once
 // Small components, dropped when asked.
 
+#include "hsdm/discarded.hh"
 #include "hsdm/features/feature_hints.hh"
 #include "hsdm/polygon_mesh.hh"
 
@@ -13,7 +14,8 @@ struct MinComponent {
 };
 
 struct Islands {
-    std::size_t components = 0, facets = 0; ///< removed
+    std::size_t components = 0; ///< removed
+    Discarded facets;
 };
 
 /// Removes the components (facets joined by shared vertices) smaller than `least`, with their vertices and

@@ -51,6 +51,11 @@ bool is_stray(const OctreeLevel& level, const RelationTest& related, const Norma
     return true;
 }
 
+Vec3 middle_of(const OctreeLevel& level, Index voxel) {
+    const VoxelCoord c = level.coord(voxel);
+    return (Vec3(c[0], c[1], c[2]) + Vec3(0.5, 0.5, 0.5)) * level.voxel_size;
+}
+
 void remove(const std::vector<std::uint8_t>& lonely, NormalSets& sets) {
     std::vector<Index> renumbered(sets.sets.size(), no_index);
     Index kept = 0;
@@ -71,8 +76,8 @@ void remove(const std::vector<std::uint8_t>& lonely, NormalSets& sets) {
 
 } // namespace
 
-std::size_t drop_lonely_sets(const OctreeLevel& level, const RelationTest& related, NormalSets& sets,
-                             const LonelySetOptions& options) {
+Discarded drop_lonely_sets(const OctreeLevel& level, const RelationTest& related, NormalSets& sets,
+                           const LonelySetOptions& options) {
     const double most = std::max(1.0, options.most_share * typical_count(sets));
     std::vector<std::uint8_t> lonely(sets.sets.size(), 0);
     for_chunks(sets.sets.size(), sets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -82,10 +87,10 @@ std::size_t drop_lonely_sets(const OctreeLevel& level, const RelationTest& relat
                 sets.sets[s].count <= most
                 && is_stray(level, related, sets, most, options.most_sets, static_cast<Index>(s), group);
     });
-    std::size_t points = 0;
+    Discarded points;
     for (std::size_t s = 0; s < lonely.size(); ++s)
-        if (lonely[s]) points += sets.sets[s].count;
-    if (points > 0) remove(lonely, sets);
+        if (lonely[s]) points.add({sets.sets[s].count, middle_of(level, sets.sets[s].voxel)});
+    if (points.count > 0) remove(lonely, sets);
     return points;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // Strays: sets of a few points that no neighbour continues.
 
+#include "hsdm/discarded.hh"
 #include "hsdm/graph/set_relation.hh"
 
 namespace hsdm {
@@ -12,8 +13,9 @@ struct LonelySetOptions {
 
 /// Removes the strays from their voxels; their points belong to no set afterwards: sets of a few points that
 /// reach, by smooth relations to sets of the 26 voxels around, neither a set of more points nor many others.
-/// A surface covers more voxels or holds more points. Returns the number of points. O(sets), parallel.
-std::size_t drop_lonely_sets(const OctreeLevel& level, const RelationTest& related, NormalSets& sets,
-                             const LonelySetOptions& options = {});
+/// A surface covers more voxels or holds more points. Returns the number of points, and where
+/// relative to the octree's origin. O(sets), parallel.
+Discarded drop_lonely_sets(const OctreeLevel& level, const RelationTest& related, NormalSets& sets,
+                           const LonelySetOptions& options = {});
 
 } // namespace hsdm

@@ -20,24 +20,24 @@ void append(std::string& text, double value) {
 
 } // namespace
 
-PolygonMesh voxel_cubes(const Octree& octree, const OctreeLevel& level) {
+PolygonMesh voxel_cubes(const Octree& octree, const OctreeLevel& level, const CloudFrame& frame) {
     PolygonMesh mesh;
     for (Index v = 0; v < level.size(); ++v) {
         const VoxelCoord c = level.coord(v);
         for (int i = 0; i < 8; ++i)
-            mesh.positions.push_back(octree.origin
-                                     + Vec3(c[0] + (i & 1), c[1] + (i >> 1 & 1), c[2] + (i >> 2))
-                                           * level.voxel_size);
+            mesh.positions.push_back(frame.to_cloud(
+                octree.origin
+                + Vec3(c[0] + (i & 1), c[1] + (i >> 1 & 1), c[2] + (i >> 2)) * level.voxel_size));
         for (const auto& face : cube_faces)
             mesh.add_facet(std::array{8 * v + face[0], 8 * v + face[1], 8 * v + face[2], 8 * v + face[3]});
     }
     return mesh;
 }
 
-std::string graph_obj(const Octree& octree, const ConnectivityGraph& graph) {
+std::string graph_obj(const Octree& octree, const ConnectivityGraph& graph, const CloudFrame& frame) {
     std::string text;
     for (const Vec3& relative : graph.positions) {
-        const Vec3 p = relative + octree.origin;
+        const Vec3 p = frame.to_cloud(relative + octree.origin);
         text += 'v';
         for (unsigned k = 0; k < 3; ++k) {
             text += ' ';
@@ -58,14 +58,16 @@ PhaseFiles phase_files(const std::string& debug_dir, int depth) {
 }
 
 void write_phases(const std::string& debug_dir, const Octree& octree, const OctreeLevel& level,
-                  const ConnectivityGraph& graph, const PolygonMesh& facets) {
+                  const ConnectivityGraph& graph, const PolygonMesh& facets, const CloudFrame& frame) {
     const PhaseFiles files = phase_files(debug_dir, level.depth);
     std::error_code error;
     std::filesystem::create_directories(files.folder, error);
     if (error) throw Error(files.folder, "cannot be made a folder (" + error.message() + "); choose another");
-    write_mesh(files.voxels, voxel_cubes(octree, level), MeshFormat::obj);
-    write_text(files.graph, graph_obj(octree, graph));
-    write_mesh(files.facets, facets, MeshFormat::off);
+    write_mesh(files.voxels, voxel_cubes(octree, level, frame), MeshFormat::obj);
+    write_text(files.graph, graph_obj(octree, graph, frame));
+    PolygonMesh placed = facets;
+    for (Vec3& p : placed.positions) p = frame.to_cloud(p);
+    write_mesh(files.facets, placed, MeshFormat::off);
 }
 
 } // namespace hsdm

@@ -24,7 +24,7 @@ NormalsReport make_normals(Octree& octree, const NormalsOptions& options) {
     Neighbors nearest = find_neighbors(octree);
     report.outliers = drop_outliers(octree, nearest, options.outliers);
     OrientOptions orient = options.orient;
-    if (const Vec3 origin = octree.origin; report.outliers > 0 && fit_to_points(octree)) {
+    if (const Vec3 origin = octree.origin; report.outliers.count > 0 && fit_to_points(octree)) {
         nearest = find_neighbors(octree); // in another order, and in voxels that fit what is left
         if (orient.sensor) *orient.sensor += origin - octree.origin;
     }

@@ -16,11 +16,11 @@ struct NormalsOptions {
 };
 
 struct NormalsReport {
-    std::size_t outliers = 0; ///< points far from all others, removed first
-    SmoothReport smoothed;    ///< what was done about noise, next
-    double noise = 0;         ///< see EstimatedNormals
-    std::size_t bent = 0;     ///< points whose neighbours are not all of one plane: near creases, mostly
-    std::size_t missing = 0;  ///< points left without a normal: their neighbours lie on a line
+    Discarded outliers;      ///< points far from all others, removed first
+    SmoothReport smoothed;   ///< what was done about noise, next
+    double noise = 0;        ///< see EstimatedNormals
+    std::size_t bent = 0;    ///< points whose neighbours are not all of one plane: near creases, mostly
+    std::size_t missing = 0; ///< points left without a normal: their neighbours lie on a line
     OrientReport orientation;
 };
 

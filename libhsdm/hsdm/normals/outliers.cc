@@ -4,8 +4,6 @@
 #include "hsdm/normals/plane_fit.hh"
 #include "hsdm/octree/spacing.hh"
 
-#include <tbb/parallel_invoke.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -18,24 +16,6 @@ double median(std::vector<double>& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
-}
-
-template <class T>
-void keep(std::vector<T>& values, const std::vector<std::uint8_t>& dropped) {
-    if (values.empty()) return;
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < dropped.size(); ++i)
-        if (!dropped[i]) values[kept++] = values[i];
-    values.resize(kept);
-}
-
-/// Returns how many went.
-std::size_t remove(Octree& octree, const std::vector<std::uint8_t>& dropped) {
-    const auto count = static_cast<std::size_t>(std::count(dropped.begin(), dropped.end(), 1));
-    if (count == 0) return 0;
-    tbb::parallel_invoke([&] { keep(octree.codes, dropped); }, [&] { keep(octree.positions, dropped); },
-                         [&] { keep(octree.normals, dropped); }, [&] { keep(octree.source, dropped); });
-    return count;
 }
 
 /// Do the neighbours, of which the point is none, fill a volume, or lie on a plane that the point is not of?
@@ -72,25 +52,6 @@ std::vector<std::uint8_t> find_outliers(const Octree& octree, const Neighbors& n
         }
     });
     return found;
-}
-
-/// All but the outer two percent along each axis, of a sample.
-Box box_of_most(const Octree& octree, const PointCloud& cloud) {
-    constexpr std::size_t samples = 1 << 12;
-    const std::size_t stride = octree.size() / samples + 1;
-    Box box{Vec3(0, 0, 0), Vec3(0, 0, 0)};
-    std::vector<double> values;
-    for (unsigned axis = 0; axis < 3; ++axis) {
-        values.clear();
-        for (std::size_t i = 0; i < octree.size(); i += stride)
-            values.push_back(cloud.positions[octree.source[i]][axis]);
-        std::sort(values.begin(), values.end());
-        const std::size_t outer = std::max<std::size_t>(1, values.size() / 50);
-        if (2 * outer >= values.size()) return box;
-        box.lo[axis] = values[outer];
-        box.hi[axis] = values[values.size() - 1 - outer];
-    }
-    return box;
 }
 
 /// A level's voxels by their first points, and how many points share a typical point's voxel.
@@ -138,42 +99,19 @@ int support(const Octree& octree, Index i, std::span<const Index> neighbors,
 
 } // namespace
 
-std::size_t drop_outliers(Octree& octree, Neighbors& neighbors, const OutlierOptions& options) {
-    std::size_t total = 0;
+Discarded drop_outliers(Octree& octree, Neighbors& neighbors, const OutlierOptions& options) {
+    Discarded total;
     for (int round = 0; round < options.rounds && neighbors.count > 0; ++round) {
-        const std::size_t count = remove(octree, find_outliers(octree, neighbors, options));
-        if (count == 0) break;
-        total += count;
+        const Discarded some = remove_points(octree, find_outliers(octree, neighbors, options));
+        if (some.count == 0) break;
+        total.add(some);
         neighbors = find_neighbors(octree, {.count = static_cast<int>(neighbors.count)});
-        if (count < octree.size() / 1000) break; // too few to have hidden others
+        if (some.count < octree.size() / 1000) break; // too few to have hidden others
     }
     return total;
 }
 
-std::size_t drop_far_away(Octree& octree, const PointCloud& cloud) {
-    constexpr double cubes_least = 1 << 12, margin = 1 << 10; // of the box that most points lie in
-    const Box core = box_of_most(octree, cloud);
-    const double extent = core.extent();
-    if (!(extent > 0) || cubes_least * extent >= octree.extent) return 0;
-    std::vector<std::uint8_t> far(octree.size(), 0);
-    Box bounds; // of the others
-    for (std::size_t i = 0; i < far.size(); ++i) {
-        const Vec3& p = cloud.positions[octree.source[i]];
-        const Vec3 below = core.lo - p, above = p - core.hi;
-        far[i] = std::max(below.max(), above.max()) > margin * extent;
-        if (!far[i]) bounds.add(p);
-    }
-    const std::size_t count = remove(octree, far);
-    if (count == 0 || !(bounds.extent() > 0)) return count;
-    octree.bounds = bounds;
-    octree.origin = bounds.lo;
-    for (std::size_t i = 0; i < octree.size(); ++i)
-        octree.positions[i] = cloud.positions[octree.source[i]] - octree.origin;
-    rearrange(octree, std::move(octree.positions), bounds.extent());
-    return count;
-}
-
-std::size_t drop_strays(Octree& octree, const StrayOptions& options) {
+Discarded drop_strays(Octree& octree, const StrayOptions& options) {
     const Density density = level_of_density(octree, options.points_per_voxel);
     const std::vector<Index>& first = density.first_point;
     const auto most = static_cast<Index>(std::max(1.0, options.most_share * density.typical));
@@ -190,7 +128,7 @@ std::size_t drop_strays(Octree& octree, const StrayOptions& options) {
             stray[sparse[k]] = support(octree, sparse[k], neighbors.of(k), is_sparse, farthest, options)
                                < options.least_support;
     });
-    return remove(octree, stray);
+    return remove_points(octree, stray);
 }
 
 } // namespace hsdm

@@ -1,6 +1,7 @@
 #pragma once
 // Points that are of no surface: strays between and around the surfaces.
 
+#include "hsdm/discarded.hh"
 #include "hsdm/normals/neighbors.hh"
 
 namespace hsdm {
@@ -20,15 +21,9 @@ struct OutlierOptions {
 /// Removes the points that are far from their neighbours while these are near each other, or far from all;
 /// less far ones if their neighbours do not lie beside them on a plane. The reach of a point is the distance
 /// of the farthest of its neighbours, which changes slowly along a sampled surface, as does its plane however
-/// sparse it is. Returns how many; the neighbours are those of the points left. O(n) per round, parallel.
-std::size_t drop_outliers(Octree& octree, Neighbors& neighbors, const OutlierOptions& options = {});
-
-/// Removes points so far away that the octree is for nothing else: one garbage coordinate, and the finest
-/// voxels hold crowds. All but the outer two percent along each axis (of a sample) lie in a box less than
-/// 2^-12 of the cube; what is more than 2^10 of such boxes from it goes. The others' positions are taken anew
-/// from the cloud that the octree was built of, since near a far origin they were rounded, and fit their cube
-/// again. Returns how many went. O(1) if none does, else O(n).
-std::size_t drop_far_away(Octree& octree, const PointCloud& cloud);
+/// sparse it is. Returns how many, and where in the coordinates of the octree's bounds; the neighbours are
+/// those of the points left. O(n) per round, parallel.
+Discarded drop_outliers(Octree& octree, Neighbors& neighbors, const OutlierOptions& options = {});
 
 struct StrayOptions {
     double points_per_voxel = 8; ///< of a typical point's voxel: on such a level sparse voxels are looked for
@@ -43,6 +38,6 @@ struct StrayOptions {
 /// The same where normals are known: among the points in sparse voxels, those that too few neighbours agree
 /// with. O(n), parallel; little more than the points are read once where hardly any voxel is sparse. Throws
 /// OptionError.
-std::size_t drop_strays(Octree& octree, const StrayOptions& options = {});
+Discarded drop_strays(Octree& octree, const StrayOptions& options = {});
 
 } // namespace hsdm

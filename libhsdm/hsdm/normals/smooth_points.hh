@@ -1,6 +1,7 @@
 #pragma once
 // A noisy cloud's points moved onto the surface that they scatter about.
 
+#include "hsdm/discarded.hh"
 #include "hsdm/normals/neighbors.hh"
 
 namespace hsdm {
@@ -12,8 +13,8 @@ struct SmoothOptions {
 };
 
 struct SmoothReport {
-    double noise = 0;        ///< standard deviation in the cloud's units; 0 if no point was moved
-    std::size_t between = 0; ///< points removed because they came to lie on no sheet
+    double noise = 0;  ///< standard deviation in the cloud's units; 0 if no point was moved
+    Discarded between; ///< points removed because they came to lie on no sheet
 };
 
 /// Makes a noisy cloud one of little noise, with its neighbours; leaves others alone. O(n), parallel. Throws

@@ -6,6 +6,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <cmath>
 #include <numeric>
@@ -13,15 +14,34 @@
 #include <tuple>
 
 namespace hsdm {
+Vec3 centred_origin(const Box& bounds, double extent) {
+    Vec3 origin;
+    // A side as long as the cube's: rounding must not leave its ends a hair outside.
+    for (unsigned k = 0; k < 3; ++k)
+        origin[k] =
+            std::clamp(bounds.lo[k] + bounds.size()[k] / 2 - extent / 2, bounds.hi[k] - extent, bounds.lo[k]);
+    return origin;
+}
+
 namespace {
 
 using Range = tbb::blocked_range<std::size_t>;
 constexpr std::size_t grain = 1 << 14;
+constexpr double cells = 1 << morton_levels; // along an edge of the cube
 constexpr std::size_t ahead = 16; // points asked for before they are needed: their order is not the cloud's
 
-Vec3 unit_or_zero(const Vec3& n) {
+const Vec3 zero(0, 0, 0); // added, it makes -0 to 0: which of two equal points comes first must not show
+
+/// A normal as it was given, or (0, 0, 0) if it has no direction.
+Vec3 directed_or_zero(const Vec3& n) {
     const double length = n.norm();
-    return length > 0 && std::isfinite(length) ? n / length : Vec3(0, 0, 0);
+    return length > 0 && std::isfinite(length) ? n : zero;
+}
+
+Vec3 unit_or_zero(const Vec3& n) {
+    const Vec3 directed = directed_or_zero(n);
+    const double length = directed.norm();
+    return length > 0 ? directed / length + zero : zero;
 }
 
 /// What becomes of the values at these places.
@@ -47,16 +67,6 @@ MortonCode code_of(const Vec3& relative, double scale) {
     return morton_encode(c[0], c[1], c[2]);
 }
 
-/// Least corner of a cube about the middle of a box whose longest side is no longer.
-Vec3 centred_origin(const Box& bounds, double extent) {
-    Vec3 origin;
-    // A side as long as the cube's: rounding must not leave its ends a hair outside.
-    for (unsigned k = 0; k < 3; ++k)
-        origin[k] =
-            std::clamp(bounds.lo[k] + bounds.size()[k] / 2 - extent / 2, bounds.hi[k] - extent, bounds.lo[k]);
-    return origin;
-}
-
 /// Sorts by cells of level 11, or by all of the code where one of these is crowded: a stray far away leaves
 /// few cells to all other points. Returns by how many bits codes of one cell may differ.
 int sort_by_cells(std::vector<CodeIndex>& keys) {
@@ -78,7 +88,7 @@ void order_points(std::span<const Vec3> positions, std::span<const Vec3> normals
     const int in_cell = sort_by_cells(keys);
     const auto key = [&](Index i) {
         const Vec3& p = positions[i];
-        const Vec3 n = normals.empty() ? Vec3(0, 0, 0) : normals[i];
+        const Vec3 n = normals.empty() ? zero : directed_or_zero(normals[i]); // NaN has no order
         return std::tuple(p[0], p[1], p[2], n[0], n[1], n[2], i);
     };
     const auto same_cell = [in_cell](const CodeIndex& a, const CodeIndex& b) {
@@ -104,16 +114,28 @@ void order_points(std::span<const Vec3> positions, std::span<const Vec3> normals
     });
 }
 
-/// Removes points equal to their predecessor in position and normal; equal points are neighbours by now.
+/// Removes points equal to their predecessor in position and normal; equal points are neighbours by now, the
+/// first in the cloud before the others. Adds the others to `duplicates` if it is not null. Returns how many.
 std::size_t merge_equal(std::span<const Vec3> positions, std::span<const Vec3> normals,
-                        std::vector<CodeIndex>& keys) {
-    auto equal = [&](const CodeIndex& a, const CodeIndex& b) {
+                        std::vector<CodeIndex>& keys, std::vector<Octree::Duplicate>* duplicates) {
+    const auto equal = [&](const CodeIndex& a, const CodeIndex& b) {
         return a.code == b.code && positions[a.index] == positions[b.index]
-               && (normals.empty() || normals[a.index] == normals[b.index]);
+               && (normals.empty()
+                   || directed_or_zero(normals[a.index]) == directed_or_zero(normals[b.index]));
     };
-    const auto end = std::unique(keys.begin(), keys.end(), equal);
-    const auto merged = static_cast<std::size_t>(keys.end() - end);
-    keys.erase(end, keys.end());
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        if (kept == 0 || !equal(keys[kept - 1], keys[i]))
+            keys[kept++] = keys[i];
+        else if (duplicates)
+            duplicates->push_back({keys[kept - 1].index, keys[i].index});
+    }
+    const std::size_t merged = keys.size() - kept;
+    keys.resize(kept);
+    if (duplicates)
+        std::sort(duplicates->begin(), duplicates->end(), [](const auto& a, const auto& b) {
+            return std::tie(a.first, a.other) < std::tie(b.first, b.other);
+        });
     return merged;
 }
 
@@ -131,16 +153,26 @@ std::vector<Index> take_order(std::vector<CodeIndex>& keys, std::vector<MortonCo
     return order;
 }
 
-/// `ours`: the cloud's normals, if they are left to us, or null.
-Octree build(const PointCloud& cloud, std::vector<Vec3>* ours, const OctreeOptions& options) {
-    if (cloud.size() == 0) throw Error("the cloud holds no point; nothing can be reconstructed");
-    Octree octree;
-    octree.bounds = cloud.bounds();
-    octree.origin = octree.bounds.lo;
-    octree.extent = octree.bounds.extent();
+template <class T>
+void keep_unmarked(std::vector<T>& values, std::span<const std::uint8_t> marked) {
+    if (values.empty()) return;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < marked.size(); ++i)
+        if (!marked[i]) values[kept++] = values[i];
+    values.resize(kept);
+}
+
+/// The octree's box, its cube and where that lies. Throws Error, OptionError.
+void place_cube(const PointCloud& cloud, const OctreeOptions& options, Octree& octree) {
     if (!all_finite(cloud.positions))
         throw Error("the cloud holds coordinates that are not finite; call drop_nonfinite first");
+    const Box bounds = cloud.bounds();
+    octree.bounds = {bounds.lo * (1 / options.unit) + zero, bounds.hi * (1 / options.unit) + zero};
+    octree.origin = octree.bounds.lo;
+    octree.extent = octree.bounds.extent();
     if (octree.extent <= 0) throw Error("all points are equal; a surface needs points that differ");
+    if (!std::isfinite(octree.extent) || !std::isfinite(cells / octree.extent))
+        throw Error("the cloud is too large or too small for double precision; scale it, or give a unit");
     if (options.cube_extent != 0) {
         if (!(options.cube_extent >= octree.extent))
             throw OptionError("cube_extent " + std::to_string(options.cube_extent)
@@ -149,23 +181,32 @@ Octree build(const PointCloud& cloud, std::vector<Vec3>* ours, const OctreeOptio
     }
     if (options.placement == CubePlacement::centred)
         octree.origin = centred_origin(octree.bounds, octree.extent);
+}
 
+/// `ours`: the cloud's normals, if they are left to us, or null.
+Octree build(const PointCloud& cloud, std::vector<Vec3>* ours, const OctreeOptions& options) {
+    if (cloud.size() == 0) throw Error("the cloud holds no point; nothing can be reconstructed");
+    Octree octree;
+    place_cube(cloud, options, octree);
     const std::size_t n = cloud.size();
     const bool with_normals = options.use_normals && cloud.has_normals();
-    const double scale = static_cast<double>(1 << morton_levels) / octree.extent;
+    const bool with_values = !cloud.colors.empty() || !cloud.scalars.empty();
+    const double scale = cells / octree.extent, per_unit = 1 / options.unit;
     std::vector<CodeIndex> keys(n);
     tbb::parallel_for(Range(0, n, grain), [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i)
-            keys[i] = {code_of(cloud.positions[i] - octree.origin, scale), static_cast<Index>(i)};
+            keys[i] = {code_of(cloud.positions[i] * per_unit - octree.origin, scale), static_cast<Index>(i)};
     });
     const std::span<const Vec3> normals = with_normals ? cloud.normals : std::span<const Vec3>();
     order_points(cloud.positions, normals, keys);
-    if (options.merge_duplicates) octree.merged_duplicates = merge_equal(cloud.positions, normals, keys);
+    if (options.merge_duplicates)
+        octree.merged_duplicates =
+            merge_equal(cloud.positions, normals, keys, with_values ? &octree.duplicates : nullptr);
     octree.source = take_order(keys, octree.codes);
     if (with_normals) octree.normals = gathered(cloud.normals, octree.source, unit_or_zero);
     if (ours) *ours = std::vector<Vec3>();
-    octree.positions =
-        gathered(cloud.positions, octree.source, [&](const Vec3& p) { return p - octree.origin; });
+    octree.positions = gathered(cloud.positions, octree.source,
+                                [&](const Vec3& p) { return p * per_unit - octree.origin + zero; });
     return octree;
 }
 
@@ -185,7 +226,7 @@ void rearrange(Octree& octree, std::vector<Vec3> positions, double extent) {
     if (extent != octree.extent) octree.origin = centred_origin(octree.bounds, extent);
     octree.extent = extent;
     const Vec3 shift = before - octree.origin;
-    const double scale = static_cast<double>(1 << morton_levels) / extent;
+    const double scale = cells / extent;
     std::vector<CodeIndex> keys(positions.size());
     tbb::parallel_for(Range(0, keys.size(), grain), [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
@@ -199,6 +240,17 @@ void rearrange(Octree& octree, std::vector<Vec3> positions, double extent) {
     octree.source = gathered(octree.source, order, same);
     if (octree.has_normals()) octree.normals = gathered(octree.normals, order, same);
     octree.positions = gathered(positions, order, same);
+}
+
+Discarded remove_points(Octree& octree, std::span<const std::uint8_t> marked) {
+    const auto first = std::find(marked.begin(), marked.end(), 1) - marked.begin();
+    const auto count = static_cast<std::size_t>(std::count(marked.begin(), marked.end(), 1));
+    if (count == 0) return {};
+    const Discarded discarded{count, octree.positions[static_cast<std::size_t>(first)] + octree.origin};
+    tbb::parallel_invoke(
+        [&] { keep_unmarked(octree.codes, marked); }, [&] { keep_unmarked(octree.positions, marked); },
+        [&] { keep_unmarked(octree.normals, marked); }, [&] { keep_unmarked(octree.source, marked); });
+    return discarded;
 }
 
 bool fit_to_points(Octree& octree) {

@@ -1,6 +1,7 @@
 #pragma once
 // Phase 1, section 3.1: the Hierarchical Space Decomposition Model (HSDM), a linear octree.
 
+#include "hsdm/discarded.hh"
 #include "hsdm/octree/morton_index.hh"
 #include "hsdm/point_cloud.hh"
 
@@ -18,6 +19,9 @@ struct OctreeOptions {
     bool merge_duplicates = true; ///< points equal in position and normal count once
     bool use_normals = true;      ///< false: the octree has none, whether the cloud has or not
     double cube_extent = 0; ///< edge of the bounding cube, at least the cloud's longest side; 0: that side
+    /// Every length of the octree, cube_extent too, is in multiples of this many of the cloud's units; a
+    /// power of two, for clouds whose own numbers are extreme (CloudFrame).
+    double unit = 1;
     CubePlacement placement = CubePlacement::least_corner;
 };
 
@@ -26,22 +30,32 @@ struct OctreeOptions {
 struct Octree {
     Vec3 origin{0, 0, 0}; ///< least corner of the bounding cube; positions below are relative to it
     double extent = 0; ///< edge of the bounding cube: the cloud's longest side, not padded, unless asked for
-    Box bounds;        ///< box of the cloud, in the cloud's own coordinates
+    Box bounds;        ///< box of the cloud, as the cloud has it but for the unit
     std::vector<MortonCode> codes; ///< per point, level 21, ascending
     std::vector<Vec3> positions;   ///< per point, relative to origin
     std::vector<Vec3> normals;     ///< per point, unit or (0, 0, 0); empty if the cloud has none
     std::vector<Index> source;     ///< per point, its index in the cloud (the first of merged duplicates)
     std::size_t merged_duplicates = 0;
+    /// Each merged one and the first that stands for it, by the latter, as indices in the cloud; none if the
+    /// cloud has no colours and scalars, for which alone they matter.
+    struct Duplicate {
+        Index first, other;
+    };
+    std::vector<Duplicate> duplicates;
 
     std::size_t size() const { return codes.size(); }
     bool has_normals() const { return !normals.empty(); }
     double voxel_size(int depth) const { return extent / static_cast<double>(1u << depth); }
 };
 
+/// Least corner of the cube of this edge about the middle of a box whose longest side is no longer.
+Vec3 centred_origin(const Box& bounds, double extent);
+
 /// Sorts the cloud into its HSDM. O(n) time and space (radix sort of 63-bit codes), parallel; the result does
 /// not depend on the order of the points, nor on the number of threads. Ties of the code are ordered by
-/// position, then normal, so each voxel's points come in one canonical order. Throws Error if the cloud is
-/// empty, holds a non-finite coordinate, or all its points are equal;
+/// position, then normal, so each voxel's points come in one canonical order; normals that are zero or not
+/// finite are (0, 0, 0) from here on. Throws Error if the cloud is empty, holds a non-finite coordinate, all
+/// its points are equal, or its extent times 2^21 over the unit is no number;
 /// OptionError if cube_extent is given but smaller than the cloud.
 Octree build_octree(const PointCloud& cloud, const OctreeOptions& options = {});
 /// The same in less memory: the cloud loses its normals, used or not, and keeps all else.
@@ -52,6 +66,10 @@ Octree build_octree_taking_normals(PointCloud& cloud, const OctreeOptions& optio
 /// cloud's box. Points outside the cube fall to its outermost voxels; none is merged, normals stay with their
 /// points, `source` and `bounds` refer to the cloud as before. O(n), parallel.
 void rearrange(Octree& octree, std::vector<Vec3> positions, double extent);
+
+/// Removes the points that are marked, per point; the cube stays. Returns how many, and where in the
+/// coordinates of `bounds`. O(n), parallel.
+Discarded remove_points(Octree& octree, std::span<const std::uint8_t> marked);
 
 /// After points were removed: `bounds` becomes the box of those left, and they are rearranged in the cube of
 /// its longest side about its middle. Leaves the octree as it is, and returns false, if the box has stayed

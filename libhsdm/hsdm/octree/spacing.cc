@@ -61,7 +61,7 @@ double estimate_spacing(const Octree& octree) {
     return h * std::sqrt(voxels / (voxels_per_area * seen * n));
 }
 
-VoxelChoice choose_voxel(const Octree& octree, double spacing, double noise) {
+VoxelChoice choose_voxel(const Octree& octree, double spacing, double noise, double unit) {
     constexpr double spacings_per_voxel = 3, noises_per_voxel = 2;
     VoxelChoice choice;
     char text[160];
@@ -69,25 +69,25 @@ VoxelChoice choose_voxel(const Octree& octree, double spacing, double noise) {
         choice.size = noises_per_voxel * noise;
         std::snprintf(text, sizeof text,
                       "%g times the noise (standard deviation %.4g, spacing of the points %.4g)",
-                      noises_per_voxel, noise, spacing);
+                      noises_per_voxel, noise * unit, spacing * unit);
     } else {
         choice.size = spacings_per_voxel * spacing;
         std::snprintf(text, sizeof text, "%g spacings of the points (spacing %.4g)", spacings_per_voxel,
-                      spacing);
+                      spacing * unit);
     }
     choice.size = std::clamp(choice.size, octree.voxel_size(deepest), octree.voxel_size(1));
     choice.reason = text;
     return choice;
 }
 
-DepthChoice choose_depth(const Octree& octree, double spacing, double spacings_per_voxel) {
+DepthChoice choose_depth(const Octree& octree, double spacing, double spacings_per_voxel, double unit) {
     DepthChoice choice;
     while (choice.depth < deepest && octree.voxel_size(choice.depth + 1) >= spacings_per_voxel * spacing)
         ++choice.depth;
     char text[160];
     std::snprintf(text, sizeof text,
                   "the finest depth with voxels of at least %g spacings of the points (spacing %.4g)",
-                  spacings_per_voxel, spacing);
+                  spacings_per_voxel, spacing * unit);
     choice.reason = text;
     return choice;
 }

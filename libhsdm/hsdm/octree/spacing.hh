@@ -25,8 +25,9 @@ struct VoxelChoice {
 
 /// Three spacings: a surface in general pose then leaves few voxels empty by chance (about six points per
 /// voxel). If that is more, twice the standard deviation of the noise (in the cloud's units, 0 if there is
-/// none), below which nothing can be told from it. At most half the cube.
-VoxelChoice choose_voxel(const Octree& octree, double spacing, double noise);
+/// none), below which nothing can be told from it. At most half the cube. The reason gives lengths times
+/// `unit`.
+VoxelChoice choose_voxel(const Octree& octree, double spacing, double noise, double unit = 1);
 
 /// A depth and why.
 struct DepthChoice {
@@ -34,7 +35,9 @@ struct DepthChoice {
     std::string reason; ///< one clause for a person
 };
 
-/// The finest depth in [1, 16] whose voxels are at least so many spacings wide.
-DepthChoice choose_depth(const Octree& octree, double spacing, double spacings_per_voxel = 3);
+/// The finest depth in [1, 16] whose voxels are at least so many spacings wide. The reason gives lengths
+/// times `unit`.
+DepthChoice choose_depth(const Octree& octree, double spacing, double spacings_per_voxel = 3,
+                         double unit = 1);
 
 } // namespace hsdm

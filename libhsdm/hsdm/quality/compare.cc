@@ -1,6 +1,8 @@
 #include "hsdm/quality/compare.hh"
 
+#include "hsdm/cloud_frame.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/point_cloud.hh"
 
 namespace hsdm {
 namespace {
@@ -19,6 +21,11 @@ MeshDistance distance_to(const PolygonMesh& mesh) {
     return MeshDistance(mesh.facet_count() > 0 ? mesh : as_facets(mesh));
 }
 
+PolygonMesh scaled(PolygonMesh mesh, double factor) {
+    for (Vec3& p : mesh.positions) p *= factor;
+    return mesh;
+}
+
 Distance one_sided(const PolygonMesh& from, const MeshDistance& to, std::size_t samples) {
     if (from.facet_count() == 0) return to(from.positions);
     Distance distance = to(sample_surface(from, samples));
@@ -32,12 +39,20 @@ Comparison compare(const PolygonMesh& a, const PolygonMesh& b, const CompareOpti
     if (a.vertex_count() == 0 || b.vertex_count() == 0)
         throw Error("nothing to compare: one of the two holds no point");
     if (options.samples == 0) throw OptionError("samples 0: must be at least 1");
+    if (!all_finite(a.positions) || !all_finite(b.positions))
+        throw Error("nothing to compare with: one of the two holds coordinates that are not finite");
+    Box box = bounds_of(a.positions);
+    box.add(bounds_of(b.positions));
+    if (const double unit = CloudFrame(box).unit(); unit != 1) {
+        Comparison result = compare(scaled(a, 1 / unit), scaled(b, 1 / unit), options);
+        for (Distance* distance : {&result.a_to_b, &result.b_to_a})
+            for (double* length : {&distance->max, &distance->mean, &distance->rms}) *length *= unit;
+        result.diagonal *= unit;
+        return result;
+    }
     Comparison result;
     result.a_to_b = one_sided(a, distance_to(b), options.samples);
     result.b_to_a = one_sided(b, distance_to(a), options.samples);
-    Box box;
-    for (const PolygonMesh* mesh : {&a, &b})
-        for (const Vec3& p : mesh->positions) box.add(p);
     result.diagonal = box.diagonal();
     return result;
 }

@@ -6,9 +6,7 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 
 namespace hsdm {
 namespace {
@@ -17,25 +15,16 @@ using Range = tbb::blocked_range<std::size_t>;
 constexpr std::size_t grain = 1 << 10;
 /// Four entries a level of the walk, and 4^15 blocks hold 2^32 triangles.
 constexpr std::size_t stack_size = 4 * 17;
-constexpr float infinity = std::numeric_limits<float>::infinity();
-
-float round_down(double x) {
-    const float f = static_cast<float>(x);
-    return f > x ? std::nextafter(f, -infinity) : f;
-}
-float round_up(double x) {
-    const float f = static_cast<float>(x);
-    return f < x ? std::nextafter(f, infinity) : f;
-}
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A triangle on its way to its place: the centre of its box, and its index.
 struct Item {
-    std::array<float, 3> centre;
+    std::array<double, 3> centre;
     Index triangle;
 };
 
 std::size_t widest_axis(const Item* begin, const Item* end) {
-    std::array<float, 3> lo = begin->centre, hi = begin->centre;
+    std::array<double, 3> lo = begin->centre, hi = begin->centre;
     for (const Item* item = begin; item != end; ++item)
         for (std::size_t k = 0; k < 3; ++k) {
             lo[k] = std::min(lo[k], item->centre[k]);
@@ -83,7 +72,8 @@ TriangleTree::TriangleTree(const std::vector<Vec3>& positions, const std::vector
             return a;
         });
     centre_ = box.lo + box.size() / 2;
-    rounding_ = 4 * std::numeric_limits<double>::epsilon() * box.diagonal();
+    diagonal_ = box.diagonal();
+    rounding_ = 4 * std::numeric_limits<double>::epsilon() * diagonal_;
     set_order(positions, triangles, order);
     fill_blocks(positions, triangles);
 }
@@ -96,7 +86,7 @@ void TriangleTree::set_order(const std::vector<Vec3>& positions, const std::vect
             Box box;
             for (Index v : triangles[t]) box.add(positions[v] - centre_);
             const Vec3 middle = (box.lo + box.hi) / 2;
-            for (unsigned k = 0; k < 3; ++k) items[t].centre[k] = static_cast<float>(middle[k]);
+            for (unsigned k = 0; k < 3; ++k) items[t].centre[k] = middle[k];
             items[t].triangle = static_cast<Index>(t);
         }
     });
@@ -128,16 +118,16 @@ void TriangleTree::fill_blocks(const std::vector<Vec3>& positions, const std::ve
                 for (const Vec3& p : {p0, p1, p2}) box.add(p);
             }
             for (unsigned k = 0; k < 3; ++k) {
-                boxes[b / width].lo[k][b % width] = round_down(box.lo[k]);
-                boxes[b / width].hi[k][b % width] = round_up(box.hi[k]);
+                boxes[b / width].lo[k][b % width / 2][b % 2] = box.lo[k];
+                boxes[b / width].hi[k][b % width / 2][b % 2] = box.hi[k];
             }
         }
     });
     for (std::size_t b = 0; b < blocks; ++b) {
         double squared = 0;
         for (std::size_t k = 0; k < 3; ++k)
-            squared += square(static_cast<double>(boxes[b / width].hi[k][b % width])
-                              - static_cast<double>(boxes[b / width].lo[k][b % width]));
+            squared += square(boxes[b / width].hi[k][b % width / 2][b % 2]
+                              - boxes[b / width].lo[k][b % width / 2][b % 2]);
         block_size_ += std::sqrt(squared) / static_cast<double>(blocks);
     }
     build_levels(boxes);
@@ -149,36 +139,38 @@ void TriangleTree::build_levels(std::vector<Boxes>& level) {
         nodes_.insert(nodes_.end(), level.begin(), level.end());
         if (level.size() == 1) return;
         Boxes empty;
-        for (std::size_t k = 0; k < 3; ++k) {
-            empty.lo[k] = Float4{} + infinity;
-            empty.hi[k] = Float4{} - infinity;
-        }
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t half = 0; half < 2; ++half) {
+                empty.lo[k][half] = Double2{} + infinity;
+                empty.hi[k][half] = Double2{} - infinity;
+            }
         std::vector<Boxes> parents((level.size() + width - 1) / width, empty);
         for (std::size_t i = 0; i < level.size(); ++i)
             for (std::size_t k = 0; k < 3; ++k) {
-                const Float4 lo = level[i].lo[k], hi = level[i].hi[k];
-                parents[i / width].lo[k][i % width] = std::min({lo[0], lo[1], lo[2], lo[3]});
-                parents[i / width].hi[k][i % width] = std::max({hi[0], hi[1], hi[2], hi[3]});
+                const Double2 lo = min_lanes(level[i].lo[k][0], level[i].lo[k][1]);
+                const Double2 hi = max_lanes(level[i].hi[k][0], level[i].hi[k][1]);
+                parents[i / width].lo[k][i % width / 2][i % 2] = std::min(lo[0], lo[1]);
+                parents[i / width].hi[k][i % width / 2][i % 2] = std::max(hi[0], hi[1]);
             }
         level.swap(parents);
     }
 }
 
-/// The nearest triangle to a point so far. A box is skipped when even the float point, moved by its rounding
-/// error, cannot come below the best.
+/// The nearest triangle to a point so far. A box is skipped when its distance is more than the best by what
+/// rounding can make of the two.
 class TriangleTree::Search {
 public:
-    /// Of what is farther than `most` nothing need be found.
+    /// Squared distances to the boxes of four children.
+    using FourSquares = std::array<Double2, 2>;
+
+    /// Of what is farther than `most` nothing need be found. A point that is not finite is near nothing.
     Search(const TriangleTree& tree, const Vec3& given, double most = infinity) : tree_(tree) {
         const Vec3 point = given - tree.centre_;
-        double rounding = 0;
-        for (unsigned k = 0; k < 3; ++k) {
-            spread_[k] = Double2{} + point[k];
-            point_[k] = static_cast<float>(point[k]);
-            rounding += std::abs(point[k] - static_cast<double>(point_[k]));
-        }
-        slack_ = 102 * rounding * rounding;
-        limit_ = limit(most * most);
+        for (unsigned k = 0; k < 3; ++k) point_[k] = Double2{} + point[k];
+        rounding_ = 4 * std::numeric_limits<double>::epsilon() * (point.l1_norm() + tree.diagonal_);
+        // From so far away that all of the mesh is one distance, any triangle is the nearest.
+        if (!(rounding_ < tree.diagonal_)) rounding_ = 0;
+        limit_ = std::isfinite(point.l1_norm()) ? limit(most) : -1;
     }
 
     void look_at(Index block) {
@@ -196,16 +188,17 @@ public:
         take(pair[lane], place - place % 2 + lane);
     }
 
-    /// Per child of a node, the squared distance to its box.
-    Float4 to_children(const Boxes& boxes) const {
-        Float4 squared{};
-        for (std::size_t k = 0; k < 3; ++k)
-            squared +=
-                square(max_lanes(max_lanes(boxes.lo[k] - point_[k], point_[k] - boxes.hi[k]), Float4{}));
+    FourSquares to_children(const Boxes& boxes) const {
+        FourSquares squared{};
+        for (std::size_t half = 0; half < 2; ++half)
+            for (std::size_t k = 0; k < 3; ++k)
+                squared[half] += square(max_lanes(
+                    max_lanes(boxes.lo[k][half] - point_[k], point_[k] - boxes.hi[k][half]), Double2{}));
         return squared;
     }
 
-    auto reaches(auto squared) const { return squared <= limit_; } // a float, or four
+    /// Never an absent child: its box is infinitely far.
+    bool reaches(double squared) const { return squared < limit_; }
     double squared() const { return squared_; }
 
     Nearest result() const {
@@ -215,30 +208,30 @@ public:
 
 private:
     Double2 to_pair(std::size_t block, std::size_t half) const {
-        return tree_.blocks_[block][half].squared_distances(spread_);
+        return tree_.blocks_[block][half].squared_distances(point_);
     }
 
     void take(double squared, Index place) {
         squared_ = squared;
         place_ = place;
-        limit_ = std::min(limit_, limit(squared));
+        limit_ = std::min(limit_, limit(std::sqrt(squared)));
     }
 
-    /// No less than the square of the distance and the rounding together, and a little.
-    float limit(double squared) const {
-        return static_cast<float>(1.01 * squared + slack_) + std::numeric_limits<float>::min();
+    /// What a square must be below to be of interest beside a distance.
+    double limit(double distance) const {
+        const double enough = distance + rounding_;
+        return enough * enough + std::numeric_limits<double>::min();
     }
 
     const TriangleTree& tree_;
-    std::array<Double2, 3> spread_{};
-    std::array<float, 3> point_{};
-    double slack_ = 0;
-    float limit_ = infinity;
-    double squared_ = std::numeric_limits<double>::infinity();
+    std::array<Double2, 3> point_{}; // each coordinate twice
+    double rounding_ = 0;
+    double limit_ = infinity;
+    double squared_ = infinity;
     Index place_ = no_index; // in the tree's order
 };
 
-/// Nodes or, below them, blocks. Coordinates so large that floats overflow lead to absent ones too.
+/// Nodes or, below them, blocks.
 std::size_t TriangleTree::size_of(int level) const {
     if (level < 0) return block_count_;
     const auto next = static_cast<std::size_t>(level) + 1;
@@ -248,30 +241,30 @@ std::size_t TriangleTree::size_of(int level) const {
 /// All that is below a node, but for what is known, until something is near enough.
 void TriangleTree::descend(Search& search, const Node& from, const Node& known, double enough) const {
     struct Entry {
-        float squared;
+        double squared;
         Node node;
     };
     std::array<Entry, stack_size> stack;
     std::size_t top = 0;
     // Nearest child last, so that it is the next one taken.
     const auto push_children = [&](const Node& node) {
-        const Float4 squared =
+        const auto four =
             search.to_children(nodes_[level_first_[static_cast<std::size_t>(node.level)] + node.index]);
         const std::size_t bottom = top;
-        for (unsigned left = lanes_of(search.reaches(squared)); left != 0; left &= left - 1) {
-            const auto i = static_cast<Index>(std::countr_zero(left));
+        for (Index i = 0; i < width; ++i) {
+            const double squared = four[i / 2][i % 2];
+            if (!search.reaches(squared)) continue;
             const Node child{node.level - 1, static_cast<Index>(width) * node.index + i};
             if (child.index == known.index && child.level == known.level) continue;
             std::size_t at = top++;
-            for (; at > bottom && stack[at - 1].squared < squared[i]; --at) stack[at] = stack[at - 1];
-            stack[at] = {squared[i], child};
+            for (; at > bottom && stack[at - 1].squared < squared; --at) stack[at] = stack[at - 1];
+            stack[at] = {squared, child};
         }
     };
     push_children(from);
     while (top > 0 && search.squared() > enough) {
         const auto [squared, node] = stack[--top];
         if (!search.reaches(squared)) continue;
-        if (squared == infinity && node.index >= size_of(node.level)) continue;
         if (node.level < 0)
             search.look_at(node.index);
         else
@@ -306,14 +299,22 @@ TriangleTree::Nearest TriangleTree::within(const Vec3& point, double bound, Inde
     return search.result();
 }
 
+bool TriangleTree::is_apart(const Boxes& boxes, std::size_t child, const std::array<double, 3>& lo,
+                            const std::array<double, 3>& hi) {
+    for (std::size_t k = 0; k < 3; ++k)
+        if (boxes.lo[k][child / 2][child % 2] > hi[k] || lo[k] > boxes.hi[k][child / 2][child % 2])
+            return true;
+    return false;
+}
+
 bool TriangleTree::find_part(const Box& box, double reach, Part& part) const {
     part.count_ = 0;
     if (block_count_ == 0) return true;
-    std::array<float, 3> lo, hi;
+    std::array<double, 3> lo, hi;
     reach += 4 * rounding_; // a distance that came out as nothing need not be none
     for (unsigned k = 0; k < 3; ++k) {
-        lo[k] = round_down(box.lo[k] - centre_[k] - reach);
-        hi[k] = round_up(box.hi[k] - centre_[k] + reach);
+        lo[k] = box.lo[k] - centre_[k] - reach;
+        hi[k] = box.hi[k] - centre_[k] + reach;
     }
     struct Entry {
         Index node; // in its level
@@ -326,10 +327,8 @@ bool TriangleTree::find_part(const Box& box, double reach, Part& part) const {
         const Entry entry = stack[--top];
         if (entry.node >= size_of(entry.level)) continue;
         const Boxes& boxes = nodes_[level_first_[static_cast<std::size_t>(entry.level)] + entry.node];
-        auto apart = boxes.lo[0] > hi[0];
-        for (std::size_t k = 0; k < 3; ++k) apart |= (boxes.lo[k] > hi[k]) | (lo[k] > boxes.hi[k]);
         for (std::size_t i = 0; i < width; ++i) {
-            if (apart[i]) continue;
+            if (is_apart(boxes, i, lo, hi)) continue;
             const auto child = static_cast<Index>(width * entry.node + i);
             if (entry.level > 0)
                 stack[top++] = {child, entry.level - 1};
@@ -343,9 +342,9 @@ bool TriangleTree::find_part(const Box& box, double reach, Part& part) const {
 
 bool TriangleTree::Part::add(const Boxes& boxes, std::size_t lane, Index block) {
     if (count_ == width * most_nodes) return false;
-    for (std::size_t k = 0; k < 3; ++k) {
-        nodes_[count_ / width].lo[k][count_ % width] = boxes.lo[k][lane];
-        nodes_[count_ / width].hi[k][count_ % width] = boxes.hi[k][lane];
+    for (unsigned k = 0; k < 3; ++k) {
+        nodes_[count_ / width].lo[k][count_ % width / 2][count_ % 2] = boxes.lo[k][lane / 2][lane % 2];
+        nodes_[count_ / width].hi[k][count_ % width / 2][count_ % 2] = boxes.hi[k][lane / 2][lane % 2];
     }
     blocks_[count_ / width][count_ % width] = block;
     ++count_;
@@ -363,26 +362,20 @@ TriangleTree::Nearest TriangleTree::nearest(const Part& part, const Vec3& point)
     Search search(*this, point);
     if (part.count_ == 0) return search.result();
     const std::size_t nodes = part.count_ / width;
-    // Per lane the least, its node in the lowest bits: floats that are not negative are in order as integers.
-    static_assert(std::has_single_bit(Part::most_nodes));
-    constexpr std::int32_t node_bits = Part::most_nodes - 1;
-    Int4 least = Int4{} + std::numeric_limits<std::int32_t>::max();
-    std::array<Float4, Part::most_nodes> squared;
+    std::array<Search::FourSquares, Part::most_nodes> squared;
+    Double2 least = Double2{} + infinity;
     for (std::size_t n = 0; n < nodes; ++n) {
         squared[n] = search.to_children(part.nodes_[n]);
-        const Int4 key = (reinterpret_cast<Int4>(squared[n]) & ~node_bits) | static_cast<std::int32_t>(n);
-        least = min_lanes(least, key);
+        least = min_lanes(least, min_lanes(squared[n][0], squared[n][1]));
     }
-    std::size_t lane = 0;
-    for (std::size_t i = 1; i < width; ++i) lane = least[i] < least[lane] ? i : lane;
-    const std::size_t first = static_cast<std::size_t>(least[lane] & node_bits);
-    search.look_at(part.blocks_[first][lane]);
-    squared[first][lane] = infinity;
-    for (std::size_t n = 0; n < nodes; ++n) {
-        if (!any(search.reaches(squared[n]))) continue;
-        for (std::size_t i = 0; i < width; ++i)
-            if (search.reaches(squared[n][i])) search.look_at(part.blocks_[n][i]);
-    }
+    const double nearest = std::min(least[0], least[1]);
+    const auto look_where = [&](const auto& wanted) {
+        for (std::size_t n = 0; n < nodes; ++n)
+            for (std::size_t i = 0; i < width; ++i)
+                if (wanted(squared[n][i / 2][i % 2])) search.look_at(part.blocks_[n][i]);
+    };
+    look_where([&](double square) { return square == nearest; });
+    look_where([&](double square) { return square != nearest && search.reaches(square); });
     return search.result();
 }
 
@@ -420,10 +413,10 @@ void TriangleTree::pair_up(Index block, Index other, std::vector<TrianglePair>& 
 void TriangleTree::overlapping(Index block, std::vector<TrianglePair>& pairs) const {
     pairs.clear();
     const Boxes& siblings = nodes_[block / width];
-    std::array<float, 3> lo, hi;
+    std::array<double, 3> lo, hi;
     for (std::size_t k = 0; k < 3; ++k) {
-        lo[k] = siblings.lo[k][block % width];
-        hi[k] = siblings.hi[k][block % width];
+        lo[k] = siblings.lo[k][block % width / 2][block % 2];
+        hi[k] = siblings.hi[k][block % width / 2][block % 2];
     }
     struct Entry {
         Index child;
@@ -440,12 +433,11 @@ void TriangleTree::overlapping(Index block, std::vector<TrianglePair>& pairs) co
             continue;
         }
         const Boxes& boxes = nodes_[level_first_[static_cast<std::size_t>(entry.level)] + entry.child];
-        auto apart = boxes.lo[0] > hi[0];
-        for (std::size_t k = 0; k < 3; ++k) apart |= (boxes.lo[k] > hi[k]) | (lo[k] > boxes.hi[k]);
         for (std::size_t i = 0; i < width; ++i) {
             const std::size_t child = width * entry.child + i;
             const bool earlier = (child + 1) << (2 * entry.level) <= block; // ends before the block begins
-            if (!apart[i] && !earlier) stack[top++] = {static_cast<Index>(child), entry.level - 1};
+            if (!earlier && !is_apart(boxes, i, lo, hi))
+                stack[top++] = {static_cast<Index>(child), entry.level - 1};
         }
     }
 }

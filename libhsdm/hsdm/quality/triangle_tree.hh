@@ -14,8 +14,9 @@ using TrianglePair = std::array<Index, 2>;
 
 /// Implicit 4-ary tree. Triangles are ordered so that every four make a block, every four blocks a node of
 /// level 0, every four nodes of level k a node of level k + 1: children are found by arithmetic, a node is
-/// nothing but the boxes of its four children. Everything is relative to the centre of the mesh, boxes are
-/// floats rounded outwards.
+/// nothing but the boxes of its four children. Everything is relative to the centre of the mesh, in double
+/// precision: a search costs no more where a stray lies far from the mesh, or the mesh has one far from
+/// itself.
 class TriangleTree {
 public:
     /// Triangles that follow each other in the list are to lie close together, or compact: they are put in an
@@ -61,9 +62,9 @@ private:
         return triangle == no_index ? no_index : place_of_[triangle] / width;
     }
 
-    /// Boxes of four children; an absent child's box is empty.
+    /// Boxes of four children by pairs; an absent child's box is empty, from infinity to its negative.
     struct Boxes {
-        std::array<Float4, 3> lo, hi;
+        std::array<std::array<Double2, 2>, 3> lo, hi;
     };
     /// Four triangles; a block not full repeats its last one.
     using Block = std::array<TwoTriangles, 2>;
@@ -78,6 +79,8 @@ private:
     void fill_blocks(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
     void build_levels(std::vector<Boxes>& block_boxes);
     std::size_t size_of(int level) const;
+    static bool is_apart(const Boxes& boxes, std::size_t child, const std::array<double, 3>& lo,
+                         const std::array<double, 3>& hi);
     /// A node, or below them a block.
     struct Node {
         int level; ///< -1: of the blocks
@@ -89,6 +92,7 @@ private:
     void pair_up(Index block, Index other, std::vector<TrianglePair>& pairs) const;
 
     Vec3 centre_{0, 0, 0};
+    double diagonal_ = 0;
     double rounding_ = 0; // bound on the error of a + ab in a block
     double block_size_ = 0;
     std::vector<Index> triangle_of_; // by place in the order: the triangle's own index

@@ -347,8 +347,8 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
     const std::vector<double>& kind = result.mesh.properties[0].values;
     result.doublets = merge_doublets(result.mesh, [&](Index v) { return kind[v] == 0; });
     result.manifold = make_manifold(result.mesh);
-    result.debris += drop_debris(result.mesh, options.debris);
-    if (result.debris > 0) remove_isolated_vertices(result.mesh);
+    result.debris.add(drop_debris(result.mesh, options.debris));
+    if (result.debris.count > 0) remove_isolated_vertices(result.mesh);
     UntangleOptions untangle_options = options.untangle;
     untangle_options.reach *= h;
     untangle_options.nearby *= h;

@@ -30,7 +30,7 @@ struct ExtendedFacets {
     std::size_t corners_merged = 0; ///< vertices made one with that of the voxel that holds their corner
     std::size_t midpoints = 0;      ///< vertices added so that no two mesh edges join the same two vertices
     std::size_t doublets = 0;       ///< pairs of facets round one vertex made one
-    std::size_t debris = 0;         ///< facets of splinters, removed
+    Discarded debris;               ///< facets of splinters, removed
     FillHolesCounts holes;
     UntangleCounts intersections;
     std::optional<FacetCells> cells; ///< the mesh's, by voxels; empty if it was moved since

@@ -1,0 +1,49 @@
+#pragma once
+// Between the cloud's coordinates and those that the stages work in.
+
+#include "hsdm/types.hh"
+
+#include <array>
+#include <vector>
+
+namespace hsdm {
+
+/// The stages multiply lengths by each other many times over, and lay one grid over everything. So a cloud of
+/// extreme size is measured in a unit of its own, and empty space between parts that lie far apart is cut
+/// short: work = cloud / unit, less what was cut out below it. For all other clouds, those between 2^-30 and
+/// 2^30 across and in one region, both are the same and nothing is computed.
+class CloudFrame {
+public:
+    CloudFrame() = default;
+    /// For a cloud in this box, whose corners are finite. The unit is a power of two, so that the same cloud
+    /// times a power of two is the same cloud to every stage.
+    explicit CloudFrame(const Box& cloud);
+    /// Throws Error if the box was less than 2^-1000 or more than 2^1020 across: there precision gives out.
+    void check_reach() const;
+
+    double unit() const { return unit_; } ///< of the working space's lengths, in the cloud's units
+    bool has_cuts() const;
+    CloudFrame without_cuts() const;
+
+    Vec3 to_work(const Vec3& cloud) const;
+    /// Where cuts are, of a point within half a kept gap of the points.
+    Vec3 to_cloud(const Vec3& work) const;
+    Box to_cloud(const Box& work) const { return {to_cloud(work.lo), to_cloud(work.hi)}; }
+
+    /// Shortens every gap along an axis, between neighbouring ones of these coordinates, that is wider than
+    /// `widest` (the same for all axes) to that width. Coordinates are the working space's without cuts; they
+    /// are sorted. The axis must not have been cut before. Returns the longest stretch between cuts.
+    /// O(n log n).
+    double cut_gaps(unsigned axis, std::vector<double>& coordinates, double widest);
+
+private:
+    /// From `first` on, `shift` is cut out.
+    struct Stretch {
+        double first, shift;
+    };
+    double unit_ = 1;
+    std::array<std::vector<Stretch>, 3> stretches_; // ascending; none where nothing is cut
+    double widest_ = 0;                             // gap that was kept
+};
+
+} // namespace hsdm
