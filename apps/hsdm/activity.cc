@@ -1,6 +1,9 @@
 #include "activity.hh"
 
+#include "hsdm/errors.hh"
+
 #include <atomic>
+#include <new>
 
 namespace hsdm::command {
 namespace {
@@ -28,8 +31,14 @@ const char* current_phase() noexcept {
     return phase_now;
 }
 
-std::string out_of_memory() {
-    return std::string("out of memory in phase ") + current_phase() + memory_advice;
+std::string message_of(const std::exception& error) {
+    if (dynamic_cast<const Error*>(&error) || dynamic_cast<const OptionError*>(&error)) return error.what();
+    const std::string file = current_file(), in_phase = std::string(" in phase ") + current_phase();
+    const std::string prefix = file.empty() ? "" : file + ": ";
+    if (dynamic_cast<const std::bad_alloc*>(&error))
+        return prefix + "out of memory" + in_phase
+               + memory_advice;
+    return prefix + error.what() + in_phase;
 }
 
 } // namespace hsdm::command

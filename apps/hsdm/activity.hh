@@ -1,6 +1,7 @@
 #pragma once
 // What the command is at, for the message of a bad end.
 
+#include <exception>
 #include <string>
 
 namespace hsdm::command {
@@ -16,7 +17,8 @@ const char* current_phase() noexcept;
 
 constexpr const char* memory_advice = "; use a smaller --depth, a larger --max-error or a thinned cloud";
 
-/// `out of memory in phase facets; ...`, to stand behind the file's name.
-std::string out_of_memory();
+/// What to say of an exception once the memory that its work held is free again: hsdm's own speak for
+/// themselves, others, such as std::bad_alloc, get the file and the phase.
+std::string message_of(const std::exception& error);
 
 } // namespace hsdm::command

@@ -9,7 +9,6 @@
 #include "hsdm/version.hh"
 
 #include <iostream>
-#include <new>
 
 namespace hsdm::command {
 namespace {
@@ -37,7 +36,7 @@ int status_of(const Run& run) {
         complain_of_memory();
         return failed;
     } catch (const std::exception& error) {
-        complain(error.what());
+        complain(message_of(error));
         return failed;
     }
 }

@@ -14,7 +14,6 @@
 
 #include <chrono>
 #include <iostream>
-#include <new>
 #include <span>
 
 namespace hsdm::command {
@@ -88,25 +87,19 @@ private:
             reconstruct_one(input);
         } catch (const std::exception& error) {
             ++failed_inputs_;
-            complain(error.what());
-            nlohmann::ordered_json entry = {{"input", {{"file", input}}}, {"failure", error.what()}};
+            const std::string failure = message_of(error);
+            complain(failure);
+            nlohmann::ordered_json entry = {{"input", {{"file", input}}}, {"failure", failure}};
             reports_.push_back(entry.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
                                + '\n');
         }
     }
 
-    /// When the memory ends, all that the input took of it is free again before anything is said.
     void reconstruct_one(const std::string& input) {
         const std::string name = input == "-" ? "standard input" : input;
         set_activity(input == "-" ? "standard input" : input.c_str(), "read");
-        std::vector<Report> reports;
-        try {
-            reports = make(input, name);
-        } catch (const std::bad_alloc&) {
-            throw Error(name, out_of_memory());
-        }
         bool complete = true;
-        for (const Report& report : reports) complete = tell(name, report) && complete;
+        for (const Report& report : make(input, name)) complete = tell(name, report) && complete;
         failed_inputs_ += !complete;
     }
 
@@ -160,12 +153,9 @@ private:
         const auto start = Clock::now();
         try {
             write_outputs(target(report), result.mesh);
-        } catch (const Error& error) {
+        } catch (const std::exception& error) {
             if (!levels_) throw;
-            report.failure = error.what();
-        } catch (const std::bad_alloc&) {
-            if (!levels_) throw;
-            report.failure = out_of_memory();
+            report.failure = message_of(error);
         }
         report.seconds.write = seconds_since(start);
     }

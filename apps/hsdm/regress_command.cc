@@ -17,7 +17,6 @@
 #include <fstream>
 #include <iomanip>
 #include <iostream>
-#include <new>
 
 namespace hsdm::command {
 namespace {
@@ -142,10 +141,8 @@ Outcome run_case(const Case& one) {
             const std::string reason = miss(key, find_key(outcome.report, key), expected);
             if (!reason.empty()) outcome.misses.push_back(reason);
         }
-    } catch (const std::bad_alloc&) {
-        outcome.misses.push_back(one.input + ": " + out_of_memory());
     } catch (const std::exception& error) {
-        outcome.misses.push_back(error.what());
+        outcome.misses.push_back(message_of(error));
     }
     outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return outcome;

@@ -55,3 +55,30 @@ TEST_CASE("options that do not fit one input fail that input alone", "[cli]") {
     }
     CHECK(folder.list() == before);
 }
+
+#if !defined(HSDM_SANITIZED) // whose shadow memory needs the address space
+TEST_CASE("the end of memory is told with file and phase, and the other inputs go on", "[cli]") {
+    const Folder folder;
+    folder.write("large.xyz", xyz(sphere_scan(100000)));
+    folder.write("small.xyz", xyz(sphere_scan(500)));
+    for (const char* megabytes : {"40", "55"}) {
+        const CommandResult result =
+            run(folder,
+                "reconstruct large.xyz small.xyz --depth 3 --threads 2 --quiet --out-dir out --format om "
+                "--report r.json",
+                std::string("ulimit -v $((1024 * ") + megabytes + "));");
+        INFO(megabytes << ": " << result.err);
+        CHECK(result.status == 1);
+        CHECK(result.err.starts_with("hsdm: large.xyz: out of memory in phase "));
+        CHECK(folder.list() == "large.xyz\nout\nr.json\nsmall.xyz\n");
+        CHECK(read_file(folder / "out/small.om").starts_with("OM"));
+        CHECK_FALSE(exists(folder / "out/large.om"));
+        const Json reports = Json::parse(read_file(folder / "r.json"));
+        CHECK(reports[0]["failure"].get<std::string>().find("out of memory in phase") != std::string::npos);
+    }
+    const CommandResult mesh = run(folder, "compare large.xyz small.xyz", "ulimit -v 30000;");
+    CHECK(mesh.status == 1);
+    CHECK(mesh.err.starts_with("hsdm: large.xyz: "));
+    CHECK(mesh.err.find(" in phase read") != std::string::npos);
+}
+#endif

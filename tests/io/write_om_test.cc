@@ -9,6 +9,13 @@
 
 #include <filesystem>
 
+#include <cstdlib>
+#include <fstream>
+#include <new>
+#include <string>
+
+#include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 using namespace hsdm;
@@ -79,3 +86,40 @@ TEST_CASE("write_mesh writes .om through a half-edge mesh", "[mesh_io]") {
     CHECK(back.n_faces() == 1);
     CHECK_THROWS(write_mesh("/nonexistent-folder/m.om", polygons, MeshFormat::om));
 }
+
+#if !defined(HSDM_SANITIZED) // whose shadow memory needs the address space
+TEST_CASE(".om is written where no memory is left for the whole of it", "[mesh_io]") {
+    PolygonMesh polygons;
+    const std::size_t count = 100000; // 9 MB
+    for (std::size_t i = 0; i < count; ++i) {
+        polygons.positions.push_back({static_cast<double>(i), static_cast<double>(i % 2), 0});
+        if (i > 1)
+            polygons.add_facet(std::array<Index, 3>{Index(i - 2), Index(i - 2 + i % 2), Index(i - i % 2)});
+    }
+    PolyMesh mesh = to_mesh(polygons).mesh;
+    kept_vertex_property<VertexNormalsT<PolyMesh>>(mesh, vertex_normals_property);
+    const std::string path =
+        (std::filesystem::temp_directory_path() / ("hsdm-m" + std::to_string(::getpid()) + ".om")).string();
+    const pid_t child = ::fork();
+    if (child == 0) {
+        std::size_t pages = 0;
+        std::ifstream("/proc/self/statm") >> pages;
+        const rlim_t limit = pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) + (1 << 20);
+        const rlimit most{limit, limit};
+        if (::setrlimit(RLIMIT_AS, &most) != 0) ::_exit(3);
+        try {
+            write_om(path, mesh);
+            ::_exit(0);
+        } catch (const std::bad_alloc&) {
+            ::_exit(2);
+        }
+    }
+    int status = 0;
+    REQUIRE(::waitpid(child, &status, 0) == child);
+    CHECK(WIFEXITED(status));
+    CHECK(WEXITSTATUS(status) == 0);
+    std::error_code ignored;
+    CHECK(std::filesystem::file_size(path, ignored) > 9000000);
+    std::filesystem::remove(path, ignored);
+}
+#endif

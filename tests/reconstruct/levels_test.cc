@@ -80,3 +80,23 @@ TEST_CASE("the stage for OpenMesh's meshes gives the mesh of the free function",
         CHECK((result.corners == expected.corners));
     }
 }
+
+TEST_CASE("a level without a facet says so and leaves the others; if none has any it is an error",
+          "[reconstruct]") {
+    const PointCloud cloud = scan(support::sphere(1), 4000);
+    ReconstructOptions options;
+    options.method = Method::basic;
+    const std::vector<Reconstruction> levels = reconstruct_levels(cloud, 4, 9, options); // 9: a voxel a point
+    REQUIRE(levels.size() == 6);
+    CHECK(levels[0].report.failure == "");
+    CHECK(levels[0].mesh.n_faces() > 500);
+    CHECK(levels[5].report.failure.find("no facet") != std::string::npos);
+    CHECK(levels[5].report.grid.depth == 9);
+    CHECK(levels[5].report.input.points == 4000);
+    CHECK(levels[5].mesh.n_vertices() == 0);
+    CHECK(to_json(levels[5].report).find("failure") != std::string::npos);
+    CHECK(to_json(levels[0].report).find("failure") == std::string::npos);
+    CHECK_THROWS_AS(reconstruct_levels(cloud, 9, 10, options), Error);
+    options.progress = [](const char* phase, double) { return std::string(phase) != "facets"; };
+    CHECK_THROWS_AS(reconstruct_levels(cloud, 4, 5, options), Cancelled);
+}
