@@ -94,7 +94,7 @@ TEST_CASE(".om is written where no memory is left for the whole of it", "[mesh_i
     for (std::size_t i = 0; i < count; ++i) {
         polygons.positions.push_back({static_cast<double>(i), static_cast<double>(i % 2), 0});
         if (i > 1)
-            polygons.add_facet(std::array<Index, 3>{Index(i - 2), Index(i - 2 + i % 2), Index(i - i % 2)});
+            polygons.add_facet(std::array<Index, 3>{Index(i - 2 + i % 2), Index(i - 1 - i % 2), Index(i)});
     }
     PolyMesh mesh = to_mesh(polygons).mesh;
     kept_vertex_property<VertexNormalsT<PolyMesh>>(mesh, vertex_normals_property);

@@ -1,4 +1,5 @@
 #include "hsdm/ReconstructorT.hh"
+#include "hsdm/errors.hh"
 #include "hsdm/facets/to_mesh.hh"
 #include "support/check.hh"
 #include "support/sample.hh"

@@ -84,7 +84,7 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(find_targ
 }
 
 void AtomicFile::open_temporary() {
-    check_writable(path_);
+    check_replaceable(path_, target_);
     FileRegistry& registry = FileRegistry::of_process();
     for (std::string& left : remove_leftovers(target_.path)) {
         const auto lock = registry.lock();

@@ -34,14 +34,11 @@ std::optional<int> own_descriptor(const fs::path& path) {
     return number;
 }
 
-void check_file(const std::string& path, const std::string& target) {
-    const fs::path folder = folder_of(target);
+void check_folder(const std::string& path, const fs::path& folder) {
     std::error_code ignored;
     if (!fs::is_directory(folder, ignored)) throw Error(path, "the folder does not exist; make it first");
     if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0)
         throw Error(path, "the folder cannot be written; check its permissions");
-    if (fs::exists(target, ignored) && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
-        throw Error(path, "is write-protected; choose another name, or allow writing with chmod u+w");
 }
 
 } // namespace
@@ -67,9 +64,15 @@ OutputTarget find_target(const std::string& path) {
     return {stream ? OutputTarget::Kind::stream : OutputTarget::Kind::file, name.string(), -1};
 }
 
+void check_replaceable(const std::string& path, const OutputTarget& target) {
+    std::error_code ignored;
+    if (fs::is_directory(target.path, ignored)) throw Error(path, "is a folder; name a file in it");
+    if (fs::exists(target.path, ignored) && ::faccessat(AT_FDCWD, target.path.c_str(), W_OK, AT_EACCESS) != 0)
+        throw Error(path, "is write-protected; choose another name, or allow writing with chmod u+w");
+}
+
 void check_writable(const std::string& path) {
     const OutputTarget target = find_target(path);
-    std::error_code ignored;
     if (target.kind == OutputTarget::Kind::descriptor) {
         const int mode = ::fcntl(target.descriptor, F_GETFL);
         if (mode < 0 || (mode & O_ACCMODE) == O_RDONLY)
@@ -78,8 +81,8 @@ void check_writable(const std::string& path) {
         if (::faccessat(AT_FDCWD, target.path.c_str(), W_OK, AT_EACCESS) != 0)
             throw Error(path, "cannot be written; check its permissions");
     } else {
-        if (fs::is_directory(target.path, ignored)) throw Error(path, "is a folder; name a file in it");
-        check_file(path, target.path);
+        check_replaceable(path, target);
+        check_folder(path, folder_of(target.path));
     }
 }
 

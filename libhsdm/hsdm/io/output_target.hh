@@ -19,6 +19,10 @@ struct OutputTarget {
 /// Throws Error for an empty name and a loop of links.
 OutputTarget find_target(const std::string& path);
 
+/// Throws Error, which names `path`, for a target of kind `file` that must not be replaced: a folder, a
+/// write-protected file.
+void check_replaceable(const std::string& path, const OutputTarget& target);
+
 /// Throws Error for what AtomicFile could not write: a folder, a write-protected file, a missing folder or
 /// one that this user may not write to. Opens nothing; a disk may still be full later.
 void check_writable(const std::string& path);
