@@ -122,8 +122,8 @@ void add_process(CLI::App& app, Run& run) {
     sub->add_flag("--list", a->list, "the modules there are, and their options");
     sub->add_flag("--quiet", a->quiet, "no summary, errors only");
     sub->footer(
-        "Modules are looked for in the folders of HSDM_PLUGIN_PATH, then in lib/hsdm/plugins beside the\n"
-        "command's folder.\nExamples:\n  hsdm process --list\n"
+        "Modules are looked for in the folders of HSDM_PLUGIN_PATH, then in that of the installation, and\n"
+        "refused if others could have written them.\nExamples:\n  hsdm process --list\n"
         "  hsdm process part.off --module classify-features --module smooth-normals -o part.ply");
     sub->callback([&run, a] { run = [a] { return run_process(*a); }; });
 }

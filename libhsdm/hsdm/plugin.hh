@@ -1,5 +1,7 @@
 #pragma once
-// What a processing module is: a shared library that exports one function, `hsdm_plugin`. A module:
+// What a processing module is: a shared library that exports one function, `hsdm_plugin`, and tells of itself
+// in its section `.hsdm_plugin`, so that what it is and how it was built is read without running it. A
+// module:
 //
 //     std::string scale(hsdm::PolyMesh& mesh, const hsdm::PluginOptions& options) {
 //         options.allow({"factor"});
@@ -8,10 +10,6 @@
 //         return "scaled by " + options.text("factor", "1");
 //     }
 //     HSDM_PLUGIN("scale", "multiplies all coordinates", "factor (1)", scale)
-
-#include <hsdm/plugin.hh>
-//     std::string flip(hsdm::PolyMesh& mesh, const hsdm::PluginOptions& options);
-//     HSDM_PLUGIN("flip", "turns the mesh inside out", "no options", flip)
 
 #include "hsdm/mesh_types.hh"
 #include "hsdm/version.hh"
@@ -25,29 +23,30 @@
 
 namespace hsdm {
 
-/// Version of this interface. The first two members of PluginInfo stay where they are in every version.
-inline constexpr std::uint32_t plugin_abi = 1;
-
 #define HSDM_STRINGIFY_(x) #x
 #define HSDM_STRINGIFY(x) HSDM_STRINGIFY_(x)
+
+/// Version of this interface. The record's first two texts and PluginInfo's first two members stay what they
+/// are in every version.
+#define HSDM_PLUGIN_ABI 2
+inline constexpr std::uint32_t plugin_abi = HSDM_PLUGIN_ABI;
+
 /// What module and loader must have in common to share a mesh: hsdm, compiler, OpenMesh.
-inline std::string plugin_build() {
-    return std::string("hsdm ") + version + ", compiler " + __VERSION__ + ", OpenMesh "
-           + HSDM_STRINGIFY(OM_VERSION);
-}
+#define HSDM_PLUGIN_BUILD                                                                                    \
+    "hsdm " HSDM_VERSION ", compiler " __VERSION__ ", OpenMesh " HSDM_STRINGIFY(OM_VERSION)
+
+/// How the record begins.
+#define HSDM_PLUGIN_MARK "hsdm module " HSDM_STRINGIFY(HSDM_PLUGIN_ABI)
 
 struct PluginOption {
     const char* key;
     const char* value;
 };
 
-/// What the module tells of itself. Everything points to memory that lives as long as the process.
+/// What `hsdm_plugin` returns. Everything points to memory that lives as long as the process.
 struct PluginInfo {
     std::uint32_t abi; ///< plugin_abi
-    const char* build; ///< plugin_build()
-    const char* name;
-    const char* description; ///< one line
-    const char* options;     ///< one line: keys, units, defaults
+    const char* build; ///< HSDM_PLUGIN_BUILD
     /// Works on the mesh and writes one line, what it did or what was wrong, of at most `capacity` characters
     /// with the final zero. Returns 0 when done, 2 for a wrong option, 1 for any other failure. Never throws.
     int (*process)(PolyMesh& mesh, const PluginOption* options, std::size_t count, char* message,
@@ -81,19 +80,19 @@ int run_plugin(PluginFunction function, PolyMesh& mesh, const PluginOption* opti
 
 } // namespace hsdm
 
-/// Defines the exported function. Once per module, at namespace scope.
+/// Defines the record and the exported function. Once per module, at namespace scope. Name, description (one
+/// line) and options (one line: keys, units, defaults) are string literals: the record is one text, in which
+/// zeros part mark, build, name, description and options.
 #define HSDM_PLUGIN(plugin_name, plugin_description, plugin_options, plugin_function)                        \
+    __attribute__((section(".hsdm_plugin"), used)) static constexpr char hsdm_plugin_record[] =              \
+        HSDM_PLUGIN_MARK "\0" HSDM_PLUGIN_BUILD "\0" plugin_name "\0" plugin_description                     \
+                         "\0" plugin_options;                                                                \
     extern "C" __attribute__((visibility("default"))) const hsdm::PluginInfo* hsdm_plugin() {                \
-        static const std::string build = hsdm::plugin_build();                                               \
-        static const hsdm::PluginInfo info{hsdm::plugin_abi,                                                 \
-                                           build.c_str(),                                                    \
-                                           plugin_name,                                                      \
-                                           plugin_description,                                               \
-                                           plugin_options,                                                   \
-                                           [](hsdm::PolyMesh& mesh, const hsdm::PluginOption* options,       \
-                                              std::size_t count, char* message, std::size_t capacity) {      \
-                                               return hsdm::run_plugin(plugin_function, mesh, options,       \
-                                                                       count, message, capacity);            \
-                                           }};                                                               \
+        static constexpr hsdm::PluginInfo info{                                                              \
+            hsdm::plugin_abi, hsdm_plugin_record + sizeof HSDM_PLUGIN_MARK,                                  \
+            [](hsdm::PolyMesh& mesh, const hsdm::PluginOption* options, std::size_t count, char* message,    \
+               std::size_t capacity) {                                                                       \
+                return hsdm::run_plugin(plugin_function, mesh, options, count, message, capacity);           \
+            }};                                                                                              \
         return &info;                                                                                        \
     }

@@ -4,9 +4,29 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
+
 using namespace hsdm;
 using namespace hsdm::test;
 using Json = nlohmann::json;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Copies the modules of the build, where others may write, into the folder; returns what makes them known.
+std::string with_modules(const Folder& folder) {
+    fs::create_directories(folder / "modules");
+    fs::permissions(folder / "modules", fs::perms::owner_all);
+    for (const auto& file : fs::directory_iterator(HSDM_MODULE_DIR)) {
+        const std::string copy = folder / ("modules/" + file.path().filename().string());
+        fs::copy_file(file.path(), copy);
+        fs::permissions(copy, fs::perms::owner_all);
+    }
+    return "HSDM_PLUGIN_PATH=modules";
+}
+
+} // namespace
 
 TEST_CASE("info tells a cloud from a mesh and measures both", "[cli]") {
     const Folder folder;
@@ -47,17 +67,32 @@ TEST_CASE("compare measures both directions between a mesh and a cloud or a mesh
 
 TEST_CASE("process runs modules in order and refuses unknown ones", "[cli]") {
     const Folder folder;
+    const std::string modules = with_modules(folder);
     folder.write("scan.xyz", xyz(sphere_scan()));
     REQUIRE(run(folder, "reconstruct scan.xyz --depth 4 -o part.off").status == 0);
-    CHECK(run(folder, "process --list").out.find("classify-features") != std::string::npos);
-    const CommandResult result =
-        run(folder, "process part.off --module classify-features --module smooth-normals -o new.ply");
+    CHECK(run(folder, "process --list", modules).out.find("classify-features") != std::string::npos);
+    const CommandResult result = run(
+        folder, "process part.off --module classify-features --module smooth-normals -o new.ply", modules);
     INFO(result.err);
     CHECK(result.status == 0);
     CHECK(exists(folder / "new.ply"));
-    CHECK(run(folder, "process part.off --module no-such-module -o other.ply").status == 1);
-    CHECK(run(folder, "process part.off -o other.ply").status == 2);
+    CHECK(run(folder, "process part.off --module no-such-module -o other.ply", modules).status == 1);
+    CHECK(run(folder, "process part.off -o other.ply", modules).status == 2);
     CHECK_FALSE(exists(folder / "other.ply"));
+}
+
+TEST_CASE("modules beside the program are not found by walking up from it", "[cli]") {
+    const Folder folder;
+    with_modules(folder);
+    fs::create_directories(folder / "bin");
+    fs::create_directories(folder / "lib/hsdm");
+    fs::rename(folder / "modules", folder / "lib/hsdm/plugins");
+    fs::rename(folder / "lib/hsdm/plugins/smooth-normals.so", folder / "lib/hsdm/plugins/found-by-walking.so");
+    fs::copy_file(HSDM_COMMAND, folder / "bin/hsdm");
+    REQUIRE(run(folder, "--version; bin/hsdm process --list > listed").status == 0);
+    CHECK(read_file(folder / "listed").find("found-by-walking") == std::string::npos);
+    REQUIRE(run(folder, "--version; HSDM_PLUGIN_PATH=lib/hsdm/plugins bin/hsdm process --list > listed").status == 0);
+    CHECK(read_file(folder / "listed").find("found-by-walking") != std::string::npos);
 }
 
 TEST_CASE("the suite that comes along passes", "[cli]") {

@@ -1,10 +1,14 @@
-// A module whose function throws.
+// A module whose function throws, and of which other code runs as soon as it is loaded.
+
+#include "plugins/when_loaded.hh"
 
 #include "hsdm/plugin.hh"
 
 #include <stdexcept>
 
 namespace {
+
+const hsdm::test::WhenLoaded when_loaded;
 
 std::string fail(hsdm::PolyMesh&, const hsdm::PluginOptions& options) {
     options.allow({"long"});

@@ -1,4 +1,4 @@
-// A shared library without the function every module exports.
+// A shared library without what every module has.
 
 extern "C" int something_else() {
     return 1;

@@ -7,8 +7,13 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
+
+#include <sys/stat.h>
+#include <unistd.h>
 
 using namespace hsdm;
 using Catch::Matchers::Contains;
@@ -16,28 +21,62 @@ using Options = std::vector<std::pair<std::string, std::string>>;
 
 namespace {
 
-const std::vector<std::string> folders{HSDM_MODULE_DIR};
-const std::vector<std::string> odd_folders{HSDM_ODD_MODULE_DIR};
+namespace fs = std::filesystem;
 
-std::string refusal(const std::string& name) {
+/// The modules of a folder, copied into one of this user's alone: where the build tree lies others may write.
+class OwnModules {
+public:
+    explicit OwnModules(const std::string& from) {
+        std::string name = (fs::temp_directory_path() / "hsdm-modules-XXXXXX").string();
+        if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no scratch folder can be made");
+        path_ = name;
+        for (const auto& file : fs::directory_iterator(from)) {
+            if (file.path().extension() != ".so") continue;
+            fs::copy_file(file.path(), path_ / file.path().filename());
+            fs::permissions(path_ / file.path().filename(), fs::perms::owner_all);
+        }
+    }
+    ~OwnModules() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+    OwnModules(const OwnModules&) = delete;
+    OwnModules& operator=(const OwnModules&) = delete;
+
+    std::string operator/(const std::string& name) const { return path_ / name; }
+    operator std::vector<std::string>() const { return {path_}; }
+
+private:
+    fs::path path_;
+};
+
+std::string refusal(const std::string& name, const std::vector<std::string>& folders) {
     try {
-        load_plugin(name, odd_folders);
+        load_plugin(name, folders);
     } catch (const Error& error) {
         return error.what();
     }
     return "not refused";
 }
 
+std::string problems(const std::vector<PluginListing>& listings) {
+    std::string text;
+    for (const PluginListing& listing : listings) text += listing.problem;
+    return text;
+}
+
 } // namespace
 
-TEST_CASE("the modules are found beside the program without being told where") {
-    const Plugin plugin = load_plugin("classify-features");
+TEST_CASE("a module is found in its folder and tells what it is") {
+    const OwnModules folders(HSDM_MODULE_DIR);
+    const Plugin plugin = load_plugin("classify-features", folders);
     CHECK(plugin.name() == "classify-features");
     CHECK_FALSE(plugin.description().empty());
     CHECK_THAT(plugin.options(), Contains("crease-degrees"));
 }
 
 TEST_CASE("classify-features does what the library does") {
+    const OwnModules folders(HSDM_MODULE_DIR);
     PolyMesh by_module = to_mesh(test::cube(4)).mesh, by_library = by_module;
     const std::string summary = load_plugin("classify-features", folders).process(by_module);
     CHECK(summary == "48 sharp edges; vertices: 54 smooth, 36 edge, 8 corner");
@@ -49,6 +88,7 @@ TEST_CASE("classify-features does what the library does") {
 }
 
 TEST_CASE("smooth-normals after classify-features leaves a cube's normals alone") {
+    const OwnModules folders(HSDM_MODULE_DIR);
     PolyMesh mesh = to_mesh(test::cube(4)).mesh;
     load_plugin("classify-features", folders).process(mesh, {{"crease-degrees", "80"}});
     const std::string summary = load_plugin("smooth-normals", folders).process(mesh, {{"rounds", "5"}});
@@ -60,12 +100,13 @@ TEST_CASE("smooth-normals after classify-features leaves a cube's normals alone"
 
 TEST_CASE("the module that the documentation shows works") {
     PolyMesh mesh = to_mesh(test::cube(1)).mesh;
-    const Plugin scale = load_plugin("scale", {HSDM_EXAMPLE_DIR});
+    const Plugin scale = load_plugin("scale", OwnModules(HSDM_EXAMPLE_DIR));
     CHECK(scale.process(mesh, {{"factor", "25.4"}}) == "scaled by 25.4");
     for (const auto v : mesh.vertices()) CHECK(mesh.point(v).max_abs() == 25.4);
 }
 
 TEST_CASE("a module's options are checked: unknown, twice, no number, out of range") {
+    const OwnModules folders(HSDM_MODULE_DIR);
     PolyMesh mesh = to_mesh(test::cube(1)).mesh;
     const Plugin plugin = load_plugin("classify-features", folders);
     const auto process = [&](const Options& options) { plugin.process(mesh, options); };
@@ -79,20 +120,70 @@ TEST_CASE("a module's options are checked: unknown, twice, no number, out of ran
 }
 
 TEST_CASE("what is no module is refused with the reason") {
-    CHECK_THAT(refusal("absent"), Contains("no module of this name") && Contains("wrong_build"));
-    CHECK_THAT(refusal("./absent.so"), Contains("./absent.so: no such file"));
-    CHECK_THAT(refusal("not_a_module"), Contains("does not export hsdm_plugin"));
-    CHECK_THAT(refusal("wrong_interface"), Contains("interface 4711"));
-    CHECK_THAT(refusal("wrong_build"), Contains("compiler of old") && Contains("build it the same way"));
-    const std::string text = std::string(HSDM_ODD_MODULE_DIR) + "/text.so";
-    std::ofstream(text) << "not even a shared library\n";
-    CHECK_THAT(refusal("text"), Contains("text.so: cannot be loaded"));
-    std::remove(text.c_str());
+    const OwnModules odd(HSDM_ODD_MODULE_DIR);
+    CHECK_THAT(refusal("absent", odd), Contains("no module of this name") && Contains("wrong_build"));
+    CHECK_THAT(refusal("./absent.so", odd), Contains("./absent.so: no such file"));
+    CHECK_THAT(refusal("not_a_module", odd), Contains("is not an hsdm module"));
+    CHECK_THAT(refusal("no_function", odd), Contains("does not export hsdm_plugin"));
+    CHECK_THAT(refusal("wrong_interface", odd), Contains("interface 4711"));
+    CHECK_THAT(refusal("wrong_build", odd), Contains("compiler of old") && Contains("build it the same way"));
+    std::ofstream(odd / "text.so") << "not even a shared library\n";
+    CHECK_THAT(refusal("text", odd), Contains("text.so: is not an hsdm module"));
+    fs::create_directory(odd / "folder.so");
+    CHECK_THAT(refusal("folder", odd), Contains("is no regular file"));
+}
+
+TEST_CASE("no code of a module runs when it is listed, nor when it is of another build") {
+    const OwnModules odd(HSDM_ODD_MODULE_DIR);
+    const std::string trace = odd / "loaded";
+    setenv("HSDM_TEST_LOADED", trace.c_str(), 1);
+    const auto listed = list_plugins(odd);
+    const std::string refused = refusal("wrong_build", odd);
+    const bool ran_unasked = fs::exists(trace);
+    load_plugin("failing", odd);
+    const bool ran = fs::exists(trace);
+    unsetenv("HSDM_TEST_LOADED");
+    CHECK_FALSE(ran_unasked);
+    CHECK(ran);
+    CHECK_THAT(refused, Contains("compiler of old"));
+    const auto failing = std::find_if(listed.begin(), listed.end(),
+                                      [](const PluginListing& one) { return one.name == "failing"; });
+    REQUIRE(failing != listed.end());
+    CHECK(failing->description == "always fails");
+    CHECK(failing->options == "long: with a long message");
+}
+
+TEST_CASE("a pipe, a folder and a loose link among the modules are passed by") {
+    const OwnModules folders(HSDM_MODULE_DIR);
+    REQUIRE(mkfifo((folders / "pipe.so").c_str(), 0600) == 0);
+    fs::create_directory(folders / "folder.so");
+    fs::create_symlink("nowhere", folders / "loose.so");
+    CHECK(list_plugins(folders).size() == 2);
+    CHECK_THAT(refusal("pipe", folders), Contains("is no regular file"));
+    CHECK_THAT(refusal(folders / "pipe.so", folders), Contains("is no regular file"));
+    fs::create_symlink(folders / "smooth-normals.so", folders / "linked.so");
+    CHECK(load_plugin("linked", folders).name() == "smooth-normals");
+}
+
+TEST_CASE("modules that others could have written are refused, by name, by path and in the list") {
+    const OwnModules folders(HSDM_MODULE_DIR);
+    const std::string file = folders / "smooth-normals.so";
+    fs::permissions(file, fs::perms::group_write, fs::perm_options::add);
+    CHECK_THAT(refusal("smooth-normals", folders), Contains("by its group") && Contains("chmod g-w"));
+    CHECK_THAT(problems(list_plugins(folders)), Contains("smooth-normals.so can be written by its group"));
+    CHECK(load_plugin("classify-features", folders).name() == "classify-features");
+    fs::permissions(file, fs::perms::owner_all);
+    fs::permissions(folders / "", fs::perms::others_write, fs::perm_options::add);
+    CHECK_THAT(refusal("smooth-normals", folders), Contains("can be written by everybody"));
+    CHECK_THAT(refusal(file, {}), Contains("can be written by everybody"));
+    const auto listed = list_plugins(folders);
+    REQUIRE(listed.size() == 1);
+    CHECK_THAT(listed[0].problem, Contains("nothing is loaded from here"));
 }
 
 TEST_CASE("a module that throws becomes an error of the program, its message cut to fit") {
     PolyMesh mesh;
-    const Plugin plugin = load_plugin("failing", odd_folders);
+    const Plugin plugin = load_plugin("failing", OwnModules(HSDM_ODD_MODULE_DIR));
     CHECK_THROWS_WITH(plugin.process(mesh), "failing: out of luck");
     try {
         plugin.process(mesh, {{"long", ""}});
@@ -103,25 +194,24 @@ TEST_CASE("a module that throws becomes an error of the program, its message cut
 }
 
 TEST_CASE("the listing names usable modules and tells why others are not") {
-    const auto good = list_plugins(folders);
+    const auto good = list_plugins(OwnModules(HSDM_MODULE_DIR));
     REQUIRE(good.size() == 2);
     CHECK(good[0].name == "classify-features");
     CHECK(good[1].name == "smooth-normals");
-    CHECK((good[0].problem + good[1].problem).empty());
+    CHECK(problems(good).empty());
     std::size_t refused = 0;
-    for (const PluginListing& listing : list_plugins(odd_folders)) refused += !listing.problem.empty();
+    for (const PluginListing& one : list_plugins(OwnModules(HSDM_ODD_MODULE_DIR)))
+        refused += !one.problem.empty();
     CHECK(refused == 3);
     CHECK(list_plugins({"/nowhere/at/all"}).empty());
 }
 
-TEST_CASE("HSDM_PLUGIN_PATH comes before the program's own folder") {
-    setenv("HSDM_PLUGIN_PATH", "/first::/second", 1);
+TEST_CASE("HSDM_PLUGIN_PATH comes before the folder of the installation, the only other one") {
+    setenv("HSDM_PLUGIN_PATH", R"(/first::/sec\:ond:/th\\ird\)", 1);
     const auto all = plugin_folders();
     unsetenv("HSDM_PLUGIN_PATH");
-    REQUIRE(all.size() == 4);
-    CHECK(all[0] == "/first");
-    CHECK(all[1] == "/second");
-    CHECK(plugin_folders().size() == 2);
+    CHECK(all == std::vector<std::string>{"/first", "/sec:ond", "/th\\ird\\", HSDM_INSTALLED_MODULE_DIR});
+    CHECK(plugin_folders() == std::vector<std::string>{HSDM_INSTALLED_MODULE_DIR});
 }
 
 TEST_CASE("a request reads name:key=value,key=value") {
@@ -132,4 +222,16 @@ TEST_CASE("a request reads name:key=value,key=value") {
     CHECK(request.options == Options{{"b", "1"}, {"c", ""}, {"d", "x=y"}});
     for (const char* wrong : {"", ":a=1", "a:", "a:b", "a:=1", "a:b=1,", "a:b=1,,c=2"})
         CHECK_THROWS_AS(parse_plugin_request(wrong), OptionError);
+}
+
+TEST_CASE("a colon in a module's path is told from the one before the options") {
+    CHECK(parse_plugin_request(R"(./a\:b/x.so:c=1)").name == "./a:b/x.so");
+    CHECK(parse_plugin_request(R"(a\\b:c=1)").name == R"(a\b)");
+    const OwnModules folder(HSDM_EXAMPLE_DIR);
+    fs::create_directory(folder / "a:b");
+    fs::rename(folder / "scale.so", folder / "a:b/scale:2.so");
+    const auto request = parse_plugin_request((folder / "a:b/scale:2.so") + ":factor=3");
+    CHECK(request.options == Options{{"factor", "3"}});
+    CHECK(load_plugin(request.name).name() == "scale");
+    CHECK(parse_plugin_request(folder / "a:b/scale:2.so").name == folder / "a:b/scale:2.so");
 }

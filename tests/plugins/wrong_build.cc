@@ -1,9 +1,20 @@
-// A module of the right interface, built for another hsdm.
+// A module of the right interface, built for another hsdm, with code that runs as soon as it is loaded.
+
+#include "plugins/when_loaded.hh"
 
 #include "hsdm/plugin.hh"
 
-extern "C" const hsdm::PluginInfo* hsdm_plugin() {
-    static const hsdm::PluginInfo info{
-        hsdm::plugin_abi, "hsdm 0.0.0, compiler of old, OpenMesh 1", nullptr, nullptr, nullptr, nullptr};
-    return &info;
+#undef HSDM_PLUGIN_BUILD
+#define HSDM_PLUGIN_BUILD "hsdm 0.0.0, compiler of old, OpenMesh 1"
+
+namespace {
+
+const hsdm::test::WhenLoaded when_loaded;
+
+std::string nothing(hsdm::PolyMesh&, const hsdm::PluginOptions&) {
+    return "";
 }
+
+} // namespace
+
+HSDM_PLUGIN("wrong_build", "is of another build", "no options", nothing)

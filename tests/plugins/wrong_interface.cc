@@ -1,10 +1,8 @@
-// A module of an interface to come: only the version may be read of it, nothing else is there.
+// A module of an interface to come: only the version and the build may be read of it.
 
-#include "hsdm/plugin.hh"
+__attribute__((section(".hsdm_plugin"), used)) static constexpr char record[] =
+    "hsdm module 4711\0of the future";
 
-#include <cstdint>
-
-extern "C" const hsdm::PluginInfo* hsdm_plugin() {
-    alignas(hsdm::PluginInfo) static const std::uint32_t abi = 4711;
-    return reinterpret_cast<const hsdm::PluginInfo*>(&abi);
+extern "C" const void* hsdm_plugin() {
+    return nullptr;
 }

@@ -1,0 +1,59 @@
+#include "hsdm/plugin.hh"
+#include "hsdm/plugin_record.hh"
+
+#include <catch2/catch.hpp>
+
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include <link.h>
+
+using namespace hsdm;
+
+namespace {
+
+std::string scale_module() {
+    std::ifstream file(HSDM_EXAMPLE_DIR "/scale.so", std::ios::binary);
+    std::ostringstream bytes;
+    bytes << file.rdbuf();
+    return bytes.str();
+}
+
+std::optional<PluginRecord> record_of(const std::string& bytes) {
+    std::istringstream stream(bytes);
+    return read_plugin_record(io::SourceBytes::read(stream, "module"));
+}
+
+} // namespace
+
+TEST_CASE("what a module says of itself is read from its bytes") {
+    const auto record = record_of(scale_module());
+    REQUIRE(record);
+    CHECK(record->abi == plugin_abi);
+    CHECK(record->build == HSDM_PLUGIN_BUILD);
+    CHECK(record->name == "scale");
+    CHECK(record->description == "multiplies all coordinates");
+    CHECK(record->options == "factor (1)");
+}
+
+TEST_CASE("a damaged module has a record or none, and is never read outside its bytes") {
+    const std::string whole = scale_module();
+    REQUIRE(whole.size() > 64);
+    for (const std::size_t size : {0, 3, 16, 63, 64, 1000}) CHECK_FALSE(record_of(whole.substr(0, size)));
+    CHECK_FALSE(record_of(whole.substr(0, whole.size() - 1))); // the table of sections is the last thing
+    // Every byte of the header, and of the table's first entries, made the least and the greatest.
+    for (std::size_t at = 0; at < 64; ++at)
+        for (const char value : {'\0', '\x7f', '\xff'}) {
+            std::string damaged = whole;
+            damaged[at] = value;
+            CHECK_NOTHROW(record_of(damaged));
+        }
+    ElfW(Ehdr) header;
+    std::memcpy(&header, whole.data(), sizeof header);
+    for (std::size_t at = header.e_shoff; at < whole.size(); ++at) {
+        std::string damaged = whole.substr(0, at) + '\xff' + whole.substr(at + 1);
+        const auto record = record_of(damaged);
+        if (record && record->abi == plugin_abi) CHECK(record->name == "scale");
+    }
+}

@@ -1,0 +1,65 @@
+#include "hsdm/trusted_path.hh"
+
+#include <catch2/catch.hpp>
+
+#include <filesystem>
+#include <fstream>
+
+#include <unistd.h>
+
+using Catch::Matchers::Contains;
+using hsdm::distrust;
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// What is said of a file or folder of `owner` to user 1000.
+std::string said_of(mode_t mode, uid_t owner, bool above = false) {
+    struct stat status {};
+    status.st_mode = mode;
+    status.st_uid = owner;
+    return distrust(status, 1000, above);
+}
+
+} // namespace
+
+TEST_CASE("trusted is what root or the user alone can write") {
+    CHECK(said_of(S_IFREG | 0755, 1000).empty());
+    CHECK(said_of(S_IFREG | 0644, 0).empty());
+    CHECK_THAT(said_of(S_IFREG | 0600, 1001), Contains("another user (1001)"));
+    CHECK_THAT(said_of(S_IFREG | 0664, 1000), Contains("its group"));
+    CHECK_THAT(said_of(S_IFREG | 0646, 0), Contains("everybody"));
+    CHECK_THAT(said_of(S_IFDIR | 0775, 1000, true), Contains("its group"));
+}
+
+TEST_CASE("the sticky bit helps a folder farther up, not the one that modules are in") {
+    CHECK(said_of(S_IFDIR | 01777, 0, true).empty());
+    CHECK_THAT(said_of(S_IFDIR | 01777, 0), Contains("everybody"));
+    CHECK_THAT(said_of(S_IFDIR | 01777, 1001, true), Contains("another user"));
+}
+
+TEST_CASE("a file is distrusted for any folder above it, and for where its links lead through") {
+    std::string name = (fs::temp_directory_path() / "hsdm-trust-XXXXXX").string();
+    REQUIRE(mkdtemp(name.data()) != nullptr);
+    const fs::path root = name;
+    fs::create_directories(root / "open/inner");
+    fs::create_directories(root / "safe");
+    for (const char* file : {"open/inner/a", "safe/a"}) std::ofstream(root / file) << "x";
+    fs::create_symlink("../safe/a", root / "open/link");
+    fs::create_symlink("open/inner", root / "way");
+    fs::create_symlink("circle", root / "circle");
+    for (const char* file : {"open/inner/a", "open/link", "way/a", "safe/a", "way/../../safe/a"}) {
+        INFO(file);
+        CHECK(distrust((root / file).string()).empty());
+    }
+    fs::permissions(root / "open", fs::perms::all);
+    for (const char* file : {"open/inner/a", "open/link", "way/a", "way/../../safe/a"}) {
+        INFO(file);
+        CHECK_THAT(distrust((root / file).string()), Contains("open can be written by everybody"));
+    }
+    CHECK(distrust((root / "safe/a").string()).empty());
+    CHECK(distrust((root / "missing/a").string()).empty());
+    CHECK_THAT(distrust((root / "circle").string()), Contains("circle"));
+    fs::remove_all(root);
+}
