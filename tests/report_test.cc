@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include <limits>
+
 using namespace hsdm;
 
 TEST_CASE("the report holds every key that scripts rely on, numbers plain", "[report]") {
@@ -38,4 +40,15 @@ TEST_CASE("the report holds every key that scripts rely on, numbers plain", "[re
     CHECK(json["input"]["bbox_min"] == nlohmann::json{1, 2, 3});
     CHECK(json["rejected"]["hit_test"] == 7);
     CHECK(json["options"]["depth"] == "5");
+}
+
+TEST_CASE("a report leaves out what is not finite instead of writing null", "[report]") {
+    Report report; // its box is empty: from inf to -inf
+    report.error.points_to_mesh_max = std::numeric_limits<double>::quiet_NaN();
+    const std::string text = to_json(report);
+    CHECK(text.find("null") == std::string::npos);
+    const auto json = nlohmann::json::parse(text);
+    CHECK_FALSE(json["input"].contains("bbox_min"));
+    CHECK_FALSE(json["error"].contains("points_to_mesh_max"));
+    CHECK(json["error"]["points_to_mesh_mean"] == 0);
 }

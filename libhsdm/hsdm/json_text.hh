@@ -1,6 +1,8 @@
 #pragma once
 // JSON as it is written, key by key.
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -40,8 +42,11 @@ public:
     /// A complete document of this class, as a part.
     void document(std::string_view text);
 
+    /// A key and its value; nothing if that is a number that is not finite, or an array that holds one: JSON has
+    /// none, and a `null` in its place breaks whoever reads it.
     template <class Value>
     void member(std::string_view name, const Value& content) {
+        if (!is_finite(content)) return;
         key(name);
         value(content);
     }
@@ -50,6 +55,15 @@ public:
     std::string take() && { return std::move(text_ += '\n'); }
 
 private:
+    template <class Value>
+    static bool is_finite(const Value& content) {
+        if constexpr (std::is_floating_point_v<Value>)
+            return std::isfinite(content);
+        else if constexpr (requires { requires std::is_floating_point_v<std::decay_t<decltype(*content.begin())>>; })
+            return std::all_of(content.begin(), content.end(), [](double x) { return std::isfinite(x); });
+        else
+            return true;
+    }
     void open(char bracket);
     void start_value();
     void break_line();

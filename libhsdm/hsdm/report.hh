@@ -70,7 +70,7 @@ struct Report {
     std::string failure; ///< why there is no mesh (see reconstruct_levels); empty: there is one
 };
 
-/// The report as JSON text, keys as in the command's contract.
+/// The report as JSON text, keys as in the command's contract; what is not finite is left out.
 std::string to_json(const Report& report);
 
 } // namespace hsdm

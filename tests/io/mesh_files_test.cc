@@ -154,7 +154,8 @@ TEST_CASE("STL becomes text where floats would move vertices", "[mesh_io]") {
     const Folder folder;
     PolygonMesh mesh = square();
     for (Vec3& p : mesh.positions) p = p * 0.1 + Vec3(1e6, 0, 0);
-    write_mesh(folder / "far.stl", mesh, MeshFormat::stl);
+    CHECK(write_mesh(folder / "far.stl", mesh, MeshFormat::stl).text_for_precision);
+    CHECK_FALSE(write_mesh(folder / "far.stl", mesh, MeshFormat::stl, {true}).text_for_precision);
     CHECK(content(folder / "far.stl").starts_with("solid"));
     CHECK(read_mesh(folder / "far.stl").positions[1] == mesh.positions[1]);
 }

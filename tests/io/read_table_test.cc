@@ -53,6 +53,26 @@ TEST_CASE("a byte-order mark, comments and empty lines are no points", "[io]") {
     CHECK_FALSE(file.cloud.has_normals());
 }
 
+TEST_CASE("exponents may have Fortran's letter, from the first line on", "[io]") {
+    CHECK(read("a.xyz", "1d0 2D+0 .3d1\n-4.5D0 5d-3 6d00\n").cloud.positions == two_points);
+    CHECK(read("a.csv", "x,y,z\n+10d-1,2,3\n-45.d-1,5e-3,6\n").cloud.positions == two_points);
+    CHECK(read("a.off", "OFF\n2 0 0\n1d0 2 3\n-4.5 5D-3 6\n").cloud.positions == two_points);
+    CHECK(read("a.obj", "v 1d0 2 3\nv -4.5 5d-3 6\n").cloud.positions == two_points);
+    for (const char* wrong :
+         {"1 2 3\n1d 2 3\n", "1 2 3\n1e2d3 2 3\n", "1 2 3\nnand1 2 3\n", "1 2 3\n1d+ 2 3\n"})
+        CHECK(error_of("a.xyz", wrong).starts_with("a.xyz:2: "));
+    CHECK(std::isinf(read("a.xyz", "1 2 1d999\n").cloud.positions[0][2]));
+}
+
+TEST_CASE("what columns were taken for is kept where their values alone told it", "[io]") {
+    CHECK(read("a.xyz", "1 2 3 0 0 1\n").columns == "x,y,z,nx,ny,nz");
+    CHECK(read("a.xyz", "1 2 3 0 0 1.4\n").columns == "x,y,z,column_4,column_5,column_6");
+    CHECK(read("a.xyz", "1 2 3 0 20 255 0.5\n").columns == "x,y,z,r,g,b,column_7");
+    CHECK(read("a.xyz", "1 2 3\n").columns.empty());
+    CHECK(read("a.xyz", "x y z nx ny nz\n1 2 3 0 0 1.4\n").columns.empty());
+    CHECK(read("a.xyz", "1 2 3 0 0 1\n", {"", "x,y,z,nx,ny,nz"}).columns.empty());
+}
+
 TEST_CASE("every double is read to its last bit", "[io]") {
     std::mt19937_64 random(1);
     std::vector<Vec3> points;

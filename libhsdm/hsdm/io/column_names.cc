@@ -151,6 +151,20 @@ std::vector<Column> parse_columns(const std::string& list) {
     return columns;
 }
 
+std::string list_of(std::span<const Column> columns) {
+    constexpr std::string_view names[] = {"x", "y", "z", "nx", "ny", "nz", "r", "g", "b", "a"};
+    static_assert(std::size(names) == static_cast<std::size_t>(Role::scalar));
+    std::string list;
+    for (const Column& column : columns) {
+        list += list.empty() ? "" : ",";
+        if (column.role == Role::skip)
+            list += '_';
+        else
+            list += column.role == Role::scalar ? column.name : names[static_cast<std::size_t>(column.role)];
+    }
+    return list;
+}
+
 std::optional<std::vector<Column>> columns_from_names(std::span<const std::string> names) {
     std::vector<Column> columns;
     for (const std::string& name : names) columns.push_back({role_of(name), name});

@@ -28,6 +28,9 @@ bool is_label_name(std::string_view name);
 /// missing.
 std::vector<Column> parse_columns(const std::string& list);
 
+/// The list that parse_columns would take for these; a scalar by its name.
+std::string list_of(std::span<const Column> columns);
+
 /// The roles that names give: normals only if all three are there, colours likewise, a repeated name once;
 /// the others become scalars. Returns nothing if x, y or z is missing.
 std::optional<std::vector<Column>> columns_from_names(std::span<const std::string> names);

@@ -36,6 +36,9 @@ bool is_text_stl(const SourceBytes& bytes);
 /// Whether the line is the first of an OFF file: the keyword, perhaps with its letters.
 bool is_off_keyword(std::string_view line);
 
+/// "ply", "off", "obj" or "stl" if read_points would read the source as that; else empty: it holds no faces.
+std::string_view mesh_format_of(const SourceBytes& bytes);
+
 /// Finds the reader by `options.format`, the name's extension and the content, and runs it.
 PointFile read_points(const SourceBytes& bytes, const ReadOptions& options);
 

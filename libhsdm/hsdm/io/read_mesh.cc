@@ -23,19 +23,30 @@ void check_corners(const Text& text, const PolygonMesh& mesh, const std::vector<
 
 namespace {
 
-PolygonMesh read_by_content(const SourceBytes& bytes) {
-    const Text text(bytes);
-    const std::string_view view(text.begin, static_cast<std::size_t>(text.end - text.begin));
-    const std::string& name = bytes.name();
-    const std::string extension = lower(name.substr(std::min(name.find_last_of('.'), name.size())));
-    if (view.starts_with("ply")) return read_mesh_ply(bytes);
-    if (is_binary_stl(bytes) || is_text_stl(bytes) || extension == ".stl") return read_mesh_stl(bytes);
-    const char* at = text.begin;
-    if (extension == ".off" || is_off_keyword(trim(text.line(at)))) return read_mesh_off(bytes);
-    if (extension == ".obj") return read_mesh_obj(bytes);
-    if (extension == ".ply")
-        text.fail(text.begin, "a PLY file begins with \"ply\"; this one does not, check it");
-    throw Error(name, "no mesh format that is known; use OFF, STL, PLY or OBJ");
+PolygonMesh read_as(const SourceBytes& bytes, std::string_view format) {
+    if (format == "ply") return read_mesh_ply(bytes);
+    if (format == "stl") return read_mesh_stl(bytes);
+    return format == "off" ? read_mesh_off(bytes) : read_mesh_obj(bytes);
+}
+
+/// By the content, else by the name, which must then hold what it promises.
+PolygonMesh read_mesh(const SourceBytes& bytes) {
+    std::string_view format = mesh_format_of(bytes);
+    const std::string extension =
+        lower(bytes.name().substr(std::min(bytes.name().find_last_of('.'), bytes.name().size())));
+    for (const std::string_view known : {"off", "stl", "obj"})
+        if (format.empty() && extension == "." + std::string(known)) format = known;
+    if (format.empty() && extension == ".ply")
+        throw Error(bytes.name(), 1, "a PLY file begins with \"ply\"; this one does not, check it");
+    if (format.empty()) throw Error(bytes.name(), "no mesh format that is known; use OFF, STL, PLY or OBJ");
+    PolygonMesh mesh = read_as(bytes, format);
+    if (mesh.facet_count() == 0) return mesh;
+    for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
+        for (double x : mesh.positions[v])
+            if (!std::isfinite(x))
+                throw Error(bytes.name(), "vertex " + std::to_string(v)
+                                              + " has a coordinate that is not finite; remove or correct it");
+    return mesh;
 }
 
 } // namespace
@@ -44,13 +55,17 @@ PolygonMesh read_by_content(const SourceBytes& bytes) {
 PolygonMesh read_mesh(const std::string& path) {
     const io::SourceBytes bytes = io::SourceBytes::open(path);
     if (bytes.size() == 0) throw Error(bytes.name(), "is empty; expected a mesh");
-    PolygonMesh mesh = io::read_by_content(bytes);
-    for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
-        for (double x : mesh.positions[v])
-            if (!std::isfinite(x))
-                throw Error(bytes.name(), "vertex " + std::to_string(v)
-                                              + " has a coordinate that is not finite; remove or correct it");
-    return mesh;
+    return io::read_mesh(bytes);
+}
+
+MeshOrPoints read_mesh_or_points(const std::string& path) {
+    const io::SourceBytes bytes = io::SourceBytes::open(path);
+    MeshOrPoints found;
+    if (!io::mesh_format_of(bytes).empty()) found.mesh = io::read_mesh(bytes);
+    if (found.mesh.facet_count() > 0) return found;
+    found.mesh = {};
+    found.points = io::read_points(bytes, {});
+    return found;
 }
 
 } // namespace hsdm

@@ -36,6 +36,12 @@ constexpr KnownName known_names[] = {
     {"hoppe", Format::hoppe},
 };
 
+constexpr auto names_only = [] {
+    std::array<std::string_view, std::size(known_names)> names;
+    for (std::size_t i = 0; i < names.size(); ++i) names[i] = known_names[i].name;
+    return names;
+}();
+
 struct Magic {
     std::string_view bytes, name;
 };
@@ -167,6 +173,21 @@ PointFile read_as(const SourceBytes& bytes, Format format, TableKind kind, const
 
 } // namespace
 
+std::string_view mesh_format_of(const SourceBytes& bytes) {
+    Format format = recognise(bytes);
+    const KnownName* named = find_name(extension_of(bytes.name()));
+    if (format == Format::unknown && named) {
+        const bool binary = is_binary(Text::head_of(bytes));
+        if (named->format == (binary ? Format::stl : Format::off)) format = named->format;
+    }
+    for (const Format known : {Format::ply, Format::off, Format::obj, Format::stl})
+        if (format == known)
+            return std::find_if(std::begin(known_names), std::end(known_names),
+                                [=](const KnownName& k) { return k.format == known; })
+                ->name;
+    return {};
+}
+
 PointFile read_points(const SourceBytes& bytes, const ReadOptions& options) {
     if (bytes.size() == 0) throw Error(bytes.name(), "is empty; expected points");
     check_options(options);
@@ -186,10 +207,17 @@ PointFile read_points(const SourceBytes& bytes, const ReadOptions& options) {
 } // namespace io
 
 void check_options(const ReadOptions& options) {
-    if (!options.format.empty() && !io::find_name(io::lower(options.format)))
-        throw OptionError("format " + io::quoted(options.format)
-                          + ": known are ply, pcd, xyz, csv, txt, asc, pts, ptx, pwn, off, obj, stl, hoppe");
+    if (!options.format.empty() && !io::find_name(io::lower(options.format))) {
+        std::string names;
+        for (const std::string_view name : io::names_only)
+            names += (names.empty() ? "" : ", ") + std::string(name);
+        throw OptionError("format " + io::quoted(options.format) + ": known are " + names);
+    }
     if (!options.columns.empty()) io::parse_columns(options.columns);
+}
+
+std::span<const std::string_view> point_formats() {
+    return io::names_only;
 }
 
 PointFile read_points(const std::string& path, const ReadOptions& options) {

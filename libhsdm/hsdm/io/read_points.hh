@@ -4,24 +4,32 @@
 
 #include "hsdm/point_cloud.hh"
 
+#include <span>
 #include <string>
+#include <string_view>
 
 namespace hsdm {
 
 struct ReadOptions {
-    /// "ply", "pcd", "xyz" (or "txt", "asc", "csv": the same), "pts", "ptx", "pwn", "off", "obj", "stl",
-    /// "hoppe"; empty: by the content where that is a sure sign, else by the file's extension.
+    /// One of point_formats(); empty: by the content where that is a sure sign, else by the file's extension.
     std::string format;
     /// Tables only: what each column is, e.g. "x,y,z,nx,ny,nz,r,g,b,_" (`_` is skipped); empty: told by a
     /// header line, else from the values. Throws OptionError if it cannot be.
     std::string columns;
 };
 
+/// The values of ReadOptions::format, which are also the extensions known: "ply", "pcd", "xyz" and "csv",
+/// "txt", "asc" (the same), "pts", "pwn", "ptx", "off", "obj", "stl", "hoppe".
+std::span<const std::string_view> point_formats();
+
 /// What was read, beside the cloud.
 struct PointFile {
     PointCloud cloud;
     std::string format;    ///< the format found, by the names above
     std::size_t faces = 0; ///< faces in the file, which were skipped
+    /// Tables whose columns were told from their values alone: what each was taken for, e.g.
+    /// "x,y,z,nx,ny,nz", so that whoever knows better can say so in ReadOptions::columns. Else empty.
+    std::string columns;
 };
 
 /// Throws OptionError for options that do not fit it. read_points() does so too.

@@ -167,9 +167,10 @@ RowLayout layout_of(const Text& text, const Prelude& prelude, const std::vector<
     return layout;
 }
 
-/// Roles in the order of what can be trusted: the caller, a header line, the values.
+/// Roles in the order of what can be trusted: the caller, a header line, the values. `told` is set in the
+/// last case, where more than positions had to be told.
 std::vector<Column> find_columns(const Text& text, const Prelude& prelude, const Rows& rows, TableKind kind,
-                                 const std::vector<Column>& asked) {
+                                 const std::vector<Column>& asked, std::string& told) {
     if (!asked.empty()) return asked;
     const bool fitting = prelude.names.size() == rows.columns();
     const auto named = columns_from_names(prelude.names);
@@ -183,6 +184,7 @@ std::vector<Column> find_columns(const Text& text, const Prelude& prelude, const
     auto columns = columns_from_values(rows.sample(sample_size), rows.columns(), kind == TableKind::pts);
     for (std::size_t i = 0; fitting && i < columns.size(); ++i)
         if (columns[i].role == Role::scalar && !prelude.names[i].empty()) columns[i].name = prelude.names[i];
+    if (columns.size() > 3) told = list_of(columns);
     return columns;
 }
 
@@ -232,7 +234,7 @@ PointFile read_table(const SourceBytes& bytes, TableKind kind, const std::string
                                         + std::to_string(rows.size())
                                         + " lines; as many positions and then as many normals must follow");
     check_counts(text, prelude, rows);
-    const auto roles = find_columns(text, prelude, rows, kind, asked);
+    const auto roles = find_columns(text, prelude, rows, kind, asked, file.columns);
     const double factor = rows.color_factor(roles, false);
     file.cloud = std::move(rows).to_cloud(roles, factor);
     file.format = kind == TableKind::pts ? "pts" : kind == TableKind::pwn ? "pwn" : "xyz";

@@ -52,6 +52,21 @@ std::vector<std::pair<const char*, const char*>> Text::chunks(std::size_t size) 
     return pieces;
 }
 
+const char* parse_fortran_number(const char* at, const char* exponent, const char* end, double& value) {
+    const char* digits = exponent + 1;
+    if (digits != end && (*digits == '+' || *digits == '-')) ++digits;
+    const char* last = digits;
+    while (last != end && *last >= '0' && *last <= '9') ++last;
+    // Behind another exponent, or behind `nan`, the letter is no exponent either.
+    const bool plain =
+        std::all_of(at, exponent, [](char c) { return (c >= '0' && c <= '9') || c == '.' || c == '-'; });
+    if (last == digits || !plain) return exponent;
+    std::string number(at, last);
+    number[static_cast<std::size_t>(exponent - at)] = 'e';
+    fast_float::from_chars(number.data(), number.data() + number.size(), value);
+    return last;
+}
+
 std::optional<double> to_number(std::string_view field) {
     double value;
     const char* end = field.data() + field.size();

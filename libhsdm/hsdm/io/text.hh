@@ -62,8 +62,13 @@ private:
     Text(const SourceBytes& bytes, std::string_view content);
 };
 
-/// The number at the start of [at, end), as text files spell them: "1e-3", "+.5", "nan", "-inf", "-1.#IND".
-/// Returns the end of the number, or nullptr if there is none; what follows it is the caller's to judge.
+/// Reads [at, exponent) with the exponent behind it, whose letter is a `d` or `D`, as Fortran writes doubles.
+/// Returns the end of the exponent, or `exponent` if there is none: no digit follows the letter.
+const char* parse_fortran_number(const char* at, const char* exponent, const char* end, double& value);
+
+/// The number at the start of [at, end), as text files spell them: "1e-3", "1d-3", "+.5", "nan", "-inf",
+/// "-1.#IND". Returns the end of the number, or nullptr if there is none; what follows it is the caller's to
+/// judge.
 inline const char* parse_number(const char* at, const char* end, double& value) {
     if (at != end && *at == '+') {
         ++at;
@@ -71,6 +76,8 @@ inline const char* parse_number(const char* at, const char* end, double& value) 
     }
     const auto result = fast_float::from_chars(at, end, value);
     if (result.ec == std::errc::invalid_argument) return nullptr;
+    if (result.ptr != end && (*result.ptr == 'd' || *result.ptr == 'D'))
+        return parse_fortran_number(at, result.ptr, end, value);
     at = result.ptr;
     // How Microsoft's C library prints what is not finite: 1.#IND, 1.#INF, 1.#QNAN, 1.#SNAN.
     if (end - at >= 3 && at[0] == '#' && (at[1] == 'I' || at[1] == 'Q' || at[1] == 'S') && at[2] > '9') {

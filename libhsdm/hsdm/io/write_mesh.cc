@@ -40,17 +40,21 @@ MeshFormat mesh_format(const std::string& path) {
                 "no mesh format has the extension '" + extension + "'; use .off, .stl, .ply, .obj or .om");
 }
 
-void write_mesh(const std::string& path, const PolygonMesh& mesh, MeshFormat format,
-                const WriteOptions& options) {
+WrittenMesh write_mesh(const std::string& path, const PolygonMesh& mesh, MeshFormat format,
+                       const WriteOptions& options) {
     check(path, mesh);
-    if (format == MeshFormat::om) return write_polygons_om(path, mesh);
+    WrittenMesh written;
+    if (format == MeshFormat::om) {
+        write_polygons_om(path, mesh);
+        return written;
+    }
     AtomicFile file(path);
     switch (format) {
     case MeshFormat::off:
         write_off(file, mesh);
         break;
     case MeshFormat::stl:
-        write_stl(file, mesh, options.ascii);
+        written.text_for_precision = write_stl(file, mesh, options.ascii) && !options.ascii;
         break;
     case MeshFormat::ply:
         write_ply(file, mesh, options.ascii);
@@ -62,6 +66,7 @@ void write_mesh(const std::string& path, const PolygonMesh& mesh, MeshFormat for
         break; // done above
     }
     file.commit();
+    return written;
 }
 
 void write_text(const std::string& path, const std::string& text) {

@@ -63,12 +63,14 @@ void write_binary(AtomicFile& file, const PolygonMesh& mesh, const Triangulation
 
 } // namespace
 
-void write_stl(AtomicFile& file, const PolygonMesh& mesh, bool ascii) {
+bool write_stl(AtomicFile& file, const PolygonMesh& mesh, bool ascii) {
     const Triangulation cut = triangulate(mesh);
-    if (ascii || too_coarse_for_float(mesh))
+    const bool as_text = ascii || too_coarse_for_float(mesh);
+    if (as_text)
         write_ascii(file, mesh, cut);
     else
         write_binary(file, mesh, cut);
+    return as_text;
 }
 
 } // namespace hsdm
