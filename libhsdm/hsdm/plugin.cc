@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <new>
+#include <numbers>
 #include <string_view>
 
 namespace hsdm {
@@ -62,6 +63,20 @@ double PluginOptions::number(const char* key, double fallback) const {
 int PluginOptions::integer(const char* key, int fallback) const {
     const char* value = find(key);
     return value == nullptr ? fallback : parse<int>(key, value, "a whole number");
+}
+
+int PluginOptions::count(const char* key, int fallback) const {
+    const int value = integer(key, fallback);
+    if (value < 0) throw OptionError(std::string(key) + " " + find(key) + ": must be 0 or more");
+    return value;
+}
+
+double PluginOptions::angle(const char* key, double fallback) const {
+    if (!has(key)) return fallback;
+    const double degrees = number(key, 0);
+    if (!(degrees > 0 && degrees < 180))
+        throw OptionError(std::string(key) + " " + find(key) + ": must lie between 0 and 180");
+    return degrees * std::numbers::pi / 180;
 }
 
 std::string PluginOptions::text(const char* key, const char* fallback) const {

@@ -64,6 +64,10 @@ public:
     /// The value, or the fallback where the key is not given. Throws OptionError for what is no number.
     double number(const char* key, double fallback) const;
     int integer(const char* key, int fallback) const;
+    /// As integer(), of 0 or more.
+    int count(const char* key, int fallback) const;
+    /// An angle above 0 and below 180 degrees, which the value is in; it and the fallback in radians.
+    double angle(const char* key, double fallback) const;
     std::string text(const char* key, const char* fallback) const;
 
 private:

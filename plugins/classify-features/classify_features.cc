@@ -3,18 +3,14 @@
 #include "hsdm/features/features.hh"
 #include "hsdm/plugin.hh"
 
-#include <numbers>
-
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 std::string classify_features(hsdm::PolyMesh& mesh, const hsdm::PluginOptions& options) {
     options.allow({"crease-degrees", "corner-degrees", "confirmation-rounds"});
     hsdm::FeatureOptions features;
-    features.crease_angle = degree * options.number("crease-degrees", features.crease_angle / degree);
-    features.corner_angle = degree * options.number("corner-degrees", features.corner_angle / degree);
-    features.confirmation_rounds = options.integer("confirmation-rounds", features.confirmation_rounds);
+    features.crease_angle = options.angle("crease-degrees", features.crease_angle);
+    features.corner_angle = options.angle("corner-degrees", features.corner_angle);
+    features.confirmation_rounds = options.count("confirmation-rounds", features.confirmation_rounds);
     const hsdm::FeatureCounts found = hsdm::classify_features(mesh, features);
     return std::to_string(found.sharp_edges) + " sharp edges; vertices: "
            + std::to_string(found.smooth_vertices) + " smooth, " + std::to_string(found.edge_vertices)

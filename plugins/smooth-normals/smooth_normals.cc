@@ -3,18 +3,13 @@
 #include "hsdm/features/features.hh"
 #include "hsdm/plugin.hh"
 
-#include <numbers>
-
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 std::string smooth_normals(hsdm::PolyMesh& mesh, const hsdm::PluginOptions& options) {
     options.allow({"rounds", "similarity-degrees"});
     hsdm::NormalSmoothingOptions smoothing;
-    smoothing.rounds = options.integer("rounds", smoothing.rounds);
-    smoothing.similarity_angle =
-        degree * options.number("similarity-degrees", smoothing.similarity_angle / degree);
+    smoothing.rounds = options.count("rounds", smoothing.rounds);
+    smoothing.similarity_angle = options.angle("similarity-degrees", smoothing.similarity_angle);
     const std::size_t turning = hsdm::smooth_normals(mesh, smoothing);
     return std::to_string(smoothing.rounds) + " rounds; normals of " + std::to_string(turning) + " of "
            + std::to_string(mesh.n_faces()) + " facets still turn";

@@ -115,7 +115,10 @@ TEST_CASE("a module's options are checked: unknown, twice, no number, out of ran
     CHECK_THROWS_AS(process({{"crease-degrees", "steep"}}), OptionError);
     CHECK_THROWS_AS(process({{"crease-degrees", "30x"}}), OptionError);
     CHECK_THROWS_AS(process({{"crease-degrees", ""}}), OptionError);
-    CHECK_THROWS_AS(process({{"crease-degrees", "200"}}), OptionError);
+    CHECK_THROWS_WITH(process({{"crease-degrees", "400"}}),
+                      "classify-features: crease-degrees 400: must lie between 0 and 180");
+    CHECK_THROWS_WITH(process({{"confirmation-rounds", "-1"}}),
+                      "classify-features: confirmation-rounds -1: must be 0 or more");
     CHECK_THROWS_AS(load_plugin("smooth-normals", folders).process(mesh, {{"rounds", "1.5"}}), OptionError);
 }
 
