@@ -1,9 +1,12 @@
 #include "activity.hh"
 
+#include "messages.hh"
+
 #include "hsdm/errors.hh"
 
 #include <atomic>
 #include <new>
+#include <stdexcept>
 
 namespace hsdm::command {
 namespace {
@@ -32,13 +35,12 @@ const char* current_phase() noexcept {
 }
 
 std::string message_of(const std::exception& error) {
-    if (dynamic_cast<const Error*>(&error) || dynamic_cast<const OptionError*>(&error)) return error.what();
+    if (dynamic_cast<const Error*>(&error) || dynamic_cast<const OptionError*>(&error)) return words_of(error);
     const std::string file = current_file(), in_phase = std::string(" in phase ") + current_phase();
     const std::string prefix = file.empty() ? "" : file + ": ";
-    if (dynamic_cast<const std::bad_alloc*>(&error))
-        return prefix + "out of memory" + in_phase
-               + memory_advice;
-    return prefix + error.what() + in_phase;
+    if (dynamic_cast<const std::bad_alloc*>(&error) || dynamic_cast<const std::length_error*>(&error))
+        return prefix + "out of memory" + in_phase + memory_advice;
+    return prefix + words_of(error) + in_phase;
 }
 
 } // namespace hsdm::command

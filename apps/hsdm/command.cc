@@ -2,7 +2,9 @@
 
 #include "activity.hh"
 #include "interrupt.hh"
+#include "messages.hh"
 #include "threads.hh"
+#include "usage.hh"
 
 #include "hsdm/errors.hh"
 #include "hsdm/io/file_registry.hh"
@@ -21,16 +23,16 @@ void complain_of_memory() {
 
 int status_of(const Run& run) {
     try {
-        start_threads();
         const int status = run();
         std::cout.flush();
         if (!std::cout) throw Error("standard output", "could not be written; is the reader still there?");
         return status;
     } catch (const UsageError& error) {
-        complain(std::string(error.what()) + "\nRun with --help for more information.");
+        complain(error.what());
+        std::cerr << "Run with --help for more information." << std::endl;
         return wrong_usage;
     } catch (const OptionError& error) {
-        complain(error.what());
+        complain(message_of(error));
         return wrong_usage;
     } catch (const std::bad_alloc&) {
         complain_of_memory();
@@ -68,21 +70,18 @@ int parse_and_run(int argc, char** argv) {
     add_compare(app, run);
     add_process(app, run);
     add_regress(app, run);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        // Help and version go to standard output with status 0; all else is wrong usage.
-        const int status = app.exit(error, std::cout, std::cerr);
-        return status == 0 ? done : wrong_usage;
-    }
-    handle_signals();
-    return guarded(run);
+    return guarded([&] {
+        if (const auto status = parse_command_line(app, argc, argv)) return *status;
+        handle_signals();
+        start_threads();
+        return run();
+    });
 }
 
 } // namespace
 
 void complain(const std::string& message) {
-    std::cerr << "hsdm: " << message << std::endl;
+    std::cerr << "hsdm: " << printable(message) << std::endl;
 }
 
 int run_command(int argc, char** argv) {

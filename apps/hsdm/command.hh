@@ -30,7 +30,7 @@ void add_regress(CLI::App& app, Run& run);
 /// Parses and runs; every exception becomes a message on standard error and an exit status.
 int run_command(int argc, char** argv);
 
-/// `hsdm: MESSAGE` on standard error.
+/// `hsdm: MESSAGE` on standard error, one line: control characters are written out.
 void complain(const std::string& message);
 
 } // namespace hsdm::command

@@ -2,6 +2,8 @@
 
 #include "command.hh"
 #include "load.hh"
+#include "messages.hh"
+#include "summary.hh"
 
 #include "hsdm/errors.hh"
 #include "hsdm/quality/compare.hh"
@@ -29,6 +31,7 @@ void fill(JsonText& json, const std::string& path, const Loaded& loaded) {
         fill_topology(json, loaded.mesh);
     } else {
         json.member("points", loaded.cloud.size());
+        json.member("dropped_nonfinite", loaded.dropped.nonfinite);
     }
     json.end();
 }
@@ -40,15 +43,18 @@ void print(const char* title, const Distance& distance, double diagonal) {
 }
 
 void print(const char* title, const std::string& path, const Loaded& loaded) {
-    std::cout << title << "         " << path << '\n';
+    std::cout << title << "         " << printable(path) << '\n';
     if (loaded.is_mesh()) {
         print_topology(std::cout, loaded.mesh);
     } else {
-        std::cout << "cloud     " << loaded.cloud.size() << " points\n";
+        std::cout << "cloud     " << grouped(loaded.cloud.size()) << " points\n";
+        print_dropped(std::cout, loaded.dropped);
     }
 }
 
 int run_compare(const std::string& path_a, const std::string& path_b, bool as_json) {
+    if (path_a == "-" && path_b == "-")
+        throw UsageError("standard input holds one of the two; name the other");
     const Loaded a = load(path_a), b = load(path_b);
     if (!a.is_mesh() && !b.is_mesh())
         throw Error(path_b, "both files hold points without faces; one of the two must be a mesh");
@@ -87,7 +93,7 @@ void add_compare(CLI::App& app, Run& run) {
         bool json = false;
     };
     const auto arguments = std::make_shared<Arguments>();
-    sub->add_option("a", arguments->a, "a mesh or a cloud")->required();
+    sub->add_option("a", arguments->a, "a mesh or a cloud; - is standard input")->required();
     sub->add_option("b", arguments->b, "a mesh or a cloud; one of the two is a mesh")->required();
     sub->add_flag("--json", arguments->json, "as JSON");
     sub->footer(

@@ -2,11 +2,15 @@
 
 #include "command.hh"
 #include "load.hh"
+#include "messages.hh"
 #include "summary.hh"
 
 #include "hsdm/octree/spacing.hh"
 
+#include <array>
+#include <cmath>
 #include <iostream>
+#include <optional>
 
 namespace hsdm::command {
 namespace {
@@ -22,6 +26,19 @@ double spacing(const PointCloud& cloud) {
     return cloud.bounds().extent() > 0 ? estimate_spacing(build_octree(cloud)) : 0;
 }
 
+/// The least and the greatest length of the normals that are there; nothing if none is.
+std::optional<std::pair<double, double>> normal_lengths(const PointCloud& cloud) {
+    std::optional<std::pair<double, double>> range;
+    for (const Vec3& n : cloud.normals) {
+        const double length = std::hypot(n[0], n[1], n[2]);
+        if (!(length > 0)) continue;
+        if (!range) range.emplace(length, length);
+        range->first = std::min(range->first, length);
+        range->second = std::max(range->second, length);
+    }
+    return range;
+}
+
 void fill_cloud(JsonText& json, const Loaded& loaded) {
     json.begin_object();
     json.member("points", loaded.cloud.size());
@@ -34,8 +51,24 @@ void fill_cloud(JsonText& json, const Loaded& loaded) {
     for (const Scalar& scalar : loaded.cloud.scalars) json.value(scalar.name);
     json.end();
     json.member("spacing", spacing(loaded.cloud));
+    if (const auto lengths = normal_lengths(loaded.cloud))
+        json.member("normal_lengths", std::array{lengths->first, lengths->second});
+    if (!loaded.columns.empty()) json.member("columns", loaded.columns);
     if (loaded.cloud.sensor) json.member("sensor", *loaded.cloud.sensor);
     json.end();
+}
+
+void print_normals(const Loaded& loaded) {
+    std::cout << "normals   " << (loaded.cloud.has_normals() ? "yes" : "no");
+    constexpr double rounding = 0.03; // of two decimals
+    if (const auto lengths = normal_lengths(loaded.cloud);
+        lengths && (lengths->first < 1 - rounding || lengths->second > 1 + rounding))
+        std::cout << ", not of unit length (" << lengths->first << " to " << lengths->second << ')';
+    if (loaded.dropped.bad_normals > 0)
+        std::cout << ", " << grouped(loaded.dropped.bad_normals) << " of them zero or not finite";
+    std::cout << '\n';
+    if (!loaded.columns.empty())
+        std::cout << "columns   " << columns_words(loaded.columns, loaded.cloud.has_normals()) << '\n';
 }
 
 void print_json(const std::string& path, const Loaded& loaded) {
@@ -58,17 +91,13 @@ void print_json(const std::string& path, const Loaded& loaded) {
 
 void print_cloud(const Loaded& loaded) {
     const PointCloud& cloud = loaded.cloud;
-    std::cout << "cloud     " << grouped(cloud.size()) << " points, spacing " << spacing(cloud) << '\n'
-              << "normals   " << (cloud.has_normals() ? "yes" : "no");
-    if (loaded.dropped.bad_normals > 0)
-        std::cout << ", " << grouped(loaded.dropped.bad_normals) << " of them zero or not finite";
-    std::cout << '\n';
-    if (loaded.dropped.nonfinite > 0)
-        std::cout << "dropped   " << grouped(loaded.dropped.nonfinite) << " points that are not finite\n";
+    std::cout << "cloud     " << grouped(cloud.size()) << " points, spacing " << spacing(cloud) << '\n';
+    print_normals(loaded);
+    print_dropped(std::cout, loaded.dropped);
     if (cloud.sensor) std::cout << "sensor    " << *cloud.sensor << '\n';
     if (!cloud.colors.empty()) std::cout << "colours   yes\n";
     for (const Scalar& scalar : cloud.scalars)
-        std::cout << "scalar    " << scalar.name << (scalar.is_label ? " (labels)" : "") << '\n';
+        std::cout << "scalar    " << printable(scalar.name) << (scalar.is_label ? " (labels)" : "") << '\n';
 }
 
 int show(const std::string& path, bool json) {
@@ -78,7 +107,7 @@ int show(const std::string& path, bool json) {
         return done;
     }
     const Box box = bounds(loaded.mesh.positions);
-    std::cout << "file      " << path << '\n';
+    std::cout << "file      " << printable(path) << '\n';
     if (loaded.is_mesh()) {
         print_topology(std::cout, loaded.mesh);
     } else {
@@ -95,7 +124,7 @@ void add_info(CLI::App& app, Run& run) {
         app.add_subcommand("info", "what a cloud or a mesh holds: counts, bounds, topology, shape");
     const auto path = std::make_shared<std::string>();
     const auto json = std::make_shared<bool>(false);
-    sub->add_option("file", *path, "a point file or a mesh; - is standard input (points)")->required();
+    sub->add_option("file", *path, "a point file or a mesh; - is standard input")->required();
     sub->add_flag("--json", *json, "as JSON");
     sub->footer("Examples:\n  hsdm info scan.ply\n  hsdm info part.stl --json");
     sub->callback([&run, path, json] { run = [path, json] { return show(*path, *json); }; });

@@ -7,31 +7,20 @@
 #include "hsdm/io/read_mesh.hh"
 #include "hsdm/quality/topology.hh"
 
-#include <filesystem>
 #include <ostream>
 
 namespace hsdm::command {
-namespace {
-
-bool may_hold_mesh(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension == ".ply" || extension == ".off" || extension == ".obj" || extension == ".stl";
-}
-
-} // namespace
 
 Loaded load(const std::string& path) {
     set_activity(path.c_str(), "read");
+    MeshOrPoints file = read_mesh_or_points(path);
     Loaded loaded;
-    if (may_hold_mesh(path)) {
-        loaded.mesh = read_mesh(path);
-        if (loaded.is_mesh()) return loaded;
-    }
-    loaded.cloud = read_points(path).cloud;
+    loaded.mesh = std::move(file.mesh);
+    if (loaded.is_mesh()) return loaded;
+    loaded.columns = std::move(file.points.columns);
+    loaded.cloud = std::move(file.points.cloud);
     loaded.dropped = drop_nonfinite(loaded.cloud);
     if (loaded.cloud.size() == 0) throw Error(path, "no point with finite coordinates; nothing to look at");
-    loaded.mesh = PolygonMesh();
     loaded.mesh.positions = loaded.cloud.positions;
     return loaded;
 }
@@ -65,6 +54,12 @@ void fill_topology(JsonText& json, const PolygonMesh& mesh) {
     json.member("scaled_jacobian_min", shape.scaled_jacobian_min);
     json.member("edge_length_mean", shape.edge_length_mean);
     json.end();
+}
+
+void print_dropped(std::ostream& out, const Dropped& dropped) {
+    if (dropped.nonfinite > 0)
+        out << "dropped   " << grouped(dropped.nonfinite)
+            << (dropped.nonfinite == 1 ? " point that is" : " points that are") << " not finite\n";
 }
 
 void print_topology(std::ostream& out, const PolygonMesh& mesh) {

@@ -8,20 +8,22 @@
 namespace hsdm::command {
 
 struct Loaded {
-    PolygonMesh mesh; ///< without facets if the file holds points only
-    PointCloud cloud; ///< filled only then
-    Dropped dropped;  ///< from the cloud
+    PolygonMesh mesh;    ///< without facets if the file holds points only
+    PointCloud cloud;    ///< filled only then
+    Dropped dropped;     ///< from the cloud
+    std::string columns; ///< of a table, as PointFile::columns
     bool is_mesh() const { return mesh.facet_count() > 0; }
 };
 
 /// A mesh if the file has faces, otherwise a cloud of finite points, whose positions are the mesh's too.
-/// Throws Error.
+/// "-" is standard input. Throws Error.
 Loaded load(const std::string& path);
 
 /// Counts, topology and shape, in the report's words.
 void fill_topology(JsonText& json, const PolygonMesh& mesh);
 
-/// Lines for people, each `name  value`.
+/// Lines for people, each `name  value`; the first none if nothing was dropped.
+void print_dropped(std::ostream& out, const Dropped& dropped);
 void print_topology(std::ostream& out, const PolygonMesh& mesh);
 
 } // namespace hsdm::command

@@ -1,5 +1,7 @@
 #include "progress_bar.hh"
 
+#include "messages.hh"
+
 #include <algorithm>
 #include <cstdio>
 #include <unistd.h>
@@ -8,11 +10,17 @@ namespace hsdm::command {
 
 using namespace std::chrono_literals;
 
-ProgressBar::ProgressBar(Progress mode, std::string title)
-    : mode_(mode), title_(std::move(title)), start_(Clock::now()), terminal_(isatty(STDERR_FILENO) == 1) {}
+ProgressBar::ProgressBar(Progress mode, const std::string& title)
+    : mode_(mode), title_(printable(title)), start_(Clock::now()), terminal_(isatty(STDERR_FILENO) == 1) {}
 
 ProgressBar::~ProgressBar() {
+    wipe();
+}
+
+void ProgressBar::wipe() {
     if (drawn_ && terminal_) std::fputs("\r\033[K", stderr);
+    std::fflush(stderr);
+    drawn_ = false;
 }
 
 void ProgressBar::show(const char* phase, double done) {

@@ -11,9 +11,11 @@ enum class Progress { automatic, always, never };
 class ProgressBar {
 public:
     /// automatic: only on a terminal, and only once a second has passed.
-    ProgressBar(Progress mode, std::string title);
+    ProgressBar(Progress mode, const std::string& title);
     ~ProgressBar(); ///< wipes the line
 
+    /// Before anything else is printed; the next show() draws anew.
+    void wipe();
     void show(const char* phase, double done);
 
 private:

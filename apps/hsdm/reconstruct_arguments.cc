@@ -1,7 +1,10 @@
 #include "reconstruct_arguments.hh"
 
+#include "usage.hh"
+
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -16,10 +19,10 @@ template <class T>
 CLI::Option* add_choice(CLI::App& app, const std::string& name, T& value, const Names<T>& names,
                         const std::string& help) {
     std::string list;
-    std::set<std::string> known;
+    std::vector<std::string> known;
     for (const auto& [word, meaning] : names) {
         list += (list.empty() ? "" : "|") + word;
-        known.insert(word);
+        known.push_back(word);
     }
     return app
         .add_option_function<std::string>(
@@ -29,8 +32,19 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, T& value, const 
                     if (word == given) value = meaning;
             },
             help)
-        ->check(CLI::IsMember(known))
+        ->check(one_of(known))
         ->type_name(list);
+}
+
+constexpr int deepest = 16;
+constexpr int largest = std::numeric_limits<int>::max();
+constexpr double unbounded = std::numeric_limits<double>::infinity();
+
+/// ply|pcd|...
+std::string joined_formats() {
+    std::string list;
+    for (const std::string_view name : point_formats()) list += (list.empty() ? "" : "|") + std::string(name);
+    return list;
 }
 
 void refuse(bool given, const std::string& what) {
@@ -80,9 +94,11 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
     const auto depth = app.add_option("--depth", a.depth,
                                       "octree depth N over the bounding cube, 1 to 16: voxel = "
                                       "largest extent / 2^N")
+                           ->check(whole_number(1, deepest, "a whole number from 1 to 16"))
                            ->type_name("N")
                            ->group(resolution);
     const auto voxel = app.add_option("--voxel-size", a.voxel_size, "edge of a voxel in the cloud's units")
+                           ->check(number_between(0, unbounded, "be a length above 0"))
                            ->type_name("L")
                            ->group(resolution);
     const auto error = app.add_option("--max-error", a.max_error,
@@ -128,10 +144,12 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
         ->type_name("SIZE")
         ->group(method);
     app.add_option("--crease-degrees", a.crease_degrees, "dihedral angle above which an edge is sharp")
+        ->check(number_between(0, 180, "lie between 0 and 180"))
         ->type_name("D")
         ->capture_default_str()
         ->group(method);
     app.add_option("--smoothing", a.smoothing, "rounds of anisotropic normal smoothing")
+        ->check(whole_number(0, largest, "a whole number, 0 or more"))
         ->type_name("N")
         ->capture_default_str()
         ->group(method);
@@ -143,8 +161,8 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
 void add_text_options(CLI::App& app, ReconstructArguments& a) {
     const std::string files = "Files";
     app.add_option("--input-format", a.read.format, "the input's format, where no extension names it")
-        ->check(CLI::IsMember({"ply", "pcd", "xyz", "csv", "pts", "ptx", "pwn", "off", "obj", "stl"}))
-        ->type_name("FORMAT")
+        ->check(one_of({point_formats().begin(), point_formats().end()}))
+        ->type_name(joined_formats())
         ->group(files);
     app.add_option("--columns", a.read.columns, "columns of a text file, e.g. x,y,z,nx,ny,nz,r,g,b,_")
         ->type_name("LIST")
@@ -152,9 +170,9 @@ void add_text_options(CLI::App& app, ReconstructArguments& a) {
 }
 
 void add_file_options(CLI::App& app, ReconstructArguments& a) {
-    app.add_option("input", a.inputs,
-                   "point files (PLY, PCD, XYZ, TXT, ASC, CSV, PTS, PTX, PWN; the vertices of OFF, "
-                   "OBJ, STL); - is standard input")
+    app.add_option(
+           "input", a.inputs,
+           "point files (--input-format names the formats; of meshes the vertices); - is standard input")
         ->required()
         ->type_name("INPUT...");
     const std::string files = "Files";
@@ -165,7 +183,7 @@ void add_file_options(CLI::App& app, ReconstructArguments& a) {
         ->type_name("DIR")
         ->group(files);
     app.add_option("--format", a.format, "the mesh's format, where no extension names it (default off)")
-        ->check(CLI::IsMember({"off", "stl", "ply", "obj", "om"}))
+        ->check(one_of({"off", "stl", "ply", "obj", "om"}))
         ->type_name("off|stl|ply|obj|om")
         ->group(files);
     app.add_flag("--ascii", a.ascii, "text instead of binary STL and PLY")->group(files);
@@ -185,6 +203,7 @@ void add_file_options(CLI::App& app, ReconstructArguments& a) {
 
     const std::string running = "Running";
     app.add_option("--threads", a.threads, "at most N threads (default all); the result is the same")
+        ->check(whole_number(0, largest, "a whole number, 0 (all) or more"))
         ->type_name("N")
         ->group(running);
     const auto quiet = app.add_flag("--quiet", a.quiet, "no summary, errors only")->group(running);
@@ -200,6 +219,11 @@ void add_file_options(CLI::App& app, ReconstructArguments& a) {
 
 ReconstructOptions ReconstructArguments::options() const {
     refuse(!memory.empty(), "--memory");
+    if (normals == NormalSource::estimate && method == Method::basic)
+        throw UsageError("--normals estimate: the basic method uses no normals; use --method extended");
+    if (!max_error.empty() && grid == Grid::uniform)
+        throw UsageError("--max-error " + max_error
+                         + ": a uniform grid has no bound to keep; use --grid adaptive");
     ReconstructOptions o;
     o.depth = depth;
     o.voxel_size = voxel_size;
@@ -224,7 +248,12 @@ std::optional<std::pair<int, int>> ReconstructArguments::level_range() const {
     const auto first = std::from_chars(levels.data(), end, range.first);
     if (first.ec == std::errc() && first.ptr != end && *first.ptr == ':') {
         const auto last = std::from_chars(first.ptr + 1, end, range.second);
-        if (last.ec == std::errc() && last.ptr == end) return range;
+        if (last.ec == std::errc() && last.ptr == end) {
+            if (range.first < 1 || range.second > deepest || range.first > range.second)
+                throw UsageError("--levels " + levels
+                                 + ": must be two depths from 1 to 16, the lesser one first");
+            return range;
+        }
     }
     throw UsageError("--levels " + levels + ": two depths with a colon between them are wanted, e.g. 4:7");
 }

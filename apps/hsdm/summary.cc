@@ -1,5 +1,8 @@
 #include "summary.hh"
 
+#include "messages.hh"
+
+#include <algorithm>
 #include <cstdio>
 #include <iomanip>
 #include <ostream>
@@ -65,6 +68,12 @@ std::string grouped(std::size_t value) {
     return text;
 }
 
+std::string columns_words(const std::string& columns, bool has_normals) {
+    const auto count = 1 + std::count(columns.begin(), columns.end(), ',');
+    return printable(columns) + ", told from the values"
+           + (has_normals || count < 6 ? "" : ": no three are unit vectors; --columns says otherwise");
+}
+
 std::string topology_words(const Report::Mesh& mesh) {
     std::string text = plural(mesh.components, "component", "components") + ", ";
     if (mesh.closed) {
@@ -87,6 +96,8 @@ void print_summary(std::ostream& out, const Report& r, const std::string& writte
         out << "; " << grouped(r.input.merged_duplicates) << " duplicates, merged";
     if (const auto moved = r.rejected.find("points_moved"); moved != r.rejected.end() && moved->second > 0)
         out << "; noisy, moved onto their surface";
+    if (const std::string columns = option(r, "columns"); !columns.empty())
+        out << "\ncolumns   " << columns_words(columns, r.input.has_normals);
     out << "\nvoxels    " << grouped(r.grid.voxels) << " of edge " << number(r.grid.voxel_size) << ", depth "
         << r.grid.depth << ": " << option(r, "resolution") << "\nmesh      "
         << plural(r.mesh.vertices, "vertex", "vertices") << ", " << plural(r.mesh.faces, "face", "faces")
@@ -95,7 +106,7 @@ void print_summary(std::ostream& out, const Report& r, const std::string& writte
         << topology_words(r.mesh) << islands_words(r) << "\nerror     points to mesh: max "
         << number(r.error.points_to_mesh_max, 3) << " (" << number(100 * r.error.normalised_max, 3)
         << " % of the diagonal), mean " << number(r.error.points_to_mesh_mean, 3) << bound_words(r)
-        << "\nwritten   " << written << " in " << seconds(r.seconds.total) << '\n';
+        << "\nwritten   " << printable(written) << " in " << seconds(r.seconds.total) << '\n';
 }
 
 void print_details(std::ostream& out, const Report& r) {
@@ -114,7 +125,7 @@ void print_details(std::ostream& out, const Report& r) {
 }
 
 void print_line(std::ostream& out, const Report& r, const std::string& written) {
-    out << written << ": " << grouped(r.input.points) << " points, depth " << r.grid.depth << ", "
+    out << printable(written) << ": " << grouped(r.input.points) << " points, depth " << r.grid.depth << ", "
         << grouped(r.mesh.faces) << " faces, " << topology_words(r.mesh) << islands_words(r) << ", error "
         << number(100 * r.error.normalised_max, 3) << " %, " << seconds(r.seconds.total) << '\n';
 }

@@ -17,6 +17,13 @@ void print_line(std::ostream& out, const Report& report, const std::string& writ
 /// "closed, genus 3", "open, 2 boundary loops of 40 edges, genus 0".
 std::string topology_words(const Report::Mesh& mesh);
 
+/// The line that says why an STL file is text (WrittenMesh::text_for_precision).
+inline constexpr const char* text_for_precision =
+    "format    STL as text: binary STL would move vertices by more than 1e-6 of the diagonal\n";
+
+/// What the columns of a table were taken for, and what to do if that is wrong.
+std::string columns_words(const std::string& columns, bool has_normals);
+
 /// 12345678 -> "12,345,678".
 std::string grouped(std::size_t number);
 
