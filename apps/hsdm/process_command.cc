@@ -3,7 +3,10 @@
 #include "activity.hh"
 #include "command.hh"
 #include "file_claims.hh"
+#include "messages.hh"
 #include "reconstruct_output.hh"
+#include "summary.hh"
+#include "usage.hh"
 
 #include "hsdm/errors.hh"
 #include "hsdm/facets/to_mesh.hh"
@@ -28,12 +31,17 @@ int list_modules() {
     const std::vector<PluginListing> modules = list_plugins();
     for (const PluginListing& module : modules) {
         if (!module.problem.empty()) {
-            std::cout << module.path << ": cannot be used: " << module.problem << '\n';
+            std::cout << printable(module.path) << ": cannot be used: " << printable(module.problem) << '\n';
             continue;
         }
-        std::cout << module.name << ": " << module.description << "; options: " << module.options << '\n';
+        std::cout << printable(module.name + ": " + module.description + "; options: " + module.options)
+                  << '\n';
     }
-    if (modules.empty()) std::cout << "no processing module found; set HSDM_PLUGIN_PATH to their folder\n";
+    if (!modules.empty()) return done;
+    std::string places;
+    for (const std::string& folder : plugin_folders()) places += (places.empty() ? "" : ", ") + folder;
+    std::cout << "no processing module found in " << printable(places)
+              << "; set HSDM_PLUGIN_PATH to their folder\n";
     return done;
 }
 
@@ -71,8 +79,8 @@ ToMeshResult read_input(const std::string& input) {
         throw Error(input, "holds no faces; reconstruct a mesh from its points first");
     ToMeshResult built = to_mesh(facets);
     if (built.rejected > 0)
-        std::cerr << "hsdm: " << input << ": " << built.rejected
-                  << " facets were left out, which no 2-manifold can hold\n";
+        complain(input + ": " + std::to_string(built.rejected)
+                 + " facets were left out, which no 2-manifold can hold");
     return built;
 }
 
@@ -94,12 +102,13 @@ int run_process(const ProcessArguments& a) {
         const auto& [plugin, request] = steps[i];
         set_phase(a.modules[i].c_str());
         const std::string summary = plugin.process(built.mesh, request.options);
-        if (!a.quiet) text << plugin.name() << ": " << summary << std::endl;
+        if (!a.quiet) text << printable(plugin.name() + ": " + summary) << std::endl;
     }
     set_phase("write");
     WriteOptions options;
     options.ascii = a.ascii;
-    write_mesh(output, to_polygons(built.mesh), format, options);
+    const WrittenMesh written = write_mesh(output, to_polygons(built.mesh), format, options);
+    if (written.text_for_precision && !a.quiet) text << text_for_precision;
     return done;
 }
 
@@ -113,7 +122,7 @@ void add_process(CLI::App& app, Run& run) {
     sub->add_option("-o,--output", a->output, "the mesh to write; - is standard output")->type_name("FILE");
     sub->add_flag("--in-place", a->in_place, "write the mesh's own file instead");
     sub->add_option("--format", a->format, "its format, where no extension names it")
-        ->check(CLI::IsMember({"off", "stl", "ply", "obj", "om"}))
+        ->check(one_of({"off", "stl", "ply", "obj", "om"}))
         ->type_name("off|stl|ply|obj|om");
     sub->add_flag("--ascii", a->ascii, "text instead of binary STL and PLY");
     sub->add_option("--module", a->modules,

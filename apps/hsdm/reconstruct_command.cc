@@ -99,12 +99,17 @@ private:
         const std::string name = input == "-" ? "standard input" : input;
         set_activity(input == "-" ? "standard input" : input.c_str(), "read");
         bool complete = true;
-        for (const Report& report : make(input, name)) complete = tell(name, report) && complete;
+        for (const Made& made : make(input, name)) complete = tell(name, made) && complete;
         failed_inputs_ += !complete;
     }
 
+    struct Made {
+        Report report;
+        bool text_for_precision; ///< the mesh was written so
+    };
+
     /// Reads, reconstructs and writes one input.
-    std::vector<Report> make(const std::string& input, const std::string& name) {
+    std::vector<Made> make(const std::string& input, const std::string& name) {
         const auto start = Clock::now();
         ProgressBar bar(arguments_.progress, name);
         bar.show("read", 0);
@@ -121,15 +126,16 @@ private:
         const auto write_all = [&](std::span<Reconstruction> results) {
             set_phase("write");
             bar.show("write", 0.97);
-            std::vector<Report> reports;
+            std::vector<Made> made;
             for (Reconstruction& result : results) {
                 result.report.input.file = input;
                 result.report.seconds.read = read_seconds;
-                write_one(result);
+                if (!file.columns.empty()) result.report.options["columns"] = file.columns;
+                const bool as_text = write_one(result);
                 result.report.seconds.total = seconds_since(start);
-                reports.push_back(std::move(result.report));
+                made.push_back({std::move(result.report), as_text});
             }
-            return reports;
+            return made;
         };
         if (levels_) {
             std::vector<Reconstruction> results = named(name, [&] {
@@ -146,22 +152,26 @@ private:
                             levels_ ? std::optional<int>(report.grid.depth) : std::nullopt);
     }
 
-    /// Of several levels one that cannot be written does not stop the others.
-    void write_one(Reconstruction& result) const {
+    /// Of several levels one that cannot be written does not stop the others. Returns whether the mesh became
+    /// text for its precision.
+    bool write_one(Reconstruction& result) const {
         Report& report = result.report;
-        if (!report.failure.empty()) return;
+        if (!report.failure.empty()) return false;
+        bool as_text = false;
         const auto start = Clock::now();
         try {
-            write_outputs(target(report), result.mesh);
+            as_text = write_outputs(target(report), result.mesh).text_for_precision;
         } catch (const std::exception& error) {
             if (!levels_) throw;
             report.failure = message_of(error);
         }
         report.seconds.write = seconds_since(start);
+        return as_text;
     }
 
     /// Notes the report and prints a line or a summary; false for a level that failed.
-    bool tell(const std::string& name, const Report& report) {
+    bool tell(const std::string& name, const Made& made) {
+        const Report& report = made.report;
         reports_.push_back(to_json(report));
         if (!report.failure.empty()) {
             complain(name + ", depth " + std::to_string(report.grid.depth) + ": " + report.failure);
@@ -175,6 +185,7 @@ private:
         } else {
             print_line(text_, report, written);
         }
+        if (made.text_for_precision) text_ << text_for_precision;
         if (arguments_.verbose) print_details(text_, report);
         return true;
     }

@@ -155,7 +155,8 @@ bool OutputPlan::uses_standard_output() const {
            || is_standard_output(arguments_.features);
 }
 
-void write_outputs(const MeshTarget& target, const PolyMesh& mesh) {
+WrittenMesh write_outputs(const MeshTarget& target, const PolyMesh& mesh) {
+    WrittenMesh written;
     WriteOptions options;
     options.ascii = target.ascii;
     if (target.format == MeshFormat::om && target.mesh != "-" && !target.plain) {
@@ -166,9 +167,10 @@ void write_outputs(const MeshTarget& target, const PolyMesh& mesh) {
             polygons.normals.clear();
             polygons.properties.clear();
         }
-        write_mesh(target.mesh, polygons, target.format, options);
+        written = write_mesh(target.mesh, polygons, target.format, options);
     }
     if (!target.features.empty()) write_text(target.features, feature_lines(mesh));
+    return written;
 }
 
 } // namespace hsdm::command

@@ -51,6 +51,6 @@ private:
 MeshFormat format_for(const std::string& output, const std::string& format);
 
 /// Writes mesh and features. Throws Error.
-void write_outputs(const MeshTarget& target, const PolyMesh& mesh);
+WrittenMesh write_outputs(const MeshTarget& target, const PolyMesh& mesh);
 
 } // namespace hsdm::command

@@ -4,19 +4,23 @@
 #include "activity.hh"
 #include "command.hh"
 #include "file_claims.hh"
+#include "messages.hh"
 #include "reconstruct_arguments.hh"
+#include "usage.hh"
 
 #include "hsdm/errors.hh"
 #include "hsdm/io/output_target.hh"
+#include "hsdm/io/source_bytes.hh"
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <iomanip>
 #include <iostream>
+#include <optional>
 
 namespace hsdm::command {
 namespace {
@@ -36,39 +40,71 @@ struct Outcome {
 };
 
 Json parse_suite(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw Error(path, "cannot be opened; check the name and its permissions");
+    const io::SourceBytes bytes = io::SourceBytes::open(path);
+    const std::string_view text = bytes.view();
     try {
-        return Json::parse(file);
+        return Json::parse(text);
     } catch (const Json::parse_error& error) {
-        throw Error(path, std::string("is not JSON: ") + error.what());
+        const auto at = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
+        throw Error(path, 1 + static_cast<std::size_t>(std::count(text.begin(), at, '\n')),
+                    "is not JSON: what ends here cannot stand here; see docs/command.md for the format");
     }
+}
+
+/// The value of a key, or what stands for it; throws naming the key if it is of another kind.
+template <class T>
+T value_of(const std::string& path, const std::string& name, const Json& object, const char* key,
+           const std::optional<T>& fallback, const char* wanted) {
+    if (!object.contains(key) && fallback) return *fallback;
+    try {
+        return object.at(key).get<T>();
+    } catch (const Json::exception&) {
+        throw Error(path, name + ": `" + key + "` must be " + wanted + "; see docs/command.md");
+    }
+}
+
+Case read_case(const std::string& path, const std::filesystem::path& folder, const Json& entry,
+               std::size_t number) {
+    const std::string name = "case " + std::to_string(number);
+    if (!entry.is_object()) throw Error(path, name + ": must be an object; see docs/command.md");
+    Case one;
+    const auto input = value_of<std::string>(path, name, entry, "input", {}, "the name of a file");
+    one.input = (folder / input).string();
+    one.name = value_of<std::string>(path, name, entry, "name", input, "a text");
+    one.arguments = value_of<std::vector<std::string>>(path, name, entry, "args", std::vector<std::string>(),
+                                                       "a list of texts");
+    one.expect = value_of<Json>(path, name, entry, "expect", Json::object(), "an object");
+    if (!one.expect.is_object()) throw Error(path, "case " + one.name + ": expect must be an object");
+    return one;
 }
 
 std::vector<Case> read_cases(const std::string& path) {
     const Json suite = parse_suite(path);
+    if (!suite.is_object() || !suite.contains("cases") || !suite["cases"].is_array())
+        throw Error(path, "is not a suite: it must be an object with a list `cases`; see docs/command.md");
+    const auto root = value_of<std::string>(path, "the suite", suite, "root", ".", "the name of a folder");
     std::vector<Case> cases;
-    try {
-        const auto folder = std::filesystem::path(path).parent_path() / suite.value("root", std::string("."));
-        for (const Json& entry : suite.at("cases")) {
-            Case one;
-            one.input = (folder / entry.at("input").get<std::string>()).string();
-            one.name = entry.value("name", entry.at("input").get<std::string>());
-            one.arguments = entry.value("args", std::vector<std::string>());
-            one.expect = entry.value("expect", Json::object());
-            if (!one.expect.is_object()) throw Error(path, "case " + one.name + ": expect must be an object");
-            cases.push_back(std::move(one));
-        }
-    } catch (const Json::exception& error) {
-        throw Error(path, std::string("is not a suite: ") + error.what() + "; see docs/command.md");
-    }
+    for (const Json& entry : suite["cases"])
+        cases.push_back(
+            read_case(path, std::filesystem::path(path).parent_path() / root, entry, cases.size() + 1));
     return cases;
 }
 
 const Json* find_key(const Json& report, const std::string& dotted) {
-    std::string pointer = "/" + dotted;
-    for (char& c : pointer)
-        if (c == '.') c = '/';
+    std::string pointer = "/";
+    for (const char c : dotted) switch (c) {
+        case '.':
+            pointer += '/';
+            break;
+        case '~': // as pointers spell these two
+            pointer += "~0";
+            break;
+        case '/':
+            pointer += "~1";
+            break;
+        default:
+            pointer += c;
+        }
     const Json::json_pointer where(pointer);
     return report.contains(where) ? &report.at(where) : nullptr;
 }
@@ -102,7 +138,7 @@ std::string miss(const std::string& key, const Json* value, const Json& expected
 
 /// The case's arguments through the same parser as the command line's.
 ReconstructOptions options_of(const Case& one, ReadOptions& read) {
-    CLI::App app;
+    CLI::App app("", "a case");
     ReconstructArguments arguments;
     add_method_options(app, arguments);
     add_text_options(app, arguments);
@@ -110,7 +146,7 @@ ReconstructOptions options_of(const Case& one, ReadOptions& read) {
     try {
         app.parse(words);
     } catch (const CLI::ParseError& error) {
-        throw Error(one.name, std::string("args: ") + error.what());
+        throw Error(one.name, "args: " + fault_of(app, error));
     }
     if (!arguments.levels.empty())
         throw Error(one.name, "args: --levels makes several meshes; give one --depth");
@@ -157,11 +193,11 @@ void print_row(std::ostream& out, const Case& one, const Outcome& outcome, int w
         outcome.report.is_null() ? nullptr : find_key(outcome.report, "error.normalised_max");
     std::ostringstream percent;
     if (error != nullptr) percent << std::setprecision(3) << 100 * error->get<double>();
-    out << (outcome.misses.empty() ? "ok    " : "MISS  ") << std::left << std::setw(width) << one.name
+    out << (outcome.misses.empty() ? "ok    " : "MISS  ") << std::left << std::setw(width) << printable(one.name)
         << std::right << std::setw(10) << count("mesh.faces") << std::setw(8) << count("mesh.closed")
         << std::setw(7) << count("mesh.genus") << std::setw(10) << percent.str() << std::setw(9) << std::fixed
         << std::setprecision(2) << outcome.seconds << std::defaultfloat << '\n';
-    for (const std::string& reason : outcome.misses) out << "      " << reason << '\n';
+    for (const std::string& reason : outcome.misses) out << "      " << printable(reason) << '\n';
     out << std::flush;
 }
 
@@ -183,7 +219,7 @@ int run_regress(const std::string& path, const std::string& json_path) {
     check_claims(path, cases, json_path);
     std::ostream& out = is_standard_output(json_path) ? std::cerr : std::cout;
     std::size_t width = 4;
-    for (const Case& one : cases) width = std::max(width, one.name.size());
+    for (const Case& one : cases) width = std::max(width, printable(one.name).size());
     out << "      " << std::left << std::setw(static_cast<int>(width)) << "case" << std::right
         << "     faces  closed  genus   error %  seconds\n";
     Json results = Json::array();

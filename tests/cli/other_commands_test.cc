@@ -87,11 +87,14 @@ TEST_CASE("modules beside the program are not found by walking up from it", "[cl
     fs::create_directories(folder / "bin");
     fs::create_directories(folder / "lib/hsdm");
     fs::rename(folder / "modules", folder / "lib/hsdm/plugins");
-    fs::rename(folder / "lib/hsdm/plugins/smooth-normals.so", folder / "lib/hsdm/plugins/found-by-walking.so");
+    fs::rename(folder / "lib/hsdm/plugins/smooth-normals.so",
+               folder / "lib/hsdm/plugins/found-by-walking.so");
     fs::copy_file(HSDM_COMMAND, folder / "bin/hsdm");
     REQUIRE(run(folder, "--version; bin/hsdm process --list > listed").status == 0);
     CHECK(read_file(folder / "listed").find("found-by-walking") == std::string::npos);
-    REQUIRE(run(folder, "--version; HSDM_PLUGIN_PATH=lib/hsdm/plugins bin/hsdm process --list > listed").status == 0);
+    REQUIRE(
+        run(folder, "--version; HSDM_PLUGIN_PATH=lib/hsdm/plugins bin/hsdm process --list > listed").status
+        == 0);
     CHECK(read_file(folder / "listed").find("found-by-walking") != std::string::npos);
 }
 
