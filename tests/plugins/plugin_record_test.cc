@@ -13,8 +13,8 @@ using namespace hsdm;
 
 namespace {
 
-std::string scale_module() {
-    std::ifstream file(HSDM_EXAMPLE_DIR "/scale.so", std::ios::binary);
+std::string bytes_of_file(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
     std::ostringstream bytes;
     bytes << file.rdbuf();
     return bytes.str();
@@ -28,7 +28,7 @@ std::optional<PluginRecord> record_of(const std::string& bytes) {
 } // namespace
 
 TEST_CASE("what a module says of itself is read from its bytes") {
-    const auto record = record_of(scale_module());
+    const auto record = record_of(bytes_of_file(HSDM_EXAMPLE_DIR "/scale.so"));
     REQUIRE(record);
     CHECK(record->abi == plugin_abi);
     CHECK(record->build == HSDM_PLUGIN_BUILD);
@@ -38,9 +38,11 @@ TEST_CASE("what a module says of itself is read from its bytes") {
 }
 
 TEST_CASE("a damaged module has a record or none, and is never read outside its bytes") {
-    const std::string whole = scale_module();
+    const std::string whole = bytes_of_file(HSDM_ODD_MODULE_DIR "/wrong_interface.so"); // a small one
     REQUIRE(whole.size() > 64);
-    for (const std::size_t size : {0, 3, 16, 63, 64, 1000}) CHECK_FALSE(record_of(whole.substr(0, size)));
+    REQUIRE(record_of(whole)->abi == 4711);
+    for (const std::size_t size : {0u, 3u, 16u, 63u, 64u, 1000u})
+        CHECK_FALSE(record_of(whole.substr(0, size)));
     CHECK_FALSE(record_of(whole.substr(0, whole.size() - 1))); // the table of sections is the last thing
     // Every byte of the header, and of the table's first entries, made the least and the greatest.
     for (std::size_t at = 0; at < 64; ++at)
@@ -54,6 +56,6 @@ TEST_CASE("a damaged module has a record or none, and is never read outside its 
     for (std::size_t at = header.e_shoff; at < whole.size(); ++at) {
         std::string damaged = whole.substr(0, at) + '\xff' + whole.substr(at + 1);
         const auto record = record_of(damaged);
-        if (record && record->abi == plugin_abi) CHECK(record->name == "scale");
+        if (record) CHECK(record->build == "of the future");
     }
 }
