@@ -11,6 +11,10 @@
 
 namespace hsdm::io {
 
+/// A row of more values than these is refused: a column costs some hundred bytes, whatever few of the file it
+/// takes, and nothing that is a point has so many.
+inline constexpr std::size_t most_columns = 4096;
+
 enum class Role : std::uint8_t { x, y, z, nx, ny, nz, red, green, blue, alpha, scalar, skip };
 
 struct Column {

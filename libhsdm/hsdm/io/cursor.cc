@@ -6,9 +6,10 @@
 namespace hsdm::io {
 
 bool Cursor::is_continuation() const {
+    if (*at_ != '\\') return false;
     const char* next = at_ + 1;
-    while (next != text_->end && *next == '\r') ++next;
-    return *at_ == '\\' && next != text_->end && *next == text_->newline;
+    while (next != text_->end && *next == '\r' && *next != text_->newline) ++next;
+    return next != text_->end && *next == text_->newline;
 }
 
 bool Cursor::find_in_line() {

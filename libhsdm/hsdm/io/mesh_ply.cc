@@ -127,6 +127,8 @@ public:
 
 private:
     void read_vertices(const PlyElement& element) {
+        if (has_vertices_)
+            throw Error(text_.file(), "the header names element vertex twice; export the mesh again");
         has_vertices_ = true;
         const auto count = static_cast<std::size_t>(element.count);
         if (count >= no_index)

@@ -7,6 +7,9 @@
 
 namespace hsdm::io {
 
+/// Finds the reader by the content and the name's extension, and runs it.
+PolygonMesh read_mesh(const SourceBytes& bytes);
+
 PolygonMesh read_mesh_off(const SourceBytes& bytes);
 PolygonMesh read_mesh_obj(const SourceBytes& bytes);
 PolygonMesh read_mesh_ply(const SourceBytes& bytes);

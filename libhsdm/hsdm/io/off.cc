@@ -65,8 +65,11 @@ public:
         const std::string_view first = next_line(first_row);
         RowLayout layout;
         layout.comments = true;
-        layout.cells.assign(std::max<std::size_t>(3, fields(without_comment(first)).size()),
-                            RowLayout::Cell::number);
+        const std::size_t width = fields(without_comment(first), most_columns + 1).size();
+        if (width > most_columns)
+            text_.fail(line_, "more than " + std::to_string(most_columns)
+                                  + " numbers for a vertex; correct the line");
+        layout.cells.assign(std::max<std::size_t>(3, width), RowLayout::Cell::number);
         layout.origin = "the first vertex has " + std::to_string(layout.cells.size());
         layout.advice = "correct the line, or the count of vertices in the header";
         Rows rows(body, layout);
@@ -98,7 +101,7 @@ private:
             line = keyword_.rest;
             if (line.empty() || line.front() == '#') line = next_line(at_);
         }
-        const auto counts = fields(without_comment(line));
+        const auto counts = fields(without_comment(line), 2);
         const auto vertices = counts.size() < 2 ? std::nullopt : to_count(counts[0]);
         const auto faces = counts.size() < 2 ? std::nullopt : to_count(counts[1]);
         if (!vertices || !faces)

@@ -1,11 +1,17 @@
 #include "hsdm/errors.hh"
 #include "hsdm/io/formats.hh"
+#include "hsdm/io/lzf.hh"
 #include "hsdm/io/ply.hh"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
+#include <memory>
 
 namespace hsdm::io {
 namespace {
@@ -20,10 +26,12 @@ struct PcdField {
     bool is_packed_color() const { return (name == "rgb" || name == "rgba") && size == 4 && count == 1; }
 };
 
+enum class PcdData { ascii, binary, compressed };
+
 struct PcdHeader {
     std::vector<PcdField> fields;
     std::uint64_t points = 0;
-    bool ascii = true;
+    PcdData data = PcdData::ascii;
     std::optional<Vec3> viewpoint;
     std::size_t size = 0; ///< bytes from the start of the source to the data
 };
@@ -44,7 +52,7 @@ public:
             line_ = at;
             const std::string_view line = trim(text_.line(at));
             if (line.empty() || line.front() == '#') continue;
-            words_ = fields(line);
+            words_ = fields(line, most_columns + 2);
             if (!is_keyword(words_[0]))
                 fail(quoted(words_[0]) + " is no word of a PCD header; correct or remove the line");
             if (words_.size() < 2) fail(quoted(words_[0]) + " has no value; correct the header");
@@ -77,6 +85,8 @@ private:
         const std::string_view word = words_[0];
         std::vector<PcdField>& all = header_.fields;
         if (word == "FIELDS" || word == "COLUMNS") {
+            if (words_.size() - 1 > most_columns)
+                fail("more than " + std::to_string(most_columns) + " FIELDS; leave some out");
             all.resize(words_.size() - 1);
             for (std::size_t i = 0; i < all.size(); ++i) all[i].name = words_[i + 1];
         } else if (word == "SIZE" || word == "TYPE" || word == "COUNT") {
@@ -91,11 +101,12 @@ private:
         } else if (word == "VIEWPOINT") {
             read_viewpoint();
         } else if (word == "DATA") {
-            header_.ascii = words_[1] == "ascii";
-            if (words_[1] == "binary_compressed")
-                fail("compressed data are not read; save the file as binary or ascii");
-            if (!header_.ascii && words_[1] != "binary")
-                fail("unknown data " + quoted(words_[1]) + "; known are ascii and binary");
+            if (words_[1] == "binary")
+                header_.data = PcdData::binary;
+            else if (words_[1] == "binary_compressed")
+                header_.data = PcdData::compressed;
+            else if (words_[1] != "ascii")
+                fail("unknown data " + quoted(words_[1]) + "; known are ascii, binary and binary_compressed");
         }
     }
 
@@ -106,8 +117,7 @@ private:
                 fail("unknown type " + quoted(words_[at]) + "; known are I, U and F");
         } else {
             const std::uint64_t value = count(at);
-            // Counts are descriptors' lengths; more would be a header that was damaged.
-            if (word == "COUNT" ? value > 65536 : value != 1 && value != 2 && value != 4 && value != 8)
+            if (word == "COUNT" ? value > most_columns : value != 1 && value != 2 && value != 4 && value != 8)
                 fail(quoted(words_[at]) + " is no " + lower(word) + " of a field; correct the header");
             (word == "COUNT" ? field.count : field.size) = static_cast<std::size_t>(value);
         }
@@ -127,15 +137,24 @@ private:
 
     void check() {
         if (header_.fields.empty()) fail("the header has no line FIELDS; correct it");
-        for (const PcdField& field : header_.fields)
+        std::size_t values = 0;
+        for (const PcdField& field : header_.fields) {
+            values += field.count;
             if (field.type == 'F' && field.size < 4)
                 fail("field " + quoted(field.name) + " is of type F and size " + std::to_string(field.size)
                      + "; correct the header");
+        }
+        if (values > most_columns)
+            fail("a point of " + std::to_string(values) + " values, more than " + std::to_string(most_columns)
+                 + "; leave out descriptors");
         if (!points_ && !width_) fail("the header has neither POINTS nor WIDTH; correct it");
-        header_.points = points_ ? *points_ : *width_ * height_;
-        if (points_ && width_ && *points_ != *width_ * height_)
-            fail("POINTS is " + std::to_string(*points_) + ", WIDTH times HEIGHT "
-                 + std::to_string(*width_ * height_) + "; correct the header");
+        std::uint64_t grid = 0;
+        if (width_ && __builtin_mul_overflow(*width_, height_, &grid))
+            fail("WIDTH times HEIGHT is more than can be counted; correct the header");
+        header_.points = points_ ? *points_ : grid;
+        if (points_ && width_ && *points_ != grid)
+            fail("POINTS is " + std::to_string(*points_) + ", WIDTH times HEIGHT " + std::to_string(grid)
+                 + "; correct the header");
         if (header_.points == 0) throw Error(text_.file(), "holds no points: the header says 0");
     }
 
@@ -178,16 +197,65 @@ PlyHeader ply_header_of(const PcdHeader& pcd) {
         for (std::size_t k = 0; k < field.count; ++k) {
             const bool alone = field.count == 1 || field.name == "_";
             const std::string name = alone ? field.name : field.name + "_" + std::to_string(k);
-            if (pcd.ascii)
+            if (pcd.data == PcdData::ascii)
                 point.properties.push_back({name, type_of(field), false, {}});
             else
                 add_binary(field, name, point.properties);
         }
     PlyHeader ply;
-    ply.encoding = pcd.ascii ? PlyEncoding::ascii : PlyEncoding::little_endian;
+    ply.encoding = pcd.data == PcdData::ascii ? PlyEncoding::ascii : PlyEncoding::little_endian;
     ply.elements.push_back(std::move(point));
-    ply.size = pcd.size;
+    ply.size = pcd.data == PcdData::compressed ? 0 : pcd.size;
     return ply;
+}
+
+/// The points one after the other, from `fields` that hold the values of all points each.
+std::unique_ptr<char[]> interleave(const char* values, const PcdHeader& pcd, std::size_t row) {
+    const auto count = static_cast<std::size_t>(pcd.points);
+    std::unique_ptr<char[]> points(new char[count * row]);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
+        std::size_t offset = 0; // in a point
+        for (const PcdField& field : pcd.fields) {
+            const std::size_t size = field.size * field.count;
+            const char* from = values + offset * count;
+            for (std::size_t i = range.begin(); i != range.end(); ++i)
+                std::memcpy(points.get() + i * row + offset, from + i * size, size);
+            offset += size;
+        }
+    });
+    return points;
+}
+
+/// The points of a compressed file, laid out as in a binary one without its header. `row`: bytes of a point.
+SourceBytes expand(const SourceBytes& bytes, const PcdHeader& pcd, std::size_t row) {
+    std::string_view packed = bytes.view().substr(pcd.size);
+    std::array<std::uint32_t, 2> sizes{}; // of the packed and of the expanded values
+    static_assert(std::endian::native == std::endian::little, "the order of the file's bytes");
+    if (packed.size() < sizeof sizes) throw Error(bytes.name(), "ends behind its header; it was cut off");
+    std::memcpy(sizes.data(), packed.data(), sizeof sizes);
+    packed.remove_prefix(sizeof sizes);
+    if (packed.size() < sizes[0])
+        throw Error(bytes.name(), "the file ends after " + std::to_string(packed.size()) + " of "
+                                      + std::to_string(sizes[0]) + " compressed bytes; it was cut off");
+    packed = packed.substr(0, sizes[0]);
+    // Both before anything is allocated: neither number is to be trusted.
+    if (sizes[1] % row != 0 || sizes[1] / row != pcd.points || sizes[1] / lzf_most_expansion > packed.size())
+        throw Error(bytes.name(), std::to_string(sizes[0]) + " compressed bytes for "
+                                      + std::to_string(sizes[1]) + " bytes do not fit "
+                                      + std::to_string(pcd.points) + " points of " + std::to_string(row)
+                                      + "; the file is damaged, export it again");
+    const std::unique_ptr<char[]> values(new char[sizes[1]]);
+    if (!expand_lzf(packed, {values.get(), sizes[1]}))
+        throw Error(bytes.name(), "the compressed data are damaged; export the file again");
+    return SourceBytes::of(interleave(values.get(), pcd, row), sizes[1], bytes.name());
+}
+
+PointCloud read_body(const SourceBytes& bytes, const PcdHeader& pcd, const PlyHeader& header,
+                     const std::vector<Column>& columns) {
+    if (pcd.data == PcdData::ascii)
+        return read_ply_ascii(with_line_end_of_header(Text(bytes)), header, 0, columns);
+    if (pcd.data == PcdData::binary) return read_ply_binary(bytes, header, 0, columns);
+    return read_ply_binary(expand(bytes, pcd, header.elements[0].least_size()), header, 0, columns);
 }
 
 /// Text has a packed colour as one number, of a floating type by its bits.
@@ -215,7 +283,7 @@ bool is_pcd(const Text& text) {
         const std::string_view line = trim(text.line(at));
         if (line.starts_with("# .PCD")) return true;
         if (line.empty() || line.front() == '#') continue;
-        const auto words = fields(line);
+        const auto words = fields(line, 2);
         return words.size() > 1 && (words[0] == "VERSION" || words[0] == "FIELDS");
     }
     return false;
@@ -236,10 +304,9 @@ PointFile read_pcd(const SourceBytes& bytes) {
 
     PointFile file;
     file.format = "pcd";
-    file.cloud = pcd.ascii ? read_ply_ascii(with_line_end_of_header(Text(bytes)), header, 0, *columns)
-                           : read_ply_binary(bytes, header, 0, *columns);
+    file.cloud = read_body(bytes, pcd, header, *columns);
     for (const PcdField& field : pcd.fields)
-        if (pcd.ascii && field.is_packed_color() && file.cloud.colors.empty())
+        if (pcd.data == PcdData::ascii && field.is_packed_color() && file.cloud.colors.empty())
             unpack_color(field, file.cloud);
     file.cloud.sensor = pcd.viewpoint;
     drop_nonfinite(file.cloud); // pixels without a measurement

@@ -13,9 +13,10 @@ PointCloud read_ply_ascii(const Text& text, const PlyHeader& header, std::size_t
     Text body = text.from(at);
     body.end = after_rows(body, element.count, false, "vertices");
 
-    std::uint64_t rows_behind = 0;
-    for (std::size_t i = vertex + 1; i < header.elements.size(); ++i) rows_behind += header.elements[i].count;
-    if (rows_behind == 0 && count_rows(text.from(body.end), false) > 0)
+    bool rows_behind = false;
+    for (std::size_t i = vertex + 1; i < header.elements.size(); ++i)
+        rows_behind |= header.elements[i].count > 0;
+    if (!rows_behind && count_rows(text.from(body.end), false) > 0)
         text.fail(body.end, "a line behind the last of " + std::to_string(element.count)
                                 + " vertices; the header's count is wrong, correct it");
 

@@ -221,7 +221,7 @@ PointCloud read_varying(BinaryBody& body, const PlyElement& vertex, const std::v
     const auto layout = body.fields(vertex);
     const std::size_t width = columns.size(), count = static_cast<std::size_t>(vertex.count);
     auto factor = color_factor_by_type(vertex, columns);
-    std::vector<double> rows(block_rows * width);
+    std::vector<double> rows(std::min(block_rows, count) * width);
     if (!factor) {
         double max = 0;
         BinaryBody scan = body;

@@ -1,5 +1,7 @@
 #include "hsdm/io/ply_header.hh"
 
+#include "hsdm/io/columns.hh"
+
 #include <algorithm>
 
 namespace hsdm::io {
@@ -19,6 +21,9 @@ constexpr TypeName type_names[] = {
     {"float64", PlyType::float64},
 };
 
+/// `property list uchar int vertex_indices`: no line has more that count, of comments not even those.
+constexpr std::size_t most_words = 5;
+
 class HeaderReader {
 public:
     explicit HeaderReader(const Text& text) : text_(text) {}
@@ -31,7 +36,8 @@ public:
         while (at != text_.end) {
             line_ = at;
             words_.clear();
-            for (std::string_view rest = trim(text_.line(at)); !rest.empty(); rest = trim(rest)) {
+            std::string_view rest = trim(text_.line(at));
+            for (; !rest.empty() && words_.size() < most_words; rest = trim(rest)) {
                 const std::size_t length =
                     static_cast<std::size_t>(std::find_if(rest.begin(), rest.end(), is_blank) - rest.begin());
                 words_.push_back(rest.substr(0, length));
@@ -41,7 +47,7 @@ public:
             if (words_[0] == "end_header") {
                 if (!has_format) fail("the header has no format line; export the file again");
                 header_.size = static_cast<std::size_t>(at - text_.origin);
-                return header_;
+                return std::move(header_);
             }
             if (words_[0] == "format") {
                 read_format();
@@ -89,6 +95,8 @@ private:
 
     void read_property() {
         if (header_.elements.empty()) fail("a property before the first element; correct the header");
+        if (header_.elements.back().properties.size() == most_columns)
+            fail("more than " + std::to_string(most_columns) + " properties of an element; leave some out");
         PlyProperty property;
         property.is_list = words_.size() > 1 && words_[1] == "list";
         if (words_.size() < (property.is_list ? 5u : 3u))

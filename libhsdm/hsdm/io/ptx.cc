@@ -32,7 +32,7 @@ std::string_view next_line(const Text& text, const char*& at) {
 /// The numbers of a header line; empty if it does not hold that many.
 std::vector<double> numbers_in(std::string_view line, std::size_t width) {
     std::vector<double> numbers;
-    for (std::string_view field : fields(line))
+    for (std::string_view field : fields(line, width + 1))
         if (const auto number = to_number(field))
             numbers.push_back(*number);
         else
@@ -82,8 +82,8 @@ Text take_rays(const Text& text, std::uint64_t rays, const char*& at) {
 /// Column names of x y z intensity [r g b].
 std::vector<Column> columns_of(const Text& text, const char* at, std::size_t width) {
     if (width != 3 && width != 4 && width != 6 && width != 7)
-        text.fail(at,
-                  std::to_string(width) + " columns; x y z intensity, or x y z intensity r g b, are wanted");
+        text.fail(at, std::to_string(width) + (width == 8 ? " or more" : "")
+                          + " columns; x y z intensity, or x y z intensity r g b, are wanted");
     std::vector<Column> columns{{Role::x, "x"}, {Role::y, "y"}, {Role::z, "z"}};
     if (width == 4 || width == 7) columns.push_back({Role::scalar, "intensity"});
     if (width > 4) columns.insert(columns.end(), {{Role::red, "r"}, {Role::green, "g"}, {Role::blue, "b"}});
@@ -133,7 +133,7 @@ PointFile read_ptx(const SourceBytes& bytes) {
         if (header.rays == 0) continue;
         const char* first = body.begin;
         const std::string_view first_row = next_line(body, first);
-        if (width == 0) width = fields(first_row).size();
+        if (width == 0) width = fields(first_row, 8).size();
         const auto columns = columns_of(text, first_row.data(), width);
         RowLayout layout;
         layout.cells.assign(width, RowLayout::Cell::number);

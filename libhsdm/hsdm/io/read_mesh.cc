@@ -29,8 +29,11 @@ PolygonMesh read_as(const SourceBytes& bytes, std::string_view format) {
     return format == "off" ? read_mesh_off(bytes) : read_mesh_obj(bytes);
 }
 
+} // namespace
+
 /// By the content, else by the name, which must then hold what it promises.
 PolygonMesh read_mesh(const SourceBytes& bytes) {
+    if (bytes.size() == 0) throw Error(bytes.name(), "is empty; expected a mesh");
     std::string_view format = mesh_format_of(bytes);
     const std::string extension =
         lower(bytes.name().substr(std::min(bytes.name().find_last_of('.'), bytes.name().size())));
@@ -49,13 +52,10 @@ PolygonMesh read_mesh(const SourceBytes& bytes) {
     return mesh;
 }
 
-} // namespace
 } // namespace io
 
 PolygonMesh read_mesh(const std::string& path) {
-    const io::SourceBytes bytes = io::SourceBytes::open(path);
-    if (bytes.size() == 0) throw Error(bytes.name(), "is empty; expected a mesh");
-    return io::read_mesh(bytes);
+    return io::read_mesh(io::SourceBytes::open(path));
 }
 
 MeshOrPoints read_mesh_or_points(const std::string& path) {

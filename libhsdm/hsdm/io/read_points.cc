@@ -83,7 +83,7 @@ bool is_binary(const Text& text) {
 }
 
 bool is_number(std::string_view line) {
-    const auto cells = fields(line);
+    const auto cells = fields(line, 1);
     return !cells.empty() && to_number(cells[0]);
 }
 

@@ -173,6 +173,14 @@ std::vector<std::uint64_t> rows_per_chunk(const Text& text,
     return counts;
 }
 
+constexpr std::uint64_t few_rows = 8192;
+
+/// Moves `at` behind the next `count` rows. Returns how many of them are not there.
+std::uint64_t walk_rows(const Text& text, bool comments, std::uint64_t count, const char*& at) {
+    while (count > 0 && at != text.end) count -= is_row(text.line(at), comments) ? 1 : 0;
+    return count;
+}
+
 } // namespace
 
 Rows::Rows(const Text& text, const RowLayout& layout) : columns_(layout.cells.size()) {
@@ -262,18 +270,26 @@ std::uint64_t count_rows(const Text& text, bool comments) {
     return std::accumulate(counts.begin(), counts.end(), std::uint64_t(0));
 }
 
+/// Few rows are walked over, of more, pieces are counted in parallel, twice as much each time: the cost
+/// follows the rows that are passed and not the rest of the file, for a header may name very many elements.
 const char* after_rows(const Text& text, std::uint64_t count, bool comments, const std::string& what) {
-    const auto chunks = text.chunks();
-    const auto counts = rows_per_chunk(text, chunks, comments);
-    std::uint64_t left = count;
-    std::size_t chunk = 0;
-    while (chunk < chunks.size() && counts[chunk] < left) left -= counts[chunk++];
-    if (left > 0 && chunk == chunks.size())
+    const char* at = text.begin;
+    std::uint64_t left = walk_rows(text, comments, std::min(count, few_rows), at);
+    left += count - std::min(count, few_rows);
+    for (std::size_t size = std::size_t(1) << 21; left > 0 && at != text.end; size *= 2) {
+        Text part = text.from(at);
+        if (static_cast<std::size_t>(text.end - at) > size) part.end = text.find_newline(at + size);
+        const auto chunks = part.chunks();
+        const auto counts = rows_per_chunk(part, chunks, comments);
+        std::size_t chunk = 0;
+        while (chunk < chunks.size() && counts[chunk] < left) left -= counts[chunk++];
+        at = chunk < chunks.size() ? chunks[chunk].first : part.end;
+        if (chunk < chunks.size()) left = walk_rows(text, comments, left, at);
+    }
+    if (left > 0)
         text.fail(text.end, "the file ends after " + std::to_string(count - left) + " of "
                                 + std::to_string(count) + " " + what
                                 + "; it was cut off, or its header counts wrong");
-    const char* at = chunk < chunks.size() ? chunks[chunk].first : text.end;
-    while (left > 0) left -= is_row(text.line(at), comments) ? 1 : 0;
     return at;
 }
 

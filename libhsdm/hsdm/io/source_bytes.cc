@@ -135,6 +135,12 @@ SourceBytes SourceBytes::read_stream(int descriptor, const std::string& name) {
     }
 }
 
+SourceBytes SourceBytes::of(std::unique_ptr<char[]> bytes, std::size_t size, const std::string& name) {
+    SourceBytes source(name, size);
+    source.bytes_ = std::move(bytes);
+    return source;
+}
+
 SourceBytes SourceBytes::read(std::istream& stream, const std::string& name) {
     std::string text;
     for (char buffer[1 << 14]; stream.read(buffer, sizeof buffer) || stream.gcount() > 0;)

@@ -22,6 +22,9 @@ public:
     /// Reads a stream to its end; `name` stands in messages for the file. Throws Error.
     static SourceBytes read(std::istream& stream, const std::string& name);
 
+    /// Bytes that are in memory already.
+    static SourceBytes of(std::unique_ptr<char[]> bytes, std::size_t size, const std::string& name);
+
     SourceBytes(SourceBytes&& other) noexcept;
     SourceBytes& operator=(SourceBytes&&) = delete;
     ~SourceBytes();

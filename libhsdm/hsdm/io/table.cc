@@ -26,7 +26,7 @@ std::vector<std::string> split_names(std::string_view line) {
     for (char candidate : {'\t', ',', ';'})
         if (line.find(candidate) != std::string_view::npos) separator = candidate;
     std::vector<std::string> names;
-    while (true) {
+    while (names.size() <= most_columns) {
         const std::size_t end = std::min(line.find(separator), line.size());
         std::string_view name = trim(line.substr(0, end));
         if (name.size() > 1 && name.front() == name.back() && (name.front() == '"' || name.front() == '\''))
@@ -94,7 +94,7 @@ private:
     /// True for the first row of numbers; notes a count on the way. Throws if the line is neither a row nor
     /// wholly text.
     bool is_row(std::string_view line, const char* at) {
-        const auto cells = fields(line);
+        const auto cells = fields(line, std::max(asked_.size(), most_columns) + 1);
         std::size_t numbers = 0, first_bad = cells.size();
         for (std::size_t i = 0; i < cells.size(); ++i) {
             const bool needed = asked_.empty() || (i < asked_.size() && asked_[i].role != Role::skip);
@@ -124,6 +124,9 @@ private:
     }
 
     void check_width(std::size_t width, const char* at) const {
+        if (asked_.empty() && width > most_columns)
+            text_.fail(at, "more than " + std::to_string(most_columns)
+                               + " columns; name the first of them, up to those that are wanted");
         const std::size_t needed = asked_.empty() ? 3 : asked_.size();
         if (width >= needed) return;
         text_.fail(at,
@@ -134,7 +137,7 @@ private:
 
     void keep_names(std::string_view line, const char* at, bool comment) {
         auto names = split_names(trim(line));
-        if (comment && !columns_from_names(names)) return;
+        if (names.size() > most_columns || (comment && !columns_from_names(names))) return;
         prelude_.names = std::move(names);
         prelude_.names_at = at;
         prelude_.names_in_comment = comment;

@@ -103,9 +103,9 @@ std::string_view without_comment(std::string_view line) {
     return line;
 }
 
-std::vector<std::string_view> fields(std::string_view line) {
+std::vector<std::string_view> fields(std::string_view line, std::size_t most) {
     std::vector<std::string_view> found;
-    for (line = trim(line); !line.empty(); line = trim(line)) {
+    for (line = trim(line); !line.empty() && found.size() < most; line = trim(line)) {
         std::size_t length = 0;
         while (length < line.size() && !is_blank(line[length]) && !is_separator(line[length])) ++length;
         found.push_back(line.substr(0, length));

@@ -97,8 +97,9 @@ std::string lower(std::string_view text);
 /// The line up to a field that begins with `#` or `//`.
 std::string_view without_comment(std::string_view line);
 /// Fields between blanks, commas and semicolons; an empty field between two commas is one, a trailing comma
-/// opens none.
-std::vector<std::string_view> fields(std::string_view line);
+/// opens none. The first `most` only, for lines that may be of any length.
+std::vector<std::string_view> fields(std::string_view line,
+                                     std::size_t most = std::numeric_limits<std::size_t>::max());
 /// `text` as a message quotes it: in quotation marks, printable, at most 40 characters.
 std::string quoted(std::string_view text);
 
