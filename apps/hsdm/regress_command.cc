@@ -6,6 +6,7 @@
 #include "file_claims.hh"
 #include "messages.hh"
 #include "reconstruct_arguments.hh"
+#include "suite_file.hh"
 #include "usage.hh"
 
 #include "hsdm/errors.hh"
@@ -16,8 +17,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <filesystem>
 #include <iomanip>
 #include <iostream>
 #include <optional>
@@ -25,116 +24,11 @@
 namespace hsdm::command {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-struct Case {
-    std::string name, input;
-    std::vector<std::string> arguments;
-    Json expect; ///< report key, with dots between levels -> what it must be
-};
-
 struct Outcome {
     Json report;
     std::vector<std::string> misses;
     double seconds = 0;
 };
-
-Json parse_suite(const std::string& path) {
-    const io::SourceBytes bytes = io::SourceBytes::open(path);
-    const std::string_view text = bytes.view();
-    try {
-        return Json::parse(text);
-    } catch (const Json::parse_error& error) {
-        const auto at = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
-        throw Error(path, 1 + static_cast<std::size_t>(std::count(text.begin(), at, '\n')),
-                    "is not JSON: what ends here cannot stand here; see docs/command.md for the format");
-    }
-}
-
-/// The value of a key, or what stands for it; throws naming the key if it is of another kind.
-template <class T>
-T value_of(const std::string& path, const std::string& name, const Json& object, const char* key,
-           const std::optional<T>& fallback, const char* wanted) {
-    if (!object.contains(key) && fallback) return *fallback;
-    try {
-        return object.at(key).get<T>();
-    } catch (const Json::exception&) {
-        throw Error(path, name + ": `" + key + "` must be " + wanted + "; see docs/command.md");
-    }
-}
-
-Case read_case(const std::string& path, const std::filesystem::path& folder, const Json& entry,
-               std::size_t number) {
-    const std::string name = "case " + std::to_string(number);
-    if (!entry.is_object()) throw Error(path, name + ": must be an object; see docs/command.md");
-    Case one;
-    const auto input = value_of<std::string>(path, name, entry, "input", {}, "the name of a file");
-    one.input = (folder / input).string();
-    one.name = value_of<std::string>(path, name, entry, "name", input, "a text");
-    one.arguments = value_of<std::vector<std::string>>(path, name, entry, "args", std::vector<std::string>(),
-                                                       "a list of texts");
-    one.expect = value_of<Json>(path, name, entry, "expect", Json::object(), "an object");
-    if (!one.expect.is_object()) throw Error(path, "case " + one.name + ": expect must be an object");
-    return one;
-}
-
-std::vector<Case> read_cases(const std::string& path) {
-    const Json suite = parse_suite(path);
-    if (!suite.is_object() || !suite.contains("cases") || !suite["cases"].is_array())
-        throw Error(path, "is not a suite: it must be an object with a list `cases`; see docs/command.md");
-    const auto root = value_of<std::string>(path, "the suite", suite, "root", ".", "the name of a folder");
-    std::vector<Case> cases;
-    for (const Json& entry : suite["cases"])
-        cases.push_back(
-            read_case(path, std::filesystem::path(path).parent_path() / root, entry, cases.size() + 1));
-    return cases;
-}
-
-const Json* find_key(const Json& report, const std::string& dotted) {
-    std::string pointer = "/";
-    for (const char c : dotted) switch (c) {
-        case '.':
-            pointer += '/';
-            break;
-        case '~': // as pointers spell these two
-            pointer += "~0";
-            break;
-        case '/':
-            pointer += "~1";
-            break;
-        default:
-            pointer += c;
-        }
-    const Json::json_pointer where(pointer);
-    return report.contains(where) ? &report.at(where) : nullptr;
-}
-
-/// Empty if the value is as expected, else the reason. A plain value must be equal; an object holds bounds
-/// `min`, `max`, or `value` with `tolerance` (absolute) or `relative`.
-std::string miss(const std::string& key, const Json* value, const Json& expected) {
-    if (value == nullptr) return key + " is not in the report";
-    const std::string found = key + " is " + value->dump();
-    if (!expected.is_object()) return *value == expected ? "" : found + ", expected " + expected.dump();
-    for (const auto& [bound, limit] : expected.items()) {
-        const bool known = bound == "min" || bound == "max" || bound == "value" || bound == "tolerance"
-                           || bound == "relative";
-        if (!known || !limit.is_number()) return key + ": `" + bound + "` is no bound; see docs/command.md";
-    }
-    if (!value->is_number()) return found + ", a number was expected";
-    const double x = value->get<double>();
-    if (expected.contains("min") && !(x >= expected["min"].get<double>()))
-        return found + ", at least " + expected["min"].dump() + " expected";
-    if (expected.contains("max") && !(x <= expected["max"].get<double>()))
-        return found + ", at most " + expected["max"].dump() + " expected";
-    if (expected.contains("value")) {
-        const double target = expected["value"].get<double>();
-        const double slack =
-            expected.value("tolerance", 0.0) + expected.value("relative", 0.0) * std::abs(target);
-        if (!(std::abs(x - target) <= slack))
-            return found + ", expected " + expected["value"].dump() + " within " + Json(slack).dump();
-    }
-    return "";
-}
 
 /// The case's arguments through the same parser as the command line's.
 ReconstructOptions options_of(const Case& one, ReadOptions& read) {
@@ -215,7 +109,7 @@ void check_claims(const std::string& path, const std::vector<Case>& cases, const
 
 int run_regress(const std::string& path, const std::string& json_path) {
     set_activity(path.c_str(), "read");
-    const std::vector<Case> cases = read_cases(path);
+    const std::vector<Case> cases = parse_suite(std::string(io::SourceBytes::open(path).view()), path);
     check_claims(path, cases, json_path);
     std::ostream& out = is_standard_output(json_path) ? std::cerr : std::cout;
     std::size_t width = 4;

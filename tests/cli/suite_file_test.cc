@@ -1,0 +1,72 @@
+#include "cli/run.hh"
+
+#include <catch2/catch.hpp>
+
+using namespace hsdm::test;
+
+namespace {
+
+/// What the command says of a suite with this text; it must refuse it.
+std::string refusal(const std::string& text) {
+    const Folder folder;
+    folder.write("suite.json", text);
+    const CommandResult result = run(folder, "regress suite.json");
+    CHECK(result.status == 1);
+    CHECK(result.out.empty());
+    return result.err;
+}
+
+std::string times(int count, const std::string& text) {
+    std::string all;
+    for (int i = 0; i < count; ++i) all += text;
+    return all;
+}
+
+bool contains(const std::string& text, const std::string& part) {
+    UNSCOPED_INFO(text);
+    return text.find(part) != std::string::npos;
+}
+
+} // namespace
+
+TEST_CASE("a suite that is none is refused where it goes wrong", "[cli]") {
+    CHECK(contains(refusal("{\n\"cases\": [\n{]}"), "suite.json:3: is no JSON ("));
+    CHECK(contains(refusal("\xff"), "suite.json:1: is no JSON ("));
+    CHECK(contains(refusal("[]"), "suite.json: is no suite: an object with a list `cases` is"));
+    CHECK(contains(refusal(R"({"cases": {}})"), "suite.json: is no suite"));
+    CHECK(contains(refusal(R"({"root": 1, "cases": []})"), "suite.json: `root` must be text"));
+    CHECK(contains(refusal(R"({"cases": [{"input": "a"}, 7]})"), "suite.json: case 2: must be an object"));
+    CHECK(contains(refusal(R"({"cases": [{"name": "a"}]})"), "suite.json: case 1: has no `input`"));
+    CHECK(contains(refusal(R"({"cases": [{"input": "a", "args": ["--depth", 3]}]})"),
+                   "suite.json: case 1: `args` must be a list of texts"));
+    CHECK(contains(refusal(R"({"cases": [{"input": "a", "expect": true}]})"), "`expect` must be an object"));
+    CHECK(contains(refusal(R"({"cases": 1e999})"), "holds a number beyond the range of doubles"));
+    for (const char* text : {"{", "[]", R"({"cases": [1]})"}) CHECK(!contains(refusal(text), "exception"));
+}
+
+TEST_CASE("a suite nested very deep or of very many keys is refused and no stack or time runs out", "[cli]") {
+    const std::string head = R"({"cases": [{"input": "a", "expect": )";
+    CHECK(contains(refusal(head + R"({"a": )" + times(200000, "[") + times(200000, "]") + "}}]}"),
+                   "nested more than 32 deep"));
+    std::string keys;
+    for (int i = 0; i < 100000; ++i) keys.append("\"").append(std::to_string(i)).append("\": 1, ");
+    CHECK(contains(refusal(head + "{" + keys + "\"a\": 1}}]}"), "more than 1000 keys"));
+}
+
+TEST_CASE("keys that lead nowhere in a report are named", "[cli]") {
+    const Folder folder;
+    std::string points;
+    for (int i = 0; i < 400; ++i) points += std::to_string(i % 20) + " " + std::to_string(i / 20) + " 0\n";
+    folder.write("scan.xyz", points);
+    for (const char* key : {"mesh.nothing", "", ".", "mesh.faces.0", "grid.leaves_per_level.x", "a/b~c",
+                            "grid.leaves_per_level.99999999999999999999"}) {
+        folder.write("suite.json",
+                     std::string(R"({"cases": [{"input": "scan.xyz", "expect": {")") + key + R"(": 1}}]})");
+        const CommandResult result = run(folder, "regress suite.json");
+        CHECK(result.status == 1);
+        CHECK(contains(result.out, std::string(key) + " is not in the report"));
+    }
+    folder.write("suite.json", R"({"cases": [{"input": "scan.xyz", "args": ["--depth", "3"],
+                                               "expect": {"grid.leaves_per_level.0": {"min": 0}}}]})");
+    CHECK(run(folder, "regress suite.json").status == 0);
+}
