@@ -86,6 +86,25 @@ TEST_CASE("polygons come back from the mesh as they went in") {
     }
 }
 
+TEST_CASE("vertex normals of a mesh that was given none are zero") {
+    // Memory that was used before: a mesh of as many vertices with normals, which is gone.
+    PolygonMesh in = cube();
+    in.normals.assign(8, Vec3(7, 8, 9));
+    { const PolyMesh before = to_mesh(in).mesh; }
+    in.normals.clear();
+    const PolyMesh mesh = to_mesh(in).mesh;
+    for (const auto v : mesh.vertices()) CHECK(mesh.normal(v) == Vec3(0, 0, 0));
+}
+
+TEST_CASE("a property without a name is one like any other") {
+    PolygonMesh in = cube();
+    in.properties.push_back({"", VertexProperty::Type::float64, std::vector<double>(8, 0.5)});
+    const PolygonMesh out = to_polygons(to_mesh(in).mesh);
+    REQUIRE(out.properties.size() == 1);
+    CHECK(out.properties[0].name.empty());
+    CHECK(out.properties[0].values == in.properties[0].values);
+}
+
 TEST_CASE("a vertex's three normals survive the way to polygons and back") {
     PolyMesh mesh = to_mesh(cube()).mesh;
     {

@@ -92,7 +92,9 @@ void write_connectivity(const PolygonMesh& facets, const FacetLinks& links, Poly
 void write_geometry(const PolygonMesh& facets, const FacetLinks& links, PolyMesh& mesh) {
     for_each_index(links.source.size(), [&](Index v) {
         mesh.set_point(vertex_handle(v), facets.positions[links.source[v]]);
-        if (!facets.normals.empty()) mesh.set_normal(vertex_handle(v), facets.normals[links.source[v]]);
+        // Always: what nobody sets is whatever the memory held.
+        mesh.set_normal(vertex_handle(v),
+                        facets.normals.empty() ? Vec3(0, 0, 0) : facets.normals[links.source[v]]);
     });
     for_each_index(mesh.n_faces(), [&](Index f) {
         HalfedgeHandle h = mesh.next_halfedge_handle(mesh.halfedge_handle(face_handle(f)));
@@ -238,7 +240,7 @@ void read_properties(const PolyMesh& mesh, const Selection& selection, PolygonMe
     using Type = VertexProperty::Type;
     for (auto it = mesh.vprops_begin(); it != mesh.vprops_end(); ++it) {
         // Names with ':' second are OpenMesh's own: points, normals, status.
-        if (*it == nullptr || (*it)->name().substr(1, 1) == ":" || (*it)->name() == "<vprop>") continue;
+        if (*it == nullptr || (*it)->name().find(':') == 1 || (*it)->name() == "<vprop>") continue;
         const OpenMesh::BaseProperty& base = **it;
         if (read_scalars<std::uint8_t>(base, Type::uint8, selection, polygons)) continue;
         if (read_scalars<std::int32_t>(base, Type::int32, selection, polygons)) continue;
