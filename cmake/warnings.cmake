@@ -48,3 +48,21 @@ function(hsdm_sanitize library)
     target_include_directories(${library} BEFORE PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/tests/tsan>)
   endif()
 endfunction()
+
+# hsdm_instrument_for_fuzzers(LIBRARY): counts which of its branches run, by which fuzzers find new inputs. Other
+# programs that link the library are not changed: the sanitizers' runtime has what the counters call. What is compared
+# with what tells a fuzzer words of a format, but nothing in geometry, where recording it takes most of the time.
+function(hsdm_instrument_for_fuzzers library)
+  if(HSDM_BUILD_FUZZERS)
+    target_compile_options(${library} PRIVATE -fsanitize=fuzzer-no-link -fno-sanitize-coverage=trace-cmp)
+  endif()
+endfunction()
+
+# hsdm_trace_comparisons(SOURCE...): what the current folder's sources compare is recorded after all.
+function(hsdm_trace_comparisons)
+  if(HSDM_BUILD_FUZZERS)
+    list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE sources)
+    set_property(SOURCE ${sources} TARGET_DIRECTORY hsdm
+                 APPEND PROPERTY COMPILE_OPTIONS -fsanitize-coverage=trace-cmp)
+  endif()
+endfunction()

@@ -2,6 +2,7 @@
 
 #include "hsdm/errors.hh"
 #include "hsdm/io/formats.hh"
+#include "io/pack_lzf.hh"
 #include "io/temp_file.hh"
 
 #include <algorithm>
@@ -33,6 +34,16 @@ std::string binary_pcd() {
         text += bytes_of(static_cast<float>(i)) + bytes_of(0.5 * i) + bytes_of(static_cast<std::int16_t>(i))
                 + "abc" + bytes_of(std::uint64_t(i)) + bytes_of(std::uint32_t(i));
     return text;
+}
+
+std::string compressed_pcd() {
+    std::string values(8 * 4, '\0');
+    for (int i = 0; i < 8; ++i) values += bytes_of(static_cast<float>(i));
+    const std::string packed = pack_lzf(values);
+    return "VERSION .7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F U\nWIDTH 4\nPOINTS 4\n"
+           "DATA binary_compressed\n"
+           + bytes_of(static_cast<std::uint32_t>(packed.size()))
+           + bytes_of(static_cast<std::uint32_t>(values.size())) + packed;
 }
 
 std::string list_ply() {
@@ -97,6 +108,7 @@ std::vector<NamedContent> valid_point_files() {
                   "TYPE F F F U F F F\nWIDTH 3\nHEIGHT 1\nVIEWPOINT 1 2 3 1 0 0 0\nPOINTS 3\nDATA ascii\n"
                   "1 2 3 255 0 0 1\nnan 5 6 65280 0 1 0\n4 5 6 7 1 0 0\n"},
         {"b.pcd", binary_pcd()},
+        {"c.pcd", compressed_pcd()},
     };
 }
 
@@ -127,6 +139,7 @@ std::string damaged(const std::string& content, support::Random& random) {
         "COUNT 1 1 1 999\n",
         "POINTS 9\n",
         "DATA binary\n",
+        "DATA binary_compressed\n",
         "p 1 2 3\n",
         "v 1 2 3\n",
         " ",
