@@ -12,8 +12,8 @@ enum class TableKind { plain, pts, pwn };
 /// XYZ, TXT, ASC, CSV, PTS, PWN: rows of numbers, with or without a header, a count, comments.
 PointFile read_table(const SourceBytes& bytes, TableKind kind, const std::string& columns);
 PointFile read_ply(const SourceBytes& bytes);
-/// The points of a PCD file, as text or binary; those whose coordinates are not finite, pixels without a
-/// measurement, are left out. The sensor is the viewpoint, if that is not zero.
+/// The points of a PCD file, as text, binary or compressed; those whose coordinates are not finite, pixels
+/// without a measurement, are left out. The sensor is the viewpoint, if that is not zero.
 PointFile read_pcd(const SourceBytes& bytes);
 /// Whether the text begins as a PCD header does.
 bool is_pcd(const Text& text);
