@@ -5,6 +5,7 @@
 #include "messages.hh"
 #include "summary.hh"
 
+#include "hsdm/cloud_frame.hh"
 #include "hsdm/octree/spacing.hh"
 
 #include <array>
@@ -23,7 +24,9 @@ Box bounds(const std::vector<Vec3>& positions) {
 
 /// 0 for points without extent, which have no octree.
 double spacing(const PointCloud& cloud) {
-    return cloud.bounds().extent() > 0 ? estimate_spacing(build_octree(cloud)) : 0;
+    if (!(cloud.bounds().extent() > 0)) return 0;
+    const CloudFrame frame(cloud.bounds());
+    return frame.unit() * estimate_spacing(build_octree(cloud, {.unit = frame.unit()}));
 }
 
 /// The least and the greatest length of the normals that are there; nothing if none is.

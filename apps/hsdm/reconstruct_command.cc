@@ -228,7 +228,10 @@ void add_reconstruct(CLI::App& app, Run& run) {
                 "  cat scan.xyz | hsdm reconstruct - --input-format xyz -o - --format off > part.off");
     sub->callback([&run, arguments] {
         run = [arguments] {
-            if (arguments->threads > 0) bound_threads(arguments->threads);
+            if (arguments->threads > most_threads)
+                complain("--threads " + std::to_string(arguments->threads) + ": "
+                         + std::to_string(most_threads) + " are used, more would find nothing to do");
+            if (arguments->threads > 0) bound_threads(std::min(arguments->threads, most_threads));
             return ReconstructRun(*arguments).run();
         };
     });

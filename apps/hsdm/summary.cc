@@ -60,6 +60,11 @@ std::string seconds(double value) {
     return text;
 }
 
+std::string dropped_words(const Report::Dropped& dropped) {
+    return dropped.what + ": " + grouped(dropped.count) + ", the first at " + number(dropped.where[0], 6)
+           + ' ' + number(dropped.where[1], 6) + ' ' + number(dropped.where[2], 6);
+}
+
 } // namespace
 
 std::string grouped(std::size_t value) {
@@ -103,10 +108,12 @@ void print_summary(std::ostream& out, const Report& r, const std::string& writte
         << plural(r.mesh.vertices, "vertex", "vertices") << ", " << plural(r.mesh.faces, "face", "faces")
         << " (" << grouped(r.mesh.quads) << " quads, " << grouped(r.mesh.triangles) << " triangles), "
         << plural(r.features.sharp_edges, "sharp edge", "sharp edges") << "\ntopology  "
-        << topology_words(r.mesh) << islands_words(r) << "\nerror     points to mesh: max "
-        << number(r.error.points_to_mesh_max, 3) << " (" << number(100 * r.error.normalised_max, 3)
-        << " % of the diagonal), mean " << number(r.error.points_to_mesh_mean, 3) << bound_words(r)
-        << "\nwritten   " << printable(written) << " in " << seconds(r.seconds.total) << '\n';
+        << topology_words(r.mesh) << islands_words(r);
+    for (const Report::Dropped& dropped : r.dropped) out << "\ndropped   " << dropped_words(dropped);
+    out << "\nerror     points to mesh: max " << number(r.error.points_to_mesh_max, 3) << " ("
+        << number(100 * r.error.normalised_max, 3) << " % of the diagonal), mean "
+        << number(r.error.points_to_mesh_mean, 3) << bound_words(r) << "\nwritten   " << printable(written)
+        << " in " << seconds(r.seconds.total) << '\n';
 }
 
 void print_details(std::ostream& out, const Report& r) {
@@ -127,7 +134,9 @@ void print_details(std::ostream& out, const Report& r) {
 void print_line(std::ostream& out, const Report& r, const std::string& written) {
     out << printable(written) << ": " << grouped(r.input.points) << " points, depth " << r.grid.depth << ", "
         << grouped(r.mesh.faces) << " faces, " << topology_words(r.mesh) << islands_words(r) << ", error "
-        << number(100 * r.error.normalised_max, 3) << " %, " << seconds(r.seconds.total) << '\n';
+        << number(100 * r.error.normalised_max, 3) << " %, " << seconds(r.seconds.total);
+    for (const Report::Dropped& dropped : r.dropped) out << "; dropped " << dropped_words(dropped);
+    out << '\n';
 }
 
 } // namespace hsdm::command

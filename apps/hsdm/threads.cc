@@ -14,7 +14,8 @@ void start_threads() {
 
 void bound_threads(int threads) {
     // Never destroyed: its destructor asks for memory, and ends the process if there is none.
-    new tbb::global_control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    [[maybe_unused]] static const auto* const bound = new tbb::global_control(
+        tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
 }
 
 } // namespace hsdm::command

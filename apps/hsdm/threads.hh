@@ -7,7 +7,10 @@ namespace hsdm::command {
 /// waits for ever, so nothing may use it then. Throws std::bad_alloc.
 void start_threads();
 
-/// At most so many from now on, until the process ends.
+/// More would each take a stack and find nothing to do.
+constexpr int most_threads = 256;
+
+/// At most so many, most_threads or fewer, from now on until the process ends. To be called once.
 void bound_threads(int threads);
 
 } // namespace hsdm::command

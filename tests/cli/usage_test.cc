@@ -287,3 +287,16 @@ TEST_CASE("a suite that is none is refused with the place, in words of the comma
     CHECK_THAT(missed.out, Contains("args: --dept: a case has no such option; did you mean --depth?"));
     CHECK_THAT(missed.out, Contains("a~b.c/d is not in the report"));
 }
+
+TEST_CASE("what is dropped and threads that are not started are said", "[cli]") {
+    const Folder folder;
+    PointCloud cloud = support::sample(support::sphere(1), {.points = 4000});
+    cloud.positions.emplace_back(1e7, 2e7, 0);
+    cloud.normals.emplace_back(1, 0, 0);
+    support::write_ply(folder / "scan.ply", cloud);
+    const CommandResult result = run(folder, "reconstruct scan.ply -o a.off --threads 2000");
+    CHECK(result.status == 0);
+    CHECK_THAT(result.out,
+               Catch::Contains("dropped   points far from all others: 1, the first at 1e+07 2e+07 0"));
+    CHECK_THAT(result.err, Catch::Contains("hsdm: --threads 2000: 256 are used"));
+}

@@ -52,7 +52,8 @@ std::string graph_obj(const Octree& octree, const ConnectivityGraph& graph, cons
 }
 
 PhaseFiles phase_files(const std::string& debug_dir, int depth) {
-    const std::filesystem::path folder = std::filesystem::path(debug_dir) / ("d" + std::to_string(depth));
+    const std::filesystem::path folder =
+        std::filesystem::path(debug_dir) / std::string("d").append(std::to_string(depth));
     return {folder.string(), (folder / "voxels.obj").string(), (folder / "graph.obj").string(),
             (folder / "facets.off").string()};
 }

@@ -38,7 +38,7 @@ PolygonMesh read_mesh(const SourceBytes& bytes) {
     const std::string extension =
         lower(bytes.name().substr(std::min(bytes.name().find_last_of('.'), bytes.name().size())));
     for (const std::string_view known : {"off", "stl", "obj"})
-        if (format.empty() && extension == "." + std::string(known)) format = known;
+        if (format.empty() && extension == std::string(".").append(known)) format = known;
     if (format.empty() && extension == ".ply")
         throw Error(bytes.name(), 1, "a PLY file begins with \"ply\"; this one does not, check it");
     if (format.empty()) throw Error(bytes.name(), "no mesh format that is known; use OFF, STL, PLY or OBJ");

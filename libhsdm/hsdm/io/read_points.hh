@@ -15,7 +15,7 @@ struct ReadOptions {
     std::string format;
     /// Tables only: what each column is, e.g. "x,y,z,nx,ny,nz,r,g,b,_" (`_` is skipped); empty: told by a
     /// header line, else from the values. Throws OptionError if it cannot be.
-    std::string columns;
+    std::string columns{};
 };
 
 /// The values of ReadOptions::format, which are also the extensions known: "ply", "pcd", "xyz" and "csv",
@@ -29,7 +29,7 @@ struct PointFile {
     std::size_t faces = 0; ///< faces in the file, which were skipped
     /// Tables whose columns were told from their values alone: what each was taken for, e.g.
     /// "x,y,z,nx,ny,nz", so that whoever knows better can say so in ReadOptions::columns. Else empty.
-    std::string columns;
+    std::string columns{};
 };
 
 /// Throws OptionError for options that do not fit it. read_points() does so too.
