@@ -11,6 +11,7 @@
 #include "hsdm/version.hh"
 
 #include <iostream>
+#include <new>
 
 namespace hsdm::command {
 namespace {
@@ -25,7 +26,9 @@ int status_of(const Run& run) {
     try {
         const int status = run();
         std::cout.flush();
-        if (!std::cout) throw Error("standard output", "could not be written; is the reader still there?");
+        if (!std::cout)
+            throw Error("standard output",
+                        "could not be written; is the reader still there, and room on the disk?");
         return status;
     } catch (const UsageError& error) {
         complain(error.what());
@@ -34,9 +37,6 @@ int status_of(const Run& run) {
     } catch (const OptionError& error) {
         complain(message_of(error));
         return wrong_usage;
-    } catch (const std::bad_alloc&) {
-        complain_of_memory();
-        return failed;
     } catch (const std::exception& error) {
         complain(message_of(error));
         return failed;
@@ -45,10 +45,15 @@ int status_of(const Run& run) {
 
 /// What a run that was killed left, and this one found in its way, is not removed in silence.
 int guarded(const Run& run) {
-    const int status = status_of(run);
-    for (const std::string& left : take_removed_leftovers())
-        complain("removed " + left + ", left by a run that was killed");
-    return status;
+    try {
+        const int status = status_of(run);
+        for (const std::string& left : take_removed_leftovers())
+            complain("removed " + left + ", left by a run that was killed");
+        return status;
+    } catch (const std::bad_alloc&) { // there was none for a message either
+        complain_of_memory();
+        return failed;
+    }
 }
 
 /// The subcommand's status, or the one that the arguments deserve.

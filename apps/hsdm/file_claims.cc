@@ -2,9 +2,12 @@
 
 #include "command.hh"
 
+#include "hsdm/errors.hh"
 #include "hsdm/io/output_target.hh"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <tuple>
 #include <utility>
@@ -27,6 +30,11 @@ bool status_of(const std::string& path, int standard, struct stat& status) {
     return path == "-" ? ::fstat(standard, &status) == 0 : ::stat(path.c_str(), &status) == 0;
 }
 
+/// For a file that cannot be told from others.
+[[noreturn]] void fail(const std::string& path, const std::string& cause) {
+    throw Error(path, "cannot be looked at: " + cause + "; check the permissions of its folders");
+}
+
 } // namespace
 
 void FileClaims::add(Claim claim, const std::string& path, int standard) {
@@ -36,12 +44,16 @@ void FileClaims::add(Claim claim, const std::string& path, int standard) {
         claim.two_way = S_ISCHR(status.st_mode) || S_ISSOCK(status.st_mode);
     } else {
         if (path == "-") return; // closed: reading or writing will say so
-        std::error_code ignored;
-        fs::path above = fs::weakly_canonical(fs::absolute(find_target(path).path), ignored), below;
+        if (errno != ENOENT && errno != ENOTDIR) fail(path, std::strerror(errno));
+        std::error_code error;
+        fs::path above = fs::weakly_canonical(fs::absolute(find_target(path).path), error), below;
+        if (error) fail(path, error.message());
         do {
             below = above.filename() / below;
             above = above.parent_path();
-        } while (::stat(above.c_str(), &status) != 0 && above.has_relative_path());
+            if (::stat(above.c_str(), &status) == 0) break;
+            if (!above.has_relative_path()) fail(path, std::strerror(errno));
+        } while (true);
         claim.below = below.string();
     }
     claim.device = status.st_dev;

@@ -84,6 +84,16 @@ ToMeshResult read_input(const std::string& input) {
     return built;
 }
 
+/// Throws Error that names the mesh too.
+std::string process(const std::string& input, const Plugin& plugin, PolyMesh& mesh,
+                    const PluginRequest& request) {
+    try {
+        return plugin.process(mesh, request.options);
+    } catch (const Error& error) {
+        throw Error(input, error.what());
+    }
+}
+
 int run_process(const ProcessArguments& a) {
     if (a.list) return list_modules();
     std::error_code ignored;
@@ -101,7 +111,7 @@ int run_process(const ProcessArguments& a) {
     for (std::size_t i = 0; i < steps.size(); ++i) {
         const auto& [plugin, request] = steps[i];
         set_phase(a.modules[i].c_str());
-        const std::string summary = plugin.process(built.mesh, request.options);
+        const std::string summary = process(a.input, plugin, built.mesh, request);
         if (!a.quiet) text << printable(plugin.name() + ": " + summary) << std::endl;
     }
     set_phase("write");

@@ -51,7 +51,9 @@ void make_folder(const std::string& folder) {
     if (folder.empty()) return;
     std::error_code error;
     fs::create_directories(folder, error);
-    if (error || !fs::is_directory(folder, error)) throw Error(folder, "the folder cannot be made");
+    if (error || !fs::is_directory(folder, error))
+        throw Error(folder, "the folder cannot be made" + (error ? ": " + error.message() : std::string())
+                                + "; check the permissions of the one above");
     if (access(folder.c_str(), W_OK | X_OK) != 0)
         throw Error(folder, "the folder cannot be written; check its permissions");
 }

@@ -87,10 +87,10 @@ void print_row(std::ostream& out, const Case& one, const Outcome& outcome, int w
         outcome.report.is_null() ? nullptr : find_key(outcome.report, "error.normalised_max");
     std::ostringstream percent;
     if (error != nullptr) percent << std::setprecision(3) << 100 * error->get<double>();
-    out << (outcome.misses.empty() ? "ok    " : "MISS  ") << std::left << std::setw(width) << printable(one.name)
-        << std::right << std::setw(10) << count("mesh.faces") << std::setw(8) << count("mesh.closed")
-        << std::setw(7) << count("mesh.genus") << std::setw(10) << percent.str() << std::setw(9) << std::fixed
-        << std::setprecision(2) << outcome.seconds << std::defaultfloat << '\n';
+    out << (outcome.misses.empty() ? "ok    " : "MISS  ") << std::left << std::setw(width)
+        << printable(one.name) << std::right << std::setw(10) << count("mesh.faces") << std::setw(8)
+        << count("mesh.closed") << std::setw(7) << count("mesh.genus") << std::setw(10) << percent.str()
+        << std::setw(9) << std::fixed << std::setprecision(2) << outcome.seconds << std::defaultfloat << '\n';
     for (const std::string& reason : outcome.misses) out << "      " << printable(reason) << '\n';
     out << std::flush;
 }

@@ -1,6 +1,8 @@
 #include "hsdm/io/file_registry.hh"
 
 #include <algorithm>
+#include <cstddef>
+#include <new>
 #include <utility>
 
 #include <unistd.h>
@@ -8,7 +10,9 @@
 namespace hsdm {
 
 FileRegistry& FileRegistry::of_process() {
-    static FileRegistry* const registry = new FileRegistry;
+    // Made without memory, for it may be asked for first where none is left, and never destroyed.
+    alignas(FileRegistry) static std::byte place[sizeof(FileRegistry)];
+    static FileRegistry* const registry = new (place) FileRegistry;
     return *registry;
 }
 

@@ -35,8 +35,11 @@ std::optional<int> own_descriptor(const fs::path& path) {
 }
 
 void check_folder(const std::string& path, const fs::path& folder) {
-    std::error_code ignored;
-    if (!fs::is_directory(folder, ignored)) throw Error(path, "the folder does not exist; make it first");
+    std::error_code error;
+    const fs::file_status status = fs::status(folder, error);
+    if (status.type() == fs::file_type::none)
+        throw Error(path, "the folder cannot be looked at: " + error.message() + "; check its permissions");
+    if (!fs::is_directory(status)) throw Error(path, "the folder does not exist; make it first");
     if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0)
         throw Error(path, "the folder cannot be written; check its permissions");
 }

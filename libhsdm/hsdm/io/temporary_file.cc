@@ -73,10 +73,10 @@ Leftovers find_in(const fs::path& folder) {
     return found;
 }
 
-/// True if the name still stands for this file: a process that took it for left behind may have removed it.
-bool still_named(int descriptor) {
+/// True if no name stands for this file any more: a process that took it for left behind has removed it.
+bool is_removed(int descriptor) {
     struct stat status {};
-    return ::fstat(descriptor, &status) == 0 && status.st_nlink > 0;
+    return ::fstat(descriptor, &status) == 0 && status.st_nlink == 0;
 }
 
 bool remove_if_left(const fs::path& path) {
@@ -84,7 +84,7 @@ bool remove_if_left(const fs::path& path) {
     if (descriptor < 0) return false;
     struct stat status {};
     const bool removed = ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode)
-                         && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && still_named(descriptor)
+                         && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && !is_removed(descriptor)
                          && ::unlink(path.c_str()) == 0;
     ::close(descriptor);
     return removed;
@@ -103,7 +103,7 @@ TemporaryFile make_temporary(const fs::path& target, unsigned mode) {
         if (made.descriptor >= 0) {
             while (::flock(made.descriptor, LOCK_EX) != 0 && errno == EINTR) {
             } // without locks: as it is
-            if (still_named(made.descriptor)) return made;
+            if (!is_removed(made.descriptor)) return made;
             ::close(made.descriptor);
         }
         registry.drop_temporary(made.path);
