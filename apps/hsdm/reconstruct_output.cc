@@ -7,6 +7,8 @@
 #include "hsdm/io/output_target.hh"
 #include "hsdm/io/write_om.hh"
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <unistd.h>
 
@@ -55,7 +57,8 @@ void make_folder(const std::string& folder) {
         throw Error(folder, "the folder cannot be made" + (error ? ": " + error.message() : std::string())
                                 + "; check the permissions of the one above");
     if (access(folder.c_str(), W_OK | X_OK) != 0)
-        throw Error(folder, "the folder cannot be written; check its permissions");
+        throw Error(folder, std::string("the folder cannot be written: ") + std::strerror(errno)
+                                + "; check its permissions");
 }
 
 } // namespace

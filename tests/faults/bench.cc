@@ -224,8 +224,9 @@ std::string Bench::broken_message(const Outcome& outcome, const Fault& fault) co
     // The streams of the C++ library keep no cause.
     if (fault.kind != Kind::print && !contains_words(text, cause))
         return "the cause is not named (" + cause + ")";
-    if (memory
-        || fault.lasting) { // where more than one call fails, the first need not be the one that counts
+    const bool of_folder = plan_->path == folder_.path() || plan_->path == std::string(".");
+    // Where more than one call fails, the first need not be the one that counts.
+    if (memory || fault.lasting || of_folder) {
         if (memory && !plan_->after_open) return "";
         if (contains(text, "standard ") || contains(text, "<std")) return "";
         for (const auto* files : {&before_, &clean_.files})
@@ -248,7 +249,9 @@ std::string Bench::broken_promise(const Fault& fault) {
     ++runs_;
     done_in_spite_ += outcome.status == 0;
     std::string reason;
-    if (!plan_->hit)
+    // The digits of measured seconds change how often texts grow at the end of a run.
+    const bool may_be_missed = fault.kind == Kind::memory && fault.at + 32 > calls(Kind::memory);
+    if (!plan_->hit && !may_be_missed)
         reason = "no such call came: runs differ";
     else if (outcome.status == -1)
         reason = "it did not end";

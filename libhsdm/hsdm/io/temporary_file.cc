@@ -5,10 +5,12 @@
 #include <atomic>
 #include <cerrno>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <string_view>
 #include <utility>
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -63,10 +65,12 @@ using Leftovers = std::multimap<std::string, fs::path, std::less<>>;
 
 Leftovers find_in(const fs::path& folder) {
     Leftovers found;
-    std::error_code error;
-    for (fs::directory_iterator entry(folder.empty() ? "." : folder, error), end; !error && entry != end;
-         entry.increment(error)) {
-        const std::string name = entry->path().filename().string();
+    // Not by std::filesystem: its iterator ends the process if there is no memory for the next name.
+    const auto close = [](DIR* open) { ::closedir(open); };
+    const std::unique_ptr<DIR, decltype(close)> names(::opendir(folder.empty() ? "." : folder.c_str()),
+                                                      close);
+    while (const dirent* const entry = names ? ::readdir(names.get()) : nullptr) {
+        const std::string name = entry->d_name;
         const std::string_view target = target_of(name);
         if (!target.empty()) found.emplace(target, folder / name);
     }
