@@ -476,10 +476,11 @@ void reconstruct_level(InputCloud& cloud, Decomposition& decomposition, int dept
     result.report = std::move(report);
 }
 
-Reconstruction failed_level(const Report& report, int depth, const std::exception& error,
+Reconstruction failed_level(const Decomposition& decomposition, int depth, const std::exception& error,
                             const Phases& phases) {
     Reconstruction result;
-    result.report = report;
+    result.report = decomposition.report;
+    tell_in_cloud_units(decomposition.frame, result.mesh, result.report);
     result.report.grid.depth = depth;
     result.report.failure = dynamic_cast<const std::bad_alloc*>(&error)
                                 ? std::string("out of memory in phase ") + phases.current()
@@ -529,7 +530,7 @@ void run(InputCloud& cloud, const ReconstructOptions& options, std::optional<std
             throw;
         } catch (const std::exception& error) {
             if (++failures == results.size()) throw;
-            results[i] = failed_level(decomposition.report, depth, error, phases);
+            results[i] = failed_level(decomposition, depth, error, phases);
         }
         results[i].report.seconds.total =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - level_start).count();

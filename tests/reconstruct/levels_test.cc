@@ -84,7 +84,7 @@ TEST_CASE("the stage for OpenMesh's meshes gives the mesh of the free function",
 
 TEST_CASE("a level without a facet says so and leaves the others; if none has any it is an error",
           "[reconstruct]") {
-    const PointCloud cloud = scan(support::sphere(1), 4000);
+    const PointCloud cloud = scan(support::sphere(1e12), 4000); // stages work in a unit of their own
     ReconstructOptions options;
     options.method = Method::basic;
     const std::vector<Reconstruction> levels = reconstruct_levels(cloud, 4, 9, options); // 9: a voxel a point
@@ -94,6 +94,7 @@ TEST_CASE("a level without a facet says so and leaves the others; if none has an
     CHECK(levels[5].report.failure.find("no facet") != std::string::npos);
     CHECK(levels[5].report.grid.depth == 9);
     CHECK(levels[5].report.input.points == 4000);
+    CHECK(levels[5].report.input.spacing == levels[0].report.input.spacing);
     CHECK(levels[5].mesh.n_vertices() == 0);
     CHECK(to_json(levels[5].report).find("failure") != std::string::npos);
     CHECK(to_json(levels[0].report).find("failure") == std::string::npos);
