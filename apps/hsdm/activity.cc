@@ -35,7 +35,8 @@ const char* current_phase() noexcept {
 }
 
 std::string message_of(const std::exception& error) {
-    if (dynamic_cast<const Error*>(&error) || dynamic_cast<const OptionError*>(&error)) return words_of(error);
+    if (dynamic_cast<const Error*>(&error) || dynamic_cast<const OptionError*>(&error))
+        return words_of(error);
     const std::string file = current_file(), in_phase = std::string(" in phase ") + current_phase();
     const std::string prefix = file.empty() ? "" : file + ": ";
     if (dynamic_cast<const std::bad_alloc*>(&error) || dynamic_cast<const std::length_error*>(&error))

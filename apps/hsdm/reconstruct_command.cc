@@ -2,6 +2,7 @@
 
 #include "activity.hh"
 #include "command.hh"
+#include "messages.hh"
 #include "reconstruct_arguments.hh"
 #include "reconstruct_output.hh"
 #include "summary.hh"
@@ -45,7 +46,7 @@ auto named(const std::string& name, const Make& make) {
     } catch (const Error& error) {
         throw Error(name, error.what());
     } catch (const OptionError& error) {
-        throw OptionError(name + ": " + error.what());
+        throw OptionError(words_of(error) + " (" + name + ")");
     }
 }
 

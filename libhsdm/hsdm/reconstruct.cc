@@ -3,6 +3,7 @@
 #include "hsdm/adaptive/adaptive_grid.hh"
 #include "hsdm/chunks.hh"
 #include "hsdm/extended_method.hh"
+#include "hsdm/facets/drop_unsound.hh"
 #include "hsdm/facets/to_mesh.hh"
 #include "hsdm/facets/turn_outward.hh"
 #include "hsdm/features/features.hh"
@@ -420,6 +421,24 @@ std::size_t peak_memory() {
     return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
 }
 
+/// Throws Error if there are none.
+void check_facets(const PolygonMesh& facets, const OctreeLevel& level) {
+    if (facets.facet_count() == 0)
+        throw Error("no facet came out of " + std::to_string(level.size()) + " voxels at depth "
+                    + std::to_string(level.depth)
+                    + "; try another depth, or check that the points sample a surface");
+}
+
+void leave_out_unsound(const MethodInput& in, PolygonMesh& facets, FacetKnowledge& known, Report& report) {
+    if (!known.links) known.links = link_facets(facets);
+    Discarded unsound = drop_unsound(facets, in.octree.origin, in.frame, *known.links, known.hints);
+    report.rejected["facets_unsound"] = unsound.count;
+    if (unsound.count == 0) return;
+    known.cells.reset();
+    unsound.first += in.octree.origin;
+    note_dropped("facets that enclose nothing or have no area", unsound, in.frame, report);
+}
+
 /// Phases 2 and 3 on one level of a decomposition; on the `last` one what is not needed any more is let go.
 void reconstruct_level(InputCloud& cloud, Decomposition& decomposition, int depth, bool last,
                        const ReconstructOptions& options, const Phases& phases, Reconstruction& result) {
@@ -442,10 +461,7 @@ void reconstruct_level(InputCloud& cloud, Decomposition& decomposition, int dept
         decomposition.release_normals();
         cloud.release_attributes();
     }
-    if (facets.facet_count() == 0)
-        throw Error("no facet came out of " + std::to_string(level.size()) + " voxels at depth "
-                    + std::to_string(depth)
-                    + "; try another depth, or check that the points sample a surface");
+    check_facets(facets, level);
     std::vector<Vec3> as_read;
     if (decomposition.has_moved() && (options.measure || wants_adaptive(options)))
         as_read = points_as_read(*cloud, decomposition.frame, octree);
@@ -457,6 +473,8 @@ void reconstruct_level(InputCloud& cloud, Decomposition& decomposition, int dept
         });
         known = {}; // of the fine facets
     }
+    leave_out_unsound(input, facets, known, report);
+    check_facets(facets, level);
     phases.run("error", 0.6, seconds.error, [&] { drop_and_measure(points, input, facets, known, report); });
 
     as_read = std::vector<Vec3>();

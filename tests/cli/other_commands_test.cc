@@ -9,24 +9,7 @@
 using namespace hsdm;
 using namespace hsdm::test;
 using Json = nlohmann::json;
-
-namespace {
-
 namespace fs = std::filesystem;
-
-/// Copies the modules of the build, where others may write, into the folder; returns what makes them known.
-std::string with_modules(const Folder& folder) {
-    fs::create_directories(folder / "modules");
-    fs::permissions(folder / "modules", fs::perms::owner_all);
-    for (const auto& file : fs::directory_iterator(HSDM_MODULE_DIR)) {
-        const std::string copy = folder / ("modules/" + file.path().filename().string());
-        fs::copy_file(file.path(), copy);
-        fs::permissions(copy, fs::perms::owner_all);
-    }
-    return "HSDM_PLUGIN_PATH=modules";
-}
-
-} // namespace
 
 TEST_CASE("info tells a cloud from a mesh and measures both", "[cli]") {
     const Folder folder;

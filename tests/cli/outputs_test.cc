@@ -86,7 +86,8 @@ TEST_CASE("process and regress destroy neither mesh nor suite nor cloud", "[cli]
     const Folder folder;
     folder.write("scan.xyz", xyz(sphere_scan(500)));
     REQUIRE(run(folder, "reconstruct scan.xyz --depth 3 --quiet -o m.off").status == 0);
-    const std::string process = "process m.off --module classify-features ";
+    with_modules(folder);
+    const std::string process = "process m.off --module ./modules/classify-features.so ";
     check_refused(folder, process + "-o ./m.off", {"-o ./m.off", "the mesh m.off", "--in-place"});
     check_refused(folder, process + "-o other.off --in-place", {"--in-place"});
     CHECK(run(folder, process + "-o m.off --in-place --quiet").status == 0);

@@ -48,6 +48,18 @@ CommandResult run(const Folder& folder, const std::string& arguments, const std:
     return result;
 }
 
+std::string with_modules(const Folder& folder) {
+    namespace fs = std::filesystem;
+    fs::create_directories(folder / "modules");
+    fs::permissions(folder / "modules", fs::perms::owner_all);
+    for (const auto& file : fs::directory_iterator(HSDM_MODULE_DIR)) {
+        const std::string copy = folder / ("modules/" + file.path().filename().string());
+        fs::copy_file(file.path(), copy);
+        fs::permissions(copy, fs::perms::owner_all);
+    }
+    return "HSDM_PLUGIN_PATH=modules";
+}
+
 std::string read_file(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     std::ostringstream text;

@@ -32,6 +32,10 @@ private:
 /// name. `before` stands in front of it, e.g. `cat scan.xyz |`.
 CommandResult run(const Folder& folder, const std::string& arguments, const std::string& before = "");
 
+/// Copies the modules of the build, where others may write, into `modules` in the folder; returns what makes
+/// them known, to stand before the command.
+std::string with_modules(const Folder& folder);
+
 std::string read_file(const std::string& path);
 bool exists(const std::string& path);
 

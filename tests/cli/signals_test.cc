@@ -66,9 +66,11 @@ TEST_CASE("a signal is not kept waiting by work without end", "[cli]") {
 TEST_CASE("a signal is not kept waiting by pipes", "[cli]") {
     const Folder folder;
     folder.write("scan.xyz", xyz(sphere_scan(500)));
-    for (const char* arguments : {"info wait", "compare wait scan.xyz", "compare scan.xyz wait",
-                                  "regress wait", "process wait --module classify-features -o a.off",
-                                  "reconstruct scan.xyz --depth 3 -o wait --format off --quiet"}) {
+    with_modules(folder);
+    for (const char* arguments :
+         {"info wait", "compare wait scan.xyz", "compare scan.xyz wait", "regress wait",
+          "process wait --module ./modules/classify-features.so -o a.off",
+          "reconstruct scan.xyz --depth 3 -o wait --format off --quiet"}) {
         INFO(arguments);
         const CommandResult result = end_by(folder, "INT", arguments, catching);
         CHECK(result.status == 130);

@@ -152,11 +152,9 @@ TEST_CASE("the progress bar is wiped before the summary is printed", "[cli]") {
     const std::string shown = read_file(folder / "terminal");
     const std::string wiped = "\r\x1b[K";
     REQUIRE(shown.find('%') != std::string::npos);
-    for (const char* line : {"a.d3.off: ", "a.d4.off: "}) {
-        const std::size_t at = shown.find(line);
-        REQUIRE((at != std::string::npos && at >= wiped.size()));
-        CHECK(shown.substr(at - wiped.size(), wiped.size()) == wiped);
-    }
+    const std::size_t at = shown.find("a.d3.off: ");
+    REQUIRE((at != std::string::npos && at >= wiped.size()));
+    CHECK(shown.substr(at - wiped.size(), wiped.size()) == wiped);
 }
 
 TEST_CASE("info and compare drop the points that reconstruct drops, and say how many", "[cli]") {
@@ -254,29 +252,8 @@ TEST_CASE("JSON holds no null: what is not finite is left out", "[cli]") {
     CHECK_FALSE(huge["mesh"].contains("signed_volume"));
 }
 
-TEST_CASE("a suite that is none is refused with the place, in words of the command", "[cli]") {
+TEST_CASE("what a suite's cases ask for wrongly is told in words of the command", "[cli]") {
     const Folder folder;
-    const std::pair<const char*, const char*> wrong[] = {
-        {"{\"cases\":\n\n [}", "suite.json:3: is not JSON"},
-        {"", "suite.json:1: is not JSON"},
-        {"[]", "a list `cases`"},
-        {R"({"cases": 1})", "a list `cases`"},
-        {R"({"cases": [1]})", "case 1: must be an object"},
-        {R"({"cases": [{}]})", "case 1: `input` must be the name of a file"},
-        {R"({"cases": [{"input": 3}]})", "case 1: `input` must be the name of a file"},
-        {R"({"cases": [{"input": "a", "args": "--depth"}]})", "case 1: `args` must be a list of texts"},
-        {R"({"cases": [{"input": "a", "name": 1}]})", "case 1: `name` must be a text"},
-        {R"({"cases": [{"input": "a", "expect": []}]})", "expect must be an object"},
-        {R"({"cases": [], "root": 1})", "`root` must be the name of a folder"},
-    };
-    for (const auto& [content, reason] : wrong) {
-        folder.write("suite.json", content);
-        const CommandResult result = run(folder, "regress suite.json");
-        INFO(content);
-        CHECK(result.status == 1);
-        CHECK_THAT(result.err,
-                   StartsWith("hsdm: suite.json") && Contains(reason) && !Contains("json.exception"));
-    }
     CHECK_THAT(run(folder, "regress .").err, StartsWith("hsdm: .: is a directory"));
     folder.write("scan.xyz", xyz(sphere_scan(300)));
     folder.write("suite.json", R"({"cases": [{"input": "scan.xyz", "args": ["--depth", "99"]},

@@ -152,14 +152,6 @@ std::size_t count_boundary_loops(const Loops& loops, const EdgeGroups& groups, F
     return count;
 }
 
-double polygon_area(const PolygonMesh& mesh, std::span<const Index> facet) {
-    const std::vector<Vec3>& p = mesh.positions;
-    double twice = 0;
-    for (std::size_t i = 1; i + 1 < facet.size(); ++i)
-        twice += ((p[facet[i]] - p[facet[0]]) % (p[facet[i + 1]] - p[facet[0]])).norm();
-    return twice / 2;
-}
-
 std::vector<Index> sorted_set(std::span<const Index> facet) {
     std::vector<Index> sorted(facet.begin(), facet.end());
     std::sort(sorted.begin(), sorted.end());
@@ -175,22 +167,18 @@ bool repeats_vertex(std::span<const Index> f) {
     return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
 }
 
-bool is_degenerate(const PolygonMesh& mesh, std::span<const Index> facet) {
-    if (facet.size() < 3) return true;
-    double longest = 0;
-    for (std::size_t i = 0; i < facet.size(); ++i) {
-        const Index next = facet[i + 1 == facet.size() ? 0 : i + 1];
-        longest = std::max(longest, (mesh.positions[next] - mesh.positions[facet[i]]).sqrnorm());
-    }
-    if (!(polygon_area(mesh, facet) > 1e-12 * longest)) return true;
-    return repeats_vertex(facet);
+bool is_degenerate(const PolygonMesh& mesh, std::span<const Index> facet, std::vector<Vec3>& ring) {
+    ring.clear();
+    for (Index v : facet) ring.push_back(mesh.positions[v]);
+    return has_no_area(ring) || repeats_vertex(facet);
 }
 
 std::size_t count_degenerate(const PolygonMesh& mesh) {
     std::vector<unsigned char> degenerate(mesh.facet_count());
     tbb::parallel_for(Range(0, degenerate.size(), chunk), [&](const Range& range) {
+        std::vector<Vec3> ring;
         for (std::size_t f = range.begin(); f != range.end(); ++f)
-            degenerate[f] = is_degenerate(mesh, mesh.facet(f));
+            degenerate[f] = is_degenerate(mesh, mesh.facet(f), ring);
     });
     return static_cast<std::size_t>(std::count(degenerate.begin(), degenerate.end(), 1));
 }
@@ -231,6 +219,28 @@ double chunked_sum(std::size_t n, Term term) {
 }
 
 } // namespace
+
+bool has_no_area(std::span<const Vec3> ring) {
+    constexpr double negligible = 1e-12; // of the longest side squared
+    if (ring.size() < 3) return true;
+    double size = 0;
+    for (const Vec3& p : ring) size = std::max(size, (p - ring[0]).max_abs());
+    if (!(size > 0) || !std::isfinite(size)) return true;
+    // In a unit near its size, by a power of two: neither products nor rounding depend on it.
+    const int exponent = -std::ilogb(size);
+    const auto from_first = [&](std::size_t i) {
+        Vec3 d = ring[i % ring.size()] - ring[0];
+        for (double& x : d) x = std::ldexp(x, exponent);
+        return d;
+    };
+    double longest = 0, twice = 0;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const Vec3 p = from_first(i), q = from_first(i + 1);
+        longest = std::max(longest, (q - p).sqrnorm());
+        twice += (p % q).norm();
+    }
+    return !(twice / 2 > negligible * longest);
+}
 
 /// About the centre of the box, so that a mesh far from the origin loses no digits.
 double signed_volume(const PolygonMesh& mesh) {

@@ -3,6 +3,8 @@
 
 #include "hsdm/polygon_mesh.hh"
 
+#include <span>
+
 namespace hsdm {
 
 struct Topology {
@@ -36,6 +38,10 @@ Topology measure_connectivity(const PolygonMesh& mesh);
 /// Volume enclosed by a closed mesh, negative if its facets face inwards; of an open one that of the cone
 /// over it from the centre of its box. O(facets), parallel; the same bits for any number of threads.
 double signed_volume(const PolygonMesh& mesh);
+
+/// Whether a polygon, by its corners, counts as degenerate: the triangles of its fan have less than 10^-12 of
+/// the square of its longest side together. The same for any scale, however small or large.
+bool has_no_area(std::span<const Vec3> ring);
 
 /// Shape of the facets (0 worst, 1 a square).
 struct FacetShape {

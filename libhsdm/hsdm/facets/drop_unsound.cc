@@ -1,0 +1,64 @@
+#include "hsdm/facets/drop_unsound.hh"
+
+#include "hsdm/chunks.hh"
+#include "hsdm/quality/topology.hh"
+
+#include <algorithm>
+#include <vector>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t facets_per_chunk = 1 << 12;
+
+/// The facets are over the same vertices. They share a side, or the test is not asked.
+bool are_over_the_same(std::span<const Index> a, std::span<const Index> b) {
+    return a.size() == b.size() && std::all_of(a.begin(), a.end(), [&](Index v) {
+               return std::find(b.begin(), b.end(), v) != b.end();
+           });
+}
+
+/// Is there a facet beside this one over the same vertices? Two over four vertices or fewer share a side.
+bool is_of_pillow(const PolygonMesh& mesh, const FacetLinks& links, std::size_t f) {
+    for (Index side = mesh.first[f]; side < mesh.first[f + 1]; ++side) {
+        const Index twin = links.twin[side];
+        if (twin != no_index && are_over_the_same(mesh.facet(f), mesh.facet(links.facet[twin]))) return true;
+    }
+    return false;
+}
+
+} // namespace
+
+Discarded drop_unsound(PolygonMesh& mesh, const Vec3& origin, const CloudFrame& frame, FacetLinks& links,
+                       FeatureHints& hints) {
+    std::vector<std::uint8_t> unsound(mesh.facet_count());
+    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        std::vector<Vec3> ring;
+        for (std::size_t f = begin; f < end; ++f) {
+            ring.clear();
+            for (Index v : mesh.facet(f)) ring.push_back(frame.to_cloud(mesh.positions[v] + origin));
+            unsound[f] = has_no_area(ring) || is_of_pillow(mesh, links, f);
+        }
+    });
+    Discarded dropped;
+    if (std::find(unsound.begin(), unsound.end(), 1) == unsound.end()) return dropped;
+    PolygonMesh kept;
+    std::vector<EdgeHint> sides;
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+        if (unsound[f]) {
+            dropped.add({1, mesh.positions[mesh.facet(f)[0]]});
+            continue;
+        }
+        kept.add_facet(mesh.facet(f));
+        if (!hints.sides.empty())
+            sides.insert(sides.end(), hints.sides.begin() + mesh.first[f],
+                         hints.sides.begin() + mesh.first[f + 1]);
+    }
+    mesh.corners = std::move(kept.corners);
+    mesh.first = std::move(kept.first);
+    hints.sides = std::move(sides);
+    links = link_facets(mesh);
+    return dropped;
+}
+
+} // namespace hsdm
