@@ -480,8 +480,8 @@ void reconstruct_level(InputCloud& cloud, Decomposition& decomposition, int dept
     as_read = std::vector<Vec3>();
     phases.run("mesh", 0.85, seconds.mesh, [&] {
         if (!known.links) known.links = link_facets(facets);
+        for (Vec3& p : facets.positions) p += octree.origin; // rounded there; a side is what it is then
         report.rejected["facets_turned"] = turn_outward(facets, *known.links, known.hints);
-        for (Vec3& p : facets.positions) p += octree.origin;
         const std::size_t rejected = to_mesh(facets, *known.links, result.mesh).rejected;
         report.rejected["to_mesh"] = rejected;
         if (rejected > 0) known.hints = {}; // they are counted by facets

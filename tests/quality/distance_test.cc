@@ -205,6 +205,33 @@ TEST_CASE("a triangle near enough is found just where there is one, wherever the
     }
 }
 
+TEST_CASE("a stray far from a mesh, or of it, takes no digit from the others", "[distance]") {
+    for (const double far : {1e6, 1e12, 1e30}) {
+        PolygonMesh mesh = random_triangles(300, 21);
+        const MeshDistance without(mesh);
+        const std::vector<Vec3> points = random_triangles(200, 22).positions;
+        std::vector<double> expected;
+        for (const Vec3& p : points) expected.push_back(without(p));
+        const auto first = static_cast<Index>(mesh.vertex_count());
+        for (int i = 0; i < 3; ++i) mesh.positions.push_back(Vec3(far, 0.1 * far * i, -far));
+        mesh.add_facet(std::array<Index, 3>{first, first + 1, first + 2});
+        const MeshDistance with(mesh);
+        for (std::size_t i = 0; i < points.size(); ++i)
+            CHECK(with(points[i])
+                  == Approx(expected[i]).margin(1e-15 * far)); // of the centre between the two
+        CHECK(with(Vec3(far, 0, -far)) <= 1e-15 * far);
+        CHECK(without(Vec3(far, 0, 0)) == Approx(far).epsilon(1e-4));
+    }
+}
+
+TEST_CASE("coordinates that are not finite are near nothing and read nothing that is not there",
+          "[distance]") {
+    const MeshDistance distance(random_triangles(17, 23));
+    constexpr double inf = std::numeric_limits<double>::infinity();
+    for (const Vec3& p : {Vec3(inf, 0, 0), Vec3(0, -inf, inf), Vec3(std::nan(""), 0, 0)})
+        CHECK(distance(p) == inf);
+}
+
 TEST_CASE("a point so far away that floats overflow has its distance", "[distance]") {
     for (const std::size_t triangles : {3u, 70u, 2000u}) {
         const PolygonMesh mesh = random_triangles(triangles, 14);

@@ -1,0 +1,45 @@
+#include "hsdm/quality/compare.hh"
+
+#include "hsdm/errors.hh"
+#include "support/sample.hh"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <limits>
+
+using namespace hsdm;
+
+namespace {
+
+PolygonMesh tetrahedron(double size) {
+    PolygonMesh mesh;
+    mesh.positions = {Vec3(0, 0, 0), Vec3(size, 0, 0), Vec3(0, size, 0), Vec3(0, 0, size)};
+    for (const auto& f : {std::array<Index, 3>{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}) mesh.add_facet(f);
+    return mesh;
+}
+
+PolygonMesh cloud(double size) {
+    PolygonMesh points;
+    points.positions = support::sample(support::sphere(1), {.points = 500}).positions;
+    for (Vec3& p : points.positions) p *= size;
+    return points;
+}
+
+} // namespace
+
+TEST_CASE("what is compared may have any size", "[compare]") {
+    const Comparison one = compare(tetrahedron(1), cloud(1));
+    const double factor = std::ldexp(1.0, GENERATE(-1000, -300, 130, 665, 1000));
+    const Comparison other = compare(tetrahedron(factor), cloud(factor));
+    CHECK(other.a_to_b.max == one.a_to_b.max * factor);
+    CHECK(other.a_to_b.rms == one.a_to_b.rms * factor);
+    CHECK(other.b_to_a.mean == one.b_to_a.mean * factor);
+    CHECK(other.diagonal == one.diagonal * factor);
+}
+
+TEST_CASE("coordinates that are not finite are refused", "[compare]") {
+    PolygonMesh broken = cloud(1);
+    broken.positions[3][1] = std::numeric_limits<double>::quiet_NaN();
+    CHECK_THROWS_AS(compare(tetrahedron(1), broken), Error);
+}
