@@ -3,7 +3,7 @@
 //     hsdm_solids_sweep FIRST COUNT
 //
 // Prints the seeds that break one and a table by how they were scanned; status 1 if there is any. A program
-// and not a test, as a hundred thousand take a quarter of an hour.
+// and not a test, as a hundred thousand take half an hour.
 
 #include "hsdm/errors.hh"
 #include "hsdm/facets/to_mesh.hh"
@@ -27,7 +27,7 @@ using namespace hsdm;
 
 namespace {
 
-constexpr double voxel = 1.0 / 6;
+constexpr double voxel = 1.0 / 4;
 constexpr std::size_t ways = 4;
 
 struct Way {

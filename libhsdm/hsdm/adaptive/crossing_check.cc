@@ -16,9 +16,13 @@ constexpr std::size_t facets_per_chunk = 4096;
 /// the axes, so that a large box takes no longer than a small one.
 class BoxGrid {
 public:
-    /// All boxes lie inside.
-    explicit BoxGrid(const Box& whole) : lo_(whole.lo), counts_(std::size_t{1} << 3 * bits, 0) {
-        for (unsigned k = 0; k < 3; ++k) scale_[k] = whole.size()[k] > 0 ? cells / whole.size()[k] : 0;
+    /// All boxes lie inside. Cells follow their number: to clear many for a few would take longer than these.
+    BoxGrid(const Box& whole, std::size_t boxes) : lo_(whole.lo) {
+        constexpr unsigned least_bits = 2, most_bits = 6;
+        for (bits_ = least_bits; bits_ < most_bits && std::size_t{1} << 3 * bits_ < boxes; ++bits_) continue;
+        counts_.assign(std::size_t{1} << 3 * bits_, 0);
+        for (unsigned k = 0; k < 3; ++k)
+            scale_[k] = whole.size()[k] > 0 ? static_cast<double>(side() - 1) / whole.size()[k] : 0;
     }
 
     void add(const Box& box) {
@@ -28,7 +32,7 @@ public:
     /// Of boxes over each cell, then of covered cells before each.
     void sum_up() {
         add_along_axes();
-        constexpr std::size_t next = 1 + side + side * side; // in all directions; no box has the last cells
+        const std::size_t next = 1 + side() + side() * side(); // in all directions; no box has the last cells
         for (std::size_t i = counts_.size(); i-- > 0;) counts_[i] = i >= next && counts_[i - next] > 0;
         add_along_axes();
     }
@@ -40,11 +44,10 @@ public:
     }
 
 private:
-    static constexpr unsigned bits = 6;
-    static constexpr std::size_t side = std::size_t{1} << bits, cells = side - 1;
+    std::size_t side() const { return std::size_t{1} << bits_; }
 
     std::size_t cell_of(double x, unsigned axis) const {
-        return std::min(static_cast<std::size_t>((x - lo_[axis]) * scale_[axis]), cells - 1);
+        return std::min(static_cast<std::size_t>((x - lo_[axis]) * scale_[axis]), side() - 2);
     }
 
     /// The cells at the lower ends of a box and behind the upper ones; 1 or -1 as a sum over it has them.
@@ -55,7 +58,7 @@ private:
             int sign = 1;
             for (unsigned k = 0; k < 3; ++k) {
                 const bool upper = corner >> k & 1;
-                at |= (upper ? cell_of(box.hi[k], k) + 1 : cell_of(box.lo[k], k)) << bits * k;
+                at |= (upper ? cell_of(box.hi[k], k) + 1 : cell_of(box.lo[k], k)) << bits_ * k;
                 if (!upper) sign = -sign;
             }
             visit(at, sign);
@@ -63,18 +66,19 @@ private:
     }
 
     void add_along_axes() {
-        for (unsigned shift = 0; shift < 3 * bits; shift += bits)
+        for (unsigned shift = 0; shift < 3 * bits_; shift += bits_)
             for (std::size_t i = 0; i < counts_.size(); ++i)
-                if (i >> shift & (side - 1)) counts_[i] += counts_[i - (std::size_t{1} << shift)];
+                if (i >> shift & (side() - 1)) counts_[i] += counts_[i - (std::size_t{1} << shift)];
     }
 
     Vec3 lo_, scale_;
+    unsigned bits_; // of a cell's place along an axis
     std::vector<std::int32_t> counts_;
 };
 
 /// Marked facets and those whose boxes may touch theirs, ascending.
 std::vector<Index> with_touching(const PolygonMesh& mesh, const std::vector<std::uint8_t>& marked) {
-    BoxGrid grid(bounds_of(mesh.positions));
+    BoxGrid grid(bounds_of(mesh.positions), mesh.facet_count());
     for (std::size_t f = 0; f < marked.size(); ++f)
         if (marked[f]) grid.add(box_of(mesh, f));
     grid.sum_up();
