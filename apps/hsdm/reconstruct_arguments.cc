@@ -2,6 +2,8 @@
 
 #include "usage.hh"
 
+#include "hsdm/errors.hh"
+
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -256,6 +258,27 @@ std::optional<std::pair<int, int>> ReconstructArguments::level_range() const {
         }
     }
     throw UsageError("--levels " + levels + ": two depths with a colon between them are wanted, e.g. 4:7");
+}
+
+ReconstructOptions case_options(const std::string& name, const std::vector<std::string>& words,
+                                ReadOptions& read) {
+    CLI::App app("", "a case");
+    ReconstructArguments arguments;
+    add_method_options(app, arguments);
+    add_text_options(app, arguments);
+    std::vector<std::string> last_first(words.rbegin(), words.rend()); // as CLI11 takes them
+    try {
+        app.parse(last_first);
+    } catch (const CLI::ParseError& error) {
+        throw Error(name, "args: " + fault_of(app, error));
+    }
+    if (!arguments.levels.empty()) throw Error(name, "args: --levels makes several meshes; give one --depth");
+    read = arguments.read;
+    try {
+        return arguments.options();
+    } catch (const UsageError& error) {
+        throw Error(name, error.what());
+    }
 }
 
 } // namespace hsdm::command

@@ -52,4 +52,9 @@ void add_text_options(CLI::App& app, ReconstructArguments& arguments);
 /// Inputs, outputs and messages.
 void add_file_options(CLI::App& app, ReconstructArguments& arguments);
 
+/// What the `args` of a suite's case ask of the library and the reader, through the same parser. Throws Error
+/// that begins with the case's name.
+ReconstructOptions case_options(const std::string& name, const std::vector<std::string>& words,
+                                ReadOptions& read);
+
 } // namespace hsdm::command

@@ -7,7 +7,6 @@
 #include "messages.hh"
 #include "reconstruct_arguments.hh"
 #include "suite_file.hh"
-#include "usage.hh"
 
 #include "hsdm/errors.hh"
 #include "hsdm/io/output_target.hh"
@@ -30,34 +29,12 @@ struct Outcome {
     double seconds = 0;
 };
 
-/// The case's arguments through the same parser as the command line's.
-ReconstructOptions options_of(const Case& one, ReadOptions& read) {
-    CLI::App app("", "a case");
-    ReconstructArguments arguments;
-    add_method_options(app, arguments);
-    add_text_options(app, arguments);
-    std::vector<std::string> words(one.arguments.rbegin(), one.arguments.rend());
-    try {
-        app.parse(words);
-    } catch (const CLI::ParseError& error) {
-        throw Error(one.name, "args: " + fault_of(app, error));
-    }
-    if (!arguments.levels.empty())
-        throw Error(one.name, "args: --levels makes several meshes; give one --depth");
-    read = arguments.read;
-    try {
-        return arguments.options();
-    } catch (const UsageError& error) {
-        throw Error(one.name, error.what());
-    }
-}
-
 Outcome run_case(const Case& one) {
     Outcome outcome;
     const auto start = std::chrono::steady_clock::now();
     try {
         ReadOptions read;
-        ReconstructOptions options = options_of(one, read);
+        ReconstructOptions options = case_options(one.name, one.arguments, read);
         options.progress = [](const char* phase, double) {
             set_phase(phase);
             return true;

@@ -1,0 +1,102 @@
+// The same bits from every compiler, build type and number of threads: those that testdata/hashes.txt keeps
+// for the measurement suites.
+
+#include "hashes/kept_hashes.hh"
+
+#include "reconstruct_arguments.hh"
+#include "suite_file.hh"
+
+#include "hsdm/io/read_points.hh"
+#include "hsdm/io/source_bytes.hh"
+#include "hsdm/reconstruct.hh"
+
+#include <catch2/catch.hpp>
+#include <tbb/global_control.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+using namespace hsdm;
+using namespace hsdm::test;
+using command::Case;
+
+namespace {
+
+constexpr const char* kept_path = HSDM_TESTDATA_DIR "/hashes.txt";
+
+struct SuiteCase {
+    std::string name; ///< with the suite
+    Case what;
+};
+
+/// Of the suites that are there.
+std::vector<SuiteCase> measurement_cases() {
+    std::vector<SuiteCase> cases;
+    for (const char* suite : {"data/suite.json", "data/crowd/suite.json"}) {
+        const std::string path = std::string(HSDM_SHARED_DIR "/") + suite;
+        if (!std::filesystem::exists(path)) {
+            WARN("skipped, for there is no " << path);
+            continue;
+        }
+        const io::SourceBytes text = io::SourceBytes::open(path);
+        for (Case& one : command::parse_suite(std::string(text.view()), path))
+            cases.push_back({std::string(suite) + ' ' + one.name, std::move(one)});
+    }
+    return cases;
+}
+
+/// With so many threads, even if there are fewer cores; 0: as many as there are.
+MeshHash result_of(const Case& one, int threads = 0) {
+    ReadOptions read;
+    ReconstructOptions options = command::case_options(one.name, one.arguments, read);
+    options.threads = threads;
+    options.measure = false; // the report's errors are of no concern here, but a third of the time
+    const Reconstruction result = reconstruct(read_points(one.input, read).cloud, options);
+    if (threads > 0) CHECK(result.report.threads == threads);
+    return hash_of(result.mesh);
+}
+
+/// Empty, or a line for each of the hashes that are not as kept.
+std::string changes(const std::vector<KeptHash>& found) {
+    const auto kept = read_hashes(kept_path);
+    std::string lines;
+    for (const KeptHash& one : found) {
+        const auto before = kept.find(one.name);
+        if (before == kept.end())
+            lines += "not kept   " + line_of(one) + '\n';
+        else if (before->second.geometry != one.hash.geometry)
+            lines += "geometry   " + line_of(one) + '\n';
+        else if (before->second.features != one.hash.features)
+            lines += "features   " + line_of(one) + '\n';
+    }
+    return lines;
+}
+
+constexpr const char* advice =
+    "Results changed. If they were meant to, renew testdata/hashes.txt: HSDM_WRITE_HASHES=FILE, see "
+    "CONTRIBUTING.md.\n";
+
+} // namespace
+
+TEST_CASE("the measurement suites' meshes have the bits that are kept", "[shared][slow]") {
+    std::vector<KeptHash> found;
+    for (const SuiteCase& one : measurement_cases()) found.push_back({one.name, result_of(one.what)});
+    if (const char* const path = std::getenv("HSDM_WRITE_HASHES")) return write_hashes(path, found);
+    const std::string changed = changes(found);
+    INFO(advice << changed);
+    CHECK(changed.empty());
+}
+
+TEST_CASE("the measurement suites' small clouds give these bits with any number of threads",
+          "[shared][slow]") {
+    const tbb::global_control more_than_cores(tbb::global_control::max_allowed_parallelism, 8);
+    constexpr std::uintmax_t small = 500000; // bytes
+    for (const SuiteCase& one : measurement_cases()) {
+        if (std::filesystem::file_size(one.what.input) > small) continue;
+        for (const int threads : {1, 2, 3, 5, 8}) {
+            const std::string changed = changes({{one.name, result_of(one.what, threads)}});
+            INFO(threads << " threads. " << advice << changed);
+            CHECK(changed.empty());
+        }
+    }
+}
