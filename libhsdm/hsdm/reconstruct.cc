@@ -357,7 +357,8 @@ void measure_error(std::span<const Vec3> points, const Octree& octree, const Pol
 /// the points of what is dropped too.
 void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, PolygonMesh& facets,
                       FacetKnowledge& known, Report& report) {
-    const auto& [octree, options] = std::tie(in.octree, in.options);
+    const Octree& octree = in.octree; // no structured bindings: clang 14 cannot capture them
+    const ReconstructOptions& options = in.options;
     bool measured = report.grid.max_error > 0;
     if (measured)
         measure_error(points, octree, facets, known, options.measure ? 0 : report.grid.max_error, report);
