@@ -42,27 +42,43 @@ CloudFrame CloudFrame::without_cuts() const {
     return frame;
 }
 
+Index CloudFrame::stretch_of_uncut(double uncut, unsigned axis) const {
+    const auto& stretches = stretches_[axis];
+    const auto after = std::upper_bound(stretches.begin(), stretches.end(), uncut,
+                                        [](double x, const Stretch& s) { return x < s.first; });
+    return static_cast<Index>(after - stretches.begin());
+}
+
+Index CloudFrame::stretch_of(double work, unsigned axis) const {
+    const auto& stretches = stretches_[axis];
+    const double x = work + widest_ / 2; // the middle of a gap parts its two sides
+    const auto after =
+        std::upper_bound(stretches.begin(), stretches.end(), x,
+                         [](double value, const Stretch& s) { return value < s.first - s.shift; });
+    return static_cast<Index>(after - stretches.begin());
+}
+
+std::array<Index, 3> CloudFrame::stretch_of_uncut(const Vec3& uncut) const {
+    return {stretch_of_uncut(uncut[0], 0), stretch_of_uncut(uncut[1], 1), stretch_of_uncut(uncut[2], 2)};
+}
+
+std::array<Index, 3> CloudFrame::stretch_of(const Vec3& work) const {
+    return {stretch_of(work[0], 0), stretch_of(work[1], 1), stretch_of(work[2], 2)};
+}
+
 Vec3 CloudFrame::to_work(const Vec3& cloud) const {
     Vec3 p = unit_ == 1 ? cloud : cloud * (1 / unit_);
-    for (unsigned k = 0; k < 3; ++k) {
-        const auto& stretches = stretches_[k];
-        const auto after = std::upper_bound(stretches.begin(), stretches.end(), p[k],
-                                            [](double x, const Stretch& s) { return x < s.first; });
-        if (after != stretches.begin()) p[k] -= std::prev(after)->shift;
-    }
+    for (unsigned k = 0; k < 3; ++k)
+        if (const Index stretch = stretch_of_uncut(p[k], k); stretch > 0)
+            p[k] -= stretches_[k][stretch - 1].shift;
     return p;
 }
 
 Vec3 CloudFrame::to_cloud(const Vec3& work) const {
     Vec3 p = work;
-    for (unsigned k = 0; k < 3; ++k) {
-        const auto& stretches = stretches_[k];
-        const double x = p[k] + widest_ / 2; // the middle of a gap parts its two sides
-        const auto after =
-            std::upper_bound(stretches.begin(), stretches.end(), x,
-                             [](double value, const Stretch& s) { return value < s.first - s.shift; });
-        if (after != stretches.begin()) p[k] += std::prev(after)->shift;
-    }
+    for (unsigned k = 0; k < 3; ++k)
+        if (const Index stretch = stretch_of(work[k], k); stretch > 0)
+            p[k] += stretches_[k][stretch - 1].shift;
     return unit_ == 1 ? p : p * unit_;
 }
 

@@ -28,6 +28,10 @@ public:
     Vec3 to_work(const Vec3& cloud) const;
     /// Where cuts are, of a point within half a kept gap of the points.
     Vec3 to_cloud(const Vec3& work) const;
+    /// The stretch between cuts that a point without cuts lies in, along each axis; the same of one with
+    /// cuts. Two points of different stretches are farther from each other than they seem.
+    std::array<Index, 3> stretch_of_uncut(const Vec3& uncut) const;
+    std::array<Index, 3> stretch_of(const Vec3& work) const;
     Box to_cloud(const Box& work) const { return {to_cloud(work.lo), to_cloud(work.hi)}; }
 
     /// Shortens every gap along an axis, between neighbouring ones of these coordinates, that is wider than
@@ -37,6 +41,8 @@ public:
     double cut_gaps(unsigned axis, std::vector<double>& coordinates, double widest);
 
 private:
+    Index stretch_of(double work, unsigned axis) const;
+    Index stretch_of_uncut(double uncut, unsigned axis) const;
     /// From `first` on, `shift` is cut out.
     struct Stretch {
         double first, shift;

@@ -36,7 +36,6 @@ struct MaxError {
     bool of_diagonal = false; ///< a share of the bounding box's diagonal, else the cloud's units
 };
 
-constexpr int deepest_level = 16; ///< of an octree: voxels of 2^-16 of the cube
 
 struct ReconstructOptions {
     /// Resolution: at most one of the three; by default the voxel follows from the points' spacing and

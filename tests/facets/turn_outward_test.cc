@@ -57,6 +57,25 @@ TEST_CASE("closed components face outward unless they are the wall of a cavity",
     CHECK(turned(mesh) == 0);
 }
 
+TEST_CASE("a hollow body that is inside out turns as a whole", "[facets]") {
+    PolygonMesh mesh;
+    add_box(mesh, Vec3(0, 0, 0), 8, false);   // 0: its outer wall
+    add_box(mesh, Vec3(0.1, 0, 0), 6, true);  // 1: that of its cavity
+    add_box(mesh, Vec3(0.2, 0, 0), 4, false); // 2: a body in there
+    add_box(mesh, Vec3(20, 0, 0), 8, true);   // 3: another body, as it should be
+    add_box(mesh, Vec3(20.1, 0, 0), 6, false);
+    CHECK(turned(mesh) == 18);
+    const double expected[] = {512, -216, 64, 512, -216};
+    for (std::size_t i = 0; i < 5; ++i) CHECK(volume_of_box(mesh, i) == Approx(expected[i]));
+}
+
+TEST_CASE("many components in a row are looked at each for itself", "[facets]") {
+    PolygonMesh mesh;
+    for (int i = 0; i < 3000; ++i) add_box(mesh, Vec3(i % 60 * 3, 0, i / 60 * 3), 1, i % 3 == 0);
+    CHECK(turned(mesh) == 6 * 2000);
+    CHECK(signed_volume(mesh) == Approx(3000));
+}
+
 TEST_CASE("rays that meet edges and corners are counted once", "[facets]") {
     PolygonMesh mesh;
     add_box(mesh, Vec3(0, 0, 0), 4, true);

@@ -80,6 +80,48 @@ TEST_CASE("strays all over the place are no part however many they are", "[octre
     CHECK(drop_far_away(octree, cloud, frame).count == 300);
 }
 
+TEST_CASE("a part is told wherever the planes of the grid run through it", "[octree]") {
+    for (const Vec3& at : {Vec3(8192, 0, 0), Vec3(8192, 3, 3), Vec3(-5461, 2730, 1365), Vec3(0, 0, 10000)}) {
+        const PointCloud cloud = joined(sphere_cloud(40000), sphere_cloud(240, at, 0.4));
+        Octree octree = build_octree(cloud, {.placement = CubePlacement::centred});
+        CloudFrame frame;
+        INFO(at);
+        CHECK(drop_far_away(octree, cloud, frame).count == 0);
+    }
+}
+
+TEST_CASE("a lattice is no crowd of parts, however often its points are there", "[octree]") {
+    const double jitter = GENERATE(0.0, 1e-9, 1e-7);
+    PointCloud cloud;
+    support::Random random(3);
+    for (int scan = 0; scan < 12; ++scan)
+        for (const Vec3& p : sphere_cloud(3000).positions) {
+            Vec3 at = p * 20;
+            for (double& x : at) x = std::round(x) + random.uniform(-jitter, jitter);
+            cloud.positions.push_back(at);
+            cloud.normals.push_back(p + Vec3(1, 1, 1) * random.uniform(-0.1, 0.1));
+        }
+    Octree octree = build_octree(cloud);
+    CloudFrame frame;
+    CHECK(cut_empty_space(octree, cloud, frame).count == 0);
+    CHECK_FALSE(frame.has_cuts());
+}
+
+TEST_CASE("a few strays between parts far from each other go, so that space can be cut", "[octree]") {
+    PointCloud cloud = joined(sphere_cloud(5000), sphere_cloud(5000, Vec3(1e7, 0, 0)));
+    for (int i = 0; i < 20; ++i) {
+        cloud.positions.emplace_back(4e5 * i + 2e5, 1e5, 0);
+        cloud.normals.emplace_back(1, 0, 0);
+    }
+    Octree octree = build_octree(cloud);
+    CloudFrame frame;
+    const Discarded strays = cut_empty_space(octree, cloud, frame);
+    CHECK(strays.count == 20);
+    CHECK(strays.first[1] == Approx(1e5));
+    CHECK(frame.has_cuts());
+    CHECK(octree.extent < 100);
+}
+
 TEST_CASE("empty space between parts is cut until their spacing can be followed", "[octree]") {
     const double apart = GENERATE(1e6, 1e9, 1e12);
     PointCloud cloud = joined(sphere_cloud(5000), sphere_cloud(5000, Vec3(apart, apart / 3, 0)));

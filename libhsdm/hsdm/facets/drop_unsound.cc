@@ -27,6 +27,14 @@ bool is_of_pillow(const PolygonMesh& mesh, const FacetLinks& links, std::size_t 
     return false;
 }
 
+/// Does the facet bridge space that was cut out?
+bool spans_cut(const PolygonMesh& mesh, const Vec3& origin, const CloudFrame& frame, std::size_t f) {
+    const auto facet = mesh.facet(f);
+    const auto stretch = frame.stretch_of(mesh.positions[facet[0]] + origin);
+    return std::any_of(facet.begin(), facet.end(),
+                       [&](Index v) { return frame.stretch_of(mesh.positions[v] + origin) != stretch; });
+}
+
 } // namespace
 
 Discarded drop_unsound(PolygonMesh& mesh, const Vec3& origin, const CloudFrame& frame, FacetLinks& links,
@@ -37,7 +45,8 @@ Discarded drop_unsound(PolygonMesh& mesh, const Vec3& origin, const CloudFrame& 
         for (std::size_t f = begin; f < end; ++f) {
             ring.clear();
             for (Index v : mesh.facet(f)) ring.push_back(frame.to_cloud(mesh.positions[v] + origin));
-            unsound[f] = has_no_area(ring) || is_of_pillow(mesh, links, f);
+            unsound[f] = has_no_area(ring) || is_of_pillow(mesh, links, f)
+                         || (frame.has_cuts() && spans_cut(mesh, origin, frame, f));
         }
     });
     Discarded dropped;

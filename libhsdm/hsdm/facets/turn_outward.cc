@@ -6,7 +6,10 @@
 #include "hsdm/quality/orientation.hh"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <limits>
+#include <span>
 
 namespace hsdm {
 namespace {
@@ -60,43 +63,65 @@ void measure_volumes(const PolygonMesh& mesh, const Triangulation& cut, Componen
         components.volume[components.of_facet[f]] += of_facet[f];
 }
 
-/// How often closed components other than a point's own wind round it: the crossings of a ray along x,
-/// counted by the side they are seen from. Points are components by their first vertices.
-class Windings {
+/// How many closed components there are around points: the crossings of a ray along x from each, counted by
+/// the side they are seen from. Points are components by their first vertices; they stand in a grid over y
+/// and z.
+class Surroundings {
 public:
-    Windings(const PolygonMesh& mesh, std::vector<Index> points) : mesh_(mesh), points_(std::move(points)) {
-        std::sort(points_.begin(), points_.end(), [&](Index a, Index b) { return at(a, 1) < at(b, 1); });
-        count_.assign(points_.size(), 0);
+    Surroundings(const PolygonMesh& mesh, const Components& components, std::span<const Index> points)
+        : mesh_(mesh), components_(components), count_(points.size(), 0) {
+        Box box;
+        for (Index p : points) box.add(mesh.positions[p]);
+        while (side_ * side_ < points.size() && side_ < most_cells) side_ *= 2;
+        for (unsigned k = 0; k < 2; ++k) {
+            lo_[k] = box.lo[k + 1];
+            const double size = box.hi[k + 1] - box.lo[k + 1];
+            scale_[k] = size > 0 ? static_cast<double>(side_) / size : 0;
+        }
+        std::vector<std::pair<std::size_t, Index>> places; // cell, and which of the points
+        for (Index i = 0; i < points.size(); ++i)
+            places.emplace_back(cell(at(points[i], 1), 0) * side_ + cell(at(points[i], 2), 1), i);
+        std::sort(places.begin(), places.end());
+        first_.assign(side_ * side_ + 1, 0);
+        for (const auto& [c, i] : places) {
+            ++first_[c + 1];
+            which_.push_back(i);
+            points_.push_back(points[i]);
+        }
+        counts_to_first(first_);
     }
 
+    /// To be called for the triangles of closed components, from any thread.
     void add(const Triangle& triangle, Index component) {
-        double lo[3], hi[3];
+        std::array<double, 3> lo, hi;
         for (unsigned k = 0; k < 3; ++k) {
-            const auto [least, most] =
-                std::minmax({at(triangle[0], k), at(triangle[1], k), at(triangle[2], k)});
-            lo[k] = least, hi[k] = most;
+            lo[k] = std::min({at(triangle[0], k), at(triangle[1], k), at(triangle[2], k)});
+            hi[k] = std::max({at(triangle[0], k), at(triangle[1], k), at(triangle[2], k)});
         }
-        auto i =
-            static_cast<std::size_t>(std::lower_bound(points_.begin(), points_.end(), lo[1],
-                                                      [&](Index point, double y) { return at(point, 1) < y; })
-                                     - points_.begin());
-        for (; i < points_.size() && at(points_[i], 1) <= hi[1]; ++i) {
-            const Index p = points_[i];
-            if (p == component || at(p, 2) < lo[2] || at(p, 2) > hi[2] || at(p, 0) > hi[0]) continue;
-            std::atomic_ref(count_[i]).fetch_add(crossing(triangle, p), std::memory_order_relaxed);
-        }
+        const int sign = components_.volume[component] < 0 ? -1 : 1;
+        for (std::size_t y = cell(lo[1], 0); y <= cell(hi[1], 0); ++y)
+            for (Index i = first_[y * side_ + cell(lo[2], 1)]; i < first_[y * side_ + cell(hi[2], 1) + 1];
+                 ++i) {
+                const Index p = points_[i];
+                if (p == component || at(p, 0) > hi[0] || at(p, 1) < lo[1] || at(p, 1) > hi[1]
+                    || at(p, 2) < lo[2] || at(p, 2) > hi[2])
+                    continue;
+                std::atomic_ref(count_[which_[i]])
+                    .fetch_add(sign * crossing(triangle, p), std::memory_order_relaxed);
+            }
     }
 
-    /// The points that nothing winds round.
-    std::vector<Index> outside() const {
-        std::vector<Index> result;
-        for (std::size_t i = 0; i < points_.size(); ++i)
-            if (count_[i] == 0) result.push_back(points_[i]);
-        return result;
-    }
+    /// Per point.
+    const std::vector<int>& counts() const { return count_; }
 
 private:
+    static constexpr std::size_t most_cells = 1 << 10; // along an axis
+
     double at(Index vertex, unsigned axis) const { return mesh_.positions[vertex][axis]; }
+    std::size_t cell(double x, unsigned axis) const {
+        const double place = (x - lo_[axis]) * scale_[axis];
+        return static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(side_ - 1)));
+    }
 
     /// Does the ray from below the side a-b's line, in y, meet it, and from which side? A vertex at the ray's
     /// height counts as above, so that every crossing of a closed loop is counted once.
@@ -113,16 +138,57 @@ private:
                           + crossing_of_side(p, t[2], t[0]);
         if (turns == 0) return 0;
         // Beyond the point along x? Seen from there the triangle runs as its turns say.
-        const Vec3& from = mesh_.positions[p];
-        const int side =
-            orientation(mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]], from);
+        const int side = orientation(mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]],
+                                     mesh_.positions[p]);
         return side * turns < 0 ? turns : 0;
     }
 
     const PolygonMesh& mesh_;
-    std::vector<Index> points_; // by y
+    const Components& components_;
+    std::size_t side_ = 1; // cells along an axis
+    std::array<double, 2> lo_, scale_;
+    std::vector<Index> first_, points_, which_; // by cell
     std::vector<int> count_;
 };
+
+/// How many of the components that `counts` names are around each of the points.
+template <class Counts>
+std::vector<int> count_around(const PolygonMesh& mesh, const Triangulation& cut, const Components& components,
+                              std::span<const Index> points, const Counts& counts) {
+    Surroundings around(mesh, components, points);
+    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t f = begin; f < end; ++f)
+            if (const Index c = components.of_facet[f]; counts(c))
+                for (Index t = cut.first[f]; t < cut.first[f + 1]; ++t) around.add(cut.triangles[t], c);
+    });
+    return around.counts();
+}
+
+/// Marks, by component, what is to turn: closed components that face inward and lie in no other; and inside
+/// of these whatever does not face against what is around it then, as the walls of cavities and what is in
+/// them do.
+std::vector<std::uint8_t> find_turns(const PolygonMesh& mesh, const Triangulation& cut,
+                                     const Components& components) {
+    std::vector<std::uint8_t> turns(mesh.vertex_count(), 0);
+    std::vector<Index> closed;
+    bool any_inward = false;
+    for (Index c = 0; c < components.volume.size(); ++c)
+        if (!components.open[c] && components.volume[c] != 0) {
+            closed.push_back(c);
+            any_inward |= components.volume[c] < 0;
+        }
+    if (!any_inward) return turns;
+    const auto is_closed = [&](Index c) { return !components.open[c]; };
+    const std::vector<int> depth = count_around(mesh, cut, components, closed, is_closed);
+    for (std::size_t i = 0; i < closed.size(); ++i)
+        turns[closed[i]] = components.volume[closed[i]] < 0 && depth[i] <= 0;
+    const std::vector<int> inside =
+        count_around(mesh, cut, components, closed, [&](Index c) { return turns[c] != 0; });
+    for (std::size_t i = 0; i < closed.size(); ++i)
+        if (inside[i] > 0 && depth[i] > 0)
+            turns[closed[i]] = (components.volume[closed[i]] < 0) != (depth[i] % 2 == 1);
+    return turns;
+}
 
 void turn(PolygonMesh& mesh, std::size_t f, FeatureHints& hints) {
     const auto first = static_cast<std::ptrdiff_t>(mesh.first[f]);
@@ -138,18 +204,16 @@ std::size_t turn_outward(PolygonMesh& mesh, FacetLinks& links, FeatureHints& hin
     Components components = find_components(mesh, links);
     const Triangulation cut = triangulate(mesh);
     measure_volumes(mesh, cut, components);
-    std::vector<Index> inward;
-    for (Index c = 0; c < components.volume.size(); ++c)
-        if (!components.open[c] && components.volume[c] < 0) inward.push_back(c);
-    if (inward.empty()) return 0;
-    Windings windings(mesh, std::move(inward));
-    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t f = begin; f < end; ++f)
-            if (const Index c = components.of_facet[f]; !components.open[c])
-                for (Index t = cut.first[f]; t < cut.first[f + 1]; ++t) windings.add(cut.triangles[t], c);
-    });
-    std::vector<std::uint8_t> turns(mesh.vertex_count(), 0);
-    for (Index c : windings.outside()) turns[c] = 1;
+    std::vector<std::uint8_t> turns = find_turns(mesh, cut, components);
+    // Where components pass through each other none may lie in no other; the whole must face outward all the
+    // same.
+    double volume = 0;
+    for (std::size_t c = 0; c < turns.size(); ++c) {
+        if (components.open[c]) volume = std::numeric_limits<double>::infinity();
+        volume += turns[c] ? -components.volume[c] : components.volume[c];
+    }
+    if (volume < 0)
+        for (std::size_t c = 0; c < turns.size(); ++c) turns[c] = components.volume[c] < 0;
     std::size_t turned = 0;
     for (std::size_t f = 0; f < mesh.facet_count(); ++f)
         if (turns[components.of_facet[f]]) turn(mesh, f, hints), ++turned;

@@ -11,13 +11,17 @@ namespace hsdm {
 /// boxes from it goes, unless it is a part: 64 points or more in a voxel of some level, around which the
 /// voxel eight times as large holds hardly any others. The others' positions are taken anew from the cloud
 /// that the octree was built of, since near a far origin they were rounded, and fit their cube again, in a
-/// frame of their own. Returns how many went, and where in the cloud. O(1) if nothing is far, else O(n).
+/// frame of their own. Returns how many went, and where in the cloud. O(1) if nothing is far, else O(n log
+/// n).
 Discarded drop_far_away(Octree& octree, const PointCloud& cloud, CloudFrame& frame);
 
 /// Where the spacing of the points is finer than the finest depth can follow, shortens the empty space
 /// between parts (CloudFrame::cut_gaps): gaps along an axis of 2^-12 of the cube, then narrower ones too, to
-/// about the extent of the largest part, though not below `least_gap`. The octree's positions are then those
-/// of the frame. O(1) if the spacing is not too fine, else O(n log n) a round; rounds halve the gaps.
-void cut_empty_space(Octree& octree, const PointCloud& cloud, CloudFrame& frame, double least_gap = 0);
+/// about the extent of the largest part, though not below `least_gap`. What lies between cuts is a part if it
+/// holds 64 points; others are removed if they are two percent of all points together, and else nothing is
+/// cut: a lattice is no crowd of parts. The octree's positions are then those of the frame. Returns how many
+/// went, and where in the cloud. O(1) if the spacing is not too fine, else O(n log n) a round; rounds halve
+/// the gaps.
+Discarded cut_empty_space(Octree& octree, const PointCloud& cloud, CloudFrame& frame, double least_gap = 0);
 
 } // namespace hsdm

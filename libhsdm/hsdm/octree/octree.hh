@@ -15,6 +15,9 @@ enum class CubePlacement {
     centred,      ///< its centre is that of the cloud's box: gives the voxel counts that the paper reports
 };
 
+/// Of the levels that a surface is made on: voxels of 2^-16 of the cube.
+constexpr int deepest_level = 16;
+
 struct OctreeOptions {
     bool merge_duplicates = true; ///< points equal in position and normal count once
     bool use_normals = true;      ///< false: the octree has none, whether the cloud has or not

@@ -19,13 +19,21 @@ constexpr double voxels_per_area = 1.5;
 /// being clipped only at a tip (measured: 0.14 at 9 points, 0.10 at 17, 0.06 at 32).
 constexpr double tips = 0.4;
 constexpr double points_per_voxel = 8;
-constexpr int deepest = 16;
 
 /// The first level at which two codes lie in different voxels; morton_levels + 1 if equal.
 unsigned split_level(MortonCode a, MortonCode b) {
     if (a == b) return morton_levels + 1;
     const int highest_bit = 63 - std::countl_zero(a ^ b);
     return static_cast<unsigned>(morton_levels - highest_bit / 3);
+}
+
+/// Points at one place, with other normals, sample the surface there once.
+std::size_t count_places(const Octree& octree, std::size_t codes) {
+    if (codes == octree.size()) return codes; // no two share one
+    std::size_t count = octree.size();
+    for (std::size_t i = 1; i < octree.size(); ++i)
+        count -= octree.codes[i] == octree.codes[i - 1] && octree.positions[i] == octree.positions[i - 1];
+    return count;
 }
 
 } // namespace
@@ -52,7 +60,7 @@ std::array<std::size_t, morton_levels + 1> count_voxels(const Octree& octree) {
 
 double estimate_spacing(const Octree& octree) {
     const Counts counts = count_voxels(octree);
-    const auto n = static_cast<double>(octree.size());
+    const auto n = static_cast<double>(count_places(octree, counts.back()));
     unsigned level = morton_levels;
     while (level > 0 && n < points_per_voxel * static_cast<double>(counts[level])) --level;
     const double h = octree.voxel_size(static_cast<int>(level));
@@ -75,14 +83,15 @@ VoxelChoice choose_voxel(const Octree& octree, double spacing, double noise, dou
         std::snprintf(text, sizeof text, "%g spacings of the points (spacing %.4g)", spacings_per_voxel,
                       spacing * unit);
     }
-    choice.size = std::clamp(choice.size, octree.voxel_size(deepest), octree.voxel_size(1));
+    choice.size = std::clamp(choice.size, octree.voxel_size(deepest_level), octree.voxel_size(1));
     choice.reason = text;
     return choice;
 }
 
 DepthChoice choose_depth(const Octree& octree, double spacing, double spacings_per_voxel, double unit) {
     DepthChoice choice;
-    while (choice.depth < deepest && octree.voxel_size(choice.depth + 1) >= spacings_per_voxel * spacing)
+    while (choice.depth < deepest_level
+           && octree.voxel_size(choice.depth + 1) >= spacings_per_voxel * spacing)
         ++choice.depth;
     char text[160];
     std::snprintf(text, sizeof text,
