@@ -68,8 +68,8 @@ void measure_volumes(const PolygonMesh& mesh, const Triangulation& cut, Componen
 /// and z.
 class Surroundings {
 public:
-    Surroundings(const PolygonMesh& mesh, const Components& components, std::span<const Index> points)
-        : mesh_(mesh), components_(components), count_(points.size(), 0) {
+    Surroundings(const PolygonMesh& mesh, std::span<const Index> points)
+        : mesh_(mesh), count_(points.size(), 0) {
         Box box;
         for (Index p : points) box.add(mesh.positions[p]);
         while (side_ * side_ < points.size() && side_ < most_cells) side_ *= 2;
@@ -91,14 +91,13 @@ public:
         counts_to_first(first_);
     }
 
-    /// To be called for the triangles of closed components, from any thread.
-    void add(const Triangle& triangle, Index component) {
+    /// To be called for the triangles of closed components, from any thread. Each crossing counts `weight`.
+    void add(const Triangle& triangle, Index component, int weight) {
         std::array<double, 3> lo, hi;
         for (unsigned k = 0; k < 3; ++k) {
             lo[k] = std::min({at(triangle[0], k), at(triangle[1], k), at(triangle[2], k)});
             hi[k] = std::max({at(triangle[0], k), at(triangle[1], k), at(triangle[2], k)});
         }
-        const int sign = components_.volume[component] < 0 ? -1 : 1;
         for (std::size_t y = cell(lo[1], 0); y <= cell(hi[1], 0); ++y)
             for (Index i = first_[y * side_ + cell(lo[2], 1)]; i < first_[y * side_ + cell(hi[2], 1) + 1];
                  ++i) {
@@ -107,7 +106,7 @@ public:
                     || at(p, 2) < lo[2] || at(p, 2) > hi[2])
                     continue;
                 std::atomic_ref(count_[which_[i]])
-                    .fetch_add(sign * crossing(triangle, p), std::memory_order_relaxed);
+                    .fetch_add(weight * crossing(triangle, p), std::memory_order_relaxed);
             }
     }
 
@@ -144,49 +143,50 @@ private:
     }
 
     const PolygonMesh& mesh_;
-    const Components& components_;
     std::size_t side_ = 1; // cells along an axis
     std::array<double, 2> lo_, scale_;
     std::vector<Index> first_, points_, which_; // by cell
     std::vector<int> count_;
 };
 
-/// How many of the components that `counts` names are around each of the points.
-template <class Counts>
-std::vector<int> count_around(const PolygonMesh& mesh, const Triangulation& cut, const Components& components,
-                              std::span<const Index> points, const Counts& counts) {
-    Surroundings around(mesh, components, points);
+/// The sum of the weights of the components around each of the points; of one that faces inward, less its
+/// weight.
+template <class Weight>
+std::vector<int> sum_around(const PolygonMesh& mesh, const Triangulation& cut, const Components& components,
+                            std::span<const Index> points, const Weight& weight) {
+    Surroundings around(mesh, points);
     for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t f = begin; f < end; ++f)
-            if (const Index c = components.of_facet[f]; counts(c))
-                for (Index t = cut.first[f]; t < cut.first[f + 1]; ++t) around.add(cut.triangles[t], c);
+            if (const Index c = components.of_facet[f]; const int w = weight(c))
+                for (Index t = cut.first[f]; t < cut.first[f + 1]; ++t) around.add(cut.triangles[t], c, w);
     });
     return around.counts();
 }
 
-/// Marks, by component, what is to turn: closed components that face inward and lie in no other; and inside
-/// of these whatever does not face against what is around it then, as the walls of cavities and what is in
-/// them do.
+/// Marks, by component, what is to turn: closed components that face inward and do not lie in what others
+/// enclose; and inside of these whatever does not face against what is around it then, as the walls of
+/// cavities and what is in them do.
 std::vector<std::uint8_t> find_turns(const PolygonMesh& mesh, const Triangulation& cut,
                                      const Components& components) {
     std::vector<std::uint8_t> turns(mesh.vertex_count(), 0);
     std::vector<Index> closed;
     bool any_inward = false;
+    const auto is_inward = [&](Index c) { return components.volume[c] < 0; };
     for (Index c = 0; c < components.volume.size(); ++c)
         if (!components.open[c] && components.volume[c] != 0) {
             closed.push_back(c);
-            any_inward |= components.volume[c] < 0;
+            any_inward |= is_inward(c);
         }
     if (!any_inward) return turns;
-    const auto is_closed = [&](Index c) { return !components.open[c]; };
-    const std::vector<int> depth = count_around(mesh, cut, components, closed, is_closed);
+    const auto sum = [&](const auto& weight) { return sum_around(mesh, cut, components, closed, weight); };
+    const auto one_each = [&](Index c) { return components.open[c] ? 0 : is_inward(c) ? -1 : 1; };
+    const std::vector<int> enclosed = sum([&](Index c) { return components.open[c] ? 0 : 1; });
+    const std::vector<int> depth = sum(one_each);
     for (std::size_t i = 0; i < closed.size(); ++i)
-        turns[closed[i]] = components.volume[closed[i]] < 0 && depth[i] <= 0;
-    const std::vector<int> inside =
-        count_around(mesh, cut, components, closed, [&](Index c) { return turns[c] != 0; });
+        turns[closed[i]] = is_inward(closed[i]) && enclosed[i] == 0;
+    const std::vector<int> in_turned = sum([&](Index c) { return turns[c] ? one_each(c) : 0; });
     for (std::size_t i = 0; i < closed.size(); ++i)
-        if (inside[i] > 0 && depth[i] > 0)
-            turns[closed[i]] = (components.volume[closed[i]] < 0) != (depth[i] % 2 == 1);
+        if (in_turned[i] > 0) turns[closed[i]] = is_inward(closed[i]) != (depth[i] % 2 == 1);
     return turns;
 }
 
