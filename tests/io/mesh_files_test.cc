@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <set>
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -158,6 +159,22 @@ TEST_CASE("STL becomes text where floats would move vertices", "[mesh_io]") {
     CHECK_FALSE(write_mesh(folder / "far.stl", mesh, MeshFormat::stl, {true}).text_for_precision);
     CHECK(content(folder / "far.stl").starts_with("solid"));
     CHECK(read_mesh(folder / "far.stl").positions[1] == mesh.positions[1]);
+}
+
+TEST_CASE("STL keeps meshes of any size, and the directions of their normals", "[mesh_io]") {
+    const Folder folder;
+    const double size = GENERATE(std::ldexp(1.0, -1000), std::ldexp(1.0, -500), std::ldexp(1.0, -100), 1e200,
+                                 std::ldexp(1.0, 1023));
+    PolygonMesh mesh;
+    mesh.positions = {Vec3(0, 0, 0), Vec3(size, 0, 0), Vec3(0, size, 0), Vec3(0, 0, size)};
+    for (const auto& f : {std::array<Index, 3>{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}) mesh.add_facet(f);
+    write_mesh(folder / "t.stl", mesh, MeshFormat::stl);
+    const PolygonMesh back = read_mesh(folder / "t.stl");
+    CHECK(std::set(back.positions.begin(), back.positions.end())
+          == std::set(mesh.positions.begin(), mesh.positions.end()));
+    CHECK(back.facet_count() == 4);
+    write_mesh(folder / "text.stl", mesh, MeshFormat::stl, {true});
+    CHECK(content(folder / "text.stl").find("facet normal 0 0 -1\n") != std::string::npos);
 }
 
 TEST_CASE("an empty mesh is a valid file in every format", "[mesh_io]") {

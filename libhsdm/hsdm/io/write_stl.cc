@@ -1,3 +1,4 @@
+#include "hsdm/cloud_frame.hh"
 #include "hsdm/facets/triangulate.hh"
 #include "hsdm/io/format_chunks.hh"
 #include "hsdm/io/mesh_writers.hh"
@@ -7,21 +8,28 @@
 namespace hsdm {
 namespace {
 
-/// Whether some vertex would move by more than 1e-6 of the mesh's diagonal when stored as float.
+/// Whether some vertex would move by more than 1e-6 of the mesh's diagonal when stored as float. Lengths are
+/// taken in the frame's unit, since their squares must be numbers.
 bool too_coarse_for_float(const PolygonMesh& mesh) {
     Box box;
     for (const Vec3& p : mesh.positions) box.add(p);
-    const double tolerance = 1e-6 * box.diagonal();
+    const double unit = CloudFrame(box).unit();
+    const double tolerance = 1e-6 * (box.hi / unit - box.lo / unit).norm();
     for (const Vec3& p : mesh.positions) {
         Vec3 moved;
-        for (unsigned k = 0; k < 3; ++k) moved[k] = static_cast<double>(static_cast<float>(p[k])) - p[k];
+        for (unsigned k = 0; k < 3; ++k)
+            moved[k] = (static_cast<double>(static_cast<float>(p[k])) - p[k]) / unit;
         if (!(moved.norm() <= tolerance)) return true;
     }
     return false;
 }
 
 Vec3 unit_normal(const std::vector<Vec3>& p, const Triangle& t) {
-    const Vec3 n = (p[t[1]] - p[t[0]]) % (p[t[2]] - p[t[0]]);
+    Box box;
+    for (Index v : t) box.add(p[v]);
+    const double unit = CloudFrame(box).unit();
+    const Vec3 origin = p[t[0]] / unit;
+    const Vec3 n = (p[t[1]] / unit - origin) % (p[t[2]] / unit - origin);
     const double length = n.norm();
     return length > 0 && std::isfinite(length) ? n / length : Vec3(0, 0, 0);
 }
