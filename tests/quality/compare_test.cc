@@ -38,6 +38,24 @@ TEST_CASE("what is compared may have any size", "[compare]") {
     CHECK(other.diagonal == one.diagonal * factor);
 }
 
+TEST_CASE("what is out of reach of double precision is refused", "[compare]") {
+    const double factor = std::ldexp(1.0, GENERATE(-1010, 1022));
+    CHECK_THROWS_AS(compare(tetrahedron(factor), cloud(factor / 2)), Error);
+}
+
+TEST_CASE("a mesh without area is measured by its vertices", "[compare]") {
+    PolygonMesh line;
+    line.positions = {Vec3(0, 0, 3), Vec3(0.1, 0, 3), Vec3(0.2, 0, 5)};
+    line.add_facet(std::array<Index, 3>{0, 1, 0});
+    line.add_facet(std::array<Index, 3>{1, 2, 2});
+    PolygonMesh ground = tetrahedron(1);
+    for (Vec3& p : ground.positions) p[2] *= 1e-9;
+    const Comparison result = compare(line, ground);
+    CHECK(result.a_to_b.max == Approx(5));
+    CHECK(result.a_to_b.mean == Approx(11.0 / 3));
+    CHECK(result.a_to_b.rms == Approx(std::sqrt(43.0 / 3)));
+}
+
 TEST_CASE("coordinates that are not finite are refused", "[compare]") {
     PolygonMesh broken = cloud(1);
     broken.positions[3][1] = std::numeric_limits<double>::quiet_NaN();

@@ -28,8 +28,11 @@ PolygonMesh scaled(PolygonMesh mesh, double factor) {
 
 Distance one_sided(const PolygonMesh& from, const MeshDistance& to, std::size_t samples) {
     if (from.facet_count() == 0) return to(from.positions);
-    Distance distance = to(sample_surface(from, samples));
-    distance.max = std::max(distance.max, to(from.positions).max);
+    const Distance of_vertices = to(from.positions);
+    const std::vector<Vec3> spread = sample_surface(from, samples);
+    if (spread.empty()) return of_vertices; // no area to spread them over
+    Distance distance = to(spread);
+    distance.max = std::max(distance.max, of_vertices.max);
     return distance;
 }
 
@@ -43,7 +46,9 @@ Comparison compare(const PolygonMesh& a, const PolygonMesh& b, const CompareOpti
         throw Error("nothing to compare with: one of the two holds coordinates that are not finite");
     Box box = bounds_of(a.positions);
     box.add(bounds_of(b.positions));
-    if (const double unit = CloudFrame(box).unit(); unit != 1) {
+    const CloudFrame frame(box);
+    frame.check_reach();
+    if (const double unit = frame.unit(); unit != 1) {
         Comparison result = compare(scaled(a, 1 / unit), scaled(b, 1 / unit), options);
         for (Distance* distance : {&result.a_to_b, &result.b_to_a})
             for (double* length : {&distance->max, &distance->mean, &distance->rms}) *length *= unit;

@@ -17,8 +17,10 @@ struct Comparison {
 
 /// Either may be a cloud: a mesh without facets, whose positions are the points. A cloud's distances are
 /// taken from every point; a mesh's mean and rms from samples even over its area, its maximum from its
-/// vertices too. `farthest` is an index into the cloud's points or the mesh's samples. Throws Error if either
-/// holds nothing or a coordinate that is not finite, OptionError. O((a + b) log(a + b)), parallel.
+/// vertices too; of a mesh without area all three from its vertices. `farthest` is an index into the cloud's
+/// points, the mesh's samples or those vertices. Throws Error if either holds nothing or a coordinate that is
+/// not finite, or if both together are out of CloudFrame::check_reach(), OptionError.
+/// O((a + b) log(a + b)), parallel.
 Comparison compare(const PolygonMesh& a, const PolygonMesh& b, const CompareOptions& options = {});
 
 } // namespace hsdm
