@@ -153,7 +153,9 @@ TEST_CASE("pixels of a PCD file without a measurement are no points, its viewpoi
                           "VIEWPOINT 1 2 -3 1 0 0 0\nPOINTS 4\nDATA binary\n";
     for (float x : {nan_value, 1.0f, nan_value, nan_value})
         content += bytes_of(x) + bytes_of(0.0f) + bytes_of(2.0f);
-    const PointCloud cloud = read("a.pcd", content).cloud;
+    const PointFile file = read("a.pcd", content);
+    CHECK(file.nonfinite == 3);
+    const PointCloud& cloud = file.cloud;
     CHECK(cloud.positions == std::vector<Vec3>{Vec3(1, 0, 2)});
     REQUIRE(cloud.sensor);
     CHECK(*cloud.sensor == Vec3(1, 2, -3));

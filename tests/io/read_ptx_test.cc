@@ -22,6 +22,7 @@ TEST_CASE("the points of a PTX scan are in the world, the rays that hit nothing 
     for (const char* name : {"a.ptx", "a.txt", "a"}) {
         const PointFile file = read(name, header(2, 2) + rays);
         CHECK(file.format == "ptx");
+        CHECK(file.nonfinite == 1);
         CHECK(file.cloud.positions == std::vector<Vec3>{Vec3(10, 21, 30), Vec3(8, 20, 30), Vec3(8, 21, 33)});
         REQUIRE(file.cloud.scalars.size() == 1);
         CHECK(file.cloud.scalars[0].name == "intensity");
@@ -50,8 +51,10 @@ TEST_CASE("PTX scans that hit nothing leave the sensor of the one that did", "[i
     const std::string nothing = header(1, 2, "7 7 7") + "0 0 0 0\n0 0 0 0\n", none = header(0, 5, "8 8 8");
     for (const std::string& text : {nothing + header(2, 2) + rays, header(2, 2) + rays + nothing,
                                     none + header(2, 2) + rays, header(2, 2) + rays + none}) {
-        const auto cloud = read("a.ptx", text).cloud;
+        const PointFile file = read("a.ptx", text);
+        const PointCloud& cloud = file.cloud;
         CHECK(cloud.size() == 3);
+        CHECK(file.nonfinite == (text.find("7 7 7") == std::string::npos ? 1 : 3));
         REQUIRE(cloud.sensor);
         CHECK(*cloud.sensor == Vec3(10, 20, 30));
     }

@@ -309,7 +309,7 @@ PointFile read_pcd(const SourceBytes& bytes) {
         if (pcd.data == PcdData::ascii && field.is_packed_color() && file.cloud.colors.empty())
             unpack_color(field, file.cloud);
     file.cloud.sensor = pcd.viewpoint;
-    drop_nonfinite(file.cloud); // pixels without a measurement
+    file.nonfinite = drop_nonfinite(file.cloud).nonfinite; // pixels without a measurement
     if (file.cloud.size() == 0) throw Error(bytes.name(), "holds no points: no coordinates are finite");
     return file;
 }

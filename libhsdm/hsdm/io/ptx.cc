@@ -144,6 +144,7 @@ PointFile read_ptx(const SourceBytes& bytes) {
         PointCloud scan = std::move(rows).to_cloud(columns, factor);
         const std::size_t before = file.cloud.size();
         append_scan(text, header, scan, file.cloud);
+        file.nonfinite += scan.size() - (file.cloud.size() - before);
         if (file.cloud.size() == before) continue;
         ++scans;
         file.cloud.sensor = header.matrix[3]; // the scanner is the origin of its own coordinates

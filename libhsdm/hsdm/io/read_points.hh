@@ -27,6 +27,8 @@ struct PointFile {
     PointCloud cloud;
     std::string format;    ///< the format found, by the names above
     std::size_t faces = 0; ///< faces in the file, which were skipped
+    /// Points without coordinates, left out while reading: pixels and rays without a return.
+    std::size_t nonfinite = 0;
     /// Tables whose columns were told from their values alone: what each was taken for, e.g.
     /// "x,y,z,nx,ny,nz", so that whoever knows better can say so in ReadOptions::columns. Else empty.
     std::string columns{};
@@ -36,9 +38,9 @@ struct PointFile {
 void check_options(const ReadOptions& options);
 
 /// Reads the points of a file; "-" is standard input. Coordinates that are not finite are kept (see
-/// drop_nonfinite), but for pixels of a PCD file. Throws Error `FILE:LINE: what, and what to do` if the file
-/// cannot be opened, is empty, truncated or malformed; OptionError for options that do not fit it.
-/// O(bytes), parallel; binary PLY files are not held in memory as a whole.
+/// drop_nonfinite), but for pixels of a PCD file, which are counted. Throws Error `FILE:LINE: what, and what
+/// to do` if the file cannot be opened, is empty, truncated or malformed; OptionError for options that do not
+/// fit it. O(bytes), parallel; binary PLY files are not held in memory as a whole.
 PointFile read_points(const std::string& path, const ReadOptions& options = {});
 
 } // namespace hsdm
