@@ -67,7 +67,7 @@ public:
         const std::size_t inputs = arguments_.inputs.size();
         for (const std::string& input : arguments_.inputs) {
             if (inputs == 1) {
-                reconstruct_one(input);
+                reconstruct_alone(input);
             } else {
                 try_one(input);
             }
@@ -90,17 +90,45 @@ private:
             ++failed_inputs_;
             const std::string failure = message_of(error);
             complain(failure);
-            nlohmann::ordered_json entry = {{"input", {{"file", input}}}, {"failure", failure}};
-            reports_.push_back(entry.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-                               + '\n');
+            note_failure(input, failure);
         }
+    }
+
+    /// A failure is noted in the report; whoever runs this tells it and knows the status that it deserves.
+    void reconstruct_alone(const std::string& input) {
+        try {
+            reconstruct_one(input);
+        } catch (const std::exception& error) {
+            const char *const file = current_file(), *const phase = current_phase();
+            note_failure(input, message_of(error));
+            try {
+                write_report();
+            } catch (const std::exception& second) {
+                complain(message_of(second));
+            }
+            set_activity(file, phase);
+            throw;
+        }
+    }
+
+    void note_failure(const std::string& input, const std::string& failure) {
+        const nlohmann::ordered_json entry = {{"input", {{"file", input}}}, {"failure", failure}};
+        reports_.push_back(entry.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+                           + '\n');
     }
 
     void reconstruct_one(const std::string& input) {
         const std::string name = input == "-" ? "standard input" : input;
         set_activity(input == "-" ? "standard input" : input.c_str(), "read");
         bool complete = true;
-        for (const Made& made : make(input, name)) complete = tell(name, made) && complete;
+        std::size_t points = 0; // of an input without a mesh none count
+        for (const Made& made : make(input, name)) {
+            if (tell(name, made))
+                points = made.report.input.points;
+            else
+                complete = false;
+        }
+        points_ += points;
         failed_inputs_ += !complete;
     }
 
@@ -116,7 +144,6 @@ private:
         bar.show("read", 0);
         PointFile file = read_points(input, arguments_.read);
         const double read_seconds = seconds_since(start);
-        points_ += file.cloud.size();
         ReconstructOptions options = options_;
         options.debug_dir = plan_.debug_dir(input);
         options.progress = [&bar](const char* phase, double share) {
@@ -130,6 +157,7 @@ private:
             std::vector<Made> made;
             for (Reconstruction& result : results) {
                 result.report.input.file = input;
+                result.report.input.dropped_nonfinite += file.nonfinite;
                 result.report.seconds.read = read_seconds;
                 if (!file.columns.empty()) result.report.options["columns"] = file.columns;
                 const bool as_text = write_one(result);

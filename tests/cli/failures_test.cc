@@ -56,6 +56,40 @@ TEST_CASE("options that do not fit one input fail that input alone", "[cli]") {
     CHECK(folder.list() == before);
 }
 
+TEST_CASE("a single input that fails has a report too", "[cli]") {
+    const Folder folder;
+    folder.write("line.xyz", "0 0 0\n1 1 1\n2 2 2\n3 3 3\n4 4 4\n5 5 5\n");
+    folder.write("large.xyz", "0 0 0\n1e9 0 0\n0 1e9 0\n0 0 1e9\n1e9 1e9 0\n");
+    const auto failure = [&folder](const std::string& arguments, int status, bool in_list = false) {
+        const CommandResult result = run(folder, "reconstruct " + arguments + " -o a.off --report r.json");
+        INFO(arguments << '\n' << result.err);
+        CHECK(result.status == status);
+        const Json report = Json::parse(read_file(folder / "r.json"));
+        const Json& entry = in_list ? report.at(0) : report;
+        CHECK(entry["input"]["file"] == arguments.substr(0, arguments.find(' ')));
+        CHECK(result.err.starts_with("hsdm: " + entry["failure"].get<std::string>() + '\n'));
+        CHECK_FALSE(exists(folder / "a.off"));
+    };
+    failure("line.xyz", 1);
+    failure("missing.xyz", 1);
+    failure("line.xyz --levels 3:4", 1, true);
+    failure("large.xyz --voxel-size 0.3", 2);
+    // A report that cannot be written hides nothing.
+    const CommandResult full = run(folder, "reconstruct line.xyz -o a.off --report /dev/full");
+    CHECK(full.status == 1);
+    CHECK(full.err.find("hsdm: line.xyz: ") != std::string::npos);
+    CHECK(full.err.find("hsdm: /dev/full: ") != std::string::npos);
+}
+
+TEST_CASE("totals count the inputs that are done alone", "[cli]") {
+    const Folder folder;
+    folder.write("a.xyz", xyz(sphere_scan(500)));
+    folder.write("line.xyz", "0 0 0\n1 1 1\n2 2 2\n3 3 3\n4 4 4\n5 5 5\n");
+    const CommandResult result = run(folder, "reconstruct a.xyz line.xyz --depth 3 --out-dir out");
+    CHECK(result.status == 1);
+    CHECK(result.out.find("1 of 2 inputs done, 1 failed, 500 points, ") != std::string::npos);
+}
+
 #if !defined(HSDM_SANITIZED) // whose shadow memory needs the address space
 TEST_CASE("the end of memory is told with file and phase, and the other inputs go on", "[cli]") {
     const Folder folder;
