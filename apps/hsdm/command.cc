@@ -32,7 +32,7 @@ int status_of(const Run& run) {
         return status;
     } catch (const UsageError& error) {
         complain(error.what());
-        std::cerr << "Run with --help for more information." << std::endl;
+        complain("run with --help for more information");
         return wrong_usage;
     } catch (const OptionError& error) {
         complain(message_of(error));

@@ -1,6 +1,7 @@
 // hsdm compare: how far two surfaces, or a surface and a cloud, are apart.
 
 #include "command.hh"
+#include "file_claims.hh"
 #include "load.hh"
 #include "messages.hh"
 #include "summary.hh"
@@ -38,7 +39,7 @@ void fill(JsonText& json, const std::string& path, const Loaded& loaded) {
 
 void print(const char* title, const Distance& distance, double diagonal) {
     std::cout << title << "  max " << distance.max << " ("
-              << (diagonal > 0 ? 100 * distance.max / diagonal : 0) << " % of the diagonal), mean "
+              << (diagonal > 0 ? 100 * (distance.max / diagonal) : 0) << " % of the diagonal), mean "
               << distance.mean << ", rms " << distance.rms << '\n';
 }
 
@@ -55,6 +56,10 @@ void print(const char* title, const std::string& path, const Loaded& loaded) {
 int run_compare(const std::string& path_a, const std::string& path_b, bool as_json) {
     if (path_a == "-" && path_b == "-")
         throw UsageError("standard input holds one of the two; name the other");
+    FileClaims claims;
+    for (const std::string* path : {&path_a, &path_b}) claims.reads("the file", *path);
+    claims.writes("the output", "-");
+    claims.check();
     const Loaded a = load(path_a), b = load(path_b);
     if (!a.is_mesh() && !b.is_mesh())
         throw Error(path_b, "both files hold points without faces; one of the two must be a mesh");

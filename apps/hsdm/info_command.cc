@@ -1,6 +1,7 @@
 // hsdm info: what a file holds.
 
 #include "command.hh"
+#include "file_claims.hh"
 #include "load.hh"
 #include "messages.hh"
 #include "summary.hh"
@@ -20,6 +21,12 @@ Box bounds(const std::vector<Vec3>& positions) {
     Box box;
     for (const Vec3& p : positions) box.add(p);
     return box;
+}
+
+/// By lengths whose squares are numbers.
+double diagonal(const Box& box) {
+    const double unit = CloudFrame(box).unit();
+    return (box.hi / unit - box.lo / unit).norm() * unit;
 }
 
 /// 0 for points without extent, which have no octree.
@@ -82,7 +89,7 @@ void print_json(const std::string& path, const Loaded& loaded) {
     json.member("kind", loaded.is_mesh() ? "mesh" : "cloud");
     json.member("bbox_min", box.lo);
     json.member("bbox_max", box.hi);
-    json.member("diagonal", box.diagonal());
+    json.member("diagonal", diagonal(box));
     json.key(loaded.is_mesh() ? "mesh" : "cloud");
     if (loaded.is_mesh())
         fill_topology(json, loaded.mesh);
@@ -104,6 +111,10 @@ void print_cloud(const Loaded& loaded) {
 }
 
 int show(const std::string& path, bool json) {
+    FileClaims claims;
+    claims.reads("the file", path);
+    claims.writes("the output", "-");
+    claims.check();
     const Loaded loaded = load(path);
     if (json) {
         print_json(path, loaded);
@@ -116,7 +127,7 @@ int show(const std::string& path, bool json) {
     } else {
         print_cloud(loaded);
     }
-    std::cout << "bounds    " << box.lo << "  to  " << box.hi << ", diagonal " << box.diagonal() << '\n';
+    std::cout << "bounds    " << box.lo << "  to  " << box.hi << ", diagonal " << diagonal(box) << '\n';
     return done;
 }
 

@@ -3,13 +3,48 @@
 #include "activity.hh"
 #include "summary.hh"
 
+#include "hsdm/cloud_frame.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/read_mesh.hh"
 #include "hsdm/quality/topology.hh"
 
+#include <cmath>
+#include <limits>
 #include <ostream>
 
 namespace hsdm::command {
+namespace {
+
+struct Measured {
+    Topology topology; ///< signed_volume in `unit`, the rest in the mesh's own
+    FacetShape shape;
+    double unit = 1; ///< in which products of the mesh's lengths are numbers
+
+    /// NaN where no double holds it.
+    double volume() const {
+        const double own = topology.signed_volume * unit * unit * unit;
+        return std::isnormal(own) || topology.signed_volume == 0 ? own
+                                                                 : std::numeric_limits<double>::quiet_NaN();
+    }
+};
+
+Measured measure(const PolygonMesh& mesh) {
+    Measured m;
+    m.unit = CloudFrame(bounds_of(mesh.positions)).unit();
+    if (m.unit == 1) {
+        m.topology = measure_topology(mesh);
+        m.shape = measure_shape(mesh);
+        return m;
+    }
+    PolygonMesh scaled = mesh;
+    for (Vec3& p : scaled.positions) p /= m.unit;
+    m.topology = measure_topology(scaled);
+    m.shape = measure_shape(scaled);
+    m.shape.edge_length_mean *= m.unit;
+    return m;
+}
+
+} // namespace
 
 Loaded load(const std::string& path) {
     set_activity(path.c_str(), "read");
@@ -20,6 +55,7 @@ Loaded load(const std::string& path) {
     loaded.columns = std::move(file.points.columns);
     loaded.cloud = std::move(file.points.cloud);
     loaded.dropped = drop_nonfinite(loaded.cloud);
+    loaded.dropped.nonfinite += file.points.nonfinite;
     if (loaded.cloud.size() == 0) throw Error(path, "no point with finite coordinates; nothing to look at");
     loaded.mesh.positions = loaded.cloud.positions;
     return loaded;
@@ -27,8 +63,9 @@ Loaded load(const std::string& path) {
 
 void fill_topology(JsonText& json, const PolygonMesh& mesh) {
     json.begin_object();
-    const Topology t = measure_topology(mesh);
-    const FacetShape shape = measure_shape(mesh);
+    const Measured measured = measure(mesh);
+    const Topology& t = measured.topology;
+    const FacetShape& shape = measured.shape;
     json.member("vertices", t.vertices);
     json.member("edges", t.edges);
     json.member("faces", t.faces);
@@ -48,7 +85,7 @@ void fill_topology(JsonText& json, const PolygonMesh& mesh) {
     json.member("misoriented_edges", t.misoriented_edges);
     json.member("degenerate_facets", t.degenerate_facets);
     json.member("duplicate_facets", t.duplicate_facets);
-    json.member("signed_volume", t.signed_volume);
+    json.member("signed_volume", measured.volume());
     json.member("quad_share", shape.quad_share);
     json.member("scaled_jacobian_median", shape.scaled_jacobian_median);
     json.member("scaled_jacobian_min", shape.scaled_jacobian_min);
@@ -58,13 +95,14 @@ void fill_topology(JsonText& json, const PolygonMesh& mesh) {
 
 void print_dropped(std::ostream& out, const Dropped& dropped) {
     if (dropped.nonfinite > 0)
-        out << "dropped   " << grouped(dropped.nonfinite)
-            << (dropped.nonfinite == 1 ? " point that is" : " points that are") << " not finite\n";
+        out << "dropped   " << grouped(dropped.nonfinite) << (dropped.nonfinite == 1 ? " point" : " points")
+            << " without finite coordinates\n";
 }
 
 void print_topology(std::ostream& out, const PolygonMesh& mesh) {
-    const Topology t = measure_topology(mesh);
-    const FacetShape shape = measure_shape(mesh);
+    const Measured measured = measure(mesh);
+    const Topology& t = measured.topology;
+    const FacetShape& shape = measured.shape;
     Report::Mesh counts;
     counts.components = t.components;
     counts.boundary_loops = t.boundary_loops;
@@ -83,8 +121,13 @@ void print_topology(std::ostream& out, const PolygonMesh& mesh) {
         << "shape     quads " << 100 * shape.quad_share << " %, scaled Jacobian of quads: median "
         << shape.scaled_jacobian_median << ", least " << shape.scaled_jacobian_min << "; mean edge "
         << shape.edge_length_mean << '\n';
-    if (t.closed())
-        out << "volume    " << t.signed_volume << (t.signed_volume > 0 ? " (outward)" : " (INWARD)") << '\n';
+    if (!t.closed()) return;
+    out << "volume    ";
+    if (const double volume = measured.volume(); std::isfinite(volume))
+        out << volume;
+    else
+        out << "no number holds it";
+    out << (t.signed_volume > 0 ? " (outward)" : " (INWARD)") << '\n';
 }
 
 } // namespace hsdm::command

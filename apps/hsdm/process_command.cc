@@ -8,13 +8,16 @@
 #include "summary.hh"
 #include "usage.hh"
 
+#include "hsdm/cloud_frame.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/facets/to_mesh.hh"
 #include "hsdm/io/output_target.hh"
 #include "hsdm/io/read_mesh.hh"
 #include "hsdm/io/write_mesh.hh"
 #include "hsdm/plugin_loader.hh"
+#include "hsdm/point_cloud.hh"
 
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 
@@ -57,26 +60,54 @@ std::vector<Step> load_steps(const std::vector<std::string>& modules) {
     return steps;
 }
 
-/// Throws UsageError for an output that would destroy the mesh, unless that is what was asked for.
-void check_claims(const ProcessArguments& a, const std::vector<Step>& steps) {
-    if (a.in_place) return;
+/// The claims of the mesh and of what is written in the end.
+FileClaims mesh_claims(const ProcessArguments& a) {
     FileClaims claims;
-    claims.reads("the mesh", a.input);
-    for (const Step& step : steps) claims.reads("the module", step.first.path());
-    claims.writes("-o " + a.output, a.output);
-    if (!a.quiet && !is_standard_output(a.output)) claims.writes("the summary", "-");
+    if (a.in_place) {
+        claims.writes("--in-place " + a.input, a.input);
+    } else {
+        claims.reads("the mesh", a.input);
+        claims.writes("-o " + a.output, a.output);
+    }
+    return claims;
+}
+
+/// Throws UsageError for an output that would destroy the mesh, unless that is what was asked for, or a
+/// module.
+void check_claims(const ProcessArguments& a, const std::vector<Step>& steps) {
+    FileClaims claims = mesh_claims(a);
     try {
         claims.check();
     } catch (const UsageError& error) {
+        if (a.input == "-") throw;
         throw UsageError(std::string(error.what()) + ", or overwrite the mesh with --in-place");
     }
+    for (const Step& step : steps) claims.reads("the module", step.first.path());
+    if (!a.quiet && !is_standard_output(a.in_place ? a.input : a.output)) claims.writes("the summary", "-");
+    claims.check();
 }
 
-ToMeshResult read_input(const std::string& input) {
+PolygonMesh read_input(const std::string& input) {
     set_activity(input.c_str(), "read");
-    const PolygonMesh facets = read_mesh(input);
+    PolygonMesh facets = read_mesh(input);
     if (facets.facet_count() == 0)
         throw Error(input, "holds no faces; reconstruct a mesh from its points first");
+    return facets;
+}
+
+/// Modules multiply lengths, so a mesh of extreme size is measured in a unit of its own, a power of two, for
+/// them. Returns that unit.
+double scale_for_modules(PolygonMesh& facets, const ProcessArguments& a) {
+    const double unit = CloudFrame(bounds_of(facets.positions)).unit();
+    if (unit == 1) return unit;
+    for (Vec3& p : facets.positions) p /= unit;
+    if (!a.quiet)
+        complain(a.input + ": lengths, also those of the modules' options, are measured in units of 2^"
+                 + std::to_string(std::ilogb(unit)));
+    return unit;
+}
+
+ToMeshResult build(const std::string& input, const PolygonMesh& facets) {
     ToMeshResult built = to_mesh(facets);
     if (built.rejected > 0)
         complain(input + ": " + std::to_string(built.rejected)
@@ -96,6 +127,8 @@ std::string process(const std::string& input, const Plugin& plugin, PolyMesh& me
 
 int run_process(const ProcessArguments& a) {
     if (a.list) return list_modules();
+    if (a.in_place && a.input == "-")
+        throw UsageError("--in-place writes the mesh's own file, and standard input has none; use -o FILE");
     std::error_code ignored;
     if (a.in_place && !a.output.empty() && !std::filesystem::equivalent(a.input, a.output, ignored))
         throw UsageError("--in-place writes the mesh's own file, and -o names another; leave one out");
@@ -106,7 +139,10 @@ int run_process(const ProcessArguments& a) {
     const std::vector<Step> steps = load_steps(a.modules);
     check_claims(a, steps);
     check_writable(output);
-    ToMeshResult built = read_input(a.input);
+    PolygonMesh facets = read_input(a.input);
+    const double unit = scale_for_modules(facets, a);
+    ToMeshResult built = build(a.input, facets);
+    facets = {};
     std::ostream& text = is_standard_output(output) ? std::cerr : std::cout;
     for (std::size_t i = 0; i < steps.size(); ++i) {
         const auto& [plugin, request] = steps[i];
@@ -117,7 +153,10 @@ int run_process(const ProcessArguments& a) {
     set_phase("write");
     WriteOptions options;
     options.ascii = a.ascii;
-    const WrittenMesh written = write_mesh(output, to_polygons(built.mesh), format, options);
+    PolygonMesh result = to_polygons(built.mesh);
+    if (unit != 1)
+        for (Vec3& p : result.positions) p *= unit;
+    const WrittenMesh written = write_mesh(output, result, format, options);
     if (written.text_for_precision && !a.quiet) text << text_for_precision;
     return done;
 }

@@ -4,12 +4,30 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <filesystem>
+#include <iomanip>
+#include <sstream>
 
 using namespace hsdm;
 using namespace hsdm::test;
 using Json = nlohmann::json;
 namespace fs = std::filesystem;
+
+namespace {
+
+/// 1 x 2 x 3, times a power of two.
+std::string box_off(int exponent) {
+    std::ostringstream off;
+    off << std::setprecision(17) << "OFF\n8 6 12\n";
+    for (int corner = 0; corner < 8; ++corner)
+        off << std::ldexp(corner & 1, exponent) << ' ' << std::ldexp(corner & 2, exponent) << ' '
+            << std::ldexp(corner & 4 ? 3 : 0, exponent) << '\n';
+    off << "4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
+    return off.str();
+}
+
+} // namespace
 
 TEST_CASE("info tells a cloud from a mesh and measures both", "[cli]") {
     const Folder folder;
@@ -26,6 +44,47 @@ TEST_CASE("info tells a cloud from a mesh and measures both", "[cli]") {
     CHECK(mesh["mesh"]["signed_volume"].get<double>() == Approx(4.0 / 3 * 3.14159).epsilon(0.1));
     CHECK(run(folder, "info part.ply").out.find("closed") != std::string::npos);
     CHECK(run(folder, "info missing.off").status == 1);
+}
+
+TEST_CASE("info measures meshes of any size", "[cli]") {
+    const Folder folder;
+    folder.write("box.off", box_off(0));
+    const Json box = Json::parse(run(folder, "info box.off --json").out);
+    REQUIRE(box["mesh"]["signed_volume"] == 6.0);
+    for (const int exponent : {-500, -320, 320, 500}) {
+        INFO("2^" << exponent);
+        folder.write("other.off", box_off(exponent));
+        Json other = Json::parse(run(folder, "info other.off --json").out);
+        CHECK(other["diagonal"] == std::ldexp(box["diagonal"].get<double>(), exponent));
+        Json expected = box["mesh"];
+        expected["edge_length_mean"] = std::ldexp(box["mesh"]["edge_length_mean"].get<double>(), exponent);
+        expected["signed_volume"] = std::ldexp(6.0, 3 * exponent);
+        if (std::abs(exponent) == 500) expected.erase("signed_volume"); // no number holds it
+        CHECK(other["mesh"] == expected);
+        CHECK(run(folder, "info other.off").out.find("(outward)") != std::string::npos);
+    }
+}
+
+TEST_CASE("modules find in meshes of extreme size what they find in others", "[cli]") {
+    const Folder folder;
+    const std::string modules = with_modules(folder);
+    folder.write("box.off", box_off(0));
+    const std::string words = " --module classify-features --module smooth-normals ";
+    const CommandResult box = run(folder, "process box.off -o new.off" + words, modules);
+    REQUIRE(box.out.find("12 sharp edges") != std::string::npos);
+    CHECK(box.err.empty());
+    for (const int exponent : {-500, 500}) {
+        folder.write("other.off", box_off(exponent));
+        const CommandResult other = run(folder, "process other.off -o other-new.off" + words, modules);
+        INFO(other.err);
+        CHECK(other.status == 0);
+        CHECK(other.out == box.out);
+        CHECK(other.err.starts_with("hsdm: other.off: "));
+        CHECK(other.err.find("units of 2^" + std::to_string(exponent + 1)) != std::string::npos);
+        CHECK(run(folder, "process other.off -o other-new.off --quiet" + words, modules).err.empty());
+        const Json compared = Json::parse(run(folder, "compare other.off other-new.off --json").out);
+        CHECK(compared["hausdorff"].get<double>() <= std::ldexp(1e-9, exponent));
+    }
 }
 
 TEST_CASE("compare measures both directions between a mesh and a cloud or a mesh", "[cli]") {

@@ -90,6 +90,14 @@ TEST_CASE("process and regress destroy neither mesh nor suite nor cloud", "[cli]
     const std::string process = "process m.off --module ./modules/classify-features.so ";
     check_refused(folder, process + "-o ./m.off", {"-o ./m.off", "the mesh m.off", "--in-place"});
     check_refused(folder, process + "-o other.off --in-place", {"--in-place"});
+    const std::string module = "--module ./modules/classify-features.so ";
+    check_refused(folder, "process - --in-place " + module + "<m.off", {"standard input", "-o FILE"});
+    for (const std::string& words :
+         {process + "-o modules/classify-features.so --format off", process + "-o new.off >>m.off",
+          "process - -o m.off " + module + "<m.off"}) {
+        check_refused(folder, words, {"would be destroyed"});
+        CHECK(run(folder, words).err.find("--in-place") == std::string::npos); // it would not help
+    }
     CHECK(run(folder, process + "-o m.off --in-place --quiet").status == 0);
     CHECK(run(folder, process + "--in-place --quiet").status == 0);
     CHECK(read_file(folder / "m.off").starts_with("OFF"));
@@ -102,6 +110,18 @@ TEST_CASE("process and regress destroy neither mesh nor suite nor cloud", "[cli]
     CHECK(piped.status == 0);
     CHECK(piped.out.starts_with("[")); // and the table gave way
     CHECK(piped.err.find("within tolerance") != std::string::npos);
+}
+
+TEST_CASE("info and compare do not write into what they read", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan(100)));
+    folder.write("m.off", "OFF\n3 1 3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    check_refused(folder, "info scan.xyz >>scan.xyz", {"the output is the file scan.xyz"});
+    check_refused(folder, "info - <scan.xyz >>scan.xyz", {"the output is standard input"});
+    check_refused(folder, "compare m.off scan.xyz 1<>scan.xyz", {"the output is the file scan.xyz"});
+    check_refused(folder, "compare scan.xyz m.off --json 1<>scan.xyz", {"the output is the file scan.xyz"});
+    CHECK(run(folder, "compare scan.xyz m.off >new.txt").status == 0);
+    CHECK(run(folder, "compare m.off m.off </dev/null >/dev/null").status == 0);
 }
 
 TEST_CASE("devices, descriptors and pipes are outputs for any user", "[cli]") {

@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include <sstream>
+
 using namespace hsdm;
 using namespace hsdm::test;
 using Catch::Matchers::Contains;
@@ -60,6 +62,16 @@ TEST_CASE("unknown words are refused with the nearest known one", "[cli]") {
     CHECK(refusal(folder, "info scan.xyz other.xyz") == "hsdm: other.xyz: one argument too many for info");
     CHECK_THAT(refusal(folder, "reconstruct scan.xyz -o a.off --method extendet"),
                Contains("--method extendet: must be one of") && Contains("did you mean extended?"));
+}
+
+TEST_CASE("every line of a message says whose it is", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", "0 0 0\n");
+    const CommandResult result = run(folder, "reconstruct scan.xyz -o a.off --out-dir out");
+    CHECK(result.status == 2);
+    std::istringstream lines(result.err);
+    for (std::string line; std::getline(lines, line);) CHECK_THAT(line, StartsWith("hsdm: "));
+    CHECK_THAT(result.err, Contains("--help"));
 }
 
 TEST_CASE("help and version work as words", "[cli]") {
@@ -161,12 +173,28 @@ TEST_CASE("info and compare drop the points that reconstruct drops, and say how 
     const Folder folder;
     folder.write("scan.ply", ply_with_nan(sphere_scan(1000)));
     REQUIRE(run(folder, "reconstruct scan.ply --depth 3 -o part.off").status == 0);
-    CHECK_THAT(run(folder, "info scan.ply").out, Contains("1 point that is not finite"));
+    CHECK_THAT(run(folder, "info scan.ply").out, Contains("1 point without finite coordinates"));
     CHECK(Json::parse(run(folder, "info scan.ply --json").out)["cloud"]["dropped_nonfinite"] == 1);
-    CHECK_THAT(run(folder, "compare scan.ply part.off").out, Contains("1 point that is not finite"));
+    CHECK_THAT(run(folder, "compare scan.ply part.off").out, Contains("1 point without finite coordinates"));
     const Json compared = Json::parse(run(folder, "compare scan.ply part.off --json").out);
     CHECK(compared["a"]["dropped_nonfinite"] == 1);
     CHECK(compared["a"]["points"] == 1000);
+}
+
+TEST_CASE("pixels and rays without a return are counted with what is dropped", "[cli]") {
+    const Folder folder;
+    const std::string points = xyz(sphere_scan(1000));
+    folder.write("scan.pcd", "VERSION .7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\n"
+                             "WIDTH 1002\nHEIGHT 1\nPOINTS 1002\nDATA ascii\n"
+                                 + points + "nan nan nan\nnan nan nan\n");
+    REQUIRE(run(folder, "reconstruct scan.pcd --depth 3 -o part.off --report r.json").status == 0);
+    CHECK(Json::parse(read_file(folder / "r.json"))["input"]["dropped_nonfinite"] == 2);
+    CHECK(Json::parse(run(folder, "info scan.pcd --json").out)["cloud"]["dropped_nonfinite"] == 2);
+    const Json compared = Json::parse(run(folder, "compare scan.pcd part.off --json").out);
+    CHECK(compared["a"]["dropped_nonfinite"] == 2);
+    folder.write("suite.json", R"({"cases": [{"name": "pixels", "input": "scan.pcd", "args": ["--depth", "3"],
+                                              "expect": {"input.dropped_nonfinite": 2}}]})");
+    CHECK(run(folder, "regress suite.json").status == 0);
 }
 
 TEST_CASE("a mesh on standard input, or under another name, is a mesh", "[cli]") {
