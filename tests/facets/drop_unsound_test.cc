@@ -41,6 +41,21 @@ TEST_CASE("both facets of a pillow go", "[facets]") {
     CHECK(dropped(mesh).count == 0);
 }
 
+TEST_CASE("a closed surface of three facets goes, one of four stays", "[facets]") {
+    PolygonMesh flat;
+    flat.positions = {Vec3(0, 0, 0), Vec3(3, 0, 0), Vec3(0, 3, 0), Vec3(1, 1, 0)};
+    flat.add_facet(std::array<Index, 4>{0, 2, 1, 3}); // its back
+    flat.add_facet(std::array<Index, 3>{1, 2, 3});
+    flat.add_facet(std::array<Index, 3>{3, 2, 0});
+    REQUIRE(measure_connectivity(flat).closed());
+    CHECK(dropped(flat).count == 3);
+    PolygonMesh tetrahedron;
+    tetrahedron.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
+    for (const auto& f : {std::array<Index, 3>{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}})
+        tetrahedron.add_facet(f);
+    CHECK(dropped(tetrahedron).count == 0);
+}
+
 TEST_CASE("facets that rounding leaves without area where they will stand go", "[facets]") {
     PolygonMesh mesh = square_and_pillow();
     CHECK(dropped(mesh, Vec3(1e17, 1e17, 0)).count == 4);

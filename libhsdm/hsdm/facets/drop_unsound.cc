@@ -4,6 +4,7 @@
 #include "hsdm/quality/topology.hh"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 namespace hsdm {
@@ -27,6 +28,22 @@ bool is_of_pillow(const PolygonMesh& mesh, const FacetLinks& links, std::size_t 
     return false;
 }
 
+/// Is it one of fewer than four facets that make a closed surface? No space lies between them.
+bool is_of_flat_component(const PolygonMesh& mesh, const FacetLinks& links, std::size_t f) {
+    constexpr std::size_t fewest = 4;
+    std::array<std::size_t, fewest> found{f};
+    std::size_t count = 1;
+    for (std::size_t i = 0; i < count; ++i)
+        for (Index side = mesh.first[found[i]]; side < mesh.first[found[i] + 1]; ++side) {
+            if (links.twin[side] == no_index) return false;
+            const std::size_t next = links.facet[links.twin[side]];
+            if (std::find(found.begin(), found.begin() + count, next) != found.begin() + count) continue;
+            if (count + 1 == fewest) return false;
+            found[count++] = next;
+        }
+    return true;
+}
+
 /// Does the facet bridge space that was cut out?
 bool spans_cut(const PolygonMesh& mesh, const Vec3& origin, const CloudFrame& frame, std::size_t f) {
     const auto facet = mesh.facet(f);
@@ -46,6 +63,7 @@ Discarded drop_unsound(PolygonMesh& mesh, const Vec3& origin, const CloudFrame& 
             ring.clear();
             for (Index v : mesh.facet(f)) ring.push_back(frame.to_cloud(mesh.positions[v] + origin));
             unsound[f] = has_no_area(ring) || is_of_pillow(mesh, links, f)
+                         || is_of_flat_component(mesh, links, f)
                          || (frame.has_cuts() && spans_cut(mesh, origin, frame, f));
         }
     });
