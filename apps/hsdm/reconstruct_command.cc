@@ -10,8 +10,7 @@
 
 #include "hsdm/errors.hh"
 #include "hsdm/io/output_target.hh"
-
-#include <nlohmann/json.hpp>
+#include "hsdm/json_text.hh"
 
 #include <chrono>
 #include <iostream>
@@ -99,6 +98,7 @@ private:
         try {
             reconstruct_one(input);
         } catch (const std::exception& error) {
+            if (arguments_.report.empty()) throw;
             const char *const file = current_file(), *const phase = current_phase();
             note_failure(input, message_of(error));
             try {
@@ -112,9 +112,15 @@ private:
     }
 
     void note_failure(const std::string& input, const std::string& failure) {
-        const nlohmann::ordered_json entry = {{"input", {{"file", input}}}, {"failure", failure}};
-        reports_.push_back(entry.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-                           + '\n');
+        JsonText json;
+        json.begin_object();
+        json.key("input");
+        json.begin_object();
+        json.member("file", input);
+        json.end();
+        json.member("failure", failure);
+        json.end();
+        reports_.push_back(std::move(json).take());
     }
 
     void reconstruct_one(const std::string& input) {
