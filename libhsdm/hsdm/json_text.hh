@@ -42,8 +42,8 @@ public:
     /// A complete document of this class, as a part.
     void document(std::string_view text);
 
-    /// A key and its value; nothing if that is a number that is not finite, or an array that holds one: JSON has
-    /// none, and a `null` in its place breaks whoever reads it.
+    /// A key and its value; nothing if that is a number that is not finite, or an array that holds one: JSON
+    /// has none, and a `null` in its place breaks whoever reads it.
     template <class Value>
     void member(std::string_view name, const Value& content) {
         if (!is_finite(content)) return;
@@ -59,7 +59,9 @@ private:
     static bool is_finite(const Value& content) {
         if constexpr (std::is_floating_point_v<Value>)
             return std::isfinite(content);
-        else if constexpr (requires { requires std::is_floating_point_v<std::decay_t<decltype(*content.begin())>>; })
+        else if constexpr (requires {
+                               requires std::is_floating_point_v<std::decay_t<decltype(*content.begin())>>;
+                           })
             return std::all_of(content.begin(), content.end(), [](double x) { return std::isfinite(x); });
         else
             return true;

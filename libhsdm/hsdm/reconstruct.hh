@@ -36,7 +36,6 @@ struct MaxError {
     bool of_diagonal = false; ///< a share of the bounding box's diagonal, else the cloud's units
 };
 
-
 struct ReconstructOptions {
     /// Resolution: at most one of the three; by default the voxel follows from the points' spacing and
     /// noise (choose_voxel).

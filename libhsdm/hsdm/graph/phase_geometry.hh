@@ -25,7 +25,6 @@ PhaseFiles phase_files(const std::string& debug_dir, int depth);
 /// Writes the three files of the level; folders are made where there are none. The octree and the
 /// facets lie in the frame. Throws Error.
 void write_phases(const std::string& debug_dir, const Octree& octree, const OctreeLevel& level,
-                  const ConnectivityGraph& graph, const PolygonMesh& facets,
-                  const CloudFrame& frame = {});
+                  const ConnectivityGraph& graph, const PolygonMesh& facets, const CloudFrame& frame = {});
 
 } // namespace hsdm
