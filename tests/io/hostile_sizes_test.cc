@@ -95,7 +95,7 @@ TEST_CASE("very many elements of a PLY file are passed in the time of their line
 }
 
 TEST_CASE("rows are passed alike one by one and in pieces", "[io]") {
-    for (std::size_t count : {8191, 8192, 8193, 500000}) {
+    for (const std::size_t count : {8191u, 8192u, 8193u, 500000u}) {
         const std::string file = "ply\nformat ascii 1.0\nelement a " + std::to_string(count)
                                  + "\nproperty int a\nelement vertex 2\n" + xyz_properties + "end_header\n"
                                  + times(count, "\n1234567\n") + "1 2 3\n4 5 6\n";
