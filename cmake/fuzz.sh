@@ -5,7 +5,8 @@
 #
 # Each starts from the inputs that once failed (testdata/fuzz/regressions/NAME), from valid files and from what its
 # own runs before have found (TREE/fuzz/NAME/corpus). It stops at the first input that breaks a promise, which is
-# kept in TREE/fuzz/NAME/finds. TREE is build/fuzz, or HSDM_FUZZ_TREE: any tree built with HSDM_BUILD_FUZZERS.
+# kept in TREE/fuzz/NAME/finds. HSDM_FUZZ_SEED=1 repeats one row of inputs; by default each run has its own. TREE is
+# build/fuzz, or HSDM_FUZZ_TREE: any tree built with HSDM_BUILD_FUZZERS.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 
@@ -18,7 +19,7 @@ if [ "${1:-}" = --one ]; then # SECONDS NAME: how this script calls itself
     set -- "$place/corpus" "$HSDM_FUZZ_TREE/fuzz/seeds/$name"
     if [ -d "testdata/fuzz/regressions/$name" ]; then set -- "$@" "testdata/fuzz/regressions/$name"; fi
     # Memory: readers and reconstructions of so little take a few megabytes; a request for more is a find.
-    limits="-max_len=4096 -timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=64"
+    limits="-max_len=4096 -timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=64 -seed=${HSDM_FUZZ_SEED:-0}"
     words=tests/fuzz/dictionaries/${name##points_}.dict
     [ -f "$words" ] || words=tests/fuzz/dictionaries/${name##mesh_}.dict
     if [ -f "$words" ]; then limits="$limits -dict=$words"; fi
