@@ -4,6 +4,7 @@
 #include "fuzz/targets/cloud_from_bytes.hh"
 #include "fuzz/targets/fuzz.hh"
 #include "fuzz/targets/show_cloud.hh"
+#include "hsdm/cloud_frame.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/facets/to_mesh.hh"
 #include "hsdm/quality/topology.hh"
@@ -63,7 +64,7 @@ bool is_inside_out(const PolygonMesh& mesh, const Topology& topology) {
     return topology.closed() && topology.signed_volume < -1e-6 * std::pow(box.diagonal(), 3);
 }
 
-void check_mesh(PolygonMesh mesh, const PointCloud& cloud, int exponent) {
+void check_mesh(PolygonMesh mesh, const PointCloud& cloud) {
     check_finite(mesh.positions, "positions");
     check_finite(mesh.normals, "normals");
     for (const VertexProperty& property : mesh.properties) {
@@ -72,9 +73,9 @@ void check_mesh(PolygonMesh mesh, const PointCloud& cloud, int exponent) {
         for (double value : property.values)
             if (!std::isfinite(value)) broken("finite " + property.name);
     }
-    // Areas are those of the cloud without its scale: at 2^-1000 no area is a double.
-    for (Vec3& p : mesh.positions)
-        for (double& x : p) x = std::ldexp(x, -exponent);
+    // Volumes are those in a unit of the mesh's own: at 2^-1000 none is a double.
+    const double unit = CloudFrame(bounds_of(mesh.positions)).unit();
+    for (Vec3& p : mesh.positions) p *= 1 / unit;
     const Topology topology = measure_topology(mesh);
     promise(topology.faces > 0, "a mesh has facets");
     promise(topology.manifold(), "a 2-manifold");
@@ -156,7 +157,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     if (const char* path = std::getenv("HSDM_FUZZ_SHOW")) fuzz::show_cloud(path, cloud, options);
     const Outcome outcome = run(cloud, options);
     if (outcome.error.empty()) {
-        check_mesh(outcome.mesh, cloud, exponent);
+        check_mesh(outcome.mesh, cloud);
         if (outcome.report.find("null") != std::string::npos) broken("a finite report: " + outcome.report);
     }
     if (checks % 4 == 0) check_same(outcome, run(shuffled(cloud, seed), options), "in another order");
