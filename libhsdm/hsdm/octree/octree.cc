@@ -62,8 +62,10 @@ std::vector<T> gathered(const std::vector<T>& values, const std::vector<Index>& 
 MortonCode code_of(const Vec3& relative, double scale) {
     constexpr double last = (1 << morton_levels) - 1;
     std::array<std::uint32_t, 3> c;
-    for (unsigned k = 0; k < 3; ++k)
-        c[k] = static_cast<std::uint32_t>(std::clamp(relative[k] * scale, 0.0, last));
+    for (unsigned k = 0; k < 3; ++k) {
+        const double x = relative[k] * scale;
+        c[k] = x > 0 ? static_cast<std::uint32_t>(std::min(x, last)) : 0; // NaN is before all
+    }
     return morton_encode(c[0], c[1], c[2]);
 }
 
