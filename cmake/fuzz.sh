@@ -5,8 +5,8 @@
 #
 # Each starts from the inputs that once failed (testdata/fuzz/regressions/NAME), from valid files and from what its
 # own runs before have found (TREE/fuzz/NAME/corpus). It stops at the first input that breaks a promise, which is
-# kept in TREE/fuzz/NAME/finds. HSDM_FUZZ_SEED=1 repeats one row of inputs; by default each run has its own. TREE is
-# build/fuzz, or HSDM_FUZZ_TREE: any tree built with HSDM_BUILD_FUZZERS.
+# kept in TREE/fuzz/NAME/finds. HSDM_FUZZ_SEED=1 repeats one row of inputs; by default each run has its own.
+# HSDM_FUZZ_CLOUDS ends the cloud fuzzer after so many. TREE is build/fuzz, or HSDM_FUZZ_TREE: any tree built with HSDM_BUILD_FUZZERS.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 
@@ -24,7 +24,7 @@ if [ "${1:-}" = --one ]; then # SECONDS NAME: how this script calls itself
     [ -f "$words" ] || words=tests/fuzz/dictionaries/${name##mesh_}.dict
     if [ -f "$words" ]; then limits="$limits -dict=$words"; fi
     # A cloud covers so much that weighing what is rare would take longer than reconstructing it.
-    if [ "$name" = cloud ]; then limits="$limits -entropic=0 -max_len=512"; fi
+    if [ "$name" = cloud ]; then limits="$limits -entropic=0 -max_len=512 -runs=${HSDM_FUZZ_CLOUDS:--1}"; fi
     # shellcheck disable=SC2086
     "$HSDM_FUZZ_TREE/tests/fuzz/targets/hsdm_fuzz_$name" $limits -max_total_time="$seconds" -print_final_stats=1 \
         -artifact_prefix="$place/finds/" "$@" >"$place/log" 2>&1
