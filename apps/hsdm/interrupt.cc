@@ -6,6 +6,7 @@
 #include "hsdm/io/file_registry.hh"
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -33,11 +34,16 @@ public:
         return *this;
     }
 
-    /// Past a progress bar on a terminal. A reader that reads no more does not keep the process alive.
+    /// Past a progress bar on a terminal, and the last: whatever else is written to the stream from now on
+    /// waits for it for ever. A reader that reads no more does not keep the process alive.
     void say() {
         constexpr std::string_view wipe = "\r\033[K";
-        constexpr int patience = 100; // milliseconds
+        constexpr int patience = 50; // milliseconds, twice
         text_[length_++] = '\n';
+        for (int waited = 0; ftrylockfile(stderr) != 0; ++waited) {
+            if (waited == patience) return;
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
         pollfd error{STDERR_FILENO, POLLOUT, 0};
         if (poll(&error, 1, patience) != 1) return;
         if (isatty(STDERR_FILENO) == 1) write_some(wipe);
