@@ -17,12 +17,6 @@
 namespace hsdm::command {
 namespace {
 
-Box bounds(const std::vector<Vec3>& positions) {
-    Box box;
-    for (const Vec3& p : positions) box.add(p);
-    return box;
-}
-
 /// By lengths whose squares are numbers.
 double diagonal(const Box& box) {
     const double unit = CloudFrame(box).unit();
@@ -82,7 +76,7 @@ void print_normals(const Loaded& loaded) {
 }
 
 void print_json(const std::string& path, const Loaded& loaded) {
-    const Box box = bounds(loaded.mesh.positions);
+    const Box box = bounds_of(loaded.mesh.positions);
     JsonText json;
     json.begin_object();
     json.member("file", path);
@@ -120,7 +114,7 @@ int show(const std::string& path, bool json) {
         print_json(path, loaded);
         return done;
     }
-    const Box box = bounds(loaded.mesh.positions);
+    const Box box = bounds_of(loaded.mesh.positions);
     std::cout << "file      " << printable(path) << '\n';
     if (loaded.is_mesh()) {
         print_topology(std::cout, loaded.mesh);

@@ -96,7 +96,11 @@ void print_summary(std::ostream& out, const Report& r, const std::string& writte
         << number(size[0]) << " x " << number(size[1]) << " x " << number(size[2]) << ", spacing "
         << number(r.input.spacing, 3);
     if (r.input.dropped_nonfinite > 0)
-        out << "; " << grouped(r.input.dropped_nonfinite) << " without finite coordinates, dropped";
+        out << "; " << grouped(r.input.dropped_nonfinite) << " without finite coordinates"
+            << (r.input.first_nonfinite
+                    ? ", the first at index " + std::to_string(*r.input.first_nonfinite) + ','
+                    : std::string(","))
+            << " dropped";
     if (r.input.merged_duplicates > 0)
         out << "; " << grouped(r.input.merged_duplicates) << " duplicates, merged";
     if (const auto moved = r.rejected.find("points_moved"); moved != r.rejected.end() && moved->second > 0)

@@ -31,13 +31,13 @@ public:
             copy_ = *cloud_;
             cloud_ = ours_ = &copy_;
         }
-        dropped_ = drop_nonfinite(*ours_).nonfinite;
-        if (2 * dropped_ > count)
-            throw Error(std::to_string(dropped_) + " of " + std::to_string(count)
+        dropped_ = drop_nonfinite(*ours_);
+        if (2 * dropped_.nonfinite > count)
+            throw Error(std::to_string(dropped_.nonfinite) + " of " + std::to_string(count)
                         + " points have coordinates that are not finite; check how the file was exported");
     }
     const PointCloud& operator*() const { return *cloud_; }
-    std::size_t dropped() const { return dropped_; }
+    const Dropped& dropped() const { return dropped_; }
     /// The normals go with it, if they are ours.
     Octree take_octree(const OctreeOptions& options) {
         return ours_ ? build_octree_taking_normals(*ours_, options) : build_octree(*cloud_, options);
@@ -55,7 +55,7 @@ private:
     const PointCloud* cloud_;
     PointCloud* ours_ = nullptr;
     PointCloud copy_;
-    std::size_t dropped_ = 0;
+    Dropped dropped_;
 };
 
 /// Phase 1 with its report.

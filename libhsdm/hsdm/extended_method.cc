@@ -56,7 +56,7 @@ void note_counts(const ExtendedFacets& facets, Report& report) {
 
 /// Facets face where the points' normals point. If these point into a closed solid, the whole surface is
 /// turned.
-bool turn_outward(PolygonMesh& mesh) {
+bool turn_solid_outward(PolygonMesh& mesh) {
     if (signed_volume(mesh) >= 0 || !measure_connectivity(mesh).closed()) return false;
     for (std::size_t f = 0; f < mesh.facet_count(); ++f)
         std::reverse(mesh.corners.begin() + mesh.first[f], mesh.corners.begin() + mesh.first[f + 1]);
@@ -81,7 +81,7 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
     });
     note_counts(facets, report);
     note_dropped("facets of splinters", facets.debris, in, report);
-    const bool turned = turn_outward(facets.mesh);
+    const bool turned = turn_solid_outward(facets.mesh);
     report.rejected["normals_turned"] = turned ? in.octree.size() : 0;
     if (in.options.classify) {
         SheetFeatures features = in.phases.run("sheet features", 0.5, report.seconds.features, [&] {

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <functional>
@@ -70,6 +71,8 @@ Dropped drop_nonfinite(PointCloud& cloud) {
     dropped.bad_normals = bad_normals;
     if (dropped.nonfinite == 0) return dropped;
 
+    const auto first = std::find_if_not(cloud.positions.begin(), cloud.positions.end(), is_finite);
+    dropped.first_nonfinite = static_cast<std::size_t>(first - cloud.positions.begin());
     std::vector<Index> kept;
     kept.reserve(cloud.size() - dropped.nonfinite);
     for (std::size_t i = 0; i < cloud.size(); ++i)

@@ -38,8 +38,9 @@ struct PointCloud {
 
 /// What `drop_nonfinite` removed.
 struct Dropped {
-    std::size_t nonfinite = 0;   ///< points with NaN or Inf in a coordinate
-    std::size_t bad_normals = 0; ///< points kept whose normal was zero or not finite
+    std::size_t nonfinite = 0;       ///< points with NaN or Inf in a coordinate
+    std::size_t first_nonfinite = 0; ///< index of the first of them, if there is one
+    std::size_t bad_normals = 0;     ///< points kept whose normal was zero or not finite
 };
 
 /// Removes the points with a NaN or Inf coordinate, in place and in order; normals that are not finite or

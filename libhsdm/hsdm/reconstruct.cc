@@ -97,17 +97,22 @@ std::vector<Vec3> points_as_read(const PointCloud& cloud, const CloudFrame& fram
     return points;
 }
 
-/// Distances up to `enough` may come out larger, though not above it.
-void measure_error(std::span<const Vec3> points, const Octree& octree, const PolygonMesh& facets,
-                   FacetKnowledge& known, double enough, Report& report) {
+/// Returns the points whose voxel no facet came out of. A vertex lies in its voxel or beside it: farther from
+/// the mesh than from one end of the voxel to the other no point is that has one.
+Discarded measure_error(std::span<const Vec3> points, const Octree& octree, const PolygonMesh& facets,
+                        FacetKnowledge& known, double enough, Report& report) {
     const bool by_cells = report.grid.kind == "uniform"; // facets are as large as voxels
+    const double diagonal = std::numbers::sqrt3 * report.grid.voxel_size;
     if (by_cells && !known.cells) known.cells.emplace(facets, report.grid.voxel_size);
-    const Distance distance = by_cells ? points_to_mesh_by_cells(points, facets, *known.cells)
-                                       : points_to_mesh(points, facets, enough);
+    const Distance distance =
+        by_cells ? points_to_mesh_by_cells(points, facets, *known.cells, diagonal)
+                 : points_to_mesh(points, facets, {.enough = enough, .beyond = std::max(diagonal, enough)});
     report.error.points_to_mesh_max = distance.max;
     report.error.points_to_mesh_mean = distance.mean;
     report.error.points_to_mesh_rms = distance.rms;
     report.error.normalised_max = distance.max / octree.bounds.diagonal();
+    if (distance.beyond == 0) return {};
+    return {distance.beyond, points[distance.first_beyond] + octree.origin};
 }
 
 /// Drops small components if asked to, and measures what is left. A bound is checked before: it is one for
@@ -117,8 +122,10 @@ void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, Polyg
     const Octree& octree = in.octree; // no structured bindings: clang 14 cannot capture them
     const ReconstructOptions& options = in.options;
     bool measured = report.grid.max_error > 0;
+    Discarded off;
     if (measured)
-        measure_error(points, octree, facets, known, options.measure ? 0 : report.grid.max_error, report);
+        off =
+            measure_error(points, octree, facets, known, options.measure ? 0 : report.grid.max_error, report);
     check_error_kept(report, in.frame.unit());
     if (options.min_component) {
         Islands islands = drop_islands(facets, known.hints, *options.min_component);
@@ -137,9 +144,10 @@ void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, Polyg
     }
     tbb::parallel_invoke(
         [&] {
-            if (!measured) measure_error(points, octree, facets, known, 0, report);
+            if (!measured) off = measure_error(points, octree, facets, known, 0, report);
         },
         [&] { measure_mesh(facets, report); });
+    note_dropped("points more than a voxel's diagonal off the mesh", off, in.frame, report);
 }
 
 /// Phase 3 on the mesh.
@@ -275,7 +283,8 @@ void run(InputCloud& cloud, const ReconstructOptions& options, std::optional<std
     const bool estimate = must_estimate(*cloud, options); // before the octree takes the normals
     Decomposition decomposition(cloud, options, Phases(options, 0, 1));
     Report& report = decomposition.report;
-    report.input.dropped_nonfinite = cloud.dropped();
+    report.input.dropped_nonfinite = cloud.dropped().nonfinite;
+    if (cloud.dropped().nonfinite > 0) report.input.first_nonfinite = cloud.dropped().first_nonfinite;
     report.threads = tbb::this_task_arena::max_concurrency();
     note_options(estimate, options, report);
     if (estimate)

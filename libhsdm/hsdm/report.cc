@@ -18,6 +18,7 @@ void fill(JsonText& json, const Report::Input& input) {
     json.member("file", input.file);
     json.member("points", input.points);
     json.member("dropped_nonfinite", input.dropped_nonfinite);
+    if (input.first_nonfinite) json.member("first_nonfinite", *input.first_nonfinite);
     json.member("merged_duplicates", input.merged_duplicates);
     json.member("has_normals", input.has_normals);
     json.member("bbox_min", input.bbox.lo);

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct Report {
     struct Input {
         std::string file;
         std::size_t points = 0, dropped_nonfinite = 0, merged_duplicates = 0;
+        std::optional<std::size_t> first_nonfinite; ///< index in the cloud of the first point without
         bool has_normals = false;
         Box bbox;
         double spacing = 0; ///< mean distance between neighbouring points

@@ -172,7 +172,12 @@ TEST_CASE("the progress bar is wiped before the summary is printed", "[cli]") {
 TEST_CASE("info and compare drop the points that reconstruct drops, and say how many", "[cli]") {
     const Folder folder;
     folder.write("scan.ply", ply_with_nan(sphere_scan(1000)));
-    REQUIRE(run(folder, "reconstruct scan.ply --depth 3 -o part.off").status == 0);
+    const CommandResult made = run(folder, "reconstruct scan.ply --depth 3 -o part.off --report r.json");
+    REQUIRE(made.status == 0);
+    const Json input = Json::parse(read_file(folder / "r.json"))["input"];
+    CHECK(input["dropped_nonfinite"] == 1);
+    CHECK(input["first_nonfinite"] == 0);
+    CHECK_THAT(made.out, Contains("1 without finite coordinates, the first at index 0, dropped"));
     CHECK_THAT(run(folder, "info scan.ply").out, Contains("1 point without finite coordinates"));
     CHECK(Json::parse(run(folder, "info scan.ply --json").out)["cloud"]["dropped_nonfinite"] == 1);
     CHECK_THAT(run(folder, "compare scan.ply part.off").out, Contains("1 point without finite coordinates"));

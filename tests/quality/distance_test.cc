@@ -145,7 +145,7 @@ TEST_CASE("many points give the largest, mean and rms distance and the farthest 
     CHECK(distance.mean == Approx(sum / 5000).epsilon(1e-12));
     CHECK(distance.rms == Approx(std::sqrt(squares / 5000)).epsilon(1e-12));
     for (const double bound : {0.5 * max, std::nextafter(max, 0), max, 2 * max})
-        CHECK((points_to_mesh(points, mesh, bound).max > bound) == (max > bound));
+        CHECK((points_to_mesh(points, mesh, {.enough = bound}).max > bound) == (max > bound));
 }
 
 TEST_CASE("points in each other's neighbourhood are measured as if each were alone", "[distance]") {
@@ -300,6 +300,26 @@ PolygonMesh crumpled_sheet(int side, double rough, unsigned seed, const Vec3& at
 }
 
 } // namespace
+
+TEST_CASE("points farther than asked are counted, and the first of them is told", "[distance]") {
+    const PolygonMesh mesh = crumpled_sheet(20, 0.1, 13, {-7, 0.5, 0});
+    std::vector<Vec3> points;
+    for (const Vec3& p : random_points(5000, 14, 1))
+        points.push_back(Vec3(3 + 9 * p[0], 10.5 + 9 * p[1], 2 * p[2]));
+    const MeshDistance single(mesh);
+    for (const double beyond : {0.0, 0.5, 1.0, 10.0}) {
+        std::size_t count = 0, first = 0;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            if (single(points[i]) > beyond && count++ == 0) first = i;
+        for (const Distance& distance :
+             {points_to_mesh(points, mesh, {.beyond = beyond}),
+              points_to_mesh(points, mesh, {.enough = beyond, .beyond = beyond}),
+              points_to_mesh_by_cells(points, mesh, FacetCells(mesh, 1), beyond)}) {
+            CHECK(distance.beyond == count);
+            CHECK(distance.first_beyond == first);
+        }
+    }
+}
 
 TEST_CASE("cells find the same distances as the tree, whatever their size", "[distance]") {
     for (const double rough : {0.0, 0.3, 1.0}) {

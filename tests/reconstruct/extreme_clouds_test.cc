@@ -232,6 +232,26 @@ TEST_CASE("what is dropped is told with its number and a place", "[reconstruct]"
     CHECK(report.dropped[0].where[1] == garbage[1]);
 }
 
+TEST_CASE("points of a part too small for its voxels are told", "[reconstruct]") {
+    PointCloud cloud = step_cloud(20000);
+    const PointCloud part = step_cloud(400);
+    const Vec3 place(4, 4, 4);
+    for (std::size_t i = 0; i < part.size(); ++i) {
+        cloud.positions.push_back(0.01 * part.positions[i] + place);
+        cloud.normals.push_back(part.normals[i]);
+    }
+    ReconstructOptions options;
+    options.depth = 5;
+    options.method = GENERATE(Method::basic, Method::extended);
+    const Report report = reconstruct(cloud, options).report;
+    const auto told = std::find_if(report.dropped.begin(), report.dropped.end(), [](const auto& dropped) {
+        return dropped.what == "points more than a voxel's diagonal off the mesh";
+    });
+    REQUIRE(told != report.dropped.end());
+    CHECK(told->count == part.size());
+    CHECK((told->where - place).norm() < 0.1);
+}
+
 TEST_CASE("a cloud whose arrays do not fit together is refused", "[reconstruct]") {
     const PointCloud cloud = step_cloud(500);
     const auto refused = [&](auto change) {

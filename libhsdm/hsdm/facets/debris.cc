@@ -2,6 +2,7 @@
 
 #include "hsdm/chunks.hh"
 #include "hsdm/disjoint_sets.hh"
+#include "hsdm/facets/remove_facets.hh"
 
 #include <array>
 #include <atomic>
@@ -64,18 +65,9 @@ Discarded drop_debris(PolygonMesh& mesh, const DebrisOptions& options) {
         debris[c] = sizes[c] > 0 && sizes[c] <= (open[c] ? options.most_open : options.most_facets)
                     && static_cast<double>(sizes[c]) * options.least_ratio <= largest;
     if (std::none_of(debris.begin(), debris.end(), [](std::uint8_t d) { return d; })) return {};
-    PolygonMesh kept;
-    Discarded removed;
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-        const Index v = mesh.facet(f)[0];
-        if (debris[components.find(v)])
-            removed.add({1, mesh.positions[v]});
-        else
-            kept.add_facet(mesh.facet(f));
-    }
-    mesh.corners = std::move(kept.corners);
-    mesh.first = std::move(kept.first);
-    return removed;
+    std::vector<EdgeHint> none;
+    return remove_facets(mesh, none,
+                         [&](std::size_t f) { return debris[components.find(mesh.facet(f)[0])] != 0; });
 }
 
 } // namespace hsdm

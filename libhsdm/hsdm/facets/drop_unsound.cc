@@ -1,6 +1,7 @@
 #include "hsdm/facets/drop_unsound.hh"
 
 #include "hsdm/chunks.hh"
+#include "hsdm/facets/remove_facets.hh"
 #include "hsdm/quality/topology.hh"
 
 #include <algorithm>
@@ -67,23 +68,9 @@ Discarded drop_unsound(PolygonMesh& mesh, const Vec3& origin, const CloudFrame& 
                          || (frame.has_cuts() && spans_cut(mesh, origin, frame, f));
         }
     });
-    Discarded dropped;
-    if (std::find(unsound.begin(), unsound.end(), 1) == unsound.end()) return dropped;
-    PolygonMesh kept;
-    std::vector<EdgeHint> sides;
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-        if (unsound[f]) {
-            dropped.add({1, mesh.positions[mesh.facet(f)[0]]});
-            continue;
-        }
-        kept.add_facet(mesh.facet(f));
-        if (!hints.sides.empty())
-            sides.insert(sides.end(), hints.sides.begin() + mesh.first[f],
-                         hints.sides.begin() + mesh.first[f + 1]);
-    }
-    mesh.corners = std::move(kept.corners);
-    mesh.first = std::move(kept.first);
-    hints.sides = std::move(sides);
+    if (std::find(unsound.begin(), unsound.end(), 1) == unsound.end()) return {};
+    const Discarded dropped =
+        remove_facets(mesh, hints.sides, [&](std::size_t f) { return unsound[f] != 0; });
     links = link_facets(mesh);
     return dropped;
 }

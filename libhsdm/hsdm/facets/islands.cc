@@ -3,6 +3,7 @@
 #include "hsdm/disjoint_sets.hh"
 #include "hsdm/facets/area_vector.hh"
 #include "hsdm/facets/manifold.hh"
+#include "hsdm/facets/remove_facets.hh"
 
 namespace hsdm {
 namespace {
@@ -43,21 +44,8 @@ Islands drop_islands(PolygonMesh& mesh, FeatureHints& hints, const MinComponent&
     for (std::size_t c = 0; c < sizes.facets.size(); ++c)
         if (sizes.facets[c] > 0 && is_small(c)) ++removed.components;
     if (removed.components == 0) return removed;
-    PolygonMesh kept;
-    std::vector<EdgeHint> sides;
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-        if (const Index v = mesh.facet(f)[0]; is_small(components.find(v))) {
-            removed.facets.add({1, mesh.positions[v]});
-            continue;
-        }
-        kept.add_facet(mesh.facet(f));
-        if (!hints.sides.empty())
-            sides.insert(sides.end(), hints.sides.begin() + mesh.first[f],
-                         hints.sides.begin() + mesh.first[f + 1]);
-    }
-    mesh.corners = std::move(kept.corners);
-    mesh.first = std::move(kept.first);
-    hints.sides = std::move(sides);
+    removed.facets = remove_facets(
+        mesh, hints.sides, [&](std::size_t f) { return is_small(components.find(mesh.facet(f)[0])); });
     remove_isolated_vertices(mesh);
     return removed;
 }

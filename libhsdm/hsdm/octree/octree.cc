@@ -38,7 +38,8 @@ Vec3 directed_or_zero(const Vec3& n) {
     return length > 0 && std::isfinite(length) ? n : zero;
 }
 
-Vec3 unit_or_zero(const Vec3& n) {
+/// As a unit vector, or (0, 0, 0), without a -0.
+Vec3 unit_with_one_zero(const Vec3& n) {
     const Vec3 directed = directed_or_zero(n);
     const double length = directed.norm();
     return length > 0 ? directed / length + zero : zero;
@@ -205,7 +206,7 @@ Octree build(const PointCloud& cloud, std::vector<Vec3>* ours, const OctreeOptio
         octree.merged_duplicates =
             merge_equal(cloud.positions, normals, keys, with_values ? &octree.duplicates : nullptr);
     octree.source = take_order(keys, octree.codes);
-    if (with_normals) octree.normals = gathered(cloud.normals, octree.source, unit_or_zero);
+    if (with_normals) octree.normals = gathered(cloud.normals, octree.source, unit_with_one_zero);
     if (ours) *ours = std::vector<Vec3>();
     octree.positions = gathered(cloud.positions, octree.source,
                                 [&](const Vec3& p) { return p * per_unit - octree.origin + zero; });

@@ -75,12 +75,12 @@ private:
 
 struct Sums {
     double max = -1, sum = 0, squares = 0;
-    std::size_t farthest = 0;
+    std::size_t farthest = 0, beyond = 0, first_beyond = 0;
 };
 
 /// Of the distances whose squares squares() tells: a function of a point's index, made anew for each chunk.
 template <class Squares>
-Distance sum_up(std::size_t points, Squares squares) {
+Distance sum_up(std::size_t points, double beyond, Squares squares) {
     if (points == 0) return {};
     std::vector<Sums> chunks(chunk_count(points, chunk));
     for_chunks(points, chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
@@ -91,6 +91,7 @@ Distance sum_up(std::size_t points, Squares squares) {
             sums.sum += d;
             sums.squares += s;
             if (d > sums.max) sums.max = d, sums.farthest = i;
+            if (d > beyond && sums.beyond++ == 0) sums.first_beyond = i;
         }
         chunks[c] = sums;
     });
@@ -99,9 +100,12 @@ Distance sum_up(std::size_t points, Squares squares) {
         total.sum += sums.sum;
         total.squares += sums.squares;
         if (sums.max > total.max) total.max = sums.max, total.farthest = sums.farthest;
+        if (total.beyond == 0) total.first_beyond = sums.first_beyond;
+        total.beyond += sums.beyond;
     }
     const auto n = static_cast<double>(points);
-    return {total.max, total.sum / n, std::sqrt(total.squares / n), total.farthest};
+    return {total.max,      total.sum / n, std::sqrt(total.squares / n),
+            total.farthest, total.beyond,  total.first_beyond};
 }
 
 } // namespace
@@ -121,8 +125,8 @@ double MeshDistance::operator()(const Vec3& point, Index& hint) const {
     return std::sqrt(nearest.squared);
 }
 
-Distance MeshDistance::operator()(std::span<const Vec3> points) const {
-    return sum_up(points.size(), [&] {
+Distance MeshDistance::operator()(std::span<const Vec3> points, double beyond) const {
+    return sum_up(points.size(), beyond, [&] {
         return [packets = Packets(tree_, points)](std::size_t i) mutable { return packets(i).squared; };
     });
 }
@@ -139,24 +143,26 @@ Index MeshDistance::triangle_within(const Vec3& point, double bound, Index& hint
     return std::sqrt(found.squared) <= bound ? found.triangle : no_index;
 }
 
-Distance points_to_surface(std::span<const Vec3> points, const SurfaceWalk& surface, double enough) {
-    return sum_up(points.size(), [&] {
+Distance points_to_surface(std::span<const Vec3> points, const SurfaceWalk& surface,
+                           const DistanceOptions& options) {
+    return sum_up(points.size(), options.beyond, [&] {
         return [&, hint = no_index](std::size_t i) mutable {
-            return square(surface.distance(points[i], hint, enough));
+            return square(surface.distance(points[i], hint, options.enough));
         };
     });
 }
 
-Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh, double enough) {
-    if (!(enough > 0)) return MeshDistance(mesh)(points);
+Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh,
+                        const DistanceOptions& options) {
+    if (!(options.enough > 0)) return MeshDistance(mesh)(points, options.beyond);
     return points_to_surface(points, SurfaceWalk(mesh, triangulate(mesh), TriangleTree::Order::given),
-                             enough);
+                             options);
 }
 
 /// What no cell beside a point's own tells is left to the tree, which is rarely built.
 Distance points_to_mesh_by_cells(std::span<const Vec3> points, const PolygonMesh& mesh,
-                                 const FacetCells& cells) {
-    if (!cells.usable()) return points_to_mesh(points, mesh);
+                                 const FacetCells& cells, double beyond) {
+    if (!cells.usable()) return MeshDistance(mesh)(points, beyond);
     const Triangulation cut = triangulate(mesh);
     std::vector<double> squared(points.size());
     std::vector<std::vector<Index>> left(chunk_count(points.size(), chunk));
@@ -178,7 +184,7 @@ Distance points_to_mesh_by_cells(std::span<const Vec3> points, const PolygonMesh
             }
         });
     }
-    return sum_up(points.size(), [&] { return [&](std::size_t i) { return squared[i]; }; });
+    return sum_up(points.size(), beyond, [&] { return [&](std::size_t i) { return squared[i]; }; });
 }
 
 std::vector<Vec3> sample_surface(const PolygonMesh& mesh, std::size_t count) {
