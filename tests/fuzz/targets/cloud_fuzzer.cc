@@ -35,6 +35,7 @@ Outcome run(const PointCloud& cloud, const ReconstructOptions& options) {
         result.report.seconds = {};
         result.report.peak_memory_bytes = 0;
         result.report.threads = 0;
+        result.report.input.first_nonfinite.reset(); // follows the order
         result.report.options.erase("threads");
         outcome.report = to_json(result.report);
     } catch (const Error& error) {
