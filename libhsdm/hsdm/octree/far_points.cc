@@ -86,7 +86,15 @@ void spare_parts(const Octree& octree, std::vector<std::uint8_t>& far) {
     spare_parts(shifted_places(octree), far);
 }
 
-/// Positions as the frame has them, in a cube about their box. False, and nothing done, if that has no size.
+/// A frame for the points that are left: those that went may have been all that made it large.
+CloudFrame frame_of_rest(const Octree& octree, const PointCloud& cloud) {
+    Box left;
+    for (Index point : octree.source) left.add(cloud.positions[point]);
+    return CloudFrame(left);
+}
+
+/// Positions as the frame has them, in a cube about their box. False, and nothing done, if that has no
+/// voxels, as that of parts 2^1000 times as far apart as they are large.
 bool take_anew(Octree& octree, const PointCloud& cloud, const CloudFrame& frame) {
     std::vector<Vec3> positions(octree.size());
     for_chunks(positions.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -94,7 +102,7 @@ bool take_anew(Octree& octree, const PointCloud& cloud, const CloudFrame& frame)
             positions[i] = frame.to_work(cloud.positions[octree.source[i]]);
     });
     const Box bounds = bounds_of(positions);
-    if (!(bounds.extent() > 0)) return false;
+    if (!has_voxels(bounds)) return false;
     octree.bounds = bounds;
     octree.extent = bounds.extent();
     octree.origin = centred_origin(bounds, octree.extent);
@@ -170,10 +178,7 @@ Discarded drop_far_away(Octree& octree, const PointCloud& cloud, CloudFrame& fra
     Discarded discarded = remove_points(octree, far);
     if (discarded.count == 0) return {};
     discarded.first = frame.to_cloud(discarded.first);
-    Box left;
-    for (Index point : octree.source) left.add(cloud.positions[point]);
-    frame = CloudFrame(left);
-    take_anew(octree, cloud, frame);
+    if (const CloudFrame rest = frame_of_rest(octree, cloud); take_anew(octree, cloud, rest)) frame = rest;
     return discarded;
 }
 
@@ -193,7 +198,9 @@ Discarded cut_empty_space(Octree& octree, const PointCloud& cloud, CloudFrame& f
         Discarded some = remove_points(octree, marks);
         some.first = frame.to_cloud(some.first);
         discarded.add(some);
-        if (!take_anew(octree, cloud, frame)) return discarded;
+        const CloudFrame rest = frame_of_rest(octree, cloud);
+        if (!take_anew(octree, cloud, rest)) return discarded;
+        frame = rest;
     }
     return discarded;
 }

@@ -174,7 +174,7 @@ void place_cube(const PointCloud& cloud, const OctreeOptions& options, Octree& o
     octree.origin = octree.bounds.lo;
     octree.extent = octree.bounds.extent();
     if (octree.extent <= 0) throw Error("all points are equal; a surface needs points that differ");
-    if (!std::isfinite(octree.extent) || !std::isfinite(cells / octree.extent))
+    if (!has_voxels(octree.bounds))
         throw Error("the cloud is too large or too small for double precision; scale it, or give a unit");
     if (options.cube_extent != 0) {
         if (!(options.cube_extent >= octree.extent))
@@ -256,6 +256,11 @@ Discarded remove_points(Octree& octree, std::span<const std::uint8_t> marked) {
     return discarded;
 }
 
+bool has_voxels(const Box& bounds) {
+    return all_finite(std::array{bounds.lo, bounds.hi}) && bounds.extent() > 0
+           && std::isfinite(cells / bounds.extent());
+}
+
 bool fit_to_points(Octree& octree) {
     if (octree.size() == 0) return false;
     constexpr double negligible = 1e-9; // of the box
@@ -263,7 +268,7 @@ bool fit_to_points(Octree& octree) {
     const Box bounds{box.lo + octree.origin, box.hi + octree.origin};
     const double change =
         std::max((bounds.lo - octree.bounds.lo).max_abs(), (bounds.hi - octree.bounds.hi).max_abs());
-    if (!(bounds.extent() > 0) || change <= negligible * bounds.extent()) return false;
+    if (!has_voxels(bounds) || change <= negligible * bounds.extent()) return false;
     octree.bounds = bounds;
     rearrange(octree, std::move(octree.positions), bounds.extent());
     return true;
