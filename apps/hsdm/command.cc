@@ -3,6 +3,7 @@
 #include "activity.hh"
 #include "interrupt.hh"
 #include "messages.hh"
+#include "standard_output.hh"
 #include "threads.hh"
 #include "usage.hh"
 
@@ -22,13 +23,10 @@ void complain_of_memory() {
               << current_phase() << memory_advice << std::endl;
 }
 
-int status_of(const Run& run) {
+int status_of(const Run& run, StandardOutput& output) {
     try {
         const int status = run();
-        std::cout.flush();
-        if (!std::cout)
-            throw Error("standard output",
-                        "could not be written; is the reader still there, and room on the disk?");
+        output.finish();
         return status;
     } catch (const UsageError& error) {
         complain(error.what());
@@ -46,7 +44,8 @@ int status_of(const Run& run) {
 /// What a run that was killed left, and this one found in its way, is not removed in silence.
 int guarded(const Run& run) {
     try {
-        const int status = status_of(run);
+        StandardOutput output;
+        const int status = status_of(run, output);
         for (const std::string& left : take_removed_leftovers())
             complain("removed " + left + ", left by a run that was killed");
         return status;

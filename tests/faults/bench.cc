@@ -222,9 +222,7 @@ std::string Bench::broken_message(const Outcome& outcome, const Fault& fault) co
     if (has_raw_text(text)) return "a raw message";
     const bool memory = fault.kind == Kind::memory || fault.kind == Kind::map;
     const std::string cause = memory ? "out of memory" : std::strerror(fault.error);
-    // The streams of the C++ library keep no cause.
-    if (fault.kind != Kind::print && !contains_words(text, cause))
-        return "the cause is not named (" + cause + ")";
+    if (!contains_words(text, cause)) return "the cause is not named (" + cause + ")";
     const bool of_folder = plan_->path == folder_.path() || plan_->path == std::string(".");
     // Where more than one call fails, the first need not be the one that counts.
     if (memory || fault.lasting || of_folder) {

@@ -18,15 +18,14 @@ struct Failure {
 
 /// EINTR and `partial` are no failures: the call has to be repeated or continued.
 const std::vector<Failure> file_failures = {
-    {Kind::open, EACCES},    {Kind::open, EMFILE, true},   {Kind::read, EIO},
-    {Kind::read, EINTR},     {Kind::read, partial},        {Kind::read, partial, true},
-    {Kind::write, ENOSPC},   {Kind::write, EIO, true},     {Kind::write, EINTR},
-    {Kind::write, partial},  {Kind::write, partial, true}, {Kind::sync, EIO},
-    {Kind::close, EIO},      {Kind::rename, EACCES},       {Kind::rename, EIO, true},
-    {Kind::link, EPERM},     {Kind::folder, ENOSPC},       {Kind::remove, EACCES},
-    {Kind::status, EACCES},  {Kind::status, EIO, true},    {Kind::mode, EPERM},
-    {Kind::lock, ENOLCK},    {Kind::print, ENOSPC},        {Kind::print, EPIPE, true},
-    {Kind::tell, EIO, true}, {Kind::thread, EAGAIN},
+    {Kind::open, EACCES},   {Kind::open, EMFILE, true},   {Kind::read, EIO},
+    {Kind::read, EINTR},    {Kind::read, partial},        {Kind::read, partial, true},
+    {Kind::write, ENOSPC},  {Kind::write, EIO, true},     {Kind::write, EINTR},
+    {Kind::write, partial}, {Kind::write, partial, true}, {Kind::sync, EIO},
+    {Kind::close, EIO},     {Kind::rename, EACCES},       {Kind::rename, EIO, true},
+    {Kind::link, EPERM},    {Kind::folder, ENOSPC},       {Kind::remove, EACCES},
+    {Kind::status, EACCES}, {Kind::status, EIO, true},    {Kind::mode, EPERM},
+    {Kind::lock, ENOLCK},   {Kind::tell, EIO, true},      {Kind::thread, EAGAIN},
 };
 
 const std::vector<Failure> memory_failures = {

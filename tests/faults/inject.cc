@@ -127,8 +127,9 @@ int armed_main(int argc, char** argv, char** environment) {
     return real_main(argc, argv, environment);
 }
 
-Kind stream_kind(FILE* stream) {
-    return stream == stderr ? Kind::tell : Kind::print;
+/// Standard error is what goes through streams; standard output is written as files are.
+bool fails_to_tell(FILE* stream) {
+    return stream == stderr && fails(Kind::tell, "-");
 }
 
 } // namespace
@@ -301,22 +302,22 @@ int fdatasync(int descriptor) {
 
 size_t fwrite(const void* bytes, size_t size, size_t count, FILE* stream) {
     NEXT(fwrite);
-    return fails(stream_kind(stream), "-") ? 0 : next(bytes, size, count, stream);
+    return fails_to_tell(stream) ? 0 : next(bytes, size, count, stream);
 }
 
 int putc(int character, FILE* stream) {
     NEXT(putc);
-    return fails(stream_kind(stream), "-") ? EOF : next(character, stream);
+    return fails_to_tell(stream) ? EOF : next(character, stream);
 }
 
 int fputc(int character, FILE* stream) {
     NEXT(fputc);
-    return fails(stream_kind(stream), "-") ? EOF : next(character, stream);
+    return fails_to_tell(stream) ? EOF : next(character, stream);
 }
 
 int fflush(FILE* stream) {
     NEXT(fflush);
-    return stream != nullptr && fails(stream_kind(stream), "-") ? EOF : next(stream);
+    return fails_to_tell(stream) ? EOF : next(stream);
 }
 
 // Names and folders. The path that counts is the one a user knows: where the file shall be.

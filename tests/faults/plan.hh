@@ -24,16 +24,15 @@ enum class Kind : int {
     status, ///< stat, lstat, fstat, access, readlink
     mode,   ///< fchmod, chmod, fchown, ftruncate
     lock,   ///< flock
-    print,  ///< standard output through the C library's streams, which is how std::cout goes
     tell,   ///< standard error
     thread, ///< pthread_create
     count
 };
 
 constexpr std::size_t kinds = static_cast<std::size_t>(Kind::count);
-constexpr const char* kind_names[kinds] = {"memory", "map",    "open",  "read",   "write",  "sync",
-                                           "close",  "rename", "link",  "folder", "remove", "status",
-                                           "mode",   "lock",   "print", "tell",   "thread"};
+constexpr const char* kind_names[kinds] = {"memory", "map",    "open", "read",   "write",  "sync",
+                                           "close",  "rename", "link", "folder", "remove", "status",
+                                           "mode",   "lock",   "tell", "thread"};
 
 /// As Plan::error: the call is done for half of the bytes asked for, which is no error.
 constexpr int partial = -1;
