@@ -1,4 +1,4 @@
-#include "hsdm/json_text.hh"
+#include "hsdm/io/json_text.hh"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

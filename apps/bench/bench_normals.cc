@@ -6,6 +6,7 @@
 #include "hsdm/normals/normals.hh"
 #include "hsdm/octree/spacing.hh"
 #include "hsdm/quality/distance.hh"
+#include "hsdm/spatial/mesh_distance.hh"
 
 #include <CLI/CLI.hpp>
 

@@ -6,7 +6,7 @@
 #include "messages.hh"
 #include "summary.hh"
 
-#include "hsdm/cloud_frame.hh"
+#include "hsdm/cloud/cloud_frame.hh"
 #include "hsdm/octree/spacing.hh"
 
 #include <array>

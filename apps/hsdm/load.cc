@@ -3,7 +3,7 @@
 #include "activity.hh"
 #include "summary.hh"
 
-#include "hsdm/cloud_frame.hh"
+#include "hsdm/cloud/cloud_frame.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/read_mesh.hh"
 #include "hsdm/quality/topology.hh"

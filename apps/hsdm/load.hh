@@ -1,8 +1,8 @@
 #pragma once
 // A file that may hold a mesh or a cloud.
 
+#include "hsdm/io/json_text.hh"
 #include "hsdm/io/read_points.hh"
-#include "hsdm/json_text.hh"
 #include "hsdm/polygon_mesh.hh"
 
 namespace hsdm::command {

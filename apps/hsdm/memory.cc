@@ -1,7 +1,7 @@
 // Large arrays in huge pages, made ready by all threads: where a host has to find the memory first that takes
 // a sixth of a run's processor time, and most arrays are filled by one thread while the others wait.
 
-#include "hsdm/io/huge_pages.hh"
+#include "hsdm/core/huge_pages.hh"
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>

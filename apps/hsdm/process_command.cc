@@ -8,13 +8,13 @@
 #include "summary.hh"
 #include "usage.hh"
 
-#include "hsdm/cloud_frame.hh"
+#include "hsdm/cloud/cloud_frame.hh"
 #include "hsdm/errors.hh"
-#include "hsdm/facets/to_mesh.hh"
 #include "hsdm/io/output_target.hh"
 #include "hsdm/io/read_mesh.hh"
 #include "hsdm/io/write_mesh.hh"
-#include "hsdm/plugin_loader.hh"
+#include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/modules/plugin_loader.hh"
 #include "hsdm/point_cloud.hh"
 
 #include <cmath>

@@ -9,8 +9,8 @@
 #include "threads.hh"
 
 #include "hsdm/errors.hh"
+#include "hsdm/io/json_text.hh"
 #include "hsdm/io/output_target.hh"
-#include "hsdm/json_text.hh"
 
 #include <chrono>
 #include <iostream>

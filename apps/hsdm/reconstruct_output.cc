@@ -1,11 +1,11 @@
 #include "reconstruct_output.hh"
 
 #include "hsdm/errors.hh"
-#include "hsdm/facets/to_mesh.hh"
 #include "hsdm/features/features.hh"
-#include "hsdm/graph/phase_geometry.hh"
 #include "hsdm/io/output_target.hh"
 #include "hsdm/io/write_om.hh"
+#include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/pipeline/phase_geometry.hh"
 
 #include <cerrno>
 #include <cstring>

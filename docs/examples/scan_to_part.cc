@@ -1,6 +1,6 @@
-#include <hsdm/facets/to_mesh.hh>
 #include <hsdm/io/read_points.hh>
 #include <hsdm/io/write_mesh.hh>
+#include <hsdm/mesh/to_mesh.hh>
 #include <hsdm/reconstruct.hh>
 
 #include <utility>

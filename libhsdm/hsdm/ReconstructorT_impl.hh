@@ -1,7 +1,7 @@
 #pragma once
 
-#include "hsdm/facets/triangle_mesh.hh"
 #include "hsdm/features/VertexFanT.hh"
+#include "hsdm/mesh/triangle_mesh.hh"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,7 +1,6 @@
 #pragma once
 // The whole method, Figure 1: cloud -> octree -> graph -> facets -> mesh -> features.
 
-#include "hsdm/facets/islands.hh"
 #include "hsdm/mesh_types.hh"
 #include "hsdm/point_cloud.hh"
 #include "hsdm/report.hh"
@@ -34,6 +33,12 @@ enum class Grid {
 struct MaxError {
     double value = 0;         ///< > 0
     bool of_diagonal = false; ///< a share of the bounding box's diagonal, else the cloud's units
+};
+
+/// How small a component may be: of fewer facets, or of less than a share of the area of the largest one.
+struct MinComponent {
+    double value = 0;        ///< facets, >= 0; or a share in [0, 1]: 1 keeps the largest component alone
+    bool of_largest = false; ///< a share of the largest component's area, else a number of facets
 };
 
 struct ReconstructOptions {

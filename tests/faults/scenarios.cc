@@ -3,8 +3,8 @@
 #include "cli/scan.hh"
 #include "support/sample.hh"
 
-#include "hsdm/facets/to_mesh.hh"
 #include "hsdm/io/write_mesh.hh"
+#include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/reconstruct.hh"
 
 #include <cstring>

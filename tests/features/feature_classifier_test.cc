@@ -1,8 +1,8 @@
 #include "features/meshes.hh"
 #include "hsdm/errors.hh"
-#include "hsdm/facets/to_mesh.hh"
 #include "hsdm/features/FeatureClassifierT.hh"
 #include "hsdm/features/features.hh"
+#include "hsdm/mesh/to_mesh.hh"
 
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <catch2/catch.hpp>

@@ -1,9 +1,9 @@
 #include "features/meshes.hh"
 #include "hsdm/errors.hh"
-#include "hsdm/facets/to_mesh.hh"
 #include "hsdm/features/AnisotropicNormalSmootherT.hh"
 #include "hsdm/features/FeatureClassifierT.hh"
 #include "hsdm/features/features.hh"
+#include "hsdm/mesh/to_mesh.hh"
 
 #include <catch2/catch.hpp>
 

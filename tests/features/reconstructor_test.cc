@@ -1,8 +1,8 @@
 #include "features/meshes.hh"
 #include "hsdm/ReconstructorT.hh"
 #include "hsdm/errors.hh"
-#include "hsdm/facets/to_mesh.hh"
 #include "hsdm/features/features.hh"
+#include "hsdm/mesh/to_mesh.hh"
 
 #include <catch2/catch.hpp>
 

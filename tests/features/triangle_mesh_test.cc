@@ -1,7 +1,7 @@
 #include "features/meshes.hh"
 #include "hsdm/ReconstructorT.hh"
-#include "hsdm/facets/to_mesh.hh"
 #include "hsdm/features/features.hh"
+#include "hsdm/mesh/to_mesh.hh"
 
 #include <OpenMesh/Tools/Utils/MeshCheckerT.hh>
 #include <catch2/catch.hpp>

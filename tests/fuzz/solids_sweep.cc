@@ -6,7 +6,7 @@
 // and not a test, as a hundred thousand take half an hour.
 
 #include "hsdm/errors.hh"
-#include "hsdm/facets/to_mesh.hh"
+#include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/reconstruct.hh"
 #include "support/check.hh"
 #include "support/sample.hh"

@@ -1,6 +1,6 @@
 #include "hashes/mesh_hash.hh"
 
-#include "hsdm/facets/to_mesh.hh"
+#include "hsdm/mesh/to_mesh.hh"
 
 #include <bit>
 

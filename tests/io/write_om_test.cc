@@ -1,7 +1,7 @@
-#include "hsdm/facets/to_mesh.hh"
-#include "hsdm/features/vertex_normals.hh"
 #include "hsdm/io/write_mesh.hh"
 #include "hsdm/io/write_om.hh"
+#include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/mesh/vertex_normals.hh"
 
 #include <catch2/catch.hpp>
 

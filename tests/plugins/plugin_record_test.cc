@@ -1,5 +1,5 @@
+#include "hsdm/modules/plugin_record.hh"
 #include "hsdm/plugin.hh"
-#include "hsdm/plugin_record.hh"
 
 #include <catch2/catch.hpp>
 

@@ -1,9 +1,9 @@
 #include "features/meshes.hh"
 #include "hsdm/errors.hh"
-#include "hsdm/facets/to_mesh.hh"
 #include "hsdm/features/features.hh"
-#include "hsdm/features/vertex_normals.hh"
-#include "hsdm/plugin_loader.hh"
+#include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/mesh/vertex_normals.hh"
+#include "hsdm/modules/plugin_loader.hh"
 
 #include <catch2/catch.hpp>
 

@@ -1,4 +1,4 @@
-#include "hsdm/trusted_path.hh"
+#include "hsdm/modules/trusted_path.hh"
 
 #include <catch2/catch.hpp>
 

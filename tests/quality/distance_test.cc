@@ -1,6 +1,7 @@
 #include "hsdm/quality/distance.hh"
-#include "hsdm/quality/facet_cells.hh"
-#include "hsdm/quality/self_intersections.hh"
+#include "hsdm/spatial/facet_cells.hh"
+#include "hsdm/spatial/mesh_distance.hh"
+#include "hsdm/spatial/self_intersections.hh"
 
 #include <catch2/catch.hpp>
 #include <tbb/global_control.h>

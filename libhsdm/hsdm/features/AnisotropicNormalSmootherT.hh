@@ -3,7 +3,7 @@
 
 #include "hsdm/features/feature_options.hh"
 #include "hsdm/features/normal_filter.hh"
-#include "hsdm/features/vertex_normals.hh"
+#include "hsdm/mesh/vertex_normals.hh"
 
 #include <vector>
 

@@ -2,7 +2,7 @@
 // Phase 3, section 3.3: the dihedral test and the classes of vertices (Fig. 11), on any OpenMesh mesh.
 
 #include "hsdm/features/feature_options.hh"
-#include "hsdm/features/vertex_normals.hh"
+#include "hsdm/mesh/vertex_normals.hh"
 
 #include <vector>
 

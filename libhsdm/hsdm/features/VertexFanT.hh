@@ -1,9 +1,9 @@
 #pragma once
 // Flat views of any OpenMesh mesh that both modules of phase 3 start from.
 
-#include "hsdm/features/facet_normal.hh"
 #include "hsdm/features/normal_filter.hh"
 #include "hsdm/features/sectors.hh"
+#include "hsdm/mesh/facet_normal.hh"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

@@ -2,8 +2,8 @@
 // Phase 3 on a reconstruction's mesh (section 3.3). For meshes of your own type: FeatureClassifierT,
 // AnisotropicNormalSmootherT.
 
-#include "hsdm/features/feature_hints.hh"
 #include "hsdm/features/feature_options.hh"
+#include "hsdm/mesh/feature_hints.hh"
 #include "hsdm/mesh_types.hh"
 
 #include <string>

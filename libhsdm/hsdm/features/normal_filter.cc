@@ -1,6 +1,6 @@
 #include "hsdm/features/normal_filter.hh"
 
-#include "hsdm/features/facet_normal.hh"
+#include "hsdm/mesh/facet_normal.hh"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

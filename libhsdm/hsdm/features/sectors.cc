@@ -1,6 +1,6 @@
 #include "hsdm/features/sectors.hh"
 
-#include "hsdm/features/facet_normal.hh"
+#include "hsdm/mesh/facet_normal.hh"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 #pragma once
 // The facets around one vertex, cut into sectors: where one, two or three normals come from (Fig. 11).
 
-#include "hsdm/features/vertex_normals.hh"
+#include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/types.hh"
 
 #include <span>

@@ -1,6 +1,6 @@
 #include "hsdm/io/columns.hh"
 
-#include "hsdm/io/huge_pages.hh"
+#include "hsdm/core/huge_pages.hh"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "hsdm/facets/weld.hh"
 #include "hsdm/io/formats.hh"
 #include "hsdm/io/mesh_readers.hh"
+#include "hsdm/mesh/weld.hh"
 
 namespace hsdm::io {
 

@@ -1,7 +1,7 @@
 #include "hsdm/io/source_bytes.hh"
 
+#include "hsdm/core/huge_pages.hh"
 #include "hsdm/errors.hh"
-#include "hsdm/io/huge_pages.hh"
 
 #include <tbb/parallel_for.h>
 

@@ -1,7 +1,7 @@
 #include "hsdm/errors.hh"
-#include "hsdm/facets/weld.hh"
 #include "hsdm/io/formats.hh"
 #include "hsdm/io/tagged.hh"
+#include "hsdm/mesh/weld.hh"
 
 #include <tbb/parallel_for.h>
 

@@ -1,9 +1,9 @@
 #include "hsdm/io/write_om.hh"
 
 #include "hsdm/errors.hh"
-#include "hsdm/facets/to_mesh.hh"
-#include "hsdm/features/vertex_normals.hh"
 #include "hsdm/io/mesh_writers.hh"
+#include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/mesh/vertex_normals.hh"
 
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <OpenMesh/Core/System/omstream.hh>

@@ -1,7 +1,7 @@
-#include "hsdm/cloud_frame.hh"
-#include "hsdm/facets/triangulate.hh"
+#include "hsdm/cloud/cloud_frame.hh"
 #include "hsdm/io/format_chunks.hh"
 #include "hsdm/io/mesh_writers.hh"
+#include "hsdm/mesh/triangulate.hh"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 #include "hsdm/normals/agglomerate.hh"
 
-#include "hsdm/chunks.hh"
+#include "hsdm/core/chunks.hh"
 
 #include <tbb/parallel_sort.h>
 

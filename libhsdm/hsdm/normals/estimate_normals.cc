@@ -1,6 +1,6 @@
 #include "hsdm/normals/estimate_normals.hh"
 
-#include "hsdm/chunks.hh"
+#include "hsdm/core/chunks.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/normals/height_fit.hh"
 #include "hsdm/normals/neighborhood.hh"

@@ -1,7 +1,7 @@
 #pragma once
 // Heights over a plane as a quadratic function: how much a bent sheet tilts the plane that is fitted to it.
 
-#include "hsdm/quality/lanes.hh"
+#include "hsdm/core/lanes.hh"
 
 #include <array>
 

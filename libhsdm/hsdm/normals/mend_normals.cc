@@ -1,6 +1,6 @@
 #include "hsdm/normals/mend_normals.hh"
 
-#include "hsdm/chunks.hh"
+#include "hsdm/core/chunks.hh"
 #include "hsdm/normals/orient_normals.hh"
 #include "hsdm/octree/spacing.hh"
 

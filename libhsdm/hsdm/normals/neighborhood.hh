@@ -2,8 +2,8 @@
 // What the fits at one point share: its neighbours' positions relative to it, and how well a plane explains
 // them.
 
+#include "hsdm/core/vector_pair.hh"
 #include "hsdm/normals/neighbors.hh"
-#include "hsdm/quality/vector_pair.hh"
 
 #include <array>
 

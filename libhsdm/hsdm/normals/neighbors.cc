@@ -1,9 +1,9 @@
 #include "hsdm/normals/neighbors.hh"
 
-#include "hsdm/chunks.hh"
+#include "hsdm/core/chunks.hh"
+#include "hsdm/core/huge_pages.hh"
+#include "hsdm/core/lanes.hh"
 #include "hsdm/errors.hh"
-#include "hsdm/io/huge_pages.hh"
-#include "hsdm/quality/lanes.hh"
 
 #include <tbb/enumerable_thread_specific.h>
 

@@ -1,6 +1,6 @@
 #include "hsdm/normals/noise.hh"
 
-#include "hsdm/chunks.hh"
+#include "hsdm/core/chunks.hh"
 #include "hsdm/normals/plane_fit.hh"
 
 #include <algorithm>

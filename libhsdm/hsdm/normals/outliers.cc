@@ -1,6 +1,6 @@
 #include "hsdm/normals/outliers.hh"
 
-#include "hsdm/chunks.hh"
+#include "hsdm/core/chunks.hh"
 #include "hsdm/normals/plane_fit.hh"
 #include "hsdm/octree/spacing.hh"
 

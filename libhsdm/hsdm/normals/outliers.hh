@@ -1,7 +1,7 @@
 #pragma once
 // Points that are of no surface: strays between and around the surfaces.
 
-#include "hsdm/discarded.hh"
+#include "hsdm/core/discarded.hh"
 #include "hsdm/normals/neighbors.hh"
 
 namespace hsdm {

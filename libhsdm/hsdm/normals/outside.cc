@@ -1,6 +1,6 @@
 #include "hsdm/normals/outside.hh"
 
-#include "hsdm/chunks.hh"
+#include "hsdm/core/chunks.hh"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "hsdm/normals/patches.hh"
 
-#include "hsdm/chunks.hh"
+#include "hsdm/core/chunks.hh"
 
 #include <algorithm>
 #include <array>

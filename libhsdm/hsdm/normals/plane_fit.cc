@@ -1,6 +1,6 @@
 #include "hsdm/normals/plane_fit.hh"
 
-#include "hsdm/quality/lanes.hh"
+#include "hsdm/core/lanes.hh"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "hsdm/chunks.hh"
+#include "hsdm/core/chunks.hh"
 #include "hsdm/normals/estimate_normals.hh"
 #include "hsdm/normals/neighborhood.hh"
 

@@ -1,6 +1,6 @@
 #include "hsdm/normals/smooth_points.hh"
 
-#include "hsdm/chunks.hh"
+#include "hsdm/core/chunks.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/normals/neighborhood.hh"
 #include "hsdm/normals/noise.hh"

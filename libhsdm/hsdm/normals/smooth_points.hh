@@ -1,7 +1,7 @@
 #pragma once
 // A noisy cloud's points moved onto the surface that they scatter about.
 
-#include "hsdm/discarded.hh"
+#include "hsdm/core/discarded.hh"
 #include "hsdm/normals/neighbors.hh"
 
 namespace hsdm {

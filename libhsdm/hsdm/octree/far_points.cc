@@ -1,6 +1,6 @@
 #include "hsdm/octree/far_points.hh"
 
-#include "hsdm/chunks.hh"
+#include "hsdm/core/chunks.hh"
 #include "hsdm/octree/spacing.hh"
 
 #include <tbb/parallel_sort.h>

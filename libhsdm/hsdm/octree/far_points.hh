@@ -1,7 +1,7 @@
 #pragma once
 // Points so far from the others that one grid over all of them would be for nothing else.
 
-#include "hsdm/cloud_frame.hh"
+#include "hsdm/cloud/cloud_frame.hh"
 #include "hsdm/octree/octree.hh"
 
 namespace hsdm {

@@ -1,8 +1,8 @@
 #include "hsdm/octree/octree.hh"
 
-#include "hsdm/chunks.hh"
+#include "hsdm/core/chunks.hh"
+#include "hsdm/core/radix_sort.hh"
 #include "hsdm/errors.hh"
-#include "hsdm/octree/radix_sort.hh"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

@@ -1,8 +1,8 @@
 #pragma once
 // Phase 1, section 3.1: the Hierarchical Space Decomposition Model (HSDM), a linear octree.
 
-#include "hsdm/discarded.hh"
-#include "hsdm/octree/morton_index.hh"
+#include "hsdm/core/discarded.hh"
+#include "hsdm/core/morton_index.hh"
 #include "hsdm/point_cloud.hh"
 
 #include <span>

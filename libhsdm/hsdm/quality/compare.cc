@@ -1,8 +1,9 @@
 #include "hsdm/quality/compare.hh"
 
-#include "hsdm/cloud_frame.hh"
+#include "hsdm/cloud/cloud_frame.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/point_cloud.hh"
+#include "hsdm/spatial/mesh_distance.hh"
 
 namespace hsdm {
 namespace {
@@ -27,11 +28,11 @@ PolygonMesh scaled(PolygonMesh mesh, double factor) {
 }
 
 Distance one_sided(const PolygonMesh& from, const MeshDistance& to, std::size_t samples) {
-    if (from.facet_count() == 0) return to(from.positions);
-    const Distance of_vertices = to(from.positions);
+    if (from.facet_count() == 0) return points_to_mesh(from.positions, to);
+    const Distance of_vertices = points_to_mesh(from.positions, to);
     const std::vector<Vec3> spread = sample_surface(from, samples);
     if (spread.empty()) return of_vertices; // no area to spread them over
-    Distance distance = to(spread);
+    Distance distance = points_to_mesh(spread, to);
     distance.max = std::max(distance.max, of_vertices.max);
     return distance;
 }

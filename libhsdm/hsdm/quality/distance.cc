@@ -1,8 +1,9 @@
 #include "hsdm/quality/distance.hh"
 
-#include "hsdm/chunks.hh"
-#include "hsdm/quality/cell_search.hh"
-#include "hsdm/quality/surface_walk.hh"
+#include "hsdm/core/chunks.hh"
+#include "hsdm/spatial/cell_search.hh"
+#include "hsdm/spatial/mesh_distance.hh"
+#include "hsdm/spatial/surface_walk.hh"
 
 #include <tbb/parallel_for.h>
 
@@ -110,37 +111,10 @@ Distance sum_up(std::size_t points, double beyond, Squares squares) {
 
 } // namespace
 
-MeshDistance::MeshDistance(const PolygonMesh& mesh) : MeshDistance(mesh, triangulate(mesh)) {}
-
-MeshDistance::MeshDistance(const PolygonMesh& mesh, const Triangulation& cut, TriangleTree::Order order)
-    : tree_(mesh.positions, cut.triangles, order), facet_(facet_of_triangle(cut)) {}
-
-double MeshDistance::operator()(const Vec3& point) const {
-    return std::sqrt(tree_.nearest(point).squared);
-}
-
-double MeshDistance::operator()(const Vec3& point, Index& hint) const {
-    const TriangleTree::Nearest nearest = tree_.nearest(point, hint);
-    hint = nearest.triangle;
-    return std::sqrt(nearest.squared);
-}
-
-Distance MeshDistance::operator()(std::span<const Vec3> points, double beyond) const {
+Distance points_to_mesh(std::span<const Vec3> points, const MeshDistance& mesh, double beyond) {
     return sum_up(points.size(), beyond, [&] {
-        return [packets = Packets(tree_, points)](std::size_t i) mutable { return packets(i).squared; };
+        return [packets = Packets(mesh.tree(), points)](std::size_t i) mutable { return packets(i).squared; };
     });
-}
-
-Index MeshDistance::nearest_facet(const Vec3& point) const {
-    const Index triangle = tree_.nearest(point).triangle;
-    return triangle == no_index ? no_index : facet_[triangle];
-}
-
-Index MeshDistance::triangle_within(const Vec3& point, double bound, Index& hint) const {
-    const TriangleTree::Nearest found = tree_.within(point, bound, hint);
-    if (found.triangle == no_index) return no_index;
-    hint = found.triangle;
-    return std::sqrt(found.squared) <= bound ? found.triangle : no_index;
 }
 
 Distance points_to_surface(std::span<const Vec3> points, const SurfaceWalk& surface,
@@ -154,7 +128,7 @@ Distance points_to_surface(std::span<const Vec3> points, const SurfaceWalk& surf
 
 Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh,
                         const DistanceOptions& options) {
-    if (!(options.enough > 0)) return MeshDistance(mesh)(points, options.beyond);
+    if (!(options.enough > 0)) return points_to_mesh(points, MeshDistance(mesh), options.beyond);
     return points_to_surface(points, SurfaceWalk(mesh, triangulate(mesh), TriangleTree::Order::given),
                              options);
 }
@@ -162,7 +136,7 @@ Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh,
 /// What no cell beside a point's own tells is left to the tree, which is rarely built.
 Distance points_to_mesh_by_cells(std::span<const Vec3> points, const PolygonMesh& mesh,
                                  const FacetCells& cells, double beyond) {
-    if (!cells.usable()) return MeshDistance(mesh)(points, beyond);
+    if (!cells.usable()) return points_to_mesh(points, MeshDistance(mesh), beyond);
     const Triangulation cut = triangulate(mesh);
     std::vector<double> squared(points.size());
     std::vector<std::vector<Index>> left(chunk_count(points.size(), chunk));

@@ -2,8 +2,6 @@
 // Section 4: how far the points are from the mesh, exactly.
 
 #include "hsdm/polygon_mesh.hh"
-#include "hsdm/quality/facet_cells.hh"
-#include "hsdm/quality/triangle_tree.hh"
 
 #include <limits>
 #include <span>
@@ -27,39 +25,8 @@ struct DistanceOptions {
     double beyond = std::numeric_limits<double>::infinity(); ///< >= enough: farther points are counted
 };
 
-/// Triangles of a mesh in a bounding volume hierarchy. Polygons are cut as the STL writer cuts them.
-class MeshDistance {
-public:
-    /// O(t log t), parallel. The mesh need not outlive it.
-    explicit MeshDistance(const PolygonMesh& mesh);
-    /// As above, of a mesh that is cut already.
-    MeshDistance(const PolygonMesh& mesh, const Triangulation& cut,
-                 TriangleTree::Order order = TriangleTree::Order::compact);
-    /// Distance from a point to the nearest triangle; infinity if the mesh has no facet.
-    double operator()(const Vec3& point) const;
-    /// `hint` is no_index or what a call for a point nearby left there: it changes the time alone.
-    double operator()(const Vec3& point, Index& hint) const;
-    /// All points; parallel, quickest when neighbours in the list are neighbours in space, the same bits for
-    /// any number of threads. Zero for an empty list.
-    Distance operator()(std::span<const Vec3> points,
-                        double beyond = std::numeric_limits<double>::infinity()) const;
-    /// The facet nearest to a point, or no_index if the mesh has none.
-    Index nearest_facet(const Vec3& point) const;
-    /// A triangle of the cut mesh no farther than `bound`, or no_index if there is none; several times
-    /// quicker than distances. `hint` is no_index or what the call for a point nearby left there: which
-    /// triangle depends on it.
-    Index triangle_within(const Vec3& point, double bound, Index& hint) const;
-    /// The facet that a triangle of the cut mesh was cut from.
-    Index facet_of(Index triangle) const { return facet_[triangle]; }
-    bool is_beyond(const Vec3& point, double bound, Index& hint) const {
-        return triangle_within(point, bound, hint) == no_index;
-    }
-
-private:
-    TriangleTree tree_;
-    std::vector<Index> facet_; // per triangle
-};
-
+class FacetCells;
+class MeshDistance;
 class SurfaceWalk;
 
 /// Every point against its nearest triangle by walks and searches, parallel, the same bits for any thread
@@ -67,7 +34,11 @@ class SurfaceWalk;
 Distance points_to_surface(std::span<const Vec3> points, const SurfaceWalk& surface,
                            const DistanceOptions& options = {});
 
-/// Every point against its nearest triangle, through the tree; parallel, the same bits for any thread count.
+/// Every point against its nearest triangle, through the tree; parallel, quickest when neighbours in the list
+/// are neighbours in space, the same bits for any thread count. Zero for an empty list.
+Distance points_to_mesh(std::span<const Vec3> points, const MeshDistance& mesh,
+                        double beyond = std::numeric_limits<double>::infinity());
+/// The same of a mesh that is not asked again.
 Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh,
                         const DistanceOptions& options = {});
 

@@ -1,9 +1,9 @@
 #include "hsdm/quality/topology.hh"
 
-#include "hsdm/chunks.hh"
-#include "hsdm/disjoint_sets.hh"
-#include "hsdm/facets/triangulate.hh"
-#include "hsdm/quality/mix.hh"
+#include "hsdm/core/chunks.hh"
+#include "hsdm/core/disjoint_sets.hh"
+#include "hsdm/core/hash.hh"
+#include "hsdm/mesh/triangulate.hh"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

@@ -1,4 +1,4 @@
-#include <hsdm/reconstruct.hh>
+#include <hsdm/hsdm.hh>
 
 int main() {
     hsdm::PointCloud cloud; // a cube's surface, as a grid of points

@@ -4,9 +4,9 @@
 #include "fuzz/targets/cloud_from_bytes.hh"
 #include "fuzz/targets/fuzz.hh"
 #include "fuzz/targets/show_cloud.hh"
-#include "hsdm/cloud_frame.hh"
+#include "hsdm/cloud/cloud_frame.hh"
 #include "hsdm/errors.hh"
-#include "hsdm/facets/to_mesh.hh"
+#include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/quality/topology.hh"
 #include "support/random.hh"
 

@@ -2,8 +2,8 @@
 
 #include "fuzz/targets/fuzz.hh"
 #include "hsdm/errors.hh"
-#include "hsdm/facets/to_mesh.hh"
 #include "hsdm/io/mesh_readers.hh"
+#include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/quality/topology.hh"
 
 #include <tbb/global_control.h>

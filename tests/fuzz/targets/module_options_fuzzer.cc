@@ -2,8 +2,8 @@
 
 #include "fuzz/targets/fuzz.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/modules/plugin_loader.hh"
 #include "hsdm/plugin.hh"
-#include "hsdm/plugin_loader.hh"
 
 #include <cmath>
 #include <cstring>

@@ -1,0 +1,344 @@
+#include "hsdm/contour/crossings.hh"
+
+#include "hsdm/contour/plane_area.hh"
+#include "hsdm/core/chunks.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t corners_per_chunk = 1024;
+constexpr double far_from_data =
+    1.0; // voxels: from the crossing to the centroid of the nearest set of its sheet
+constexpr double fair_share = 0.25; // of the points expected in a voxel: fewer, and the sheet ends in it
+constexpr double surface_error =
+    0.1; // voxels: how far off a sheet's plane its points may lie, in another voxel
+
+/// A sheet along one edge: the union of the local sheets at the two ends that share a set beside the edge.
+struct EdgeSheet {
+    double weight[2] = {0, 0};   // at the lower and the upper end
+    double distance[2] = {0, 0}; // signed, positive outside
+    Vec3 normal{0, 0, 0};
+    double points = 0, points_squared = 0;
+    std::array<double, 4> held{0, 0, 0, 0}; // points of the sheet in each voxel beside the edge
+    bool crosses = false;
+    double t = 0;
+
+    bool beside() const { return held[0] + held[1] + held[2] + held[3] > 0; }
+    bool leaving() const { return distance[0] < 0; }
+    /// Points per voxel, the mean that a point sees: full voxels count more than clipped ones.
+    double density() const { return points > 0 ? points_squared / points : 0; }
+};
+
+struct Candidate {
+    Crossing crossing;
+    bool standing;
+};
+
+/// What the crossings of one edge are decided from. Reused from edge to edge.
+class EdgeCrossings {
+public:
+    EdgeCrossings(const CornerLattice& lattice, const LocalSheets& local, const NormalSets& sets,
+                  const RelationTest& related, double voxel_size, const CrossingOptions& options)
+        : lattice_(lattice),
+          local_(local),
+          sets_(sets),
+          related_(related),
+          h_(voxel_size),
+          options_(options) {}
+
+    std::size_t dropped_beyond_crease = 0;
+
+    void find(Index corner, unsigned axis, std::vector<Candidate>& found) {
+        ends_[0] = corner, ends_[1] = lattice_.next[corner][axis], axis_ = axis;
+        if (ends_[1] == no_index
+            || (local_.members_at(ends_[0]).empty() && local_.members_at(ends_[1]).empty()) || passes_by())
+            return;
+        const VoxelCoord c = lattice_.coord(corner);
+        low_ = Vec3(c[0], c[1], c[2]) * h_;
+        join_sheets();
+        if (!measure()) return;
+        const std::size_t begin = found.size();
+        for (std::size_t i = 0; i < count_; ++i) {
+            if (!sheets_[i].crosses) continue;
+            if (count_ > 1 && relations_for_ != i) relate(i);
+            const bool on_solid = visible(i);
+            dropped_beyond_crease += !on_solid;
+            const bool carried = supported(i);
+            found.push_back({crossing(i, carried), on_solid && (carried || sheets_[i].beside())});
+        }
+        std::sort(found.begin() + static_cast<std::ptrdiff_t>(begin), found.end(),
+                  [](const Candidate& a, const Candidate& b) {
+                      return std::pair(a.crossing.t, a.crossing.set)
+                             < std::pair(b.crossing.t, b.crossing.set);
+                  });
+    }
+
+private:
+    static constexpr std::size_t most = 128;
+
+    bool beside(const SheetMember& m, unsigned end) const {
+        return ((m.octant >> axis_ & 1u) != 0) == (end == 0);
+    }
+
+    /// Position of a voxel around the edge, two bits: upper side of the next axis, of the one after.
+    unsigned around(const SheetMember& m) const {
+        return (m.octant >> (axis_ + 1) % 3 & 1u) | (m.octant >> (axis_ + 2) % 3 & 1u) << 1;
+    }
+
+    std::size_t root(std::size_t i) {
+        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+        return i;
+    }
+
+    /// Is there one sheet, on one side of both ends? So it is at most edges, which need no closer look.
+    bool passes_by() const {
+        const auto low = local_.sheets_at(ends_[0]), high = local_.sheets_at(ends_[1]);
+        if (low.size() != 1 || high.size() != 1 || !(low[0].weight > 0) || !(high[0].weight > 0))
+            return false;
+        if ((low[0].distance < 0) != (high[0].distance < 0)) return false;
+        const auto others = local_.members_at(ends_[1]);
+        return std::ranges::any_of(local_.members_at(ends_[0]), [&](const SheetMember& a) {
+            return beside(a, 0)
+                   && std::ranges::any_of(others, [&](const SheetMember& b) { return b.set == a.set; });
+        });
+    }
+
+    /// Local sheets at the two ends are one along the edge if they share a set of a voxel beside it.
+    void join_sheets() {
+        const auto low = local_.members_at(ends_[0]), high = local_.members_at(ends_[1]);
+        const std::size_t n0 = local_.sheets_at(ends_[0]).size(), n1 = local_.sheets_at(ends_[1]).size();
+        for (std::size_t i = 0; i < n0 + n1; ++i) parent_[i] = static_cast<std::uint8_t>(i);
+        for (const SheetMember& a : low) {
+            if (!beside(a, 0)) continue;
+            for (const SheetMember& b : high)
+                if (b.set == a.set) {
+                    const std::size_t ra = root(a.sheet), rb = root(n0 + b.sheet);
+                    parent_[std::max(ra, rb)] = static_cast<std::uint8_t>(std::min(ra, rb));
+                }
+        }
+        count_ = 0;
+        for (std::size_t i = 0; i < n0 + n1; ++i) {
+            if (root(i) == i) {
+                number_[i] = static_cast<std::uint8_t>(count_);
+                sheets_[count_++] = {};
+            }
+            number_[i] = number_[root(i)];
+            const LocalSheet& part =
+                i < n0 ? local_.sheets_at(ends_[0])[i] : local_.sheets_at(ends_[1])[i - n0];
+            EdgeSheet& sheet = sheets_[number_[i]];
+            const unsigned end = i < n0 ? 0 : 1;
+            sheet.weight[end] += part.weight;
+            sheet.distance[end] += part.distance;
+            sheet.normal += part.normal;
+            sheet.points += part.points;
+            sheet.points_squared += part.points_squared;
+        }
+        offset_[0] = 0, offset_[1] = n0;
+        for (const SheetMember& a : low)
+            if (beside(a, 0)) sheets_[number_[a.sheet]].held[around(a)] += sets_.sets[a.set].count;
+    }
+
+    EdgeSheet& sheet_of(const SheetMember& m, unsigned end) {
+        return sheets_[number_[offset_[end] + m.sheet]];
+    }
+
+    /// Signed distances at both ends; a sheet known at one end only is continued along its plane.
+    bool measure() {
+        bool any = false;
+        for (std::size_t i = 0; i < count_; ++i) {
+            EdgeSheet& sheet = sheets_[i];
+            const double length = sheet.normal.norm();
+            sheet.normal = length > 0 ? sheet.normal / length : Vec3(0, 0, 1);
+            for (unsigned end : {0u, 1u})
+                if (sheet.weight[end] > 0) sheet.distance[end] /= sheet.weight[end];
+            if (!(sheet.weight[0] > 0)) sheet.distance[0] = sheet.distance[1] - h_ * sheet.normal[axis_];
+            if (!(sheet.weight[1] > 0)) sheet.distance[1] = sheet.distance[0] + h_ * sheet.normal[axis_];
+            sheet.crosses = (sheet.distance[0] < 0) != (sheet.distance[1] < 0);
+            if (sheet.crosses) sheet.t = sheet.distance[0] / (sheet.distance[0] - sheet.distance[1]);
+            any |= sheet.crosses;
+        }
+        relations_for_ = most;
+        return any;
+    }
+
+    /// Relation of two sheets, by the vote of their sets.
+    Relation relation_between(std::size_t j, std::size_t k) const {
+        int convex = 0, concave = 0;
+        for (unsigned end : {0u, 1u}) {
+            const auto members = local_.members_at(ends_[end]);
+            for (const SheetMember& a : members) {
+                if (number_[offset_[end] + a.sheet] != j) continue;
+                for (const SheetMember& b : members) {
+                    if (number_[offset_[end] + b.sheet] != k) continue;
+                    const Relation r = related_(sets_.sets[a.set], sets_.sets[b.set]);
+                    convex += r == Relation::convex;
+                    concave += r == Relation::concave;
+                }
+            }
+        }
+        return convex > concave ? Relation::convex : concave > convex ? Relation::concave : Relation::none;
+    }
+
+    /// Relations of sheet i to every other sheet here.
+    void relate(std::size_t i) {
+        for (std::size_t j = 0; j < count_; ++j)
+            relations_[j] = j == i ? Relation::none : relation_between(i, j);
+        relations_for_ = i;
+    }
+
+    /// Is sheet j's side at the crossing of i outside? Ties go by number, so that of two sheets that cross at
+    /// the same place the same way exactly one is kept.
+    bool outside_at(std::size_t j, std::size_t i) const {
+        const EdgeSheet& a = sheets_[i];
+        const EdgeSheet& b = sheets_[j];
+        if (!b.crosses) return b.distance[0] >= 0;
+        const bool before = a.t < b.t || (a.t == b.t && i < j);
+        return b.distance[before ? 0 : 1] >= 0;
+    }
+
+    /// A crossing counts if it lies on the solid's surface: inside every convex partner, outside every
+    /// concave one. Two convex partners that meet in a concave crease bound the sheet together: being inside
+    /// one is enough (alike with the words exchanged), as at the top of an L-shaped bracket's inner corner.
+    bool visible(std::size_t i) const {
+        for (std::size_t j = 0; j < count_; ++j) {
+            if (j == i || relations_for_ != i) continue;
+            if (relations_[j] != Relation::convex && relations_[j] != Relation::concave) continue;
+            const bool wants_outside = relations_[j] == Relation::concave;
+            if (outside_at(j, i) == wants_outside) continue;
+            const Relation opposite = wants_outside ? Relation::convex : Relation::concave;
+            bool excused = false;
+            for (std::size_t k = 0; k < count_ && !excused; ++k)
+                excused = k != i && k != j && relations_[k] == relations_[j]
+                          && outside_at(k, i) == wants_outside && relation_between(j, k) == opposite;
+            if (!excused) return false;
+        }
+        return true;
+    }
+
+    Vec3 position(std::size_t i) const {
+        Vec3 p = low_;
+        p[axis_] += sheets_[i].t * h_;
+        return p;
+    }
+
+    /// Does the data carry the sheet into all four voxels beside the edge, slivers apart? In a sliver few
+    /// points are expected; elsewhere at least a fair share of the expected ones must be there.
+    bool supported(std::size_t i) const {
+        const EdgeSheet& sheet = sheets_[i];
+        double density = 0; // of the sampling here: the sheet itself may only be clipped voxels
+        for (std::size_t j = 0; j < count_; ++j) density = std::max(density, sheets_[j].density());
+        unsigned doubtful = 0;
+        for (unsigned v = 0; v < 4; ++v) doubtful |= unsigned{sheet.held[v] < fair_share * density} << v;
+        if (doubtful == 0) return true;
+        std::array<HalfSpace, 16> clips;
+        const std::size_t clip_count = partner_half_spaces(i, clips);
+        const double offset = sheet.normal | position(i);
+        for (unsigned v = 0; v < 4; ++v) {
+            if (!(doubtful >> v & 1u)) continue;
+            Vec3 lo = low_ + Vec3(1, 1, 1) * (surface_error * h_);
+            if (!(v & 1u)) lo[(axis_ + 1) % 3] -= h_;
+            if (!(v & 2u)) lo[(axis_ + 2) % 3] -= h_;
+            const double area = plane_area(sheet.normal, offset, lo, (1 - 2 * surface_error) * h_,
+                                           {clips.data(), clip_count});
+            const double expected = area * density / (h_ * h_);
+            if (expected > options_.sliver_points && sheet.held[v] < fair_share * expected) return false;
+        }
+        return true;
+    }
+
+    /// Where the sheet lies with regard to its crease partners.
+    std::size_t partner_half_spaces(std::size_t i, std::array<HalfSpace, 16>& clips) const {
+        std::size_t n = 0;
+        if (relations_for_ != i) return n;
+        const Vec3 x = position(i);
+        for (std::size_t j = 0; j < count_ && n < clips.size(); ++j) {
+            if (relations_[j] != Relation::convex && relations_[j] != Relation::concave) continue;
+            const EdgeSheet& partner = sheets_[j];
+            const double sign = relations_[j] == Relation::convex ? 1 : -1;
+            const double here =
+                partner.distance[0] + sheets_[i].t * (partner.distance[1] - partner.distance[0]);
+            const Vec3 normal = partner.normal * sign;
+            clips[n++] = {normal, (normal | x) - sign * here};
+        }
+        return n;
+    }
+
+    Crossing crossing(std::size_t i, bool carried) {
+        const Vec3 x = position(i);
+        double nearest = std::numeric_limits<double>::infinity();
+        Index set = no_index;
+        for (unsigned end : {0u, 1u})
+            for (const SheetMember& m : local_.members_at(ends_[end])) {
+                if (number_[offset_[end] + m.sheet] != i) continue;
+                const double d = (sets_.sets[m.set].centroid - x).sqrnorm();
+                if (d < nearest || (d == nearest && m.set < set)) nearest = d, set = m.set;
+            }
+        carried = carried && nearest < far_from_data * far_from_data * h_ * h_;
+        return {sheets_[i].t, sheets_[i].normal, 3 * ends_[0] + axis_, set, sheets_[i].leaving(), carried};
+    }
+
+    const CornerLattice& lattice_;
+    const LocalSheets& local_;
+    const NormalSets& sets_;
+    const RelationTest& related_;
+    double h_;
+    const CrossingOptions& options_;
+
+    Index ends_[2] = {0, 0};
+    unsigned axis_ = 0;
+    Vec3 low_;
+    std::size_t offset_[2] = {0, 0};
+    std::array<std::uint8_t, most> parent_;
+    std::array<std::uint8_t, most>
+        number_; // of the edge sheet, per local sheet of the lower, then of the upper end
+    std::array<EdgeSheet, most> sheets_;
+    std::size_t count_ = 0;
+    std::array<Relation, most> relations_;
+    std::size_t relations_for_ = most;
+};
+
+} // namespace
+
+CrossingCandidates find_crossings(const CornerLattice& lattice, const LocalSheets& local,
+                                  const NormalSets& sets, const RelationTest& related, double voxel_size,
+                                  const CrossingOptions& options) {
+    CrossingCandidates result;
+    const std::size_t n = lattice.size();
+    result.crossings.first.assign(3 * n + 1, 0);
+    const std::size_t chunks = chunk_count(n, corners_per_chunk);
+    std::vector<std::vector<Crossing>> found(chunks);
+    std::vector<std::vector<std::uint8_t>> standing(chunks);
+    std::vector<std::size_t> dropped(chunks);
+    for_chunks(n, corners_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        EdgeCrossings edge(lattice, local, sets, related, voxel_size, options);
+        std::vector<Candidate> on_edge;
+        for (std::size_t c = begin; c < end; ++c)
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                on_edge.clear();
+                edge.find(static_cast<Index>(c), axis, on_edge);
+                result.crossings.first[3 * c + axis + 1] = static_cast<Index>(on_edge.size());
+                for (const Candidate& candidate : on_edge) {
+                    found[chunk].push_back(candidate.crossing);
+                    standing[chunk].push_back(candidate.standing);
+                }
+            }
+        dropped[chunk] = edge.dropped_beyond_crease;
+    });
+    result.crossings.crossings = joined(found);
+    result.standing = joined(standing);
+    counts_to_first(result.crossings.first);
+    for (std::size_t d : dropped) result.crossings.dropped_beyond_crease += d;
+    return result;
+}
+
+Vec3 crossing_position(const CornerLattice& lattice, const Crossing& crossing, double voxel_size) {
+    const VoxelCoord c = lattice.coord(crossing.edge / 3);
+    Vec3 p(c[0], c[1], c[2]);
+    p[crossing.edge % 3] += crossing.t;
+    return p * voxel_size;
+}
+
+} // namespace hsdm

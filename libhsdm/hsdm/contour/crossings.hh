@@ -1,0 +1,55 @@
+#pragma once
+// Section 3.4.2: where the sheets cross the grid edges. A crossing is what a facet is dual to. See
+// docs/sheets.md.
+
+#include "hsdm/contour/local_sheets.hh"
+
+namespace hsdm {
+
+struct CrossingOptions {
+    /// Points. A voxel beside a crossed edge that holds none of the sheet is taken for a sliver that the
+    /// sampling missed while fewer points than this are expected in it; beyond, the surface ends there and
+    /// the facet is left out.
+    double sliver_points = 6;
+};
+
+/// A sheet crossing a grid edge.
+struct Crossing {
+    double t;       ///< position along the edge, [0, 1] from its lower corner
+    Vec3 normal;    ///< unit normal of the sheet there
+    Index edge;     ///< 3 * lower corner + axis
+    Index set;      ///< the sheet's set nearest to the crossing
+    bool leaving;   ///< the lower corner is inside, the upper one outside
+    bool supported; ///< the data carries the sheet into all four voxels beside the edge, slivers apart
+};
+
+/// The crossings of every grid edge: those of edge e are crossings[first[e]] .. crossings[first[e + 1]], by
+/// ascending t.
+struct Crossings {
+    std::vector<Crossing> crossings;
+    std::vector<Index> first{0};
+    std::size_t dropped_beyond_crease = 0; ///< clipped by the sheet's crease partner
+    std::size_t settled = 0;               ///< taken back, brought back or made (settle_crossings)
+    std::size_t trimmed = 0;               ///< beyond the end of the data (trim_unsupported)
+    std::size_t tips = 0;                  ///< pairs that only a tip made (drop_tips)
+
+    std::span<const Crossing> on_edge(Index e) const {
+        return {crossings.data() + first[e], crossings.data() + first[e + 1]};
+    }
+};
+
+/// Every crossing that some sheet has, and which of them stand: those that no crease partner clips and that
+/// the data carry or lie beside.
+struct CrossingCandidates {
+    Crossings crossings;
+    std::vector<std::uint8_t> standing; ///< per crossing
+};
+
+CrossingCandidates find_crossings(const CornerLattice& lattice, const LocalSheets& sheets,
+                                  const NormalSets& sets, const RelationTest& related, double voxel_size,
+                                  const CrossingOptions& options = {});
+
+/// Where a crossing lies, relative to the octree's origin.
+Vec3 crossing_position(const CornerLattice& lattice, const Crossing& crossing, double voxel_size);
+
+} // namespace hsdm

@@ -1,0 +1,319 @@
+#include "hsdm/contour/normal_sets.hh"
+
+#include "hsdm/errors.hh"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace hsdm {
+namespace {
+
+constexpr std::uint8_t unassigned = 0xff;
+constexpr std::size_t voxels_per_chunk = 1024;
+
+/// Working space of one thread, reused from voxel to voxel.
+struct Scratch {
+    std::vector<std::uint8_t> label; // per point of the voxel
+    std::vector<std::pair<double, Index>> offsets;
+};
+
+/// Finds the sets of one voxel. Labels are positions in `modes_` until finish() orders the sets by count.
+class VoxelClusters {
+public:
+    VoxelClusters(const Octree& octree, Index begin, Index end, double voxel_size,
+                  const NormalSetOptions& options, Scratch& scratch)
+        : octree_(octree),
+          begin_(begin),
+          size_(end - begin),
+          voxel_size_(voxel_size),
+          options_(options),
+          cos_cluster_(std::cos(options.cluster_angle)),
+          label_(scratch.label),
+          offsets_(scratch.offsets) {
+        label_.assign(size_, unassigned);
+    }
+
+    void run() {
+        if (!one_direction()) {
+            find_modes();
+            assign_to_nearest();
+            assign_to_nearest();
+        }
+        const std::size_t directions = modes_.size();
+        for (std::size_t k = 0; k < directions; ++k) split_parallel_sheets(static_cast<std::uint8_t>(k));
+    }
+
+    std::size_t count() const { return modes_.size(); }
+
+    NormalSet set(std::size_t k, Index voxel) const {
+        Vec3 position(0, 0, 0), normal(0, 0, 0);
+        Index n = 0;
+        for_each(k, [&](Index i) {
+            position += octree_.positions[i];
+            normal += octree_.normals[i];
+            ++n;
+        });
+        if (n == 0) return {position, normal, 0, voxel, {}};
+        position /= n;
+        const Vec3 mean = normal / n;
+        double below = 0; // curvature times variance, summed over the two tangent directions
+        Spread spread;
+        for_each(k, [&](Index i) {
+            const Vec3 d = octree_.positions[i] - position;
+            below += (octree_.normals[i] - mean) | d;
+            const std::array<double, 6> products{d[0] * d[0], d[1] * d[1], d[2] * d[2],
+                                                 d[0] * d[1], d[1] * d[2], d[2] * d[0]};
+            for (std::size_t m = 0; m < 6; ++m) spread.moments[m] += products[m] / n;
+        });
+        const double length = normal.norm();
+        normal = length > 0 ? normal / length : Vec3(0, 0, 1);
+        // Noise in the normals must not push the set out of its own neighbourhood.
+        const double lift = std::clamp(0.5 * below / n, -0.1 * voxel_size_, 0.1 * voxel_size_);
+        return {position + normal * lift, normal, n, voxel, spread};
+    }
+
+    std::uint8_t label(Index i) const { return label_[i]; }
+
+private:
+    template <class F>
+    void for_each(std::size_t k, F&& f) const {
+        for (Index i = 0; i < size_; ++i)
+            if (label_[i] == k) f(begin_ + i);
+    }
+    const Vec3& normal(Index i) const { return octree_.normals[begin_ + i]; }
+    bool has_normal(Index i) const { return normal(i).sqrnorm() > 0.5; }
+
+    /// Most voxels hold one direction; their points need no search.
+    bool one_direction() {
+        Vec3 sum(0, 0, 0);
+        for (Index i = 0; i < size_; ++i) sum += normal(i);
+        const double length = sum.norm();
+        if (length == 0) return false;
+        const Vec3 mean = sum / length;
+        for (Index i = 0; i < size_; ++i)
+            if (has_normal(i) && (normal(i) | mean) < cos_cluster_) return false;
+        for (Index i = 0; i < size_; ++i) label_[i] = has_normal(i) ? 0 : unassigned;
+        modes_.push_back(mean);
+        return true;
+    }
+
+    /// Repeatedly takes the direction most of the remaining points agree with.
+    void find_modes() {
+        while (static_cast<int>(modes_.size()) < options_.max_sets) {
+            Vec3 mode;
+            if (!densest(mode)) break;
+            for (int round = 0; round < 3; ++round) mode = mean_within(mode);
+            const auto k = static_cast<std::uint8_t>(modes_.size());
+            modes_.push_back(mode);
+            Index taken = 0;
+            for (Index i = 0; i < size_; ++i)
+                if (label_[i] == unassigned && (normal(i) | mode) >= cos_cluster_ && has_normal(i))
+                    label_[i] = k, ++taken;
+            if (taken == 0) {
+                modes_.pop_back();
+                break;
+            }
+        }
+    }
+
+    /// The normal, among at most 32 spread over the voxel's points, with the most free normals near it.
+    bool densest(Vec3& mode) const {
+        Index free = 0;
+        for (Index i = 0; i < size_; ++i) free += label_[i] == unassigned && has_normal(i);
+        if (free == 0) return false;
+        const Index stride = std::max<Index>(1, free / 32);
+        Index best = 0, rank = 0;
+        for (Index i = 0; i < size_; ++i) {
+            if (label_[i] != unassigned || !has_normal(i) || rank++ % stride != 0) continue;
+            Index near = 0;
+            for (Index j = 0; j < size_; ++j)
+                near += label_[j] == unassigned && (normal(i) | normal(j)) >= cos_cluster_;
+            if (near > best) best = near, mode = normal(i);
+        }
+        return best > 0;
+    }
+
+    Vec3 mean_within(const Vec3& mode) const {
+        Vec3 sum(0, 0, 0);
+        for (Index i = 0; i < size_; ++i)
+            if (label_[i] == unassigned && (normal(i) | mode) >= cos_cluster_) sum += normal(i);
+        const double length = sum.norm();
+        return length > 0 ? sum / length : mode;
+    }
+
+    /// One Lloyd step over all points that have a normal.
+    void assign_to_nearest() {
+        std::array<Vec3, 8> sums;
+        sums.fill(Vec3(0, 0, 0));
+        for (Index i = 0; i < size_; ++i) {
+            if (!has_normal(i)) continue;
+            std::size_t best = 0;
+            for (std::size_t k = 1; k < modes_.size(); ++k)
+                if ((modes_[k] | normal(i)) > (modes_[best] | normal(i))) best = k;
+            label_[i] = static_cast<std::uint8_t>(best);
+            sums[best] += normal(i);
+        }
+        for (std::size_t k = 0; k < modes_.size(); ++k)
+            if (const double length = sums[k].norm(); length > 0) modes_[k] = sums[k] / length;
+    }
+
+    /// Splits a direction at its widest gap along the mean normal if the two sides are parallel sheets: on
+    /// one curved sheet the chord between the sides' centroids is perpendicular to the sum of their normals.
+    void split_parallel_sheets(std::uint8_t k) {
+        while (static_cast<int>(modes_.size()) < options_.max_sets) {
+            offsets_.clear();
+            for_each(k, [&](Index i) { offsets_.emplace_back(modes_[k] | octree_.positions[i], i); });
+            if (offsets_.size() < 2) return;
+            std::sort(offsets_.begin(), offsets_.end());
+            const std::size_t cut = where_to_cut(modes_[k]);
+            if (cut == 0) return;
+            const auto added = static_cast<std::uint8_t>(modes_.size());
+            modes_.push_back(modes_[k]);
+            for (std::size_t i = cut; i < offsets_.size(); ++i) label_[offsets_[i].second - begin_] = added;
+            split_parallel_sheets(added);
+        }
+    }
+
+    /// The place among the offsets behind the widest gap between two parallel sheets that are not to be one;
+    /// 0 if there is none.
+    std::size_t where_to_cut(const Vec3& mode) const {
+        const double least = options_.sheet_gap * voxel_size_;
+        double last_gap = std::numeric_limits<double>::infinity(); // the one looked at before
+        std::size_t last = 0;
+        while (true) {
+            std::size_t cut = 0;
+            double widest = least;
+            for (std::size_t i = 1; i < offsets_.size(); ++i) {
+                const double gap = offsets_[i].first - offsets_[i - 1].first;
+                const bool is_next = gap < last_gap || (gap == last_gap && i > last);
+                if (gap > widest && is_next) widest = gap, cut = i;
+            }
+            if (cut == 0 || !parallel_sides(cut)) return 0;
+            if (!options_.merge_layers || !double_layer(mode, cut)) return cut;
+            last_gap = widest, last = cut; // a narrower one may have a sheet in it that faces back
+        }
+    }
+
+    /// Two sheets of a solid that lie over each other and face the same way have one between them that faces
+    /// back. Without it they are one surface, scanned twice; beside each other they are a step.
+    bool double_layer(const Vec3& mode, std::size_t cut) const {
+        const auto [below, width_below] = across(mode, 0, cut);
+        const auto [above, width_above] = across(mode, cut, offsets_.size());
+        if ((above - below).norm() > std::max(width_below, width_above)) return false;
+        constexpr double faces_back = -0.7;
+        for (Index i = 0; i < size_; ++i) {
+            if (!has_normal(i) || (normal(i) | mode) > faces_back) continue;
+            const double offset = mode | octree_.positions[begin_ + i];
+            if (offset > offsets_[cut - 1].first && offset < offsets_[cut].first) return false;
+        }
+        return true;
+    }
+
+    /// Of some of the points: their mean without its part along the mode, and their root mean square
+    /// distance from it across the mode.
+    std::pair<Vec3, double> across(const Vec3& mode, std::size_t from, std::size_t to) const {
+        const auto flat = [&](std::size_t i) {
+            const Vec3& p = octree_.positions[offsets_[i].second];
+            return Vec3(p - mode * (mode | p));
+        };
+        Vec3 mean(0, 0, 0);
+        for (std::size_t i = from; i < to; ++i) mean += flat(i);
+        mean /= static_cast<double>(to - from);
+        double squares = 0;
+        for (std::size_t i = from; i < to; ++i) squares += (flat(i) - mean).sqrnorm();
+        return {mean, std::sqrt(squares / static_cast<double>(to - from))};
+    }
+
+    bool parallel_sides(std::size_t cut) const {
+        auto mean = [&](std::size_t from, std::size_t to, const std::vector<Vec3>& values) {
+            Vec3 sum(0, 0, 0);
+            for (std::size_t i = from; i < to; ++i) sum += values[offsets_[i].second];
+            return Vec3(sum / static_cast<double>(to - from));
+        };
+        const std::size_t n = offsets_.size();
+        const Vec3 chord = mean(cut, n, octree_.positions) - mean(0, cut, octree_.positions);
+        const Vec3 normals =
+            mean(cut, n, octree_.normals).normalized() + mean(0, cut, octree_.normals).normalized();
+        return std::abs(chord | normals) > options_.sheet_gap * voxel_size_ * normals.norm();
+    }
+
+    const Octree& octree_;
+    Index begin_, size_;
+    double voxel_size_;
+    const NormalSetOptions& options_;
+    double cos_cluster_;
+    std::vector<std::uint8_t>& label_;
+    std::vector<std::pair<double, Index>>& offsets_;
+    std::vector<Vec3> modes_;
+};
+
+void validate(const NormalSetOptions& options) {
+    if (!(options.cluster_angle > 0 && options.cluster_angle < 1.5707963))
+        throw OptionError("cluster_angle " + std::to_string(options.cluster_angle)
+                          + ": must lie in (0, pi/2)");
+    if (!(options.sheet_gap > 0))
+        throw OptionError("sheet_gap " + std::to_string(options.sheet_gap) + ": must be positive");
+    if (options.max_sets < 1 || options.max_sets > 8)
+        throw OptionError("max_sets " + std::to_string(options.max_sets) + ": must lie in [1, 8]");
+}
+
+} // namespace
+
+NormalSets build_normal_sets(const Octree& octree, const OctreeLevel& level,
+                             const NormalSetOptions& options) {
+    validate(options);
+    NormalSets result;
+    result.first.assign(level.size() + 1, 0);
+    result.of_point.assign(octree.size(), no_index);
+    if (!octree.has_normals()) return result;
+
+    const std::size_t chunks = (level.size() + voxels_per_chunk - 1) / voxels_per_chunk;
+    std::vector<std::vector<NormalSet>> sets_of_chunk(chunks);
+    tbb::enumerable_thread_specific<Scratch> scratch;
+    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+        std::vector<NormalSet>& sets = sets_of_chunk[chunk];
+        for (std::size_t v = chunk * voxels_per_chunk;
+             v < std::min(level.size(), (chunk + 1) * voxels_per_chunk); ++v) {
+            const auto voxel = static_cast<Index>(v);
+            const Index begin = level.first_point[v], end = level.first_point[v + 1];
+            VoxelClusters clusters(octree, begin, end, level.voxel_size, options, scratch.local());
+            clusters.run();
+            std::array<NormalSet, 8> found;
+            std::array<std::uint8_t, 8> order{};
+            std::size_t n = 0;
+            for (std::size_t k = 0; k < clusters.count(); ++k) {
+                found[k] = clusters.set(k, voxel);
+                if (found[k].count > 0) order[n++] = static_cast<std::uint8_t>(k);
+            }
+            std::stable_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n),
+                             [&](auto a, auto b) { return found[a].count > found[b].count; });
+            std::array<Index, 8> rank{};
+            for (std::size_t k = 0; k < n; ++k) {
+                sets.push_back(found[order[k]]);
+                rank[order[k]] = static_cast<Index>(k);
+            }
+            for (Index i = begin; i < end;
+                 ++i) // within the voxel for now; the voxel's first set is added below
+                if (clusters.label(i - begin) != unassigned)
+                    result.of_point[i] = rank[clusters.label(i - begin)];
+            result.first[v + 1] = static_cast<Index>(n);
+        }
+    });
+    std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
+    result.sets.reserve(result.first.back());
+    for (const auto& sets : sets_of_chunk) result.sets.insert(result.sets.end(), sets.begin(), sets.end());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, level.size(), voxels_per_chunk),
+                      [&](const auto& range) {
+                          for (std::size_t v = range.begin(); v != range.end(); ++v)
+                              for (Index i = level.first_point[v]; i < level.first_point[v + 1]; ++i)
+                                  if (result.of_point[i] != no_index) result.of_point[i] += result.first[v];
+                      });
+    return result;
+}
+
+} // namespace hsdm

@@ -1,0 +1,161 @@
+#include "hsdm/contour/point_fit.hh"
+
+#include "hsdm/core/chunks.hh"
+#include "hsdm/spatial/point_triangle.hh"
+
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t per_chunk = 512;
+constexpr std::size_t points_per_voxel = 8;
+constexpr double same_sheet_cosine = 0.77; // normals within 40 degrees
+constexpr double doubt = 2;                // times the variance that squared rises must exceed
+
+/// A triangle of the facets round a vertex.
+struct Around {
+    Around(const std::vector<Vec3>& at, Index a, Index b, Index c)
+        : triangle(at[a], at[b], at[c]), corners{a, b, c} {}
+    PreparedTriangle triangle;
+    std::array<Index, 3> corners;
+};
+
+/// The nearest point of facets, in the triangle of three vertices.
+struct Foot {
+    std::array<Index, 3> corners{};
+    NearestOfTriangle nearest{Vec3(0, 0, 0), std::numeric_limits<double>::infinity(), {}};
+};
+
+/// Appends the triangles round a vertex, two of each facet.
+void list_triangles(Index fan, const Fans& fans, const std::vector<Vec3>& at, std::vector<Around>& around) {
+    for (Node node : fans.fan(fan)) {
+        const Index x = node / 4;
+        const unsigned j = node % 4, next = (j + 1) % 4, across = (j + 2) % 4, before = (j + 3) % 4;
+        const Index opposite = fans.at(x, across, across);
+        around.emplace_back(at, fan, fans.at(x, next, j), opposite);
+        around.emplace_back(at, fan, opposite, fans.at(x, before, before));
+    }
+}
+
+/// The nearest foot inside a triangle, the first where all are about flat; the nearest point of any triangle
+/// where no foot is inside one.
+Foot find_foot(const Vec3& p, const std::vector<Around>& around, bool flat) {
+    Foot best, foot;
+    for (const Around& a : around) {
+        if (!a.triangle.foot_inside(p, foot.nearest)) continue;
+        if (foot.nearest.squared_distance < best.nearest.squared_distance) best = {a.corners, foot.nearest};
+        if (flat) return best;
+    }
+    if (best.nearest.squared_distance < std::numeric_limits<double>::infinity()) return best;
+    for (const Around& a : around) {
+        foot.nearest = a.triangle.nearest(p);
+        if (foot.nearest.squared_distance < best.nearest.squared_distance) best = {a.corners, foot.nearest};
+    }
+    return best;
+}
+
+} // namespace
+
+void PointFit::Heights::add(double w, double h) {
+    weight += w;
+    height += w * h;
+    weight2 += w * w;
+    weight2_height += w * w * h;
+    height2 += w * w * h * h;
+}
+
+double PointFit::Heights::variance() const {
+    if (!(weight > 0)) return 0;
+    const double m = mean(), squares = height2 - 2 * m * weight2_height + m * m * weight2;
+    // weight^2 / weight2 is how many points of equal weight tell as much.
+    const double freedom = weight * weight - weight2;
+    return freedom > 1e-12 * weight * weight ? std::max(squares, 0.0) / freedom : m * m;
+}
+
+PointFit::PointFit(const Octree& octree, const OctreeLevel& level, const Fans& fans,
+                   const VertexPositions& vertices)
+    : octree_(octree),
+      level_(level),
+      fans_(fans),
+      vertices_(vertices),
+      of_voxel_(std::span(vertices.voxel).first(fans.size()), level.size()) {}
+
+void PointFit::gather_beside(Index voxel, std::vector<Index>& fans) const {
+    fans.clear();
+    const VoxelCoord at = level_.coord(voxel);
+    for (std::size_t k = 0; k < 6; ++k) { // the first six are those beside its faces
+        const VoxelCoord& d = neighbor_offsets[k];
+        const Index x = level_.find({at[0] + d[0], at[1] + d[1], at[2] + d[2]});
+        if (x != no_index) fans.insert(fans.end(), of_voxel_.of(x).begin(), of_voxel_.of(x).end());
+    }
+}
+
+PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
+    Measure result{std::vector<double>(level_.size(), 0), std::vector<Heights>(fans_.size())};
+    // Vertices of other chunks' voxels get their share afterwards, in the order of the chunks.
+    std::vector<std::vector<Foreign>> foreign(chunk_count(level_.size(), per_chunk));
+    for_chunks(level_.size(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        std::vector<Index> beside;
+        std::vector<Around> around;
+        for (std::size_t x = begin; x < end; ++x) {
+            if (of_voxel_.of(x).empty()) gather_beside(static_cast<Index>(x), beside);
+            const std::span<const Index> near = of_voxel_.of(x).empty() ? beside : of_voxel_.of(x);
+            const bool flat = near.size() == 1 && vertices_.kinds[near[0]] == VertexKind::smooth;
+            around.clear();
+            for (Index fan : near) list_triangles(fan, fans_, positions, around);
+            if (around.empty()) continue;
+            const std::size_t first = level_.first_point[x], last = level_.first_point[x + 1];
+            const std::size_t stride = (last - first + points_per_voxel - 1) / points_per_voxel;
+            for (std::size_t i = first; i < last; i += stride) {
+                const Foot foot = find_foot(octree_.positions[i], around, flat);
+                const double distance = std::sqrt(foot.nearest.squared_distance);
+                result.misfit[x] += distance;
+                const Vec3 way = octree_.positions[i] - foot.nearest.point;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const Index v = foot.corners[k];
+                    const double height = vertices_.directions[v] | way;
+                    if (vertices_.kinds[v] != VertexKind::smooth || fans_.open[v]
+                        || (octree_.normals[i] | vertices_.directions[v]) < same_sheet_cosine
+                        || std::abs(height) < same_sheet_cosine * distance) // beside the facets
+                        continue;
+                    if (vertices_.voxel[v] >= begin && vertices_.voxel[v] < end)
+                        result.heights[v].add(foot.nearest.weights[k], height);
+                    else
+                        foreign[chunk].push_back({v, foot.nearest.weights[k], height});
+                }
+            }
+        }
+    });
+    for (const std::vector<Foreign>& share : foreign)
+        for (const Foreign& f : share) result.heights[f.fan].add(f.weight, f.height);
+    return result;
+}
+
+std::vector<double> PointFit::rises(const std::vector<Heights>& heights) const {
+    struct Moments {
+        double square, variance; // of the mean
+    };
+    std::vector<Moments> of_mean(fans_.size());
+    for_chunks(fans_.size(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t v = begin; v < end; ++v)
+            of_mean[v] = {heights[v].mean() * heights[v].mean(), heights[v].variance()};
+    });
+    std::vector<double> rises(fans_.size(), 0);
+    for_chunks(fans_.size(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t v = begin; v < end; ++v) {
+            Moments sum{0, 0};
+            for (Node node : fans_.fan(static_cast<Index>(v)))
+                for (unsigned j = 0; j < 4; ++j) {
+                    const Moments& other = of_mean[fans_.at(node / 4, j, j)];
+                    sum.square += other.square;
+                    sum.variance += other.variance;
+                }
+            if (sum.square > doubt * sum.variance)
+                rises[v] = heights[v].mean() * (1 - doubt * sum.variance / sum.square);
+        }
+    });
+    return rises;
+}
+
+} // namespace hsdm

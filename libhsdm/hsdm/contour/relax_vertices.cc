@@ -1,0 +1,252 @@
+#include "hsdm/contour/relax_vertices.hh"
+
+#include "hsdm/contour/point_fit.hh"
+#include "hsdm/core/chunks.hh"
+#include "hsdm/errors.hh"
+#include "hsdm/mesh/area_vector.hh"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t fans_per_chunk = 1024;
+constexpr double same_sheet_cosine = 0.77; // normals within 40 degrees
+constexpr double along_cosine = 0.8;       // an edge this parallel to a crease lies on it
+constexpr double margin = 0.002;           // voxels: vertices stay this far from their voxel's faces
+constexpr double farther = 0.1;            // share by which a voxel's points may get farther off
+constexpr double nearness = 0.01;          // squared voxels: added to squared distances in weights
+
+/// As far from one position of a fan's vertex towards another as its voxel allows.
+Vec3 within_voxel(const CornerLattice& lattice, const Crossings& crossings, const Fans& fans, Index fan,
+                  double h, const Vec3& from, const Vec3& to) {
+    const Node node = fans.fan(fan)[0];
+    const Index edge = crossings.crossings[node / 4].edge;
+    const unsigned octant = Ring::octant(edge % 3, node % 4);
+    const VoxelCoord corner = lattice.coord(edge / 3);
+    const Vec3 way = to - from;
+    double share = 1;
+    for (unsigned k = 0; k < 3; ++k) {
+        const double lo = (corner[k] + static_cast<int>(octant >> k & 1u) - 1 + margin) * h;
+        const double hi = lo + (1 - 2 * margin) * h;
+        if (way[k] > 0 && to[k] > hi) share = std::min(share, (hi - from[k]) / way[k]);
+        if (way[k] < 0 && to[k] < lo) share = std::min(share, (lo - from[k]) / way[k]);
+    }
+    return from + way * std::max(share, 0.0);
+}
+
+double sum_of(const std::vector<double>& all) {
+    return std::accumulate(all.begin(), all.end(), 0.0);
+}
+
+class Relaxation {
+public:
+    Relaxation(double voxel_size, const CornerLattice& lattice, const Crossings& crossings, const Fans& fans,
+               VertexPositions& vertices)
+        : h_(voxel_size),
+          lattice_(lattice),
+          crossings_(crossings),
+          fans_(fans),
+          vertices_(vertices),
+          placed_(vertices.positions) {
+        list_neighbours();
+    }
+
+    void round(double step) {
+        next_ = vertices_.positions;
+        for_chunks(fans_.size(), fans_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t v = begin; v < end; ++v) {
+                const auto fan = static_cast<Index>(v);
+                if (fans_.open[v]) continue;
+                if (vertices_.kinds[v] == VertexKind::smooth)
+                    next_[v] = kept_in(fan, on_sheet(fan, moved_on_sheet(fan, step)));
+                else if (vertices_.kinds[v] == VertexKind::edge)
+                    next_[v] = kept_in(fan, moved_along_crease(fan, step));
+            }
+        });
+        vertices_.positions.swap(next_);
+    }
+
+    /// Smooth vertices rise or sink until the facets, not the vertices alone, lie amid the points. Where a
+    /// voxel's points are then farther off than from the facets as placed, its vertices go back; if the
+    /// points are in all, none is moved.
+    void fit(const PointFit& fit) {
+        const PointFit::Measure before = fit.measure(placed_);
+        rise(fit.rises(before.heights));
+        const PointFit::Measure after = fit.measure(vertices_.positions);
+        if (sum_of(after.misfit) > sum_of(before.misfit)) {
+            vertices_.positions = placed_;
+            return;
+        }
+        rise(fit.rises(after.heights));
+        for (std::size_t v = 0; v < fans_.size(); ++v) {
+            const Index voxel = vertices_.voxel[v];
+            if (after.misfit[voxel] > (1 + farther) * before.misfit[voxel])
+                vertices_.positions[v] = placed_[v];
+        }
+    }
+
+private:
+    /// A vertex at the other end of sides of facets, and of how many: an interior edge has two.
+    struct Neighbour {
+        Index vertex, sides;
+    };
+    std::span<const Neighbour> neighbours(Index fan) const {
+        return {neighbours_.data() + 2 * std::size_t{fans_.first[fan]}, neighbour_count_[fan]};
+    }
+
+    void list_neighbours() {
+        neighbours_.resize(2 * fans_.nodes.size());
+        neighbour_count_.resize(fans_.size());
+        for_chunks(fans_.size(), fans_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t v = begin; v < end; ++v) {
+                Neighbour* const first = neighbours_.data() + 2 * std::size_t{fans_.first[v]};
+                Neighbour* last = first;
+                const auto add = [&](Index n) {
+                    Neighbour* const known =
+                        std::find_if(first, last, [n](const Neighbour& other) { return other.vertex == n; });
+                    if (known == last) *last++ = {n, 0};
+                    ++known->sides;
+                };
+                for (Node node : fans_.fan(static_cast<Index>(v))) {
+                    const Index x = node / 4;
+                    const unsigned j = node % 4;
+                    add(fans_.at(x, (j + 1) % 4, j));
+                    add(fans_.at(x, (j + 3) % 4, (j + 3) % 4));
+                }
+                neighbour_count_[v] = static_cast<Index>(last - first);
+            }
+        });
+    }
+
+    Vec3 moved_on_sheet(Index fan, double step) const {
+        const Vec3& p = vertices_.positions[fan];
+        Vec3 mean(0, 0, 0);
+        for (const Neighbour& n : neighbours(fan)) mean += vertices_.positions[n.vertex] * n.sides;
+        const Vec3 way = mean / static_cast<double>(2 * fans_.fan(fan).size()) - p;
+        const Vec3& normal = vertices_.directions[fan];
+        return p + (way - normal * (normal | way)) * step;
+    }
+
+    /// The point of the sheet below or above p: as high as the vertices of the sheet around it were placed.
+    Vec3 on_sheet(Index fan, const Vec3& p) const {
+        const Vec3& own = vertices_.directions[fan];
+        Vec3 normal(0, 0, 0), place(0, 0, 0);
+        double sum = 0;
+        const auto add = [&](Index v, double share) {
+            const double weight = share / ((p - placed_[v]).sqrnorm() / (h_ * h_) + nearness);
+            normal += vertices_.directions[v] * weight;
+            place += placed_[v] * weight;
+            sum += weight;
+        };
+        if (!vertices_.is_clamped[fan]) add(fan, 1);
+        for (const auto& [n, sides] : neighbours(fan))
+            if (vertices_.kinds[n] == VertexKind::smooth && !vertices_.is_clamped[n]
+                && (vertices_.directions[n] | own) > same_sheet_cosine)
+                add(n, 0.5 * sides);
+        if (!(sum > 0)) return p;
+        normal.normalize();
+        return p - normal * (normal | (p - place / sum));
+    }
+
+    /// Towards the middle between the next vertices on the crease, if there is one either way.
+    Vec3 moved_along_crease(Index fan, double step) const {
+        const Vec3& p = vertices_.positions[fan];
+        const Vec3& along = vertices_.directions[fan];
+        double ahead = 0, behind = 0;
+        for (const auto& [n, sides] : neighbours(fan)) {
+            if (vertices_.is_clamped[n]) return p;
+            if (vertices_.kinds[n] == VertexKind::smooth) continue;
+            const Vec3 way = vertices_.positions[n] - p;
+            const double s = way | along;
+            if (std::abs(s) < along_cosine * way.norm()) continue;
+            (s > 0 ? ahead : behind) = s > 0 ? std::max(ahead, s) : std::min(behind, s);
+        }
+        return ahead > 0 && behind < 0 ? p + along * (0.5 * step * (ahead + behind)) : p;
+    }
+
+    /// Moves vertices along their directions.
+    void rise(const std::vector<double>& heights) {
+        for_chunks(fans_.size(), fans_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t v = begin; v < end; ++v)
+                if (heights[v] != 0) {
+                    const Vec3 to = vertices_.positions[v] + vertices_.directions[v] * heights[v];
+                    vertices_.positions[v] = kept_in(static_cast<Index>(v), to);
+                }
+        });
+    }
+
+    Vec3 kept_in(Index fan, const Vec3& p) const {
+        return within_voxel(lattice_, crossings_, fans_, fan, h_, vertices_.positions[fan], p);
+    }
+
+    double h_;
+    const CornerLattice& lattice_;
+    const Crossings& crossings_;
+    const Fans& fans_;
+    VertexPositions& vertices_;
+    const std::vector<Vec3> placed_;
+    std::vector<Vec3> next_;
+    std::vector<Neighbour> neighbours_; // those of a fan begin at twice its first node
+    std::vector<Index> neighbour_count_;
+};
+
+/// The voxel's own set that a smooth vertex belongs to, or null.
+const NormalSet* own_set(const NormalSets& sets, Index voxel, const Vec3& normal) {
+    const NormalSet* best = nullptr;
+    for (const NormalSet& set : sets.of_voxel(voxel))
+        if ((set.normal | normal) > same_sheet_cosine && (!best || set.count > best->count)) best = &set;
+    return best;
+}
+
+} // namespace
+
+void extend_borders(const OctreeLevel& level, const CornerLattice& lattice, const NormalSets& sets,
+                    const Crossings& crossings, const Fans& fans, VertexPositions& vertices) {
+    const std::vector<Vec3> placed = vertices.positions;
+    const double h = level.voxel_size;
+    for_chunks(fans.size(), fans_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t v = begin; v < end; ++v) {
+            if (!fans.open[v] || vertices.kinds[v] != VertexKind::smooth) continue;
+            const auto fan = static_cast<Index>(v);
+            const NormalSet* set = own_set(sets, vertices.voxel[v], vertices.directions[v]);
+            if (!set) continue;
+            // The facets lie inwards; along the border the first and the last neighbour lead on.
+            const auto nodes = fans.fan(fan);
+            const auto beside = [&](Node node, bool enters) {
+                const unsigned j = node % 4;
+                const bool lower = crossings.crossings[node / 4].leaving == enters;
+                return placed[fans.at(node / 4, lower ? (j + 3) % 4 : (j + 1) % 4, lower ? (j + 3) % 4 : j)];
+            };
+            const Vec3 first = beside(nodes.front(), true), last = beside(nodes.back(), false);
+            Vec3 inner(0, 0, 0);
+            for (Node node : nodes) inner += placed[fans.at(node / 4, (node + 2) % 4, (node + 2) % 4)];
+            const Vec3 along = unit(last - first);
+            Vec3 outward = placed[v] - inner / static_cast<double>(nodes.size());
+            outward -= along * (along | outward);
+            outward = unit(outward - set->normal * (set->normal | outward));
+            const double reach = (outward | (set->centroid - placed[v]))
+                                 + std::sqrt(3 * std::max(0.0, set->spread.along(outward)));
+            if (!(reach > 0)) continue;
+            const Vec3 to = placed[v] + outward * reach;
+            vertices.positions[v] = within_voxel(lattice, crossings, fans, fan, h, placed[v], to);
+        }
+    });
+}
+
+void relax_vertices(const Octree& octree, const OctreeLevel& level, const CornerLattice& lattice,
+                    const Crossings& crossings, const Fans& fans, const RelaxOptions& options,
+                    VertexPositions& vertices) {
+    if (options.rounds < 0)
+        throw OptionError("relaxation rounds " + std::to_string(options.rounds) + ": must be 0 or more");
+    if (!(options.step > 0 && options.step <= 1))
+        throw OptionError("relaxation step " + std::to_string(options.step) + ": must lie in (0, 1]");
+    if (options.rounds == 0 && !options.fit) return;
+    Relaxation relaxation(level.voxel_size, lattice, crossings, fans, vertices);
+    for (int round = 0; round < options.rounds; ++round) relaxation.round(options.step);
+    if (options.fit) relaxation.fit(PointFit(octree, level, fans, vertices));
+}
+
+} // namespace hsdm

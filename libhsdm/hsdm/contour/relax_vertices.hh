@@ -1,0 +1,30 @@
+#pragma once
+// Vertices moved along the surface so that facets come nearer to squares.
+
+#include "hsdm/contour/vertex_placement.hh"
+
+namespace hsdm {
+
+struct RelaxOptions {
+    int rounds = 3;    ///< >= 0: moves within the sheet
+    double step = 0.7; ///< (0, 1]: share of the way to the mean of the neighbours in a round
+    bool fit = true;   ///< after that, move the sheet towards the points
+};
+
+/// Moves smooth vertices within their sheet towards the mean of their neighbours, those of a crease along it
+/// (not beside one that was kept off its planes: the facets between would grow), corners and borders not at
+/// all, none out of its voxel. The sheet's height at the new place is the mean height of the vertices around
+/// as they were placed. Then smooth vertices rise or sink, twice, until the facets, not the vertices alone,
+/// lie amid the points (PointFit::rises). Where after the first of the two a voxel's points are a tenth
+/// farther from the facets than as placed, its vertices go back; all do if the points in all are farther.
+/// O(rounds * crossings), parallel; the same for any number of threads. Throws OptionError.
+void relax_vertices(const Octree& octree, const OctreeLevel& level, const CornerLattice& lattice,
+                    const Crossings& crossings, const Fans& fans, const RelaxOptions& options,
+                    VertexPositions& vertices);
+
+/// Moves the vertices of borders outwards within their sheet and voxel, to where the points of the voxel's
+/// own set end: evenly spread, they reach sqrt(3) standard deviations from their mean. O(fans), parallel.
+void extend_borders(const OctreeLevel& level, const CornerLattice& lattice, const NormalSets& sets,
+                    const Crossings& crossings, const Fans& fans, VertexPositions& vertices);
+
+} // namespace hsdm

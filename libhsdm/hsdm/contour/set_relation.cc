@@ -1,0 +1,57 @@
+#include "hsdm/contour/set_relation.hh"
+
+#include "hsdm/errors.hh"
+
+#include <cmath>
+
+namespace hsdm {
+namespace {
+/// Planes closer to parallel than this have no useful line in common (about 6 degrees).
+constexpr double least_sine_squared = 0.01;
+/// Voxels: how far a set's points may reach beyond the plane they should end at.
+constexpr double overshoot = 0.3;
+} // namespace
+
+RelationTest::RelationTest(const RelationOptions& options, double voxel_size)
+    : cos_smooth_(std::cos(options.smooth_angle)),
+      gap_(options.smooth_gap * voxel_size),
+      crease_gap_(options.crease_gap * voxel_size),
+      voxel_size_(voxel_size) {
+    if (!(options.smooth_angle > 0 && options.smooth_angle < 1.5707963))
+        throw OptionError("smooth_angle " + std::to_string(options.smooth_angle) + ": must lie in (0, pi/2)");
+    if (!(options.smooth_gap > 0 && options.crease_gap > 0))
+        throw OptionError("smooth_gap and crease_gap must be positive");
+}
+
+Relation RelationTest::operator()(const NormalSet& a, const NormalSet& b) const {
+    const double cosine = a.normal | b.normal;
+    if (cosine < cos_smooth_) return crease(a, b, cosine);
+    const Vec3 sum = a.normal + b.normal;
+    const double gap = std::abs(sum | (b.centroid - a.centroid));
+    return gap < gap_ * sum.norm() ? Relation::smooth : Relation::none;
+}
+
+Relation RelationTest::crease(const NormalSet& a, const NormalSet& b, double cosine) const {
+    const double sine_squared = 1 - cosine * cosine;
+    if (sine_squared < least_sine_squared) return Relation::none;
+    const Vec3 chord = b.centroid - a.centroid;
+    const double b_above_a = a.normal | chord;
+    const double a_above_b = -(b.normal | chord);
+    const bool convex = b_above_a + a_above_b < 0;
+    return ends_at(a, b.normal, a_above_b, convex, cosine) && ends_at(b, a.normal, b_above_a, convex, cosine)
+               ? (convex ? Relation::convex : Relation::concave)
+               : Relation::none;
+}
+
+/// Do the points of a set end at the other plane, which its centroid lies `above`? Points spread evenly reach
+/// sqrt(3) standard deviations; few points reach less far, by about the spacing between them.
+bool RelationTest::ends_at(const NormalSet& set, const Vec3& plane, double above, bool convex,
+                           double cosine) const {
+    const double short_of = convex ? -above : above;
+    const double reach = std::sqrt(3 * std::max(0.0, set.spread.along(plane)));
+    const double sine = std::sqrt(1 - cosine * cosine);
+    const double spacing = 0.5 * voxel_size_ / std::sqrt(static_cast<double>(set.count));
+    return short_of - reach < (crease_gap_ + spacing) * sine && reach - short_of < overshoot * voxel_size_;
+}
+
+} // namespace hsdm

@@ -1,0 +1,39 @@
+#pragma once
+// Section 3.4.2, "the connection should satisfy normal consistency": how two sets near each other are
+// related.
+
+#include "hsdm/contour/normal_sets.hh"
+
+namespace hsdm {
+
+enum class Relation : std::uint8_t {
+    none,    ///< different surfaces, e.g. the two sides of a plate
+    smooth,  ///< one sheet
+    convex,  ///< two sheets that meet in a crease, each centroid below the other's plane
+    concave, ///< the same, each above
+};
+
+struct RelationOptions {
+    double smooth_angle =
+        0.70; ///< radians, (0, pi/2): normals closer than this belong to one sheet (40 degrees)
+    double smooth_gap = 0.3; ///< voxels: how far two sets of one sheet may lie apart along their mean normal
+    double crease_gap = 0.5; ///< voxels: how far from the points of both sets the planes of a crease may meet
+};
+
+/// The relation of two sets of the same or of adjacent voxels. Symmetric. Smooth: small angle, and the chord
+/// between the centroids perpendicular to the sum of the normals, as on any circular arc, so curvature does
+/// not count as a gap. Crease: larger angle, planes that meet close to where the points of both end.
+class RelationTest {
+public:
+    /// Throws OptionError.
+    RelationTest(const RelationOptions& options, double voxel_size);
+    Relation operator()(const NormalSet& a, const NormalSet& b) const;
+
+private:
+    Relation crease(const NormalSet& a, const NormalSet& b, double cosine) const;
+    bool ends_at(const NormalSet& set, const Vec3& plane, double above, bool convex, double cosine) const;
+
+    double cos_smooth_, gap_, crease_gap_, voxel_size_;
+};
+
+} // namespace hsdm

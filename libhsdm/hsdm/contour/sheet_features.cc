@@ -1,0 +1,245 @@
+#include "hsdm/contour/sheet_features.hh"
+
+#include "hsdm/core/chunks.hh"
+#include "hsdm/mesh/area_vector.hh"
+#include "hsdm/mesh/facet_normal.hh"
+
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t facets_per_chunk = 1024;
+constexpr double least_cosine = 0.5;  // between a facet and its set
+constexpr double least_fold = 0.7;    // of the crease angle: flatter edges are not looked at
+constexpr double off_fold_sine = 0.5; // normals farther out of the fold's plane belong to other sheets
+constexpr double end_band = 0.25; // of the fold's angle: normals this close to one sheet's are that sheet's
+constexpr double most_between = 0.1; // of the points round a crease
+constexpr double least_side = 0.05;  // of them: each side of a crease has as many
+constexpr double nearby = 0.75;      // voxels from the edge: a second look where a small radius would show
+constexpr double chord = 0.5;        // voxels: how far positions are compared with normals
+constexpr double most_tilted = 0.4;  // of the points between in the whole cloud
+constexpr double most_tilt = 0.125;  // of the fold's angle, between chords and normals
+
+/// The angle at an edge, measured in the plane across it from one sheet's normal to the other's.
+struct Fold {
+    Vec3 from, to;
+    double angle;
+
+    Fold(const Vec3& a, const Vec3& b) : from(a), to(b), angle(angle_between(a, b)) {}
+};
+
+/// Points around a fold, seen along it: a crease has two directions of normals, a bend all between.
+class FoldPoints {
+public:
+    FoldPoints(const Octree& octree, const OctreeLevel& level) : octree_(octree), level_(level) {}
+
+    void gather(const Fold& fold, std::span<const Index> voxels, const Vec3& a, const Vec3& b) {
+        points_.clear();
+        angle_ = fold.angle;
+        const Vec3 axis = unit(fold.from % fold.to), along = axis % fold.from;
+        const double length = (b - a).norm();
+        const Vec3 edge = unit(b - a);
+        for (Index v : voxels)
+            for (Index i = level_.first_point[v]; i < level_.first_point[v + 1]; ++i) {
+                const Vec3& n = octree_.normals[i];
+                if (n.sqrnorm() < 0.5 || std::abs(n | axis) > off_fold_sine) continue;
+                const double direction = std::atan2(n | along, n | fold.from);
+                if (direction < -0.5 * angle_ || direction > 1.5 * angle_) continue;
+                const Vec3 arm = octree_.positions[i] - a;
+                const Vec3 off_edge = arm - edge * std::clamp(arm | edge, 0.0, length);
+                points_.push_back(
+                    {arm | along, arm | fold.from, direction, off_edge.norm() <= nearby * level_.voxel_size});
+            }
+    }
+
+    bool empty() const { return points_.empty(); }
+
+    /// Points of both sheets and next to none between, near the edge and in all.
+    bool crease() const {
+        double low = 0, high = 0, middle = 0, near = 0, near_middle = 0;
+        for (const Point& p : points_) {
+            const bool is_middle = between(p);
+            (is_middle ? middle : 2 * p.direction < angle_ ? low : high) += 1;
+            near += p.near;
+            near_middle += p.near && is_middle;
+        }
+        const auto all = static_cast<double>(points_.size());
+        return low > least_side * all && high > least_side * all && middle <= most_between * all
+               && near_middle <= most_between * near;
+    }
+
+    /// Of the points between, how many have a normal that chords to the points close by contradict. On a
+    /// smooth arc a chord is perpendicular to the sum of the normals at its ends; normals smeared across a
+    /// crease turn while the points run straight on.
+    void count_tilted(std::size_t& middle, std::size_t& tilted) const {
+        for (const Point& p : points_) {
+            if (!between(p)) continue;
+            ++middle;
+            tilted += std::abs(tilt(p)) > most_tilt * angle_;
+        }
+    }
+
+private:
+    struct Point {
+        double x, y;      // along the second and the first axis of the fold's plane
+        double direction; // of its normal, from the fold's first
+        bool near;
+    };
+
+    bool between(const Point& p) const {
+        return p.direction >= end_band * angle_ && p.direction <= (1 - end_band) * angle_;
+    }
+
+    double tilt(const Point& p) const {
+        double rise = 0, run = 0;
+        for (const Point& q : points_) {
+            const double dx = q.x - p.x, dy = q.y - p.y, mean = 0.5 * (p.direction + q.direction);
+            if (dx * dx + dy * dy > chord * chord * level_.voxel_size * level_.voxel_size) continue;
+            const double forward = dx * std::cos(mean) - dy * std::sin(mean);
+            const double up = dx * std::sin(mean) + dy * std::cos(mean);
+            rise += forward >= 0 ? up : -up;
+            run += std::abs(forward);
+        }
+        return std::atan2(rise, run);
+    }
+
+    const Octree& octree_;
+    const OctreeLevel& level_;
+    std::vector<Point> points_;
+    double angle_ = 0;
+};
+
+/// What one chunk of sides came to.
+struct Tally {
+    std::size_t sharp = 0, smooth = 0, middle = 0, tilted = 0;
+};
+
+/// The facets of a mesh as their sheets see them: facing where the points' normals point.
+class SheetFacets {
+public:
+    SheetFacets(const OctreeLevel& level, const NormalSets& sets, const PolygonMesh& mesh,
+                std::span<const Index> voxel, bool turned)
+        : level_(level), sets_(sets), mesh_(mesh), voxel_(voxel), normals_(mesh.facet_count()) {
+        for_chunks(normals_.size(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t f = begin; f < end; ++f)
+                normals_[f] = unit(area_vector(mesh, mesh.facet(f))) * (turned ? -1 : 1);
+        });
+    }
+
+    const Vec3& normal(Index f) const { return normals_[f]; }
+    /// The set whose sheet a facet is part of: among the sets in its vertices' voxels the one whose plane
+    /// lies nearest in direction and place, or no_index if none faces its way to 60 degrees.
+    Index set(Index f) const;
+    const Vec3& sheet_normal(Index of_set, const Vec3& otherwise) const {
+        return of_set != no_index ? sets_.sets[of_set].normal : otherwise;
+    }
+    /// Of the vertices of two facets, ascending, each once.
+    void voxels_of(Index f, Index g, std::vector<Index>& voxels) const {
+        voxels.clear();
+        for (Index facet : {f, g})
+            for (Index v : mesh_.facet(facet)) voxels.push_back(voxel_[v]);
+        std::sort(voxels.begin(), voxels.end());
+        voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
+    }
+
+private:
+    const OctreeLevel& level_;
+    const NormalSets& sets_;
+    const PolygonMesh& mesh_;
+    std::span<const Index> voxel_;
+    std::vector<Vec3> normals_;
+};
+
+Index SheetFacets::set(Index f) const {
+    const auto facet = mesh_.facet(f);
+    Vec3 centre(0, 0, 0);
+    for (Index v : facet) centre += mesh_.positions[v];
+    centre /= static_cast<double>(facet.size());
+    Index best = no_index;
+    double least = std::numeric_limits<double>::infinity();
+    for (Index v : facet)
+        for (Index s = sets_.first[voxel_[v]]; s < sets_.first[voxel_[v] + 1]; ++s) {
+            const NormalSet& set = sets_.sets[s];
+            const Vec3 arm = (centre - set.centroid) / level_.voxel_size;
+            const double cosine = set.normal | normals_[f];
+            if (cosine < least_cosine) continue;
+            // Of one sheet's sets the nearest: a twentieth tells them apart and sways nothing else.
+            const double cost = 1 - cosine + std::abs(set.normal | arm) + 0.05 * arm.norm();
+            if (cost < least || (cost == least && s < best)) least = cost, best = s;
+        }
+    return best;
+}
+
+class EdgeJudge {
+public:
+    EdgeJudge(const Octree& octree, const OctreeLevel& level, const SheetFacets& facets, double crease_angle)
+        : facets_(facets),
+          crease_angle_(crease_angle),
+          flat_(std::cos(least_fold * crease_angle) + 1e-9), // so that rounding decides nothing here
+          points_(octree, level) {}
+
+    /// The edge of facets f and g from a to b.
+    EdgeHint judge(Index f, Index g, const Vec3& a, const Vec3& b, Tally& tally) {
+        if ((facets_.normal(f) | facets_.normal(g)) > flat_) return EdgeHint::none;
+        const Fold facets(facets_.normal(f), facets_.normal(g));
+        if (!(facets.angle >= least_fold * crease_angle_)) return EdgeHint::none;
+        const Index one = facets_.set(f), other = facets_.set(g);
+        Fold fold = one != other
+                        ? Fold(facets_.sheet_normal(one, facets.from), facets_.sheet_normal(other, facets.to))
+                        : facets;
+        if (fold.angle < crease_angle_) fold = facets;
+        if (fold.angle < crease_angle_) return EdgeHint::none;
+        facets_.voxels_of(f, g, voxels_);
+        points_.gather(fold, voxels_, a, b);
+        if (points_.empty()) return EdgeHint::none;
+        const bool crease = points_.crease();
+        ++(crease ? tally.sharp : tally.smooth);
+        if (!crease) points_.count_tilted(tally.middle, tally.tilted);
+        return crease ? EdgeHint::sharp : EdgeHint::smooth;
+    }
+
+private:
+    const SheetFacets& facets_;
+    double crease_angle_, flat_;
+    FoldPoints points_;
+    std::vector<Index> voxels_;
+};
+
+} // namespace
+
+SheetFeatures sheet_features(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
+                             const PolygonMesh& mesh, const FacetLinks& links, std::span<const Index> voxel,
+                             double crease_angle, bool turned) {
+    SheetFeatures result;
+    auto& sides = result.hints.sides;
+    sides.assign(mesh.corners.size(), EdgeHint::none);
+    const SheetFacets facets(level, sets, mesh, voxel, turned);
+    constexpr std::size_t sides_per_chunk = 4 * facets_per_chunk;
+    std::vector<Tally> tallies(chunk_count(sides.size(), sides_per_chunk));
+    for_chunks(sides.size(), sides_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        EdgeJudge judge(octree, level, facets, crease_angle);
+        for (std::size_t c = begin; c < end; ++c) {
+            const Index twin = links.twin[c];
+            if (twin == no_index || twin < c) continue;
+            sides[c] = sides[twin] =
+                judge.judge(links.facet[c], links.facet[twin], mesh.positions[mesh.corners[c]],
+                            mesh.positions[mesh.corners[twin]], tallies[chunk]);
+        }
+    });
+    std::size_t middle = 0, tilted = 0;
+    for (const Tally& t : tallies) {
+        result.sharp += t.sharp;
+        result.smooth += t.smooth;
+        middle += t.middle;
+        tilted += t.tilted;
+    }
+    if (static_cast<double>(tilted)
+        > most_tilted * static_cast<double>(middle)) { // smeared or noisy normals: what bends may be them
+        std::replace(sides.begin(), sides.end(), EdgeHint::smooth, EdgeHint::none);
+        result.doubtful = std::exchange(result.smooth, 0);
+    }
+    return result;
+}
+
+} // namespace hsdm

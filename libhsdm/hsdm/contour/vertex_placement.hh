@@ -1,0 +1,48 @@
+#pragma once
+// Section 3.4.2, where a vertex lies: on its sheet, or where the sheets of a crease or a corner meet.
+
+#include "hsdm/contour/fans.hh"
+
+namespace hsdm {
+
+/// Vertex kinds of section 3.3, known here from the number of sheets that meet.
+enum class VertexKind : std::uint8_t { smooth = 0, edge = 1, corner = 2 };
+
+struct VertexPositions {
+    std::vector<Vec3> positions; ///< per fan, relative to the octree's origin
+    std::vector<VertexKind> kinds;
+    /// Per fan: of a smooth vertex the sheet's unit normal, of an edge vertex a unit vector along the crease.
+    std::vector<Vec3> directions;
+    std::vector<Index> voxel; ///< per fan, its voxel; where no point lies in it, that of the nearest set
+    std::vector<std::uint8_t> is_clamped; ///< per fan, kept in its voxel although its planes meet outside
+    std::size_t clamped = 0;              ///< how many are
+    /// Corners of three sheets that would lie in the next voxel; their vertices are kept in their own.
+    struct Beyond {
+        Index fan;
+        Vec3 position;
+        std::array<Vec3, 3> normals; ///< of the three sheets
+        VoxelCoord step;             ///< to the voxel it lies in
+        std::uint8_t crossed; ///< bit w: the voxel along the axes of w only has an edge crossed by the sheets
+    };
+    std::vector<Beyond> beyond; ///< by ascending fan
+    /// Clamped vertices, and where their two sheets meet, up to a quarter of a voxel outside.
+    struct OnCrease {
+        Index fan;
+        Vec3 position;
+        std::array<Vec3, 2> normals; ///< of the two sheets
+    };
+    std::vector<OnCrease> on_creases; ///< by ascending fan
+};
+
+/// Least squares over the planes of the fan's crossings and of the voxel's own sets, towards their mean
+/// point, with as many directions as sheets meet (one, two, three). Inside the voxel, or up to half a voxel
+/// beyond where no vertex of the same sheets can be; else kept in it. O(crossings), parallel.
+VertexPositions place_vertices(const OctreeLevel& level, const CornerLattice& lattice, const NormalSets& sets,
+                               const RelationTest& related, const Crossings& crossings, const Fans& fans);
+
+/// The sides of a thin part cut apart in one voxel may end on the same point, and the facets between them
+/// would have no area: such neighbours move apart, each along its own sheet's normal. O(chains cut).
+void separate_sides(const Crossings& crossings, const Fans& fans, double voxel_size,
+                    std::vector<Vec3>& positions);
+
+} // namespace hsdm

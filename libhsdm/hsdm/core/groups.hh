@@ -1,0 +1,31 @@
+#pragma once
+// Groups of indices as flat arrays.
+
+#include "hsdm/core/chunks.hh"
+
+#include <span>
+
+namespace hsdm {
+
+/// The members of groups, each group's in ascending order.
+class Members {
+public:
+    /// `group`: per member, below `count`, or no_index for one that is in none. O(members + count).
+    Members(std::span<const Index> group, std::size_t count) : first_(count + 1, 0) {
+        for (Index g : group)
+            if (g != no_index) ++first_[g + 1];
+        counts_to_first(first_);
+        members_.resize(first_.back());
+        std::vector<Index> next(first_.begin(), first_.end() - 1);
+        for (Index i = 0; i < group.size(); ++i)
+            if (group[i] != no_index) members_[next[group[i]]++] = i;
+    }
+    std::span<const Index> of(std::size_t group) const {
+        return {members_.data() + first_[group], members_.data() + first_[group + 1]};
+    }
+
+private:
+    std::vector<Index> first_, members_; // those of group g are members_[first_[g]] .. [first_[g + 1]]
+};
+
+} // namespace hsdm

@@ -1,0 +1,62 @@
+#include "hsdm/core/radix_sort.hh"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+
+namespace hsdm {
+namespace {
+
+constexpr int digit_bits = 11;
+constexpr std::size_t buckets = std::size_t{1} << digit_bits;
+constexpr std::size_t chunk_size = std::size_t{1}
+                                   << 16; // a chunk's histogram must cost little against its keys
+
+using Histogram = std::array<std::size_t, buckets>;
+
+std::size_t digit(const CodeIndex& key, int shift) {
+    return static_cast<std::size_t>(key.code >> shift) & (buckets - 1);
+}
+
+/// Turns counts per chunk and bucket into the position of each chunk's first key of each bucket.
+/// Returns false if all keys share one bucket.
+bool counts_to_offsets(std::vector<Histogram>& histograms, std::size_t n) {
+    std::size_t offset = 0;
+    for (std::size_t bucket = 0; bucket < buckets; ++bucket) {
+        const std::size_t begin = offset;
+        for (Histogram& histogram : histograms) {
+            const std::size_t count = histogram[bucket];
+            histogram[bucket] = offset;
+            offset += count;
+        }
+        if (offset - begin == n) return false;
+    }
+    return true;
+}
+
+} // namespace
+
+void radix_sort(std::vector<CodeIndex>& keys, int high, int low) {
+    const std::size_t n = keys.size();
+    const std::size_t chunks = (n + chunk_size - 1) / chunk_size;
+    std::vector<CodeIndex> buffer(n);
+    std::vector<Histogram> histograms(chunks);
+    for (int shift = low; shift < high; shift += digit_bits) {
+        tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+            Histogram& histogram = histograms[chunk];
+            histogram.fill(0);
+            for (std::size_t i = chunk * chunk_size; i < std::min(n, (chunk + 1) * chunk_size); ++i)
+                ++histogram[digit(keys[i], shift)];
+        });
+        if (!counts_to_offsets(histograms, n)) continue;
+        tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+            Histogram& histogram = histograms[chunk];
+            for (std::size_t i = chunk * chunk_size; i < std::min(n, (chunk + 1) * chunk_size); ++i)
+                buffer[histogram[digit(keys[i], shift)]++] = keys[i];
+        });
+        keys.swap(buffer);
+    }
+}
+
+} // namespace hsdm

@@ -1,0 +1,20 @@
+#pragma once
+// Stable radix sort of (code, index) pairs: the one sort of phase 1.
+
+#include "hsdm/core/morton.hh"
+#include "hsdm/types.hh"
+
+#include <vector>
+
+namespace hsdm {
+
+struct CodeIndex {
+    MortonCode code;
+    Index index;
+};
+
+/// Sorts by the bits [low, high) of the code, least significant digit first, stable. O(n), parallel; one
+/// buffer of the same size. A digit that is the same everywhere costs one counting pass and no move.
+void radix_sort(std::vector<CodeIndex>& keys, int high, int low = 0);
+
+} // namespace hsdm

@@ -1,0 +1,23 @@
+#pragma once
+// All of hsdm's public headers: what is installed beside them is theirs.
+
+#include "hsdm/ReconstructorT.hh"
+#include "hsdm/errors.hh"
+#include "hsdm/features/AnisotropicNormalSmootherT.hh"
+#include "hsdm/features/FeatureClassifierT.hh"
+#include "hsdm/io/read_mesh.hh"
+#include "hsdm/io/read_points.hh"
+#include "hsdm/io/register_readers.hh"
+#include "hsdm/io/write_mesh.hh"
+#include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/mesh_types.hh"
+#include "hsdm/plugin.hh"
+#include "hsdm/point_cloud.hh"
+#include "hsdm/polygon_mesh.hh"
+#include "hsdm/quality/compare.hh"
+#include "hsdm/quality/distance.hh"
+#include "hsdm/quality/topology.hh"
+#include "hsdm/reconstruct.hh"
+#include "hsdm/report.hh"
+#include "hsdm/types.hh"
+#include "hsdm/version.hh"

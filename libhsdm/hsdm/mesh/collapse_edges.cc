@@ -1,0 +1,294 @@
+#include "hsdm/mesh/collapse_edges.hh"
+
+#include "hsdm/mesh/area_vector.hh"
+
+#include <algorithm>
+#include <iterator>
+
+namespace hsdm {
+namespace {
+
+constexpr double least_area = 0.01;     // twice a facet's, over its longest side squared
+constexpr double least_share = 0.5;     // of what a facet with less than that had
+constexpr double least_side = 0.01;     // over the longest
+constexpr std::size_t most_corners = 6; // of united facets
+constexpr int most_rounds = 16;
+
+using RingVertices = std::vector<Index>;
+
+/// The position of a vertex in a ring, or the ring's size.
+std::size_t find_in(const RingVertices& ring, Index v) {
+    return static_cast<std::size_t>(std::find(ring.begin(), ring.end(), v) - ring.begin());
+}
+
+/// A ring from position `at` on, all round.
+RingVertices starting_at(const RingVertices& ring, std::size_t at) {
+    RingVertices turned = ring;
+    std::rotate(turned.begin(), turned.begin() + static_cast<std::ptrdiff_t>(at), turned.end());
+    return turned;
+}
+
+bool is_simple(RingVertices ring) {
+    std::sort(ring.begin(), ring.end());
+    return std::adjacent_find(ring.begin(), ring.end()) == ring.end();
+}
+
+/// The facets around the edges, as rings that may change.
+class Patch {
+public:
+    Patch(PolygonMesh& mesh, std::span<const EdgeCollapse> edges)
+        : mesh_(mesh), slot_(mesh.vertex_count(), no_index), facet_count_(mesh.vertex_count(), 0) {
+        for (const EdgeCollapse& edge : edges)
+            for (Index v : {edge.from, edge.to})
+                if (slot_[v] == no_index) {
+                    slot_[v] = static_cast<Index>(rings_at_.size());
+                    rings_at_.emplace_back();
+                    stand_in_.push_back(v);
+                }
+        for (Index v : mesh.corners) ++facet_count_[v];
+        for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+            const auto facet = mesh.facet(f);
+            if (std::any_of(facet.begin(), facet.end(), [&](Index v) { return slot_[v] != no_index; })) {
+                facets_.push_back(static_cast<Index>(f));
+                rings_.emplace_back(facet.begin(), facet.end());
+                list(static_cast<Index>(rings_.size() - 1));
+            }
+        }
+    }
+
+    bool collapse(const EdgeCollapse& edge) {
+        const Index to = stand_in(edge.to);
+        if (!meets_link_condition(edge.from, to)) return false;
+        gather(edge.from, to);
+        const Vec3 placed = mesh_.positions[to];
+        if (to == edge.to) mesh_.positions[to] = edge.position;
+        if (unite_flat(to) && keeps_facets(to) && keeps_thirds(edge.from)) {
+            commit();
+            stand_in_[slot_[edge.from]] = to;
+            return true;
+        }
+        mesh_.positions[to] = placed;
+        return false;
+    }
+
+    /// Writes the rings back; those of fewer than three vertices are gone.
+    void write() const {
+        PolygonMesh kept;
+        std::size_t next = 0;
+        for (std::size_t f = 0; f < mesh_.facet_count(); ++f) {
+            if (next == facets_.size() || facets_[next] != f)
+                kept.add_facet(mesh_.facet(f));
+            else if (rings_[next++].size() > 2)
+                kept.add_facet(rings_[next - 1]);
+        }
+        mesh_.corners = std::move(kept.corners);
+        mesh_.first = std::move(kept.first);
+    }
+
+private:
+    struct Change {
+        Index ring;
+        RingVertices after;
+        Vec3 area_before;
+        double least_area; // over the longest side squared
+    };
+
+    /// The vertex in whose place v is now, itself at first.
+    Index stand_in(Index v) const {
+        while (stand_in_[slot_[v]] != v) v = stand_in_[slot_[v]];
+        return v;
+    }
+
+    const std::vector<Index>& rings_at(Index v) const { return rings_at_[slot_[v]]; }
+
+    /// Notes a ring with those of its vertices that edges have.
+    void list(Index ring) {
+        for (Index v : rings_[ring])
+            if (slot_[v] != no_index) rings_at_[slot_[v]].push_back(ring);
+    }
+
+    void unlist(Index ring) {
+        for (Index v : rings_[ring])
+            if (slot_[v] != no_index) std::erase(rings_at_[slot_[v]], ring);
+    }
+
+    /// The vertices before and after v round its facets, sorted, each once.
+    std::vector<Index> neighbours_of(Index v) const {
+        std::vector<Index> neighbours;
+        for (Index r : rings_at(v)) {
+            const RingVertices& ring = rings_[r];
+            const std::size_t at = find_in(ring, v);
+            neighbours.push_back(ring[(at + 1) % ring.size()]);
+            neighbours.push_back(ring[(at + ring.size() - 1) % ring.size()]);
+        }
+        std::sort(neighbours.begin(), neighbours.end());
+        neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
+        return neighbours;
+    }
+
+    bool meets_link_condition(Index from, Index to) const {
+        if (from == to) return false;
+        std::size_t both = 0, triangles = 0;
+        for (Index r : rings_at(from)) {
+            const RingVertices& ring = rings_[r];
+            const std::size_t at = find_in(ring, from), other = find_in(ring, to);
+            if (other == ring.size()) continue;
+            const std::size_t apart = at < other ? other - at : at - other;
+            if (apart != 1 && apart + 1 != ring.size()) return false;
+            ++both;
+            triangles += ring.size() == 3;
+        }
+        if (both != 2) return false;
+        const std::vector<Index> one = neighbours_of(from), other = neighbours_of(to);
+        // Those of a border have one neighbour more than facets; joined, they would pinch the surface.
+        if (one.size() > rings_at(from).size() && other.size() > rings_at(to).size()) return false;
+        std::vector<Index> common;
+        std::set_intersection(one.begin(), one.end(), other.begin(), other.end(), std::back_inserter(common));
+        return common.size() == triangles;
+    }
+
+    /// The rings around an edge as they are after its collapse.
+    void gather(Index from, Index to) {
+        std::vector<Index> around = rings_at(from);
+        around.insert(around.end(), rings_at(to).begin(), rings_at(to).end());
+        std::sort(around.begin(), around.end());
+        around.erase(std::unique(around.begin(), around.end()), around.end());
+        changes_.clear();
+        for (Index r : around) {
+            RingVertices after = rings_[r];
+            const std::size_t at = find_in(after, from);
+            if (at < after.size() && find_in(after, to) < after.size())
+                after.erase(after.begin() + static_cast<std::ptrdiff_t>(at));
+            else
+                std::replace(after.begin(), after.end(), from, to);
+            changes_.push_back({r, std::move(after), area_vector(mesh_, rings_[r]),
+                                std::min(least_area, least_share * relative_area(rings_[r]))});
+        }
+    }
+
+    double squared_length(Index a, Index b) const {
+        return (mesh_.positions[b] - mesh_.positions[a]).sqrnorm();
+    }
+
+    /// Where the longest side of a ring begins.
+    std::size_t longest_side(const RingVertices& ring) const {
+        std::size_t longest = 0;
+        double length = 0;
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            const double side = squared_length(ring[i], ring[(i + 1) % ring.size()]);
+            if (side > length) length = side, longest = i;
+        }
+        return longest;
+    }
+
+    double relative_area(const RingVertices& ring) const {
+        const std::size_t i = longest_side(ring);
+        const double longest = squared_length(ring[i], ring[(i + 1) % ring.size()]);
+        return longest > 0 ? area_vector(mesh_, ring).norm() / longest : 0;
+    }
+
+    bool has_area(const Change& change) const { return relative_area(change.after) > change.least_area; }
+
+    /// Unites the rings without area with the one across their longest side, which must end at `centre`.
+    bool unite_flat(Index centre) {
+        for (Change& flat : changes_) {
+            if (flat.after.size() < 3 || has_area(flat)) continue;
+            const std::size_t side = longest_side(flat.after);
+            const Index a = flat.after[side], b = flat.after[(side + 1) % flat.after.size()];
+            if (a != centre && b != centre) return false;
+            Change* beyond = across(flat, a, b);
+            if (!beyond) return false;
+            // From b round the flat ring to a, then round the other from behind a to before b.
+            RingVertices united = starting_at(flat.after, find_in(flat.after, b));
+            const RingVertices other = starting_at(beyond->after, find_in(beyond->after, a));
+            united.insert(united.end(), other.begin() + 1, other.end() - 1);
+            if (united.size() > most_corners || !is_simple(united)) return false;
+            beyond->after = std::move(united);
+            flat.after.clear();
+        }
+        return true;
+    }
+
+    /// The other ring with the side from b to a.
+    Change* across(const Change& flat, Index a, Index b) {
+        for (Change& change : changes_) {
+            const std::size_t at = find_in(change.after, b);
+            if (&change != &flat && change.after.size() > 2 && at < change.after.size()
+                && change.after[(at + 1) % change.after.size()] == a)
+                return &change;
+        }
+        return nullptr;
+    }
+
+    bool keeps_facets(Index centre) const {
+        return std::all_of(changes_.begin(), changes_.end(), [&](const Change& change) {
+            if (change.after.size() < 3) return true;
+            return has_area(change) && has_sides(change.after, centre)
+                   && (area_vector(mesh_, change.after) | change.area_before) >= 0;
+        });
+    }
+
+    /// Are the sides of a ring that end at `centre` long enough?
+    bool has_sides(const RingVertices& ring, Index centre) const {
+        const std::size_t at = find_in(ring, centre), i = longest_side(ring);
+        const double least = least_side * least_side * squared_length(ring[i], ring[(i + 1) % ring.size()]);
+        return squared_length(centre, ring[(at + 1) % ring.size()]) > least
+               && squared_length(centre, ring[(at + ring.size() - 1) % ring.size()]) > least;
+    }
+
+    /// Counts the facets at each vertex anew, unless one but `gone` would lose its third.
+    bool keeps_thirds(Index gone) {
+        const auto has_three = [&](Index v) { return v == gone || facet_count_[v] >= 3; };
+        std::vector<Index> with_three;
+        for (const Change& change : changes_)
+            std::copy_if(rings_[change.ring].begin(), rings_[change.ring].end(),
+                         std::back_inserter(with_three), has_three);
+        count_changes(-1, 1);
+        if (std::all_of(with_three.begin(), with_three.end(), has_three)) return true;
+        count_changes(1, -1);
+        return false;
+    }
+
+    void count_changes(int before, int after) {
+        for (const Change& change : changes_) {
+            for (Index v : rings_[change.ring]) facet_count_[v] += before;
+            if (change.after.size() < 3) continue;
+            for (Index v : change.after) facet_count_[v] += after;
+        }
+    }
+
+    void commit() {
+        for (Change& change : changes_) {
+            unlist(change.ring);
+            rings_[change.ring] = change.after.size() < 3 ? RingVertices() : std::move(change.after);
+            list(change.ring);
+        }
+    }
+
+    PolygonMesh& mesh_;
+    std::vector<Index> slot_;                  // per vertex of an edge, its place in rings_at_
+    std::vector<std::vector<Index>> rings_at_; // round each of them
+    std::vector<Index> stand_in_;              // for each of them
+    std::vector<Index> facets_;                // of the rings, ascending
+    std::vector<RingVertices> rings_;
+    std::vector<int> facet_count_; // per vertex
+    std::vector<Change> changes_;  // of the edge at hand
+};
+
+} // namespace
+
+std::vector<std::uint8_t> collapse_edges(PolygonMesh& mesh, std::span<const EdgeCollapse> edges) {
+    std::vector<std::uint8_t> collapsed(edges.size(), 0);
+    if (edges.empty()) return collapsed;
+    Patch patch(mesh, edges);
+    bool changed = true, any = false;
+    for (int round = 0; changed && round < most_rounds; ++round) {
+        changed = false;
+        for (std::size_t i = 0; i < edges.size(); ++i)
+            if (!collapsed[i] && patch.collapse(edges[i])) collapsed[i] = 1, changed = any = true;
+    }
+    if (any) patch.write();
+    return collapsed;
+}
+
+} // namespace hsdm

@@ -1,0 +1,78 @@
+#include "hsdm/mesh/facet_unions.hh"
+
+#include "hsdm/core/chunks.hh"
+
+#include <algorithm>
+#include <atomic>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t per_chunk = 1 << 14;
+
+/// The ring of a facet from the corner after v round to the one before it.
+std::vector<Index> without(std::span<const Index> ring, Index v) {
+    const auto at = std::find(ring.begin(), ring.end(), v);
+    std::vector<Index> rest(at + 1, ring.end());
+    rest.insert(rest.end(), ring.begin(), at);
+    return rest;
+}
+
+} // namespace
+
+VertexFacets facets_at_vertices(const PolygonMesh& mesh) {
+    const std::size_t n = mesh.vertex_count();
+    VertexFacets at{std::vector<std::array<Index, 2>>(n), std::vector<std::uint8_t>(n)};
+    std::vector<Index> counts(n, 0);
+    for_chunks(mesh.facet_count(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t f = begin; f < end; ++f)
+            for (Index v : mesh.facet(f)) {
+                const Index place = std::atomic_ref(counts[v]).fetch_add(1, std::memory_order_relaxed);
+                if (place < 2) at.facets[v][place] = static_cast<Index>(f);
+            }
+    });
+    for_chunks(n, per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t v = begin; v < end; ++v) {
+            at.count[v] = static_cast<std::uint8_t>(std::min<Index>(counts[v], 3));
+            if (counts[v] == 2) std::ranges::sort(at.facets[v]); // whoever came first
+            if (counts[v] > 2) at.facets[v] = {};
+        }
+    });
+    return at;
+}
+
+std::vector<Index> united_ring(const PolygonMesh& mesh, Index f, Index g, Index between) {
+    std::vector<Index> ring = without(mesh.facet(f), between);
+    const std::vector<Index> other = without(mesh.facet(g), between);
+    // An inner vertex: where f comes from, g goes to, and the other way round.
+    if (ring.front() != other.back() || ring.back() != other.front()) return {};
+    ring.insert(ring.end(), other.begin() + 1, other.end() - 1);
+    std::vector<Index> sorted = ring;
+    std::sort(sorted.begin(), sorted.end());
+    const bool simple = std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
+    return simple ? ring : std::vector<Index>();
+}
+
+void FacetUnions::unite(Index f, Index g, std::vector<Index> ring) {
+    ++count_;
+    fate_[f] = fate_[g] = goes;
+    if (ring.size() < 3) return;
+    fate_[f] = static_cast<Index>(unions_.size());
+    unions_.push_back(std::move(ring));
+}
+
+std::size_t FacetUnions::apply(PolygonMesh& mesh) const {
+    if (count_ == 0) return 0;
+    PolygonMesh kept;
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+        if (fate_[f] == stays)
+            kept.add_facet(mesh.facet(f));
+        else if (fate_[f] != goes)
+            kept.add_facet(unions_[fate_[f]]);
+    }
+    mesh.corners = std::move(kept.corners);
+    mesh.first = std::move(kept.first);
+    return count_;
+}
+
+} // namespace hsdm

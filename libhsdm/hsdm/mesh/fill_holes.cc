@@ -1,0 +1,210 @@
+#include "hsdm/mesh/fill_holes.hh"
+
+#include "hsdm/core/chunks.hh"
+#include "hsdm/mesh/area_vector.hh"
+#include "hsdm/mesh/facet_links.hh"
+#include "hsdm/mesh/split_polygon.hh"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t sides_per_chunk = 1 << 14;
+
+/// A loop around a single facet: closing it would lay a second facet over the same vertices.
+bool is_lone_facet(const PolygonMesh& mesh, std::span<const Index> facets) {
+    return std::all_of(facets.begin(), facets.end(), [&](Index f) { return f == facets[0]; })
+           && mesh.facet(facets[0]).size() == facets.size();
+}
+
+double diameter(const PolygonMesh& mesh, std::span<const Index> loop) {
+    Box box;
+    for (Index v : loop) box.add(mesh.positions[v]);
+    return box.diagonal();
+}
+
+/// Which side without twin follows which around a hole: succ of a side from a to b is one that ends in a.
+class HoleTracer {
+public:
+    explicit HoleTracer(const PolygonMesh& mesh)
+        : mesh_(mesh), links_(link_facets(mesh)), open_(sides_without_twin()) {
+        if (open_.empty()) return;
+        list_fans();
+        next_.assign(mesh.corners.size(), no_index);
+        for (Index c : open_) next_[c] = links_.open_in[links_.vertex[c]];
+        for (std::size_t begin = 0, end = 0; begin < shared_.size(); begin = end) {
+            while (end < shared_.size() && shared_[end].vertex == shared_[begin].vertex) ++end;
+            join_fans({shared_.data() + begin, end - begin});
+        }
+    }
+
+    BoundaryLoops trace() {
+        BoundaryLoops loops;
+        for (Index c : open_) {
+            path_.clear();
+            for (Index at = c; next_[at] != no_index;) {
+                path_.push_back(at);
+                at = std::exchange(next_[at], no_index);
+            }
+            if (!path_.empty()) add_simple_loops(loops);
+        }
+        return loops;
+    }
+
+private:
+    /// An open fan of a vertex that has several: it begins with side `out` and ends, counterclockwise, with
+    /// side `in`.
+    struct Fan {
+        Index vertex, out, in;
+        double angle;
+    };
+
+    std::vector<Index> sides_without_twin() const {
+        std::vector<std::vector<Index>> parts(chunk_count(mesh_.corners.size(), sides_per_chunk));
+        for_chunks(mesh_.corners.size(), sides_per_chunk,
+                   [&](std::size_t begin, std::size_t end, auto chunk) {
+                       for (std::size_t c = begin; c < end; ++c)
+                           if (links_.twin[c] == no_index && links_.accepted[links_.facet[c]])
+                               parts[chunk].push_back(static_cast<Index>(c));
+                   });
+        return joined(parts);
+    }
+
+    Index end(Index side) const { return mesh_.corners[next_side(mesh_, links_.facet[side], side)]; }
+
+    void list_fans() {
+        std::vector<std::uint8_t> fans(mesh_.vertex_count(), 0);
+        for (Index source : links_.source)
+            fans[source] = static_cast<std::uint8_t>(std::min(fans[source] + 1, 2));
+        for (Index c : open_)
+            if (fans[mesh_.corners[c]] > 1)
+                shared_.push_back({mesh_.corners[c], c, links_.open_in[links_.vertex[c]], 0});
+        std::stable_sort(shared_.begin(), shared_.end(),
+                         [](const Fan& a, const Fan& b) { return a.vertex < b.vertex; });
+    }
+
+    Vec3 normal(const Fan& fan) const {
+        return unit(area_vector(mesh_, mesh_.facet(links_.facet[fan.out]))
+                    + area_vector(mesh_, mesh_.facet(links_.facet[fan.in])));
+    }
+
+    /// Fans of one surface around a vertex leave a hole between each and the next: the hole clockwise of a
+    /// fan's first side ends at the last side of the fan before. Fans that face different ways are sheets
+    /// that touch by chance and keep their holes to themselves.
+    void join_fans(std::span<Fan> fans) {
+        Vec3 sum(0, 0, 0);
+        for (const Fan& fan : fans) sum += normal(fan);
+        for (const Fan& fan : fans)
+            if ((normal(fan) | sum) <= 0) return;
+        const Vec3 z = unit(sum), origin = mesh_.positions[fans[0].vertex];
+        const Vec3 x = mesh_.positions[end(fans[0].out)] - origin, y = z % x;
+        for (Fan& fan : fans) {
+            const Vec3 d = mesh_.positions[end(fan.out)] - origin;
+            fan.angle = std::atan2(d | y, d | x);
+        }
+        std::stable_sort(fans.begin(), fans.end(),
+                         [](const Fan& a, const Fan& b) { return a.angle < b.angle; });
+        for (std::size_t i = 0; i < fans.size(); ++i)
+            next_[fans[i].out] = fans[(i + fans.size() - 1) % fans.size()].in;
+    }
+
+    /// A loop that comes by a vertex twice is cut into loops there.
+    void add_simple_loops(BoundaryLoops& loops) {
+        std::vector<Index> open;
+        for (Index side : path_) {
+            const Index v = end(side);
+            const auto seen = std::find_if(open.begin(), open.end(), [&](Index s) { return end(s) == v; });
+            if (seen != open.end()) {
+                add_loop({seen, open.end()}, loops);
+                open.erase(seen, open.end());
+            }
+            open.push_back(side);
+        }
+        add_loop(open, loops);
+    }
+
+    void add_loop(std::span<const Index> sides, BoundaryLoops& loops) const {
+        for (Index side : sides) {
+            loops.vertices.push_back(end(side));
+            loops.facets.push_back(links_.facet[side]);
+        }
+        loops.begin.push_back(static_cast<Index>(loops.vertices.size()));
+    }
+
+    const PolygonMesh& mesh_;
+    FacetLinks links_;
+    std::vector<Index> open_; ///< sides without twin
+    std::vector<Fan> shared_;
+    std::vector<Index> next_; ///< per side without twin; cleared as loops are traced
+    std::vector<Index> path_;
+};
+
+/// A new vertex at the mean of a loop's, with their mean normal and the properties of the first.
+Index add_middle(PolygonMesh& mesh, std::span<const Index> loop) {
+    Vec3 position(0, 0, 0), normal(0, 0, 0);
+    for (Index v : loop) position += mesh.positions[v];
+    mesh.positions.push_back(position / static_cast<double>(loop.size()));
+    if (!mesh.normals.empty()) {
+        for (Index v : loop) normal += mesh.normals[v];
+        mesh.normals.push_back(unit(normal));
+    }
+    for (VertexProperty& property : mesh.properties) property.values.push_back(property.values[loop[0]]);
+    return static_cast<Index>(mesh.vertex_count() - 1);
+}
+
+Pieces triangles_around(Index middle, std::span<const Index> loop) {
+    Pieces pieces;
+    for (std::size_t i = 0; i < loop.size(); ++i)
+        pieces.push_back({loop[i], loop[(i + 1) % loop.size()], middle});
+    return pieces;
+}
+
+} // namespace
+
+BoundaryLoops boundary_loops(const PolygonMesh& mesh) {
+    return HoleTracer(mesh).trace();
+}
+
+FillHolesCounts fill_holes(PolygonMesh& mesh, const FillHolesOptions& options) {
+    const BoundaryLoops loops = boundary_loops(mesh);
+    FillHolesCounts counts;
+    counts.loops = loops.size();
+    if (loops.size() == 0) return counts;
+    EdgeSet edges(mesh, loops.vertices);
+    const SplitPolygonOptions split{options.max_bend, options.quads};
+    for (std::size_t i = 0; i < loops.size(); ++i) {
+        const auto loop = loops[i];
+        if (loop.size() > static_cast<std::size_t>(options.max_edges)
+            || diameter(mesh, loop) > options.max_diameter)
+            continue;
+        const std::span<const Index> facets{loops.facets.data() + loops.begin[i], loop.size()};
+        Pieces pieces;
+        if (loop.size() >= 3 && !is_lone_facet(mesh, facets)) {
+            std::vector<Vec3> normals;
+            for (Index f : facets) normals.push_back(unit(area_vector(mesh, mesh.facet(f))));
+            pieces = split_polygon(mesh, loop, normals, edges, split);
+        }
+        if (pieces.empty() && options.insist && loop.size() >= 3) {
+            pieces = triangles_around(add_middle(mesh, loop), loop);
+            ++counts.vertices;
+        }
+        for (const auto& piece : pieces) {
+            mesh.add_facet(piece);
+            edges.add(piece);
+        }
+        if (pieces.empty()) {
+            ++counts.refused;
+            continue;
+        }
+        counts.facets += pieces.size();
+        ++counts.closed;
+    }
+    return counts;
+}
+
+} // namespace hsdm

@@ -1,0 +1,107 @@
+#include "hsdm/mesh/straight_corners.hh"
+
+#include "hsdm/core/chunks.hh"
+#include "hsdm/mesh/area_vector.hh"
+
+#include <algorithm>
+#include <array>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t facets_per_chunk = 2048;
+
+using Edge = std::array<Index, 2>; // the lower vertex first
+
+Edge edge(Index a, Index b) {
+    return {std::min(a, b), std::max(a, b)};
+}
+
+/// The corner of a quad with the least sine, and that sine.
+std::pair<std::size_t, double> straightest(const PolygonMesh& mesh, std::span<const Index> quad) {
+    const Vec3 up = unit(area_vector(mesh, quad));
+    std::pair<std::size_t, double> result{0, 1};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Vec3& p = mesh.positions[quad[i]];
+        const Vec3 a = mesh.positions[quad[(i + 1) % 4]] - p, b = mesh.positions[quad[(i + 3) % 4]] - p;
+        const double sides = a.norm() * b.norm();
+        const double sine = sides > 0 ? ((a % b) | up) / sides : 1;
+        if (sine < result.second && (a | b) < 0) result = {i, sine}; // a sharp corner is not cut in two
+    }
+    return result;
+}
+
+/// A quad to be cut at a corner.
+struct Cut {
+    Edge diagonal;
+    std::size_t facet, corner;
+};
+
+std::vector<Cut> possible_cuts(const PolygonMesh& mesh, double least_sine) {
+    std::vector<std::vector<Cut>> parts(chunk_count(mesh.facet_count(), facets_per_chunk));
+    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t f, std::size_t end, std::size_t c) {
+        for (; f < end; ++f) {
+            const auto quad = mesh.facet(f);
+            if (quad.size() != 4) continue;
+            const auto [corner, sine] = straightest(mesh, quad);
+            if (sine < least_sine)
+                parts[c].push_back({edge(quad[corner], quad[(corner + 2) % 4]), f, corner});
+        }
+    });
+    return joined(parts);
+}
+
+/// Of the edges that facets have, those that a diagonal may be, in order.
+std::vector<Edge> possible_edges(const PolygonMesh& mesh, const std::vector<Cut>& due) {
+    std::vector<std::uint8_t> met(mesh.vertex_count(), 0);
+    for (const Cut& cut : due) met[cut.diagonal[0]] = met[cut.diagonal[1]] = 1;
+    std::vector<Edge> edges;
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+        const auto ring = mesh.facet(f);
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            const Index a = ring[i], b = ring[(i + 1) % ring.size()];
+            if (met[a] && met[b]) edges.push_back(edge(a, b));
+        }
+    }
+    std::sort(edges.begin(), edges.end());
+    return edges;
+}
+
+/// Removes the cuts whose diagonal is an edge already or that of a facet before; leaves them by facet.
+void keep_allowed(const PolygonMesh& mesh, std::vector<Cut>& due) {
+    if (due.empty()) return;
+    const std::vector<Edge> edges = possible_edges(mesh, due);
+    std::sort(due.begin(), due.end(), [](const Cut& a, const Cut& b) {
+        return a.diagonal != b.diagonal ? a.diagonal < b.diagonal : a.facet < b.facet;
+    });
+    const auto same = [](const Cut& a, const Cut& b) { return a.diagonal == b.diagonal; };
+    due.erase(std::unique(due.begin(), due.end(), same), due.end());
+    std::erase_if(
+        due, [&](const Cut& cut) { return std::binary_search(edges.begin(), edges.end(), cut.diagonal); });
+    std::sort(due.begin(), due.end(), [](const Cut& a, const Cut& b) { return a.facet < b.facet; });
+}
+
+} // namespace
+
+std::size_t cut_straight_corners(PolygonMesh& mesh, double least_sine) {
+    std::vector<Cut> due = possible_cuts(mesh, least_sine);
+    keep_allowed(mesh, due);
+    if (due.empty()) return 0;
+    PolygonMesh cut;
+    auto next = due.begin();
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+        const auto ring = mesh.facet(f);
+        if (next == due.end() || next->facet != f) {
+            cut.add_facet(ring);
+            continue;
+        }
+        const std::size_t i = next++->corner;
+        cut.add_facet(std::array{ring[i], ring[(i + 1) % 4], ring[(i + 2) % 4]});
+        cut.add_facet(std::array{ring[i], ring[(i + 2) % 4], ring[(i + 3) % 4]});
+    }
+    mesh.corners = std::move(cut.corners);
+    mesh.first = std::move(cut.first);
+    return due.size();
+}
+
+} // namespace hsdm

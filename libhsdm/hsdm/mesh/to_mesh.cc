@@ -1,0 +1,288 @@
+#include "hsdm/mesh/to_mesh.hh"
+
+#include "hsdm/mesh/facet_normal.hh"
+#include "hsdm/mesh/vertex_normals.hh"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <type_traits>
+
+namespace hsdm {
+namespace {
+
+using OpenMesh::FaceHandle;
+using OpenMesh::HalfedgeHandle;
+using OpenMesh::VertexHandle;
+
+template <class Body>
+void for_each_index(std::size_t count, const Body& body) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1 << 13), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) body(static_cast<Index>(i));
+    });
+}
+
+VertexHandle vertex_handle(Index i) {
+    return VertexHandle(static_cast<int>(i));
+}
+FaceHandle face_handle(Index i) {
+    return FaceHandle(static_cast<int>(i));
+}
+HalfedgeHandle half_edge_handle(Index i) {
+    return HalfedgeHandle(static_cast<int>(i));
+}
+
+/// Half-edges numbered in the order of the sides, twins 2e and 2e + 1; returns the number of edges.
+Index number_half_edges(const FacetLinks& links, std::vector<Index>& half_edge) {
+    Index edges = 0;
+    half_edge.resize(links.twin.size());
+    for (Index c = 0; c < links.twin.size(); ++c) {
+        const Index twin = links.twin[c];
+        if (links.vertex[c] == no_index || (twin != no_index && twin < c)) continue;
+        half_edge[c] = 2 * edges;
+        if (twin != no_index) half_edge[twin] = 2 * edges + 1;
+        ++edges;
+    }
+    return edges;
+}
+
+Index number_faces(const FacetLinks& links, std::vector<Index>& face) {
+    Index count = 0;
+    face.resize(links.accepted.size());
+    for (std::size_t f = 0; f < face.size(); ++f) face[f] = links.accepted[f] ? count++ : no_index;
+    return count;
+}
+
+/// Writes the connectivity through the kernel's setters: it is known whole, so nothing is searched for.
+void write_connectivity(const PolygonMesh& facets, const FacetLinks& links, PolyMesh& mesh) {
+    std::vector<Index> half_edge, face;
+    const Index edges = number_half_edges(links, half_edge);
+    const Index faces = number_faces(links, face);
+    mesh.resize(links.source.size(), edges, faces);
+    for_each_index(facets.facet_count(), [&](Index f) {
+        if (face[f] == no_index) return;
+        for (Index c = facets.first[f]; c < facets.first[f + 1]; ++c) {
+            const Index next = next_side(facets, f, c);
+            const HalfedgeHandle h = half_edge_handle(half_edge[c]);
+            mesh.set_vertex_handle(h, vertex_handle(links.vertex[next]));
+            mesh.set_face_handle(h, face_handle(face[f]));
+            mesh.set_next_halfedge_handle(h, half_edge_handle(half_edge[next]));
+            if (links.twin[c] != no_index) continue;
+            const HalfedgeHandle outside = mesh.opposite_halfedge_handle(h);
+            const Index end = links.vertex[c];
+            mesh.set_vertex_handle(outside, vertex_handle(end));
+            mesh.set_next_halfedge_handle(
+                outside, mesh.opposite_halfedge_handle(half_edge_handle(half_edge[links.open_in[end]])));
+        }
+        // The last half-edge ends in the facet's first vertex, where OpenMesh starts to go round a face.
+        mesh.set_halfedge_handle(face_handle(face[f]), half_edge_handle(half_edge[facets.first[f + 1] - 1]));
+    });
+    for_each_index(links.source.size(), [&](Index v) {
+        const Index open = links.open_in[v];
+        mesh.set_halfedge_handle(vertex_handle(v),
+                                 open == no_index
+                                     ? half_edge_handle(half_edge[links.side_out[v]])
+                                     : mesh.opposite_halfedge_handle(half_edge_handle(half_edge[open])));
+    });
+}
+
+void write_geometry(const PolygonMesh& facets, const FacetLinks& links, PolyMesh& mesh) {
+    for_each_index(links.source.size(), [&](Index v) {
+        mesh.set_point(vertex_handle(v), facets.positions[links.source[v]]);
+        // Always: what nobody sets is whatever the memory held.
+        mesh.set_normal(vertex_handle(v),
+                        facets.normals.empty() ? Vec3(0, 0, 0) : facets.normals[links.source[v]]);
+    });
+    for_each_index(mesh.n_faces(), [&](Index f) {
+        HalfedgeHandle h = mesh.next_halfedge_handle(mesh.halfedge_handle(face_handle(f)));
+        AreaVector area(mesh.point(mesh.from_vertex_handle(h)));
+        for (const HalfedgeHandle last = mesh.halfedge_handle(face_handle(f)); h != last;
+             h = mesh.next_halfedge_handle(h))
+            area.add(mesh.point(mesh.to_vertex_handle(h)));
+        mesh.set_normal(face_handle(f), unit_or_zero(*area));
+    });
+}
+
+/// The value as a T; an integer that cannot hold it takes its nearest limit, 0 for what is not a number.
+template <class T>
+T saturated(double value) {
+    if constexpr (std::is_integral_v<T>) {
+        if (!(value == value)) return 0;
+        constexpr double lowest = std::numeric_limits<T>::lowest(), highest = std::numeric_limits<T>::max();
+        return static_cast<T>(std::clamp(value, lowest, highest));
+    } else {
+        return static_cast<T>(value);
+    }
+}
+
+template <class T>
+void write_property(const VertexProperty& from, const FacetLinks& links, PolyMesh& mesh) {
+    auto property = kept_vertex_property<T>(mesh, from.name.c_str());
+    auto& values = mesh.property(property.getRawProperty()).data_vector();
+    for_each_index(links.source.size(),
+                   [&](Index v) { values[v] = saturated<T>(from.values[links.source[v]]); });
+}
+
+std::string normal_component_name(std::size_t i) {
+    return std::string(vertex_normals_property) + "_" + std::to_string(i / 3) + "_" + "xyz"[i % 3];
+}
+
+bool is_normal_component(const VertexProperty& property) {
+    for (std::size_t i = 0; i < 9; ++i)
+        if (property.name == normal_component_name(i)) return true;
+    return false;
+}
+
+void write_vertex_normals(const PolygonMesh& facets, const FacetLinks& links, PolyMesh& mesh) {
+    for (std::size_t i = 0; i < 9; ++i)
+        for (const VertexProperty& component : facets.properties) {
+            if (component.name != normal_component_name(i)) continue;
+            auto property = kept_vertex_property<NormalTriple<Vec3>>(mesh, vertex_normals_property);
+            auto& values = mesh.property(property.getRawProperty()).data_vector();
+            for_each_index(links.source.size(),
+                           [&](Index v) { values[v][i / 3][i % 3] = component.values[links.source[v]]; });
+        }
+}
+
+void write_properties(const PolygonMesh& facets, const FacetLinks& links, PolyMesh& mesh) {
+    for (const VertexProperty& property : facets.properties) {
+        if (property.values.size() != facets.vertex_count() || is_normal_component(property)) continue;
+        switch (property.type) {
+        case VertexProperty::Type::uint8:
+            write_property<std::uint8_t>(property, links, mesh);
+            break;
+        case VertexProperty::Type::int32:
+            write_property<std::int32_t>(property, links, mesh);
+            break;
+        case VertexProperty::Type::float32:
+            write_property<float>(property, links, mesh);
+            break;
+        case VertexProperty::Type::float64:
+            write_property<double>(property, links, mesh);
+            break;
+        }
+    }
+    write_vertex_normals(facets, links, mesh);
+}
+
+/// What of a mesh becomes polygons: everything that is neither deleted nor isolated.
+struct Selection {
+    std::vector<VertexHandle> vertices;
+    std::vector<FaceHandle> faces;
+    std::vector<Index> number; ///< per vertex of the mesh, its index among the vertices
+};
+
+Selection select(const PolyMesh& mesh) {
+    Selection selection;
+    selection.number.assign(mesh.n_vertices(), no_index);
+    selection.vertices.reserve(mesh.n_vertices());
+    selection.faces.reserve(mesh.n_faces());
+    for (const auto v : mesh.vertices()) {
+        if (mesh.is_isolated(v)) continue;
+        selection.number[static_cast<std::size_t>(v.idx())] = static_cast<Index>(selection.vertices.size());
+        selection.vertices.push_back(v);
+    }
+    for (const auto f : mesh.faces()) selection.faces.push_back(f);
+    return selection;
+}
+
+void read_facets(const PolyMesh& mesh, const Selection& selection, PolygonMesh& polygons) {
+    polygons.first.resize(selection.faces.size() + 1);
+    for_each_index(selection.faces.size(),
+                   [&](Index f) { polygons.first[f + 1] = mesh.valence(selection.faces[f]); });
+    for (std::size_t f = 0; f < selection.faces.size(); ++f) polygons.first[f + 1] += polygons.first[f];
+    polygons.corners.resize(polygons.first.back());
+    for_each_index(selection.faces.size(), [&](Index f) {
+        Index c = polygons.first[f];
+        for (const auto v : mesh.fv_range(selection.faces[f]))
+            polygons.corners[c++] = selection.number[static_cast<std::size_t>(v.idx())];
+    });
+}
+
+template <class Value>
+VertexProperty read_property(std::string name, VertexProperty::Type type, const Selection& selection,
+                             const Value& value) {
+    VertexProperty property{std::move(name), type, std::vector<double>(selection.vertices.size())};
+    for_each_index(selection.vertices.size(), [&](Index v) {
+        property.values[v] =
+            static_cast<double>(value(static_cast<std::size_t>(selection.vertices[v].idx())));
+    });
+    return property;
+}
+
+/// Adds the property if it holds values of type T; returns whether it does.
+template <class T>
+bool read_scalars(const OpenMesh::BaseProperty& base, VertexProperty::Type type, const Selection& selection,
+                  PolygonMesh& polygons) {
+    const auto* typed = dynamic_cast<const OpenMesh::PropertyT<T>*>(&base);
+    if (typed == nullptr) return false;
+    const auto& values = typed->data_vector();
+    polygons.properties.push_back(
+        read_property(base.name(), type, selection, [&](std::size_t v) { return values[v]; }));
+    return true;
+}
+
+void read_vertex_normals(const OpenMesh::BaseProperty& base, const Selection& selection,
+                         PolygonMesh& polygons) {
+    const auto* typed = dynamic_cast<const OpenMesh::PropertyT<NormalTriple<Vec3>>*>(&base);
+    if (typed == nullptr || base.name() != vertex_normals_property) return;
+    const auto& values = typed->data_vector();
+    for (std::size_t i = 0; i < 9; ++i)
+        polygons.properties.push_back(read_property(normal_component_name(i), VertexProperty::Type::float32,
+                                                    selection,
+                                                    [&](std::size_t v) { return values[v][i / 3][i % 3]; }));
+}
+
+void read_properties(const PolyMesh& mesh, const Selection& selection, PolygonMesh& polygons) {
+    using Type = VertexProperty::Type;
+    for (auto it = mesh.vprops_begin(); it != mesh.vprops_end(); ++it) {
+        // Names with ':' second are OpenMesh's own: points, normals, status.
+        if (*it == nullptr || (*it)->name().find(':') == 1 || (*it)->name() == "<vprop>") continue;
+        const OpenMesh::BaseProperty& base = **it;
+        if (read_scalars<std::uint8_t>(base, Type::uint8, selection, polygons)) continue;
+        if (read_scalars<std::int32_t>(base, Type::int32, selection, polygons)) continue;
+        if (read_scalars<float>(base, Type::float32, selection, polygons)) continue;
+        if (read_scalars<double>(base, Type::float64, selection, polygons)) continue;
+        read_vertex_normals(base, selection, polygons);
+    }
+}
+
+} // namespace
+
+ToMeshCounts to_mesh(const PolygonMesh& facets, PolyMesh& mesh) {
+    return to_mesh(facets, link_facets(facets), mesh);
+}
+
+ToMeshCounts to_mesh(const PolygonMesh& facets, const FacetLinks& links, PolyMesh& mesh) {
+    write_connectivity(facets, links, mesh);
+    write_geometry(facets, links, mesh);
+    write_properties(facets, links, mesh);
+    return {links.rejected, links.split_vertices};
+}
+
+ToMeshResult to_mesh(const PolygonMesh& facets) {
+    ToMeshResult result;
+    const ToMeshCounts counts = to_mesh(facets, result.mesh);
+    result.rejected = counts.rejected;
+    result.split_vertices = counts.split_vertices;
+    return result;
+}
+
+PolygonMesh to_polygons(const PolyMesh& mesh) {
+    const Selection selection = select(mesh);
+    PolygonMesh polygons;
+    polygons.positions.resize(selection.vertices.size());
+    if (mesh.has_vertex_normals()) polygons.normals.resize(selection.vertices.size());
+    for_each_index(selection.vertices.size(), [&](Index v) {
+        polygons.positions[v] = mesh.point(selection.vertices[v]);
+        if (!polygons.normals.empty()) polygons.normals[v] = mesh.normal(selection.vertices[v]);
+    });
+    read_facets(mesh, selection, polygons);
+    read_properties(mesh, selection, polygons);
+    return polygons;
+}
+
+} // namespace hsdm

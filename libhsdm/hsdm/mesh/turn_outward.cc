@@ -1,0 +1,224 @@
+#include "hsdm/mesh/turn_outward.hh"
+
+#include "hsdm/core/chunks.hh"
+#include "hsdm/core/disjoint_sets.hh"
+#include "hsdm/core/orientation.hh"
+#include "hsdm/mesh/triangulate.hh"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <limits>
+#include <span>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t facets_per_chunk = 1 << 12;
+
+/// By the vertex that stands for the component.
+struct Components {
+    std::vector<Index> of_facet;
+    std::vector<std::uint8_t> open; ///< has a border
+    std::vector<double> volume;     ///< six times the signed one, if closed
+};
+
+Components find_components(const PolygonMesh& mesh, const FacetLinks& links) {
+    DisjointSets sets(mesh.vertex_count());
+    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t f = begin; f < end; ++f)
+            for (Index v : mesh.facet(f)) sets.join(mesh.facet(f)[0], v);
+    });
+    Components result;
+    result.of_facet.resize(mesh.facet_count());
+    result.open.assign(mesh.vertex_count(), 0);
+    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t f = begin; f < end; ++f) {
+            const Index c = result.of_facet[f] = sets.find(mesh.facet(f)[0]);
+            for (Index side = mesh.first[f]; side < mesh.first[f + 1]; ++side)
+                if (links.twin[side] == no_index)
+                    std::atomic_ref(result.open[c]).store(1, std::memory_order_relaxed);
+        }
+    });
+    return result;
+}
+
+/// About each component's own first vertex, so that small ones far away lose no digits.
+void measure_volumes(const PolygonMesh& mesh, const Triangulation& cut, Components& components) {
+    std::vector<double> of_facet(mesh.facet_count());
+    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t f = begin; f < end; ++f) {
+            const Vec3& centre = mesh.positions[components.of_facet[f]];
+            double sum = 0;
+            for (Index t = cut.first[f]; t < cut.first[f + 1]; ++t) {
+                const auto& [a, b, c] = cut.triangles[t];
+                sum += (mesh.positions[a] - centre)
+                       | ((mesh.positions[b] - centre) % (mesh.positions[c] - centre));
+            }
+            of_facet[f] = sum;
+        }
+    });
+    components.volume.assign(mesh.vertex_count(), 0);
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f)
+        components.volume[components.of_facet[f]] += of_facet[f];
+}
+
+/// How many closed components there are around points: the crossings of a ray along x from each, counted by
+/// the side they are seen from. Points are components by their first vertices; they stand in a grid over y
+/// and z.
+class Surroundings {
+public:
+    Surroundings(const PolygonMesh& mesh, std::span<const Index> points)
+        : mesh_(mesh), count_(points.size(), 0) {
+        Box box;
+        for (Index p : points) box.add(mesh.positions[p]);
+        while (side_ * side_ < points.size() && side_ < most_cells) side_ *= 2;
+        for (unsigned k = 0; k < 2; ++k) {
+            lo_[k] = box.lo[k + 1];
+            const double size = box.hi[k + 1] - box.lo[k + 1];
+            scale_[k] = size > 0 ? static_cast<double>(side_) / size : 0;
+        }
+        std::vector<std::pair<std::size_t, Index>> places; // cell, and which of the points
+        for (Index i = 0; i < points.size(); ++i)
+            places.emplace_back(cell(at(points[i], 1), 0) * side_ + cell(at(points[i], 2), 1), i);
+        std::sort(places.begin(), places.end());
+        first_.assign(side_ * side_ + 1, 0);
+        for (const auto& [c, i] : places) {
+            ++first_[c + 1];
+            which_.push_back(i);
+            points_.push_back(points[i]);
+        }
+        counts_to_first(first_);
+    }
+
+    /// To be called for the triangles of closed components, from any thread. Each crossing counts `weight`.
+    void add(const Triangle& triangle, Index component, int weight) {
+        std::array<double, 3> lo, hi;
+        for (unsigned k = 0; k < 3; ++k) {
+            lo[k] = std::min({at(triangle[0], k), at(triangle[1], k), at(triangle[2], k)});
+            hi[k] = std::max({at(triangle[0], k), at(triangle[1], k), at(triangle[2], k)});
+        }
+        for (std::size_t y = cell(lo[1], 0); y <= cell(hi[1], 0); ++y)
+            for (Index i = first_[y * side_ + cell(lo[2], 1)]; i < first_[y * side_ + cell(hi[2], 1) + 1];
+                 ++i) {
+                const Index p = points_[i];
+                if (p == component || at(p, 0) > hi[0] || at(p, 1) < lo[1] || at(p, 1) > hi[1]
+                    || at(p, 2) < lo[2] || at(p, 2) > hi[2])
+                    continue;
+                std::atomic_ref(count_[which_[i]])
+                    .fetch_add(weight * crossing(triangle, p), std::memory_order_relaxed);
+            }
+    }
+
+    /// Per point.
+    const std::vector<int>& counts() const { return count_; }
+
+private:
+    static constexpr std::size_t most_cells = 1 << 10; // along an axis
+
+    double at(Index vertex, unsigned axis) const { return mesh_.positions[vertex][axis]; }
+    std::size_t cell(double x, unsigned axis) const {
+        const double place = (x - lo_[axis]) * scale_[axis];
+        return static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(side_ - 1)));
+    }
+
+    /// Does the ray from below the side a-b's line, in y, meet it, and from which side? A vertex at the ray's
+    /// height counts as above, so that every crossing of a closed loop is counted once.
+    int crossing_of_side(Index p, Index a, Index b) const {
+        const bool a_above = at(a, 1) >= at(p, 1), b_above = at(b, 1) >= at(p, 1);
+        if (a_above == b_above) return 0;
+        const int side =
+            orientation(Vec2{at(a, 1), at(a, 2)}, Vec2{at(b, 1), at(b, 2)}, Vec2{at(p, 1), at(p, 2)});
+        return b_above ? side > 0 : -(side < 0);
+    }
+
+    int crossing(const Triangle& t, Index p) const {
+        const int turns = crossing_of_side(p, t[0], t[1]) + crossing_of_side(p, t[1], t[2])
+                          + crossing_of_side(p, t[2], t[0]);
+        if (turns == 0) return 0;
+        // Beyond the point along x? Seen from there the triangle runs as its turns say.
+        const int side = orientation(mesh_.positions[t[0]], mesh_.positions[t[1]], mesh_.positions[t[2]],
+                                     mesh_.positions[p]);
+        return side * turns < 0 ? turns : 0;
+    }
+
+    const PolygonMesh& mesh_;
+    std::size_t side_ = 1; // cells along an axis
+    std::array<double, 2> lo_, scale_;
+    std::vector<Index> first_, points_, which_; // by cell
+    std::vector<int> count_;
+};
+
+/// The sum of the weights of the components around each of the points; of one that faces inward, less its
+/// weight.
+template <class Weight>
+std::vector<int> sum_around(const PolygonMesh& mesh, const Triangulation& cut, const Components& components,
+                            std::span<const Index> points, const Weight& weight) {
+    Surroundings around(mesh, points);
+    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t f = begin; f < end; ++f)
+            if (const Index c = components.of_facet[f]; const int w = weight(c))
+                for (Index t = cut.first[f]; t < cut.first[f + 1]; ++t) around.add(cut.triangles[t], c, w);
+    });
+    return around.counts();
+}
+
+/// Marks, by component, what is to turn: closed components that face inward and do not lie in what others
+/// enclose; and inside of these whatever does not face against what is around it then, as the walls of
+/// cavities and what is in them do.
+std::vector<std::uint8_t> find_turns(const PolygonMesh& mesh, const Triangulation& cut,
+                                     const Components& components) {
+    std::vector<std::uint8_t> turns(mesh.vertex_count(), 0);
+    std::vector<Index> closed;
+    bool any_inward = false;
+    const auto is_inward = [&](Index c) { return components.volume[c] < 0; };
+    for (Index c = 0; c < components.volume.size(); ++c)
+        if (!components.open[c] && components.volume[c] != 0) {
+            closed.push_back(c);
+            any_inward |= is_inward(c);
+        }
+    if (!any_inward) return turns;
+    const auto sum = [&](const auto& weight) { return sum_around(mesh, cut, components, closed, weight); };
+    const auto one_each = [&](Index c) { return components.open[c] ? 0 : is_inward(c) ? -1 : 1; };
+    const std::vector<int> enclosed = sum([&](Index c) { return components.open[c] ? 0 : 1; });
+    const std::vector<int> depth = sum(one_each);
+    for (std::size_t i = 0; i < closed.size(); ++i)
+        turns[closed[i]] = is_inward(closed[i]) && enclosed[i] == 0;
+    const std::vector<int> in_turned = sum([&](Index c) { return turns[c] ? one_each(c) : 0; });
+    for (std::size_t i = 0; i < closed.size(); ++i)
+        if (in_turned[i] > 0) turns[closed[i]] = is_inward(closed[i]) != (depth[i] % 2 == 1);
+    return turns;
+}
+
+void turn(PolygonMesh& mesh, std::size_t f, FeatureHints& hints) {
+    const auto first = static_cast<std::ptrdiff_t>(mesh.first[f]);
+    const auto last = static_cast<std::ptrdiff_t>(mesh.first[f + 1]);
+    std::reverse(mesh.corners.begin() + first, mesh.corners.begin() + last);
+    if (hints.sides.empty()) return; // the last side stays the last: between the first and the last corner
+    std::reverse(hints.sides.begin() + first, hints.sides.begin() + last - 1);
+}
+
+} // namespace
+
+std::size_t turn_outward(PolygonMesh& mesh, FacetLinks& links, FeatureHints& hints) {
+    Components components = find_components(mesh, links);
+    const Triangulation cut = triangulate(mesh);
+    measure_volumes(mesh, cut, components);
+    std::vector<std::uint8_t> turns = find_turns(mesh, cut, components);
+    // Where components pass through each other none may lie in no other; the whole must face outward all the
+    // same.
+    double volume = 0;
+    for (std::size_t c = 0; c < turns.size(); ++c) {
+        if (components.open[c]) volume = std::numeric_limits<double>::infinity();
+        volume += turns[c] ? -components.volume[c] : components.volume[c];
+    }
+    if (volume < 0)
+        for (std::size_t c = 0; c < turns.size(); ++c) turns[c] = components.volume[c] < 0;
+    std::size_t turned = 0;
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f)
+        if (turns[components.of_facet[f]]) turn(mesh, f, hints), ++turned;
+    if (turned > 0) links = link_facets(mesh);
+    return turned;
+}
+
+} // namespace hsdm

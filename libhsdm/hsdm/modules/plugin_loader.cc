@@ -1,0 +1,206 @@
+#include "hsdm/modules/plugin_loader.hh"
+
+#include "hsdm/errors.hh"
+#include "hsdm/modules/trusted_path.hh"
+#include "hsdm/plugin.hh"
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+#include <string_view>
+#include <tuple>
+
+namespace hsdm {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* extension = ".so";
+
+std::string last_dl_error() {
+    const char* text = dlerror();
+    return text == nullptr ? "unknown reason" : text;
+}
+
+void check_interface(const std::string& path, std::uint32_t abi) {
+    if (abi != plugin_abi)
+        throw Error(path, "is built for module interface " + std::to_string(abi) + ", this is "
+                              + std::to_string(plugin_abi) + "; build it against this hsdm");
+}
+
+/// All that can be asked without running any of the module's code: loading it would run its constructors.
+PluginRecord inspect(const std::string& path) {
+    std::error_code error;
+    if (!fs::exists(path, error)) throw Error(path, "no such file; check the name of the module");
+    // Reading a pipe would wait for whoever writes it.
+    if (!fs::is_regular_file(path, error)) throw Error(path, "is no regular file; give a shared library");
+    if (const std::string reason = distrust(path); !reason.empty())
+        throw Error(path, "is not loaded: " + reason);
+    const auto record = read_plugin_record(io::SourceBytes::open(path));
+    if (!record)
+        throw Error(path, "is not an hsdm module: no shared library with what HSDM_PLUGIN writes into it; "
+                          "see hsdm/plugin.hh, and build it against this hsdm");
+    check_interface(path, record->abi);
+    if (record->build != HSDM_PLUGIN_BUILD)
+        throw Error(path, "is built with " + record->build
+                              + ", this is " HSDM_PLUGIN_BUILD "; build it the same way");
+    return *record;
+}
+
+const PluginInfo* load(const std::string& path) {
+    // A path without '/' would make dlopen search the system's library folders.
+    void* library = dlopen(fs::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
+    if (library == nullptr) throw Error(path, "cannot be loaded: " + last_dl_error());
+    using Entry = const PluginInfo* (*)();
+    const auto entry = reinterpret_cast<Entry>(dlsym(library, "hsdm_plugin"));
+    if (entry == nullptr)
+        throw Error(path, "is not an hsdm module: it does not export hsdm_plugin; see hsdm/plugin.hh");
+    const PluginInfo* info = entry();
+    if (info == nullptr) throw Error(path, "is not an hsdm module: hsdm_plugin returns nothing");
+    check_interface(path, info->abi);
+    if (info->process == nullptr) throw Error(path, "is not an hsdm module: its function is missing");
+    return info;
+}
+
+std::vector<fs::path> shared_libraries(const std::string& folder) {
+    std::vector<fs::path> files;
+    std::error_code error;
+    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+        if (std::error_code none; it->path().extension() == extension && it->is_regular_file(none))
+            files.push_back(it->path());
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+/// The next ':' that no backslash stands before; the end if there is none.
+std::size_t find_colon(std::string_view text, std::size_t from) {
+    for (; from < text.size() && text[from] != ':'; ++from)
+        if (text[from] == '\\' && from + 1 < text.size()) ++from;
+    return std::min(from, text.size());
+}
+
+/// `\:` -> `:`, `\\` -> `\`; a backslash before anything else stays.
+std::string unescaped(std::string_view text) {
+    std::string result;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool escape =
+            text[i] == '\\' && i + 1 < text.size() && (text[i + 1] == ':' || text[i + 1] == '\\');
+        result += text[escape ? ++i : i];
+    }
+    return result;
+}
+
+/// The name that a request begins with, and how far it goes: of a path to the last colon up to which it names
+/// a file, else to the first colon.
+std::pair<std::string, std::size_t> split_name(const std::string& text) {
+    std::error_code error;
+    if (text.find('/') != std::string::npos)
+        for (std::size_t end = text.size(); end != std::string::npos && end > 0;
+             end = text.rfind(':', end - 1))
+            if (std::string path = text.substr(0, end); fs::is_regular_file(path, error)) return {path, end};
+    const std::size_t end = find_colon(text, 0);
+    return {unescaped(text.substr(0, end)), end};
+}
+
+std::string not_found(const std::string& name, const std::vector<std::string>& folders) {
+    std::string message = "no module of this name; ";
+    std::string modules, places;
+    for (const std::string& folder : folders) {
+        places += (places.empty() ? "" : ", ") + folder;
+        for (const fs::path& file : shared_libraries(folder))
+            modules += (modules.empty() ? "" : ", ") + file.stem().string();
+    }
+    message += modules.empty() ? "there are none" : "there are " + modules;
+    message += places.empty() ? "" : " (looked in " + places + ")";
+    return name + ": " + message + "; HSDM_PLUGIN_PATH adds folders";
+}
+
+} // namespace
+
+Plugin::Plugin(const std::string& path) : path_(path), record_(inspect(path)), info_(load(path)) {}
+
+std::string Plugin::process(PolyMesh& mesh,
+                            const std::vector<std::pair<std::string, std::string>>& options) const {
+    std::vector<PluginOption> plain;
+    plain.reserve(options.size());
+    for (const auto& [key, value] : options) plain.push_back({key.c_str(), value.c_str()});
+    std::array<char, 1024> message{};
+    const int result = info_->process(mesh, plain.data(), plain.size(), message.data(), message.size());
+    message.back() = '\0';
+    if (result == 2) throw OptionError(name() + ": " + message.data());
+    if (result != 0) throw Error(name() + ": " + message.data());
+    return message.data();
+}
+
+std::vector<std::string> plugin_folders() {
+    std::vector<std::string> folders;
+    if (const char* given = ::secure_getenv("HSDM_PLUGIN_PATH"))
+        for (std::string_view rest = given; !rest.empty();) {
+            const std::size_t end = find_colon(rest, 0);
+            if (end > 0) folders.push_back(unescaped(rest.substr(0, end)));
+            rest.remove_prefix(std::min(end + 1, rest.size()));
+        }
+    folders.emplace_back(HSDM_PLUGIN_FOLDER);
+    return folders;
+}
+
+Plugin load_plugin(const std::string& name, const std::vector<std::string>& folders) {
+    if (name.find('/') != std::string::npos) return Plugin(name);
+    for (const std::string& folder : folders) {
+        const fs::path path = fs::path(folder) / (name + extension);
+        std::error_code error;
+        if (fs::exists(path, error)) return Plugin(path.string());
+    }
+    throw Error(not_found(name, folders));
+}
+
+std::vector<PluginListing> list_plugins(const std::vector<std::string>& folders) {
+    std::vector<PluginListing> listings;
+    std::set<std::string> seen;
+    for (const std::string& folder : folders) {
+        if (const std::string reason = distrust(folder); !reason.empty()) {
+            listings.push_back({folder, "", "", "", "nothing is loaded from here: " + reason});
+            continue;
+        }
+        for (const fs::path& file : shared_libraries(folder)) {
+            if (!seen.insert(file.filename()).second) continue;
+            PluginListing listing;
+            listing.path = file;
+            listing.name = file.stem();
+            try {
+                const PluginRecord record = inspect(listing.path);
+                listing.description = record.description;
+                listing.options = record.options;
+            } catch (const Error& error) {
+                listing.problem = error.what();
+            }
+            listings.push_back(std::move(listing));
+        }
+    }
+    return listings;
+}
+
+PluginRequest parse_plugin_request(const std::string& text) {
+    PluginRequest request;
+    std::size_t colon = 0;
+    std::tie(request.name, colon) = split_name(text);
+    if (request.name.empty()) throw OptionError("module " + text + ": has no name");
+    if (colon == text.size()) return request;
+    std::size_t begin = colon + 1;
+    while (begin <= text.size()) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        const std::string part = text.substr(begin, end - begin);
+        const std::size_t equals = part.find('=');
+        if (equals == 0 || equals == std::string::npos)
+            throw OptionError("module " + text + ": `" + part + "` must read key=value");
+        request.options.emplace_back(part.substr(0, equals), part.substr(equals + 1));
+        begin = end + 1;
+    }
+    return request;
+}
+
+} // namespace hsdm

@@ -1,0 +1,70 @@
+#pragma once
+// Finding, checking and running the processing modules of plugin.hh.
+
+#include "hsdm/mesh_types.hh"
+#include "hsdm/modules/plugin_record.hh"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace hsdm {
+
+struct PluginInfo;
+
+/// A module that was loaded. Modules stay loaded until the process ends: properties they add to a mesh are
+/// objects of their code.
+class Plugin {
+public:
+    /// Checks the shared library, then loads it. Throws Error `FILE: what, and what to do` if it is no
+    /// regular file, others than this user and root could have put it there, it is no module, or was built
+    /// for another interface, hsdm, compiler or OpenMesh, all before any of its code runs; and if it cannot
+    /// be loaded.
+    explicit Plugin(const std::string& path);
+
+    const std::string& path() const { return path_; }
+    const std::string& name() const { return record_.name; }
+    const std::string& description() const { return record_.description; } ///< one line
+    const std::string& options() const { return record_.options; } ///< one line: keys, units, defaults
+
+    /// Runs the module on the mesh; returns its one-line summary. Throws OptionError for an option the module
+    /// refuses, Error if it fails otherwise; the mesh may then be changed in part.
+    std::string process(PolyMesh& mesh,
+                        const std::vector<std::pair<std::string, std::string>>& options = {}) const;
+
+private:
+    std::string path_;
+    PluginRecord record_;
+    const PluginInfo* info_ = nullptr;
+};
+
+/// Where modules are looked for, in this order: the folders of the environment variable HSDM_PLUGIN_PATH
+/// (separated by ':', which as part of a name is written `\:`), then the one that hsdm was configured to be
+/// installed into. None is derived from where the program lies.
+std::vector<std::string> plugin_folders();
+
+/// The module NAME.so of the first folder that has one; a name with a '/' is a path. Throws Error; where
+/// nothing is found, it names the folders and the modules there are.
+Plugin load_plugin(const std::string& name, const std::vector<std::string>& folders = plugin_folders());
+
+/// What a folder offers, one entry per shared library; a folder that is not looked into is one with a
+/// problem.
+struct PluginListing {
+    std::string path, name, description, options;
+    std::string problem; ///< empty, or why the module cannot be used
+};
+
+/// All modules of the folders, by folder and name; of two with the same file name the first counts. Loads
+/// none, so that no code of theirs runs. Regular files only.
+std::vector<PluginListing> list_plugins(const std::vector<std::string>& folders = plugin_folders());
+
+/// `name` or `name:key=value,key=value`. A colon in the name is written `\:`; of a path it may stand as it
+/// is, if there is a file so far.
+struct PluginRequest {
+    std::string name;
+    std::vector<std::pair<std::string, std::string>> options;
+};
+/// Throws OptionError for an empty name or key and a part without '='.
+PluginRequest parse_plugin_request(const std::string& text);
+
+} // namespace hsdm

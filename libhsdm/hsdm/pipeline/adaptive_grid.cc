@@ -1,0 +1,67 @@
+#include "hsdm/pipeline/adaptive_grid.hh"
+
+#include "hsdm/errors.hh"
+#include "hsdm/pipeline/attributes.hh"
+#include "hsdm/reconstruct.hh"
+#include "hsdm/simplify/coarsen.hh"
+
+#include <cstdio>
+
+namespace hsdm {
+namespace {
+
+constexpr double default_error = 0.1; // voxels of the finest level
+
+double error_bound(const MethodInput& in) {
+    if (!in.options.max_error) return default_error * in.level.voxel_size;
+    const MaxError& asked = *in.options.max_error;
+    return asked.of_diagonal ? asked.value * in.octree.bounds.diagonal() : asked.value / in.frame.unit();
+}
+
+/// Of the fine vertices that the coarse ones stand for; levels are their own.
+std::vector<VertexProperty> properties_of(const PolygonMesh& fine, const AdaptiveMesh& coarse) {
+    std::vector<VertexProperty> result =
+        merge_attributes(fine.properties, coarse.vertex, coarse.mesh.vertex_count());
+    for (VertexProperty& property : result)
+        if (property.name == "hsdm_level") property.values.assign(coarse.level.begin(), coarse.level.end());
+    return result;
+}
+
+} // namespace
+
+bool wants_adaptive(const ReconstructOptions& options) {
+    return options.grid == Grid::adaptive || (options.grid == Grid::automatic && options.max_error);
+}
+
+PolygonMesh adaptive_grid(const MethodInput& in, std::span<const Vec3> points, const PolygonMesh& fine,
+                          const FacetCells* cells, Report& report) {
+    const double bound = error_bound(in);
+    AdaptiveMesh coarse = coarsen(fine, points, in.octree.extent, in.level.depth,
+                                  {.max_error = bound, .measure = in.options.measure}, cells);
+    report.grid.kind = "adaptive";
+    report.grid.leaves_per_level = coarse.leaves_per_level;
+    report.grid.balance_splits = coarse.balance_splits;
+    report.grid.merged = coarse.merged;
+    report.grid.max_error = bound;
+    report.grid.points_beyond = coarse.unreachable;
+    report.rejected["leaves_split_for_topology"] = coarse.topology_splits;
+    report.rejected["leaves_split_for_error"] = coarse.error_splits;
+    report.rejected["leaves_split_for_intersections"] = coarse.intersection_splits;
+    report.error.mesh_to_surface_max = coarse.to_fine.max;
+    report.error.mesh_to_surface_mean = coarse.to_fine.mean;
+    coarse.mesh.properties = properties_of(fine, coarse);
+    return std::move(coarse.mesh);
+}
+
+void check_error_kept(const Report& report, double unit) {
+    if (report.grid.max_error == 0 || report.grid.points_beyond > 0) return;
+    if (report.error.points_to_mesh_max <= report.grid.max_error) return;
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "max_error %.6g: not kept, a point is %.6g from the mesh; ask for a larger one, or for a "
+                  "uniform grid",
+                  report.grid.max_error * unit, report.error.points_to_mesh_max * unit);
+    throw Error(text);
+}
+
+} // namespace hsdm

@@ -1,0 +1,107 @@
+#include "hsdm/pipeline/extended_method.hh"
+
+#include "hsdm/contour/extended_facets.hh"
+#include "hsdm/contour/extended_graph.hh"
+#include "hsdm/contour/lonely_sets.hh"
+#include "hsdm/contour/sheet_features.hh"
+#include "hsdm/pipeline/attributes.hh"
+#include "hsdm/pipeline/phase_geometry.hh"
+#include "hsdm/quality/topology.hh"
+
+#include <algorithm>
+
+namespace hsdm {
+namespace {
+
+// auto: loops up to so wide are small against the sampling
+constexpr double widest_hole = 20;       // spacings of the points
+constexpr double widest_hole_voxels = 6; // where voxels are wide against the spacing
+
+/// keep closes nothing, auto the loops that are small against the sampling, close all.
+ExtendedOptions extended_options(const ReconstructOptions& options, double spacing_in_voxels) {
+    ExtendedOptions result;
+    result.holes.max_diameter = std::max(widest_hole * spacing_in_voxels, widest_hole_voxels);
+    result.holes.insist = true;
+    result.fill = options.holes != Holes::keep;
+    if (options.holes == Holes::close)
+        result.holes = {.max_edges = FillHolesOptions::no_limit, .max_diameter = Box::inf, .insist = true};
+    return result;
+}
+
+void note_dropped(const std::string& what, Discarded relative, const MethodInput& in, Report& report) {
+    relative.first += in.octree.origin;
+    note_dropped(what, relative, in.frame, report);
+}
+
+void note_counts(const ExtendedFacets& facets, Report& report) {
+    report.rejected["crossings_beyond_crease"] = facets.beyond_crease;
+    report.rejected["crossings_settled"] = facets.settled;
+    report.rejected["crossings_beyond_data"] = facets.trimmed;
+    report.rejected["crossings_at_tips"] = 2 * facets.tips;
+    report.rejected["vertices_clamped"] = facets.clamped;
+    report.rejected["corners_merged"] = facets.corners_merged;
+    report.rejected["edges_halved"] = facets.midpoints;
+    report.rejected["doublets_merged"] = facets.doublets;
+    report.rejected["facets_debris"] = facets.debris.count;
+    report.rejected["holes_closed"] = facets.holes.closed;
+    report.rejected["holes_refused"] = facets.holes.refused;
+    report.rejected["facets_degenerate"] = facets.manifold.degenerate;
+    report.rejected["facets_cancelled"] = facets.manifold.cancelled;
+    report.rejected["facets_duplicate"] = facets.manifold.duplicates;
+    report.rejected["edges_opened"] = facets.manifold.opened_edges;
+    report.rejected["intersections_removed"] = facets.intersections.before - facets.intersections.after;
+    report.rejected["intersections_left"] = facets.intersections.after;
+    report.rejected["vertices_split"] = facets.manifold.split_vertices;
+}
+
+/// Facets face where the points' normals point. If these point into a closed solid, the whole surface is
+/// turned.
+bool turn_solid_outward(PolygonMesh& mesh) {
+    if (signed_volume(mesh) >= 0 || !measure_connectivity(mesh).closed()) return false;
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f)
+        std::reverse(mesh.corners.begin() + mesh.first[f], mesh.corners.begin() + mesh.first[f + 1]);
+    return true;
+}
+
+} // namespace
+
+PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledge& known) {
+    const NormalSets sets = in.phases.run("sets", 0.2, report.seconds.graph, [&] {
+        NormalSets all = build_normal_sets(in.octree, in.level, {.merge_layers = in.options.merge_layers});
+        const RelationTest related({}, in.level.voxel_size);
+        const Discarded strays = drop_lonely_sets(in.level, related, all);
+        report.rejected["points_stray"] = strays.count;
+        note_dropped("points that no neighbour continues", strays, in, report);
+        return all;
+    });
+    report.grid.sets = sets.sets.size();
+    ExtendedFacets facets = in.phases.run("facets", 0.3, report.seconds.facets, [&] {
+        const double spacing = report.input.spacing / in.level.voxel_size;
+        return reconstruct_extended(in.octree, in.level, sets, extended_options(in.options, spacing));
+    });
+    note_counts(facets, report);
+    note_dropped("facets of splinters", facets.debris, in, report);
+    const bool turned = turn_solid_outward(facets.mesh);
+    report.rejected["normals_turned"] = turned ? in.octree.size() : 0;
+    if (in.options.classify) {
+        SheetFeatures features = in.phases.run("sheet features", 0.5, report.seconds.features, [&] {
+            known.links = link_facets(facets.mesh);
+            return sheet_features(in.octree, in.level, sets, facets.mesh, *known.links, facets.voxel,
+                                  in.options.crease_angle, turned);
+        });
+        report.rejected["edges_bent"] = features.smooth;
+        report.rejected["edges_doubtful"] = features.doubtful;
+        known.hints = std::move(features.hints);
+    }
+    known.cells = std::move(facets.cells);
+    facets.mesh.properties = average_attributes(in.cloud, in.octree, in.level, facets.voxel);
+    if (!in.options.debug_dir.empty()) {
+        PolygonMesh placed = facets.mesh;
+        for (Vec3& p : placed.positions) p += in.octree.origin;
+        write_phases(in.options.debug_dir, in.octree, in.level, extended_graph(facets.mesh, facets.voxel),
+                     placed, in.frame);
+    }
+    return std::move(facets.mesh);
+}
+
+} // namespace hsdm

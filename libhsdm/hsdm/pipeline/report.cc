@@ -1,0 +1,148 @@
+#include "hsdm/report.hh"
+
+#include "hsdm/io/json_text.hh"
+#include "hsdm/version.hh"
+
+namespace hsdm {
+namespace {
+
+template <class Value>
+void fill(JsonText& json, const std::map<std::string, Value>& values) {
+    json.begin_object();
+    for (const auto& [name, value] : values) json.member(name, value);
+    json.end();
+}
+
+void fill(JsonText& json, const Report::Input& input) {
+    json.begin_object();
+    json.member("file", input.file);
+    json.member("points", input.points);
+    json.member("dropped_nonfinite", input.dropped_nonfinite);
+    if (input.first_nonfinite) json.member("first_nonfinite", *input.first_nonfinite);
+    json.member("merged_duplicates", input.merged_duplicates);
+    json.member("has_normals", input.has_normals);
+    json.member("bbox_min", input.bbox.lo);
+    json.member("bbox_max", input.bbox.hi);
+    json.member("spacing", input.spacing);
+    json.end();
+}
+
+void fill(JsonText& json, const Report::Grid& grid) {
+    json.begin_object();
+    json.member("kind", grid.kind);
+    json.member("depth", grid.depth);
+    json.member("voxel_size", grid.voxel_size);
+    json.member("voxels", grid.voxels);
+    json.member("leaves_per_level", grid.leaves_per_level);
+    json.member("sets", grid.sets);
+    json.member("balance_splits", grid.balance_splits);
+    json.member("merged", grid.merged);
+    json.member("max_error", grid.max_error);
+    json.member("points_beyond", grid.points_beyond);
+    json.end();
+}
+
+void fill(JsonText& json, const Report::Mesh& mesh) {
+    json.begin_object();
+    json.member("vertices", mesh.vertices);
+    json.member("edges", mesh.edges);
+    json.member("faces", mesh.faces);
+    json.member("triangles", mesh.triangles);
+    json.member("quads", mesh.quads);
+    json.member("larger", mesh.larger);
+    json.member("components", mesh.components);
+    json.member("boundary_loops", mesh.boundary_loops);
+    json.member("boundary_edges", mesh.boundary_edges);
+    json.member("euler", mesh.euler);
+    json.member("genus", mesh.genus);
+    json.member("closed", mesh.closed);
+    json.end();
+}
+
+void fill(JsonText& json, const Report::Features& features) {
+    json.begin_object();
+    json.member("sharp_edges", features.sharp_edges);
+    json.member("smooth_vertices", features.smooth_vertices);
+    json.member("edge_vertices", features.edge_vertices);
+    json.member("corner_vertices", features.corner_vertices);
+    json.end();
+}
+
+void fill(JsonText& json, const Report::Error& error) {
+    json.begin_object();
+    json.member("points_to_mesh_max", error.points_to_mesh_max);
+    json.member("points_to_mesh_mean", error.points_to_mesh_mean);
+    json.member("points_to_mesh_rms", error.points_to_mesh_rms);
+    json.member("normalised_max", error.normalised_max);
+    json.member("mesh_to_surface_max", error.mesh_to_surface_max);
+    json.member("mesh_to_surface_mean", error.mesh_to_surface_mean);
+    json.end();
+}
+
+void fill(JsonText& json, const Report::Seconds& s) {
+    json.begin_object();
+    json.member("read", s.read);
+    json.member("normals", s.normals);
+    json.member("octree", s.octree);
+    json.member("graph", s.graph);
+    json.member("facets", s.facets);
+    json.member("mesh", s.mesh);
+    json.member("features", s.features);
+    json.member("error", s.error);
+    json.member("write", s.write);
+    json.member("total", s.total);
+    json.end();
+}
+
+void fill(JsonText& json, const std::vector<Report::Dropped>& dropped) {
+    json.begin_array();
+    for (const Report::Dropped& d : dropped) {
+        json.begin_object();
+        json.member("what", d.what);
+        json.member("count", d.count);
+        json.member("where", d.where);
+        json.end();
+    }
+    json.end();
+}
+
+} // namespace
+
+std::string to_json(const Report& report) {
+    JsonText json;
+    json.begin_object();
+    json.member("version", version);
+    json.key("options");
+    fill(json, report.options);
+    json.key("input");
+    fill(json, report.input);
+    if (!report.failure.empty()) {
+        json.key("grid");
+        json.begin_object();
+        json.member("depth", report.grid.depth);
+        json.end();
+        json.member("failure", report.failure);
+        json.end();
+        return std::move(json).take();
+    }
+    json.key("grid");
+    fill(json, report.grid);
+    json.key("mesh");
+    fill(json, report.mesh);
+    json.key("features");
+    fill(json, report.features);
+    json.key("error");
+    fill(json, report.error);
+    json.key("rejected");
+    fill(json, report.rejected);
+    json.key("dropped");
+    fill(json, report.dropped);
+    json.key("seconds");
+    fill(json, report.seconds);
+    json.member("peak_memory_bytes", report.peak_memory_bytes);
+    json.member("threads", report.threads);
+    json.end();
+    return std::move(json).take();
+}
+
+} // namespace hsdm

@@ -1,0 +1,103 @@
+#include "hsdm/simplify/belts.hh"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hsdm {
+namespace {
+
+constexpr double most_ratio = 0.35;       // of the spreads of normals where a belt begins
+constexpr double most_off = 0.08;         // a mean normal's cosine with the axis, from the belt's: 5 degrees
+constexpr int most_trims = 2;             // of a facet: bounds the work
+constexpr double most_off_trimmed = 0.03; // ... once the axis is known
+constexpr double most_deviation = 0.01;   // ... root mean square over the belt
+constexpr double cone_share = 0.3;        // of a cylinder's deviation that a cone's must not exceed
+constexpr std::size_t least_facets = 60;  // of a belt
+constexpr std::size_t first_refit = 40;   // facets, and again whenever there are twice as many
+
+Axis cylinder_axis(const NormalSum& normals) {
+    const Variation variation = normals.about_zero();
+    return {variation.direction[0], 0, variation.deviation[0]};
+}
+
+Axis cone_axis(const NormalSum& normals) {
+    const Variation variation = normals.about_mean();
+    const Vec3& direction = variation.direction[0];
+    return {direction, direction | normals.mean(), variation.deviation[0]};
+}
+
+/// A cone's only where a cylinder's will not do: of a narrow arc normals have one angle to many directions.
+Axis axis_of(const NormalSum& normals) {
+    const Axis cylinder = cylinder_axis(normals);
+    if (cylinder.deviation <= most_deviation) return cylinder;
+    const Axis cone = cone_axis(normals);
+    return cone.deviation < cone_share * cylinder.deviation ? cone : cylinder;
+}
+
+/// Lets go of what bends away at the margins, and fits the axis to the rest. Returns what it lets go of.
+std::vector<Index> trim(const FacetField& field, Belt& belt) {
+    NormalSum normals;
+    std::vector<Index> trimmed;
+    std::erase_if(belt.facets, [&](Index f) {
+        const double cosine = belt.axis.direction | field.mean_normal[f];
+        if (std::abs(cosine - belt.axis.cosine) > most_off_trimmed) {
+            trimmed.push_back(f);
+            return true;
+        }
+        normals.add(field.mean_normal[f], field.area[f].norm());
+        return false;
+    });
+    belt.axis = axis_of(normals);
+    return trimmed;
+}
+
+Belt grow(const FacetField& field, Index seed, const std::vector<Index>& taken,
+          std::vector<std::uint8_t>& seen) {
+    Belt belt{{seed}, cylinder_axis(field.around[seed]), field.convex[seed] != 0};
+    belt.axis.cosine = belt.axis.direction | field.mean_normal[seed];
+    seen[seed] = 1;
+    NormalSum normals;
+    std::size_t refit = first_refit;
+    for (std::size_t next = 0; next < belt.facets.size(); ++next) {
+        const Index f = belt.facets[next];
+        normals.add(field.mean_normal[f], field.area[f].norm());
+        if (next + 1 == refit) {
+            belt.axis = axis_of(normals);
+            refit *= 2;
+        }
+        field.for_beside(f, [&](Index g) {
+            if (taken[g] != no_index || seen[g] || (field.convex[g] != 0) != belt.convex) return;
+            const double cosine = belt.axis.direction | field.mean_normal[g];
+            if (std::abs(cosine - belt.axis.cosine) > most_off) return;
+            seen[g] = 1;
+            belt.facets.push_back(g);
+        });
+    }
+    belt.axis = axis_of(normals);
+    return belt;
+}
+
+} // namespace
+
+std::vector<Belt> find_belts(const FacetField& field, const std::vector<Index>& taken) {
+    std::vector<std::pair<double, Index>> seeds;
+    for (Index f = 0; f < field.size(); ++f)
+        if (taken[f] == no_index && field.next_spread[f] <= most_ratio * field.spread[f])
+            seeds.emplace_back(field.next_spread[f] / std::max(field.spread[f], 1e-12), f);
+    std::sort(seeds.begin(), seeds.end());
+    std::vector<Belt> belts;
+    std::vector<std::uint8_t> seen(field.size(), 0), trims(field.size(), 0);
+    for (const auto& [ratio, seed] : seeds) {
+        if (seen[seed]) continue;
+        Belt belt = grow(field, seed, taken, seen);
+        const std::vector<Index> trimmed = trim(field, belt);
+        if (belt.facets.size() < least_facets || belt.axis.deviation > most_deviation) continue;
+        belts.push_back(std::move(belt));
+        for (Index f : trimmed)
+            if (++trims[f] <= most_trims) seen[f] = 0; // for another belt
+    }
+    return belts;
+}
+
+} // namespace hsdm

@@ -1,0 +1,101 @@
+#include "hsdm/simplify/cell_tree.hh"
+
+#include "hsdm/core/chunks.hh"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace hsdm {
+namespace {
+constexpr std::size_t vertices_per_chunk = 4096;
+} // namespace
+
+MortonCode CellTree::code_at(const Vec3& position) const {
+    const double cells = static_cast<double>(1u << depth());
+    std::array<std::uint32_t, 3> c{};
+    for (unsigned k = 0; k < 3; ++k) {
+        // A plane that lies on the faces of cells, but for rounding, is all in the upper ones; on the cube's
+        // own upper faces it is inside.
+        const double at = position[k] / extent * cells + rounding;
+        const double cell = at >= cells && at < cells + 2 * rounding ? cells - 1 : std::floor(at);
+        // Moved by a whole cube, so that positions beside the cube have codes too.
+        c[k] = static_cast<std::uint32_t>(std::clamp(cell + cells, 0.0, 3 * cells - 1));
+    }
+    return morton_encode(c[0], c[1], c[2]);
+}
+
+Index CellTree::find(int level, MortonCode code) const {
+    const auto& codes = levels[static_cast<std::size_t>(level)].codes;
+    const auto at = std::lower_bound(codes.begin(), codes.end(), code);
+    return at != codes.end() && *at == code ? static_cast<Index>(at - codes.begin()) : no_index;
+}
+
+bool CellTree::is_leaf(int level, Index cell) const {
+    const CellLevel& here = levels[static_cast<std::size_t>(level)];
+    return here.whole[cell]
+           && (level == 0 || !levels[static_cast<std::size_t>(level) - 1].whole[here.parent[cell]]);
+}
+
+bool CellTree::split(int level, Index cell) {
+    if (level == depth() || !is_leaf(level, cell)) return false;
+    levels[static_cast<std::size_t>(level)].whole[cell] = 0;
+    return true;
+}
+
+CellTree build_cell_tree(std::span<const Vec3> positions, double extent, int depth) {
+    CellTree tree;
+    tree.extent = extent;
+    tree.levels.resize(static_cast<std::size_t>(depth) + 1);
+    std::vector<MortonCode> of_vertex(positions.size());
+    for_chunks(positions.size(), vertices_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t v = begin; v < end; ++v) of_vertex[v] = tree.code_at(positions[v]);
+    });
+    std::vector<MortonCode> codes = of_vertex;
+    tbb::parallel_sort(codes.begin(), codes.end());
+    for (std::size_t level = tree.levels.size(); level-- > 0;) {
+        codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
+        CellLevel& here = tree.levels[level];
+        here.codes = codes;
+        here.whole.assign(codes.size(), 1);
+        for (MortonCode& code : codes) code >>= 3;
+        if (level == 0) break;
+        here.parent.resize(codes.size());
+        for (std::size_t c = 1; c < codes.size(); ++c)
+            here.parent[c] = here.parent[c - 1] + (codes[c] != codes[c - 1]);
+    }
+    tree.of_vertex.resize(positions.size());
+    for_chunks(positions.size(), vertices_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t v = begin; v < end; ++v) tree.of_vertex[v] = tree.find(depth, of_vertex[v]);
+    });
+    return tree;
+}
+
+std::size_t balance(CellTree& tree) {
+    std::size_t splits = 0;
+    for (int level = tree.depth() - 1; level > 0; --level) {
+        const CellLevel& here = tree.levels[static_cast<std::size_t>(level)];
+        CellLevel& above = tree.levels[static_cast<std::size_t>(level) - 1];
+        for (std::size_t c = 0; c < here.codes.size(); ++c) {
+            if (here.whole[c]) continue;
+            const VoxelCoord at = morton_decode(here.codes[c]);
+            for (int k = 0; k < 27; ++k) {
+                const std::array<int, 3> step{k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
+                // Two steps along an axis lead to the same parent: the second finds nothing new.
+                const auto repeats = [&](std::size_t axis) { return step[axis] == (at[axis] % 2 == 0); };
+                if (repeats(0) || repeats(1) || repeats(2)) continue;
+                const VoxelCoord n{at[0] + step[0], at[1] + step[1], at[2] + step[2]};
+                if (n[0] < 0 || n[1] < 0 || n[2] < 0) continue;
+                const Index cell = tree.find(level - 1, morton_encode(n) >> 3);
+                if (cell == no_index || !above.whole[cell]) continue;
+                above.whole[cell] = 0;
+                splits += k != 13; // the cell's own parent was subdivided with it
+            }
+        }
+    }
+    return splits;
+}
+
+} // namespace hsdm

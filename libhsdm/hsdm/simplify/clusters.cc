@@ -1,0 +1,284 @@
+#include "hsdm/simplify/clusters.hh"
+
+#include "hsdm/core/chunks.hh"
+#include "hsdm/core/disjoint_sets.hh"
+#include "hsdm/core/groups.hh"
+#include "hsdm/simplify/border_vertices.hh"
+#include "hsdm/simplify/parts.hh"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <atomic>
+#include <numeric>
+#include <span>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t clusters_per_chunk = 1024, edges_per_chunk = 8192, facets_per_chunk = 8192;
+
+/// What of a list is to be kept, in its order; keep() is asked once of each, from many threads.
+template <class T, class Keep>
+std::vector<T> kept(const std::vector<T>& list, std::size_t per_chunk, const Keep& keep) {
+    std::vector<std::vector<T>> parts(chunk_count(list.size(), per_chunk));
+    for_chunks(list.size(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        for (std::size_t i = begin; i < end; ++i)
+            if (keep(list[i])) parts[chunk].push_back(list[i]);
+    });
+    return joined(parts);
+}
+
+/// Builds each level of clusters from the one below it. An edge or facet is looked at on the levels where it
+/// joins different clusters, so the lists shrink by a factor of two and more per level.
+class Gathering {
+    using Edge = std::pair<Index, Index>;
+    using Edges = std::vector<Edge>;
+
+public:
+    Gathering(const PolygonMesh& mesh, CellTree& tree, std::span<const Quadric> planes, double tolerance)
+        : mesh_(mesh),
+          tree_(tree),
+          tolerance_(tolerance),
+          current_(mesh.vertex_count()),
+          planes_(planes),
+          euler_(mesh.vertex_count(), 1) {
+        for (Index v = 0; v < current_.size(); ++v) current_[v] = v;
+        facets_.resize(mesh.facet_count());
+        std::iota(facets_.begin(), facets_.end(), Index{0});
+        gather_edges();
+    }
+
+    std::vector<ClusterLevel> run() {
+        std::vector<ClusterLevel> levels(tree_.levels.size());
+        levels.back() = {tree_.of_vertex, {}, mesh_.positions};
+        for (std::size_t level = levels.size() - 1; level-- > 0;)
+            levels[level] = gather(levels[level + 1], level);
+        return levels;
+    }
+
+private:
+    /// Two facets have an edge one way each, unless it is at the border.
+    void gather_edges() {
+        const std::vector<std::uint8_t> border = border_vertices(mesh_);
+        std::vector<Edges> parts(chunk_count(mesh_.facet_count(), facets_per_chunk)), at_border(parts.size());
+        for_chunks(mesh_.facet_count(), facets_per_chunk,
+                   [&](std::size_t f, std::size_t end, std::size_t chunk) {
+                       for (; f < end; ++f) {
+                           const auto ring = mesh_.facet(f);
+                           Index a = ring.back();
+                           for (const Index b : ring) {
+                               if (border[a] && border[b])
+                                   at_border[chunk].emplace_back(std::minmax(a, b));
+                               else if (a < b)
+                                   parts[chunk].emplace_back(a, b);
+                               a = b;
+                           }
+                       }
+                   });
+        edges_ = joined(parts);
+        Edges beside = joined(at_border); // perhaps there
+        std::sort(beside.begin(), beside.end());
+        edges_.insert(edges_.end(), beside.begin(), std::unique(beside.begin(), beside.end()));
+    }
+
+    /// Cells whose children are all whole.
+    std::vector<std::uint8_t> eligible_cells(std::size_t level) const {
+        const CellLevel& below = tree_.levels[level + 1];
+        std::vector<std::uint8_t> eligible(tree_.levels[level].codes.size(), 1);
+        for (std::size_t c = 0; c < below.codes.size(); ++c)
+            if (!below.whole[c]) eligible[below.parent[c]] = 0;
+        return eligible;
+    }
+
+    ClusterLevel gather(ClusterLevel& below, std::size_t level) {
+        const std::vector<std::uint8_t> eligible = eligible_cells(level);
+        const auto& parent_cell = tree_.levels[level + 1].parent;
+        const auto cell_of = [&](Index cluster) { return parent_cell[below.cell[cluster]]; };
+        DisjointSets joined(below.size());
+        for_chunks(edges_.size(), edges_per_chunk, [&](std::size_t e, std::size_t end, std::size_t) {
+            for (; e < end; ++e) {
+                const Index i = current_[edges_[e].first], j = current_[edges_[e].second];
+                if (i != no_index && j != no_index && cell_of(i) == cell_of(j)) joined.join(i, j);
+            }
+        });
+        const std::vector<Index> part = divide(joined, below, eligible, level);
+        ClusterLevel here;
+        below.parent.assign(below.size(), no_index);
+        for (Index i = 0; i < below.size(); ++i) {
+            if (!eligible[cell_of(i)]) continue;
+            if (part[i] == i) {
+                below.parent[i] = static_cast<Index>(here.cell.size());
+                here.cell.push_back(cell_of(i));
+            } else {
+                below.parent[i] = below.parent[part[i]];
+            }
+        }
+        here.positions.resize(here.cell.size());
+        rise(below, here.cell.size());
+        decide(here, eligible, level);
+        return here;
+    }
+
+    /// Per cluster below, the least one that goes the same way: all that the surface connects in the cell,
+    /// or, where their planes miss each other, those of the same planes.
+    std::vector<Index> divide(DisjointSets& joined, const ClusterLevel& below,
+                              const std::vector<std::uint8_t>& eligible, std::size_t level) {
+        const auto& parent_cell = tree_.levels[level + 1].parent;
+        std::vector<Index> part(below.size());
+        for_chunks(part.size(), clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i) part[i] = joined.find(static_cast<Index>(i));
+        });
+        const Members members(part, part.size());
+        std::vector<std::uint8_t> missed(below.size(), 0);
+        for_chunks(below.size(), clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const Index cell = parent_cell[below.cell[i]];
+                if (part[i] != i || !eligible[cell]) continue;
+                const Quadric planes = sum_of(members.of(i));
+                missed[i] = planes.rms(place_in(planes, box_of(cell, level))) > tolerance_;
+            }
+        });
+        divide_missed(missed, members, below, level, part);
+        return part;
+    }
+
+    void divide_missed(const std::vector<std::uint8_t>& missed, const Members& members,
+                       const ClusterLevel& below, std::size_t level, std::vector<Index>& part) {
+        std::vector<std::array<Index, 3>> sides; // piece, and two of its members that touch
+        const auto is_inside = [&](const Edge& edge) {
+            const Index i = current_[edge.first], j = current_[edge.second];
+            return i != no_index && j != no_index && i != j && part[i] == part[j] && missed[part[i]];
+        };
+        for (const Edge& edge : kept(edges_, edges_per_chunk, is_inside)) {
+            const Index i = current_[edge.first], j = current_[edge.second];
+            sides.push_back({part[i], std::min(i, j), std::max(i, j)});
+        }
+        tbb::parallel_sort(sides.begin(), sides.end());
+        sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
+        std::vector<std::pair<Index, std::size_t>> pieces; // and where the sides of each begin
+        std::size_t s = 0;
+        for (Index piece = 0; piece < missed.size(); ++piece) {
+            if (!missed[piece]) continue;
+            while (s < sides.size() && sides[s][0] < piece) ++s;
+            pieces.emplace_back(piece, s);
+        }
+        const auto& parent_cell = tree_.levels[level + 1].parent;
+        for_chunks(pieces.size(), 64, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t p = begin; p < end; ++p) {
+                const Index piece = pieces[p].first;
+                divide_piece(members.of(piece), std::span(sides).subspan(pieces[p].second),
+                             box_of(parent_cell[below.cell[piece]], level), part);
+            }
+        });
+    }
+
+    /// The sides begin with the piece's own.
+    void divide_piece(std::span<const Index> own, std::span<const std::array<Index, 3>> sides, const Box& box,
+                      std::vector<Index>& part) const {
+        const Index piece = own.front(); // the least stands for it
+        std::vector<Quadric> planes;
+        for (Index member : own) planes.push_back(planes_[member]);
+        const auto local = [&](Index i) {
+            return static_cast<Index>(std::lower_bound(own.begin(), own.end(), i) - own.begin());
+        };
+        std::vector<std::pair<Index, Index>> adjacent;
+        for (const auto& [of, i, j] : sides) {
+            if (of != piece) break;
+            adjacent.emplace_back(local(i), local(j));
+        }
+        const std::vector<Index> parts = divide_by_planes(planes, adjacent, box, tolerance_);
+        for (std::size_t k = 0; k < parts.size(); ++k) part[own[k]] = own[parts[k]];
+    }
+
+    /// Sums up what the clusters below carry, and lets go of edges and facets that lie in one cluster or can
+    /// no more do so.
+    void rise(const ClusterLevel& below, std::size_t count) {
+        const Members members(below.parent, count);
+        std::vector<Quadric> sums(count);
+        std::vector<int> euler(count, 0);
+        for_chunks(count, clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i) {
+                sums[i] = sum_of(members.of(i));
+                for (Index member : members.of(i)) euler[i] += euler_[member];
+            }
+        });
+        const auto change = [&](Index cluster, int by) {
+            std::atomic_ref(euler[cluster]).fetch_add(by, std::memory_order_relaxed);
+        };
+        for_chunks(current_.size(), clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t v = begin; v < end; ++v)
+                if (current_[v] != no_index) current_[v] = below.parent[current_[v]];
+        });
+        edges_ = kept(edges_, edges_per_chunk, [&](const Edge& edge) {
+            const Index i = current_[edge.first], j = current_[edge.second];
+            if (i != no_index && i == j) change(i, -1);
+            return i != no_index && j != no_index && i != j;
+        });
+        facets_ = kept(facets_, facets_per_chunk, [&](Index f) {
+            const auto ring = mesh_.facet(f);
+            const Index first = current_[ring[0]];
+            bool one = true, any_lost = false;
+            for (Index v : ring) {
+                one = one && current_[v] == first;
+                any_lost = any_lost || current_[v] == no_index;
+            }
+            if (one && !any_lost) change(first, 1);
+            return !one && !any_lost;
+        });
+        sums_ = std::move(sums);
+        planes_ = sums_;
+        euler_ = std::move(euler);
+    }
+
+    Quadric sum_of(std::span<const Index> members) const {
+        Quadric sum;
+        for (Index member : members) sum += planes_[member];
+        return sum;
+    }
+
+    void decide(ClusterLevel& here, const std::vector<std::uint8_t>& eligible, std::size_t level) {
+        CellLevel& cells = tree_.levels[level];
+        std::vector<std::uint8_t> fits(here.size());
+        for_chunks(here.size(), clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t i = begin; i < end; ++i) {
+                here.positions[i] = place_in(planes_[i], box_of(here.cell[i], level));
+                fits[i] = euler_[i] == 1 && planes_[i].rms(here.positions[i]) <= tolerance_;
+            }
+        });
+        cells.whole = eligible;
+        for (std::size_t i = 0; i < here.size(); ++i)
+            if (!fits[i]) cells.whole[here.cell[i]] = 0;
+    }
+
+    Box box_of(Index cell, std::size_t level) const {
+        const double size = tree_.extent / static_cast<double>(1u << level);
+        const double slack = 2 * CellTree::rounding * tree_.extent / static_cast<double>(1u << tree_.depth());
+        const VoxelCoord c = morton_decode(tree_.levels[level].codes[cell]);
+        Box box;
+        for (unsigned k = 0; k < 3; ++k) {
+            box.lo[k] = c[k] * size - tree_.extent - slack; // codes are moved by a cube
+            box.hi[k] = c[k] * size - tree_.extent + size + slack;
+        }
+        return box;
+    }
+
+    const PolygonMesh& mesh_;
+    CellTree& tree_;
+    double tolerance_;
+    std::vector<Index> current_; // per vertex, its cluster of the level reached
+    Edges edges_;
+    std::vector<Index> facets_;
+    std::span<const Quadric> planes_; // per cluster of the level reached
+    std::vector<Quadric> sums_;       // ... above the deepest level
+    std::vector<int> euler_;          // vertices - edges + facets of the surface inside each cluster
+};
+
+} // namespace
+
+std::vector<ClusterLevel> build_clusters(const PolygonMesh& mesh, CellTree& tree,
+                                         std::span<const Quadric> planes, double tolerance) {
+    return Gathering(mesh, tree, planes, tolerance).run();
+}
+
+} // namespace hsdm

@@ -1,0 +1,146 @@
+#include "hsdm/simplify/facet_field.hh"
+
+#include "hsdm/core/chunks.hh"
+#include "hsdm/core/groups.hh"
+#include "hsdm/mesh/area_vector.hh"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+constexpr int most_sides_away = 3;
+constexpr double smooth_cosine = 0.9; // of normals of neighbours: 26 degrees
+constexpr std::size_t facets_per_chunk = 2048;
+
+template <class Act>
+void for_facets(std::size_t count, const Act& act) {
+    for_chunks(count, facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (auto f = static_cast<Index>(begin); f < end; ++f) act(f);
+    });
+}
+
+void measure_facets(const PolygonMesh& mesh, FacetField& field) {
+    field.area.resize(mesh.facet_count());
+    field.centre.resize(field.size());
+    field.normal.resize(field.size());
+    for_facets(field.size(), [&](Index f) {
+        const auto ring = mesh.facet(f);
+        field.area[f] = area_vector(mesh, ring);
+        field.normal[f] = unit(field.area[f]);
+        Vec3 sum(0, 0, 0);
+        for (Index v : ring) sum += mesh.positions[v];
+        field.centre[f] = sum / static_cast<double>(ring.size());
+    });
+}
+
+/// Sides are found among those that start where they end.
+void link_facets(const PolygonMesh& mesh, FacetField& field) {
+    std::vector<Index> facet_of(mesh.corners.size());
+    for_facets(field.size(), [&](Index f) {
+        std::fill(facet_of.begin() + mesh.first[f], facet_of.begin() + mesh.first[f + 1], f);
+    });
+    const auto end_of = [&](Index side) {
+        const Index next = side + 1;
+        return mesh.corners[next == mesh.first[facet_of[side] + 1] ? mesh.first[facet_of[side]] : next];
+    };
+    const Members sides_from(mesh.corners, mesh.vertex_count());
+    field.beside.assign(mesh.corners.size(), no_index);
+    for_facets(field.size(), [&](Index f) {
+        for (Index side = mesh.first[f]; side < mesh.first[f + 1]; ++side)
+            for (const Index twin : sides_from.of(end_of(side)))
+                if (end_of(twin) == mesh.corners[side]
+                    && (field.normal[f] | field.normal[facet_of[twin]]) > smooth_cosine)
+                    field.beside[side] = facet_of[twin];
+    });
+}
+
+void gather_normals(FacetField& field) {
+    std::vector<double> bend(field.size(), 0), wider_bend(field.size());
+    std::vector<NormalSum> wider(field.size());
+    field.around.resize(field.size());
+    for_facets(field.size(), [&](Index f) {
+        field.around[f].add(field.normal[f], field.area[f].norm());
+        field.for_beside(f, [&](Index g) {
+            bend[f] += (field.normal[g] - field.normal[f]) | (field.centre[g] - field.centre[f]);
+        });
+    });
+    for (int away = 0; away < most_sides_away; ++away) {
+        for_facets(field.size(), [&](Index f) {
+            wider[f] = field.around[f];
+            wider_bend[f] = bend[f];
+            field.for_beside(f, [&](Index g) {
+                wider[f] += field.around[g];
+                wider_bend[f] += bend[g];
+            });
+        });
+        field.around.swap(wider);
+        bend.swap(wider_bend);
+    }
+    field.convex.resize(field.size());
+    for_facets(field.size(), [&](Index f) { field.convex[f] = bend[f] > 0; });
+}
+
+void measure_bend(FacetField& field) {
+    field.spread.resize(field.size());
+    field.next_spread.resize(field.size());
+    field.mean_normal.resize(field.size());
+    for_facets(field.size(), [&](Index f) {
+        const std::array<double, 3> deviation = field.around[f].deviation();
+        field.spread[f] = deviation[2];
+        field.next_spread[f] = deviation[1];
+        field.mean_normal[f] = unit(field.around[f].mean());
+    });
+}
+
+} // namespace
+
+void NormalSum::add(const Vec3& normal, double weight) {
+    sum_ += normal * weight;
+    std::size_t k = 0;
+    for (unsigned i = 0; i < 3; ++i)
+        for (unsigned j = i; j < 3; ++j) squares_[k++] += weight * normal[i] * normal[j];
+    weight_ += weight;
+}
+
+NormalSum& NormalSum::operator+=(const NormalSum& other) {
+    sum_ += other.sum_;
+    for (std::size_t k = 0; k < 6; ++k) squares_[k] += other.squares_[k];
+    weight_ += other.weight_;
+    return *this;
+}
+
+Variation NormalSum::about(const Vec3& centre, bool with_directions) const {
+    Variation variation{{0, 0, 0}, {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}};
+    if (!(weight_ > 0)) return variation;
+    const Eigen::Vector3d c(centre[0], centre[1], centre[2]);
+    Eigen::Matrix3d m;
+    m << squares_[0], squares_[1], squares_[2], squares_[1], squares_[3], squares_[4], squares_[2],
+        squares_[4], squares_[5];
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
+    eigen.computeDirect(m / weight_ - c * c.transpose(),
+                        with_directions ? Eigen::ComputeEigenvectors : Eigen::EigenvaluesOnly);
+    for (int k = 0; k < 3; ++k) {
+        const auto i = static_cast<std::size_t>(k);
+        variation.deviation[i] = std::sqrt(std::max(0.0, eigen.eigenvalues()[k]));
+        if (!with_directions) continue;
+        const Eigen::Vector3d direction = eigen.eigenvectors().col(k);
+        variation.direction[i] = {direction[0], direction[1], direction[2]};
+    }
+    return variation;
+}
+
+FacetField facet_field(const PolygonMesh& mesh) {
+    FacetField field;
+    field.first = mesh.first;
+    measure_facets(mesh, field);
+    link_facets(mesh, field);
+    gather_normals(field);
+    measure_bend(field);
+    return field;
+}
+
+} // namespace hsdm

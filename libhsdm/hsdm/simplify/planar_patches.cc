@@ -1,0 +1,212 @@
+#include "hsdm/simplify/planar_patches.hh"
+
+#include "hsdm/core/chunks.hh"
+#include "hsdm/mesh/area_vector.hh"
+#include "hsdm/simplify/belts.hh"
+#include "hsdm/simplify/facet_field.hh"
+#include "hsdm/simplify/strips.hh"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+
+namespace hsdm {
+namespace {
+
+constexpr double flat_spread = 0.03;   // of normals round a facet of flat ground, radians
+constexpr double core_share = 0.25;    // of the tolerance, for the core of flat ground
+constexpr double along_cosine = 0.9;   // of a facet's normal with its patch's
+constexpr std::size_t least_flat = 30; // facets of flat ground
+constexpr int released_sides = 3;      // away from a facet without a patch
+constexpr double most_height = 1.5;    // in tolerances: of a strip's facet
+constexpr Index least_strip = 8;       // facets
+constexpr double stale = 1.3;          // by which a height may have grown while the facet waited
+constexpr double stale_height = 0.1;   // of the core's tolerance: less than that does not count
+constexpr std::size_t vertices_per_chunk = 1024;
+
+/// A plane through facets, changed by each.
+class GrowingPlane {
+public:
+    void add(const Vec3& area, const Vec3& centre) {
+        const double weight = area.norm();
+        area_ += area;
+        moment_ += centre * weight;
+        weight_ += weight;
+        plane_.normal = unit(area_);
+        plane_.offset = weight_ > 0 ? (plane_.normal | moment_) / weight_ : 0;
+    }
+    const Plane& plane() const { return plane_; }
+
+private:
+    Vec3 area_{0, 0, 0}, moment_{0, 0, 0};
+    double weight_ = 0;
+    Plane plane_;
+};
+
+class Patching {
+public:
+    Patching(const PolygonMesh& mesh, double tolerance)
+        : field_(facet_field(mesh)), tolerance_(tolerance), margin_(mesh.facet_count(), 0) {
+        patches_.patch.assign(mesh.facet_count(), no_index);
+    }
+
+    PlanarPatches run() {
+        find_flat_ground();
+        for (const Belt& belt : find_belts(field_, patches_.patch)) add_strips(belt);
+        release_margins();
+        return std::move(patches_);
+    }
+
+private:
+    /// The flattest first.
+    void find_flat_ground() {
+        std::vector<std::pair<double, Index>> seeds;
+        for (Index f = 0; f < field_.size(); ++f)
+            if (field_.spread[f] <= flat_spread) seeds.emplace_back(field_.spread[f], f);
+        std::sort(seeds.begin(), seeds.end());
+        std::vector<std::uint8_t> seen(field_.size(), 0); // in a core that was not flat
+        for (const auto& [spread, seed] : seeds) {
+            if (patches_.patch[seed] != no_index || seen[seed]) continue;
+            std::vector<Index> facets;
+            const Plane plane = grow_core(seed, facets);
+            const std::size_t core = facets.size();
+            if (core >= least_flat && add_margin(facets, plane)) {
+                patches_.planes.push_back(plane);
+                continue;
+            }
+            for (std::size_t i = 0; i < facets.size(); ++i) {
+                patches_.patch[facets[i]] = no_index;
+                if (i < core)
+                    seen[facets[i]] = 1;
+                else
+                    margin_[facets[i]] = 0;
+            }
+        }
+    }
+
+    /// A facet that waits for a plane, the nearest first.
+    struct Waiting {
+        double height;
+        Index facet;
+        bool operator<(const Waiting& other) const {
+            return height != other.height ? height > other.height : facet > other.facet;
+        }
+    };
+
+    /// Of facets in flat surroundings that face as the plane does, so that what bends does not tilt it.
+    Plane grow_core(Index seed, std::vector<Index>& facets) {
+        GrowingPlane growing;
+        std::priority_queue<Waiting> waiting;
+        waiting.push({0, seed});
+        while (!waiting.empty()) {
+            const auto [before, f] = waiting.top();
+            waiting.pop();
+            if (patches_.patch[f] != no_index) continue;
+            const double height = f == seed ? 0 : std::abs(growing.plane().height(field_.centre[f]));
+            if (height > core_share * tolerance_) continue;
+            if (height > stale * before + stale_height * core_share * tolerance_) {
+                waiting.push({height, f});
+                continue;
+            }
+            patches_.patch[f] = static_cast<Index>(patches_.planes.size());
+            facets.push_back(f);
+            growing.add(field_.area[f], field_.centre[f]);
+            field_.for_beside(f, [&](Index g) {
+                if (patches_.patch[g] == no_index && field_.spread[g] <= flat_spread
+                    && (field_.mean_normal[g] - growing.plane().normal).norm() <= flat_spread)
+                    waiting.push({std::abs(growing.plane().height(field_.centre[g])), g});
+            });
+        }
+        return growing.plane();
+    }
+
+    /// Adds to a core what bends away, as far as the plane does for it. False if that comes to more than half
+    /// of the core's facets: a part of something round, which gains three quarters at least where it may be
+    /// four times as far off, as the distance from a tangent goes with the square of the way along it.
+    bool add_margin(std::vector<Index>& facets, const Plane& plane) {
+        const std::size_t most = facets.size() + facets.size() / 2;
+        for (std::size_t next = 0; next < facets.size() && facets.size() <= most; ++next)
+            field_.for_beside(facets[next], [&](Index g) {
+                if (patches_.patch[g] != no_index || (field_.normal[g] | plane.normal) <= along_cosine
+                    || std::abs(plane.height(field_.centre[g])) > tolerance_)
+                    return;
+                patches_.patch[g] = static_cast<Index>(patches_.planes.size());
+                margin_[g] = 1;
+                facets.push_back(g);
+            });
+        return facets.size() <= most;
+    }
+
+    void add_strips(const Belt& belt) {
+        const std::optional<Strips> strips = cut_to_strips(field_, belt, tolerance_);
+        if (!strips) return;
+        std::vector<Index> counts(strips->planes.size(), 0);
+        for (Index k : strips->of) ++counts[k];
+        for (std::size_t i = 0; i < belt.facets.size(); ++i) {
+            const Index f = belt.facets[i], k = strips->of[i];
+            if (counts[k] >= least_strip
+                && std::abs(strips->planes[k].height(field_.centre[f])) < most_height * tolerance_)
+                patches_.patch[f] = static_cast<Index>(patches_.planes.size()) + k;
+        }
+        patches_.planes.insert(patches_.planes.end(), strips->planes.begin(), strips->planes.end());
+    }
+
+    /// Close beside what has no patch flat ground ends where it is flat: vertices there need freedom.
+    void release_margins() {
+        std::vector<Index> released;
+        for (Index f = 0; f < field_.size(); ++f)
+            if (patches_.patch[f] == no_index) released.push_back(f);
+        for (int away = 0; away < released_sides; ++away) {
+            std::vector<Index> next;
+            for (Index f : released)
+                field_.for_beside(f, [&](Index g) {
+                    if (!margin_[g] || patches_.patch[g] == no_index) return;
+                    patches_.patch[g] = no_index;
+                    next.push_back(g);
+                });
+            released.swap(next);
+        }
+    }
+
+    FacetField field_;
+    double tolerance_;
+    PlanarPatches patches_;
+    std::vector<std::uint8_t>
+        margin_; // per facet, is it on flat ground though its surroundings are not flat?
+};
+
+} // namespace
+
+PlanarPatches find_planar_patches(const PolygonMesh& mesh, double tolerance) {
+    return Patching(mesh, tolerance).run();
+}
+
+std::vector<Quadric> vertex_planes(const PolygonMesh& mesh) {
+    const PlanarPatches none{std::vector<Index>(mesh.facet_count(), no_index), {}};
+    return vertex_planes(mesh, none, 0);
+}
+
+std::vector<Quadric> vertex_planes(const PolygonMesh& mesh, const PlanarPatches& patches, double tolerance) {
+    std::vector<Quadric> planes(mesh.vertex_count());
+    for (std::size_t v = 0; v < planes.size(); ++v) planes[v].add_point(mesh.positions[v]);
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+        const auto ring = mesh.facet(f);
+        const Vec3 area = area_vector(mesh, ring);
+        const double length = area.norm(), share = length / static_cast<double>(ring.size());
+        if (!(length > 0)) continue;
+        if (const Index p = patches.patch[f]; p != no_index) {
+            for (Index v : ring) planes[v].add_shared(patches.planes[p], share);
+            continue;
+        }
+        Vec3 centre(0, 0, 0);
+        for (Index v : ring) centre += mesh.positions[v];
+        centre /= static_cast<double>(ring.size());
+        for (Index v : ring) planes[v].add_plane(area / length, centre, share);
+    }
+    for_chunks(planes.size(), vertices_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t v = begin; v < end; ++v) planes[v].drop_shared(mesh.positions[v], tolerance);
+    });
+    return planes;
+}
+
+} // namespace hsdm

@@ -1,0 +1,92 @@
+#include "hsdm/spatial/facet_cells.hh"
+
+#include "hsdm/core/radix_sort.hh"
+#include "hsdm/point_cloud.hh"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t facets_per_chunk = 4096, entries_per_chunk = 16384;
+constexpr double most_cells = 16; // per facet in the mean; four or so where facets span the voxels of a grid
+constexpr std::size_t most_facets = 64; // per cell, as well
+
+CellRange range_of(const FacetCells& cells, const PolygonMesh& mesh, std::size_t facet) {
+    const Box box = box_of(mesh, facet);
+    return {cells.cell_of(cells.place(box.lo)), cells.cell_of(cells.place(box.hi))};
+}
+
+} // namespace
+
+FacetCells::FacetCells(const PolygonMesh& mesh, double size) : size_(size), per_size_(1 / size) {
+    if (mesh.facet_count() == 0 || !fit(bounds_of(mesh.positions))) return;
+    const std::vector<std::size_t> offset = count(mesh);
+    if (offset.empty()) return;
+    std::vector<CodeIndex> entries(offset.back());
+    for_chunks(mesh.facet_count(), facets_per_chunk,
+               [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+                   std::size_t at = offset[chunk];
+                   for (std::size_t f = begin; f < end; ++f)
+                       range_of(*this, mesh, f).for_each([&](const VoxelCoord& c) {
+                           entries[at++] = {morton_encode(c), static_cast<Index>(f)};
+                       });
+               });
+    const int bits = static_cast<int>(std::bit_width(static_cast<std::uint32_t>(std::ranges::max(last_))));
+    radix_sort(entries, 3 * bits);
+    group(entries);
+    usable_ = facet_.size() <= most_facets * this->size();
+}
+
+/// Leaves an empty cell on every side, where whatever lies outside goes.
+bool FacetCells::fit(const Box& box) {
+    if (!(size_ > 0)) return false;
+    constexpr double most = (1 << morton_levels) - 1;
+    for (unsigned k = 0; k < 3; ++k) {
+        const double first = std::floor(box.lo[k] * per_size_) - 1;
+        origin_[k] = first * size_;
+        last_[k] = std::floor(box.hi[k] * per_size_) - first + 1;
+        if (!(std::abs(first) < most && last_[k] <= most)) return false;
+    }
+    return true;
+}
+
+/// Where the entries of each chunk of facets begin, and where they end; nothing if they are too many.
+std::vector<std::size_t> FacetCells::count(const PolygonMesh& mesh) const {
+    const std::size_t facets = mesh.facet_count(), chunks = chunk_count(facets, facets_per_chunk);
+    std::vector<double> counts(chunks, 0.0);
+    for_chunks(facets, facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        for (std::size_t f = begin; f < end; ++f) counts[chunk] += range_of(*this, mesh, f).count();
+    });
+    const double total = std::accumulate(counts.begin(), counts.end(), 0.0);
+    if (total > std::min<double>(most_cells * static_cast<double>(facets), no_index)) return {};
+    std::vector<std::size_t> offset(chunks + 1, 0);
+    for (std::size_t c = 0; c < chunks; ++c) offset[c + 1] = offset[c] + static_cast<std::size_t>(counts[c]);
+    return offset;
+}
+
+void FacetCells::group(const std::vector<CodeIndex>& entries) {
+    facet_.resize(entries.size());
+    std::vector<std::vector<Index>> firsts(chunk_count(entries.size(), entries_per_chunk));
+    for_chunks(entries.size(), entries_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        for (std::size_t i = begin; i < end; ++i) {
+            facet_[i] = entries[i].index;
+            if (i == 0 || entries[i].code != entries[i - 1].code)
+                firsts[chunk].push_back(static_cast<Index>(i));
+        }
+    });
+    first_ = joined(firsts);
+    std::vector<MortonCode> codes(first_.size());
+    for (std::size_t c = 0; c < codes.size(); ++c) codes[c] = entries[first_[c]].code;
+    index_.build(codes);
+    first_.push_back(static_cast<Index>(entries.size()));
+}
+
+Index FacetCells::find(const VoxelCoord& c) const {
+    return index_.find(morton_encode(c));
+}
+
+} // namespace hsdm

@@ -1,0 +1,116 @@
+#include "hsdm/spatial/flat_fans.hh"
+
+#include "hsdm/core/chunks.hh"
+#include "hsdm/core/hash.hh"
+
+#include <atomic>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t facets_per_chunk = 2048;
+/// Of what a corner sees, over the square of its longest arm: far above rounding, far below shapes in use.
+constexpr double least_area = 1e-6;
+
+/// What the facets round a vertex add up to, in any order.
+struct Fan {
+    std::atomic<std::uint64_t> ends = 0;  // sides that lead away less those that come back, mixed
+    std::atomic<std::uint32_t> turns = 0; // times that the fan passes the side of its first facet
+};
+
+/// From where a fan is seen: along the normal of its first facet's corner, whose side leads away from it.
+struct Sight {
+    Vec3 side{0, 0, 0}, direction{0, 0, 0};
+};
+
+/// Per vertex its first facet, no_index if it has none.
+std::vector<Index> first_facets(const PolygonMesh& mesh, const std::vector<Index>& vertex) {
+    std::vector<Index> first(mesh.vertex_count(), no_index);
+    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t f = begin; f < end; ++f)
+            for (Index v : mesh.facet(f)) {
+                const std::atomic_ref least(first[vertex[v]]);
+                Index seen = least.load(std::memory_order_relaxed);
+                while (
+                    f < seen
+                    && !least.compare_exchange_weak(seen, static_cast<Index>(f), std::memory_order_relaxed)) {
+                }
+            }
+    });
+    return first;
+}
+
+std::vector<Sight> find_sights(const PolygonMesh& mesh, const std::vector<Index>& vertex) {
+    const std::vector<Index> first = first_facets(mesh, vertex);
+    std::vector<Sight> sights(first.size());
+    for_chunks(first.size(), 2 * facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t v = begin; v < end; ++v) {
+            if (first[v] == no_index) continue;
+            const auto facet = mesh.facet(first[v]);
+            std::size_t k = 0;
+            while (vertex[facet[k]] != v) ++k;
+            const Vec3& at = mesh.positions[facet[k]];
+            sights[v].side = mesh.positions[facet[(k + 1) % facet.size()]] - at;
+            sights[v].direction =
+                sights[v].side % (mesh.positions[facet[(k + facet.size() - 1) % facet.size()]] - at);
+        }
+    });
+    return sights;
+}
+
+/// A facet as its corner k sees it: how often it passes the side of the sight, 2 if it does not keep to a
+/// sector, narrower than half a turn, in which its corners follow each other to the left.
+std::uint32_t turns_at(const PolygonMesh& mesh, std::span<const Index> facet, std::size_t k,
+                       const Sight& sight) {
+    const std::size_t n = facet.size();
+    if (n < 3) return 2;
+    const auto arm = [&](std::size_t i) {
+        return mesh.positions[facet[(k + i) % n]] - mesh.positions[facet[k]];
+    };
+    const auto area = [&](const Vec3& a, const Vec3& b) { return (a % b) | sight.direction; };
+    const Vec3 first = arm(1);
+    Vec3 last = first;
+    double sum = 0, least = std::numeric_limits<double>::infinity(), longest = first.sqrnorm();
+    for (std::size_t i = 2; i < n; ++i) {
+        const Vec3 next = arm(i);
+        const double part = area(last, next);
+        sum += part;
+        least = std::min({least, part, area(first, next)}); // a sum of steps could come round
+        longest = std::max(longest, next.sqrnorm());
+        last = next;
+    }
+    if (n == 4)
+        least = std::min(least, sum - area(first, last)); // what a cut beside this corner leaves: not folded
+    const bool left =
+        least > 0 && least * least > least_area * least_area * longest * longest * sight.direction.sqrnorm();
+    return !left ? 2 : (first | sight.side) < 0 && (last | sight.side) >= 0;
+}
+
+} // namespace
+
+/// Seen along the normal of one corner, a fan whose facets keep to their sectors and that comes round once
+/// covers nothing twice. It comes round where it passes from the right of that corner's side, across the line
+/// of sight, to its left.
+std::vector<std::uint8_t> flat_fans(const PolygonMesh& mesh, const std::vector<Index>& vertex) {
+    const std::vector<Sight> sights = find_sights(mesh, vertex);
+    std::vector<Fan> fans(mesh.vertex_count());
+    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t f = begin; f < end; ++f) {
+            const auto facet = mesh.facet(f);
+            const std::size_t n = facet.size();
+            for (std::size_t k = 0; k < n; ++k) {
+                const Index v = vertex[facet[k]];
+                const std::uint64_t next = mix(vertex[facet[(k + 1) % n]]),
+                                    last = mix(vertex[facet[(k + n - 1) % n]]);
+                fans[v].ends.fetch_add(next - last, std::memory_order_relaxed);
+                const std::uint32_t turns = turns_at(mesh, facet, k, sights[v]);
+                if (turns > 0) fans[v].turns.fetch_add(turns, std::memory_order_relaxed);
+            }
+        }
+    });
+    std::vector<std::uint8_t> flat(fans.size());
+    for (std::size_t v = 0; v < flat.size(); ++v) flat[v] = fans[v].turns == 1 && fans[v].ends == 0;
+    return flat;
+}
+
+} // namespace hsdm

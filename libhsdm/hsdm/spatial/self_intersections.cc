@@ -1,0 +1,144 @@
+#include "hsdm/spatial/self_intersections.hh"
+
+#include "hsdm/core/chunks.hh"
+#include "hsdm/mesh/part_of.hh"
+#include "hsdm/mesh/weld.hh"
+#include "hsdm/spatial/flat_fans.hh"
+#include "hsdm/spatial/triangle_tree.hh"
+#include "hsdm/spatial/triangles_meet.hh"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace hsdm {
+namespace {
+
+using FacetPair = std::array<Index, 2>;
+constexpr std::size_t blocks_per_chunk = 64;
+constexpr std::size_t cells_per_chunk = 4096;
+
+class Finder {
+public:
+    explicit Finder(const PolygonMesh& mesh)
+        : mesh_(mesh),
+          cut_(triangulate(mesh)),
+          facet_(facet_of_triangle(cut_)),
+          welded_(weld(mesh.positions)),
+          tree_(mesh.positions, cut_.triangles),
+          flat_(flat_fans(mesh, welded_)),
+          collinear_(cut_.size()) {
+        tbb::parallel_for(std::size_t{0}, cut_.size(),
+                          [&](std::size_t t) { collinear_[t] = is_collinear(place(t).corner); });
+    }
+
+    SelfIntersections run() const {
+        const std::size_t chunks = (tree_.block_count() + blocks_per_chunk - 1) / blocks_per_chunk;
+        std::vector<std::vector<FacetPair>> found(chunks);
+        tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+            const std::size_t end = std::min(tree_.block_count(), (chunk + 1) * blocks_per_chunk);
+            std::vector<TrianglePair> candidates;
+            for (std::size_t block = chunk * blocks_per_chunk; block < end; ++block) {
+                tree_.overlapping(static_cast<Index>(block), candidates);
+                test(candidates, found[chunk]);
+            }
+        });
+        SelfIntersections result;
+        result.skipped = static_cast<std::size_t>(std::count(collinear_.begin(), collinear_.end(), 1));
+        for (const auto& pairs : found)
+            result.facet_pairs.insert(result.facet_pairs.end(), pairs.begin(), pairs.end());
+        result.triangle_pairs = result.facet_pairs.size();
+        tbb::parallel_sort(result.facet_pairs.begin(), result.facet_pairs.end());
+        result.facet_pairs.erase(std::unique(result.facet_pairs.begin(), result.facet_pairs.end()),
+                                 result.facet_pairs.end());
+        return result;
+    }
+
+private:
+    PlacedTriangle place(std::size_t t) const {
+        PlacedTriangle placed;
+        for (std::size_t k = 0; k < 3; ++k) {
+            placed.corner[k] = mesh_.positions[cut_.triangles[t][k]];
+            placed.vertex[k] = welded_[cut_.triangles[t][k]];
+        }
+        return placed;
+    }
+
+    /// Triangles of two facets, or of one, round a vertex where nothing meets.
+    bool share_flat_fan(Index f, Index g) const {
+        if (f == g && mesh_.facet(f).size() > 4) return false;
+        for (Index p : mesh_.facet(f))
+            for (Index q : mesh_.facet(g))
+                if (welded_[p] == welded_[q] && flat_[welded_[p]]) return true;
+        return false;
+    }
+
+    void test(const std::vector<TrianglePair>& candidates, std::vector<FacetPair>& found) const {
+        for (const auto& [a, b] : candidates) {
+            if (share_flat_fan(facet_[a], facet_[b]) || collinear_[a] || collinear_[b]
+                || !triangles_meet(place(a), place(b)))
+                continue;
+            const auto [lesser, greater] = std::minmax(facet_[a], facet_[b]);
+            found.push_back({lesser, greater});
+        }
+    }
+
+    const PolygonMesh& mesh_;
+    Triangulation cut_;
+    std::vector<Index> facet_, welded_;
+    TriangleTree tree_;
+    std::vector<std::uint8_t> flat_;
+    std::vector<unsigned char> collinear_;
+};
+
+/// A vertex at which all these facets are known not to meet.
+bool share_flat_vertex(const PolygonMesh& mesh, std::span<const Index> facets,
+                       const std::vector<std::uint8_t>& flat) {
+    for (Index v : mesh.facet(facets[0])) {
+        if (!flat[v]) continue;
+        const bool shared = std::ranges::all_of(facets, [&](Index f) {
+            return mesh.facet(f).size() <= 4 && std::ranges::find(mesh.facet(f), v) != mesh.facet(f).end();
+        });
+        if (shared) return true;
+    }
+    return false;
+}
+
+/// The facets of all cells but those whose facets share such a vertex, ascending. What two facets have in
+/// common lies in a cell in which both are listed, so that all that intersect are among them.
+std::vector<Index> facets_in_doubt(const PolygonMesh& mesh, const FacetCells& cells) {
+    std::vector<Index> own(mesh.vertex_count());
+    std::iota(own.begin(), own.end(), Index{0});
+    const std::vector<std::uint8_t> flat = flat_fans(mesh, own);
+    std::vector<std::vector<Index>> parts(chunk_count(cells.size(), cells_per_chunk));
+    for_chunks(cells.size(), cells_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        for (std::size_t c = begin; c < end; ++c) {
+            const auto facets = cells.facets(static_cast<Index>(c));
+            if (!share_flat_vertex(mesh, facets, flat))
+                parts[chunk].insert(parts[chunk].end(), facets.begin(), facets.end());
+        }
+    });
+    std::vector<Index> doubtful = joined(parts);
+    tbb::parallel_sort(doubtful.begin(), doubtful.end());
+    doubtful.erase(std::unique(doubtful.begin(), doubtful.end()), doubtful.end());
+    return doubtful;
+}
+
+} // namespace
+
+SelfIntersections find_self_intersections(const PolygonMesh& mesh) {
+    return Finder(mesh).run();
+}
+
+SelfIntersections find_self_intersections(const PolygonMesh& mesh, const FacetCells& cells) {
+    if (!cells.usable()) return find_self_intersections(mesh);
+    const std::vector<Index> doubtful = facets_in_doubt(mesh, cells);
+    SelfIntersections found = find_self_intersections(part_of(mesh, doubtful));
+    for (auto& pair : found.facet_pairs)
+        for (Index& f : pair) f = doubtful[f];
+    return found;
+}
+
+} // namespace hsdm

@@ -1,0 +1,118 @@
+#pragma once
+// A hierarchy of boxes over triangles: nearest triangle to a point, pairs of triangles that may touch.
+
+#include "hsdm/mesh/triangulate.hh"
+#include "hsdm/spatial/two_triangles.hh"
+
+#include <array>
+#include <memory>
+
+namespace hsdm {
+
+/// Two triangles by their indices.
+using TrianglePair = std::array<Index, 2>;
+
+/// Implicit 4-ary tree. Triangles are ordered so that every four make a block, every four blocks a node of
+/// level 0, every four nodes of level k a node of level k + 1: children are found by arithmetic, a node is
+/// nothing but the boxes of its four children. Everything is relative to the centre of the mesh, in double
+/// precision: a search costs no more where a stray lies far from the mesh, or the mesh has one far from
+/// itself.
+class TriangleTree {
+public:
+    /// Triangles that follow each other in the list are to lie close together, or compact: they are put in an
+    /// order in which they do, which takes most of the time, and queries a fraction.
+    enum class Order { compact, given };
+
+    /// O(t log t), parallel; the same tree for any number of threads. Nothing given need outlive it.
+    TriangleTree(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
+                 Order order = Order::compact);
+
+    /// A squared distance and the nearest triangle.
+    struct Nearest {
+        double squared = std::numeric_limits<double>::infinity();
+        Index triangle = no_index;
+    };
+    /// Nearest triangle to a point in the mesh's own coordinates. `hint` is a triangle to begin at (the
+    /// answer for a point nearby), or no_index: it changes the time, never the distance.
+    Nearest nearest(const Vec3& point, Index hint = no_index) const;
+    /// A triangle whose distance, the root of `squared`, is no more than `bound` where there is one, else one
+    /// that is farther, or none. With a hint nearby several times quicker than the nearest one, as the search
+    /// goes up from there.
+    Nearest within(const Vec3& point, double bound, Index hint = no_index) const;
+
+    /// Blocks in a part of space, to look through instead of the whole tree.
+    class Part;
+    /// Replaces `part` by all blocks that may have a point within `reach` of a box. False if there are too
+    /// many: the part is then not to be used.
+    bool find_part(const Box& box, double reach, Part& part) const;
+    /// As above for a point whose nearest triangle is known to be in the part.
+    Nearest nearest(const Part& part, const Vec3& point) const;
+
+    /// Replaces `pairs` by all pairs of triangles whose boxes overlap or touch, one of the pair being in
+    /// `block` and the other in it or a later one. Over all blocks every such pair comes once.
+    void overlapping(Index block, std::vector<TrianglePair>& pairs) const;
+
+    std::size_t block_count() const { return block_count_; }
+    /// Mean diagonal of the boxes of blocks.
+    double block_size() const { return block_size_; }
+
+private:
+    static constexpr std::size_t width = 4;
+    Index block_of(Index triangle) const {
+        return triangle == no_index ? no_index : place_of_[triangle] / width;
+    }
+
+    /// Boxes of four children by pairs; an absent child's box is empty, from infinity to its negative.
+    struct Boxes {
+        std::array<std::array<Double2, 2>, 3> lo, hi;
+    };
+    /// Four triangles; a block not full repeats its last one.
+    using Block = std::array<TwoTriangles, 2>;
+
+    class Search;
+
+    struct LaneBoxes {
+        std::array<Double2, 3> lo, hi;
+    };
+
+    void set_order(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles, Order order);
+    void fill_blocks(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
+    void build_levels(std::vector<Boxes>& block_boxes);
+    std::size_t size_of(int level) const;
+    static bool is_apart(const Boxes& boxes, std::size_t child, const std::array<double, 3>& lo,
+                         const std::array<double, 3>& hi);
+    /// A node, or below them a block.
+    struct Node {
+        int level; ///< -1: of the blocks
+        Index index;
+    };
+    Node root() const { return {static_cast<int>(level_first_.size()) - 1, 0}; }
+    void descend(Search& search, const Node& from, const Node& known, double enough) const;
+    LaneBoxes boxes_of(const TwoTriangles& pair) const;
+    void pair_up(Index block, Index other, std::vector<TrianglePair>& pairs) const;
+
+    Vec3 centre_{0, 0, 0};
+    double diagonal_ = 0;
+    double rounding_ = 0; // bound on the error of a + ab in a block
+    double block_size_ = 0;
+    std::vector<Index> triangle_of_; // by place in the order: the triangle's own index
+    std::vector<Index> place_of_;    // ... and the other way
+    std::size_t block_count_ = 0;
+    std::unique_ptr<Block[]> blocks_;      // no vector: threads fill fresh memory sooner than one clears it
+    std::vector<Boxes> nodes_;             // level 0 first, the root last
+    std::vector<std::size_t> level_first_; // of each level, its first node
+};
+
+class TriangleTree::Part {
+    friend class TriangleTree;
+    static constexpr std::size_t most_nodes = 32;
+
+    bool add(const Boxes& boxes, std::size_t lane, Index block);
+    void fill_up();
+
+    std::array<Boxes, most_nodes> nodes_;
+    std::array<std::array<Index, width>, most_nodes> blocks_;
+    std::size_t count_ = 0; // of blocks
+};
+
+} // namespace hsdm

@@ -1,0 +1,89 @@
+#include "hsdm/contour/shared_corners.hh"
+
+#include "hsdm/contour/settle_crossings.hh"
+#include "support/sample.hh"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace hsdm;
+
+namespace {
+
+/// A box and all that comes before shared_corners.
+struct Found {
+    Vec3 size;
+    support::Pose pose;
+    Octree octree;
+    OctreeLevel level;
+    CornerLattice lattice;
+    Crossings crossings;
+    Fans fans;
+    std::vector<EdgeCollapse> edges;
+
+    Found(const Vec3& box_size, std::uint64_t seed) : size(box_size) {
+        support::Random random(seed);
+        pose = support::random_pose(random);
+        support::SampleOptions options;
+        options.points = 5000;
+        octree = build_octree(support::sample(support::box(size).placed(pose), options));
+        level = extract_level(octree, 4);
+        const double h = level.voxel_size;
+        const NormalSets sets = build_normal_sets(octree, level);
+        const RelationTest related({}, h);
+        lattice = build_corner_lattice(level);
+        LocalSheets local = group_local_sheets(lattice, sets, related, h);
+        extend_lattice(lattice, local, level);
+        crossings =
+            settle_crossings(lattice, local, sets, find_crossings(lattice, local, sets, related, h), h);
+        fans = build_fans(lattice, crossings, pair_crossings(lattice, crossings, sets, related));
+        edges = shared_corners(lattice, crossings, fans, h,
+                               place_vertices(level, lattice, sets, related, crossings, fans));
+    }
+
+    Vec3 to_local(const Vec3& p) const { return pose.to_local(p + octree.origin); }
+    /// Does a chain pass the box's top or bottom?
+    bool sees_side(Index fan, bool top) const {
+        return std::ranges::any_of(fans.fan(fan), [&](Node node) {
+            const double up = pose.unrotate(crossings.crossings[node / 4].normal)[2];
+            return (top ? up : -up) > 0.9;
+        });
+    }
+    /// Of the box to a point of it or around.
+    double distance_to_corner(const Vec3& local) const {
+        Vec3 off;
+        for (unsigned k = 0; k < 3; ++k) off[k] = std::abs(local[k]) - size[k] / 2;
+        return off.norm();
+    }
+};
+
+} // namespace
+
+TEST_CASE("what voxels share are the corners of a box, held by another voxel's chain", "[contour]") {
+    std::size_t count = 0;
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        const Found found({1, 1, 1}, seed);
+        for (const EdgeCollapse& edge : found.edges) {
+            INFO("seed " << seed << ", from " << edge.from << " to " << edge.to);
+            CHECK(edge.from != edge.to);
+            CHECK(found.distance_to_corner(found.to_local(edge.position)) < 0.1 * found.level.voxel_size);
+        }
+        count += found.edges.size();
+    }
+    CHECK(count > 10);
+}
+
+TEST_CASE("a corner of a plate is never taken over from its far side", "[contour]") {
+    std::size_t count = 0;
+    for (std::uint64_t seed = 3001; seed <= 3040; ++seed) {
+        const Found found({1, 0.8, 0.004}, seed);
+        for (const EdgeCollapse& edge : found.edges) {
+            INFO("seed " << seed << ", from " << edge.from << " to " << edge.to);
+            CHECK_FALSE(found.sees_side(edge.to, found.to_local(edge.position)[2] < 0));
+        }
+        count += found.edges.size();
+    }
+    CHECK(count > 0);
+}

@@ -1,0 +1,97 @@
+#include "hsdm/contour/untangle.hh"
+#include "hsdm/errors.hh"
+#include "hsdm/spatial/self_intersections.hh"
+
+#include <catch2/catch.hpp>
+
+using namespace hsdm;
+
+namespace {
+
+/// A grid of unit quads at height z.
+void add_sheet(PolygonMesh& mesh, int side, double z) {
+    const auto base = static_cast<Index>(mesh.vertex_count());
+    for (int i = 0; i <= side; ++i)
+        for (int k = 0; k <= side; ++k) mesh.positions.emplace_back(i, k, z);
+    const auto at = [&](int i, int k) { return base + static_cast<Index>(i * (side + 1) + k); };
+    for (int i = 0; i < side; ++i)
+        for (int k = 0; k < side; ++k)
+            mesh.add_facet(std::array{at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k + 1)});
+}
+
+UntangleOptions options() {
+    UntangleOptions result;
+    result.nearby = 1;
+    return result;
+}
+
+} // namespace
+
+TEST_CASE("a vertex that sticks through another sheet is taken back", "[untangle]") {
+    PolygonMesh mesh;
+    add_sheet(mesh, 8, 0);
+    add_sheet(mesh, 8, 0.4);
+    const std::size_t spike = 4 * 9 + 4;
+    mesh.positions[spike][2] = 0.6;
+    const std::vector<Vec3> before = mesh.positions;
+    const std::vector<Index> corners = mesh.corners;
+    REQUIRE(find_self_intersections(mesh).triangle_pairs > 0);
+
+    const UntangleCounts counts = untangle(mesh, options());
+    CHECK(counts.before > 0);
+    CHECK(counts.after == 0);
+    CHECK(counts.moved > 0);
+    CHECK(find_self_intersections(mesh).triangle_pairs == 0);
+    CHECK(mesh.corners == corners);
+    for (std::size_t v = 0; v < before.size(); ++v)
+        if ((before[v] - before[spike]).norm() > 3) CHECK(mesh.positions[v] == before[v]);
+}
+
+TEST_CASE("a mesh without intersections is left as it is", "[untangle]") {
+    PolygonMesh mesh;
+    add_sheet(mesh, 4, 0);
+    const std::vector<Vec3> before = mesh.positions;
+    const UntangleCounts counts = untangle(mesh, options());
+    CHECK(counts.before == 0);
+    CHECK(counts.moved == 0);
+    CHECK(mesh.positions == before);
+}
+
+TEST_CASE("intersections that moving vertices cannot end are counted, and never grow", "[untangle]") {
+    PolygonMesh mesh;
+    add_sheet(mesh, 6, 0);
+    add_sheet(mesh, 6, 0.4);
+    for (std::size_t v = 49; v < mesh.vertex_count(); ++v)
+        mesh.positions[v][2] = mesh.positions[v][0] - 3.2; // through
+    const std::size_t before = find_self_intersections(mesh).triangle_pairs;
+    const UntangleCounts counts = untangle(mesh, options());
+    CHECK(counts.before == before);
+    CHECK(counts.after == find_self_intersections(mesh).triangle_pairs);
+    CHECK(counts.after <= before);
+    CHECK(counts.after > 0);
+}
+
+TEST_CASE("no vertex moves farther than its reach", "[untangle]") {
+    PolygonMesh mesh;
+    add_sheet(mesh, 8, 0);
+    add_sheet(mesh, 8, 0.4);
+    mesh.positions[4 * 9 + 4][2] = 0.6;
+    const std::vector<Vec3> before = mesh.positions;
+    UntangleOptions short_reach = options();
+    short_reach.reach = 0.25;
+    untangle(mesh, short_reach);
+    for (std::size_t v = 0; v < before.size(); ++v)
+        CHECK((mesh.positions[v] - before[v]).norm() <= 0.25 + 1e-12);
+}
+
+TEST_CASE("options of untangling out of range are refused", "[untangle]") {
+    PolygonMesh mesh;
+    add_sheet(mesh, 2, 0);
+    CHECK_THROWS_AS(untangle(mesh, UntangleOptions{}), OptionError); // nearby is not set
+    UntangleOptions bad = options();
+    bad.step = 0;
+    CHECK_THROWS_AS(untangle(mesh, bad), OptionError);
+    bad = options();
+    bad.rounds = -1;
+    CHECK_THROWS_AS(untangle(mesh, bad), OptionError);
+}

@@ -1,0 +1,60 @@
+#include "hsdm/mesh/doublets.hh"
+#include "hsdm/mesh/manifold.hh"
+#include "hsdm/quality/topology.hh"
+
+#include <catch2/catch.hpp>
+
+#include <array>
+
+using namespace hsdm;
+
+namespace {
+
+/// A cube whose top is two facets round a vertex 8 that no other has, `height` above it.
+PolygonMesh cube_with_doublet(double height) {
+    PolygonMesh mesh;
+    for (unsigned k = 0; k < 8; ++k) mesh.positions.emplace_back(k & 1, k >> 1 & 1, k >> 2);
+    mesh.positions.emplace_back(0.5, 0.5, 1 + height);
+    for (const std::array<Index, 4>& q :
+         {std::array<Index, 4>{0, 2, 3, 1}, {0, 1, 5, 4}, {1, 3, 7, 5}, {3, 2, 6, 7}, {2, 0, 4, 6}})
+        mesh.add_facet(q);
+    mesh.add_facet(std::array<Index, 4>{4, 5, 7, 8});
+    mesh.add_facet(std::array<Index, 4>{8, 7, 6, 4});
+    return mesh;
+}
+
+const auto never = [](Index) { return false; };
+
+} // namespace
+
+TEST_CASE("the two facets round an expendable vertex become one", "[mesh]") {
+    PolygonMesh mesh = cube_with_doublet(0.05);
+    CHECK(merge_doublets(mesh, never) == 0);
+    CHECK(merge_doublets(mesh, [](Index v) { return v == 8; }) == 1);
+    CHECK(mesh.facet_count() == 6);
+    CHECK(remove_isolated_vertices(mesh) == 1);
+    const Topology t = measure_topology(mesh);
+    CHECK(t.closed());
+    CHECK(t.manifold());
+    CHECK(t.quads == 6);
+    CHECK(t.euler == 2);
+}
+
+TEST_CASE("facets folded onto each other become one whoever the vertex between them is", "[mesh]") {
+    PolygonMesh mesh = cube_with_doublet(0);
+    mesh.positions[8] = Vec3(0.5, 0.5, 3); // a sharp roof over the diagonal: its two sides face apart
+    CHECK(merge_doublets(mesh, never) == 1);
+    CHECK(measure_topology(mesh).closed());
+}
+
+TEST_CASE("a doublet whose union repeats a vertex is left alone", "[mesh]") {
+    PolygonMesh mesh; // a bubble of two triangles: their union would be an edge
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.add_facet(std::array<Index, 3>{0, 1, 2});
+    mesh.add_facet(std::array<Index, 3>{2, 1, 0});
+    CHECK(merge_doublets(mesh, [](Index) { return true; }) == 0);
+    PolygonMesh open = cube_with_doublet(0.05);
+    open.first.pop_back();
+    open.corners.resize(open.first.back());
+    CHECK(merge_doublets(open, [](Index) { return true; }) == 0);
+}

@@ -1,0 +1,158 @@
+#include "hsdm/errors.hh"
+#include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/reconstruct.hh"
+#include "support/sample.hh"
+
+#include <catch2/catch.hpp>
+
+#include <limits>
+
+using namespace hsdm;
+
+namespace {
+
+constexpr double not_finite = std::numeric_limits<double>::quiet_NaN();
+
+/// All of the report but what differs from run to run.
+std::string lasting(Report report) {
+    report.seconds = {};
+    report.peak_memory_bytes = 0;
+    return to_json(report);
+}
+
+void check_same(const Reconstruction& a, const Reconstruction& b) {
+    const PolygonMesh left = to_polygons(a.mesh), right = to_polygons(b.mesh);
+    CHECK(left.facet_count() > 0);
+    CHECK(!left.properties.empty());
+    CHECK(left.positions == right.positions);
+    CHECK(left.corners == right.corners);
+    REQUIRE(left.properties.size() == right.properties.size());
+    for (std::size_t i = 0; i < left.properties.size(); ++i) {
+        CHECK(left.properties[i].name == right.properties[i].name);
+        CHECK(left.properties[i].values == right.properties[i].values);
+    }
+    CHECK(lasting(a.report) == lasting(b.report));
+}
+
+PointCloud scan(double noise = 0) {
+    return support::sample(support::box({1, 0.7, 0.4}), {.points = 8000, .position_noise = noise});
+}
+
+void check_moved_as_kept(const PointCloud& cloud, const ReconstructOptions& options = {}) {
+    PointCloud moved = cloud;
+    check_same(reconstruct(cloud, options), reconstruct(std::move(moved), options));
+}
+
+} // namespace
+
+TEST_CASE("a cloud that is moved becomes the same mesh as one that is kept", "[pipeline]") {
+    ReconstructOptions options;
+    SECTION("by default") {
+        check_moved_as_kept(scan());
+    }
+    SECTION("with colours and labels") {
+        PointCloud cloud = scan();
+        Scalar height{"height", {}, false}, half{"half", {}, true};
+        for (const Vec3& p : cloud.positions) {
+            cloud.colors.push_back({static_cast<std::uint8_t>(100 + 80 * p[0]), 20, 30, 255});
+            height.values.push_back(p[2]);
+            half.values.push_back(p[0] > 0);
+        }
+        cloud.scalars = {height, half};
+        check_moved_as_kept(cloud);
+        options.max_error = MaxError{.value = 0.01};
+        check_moved_as_kept(cloud, options);
+    }
+    SECTION("with points that are not finite") {
+        PointCloud cloud = scan();
+        cloud.positions[7] = Vec3(not_finite, 0, 0);
+        check_moved_as_kept(cloud);
+    }
+    SECTION("with a point far away") {
+        PointCloud cloud = scan();
+        cloud.positions[7] = Vec3(1e6, 0, 0);
+        check_moved_as_kept(cloud);
+    }
+    SECTION("with noise that is smoothed") {
+        const PointCloud cloud = scan(0.02);
+        CHECK(reconstruct(cloud).report.rejected["points_moved"] > 0);
+        check_moved_as_kept(cloud);
+        options.max_error = MaxError{.value = 0.05};
+        check_moved_as_kept(cloud, options);
+        options.measure = false;
+        check_moved_as_kept(cloud, options);
+        options.max_error.reset();
+        check_moved_as_kept(cloud, options);
+    }
+    SECTION("with normals to be estimated") {
+        options.normals = NormalSource::estimate;
+        check_moved_as_kept(scan(), options);
+        check_moved_as_kept(scan(0.02), options);
+    }
+    SECTION("without small components") {
+        options.min_component = MinComponent{.value = 10, .of_largest = false};
+        check_moved_as_kept(scan(), options);
+    }
+    SECTION("with the basic method") {
+        options.method = Method::basic;
+        check_moved_as_kept(scan(), options);
+    }
+}
+
+TEST_CASE("levels of a cloud that is moved are those of one that is kept", "[pipeline]") {
+    for (double noise : {0.0, 0.02}) {
+        const PointCloud cloud = scan(noise);
+        PointCloud moved = cloud;
+        const std::vector<Reconstruction> kept = reconstruct_levels(cloud, 3, 5);
+        const std::vector<Reconstruction> left = reconstruct_levels(std::move(moved), 3, 5);
+        REQUIRE(kept.size() == left.size());
+        for (std::size_t i = 0; i < kept.size(); ++i) check_same(kept[i], left[i]);
+        // Noise is small against the voxels of the first level alone.
+        CHECK(kept.front().report.rejected.count("points_moved") == 0);
+        CHECK(kept.back().report.rejected.count("points_moved") == (noise > 0));
+    }
+}
+
+TEST_CASE("a cloud that is moved gives its memory back as soon as nobody asks for it", "[pipeline]") {
+    for (double noise : {0.0, 0.02}) {
+        PointCloud cloud = scan(noise);
+        cloud.colors.resize(cloud.size());
+        cloud.scalars = {Scalar{"height", std::vector<double>(cloud.size()), false}};
+        std::size_t phases = 0;
+        ReconstructOptions options;
+        options.progress = [&](const std::string& phase, double) {
+            phases += phase == "facets" || phase == "error";
+            if (phase == "facets") {
+                CHECK(cloud.normals.capacity() == 0);
+                // What is moved is measured where it was.
+                CHECK((cloud.positions.capacity() == 0) == (noise == 0));
+            }
+            if (phase == "error") {
+                CHECK(cloud.positions.capacity() == 0);
+                CHECK(cloud.colors.capacity() == 0);
+                CHECK(cloud.scalars.capacity() == 0);
+            }
+            return true;
+        };
+        reconstruct(std::move(cloud), options);
+        CHECK(phases == 2);
+    }
+}
+
+TEST_CASE("an option out of any cloud's range leaves one that is moved as it was", "[pipeline]") {
+    PointCloud cloud = scan();
+    ReconstructOptions options;
+    options.depth = 0;
+    CHECK_THROWS_AS(reconstruct(std::move(cloud), options), OptionError);
+    CHECK_THROWS_AS(reconstruct_levels(std::move(cloud), 4, 3), OptionError);
+    CHECK(cloud.positions == scan().positions);
+    CHECK(cloud.normals == scan().normals);
+}
+
+TEST_CASE("a cloud that is moved and holds no surface is refused", "[pipeline]") {
+    CHECK_THROWS_AS(reconstruct(PointCloud()), Error);
+    PointCloud cloud = scan();
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+        if (i % 3 != 0) cloud.positions[i][1] = not_finite;
+    CHECK_THROWS_WITH(reconstruct(std::move(cloud)), Catch::Contains("5333 of 8000 points"));
+}
