@@ -35,7 +35,7 @@ void check_same(const Reconstruction& a, const Reconstruction& b) {
 }
 
 PointCloud scan(double noise = 0) {
-    return support::sample(support::box({1, 0.7, 0.4}), {.points = 8000, .position_noise = noise});
+    return support::sample(support::box({1, 0.7, 0.4}), {.points = 4000, .position_noise = noise});
 }
 
 void check_moved_as_kept(const PointCloud& cloud, const ReconstructOptions& options = {}) {

@@ -281,8 +281,7 @@ TEST_CASE("points without normals come out like points with exact ones", "[pipel
           < 0.2 * estimated.report.grid.voxel_size);
 }
 
-TEST_CASE("noise of half a voxel leaves the topology of points without normals alone",
-          "[pipeline][slow]") {
+TEST_CASE("noise of half a voxel leaves the topology of points without normals alone", "[pipeline][slow]") {
     constexpr double voxel = 0.1;
     support::Random random(5);
     const support::Pose pose = support::random_pose(random);

@@ -32,7 +32,7 @@ Discarded dropped(PolygonMesh& mesh, const Vec3& origin = {0, 0, 0}) {
 
 } // namespace
 
-TEST_CASE("both facets of a pillow go", "[facets]") {
+TEST_CASE("both facets of a pillow go", "[quality]") {
     PolygonMesh mesh = square_and_pillow();
     const Discarded pillow = dropped(mesh);
     CHECK(pillow.count == 2);
@@ -41,7 +41,7 @@ TEST_CASE("both facets of a pillow go", "[facets]") {
     CHECK(dropped(mesh).count == 0);
 }
 
-TEST_CASE("a closed surface of three facets goes, one of four stays", "[facets]") {
+TEST_CASE("a closed surface of three facets goes, one of four stays", "[quality]") {
     PolygonMesh flat;
     flat.positions = {Vec3(0, 0, 0), Vec3(3, 0, 0), Vec3(0, 3, 0), Vec3(1, 1, 0)};
     flat.add_facet(std::array<Index, 4>{0, 2, 1, 3}); // its back
@@ -56,7 +56,7 @@ TEST_CASE("a closed surface of three facets goes, one of four stays", "[facets]"
     CHECK(dropped(tetrahedron).count == 0);
 }
 
-TEST_CASE("facets that rounding leaves without area where they will stand go", "[facets]") {
+TEST_CASE("facets that rounding leaves without area where they will stand go", "[quality]") {
     PolygonMesh mesh = square_and_pillow();
     CHECK(dropped(mesh, Vec3(1e17, 1e17, 0)).count == 4);
     mesh = square_and_pillow();
@@ -64,7 +64,7 @@ TEST_CASE("facets that rounding leaves without area where they will stand go", "
     CHECK(dropped(mesh).count == 3);
 }
 
-TEST_CASE("hints of facets that stay stay theirs", "[facets]") {
+TEST_CASE("hints of facets that stay stay theirs", "[quality]") {
     PolygonMesh mesh = square_and_pillow();
     mesh.positions[1] = Vec3(0.5, 0.5, 0); // on the diagonal: the first triangle goes
     FeatureHints hints;
