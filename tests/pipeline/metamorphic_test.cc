@@ -1,0 +1,79 @@
+// What a scan is called by must not change its part: which axis is which, where each points, which side
+// normals are on.
+
+#include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/reconstruct.hh"
+#include "support/check.hh"
+#include "support/trial.hh"
+
+#include <catch2/catch.hpp>
+
+using namespace hsdm;
+using support::FeatureSize;
+
+namespace {
+
+/// Axis k of the changed cloud is axis from[k] of the one that was given, times sign[k].
+struct Change {
+    const char* name;
+    std::array<unsigned, 3> from;
+    std::array<double, 3> sign;
+    bool turns_normals = false;
+};
+
+const std::vector<Change> changes{
+    {"axes in turn", {1, 2, 0}, {1, 1, 1}},  {"two axes exchanged", {1, 0, 2}, {1, 1, 1}},
+    {"x mirrored", {0, 1, 2}, {-1, 1, 1}},   {"all mirrored", {0, 1, 2}, {-1, -1, -1}},
+    {"half a turn", {0, 1, 2}, {-1, -1, 1}}, {"normals turned", {0, 1, 2}, {1, 1, 1}, true}};
+
+PointCloud changed(PointCloud cloud, const Change& change) {
+    const auto apply = [&](const Vec3& v) {
+        return Vec3(change.sign[0] * v[change.from[0]], change.sign[1] * v[change.from[1]],
+                    change.sign[2] * v[change.from[2]]);
+    };
+    for (Vec3& p : cloud.positions) p = apply(p);
+    for (Vec3& n : cloud.normals) n = change.turns_normals ? -n : apply(n);
+    return cloud;
+}
+
+/// Scans of solids whose features are large against the voxels.
+std::vector<PointCloud> large_solids(std::size_t count, const support::TrialOptions& options) {
+    std::vector<PointCloud> clouds;
+    for (std::uint64_t seed = 1; clouds.size() < count; ++seed) {
+        support::Trial trial = support::make_trial(seed, options);
+        if (trial.size == FeatureSize::large) clouds.push_back(std::move(trial.cloud));
+    }
+    return clouds;
+}
+
+std::string topology_of(const Reconstruction& result) {
+    const Report::Mesh& m = result.report.mesh;
+    return std::to_string(m.components) + " components, Euler " + std::to_string(m.euler)
+           + (m.closed ? ", closed" : ", open");
+}
+
+} // namespace
+
+TEST_CASE("which axis is which, and on which side normals are, does not change the part", "[pipeline]") {
+    const support::TrialOptions options{.voxel = 1.0 / 12, .points_per_voxel = 12};
+    ReconstructOptions how;
+    how.voxel_size = options.voxel;
+    constexpr double few = 0.01; // of all: facets at creases and corners, worked on in Morton order
+    for (const PointCloud& cloud : large_solids(5, options)) {
+        const Reconstruction expected = reconstruct(cloud, how);
+        for (const Change& change : changes) {
+            INFO(change.name);
+            const Reconstruction result = reconstruct(changed(cloud, change), how);
+            CHECK(support::faults(to_polygons(result.mesh)) == "");
+            CHECK(topology_of(result) == topology_of(expected));
+            const Report &one = result.report, &other = expected.report;
+            CHECK(static_cast<double>(one.mesh.vertices)
+                  == Approx(static_cast<double>(other.mesh.vertices)).epsilon(few));
+            CHECK(static_cast<double>(one.mesh.faces)
+                  == Approx(static_cast<double>(other.mesh.faces)).epsilon(few));
+            CHECK(one.grid.voxels == other.grid.voxels);
+            CHECK(one.grid.sets == other.grid.sets);
+            CHECK(one.error.points_to_mesh_max < options.voxel);
+        }
+    }
+}
