@@ -29,10 +29,6 @@ std::vector<VertexProperty> properties_of(const PolygonMesh& fine, const Adaptiv
 
 } // namespace
 
-bool wants_adaptive(const ReconstructOptions& options) {
-    return options.grid == Grid::adaptive || (options.grid == Grid::automatic && options.max_error);
-}
-
 PolygonMesh adaptive_grid(const MethodInput& in, std::span<const Vec3> points, const PolygonMesh& fine,
                           const FacetCells* cells, Report& report) {
     const double bound = error_bound(in);

@@ -1,15 +1,12 @@
 #pragma once
 // The adaptive grid as a step of the pipeline, with its part of the report.
 
-#include "hsdm/pipeline/basic_method.hh"
+#include "hsdm/pipeline/method.hh"
 #include "hsdm/spatial/facet_cells.hh"
 
 #include <span>
 
 namespace hsdm {
-
-/// Does the caller want an adaptive grid?
-bool wants_adaptive(const ReconstructOptions& options);
 
 /// The facets of one level, relative to the octree's origin, over the leaves of a balanced octree. Vertex
 /// properties are means over the fine vertices that a vertex stands for, of labels the majority's. The bound

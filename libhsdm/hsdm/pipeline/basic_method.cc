@@ -32,12 +32,6 @@ void note_counts(const BasicFacets::Counts& counts, Report& report) {
 
 } // namespace
 
-void note_dropped(const std::string& what, const Discarded& discarded, const CloudFrame& frame,
-                  Report& report) {
-    if (discarded.count > 0)
-        report.dropped.push_back({what, discarded.count, frame.to_cloud(discarded.first)});
-}
-
 PolygonMesh basic_method(const MethodInput& in, Report& report) {
     const ConnectivityGraph graph =
         in.phases.run("graph", 0.2, report.seconds.graph, [&] { return extract_graph(in.octree, in.level); });

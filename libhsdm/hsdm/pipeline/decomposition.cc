@@ -6,7 +6,8 @@
 #include "hsdm/normals/normals.hh"
 #include "hsdm/octree/far_points.hh"
 #include "hsdm/octree/spacing.hh"
-#include "hsdm/pipeline/basic_method.hh"
+#include "hsdm/pipeline/method.hh"
+#include "hsdm/pipeline/options.hh"
 
 #include <algorithm>
 #include <cstdio>
@@ -39,27 +40,6 @@ void check_spread(const Octree& octree) {
 }
 
 } // namespace
-
-std::string text_of(double value) {
-    char digits[32];
-    std::snprintf(digits, sizeof digits, "%.10g", value);
-    return digits;
-}
-
-void InputCloud::check() const {
-    const PointCloud& cloud = *cloud_;
-    if (cloud.size() >= no_index)
-        throw Error("the cloud holds " + std::to_string(cloud.size())
-                    + " points; fewer than 2^32 - 1 can be told apart");
-    const auto check = [&](const std::string& what, std::size_t count, bool may_lack) {
-        if (count != cloud.size() && !(may_lack && count == 0))
-            throw Error("the cloud holds " + std::to_string(count) + " " + what + " for "
-                        + std::to_string(cloud.size()) + " points; give one for each, or leave them out");
-    };
-    check("normals", cloud.normals.size(), true);
-    check("colours", cloud.colors.size(), true);
-    for (const Scalar& scalar : cloud.scalars) check("values of " + scalar.name, scalar.values.size(), false);
-}
 
 Decomposition::Decomposition(InputCloud& input, const ReconstructOptions& options, const Phases& phases) {
     const PointCloud& cloud = *input;

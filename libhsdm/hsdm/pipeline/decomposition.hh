@@ -1,62 +1,15 @@
 #pragma once
-// Phase 1 of a reconstruction: the cloud that came in, its frame, its octree and what is known of it.
+// Phase 1 of a reconstruction: a cloud's frame, its octree and what is known of it.
 
 #include "hsdm/cloud/cloud_frame.hh"
 #include "hsdm/normals/smooth_points.hh"
 #include "hsdm/octree/octree.hh"
+#include "hsdm/pipeline/input_cloud.hh"
 #include "hsdm/pipeline/phases.hh"
 
 #include <optional>
 
 namespace hsdm {
-
-/// As options are written in reports and messages.
-std::string text_of(double value);
-
-/// The caller's cloud, or one that is left to us, which gives its memory back as soon as nobody asks for it.
-class InputCloud {
-public:
-    explicit InputCloud(const PointCloud& kept) : cloud_(&kept) {}
-    explicit InputCloud(PointCloud&& left) : cloud_(&left), ours_(&left) {}
-    InputCloud(const InputCloud&) = delete;
-    InputCloud& operator=(const InputCloud&) = delete;
-
-    /// Throws Error for a cloud that would be read beyond its end.
-    void check() const;
-    /// In a copy of our own, if it is the caller's and has such points.
-    void drop_nonfinite_points() {
-        if (all_finite(cloud_->positions)) return;
-        const std::size_t count = cloud_->size();
-        if (!ours_) {
-            copy_ = *cloud_;
-            cloud_ = ours_ = &copy_;
-        }
-        dropped_ = drop_nonfinite(*ours_);
-        if (2 * dropped_.nonfinite > count)
-            throw Error(std::to_string(dropped_.nonfinite) + " of " + std::to_string(count)
-                        + " points have coordinates that are not finite; check how the file was exported");
-    }
-    const PointCloud& operator*() const { return *cloud_; }
-    const Dropped& dropped() const { return dropped_; }
-    /// The normals go with it, if they are ours.
-    Octree take_octree(const OctreeOptions& options) {
-        return ours_ ? build_octree_taking_normals(*ours_, options) : build_octree(*cloud_, options);
-    }
-    void release_positions() {
-        if (ours_) ours_->positions = std::vector<Vec3>();
-    }
-    void release_attributes() {
-        if (!ours_) return;
-        ours_->colors = decltype(ours_->colors)();
-        ours_->scalars = std::vector<Scalar>();
-    }
-
-private:
-    const PointCloud* cloud_;
-    PointCloud* ours_ = nullptr;
-    PointCloud copy_;
-    Dropped dropped_;
-};
 
 /// Phase 1 with its report.
 class Decomposition {

@@ -1,156 +1,25 @@
 #include "hsdm/reconstruct.hh"
 
-#include "hsdm/core/chunks.hh"
 #include "hsdm/features/features.hh"
-#include "hsdm/mesh/islands.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/mesh/turn_outward.hh"
 #include "hsdm/pipeline/adaptive_grid.hh"
+#include "hsdm/pipeline/basic_method.hh"
 #include "hsdm/pipeline/decomposition.hh"
 #include "hsdm/pipeline/extended_method.hh"
-#include "hsdm/quality/distance.hh"
+#include "hsdm/pipeline/measure.hh"
+#include "hsdm/pipeline/options.hh"
 #include "hsdm/quality/drop_unsound.hh"
-#include "hsdm/quality/topology.hh"
 
 #include <tbb/global_control.h>
-#include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 
-#include <cmath>
 #include <new>
-#include <numbers>
 #include <sys/resource.h>
 #include <tuple>
 
 namespace hsdm {
 namespace {
-
-constexpr std::size_t points_per_chunk = 1 << 14;
-
-void check_depth(const std::string& name, int depth) {
-    if (depth < 1 || depth > deepest_level)
-        throw OptionError(name + " " + std::to_string(depth) + ": must lie in [1, "
-                          + std::to_string(deepest_level) + "]");
-}
-
-/// The extended method is the better one, with normals given or estimated.
-Method method_for(const ReconstructOptions& options) {
-    return options.method == Method::basic ? Method::basic : Method::extended;
-}
-
-bool must_estimate(const PointCloud& cloud, const ReconstructOptions& options) {
-    if (method_for(options) == Method::basic) return false;
-    return options.normals == NormalSource::estimate || !cloud.has_normals();
-}
-
-std::string name_of(Holes holes) {
-    return holes == Holes::keep ? "keep" : holes == Holes::close ? "close" : "auto";
-}
-
-void note_options(bool estimate, const ReconstructOptions& options, Report& report) {
-    const bool extended = method_for(options) == Method::extended;
-    report.options["method"] = extended ? "extended" : "basic";
-    report.options["normals"] = estimate ? "estimate" : extended ? "given" : "none";
-    report.options["grid"] = wants_adaptive(options) ? "adaptive" : "uniform";
-    if (options.max_error)
-        report.options["max-error"] = options.max_error->of_diagonal
-                                          ? text_of(100 * options.max_error->value) + "%"
-                                          : text_of(options.max_error->value);
-    report.options["holes"] = name_of(options.holes);
-    if (options.merge_layers) report.options["merge-layers"] = "yes";
-    if (options.min_component)
-        report.options["min-component"] = options.min_component->of_largest
-                                              ? text_of(100 * options.min_component->value) + "%"
-                                              : text_of(options.min_component->value);
-    report.options["crease-degrees"] = text_of(options.crease_angle * 180 / std::numbers::pi);
-    report.options["smoothing"] = std::to_string(options.normal_smoothing);
-}
-
-void note_islands(const Islands& islands, Report& report) {
-    report.rejected["components_small"] = islands.components;
-    report.rejected["facets_of_small_components"] = islands.facets.count;
-}
-
-void measure_mesh(const PolygonMesh& facets, Report& report) {
-    const Topology t = measure_connectivity(facets);
-    Report::Mesh& m = report.mesh;
-    m.vertices = t.vertices;
-    m.edges = t.edges;
-    m.faces = t.faces;
-    m.triangles = t.triangles;
-    m.quads = t.quads;
-    m.larger = t.larger;
-    m.components = t.components;
-    m.boundary_loops = t.boundary_loops;
-    m.boundary_edges = t.boundary_edges;
-    m.euler = t.euler;
-    m.genus = t.genus();
-    m.closed = t.closed();
-}
-
-/// The octree's points where the cloud has them, relative to its origin.
-std::vector<Vec3> points_as_read(const PointCloud& cloud, const CloudFrame& frame, const Octree& octree) {
-    std::vector<Vec3> points(octree.size());
-    for_chunks(points.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i)
-            points[i] = frame.to_work(cloud.positions[octree.source[i]]) - octree.origin;
-    });
-    return points;
-}
-
-/// Returns the points whose voxel no facet came out of. A vertex lies in its voxel or beside it: farther from
-/// the mesh than from one end of the voxel to the other no point is that has one.
-Discarded measure_error(std::span<const Vec3> points, const Octree& octree, const PolygonMesh& facets,
-                        FacetKnowledge& known, double enough, Report& report) {
-    const bool by_cells = report.grid.kind == "uniform"; // facets are as large as voxels
-    const double diagonal = std::numbers::sqrt3 * report.grid.voxel_size;
-    if (by_cells && !known.cells) known.cells.emplace(facets, report.grid.voxel_size);
-    const Distance distance =
-        by_cells ? points_to_mesh_by_cells(points, facets, *known.cells, diagonal)
-                 : points_to_mesh(points, facets, {.enough = enough, .beyond = std::max(diagonal, enough)});
-    report.error.points_to_mesh_max = distance.max;
-    report.error.points_to_mesh_mean = distance.mean;
-    report.error.points_to_mesh_rms = distance.rms;
-    report.error.normalised_max = distance.max / octree.bounds.diagonal();
-    if (distance.beyond == 0) return {};
-    return {distance.beyond, points[distance.first_beyond] + octree.origin};
-}
-
-/// Drops small components if asked to, and measures what is left. A bound is checked before: it is one for
-/// the points of what is dropped too.
-void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, PolygonMesh& facets,
-                      FacetKnowledge& known, Report& report) {
-    const Octree& octree = in.octree; // no structured bindings: clang 14 cannot capture them
-    const ReconstructOptions& options = in.options;
-    bool measured = report.grid.max_error > 0;
-    Discarded off;
-    if (measured)
-        off =
-            measure_error(points, octree, facets, known, options.measure ? 0 : report.grid.max_error, report);
-    check_error_kept(report, in.frame.unit());
-    if (options.min_component) {
-        const auto [value, of_largest] = *options.min_component;
-        Islands islands = drop_islands(facets, known.hints, {of_largest ? 0 : value, of_largest ? value : 0});
-        note_islands(islands, report);
-        islands.facets.first += octree.origin;
-        note_dropped("facets of components smaller than asked for", islands.facets, in.frame, report);
-        if (islands.components > 0) {
-            known.links.reset();
-            known.cells.reset();
-            measured = false;
-        }
-    }
-    if (!options.measure) {
-        report.error = {};
-        return;
-    }
-    tbb::parallel_invoke(
-        [&] {
-            if (!measured) off = measure_error(points, octree, facets, known, 0, report);
-        },
-        [&] { measure_mesh(facets, report); });
-    note_dropped("points more than a voxel's diagonal off the mesh", off, in.frame, report);
-}
 
 /// Phase 3 on the mesh.
 void find_features(PolyMesh& mesh, const ReconstructOptions& options, const FeatureHints& hints,
@@ -361,44 +230,6 @@ std::vector<Reconstruction> run_levels(InputCloud cloud, int first_depth, int la
 }
 
 } // namespace
-
-void check_options(const ReconstructOptions& o) {
-    if (!!o.depth + !!o.voxel_size + !!o.max_error > 1)
-        throw OptionError("depth, voxel_size and max_error: at most one of the three says the resolution");
-    if (o.max_error && !(o.max_error->value > 0 && std::isfinite(o.max_error->value)))
-        throw OptionError("max_error " + text_of(o.max_error->value) + ": must be above 0");
-    if (o.max_error && o.grid == Grid::uniform)
-        throw OptionError("max_error: a uniform grid has no bound to keep; use the adaptive one");
-    if (o.depth) check_depth("depth", *o.depth);
-    if (o.voxel_size && !(*o.voxel_size > 0 && std::isfinite(*o.voxel_size)))
-        throw OptionError("voxel_size " + text_of(*o.voxel_size) + ": must be a length above 0");
-    if (o.min_component
-        && !(o.min_component->value >= 0 && std::isfinite(o.min_component->value)
-             && !(o.min_component->of_largest && o.min_component->value > 1)))
-        throw OptionError("min_component " + text_of(o.min_component->value)
-                          + ": must be a number of facets, or a share of the largest of 1 (100 %) at most");
-    if (!(o.crease_angle > 0 && o.crease_angle < std::numbers::pi))
-        throw OptionError("crease_angle " + text_of(o.crease_angle)
-                          + " rad: must lie between 0 and pi (180 degrees)");
-    if (o.normal_smoothing < 0)
-        throw OptionError("normal_smoothing " + std::to_string(o.normal_smoothing) + ": must be 0 or more");
-    if (o.threads < 0)
-        throw OptionError("threads " + std::to_string(o.threads) + ": must be 0 (all) or more");
-    if (o.normals == NormalSource::estimate && o.method == Method::basic)
-        throw OptionError("normals estimate: the basic method uses no normals; use the extended one");
-}
-
-void check_options(const ReconstructOptions& options, int first_depth, int last_depth) {
-    check_options(options);
-    if (options.depth || options.voxel_size || options.max_error)
-        throw OptionError(
-            "levels: they are the resolution; depth, voxel_size and max_error cannot be given beside them");
-    check_depth("first depth", first_depth);
-    check_depth("last depth", last_depth);
-    if (first_depth > last_depth)
-        throw OptionError("levels " + std::to_string(first_depth) + ":" + std::to_string(last_depth)
-                          + ": the first depth must not be above the last");
-}
 
 Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& options) {
     return run_once(InputCloud(cloud), options);

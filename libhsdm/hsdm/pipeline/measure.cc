@@ -1,0 +1,103 @@
+#include "hsdm/pipeline/measure.hh"
+
+#include "hsdm/core/chunks.hh"
+#include "hsdm/mesh/islands.hh"
+#include "hsdm/pipeline/adaptive_grid.hh"
+#include "hsdm/quality/distance.hh"
+#include "hsdm/quality/topology.hh"
+
+#include <tbb/parallel_invoke.h>
+
+#include <numbers>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t points_per_chunk = 1 << 14;
+
+void note_islands(const Islands& islands, Report& report) {
+    report.rejected["components_small"] = islands.components;
+    report.rejected["facets_of_small_components"] = islands.facets.count;
+}
+
+void measure_mesh(const PolygonMesh& facets, Report& report) {
+    const Topology t = measure_connectivity(facets);
+    Report::Mesh& m = report.mesh;
+    m.vertices = t.vertices;
+    m.edges = t.edges;
+    m.faces = t.faces;
+    m.triangles = t.triangles;
+    m.quads = t.quads;
+    m.larger = t.larger;
+    m.components = t.components;
+    m.boundary_loops = t.boundary_loops;
+    m.boundary_edges = t.boundary_edges;
+    m.euler = t.euler;
+    m.genus = t.genus();
+    m.closed = t.closed();
+}
+
+/// Returns the points whose voxel no facet came out of. A vertex lies in its voxel or beside it: farther from
+/// the mesh than from one end of the voxel to the other no point is that has one.
+Discarded measure_error(std::span<const Vec3> points, const Octree& octree, const PolygonMesh& facets,
+                        FacetKnowledge& known, double enough, Report& report) {
+    const bool by_cells = report.grid.kind == "uniform"; // facets are as large as voxels
+    const double diagonal = std::numbers::sqrt3 * report.grid.voxel_size;
+    if (by_cells && !known.cells) known.cells.emplace(facets, report.grid.voxel_size);
+    const Distance distance =
+        by_cells ? points_to_mesh_by_cells(points, facets, *known.cells, diagonal)
+                 : points_to_mesh(points, facets, {.enough = enough, .beyond = std::max(diagonal, enough)});
+    report.error.points_to_mesh_max = distance.max;
+    report.error.points_to_mesh_mean = distance.mean;
+    report.error.points_to_mesh_rms = distance.rms;
+    report.error.normalised_max = distance.max / octree.bounds.diagonal();
+    if (distance.beyond == 0) return {};
+    return {distance.beyond, points[distance.first_beyond] + octree.origin};
+}
+
+} // namespace
+
+std::vector<Vec3> points_as_read(const PointCloud& cloud, const CloudFrame& frame, const Octree& octree) {
+    std::vector<Vec3> points(octree.size());
+    for_chunks(points.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i)
+            points[i] = frame.to_work(cloud.positions[octree.source[i]]) - octree.origin;
+    });
+    return points;
+}
+
+void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, PolygonMesh& facets,
+                      FacetKnowledge& known, Report& report) {
+    const Octree& octree = in.octree; // no structured bindings: clang 14 cannot capture them
+    const ReconstructOptions& options = in.options;
+    bool measured = report.grid.max_error > 0;
+    Discarded off;
+    if (measured)
+        off =
+            measure_error(points, octree, facets, known, options.measure ? 0 : report.grid.max_error, report);
+    check_error_kept(report, in.frame.unit());
+    if (options.min_component) {
+        const auto [value, of_largest] = *options.min_component;
+        Islands islands = drop_islands(facets, known.hints, {of_largest ? 0 : value, of_largest ? value : 0});
+        note_islands(islands, report);
+        islands.facets.first += octree.origin;
+        note_dropped("facets of components smaller than asked for", islands.facets, in.frame, report);
+        if (islands.components > 0) {
+            known.links.reset();
+            known.cells.reset();
+            measured = false;
+        }
+    }
+    if (!options.measure) {
+        report.error = {};
+        return;
+    }
+    tbb::parallel_invoke(
+        [&] {
+            if (!measured) off = measure_error(points, octree, facets, known, 0, report);
+        },
+        [&] { measure_mesh(facets, report); });
+    note_dropped("points more than a voxel's diagonal off the mesh", off, in.frame, report);
+}
+
+} // namespace hsdm

@@ -1,0 +1,37 @@
+#pragma once
+// What both methods take and leave.
+
+#include "hsdm/cloud/cloud_frame.hh"
+#include "hsdm/core/discarded.hh"
+#include "hsdm/mesh/facet_links.hh"
+#include "hsdm/mesh/feature_hints.hh"
+#include "hsdm/octree/octree.hh"
+#include "hsdm/pipeline/phases.hh"
+#include "hsdm/spatial/facet_cells.hh"
+
+#include <optional>
+
+namespace hsdm {
+
+/// What a method works on: one level of a decomposed cloud.
+struct MethodInput {
+    const CloudFrame& frame; ///< of the octree's coordinates
+    const PointCloud& cloud; ///< for its colours and scalars: the rest may have been freed
+    const Octree& octree;
+    const OctreeLevel& level;
+    const ReconstructOptions& options;
+    const Phases& phases;
+};
+
+/// What is known of facets beside themselves, as long as they stay as they are.
+struct FacetKnowledge {
+    FeatureHints hints;
+    std::optional<FacetLinks> links;
+    std::optional<FacetCells> cells; ///< the voxels
+};
+
+/// Adds to the report's list, unless nothing was dropped. `discarded.first` lies in the frame.
+void note_dropped(const std::string& what, const Discarded& discarded, const CloudFrame& frame,
+                  Report& report);
+
+} // namespace hsdm

@@ -1,0 +1,21 @@
+#pragma once
+// What a caller's options come to.
+
+#include "hsdm/point_cloud.hh"
+#include "hsdm/reconstruct.hh"
+
+namespace hsdm {
+
+/// As options are written in reports and messages.
+std::string text_of(double value);
+
+/// The extended method is the better one, with normals given or estimated.
+Method method_for(const ReconstructOptions& options);
+
+/// Whether the cloud needs normals and has none, or none that are wanted.
+bool must_estimate(const PointCloud& cloud, const ReconstructOptions& options);
+bool wants_adaptive(const ReconstructOptions& options);
+
+void note_options(bool estimate, const ReconstructOptions& options, Report& report);
+
+} // namespace hsdm
