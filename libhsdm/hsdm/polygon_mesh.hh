@@ -24,6 +24,9 @@ struct PolygonMesh {
     std::vector<Index> corners;
     std::vector<Index> first{0};
     std::vector<VertexProperty> properties;
+    std::vector<Index>
+        origin; ///< empty, or per vertex the number its maker gave it, which copies of it keep: what else
+                ///< is known of vertices need not travel with them. Nothing writes it
 
     std::size_t vertex_count() const { return positions.size(); }
     std::size_t facet_count() const { return first.size() - 1; }

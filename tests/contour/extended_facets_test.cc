@@ -177,7 +177,7 @@ TEST_CASE("relaxation leaves facets, voxels and corners alone", "[contour]") {
     as_placed.relax = {.rounds = 0, .fit = false};
     const ExtendedFacets before = facets_of(cloud, voxel, as_placed), after = facets_of(cloud, voxel);
     REQUIRE(before.mesh.corners == after.mesh.corners);
-    CHECK(before.kinds == after.kinds);
+    CHECK(before.classes == after.classes);
     const Octree octree = octree_of(cloud, voxel);
     const OctreeLevel level = extract_level(octree, depth_for(octree.bounds.extent(), voxel));
     const auto voxel_at = [&](const Vec3& p) {
@@ -192,7 +192,7 @@ TEST_CASE("relaxation leaves facets, voxels and corners alone", "[contour]") {
         // One that reaches into the next voxel may come back into its own.
         const bool back = voxel_at(q) == level.coord(before.voxel[v]);
         CHECK((back || voxel_at(p) == voxel_at(q)));
-        if (before.kinds[v] == VertexKind::corner) CHECK(p == q);
+        if (before.classes[v] == VertexClass::corner) CHECK(p == q);
         moved += p != q;
     }
     CHECK(2 * moved > after.mesh.vertex_count());
@@ -320,7 +320,7 @@ TEST_CASE("the extended facets do not depend on the number of threads", "[contou
     const ExtendedFacets single = facets_of(cloud, 0.1);
     CHECK(many.mesh.positions == single.mesh.positions);
     CHECK(many.mesh.corners == single.mesh.corners);
-    CHECK(many.kinds == single.kinds);
+    CHECK(many.classes == single.classes);
 }
 
 TEST_CASE("the extended graph has the facets' edges, each with its twin", "[contour]") {

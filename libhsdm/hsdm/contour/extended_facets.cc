@@ -7,6 +7,7 @@
 #include "hsdm/mesh/doublets.hh"
 
 #include <algorithm>
+#include <numeric>
 
 namespace hsdm {
 namespace {
@@ -33,7 +34,7 @@ public:
             const auto halve = [&](const Link& side, const Vec3& position) {
                 of_side_[4 * side.crossing + side.face] = static_cast<Index>(vertices.positions.size());
                 vertices.positions.push_back(position);
-                vertices.kinds.push_back(VertexKind::smooth);
+                vertices.classes.push_back(VertexClass::smooth);
                 vertices.voxel.push_back(sets.sets[crossings.crossings[side.crossing].set].voxel);
                 ++count_;
             };
@@ -159,7 +160,7 @@ private:
         constexpr double cos_fold = 0.866, cos_other = 0.95;
         for (std::size_t d = 0; d < 2; ++d) {
             const Index a = q[d], b = q[d + 1], c = q[d + 2], e = q[(d + 3) % 4];
-            if (vertices_.kinds[a] == VertexKind::smooth || vertices_.kinds[c] == VertexKind::smooth)
+            if (vertices_.classes[a] == VertexClass::smooth || vertices_.classes[c] == VertexClass::smooth)
                 continue;
             const Vec3 n0 = triangle_normal(a, b, c), n1 = triangle_normal(a, c, e);
             const Vec3 m0 = triangle_normal(b, c, e), m1 = triangle_normal(b, e, a);
@@ -249,33 +250,29 @@ PolygonMesh facets_of(const Crossings& crossings, const Links& links, const Fans
     return mesh;
 }
 
-template <class To, class From>
-std::vector<To> converted(const std::vector<From>& values) {
-    std::vector<To> result(values.size());
-    for_chunks(values.size(), values_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i) result[i] = static_cast<To>(values[i]);
+/// The values of the vertices that came of those that the values are of.
+template <class T>
+std::vector<T> of_origins(const std::vector<T>& values, const std::vector<Index>& origin) {
+    std::vector<T> result(origin.size());
+    for_chunks(result.size(), values_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) result[i] = values[origin[i]];
     });
     return result;
 }
 
-/// Kind and voxel travel with the vertices as properties while these are split or dropped.
-void add_properties(const VertexPositions& vertices, PolygonMesh& mesh) {
-    mesh.properties = {{"hsdm_vertex_class", VertexProperty::Type::uint8, converted<double>(vertices.kinds)},
-                       {"voxel", VertexProperty::Type::float64, converted<double>(vertices.voxel)}};
-}
-
-void take_properties(ExtendedFacets& result) {
-    result.kinds = converted<VertexKind>(result.mesh.properties[0].values);
-    result.voxel = converted<Index>(result.mesh.properties[1].values);
-    result.mesh.properties.clear();
+/// Class and voxel are known by origin while vertices are split or dropped.
+void settle_origins(ExtendedFacets& result) {
+    result.classes = of_origins(result.classes, result.mesh.origin);
+    result.voxel = of_origins(result.voxel, result.mesh.origin);
+    result.mesh.origin = std::vector<Index>();
 }
 
 /// Returns how many vertices another took the place of.
-std::size_t merge_corners(std::span<const EdgeCollapse> edges, PolygonMesh& mesh) {
+std::size_t merge_corners(std::span<const EdgeCollapse> edges, PolygonMesh& mesh,
+                          std::vector<VertexClass>& classes) {
     const std::vector<std::uint8_t> collapsed = collapse_edges(mesh, edges);
-    std::vector<double>& kinds = mesh.properties[0].values;
     for (std::size_t i = 0; i < collapsed.size(); ++i)
-        if (collapsed[i]) kinds[edges[i].to] = static_cast<double>(VertexKind::corner);
+        if (collapsed[i]) classes[mesh.origin[edges[i].to]] = VertexClass::corner;
     const auto count = static_cast<std::size_t>(std::ranges::count(collapsed, 1));
     if (count > 0) remove_isolated_vertices(mesh);
     return count;
@@ -316,7 +313,10 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
         result.mesh = facets_of(crossings, links, fans, midpoints, vertices);
         result.mesh.positions = std::move(vertices.positions);
     }
-    add_properties(vertices, result.mesh);
+    result.mesh.origin.resize(result.mesh.vertex_count());
+    std::iota(result.mesh.origin.begin(), result.mesh.origin.end(), Index(0));
+    result.classes = std::move(vertices.classes);
+    result.voxel = std::move(vertices.voxel);
     result.midpoints = midpoints.count();
     result.crossings = crossings.crossings.size();
     result.beyond_crease = crossings.dropped_beyond_crease;
@@ -337,15 +337,15 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
     ExtendedFacets result;
     const double h = level.voxel_size;
     const std::vector<EdgeCollapse> to_corners = build_facets(octree, level, sets, options, result);
-    result.corners_merged = merge_corners(to_corners, result.mesh);
+    result.corners_merged = merge_corners(to_corners, result.mesh, result.classes);
     result.debris = drop_debris(result.mesh, options.debris);
     if (options.fill) {
         FillHolesOptions holes = options.holes;
         holes.max_diameter *= h;
         result.holes = fill_holes(result.mesh, holes);
     }
-    const std::vector<double>& kind = result.mesh.properties[0].values;
-    result.doublets = merge_doublets(result.mesh, [&](Index v) { return kind[v] == 0; });
+    result.doublets = merge_doublets(
+        result.mesh, [&](Index v) { return result.classes[result.mesh.origin[v]] == VertexClass::smooth; });
     result.manifold = make_manifold(result.mesh);
     result.debris.add(drop_debris(result.mesh, options.debris));
     if (result.debris.count > 0) remove_isolated_vertices(result.mesh);
@@ -355,7 +355,7 @@ ExtendedFacets reconstruct_extended(const Octree& octree, const OctreeLevel& lev
     result.cells.emplace(result.mesh, h);
     result.intersections = untangle(result.mesh, untangle_options, &*result.cells);
     if (result.intersections.moved > 0) result.cells.reset();
-    take_properties(result);
+    settle_origins(result);
     return result;
 }
 

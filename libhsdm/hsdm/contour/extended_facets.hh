@@ -22,9 +22,9 @@ struct ExtendedOptions {
 };
 
 struct ExtendedFacets {
-    PolygonMesh mesh;              ///< relative to the octree's origin; an oriented 2-manifold
-    std::vector<VertexKind> kinds; ///< per vertex
-    std::vector<Index> voxel;      ///< per vertex, the occupied voxel it stands for
+    PolygonMesh mesh;                 ///< relative to the octree's origin; an oriented 2-manifold
+    std::vector<VertexClass> classes; ///< per vertex
+    std::vector<Index> voxel;         ///< per vertex, the occupied voxel it stands for
     std::size_t crossings = 0, beyond_crease = 0, settled = 0, trimmed = 0, tips = 0, open = 0, rims = 0,
                 cut = 0, clamped = 0;
     std::size_t corners_merged = 0; ///< vertices made one with that of the voxel that holds their corner

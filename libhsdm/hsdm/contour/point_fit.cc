@@ -101,7 +101,7 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
         for (std::size_t x = begin; x < end; ++x) {
             if (of_voxel_.of(x).empty()) gather_beside(static_cast<Index>(x), beside);
             const std::span<const Index> near = of_voxel_.of(x).empty() ? beside : of_voxel_.of(x);
-            const bool flat = near.size() == 1 && vertices_.kinds[near[0]] == VertexKind::smooth;
+            const bool flat = near.size() == 1 && vertices_.classes[near[0]] == VertexClass::smooth;
             around.clear();
             for (Index fan : near) list_triangles(fan, fans_, positions, around);
             if (around.empty()) continue;
@@ -115,7 +115,7 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
                 for (std::size_t k = 0; k < 3; ++k) {
                     const Index v = foot.corners[k];
                     const double height = vertices_.directions[v] | way;
-                    if (vertices_.kinds[v] != VertexKind::smooth || fans_.open[v]
+                    if (vertices_.classes[v] != VertexClass::smooth || fans_.open[v]
                         || (octree_.normals[i] | vertices_.directions[v]) < same_sheet_cosine
                         || std::abs(height) < same_sheet_cosine * distance) // beside the facets
                         continue;

@@ -60,9 +60,9 @@ public:
             for (std::size_t v = begin; v < end; ++v) {
                 const auto fan = static_cast<Index>(v);
                 if (fans_.open[v]) continue;
-                if (vertices_.kinds[v] == VertexKind::smooth)
+                if (vertices_.classes[v] == VertexClass::smooth)
                     next_[v] = kept_in(fan, on_sheet(fan, moved_on_sheet(fan, step)));
-                else if (vertices_.kinds[v] == VertexKind::edge)
+                else if (vertices_.classes[v] == VertexClass::edge)
                     next_[v] = kept_in(fan, moved_along_crease(fan, step));
             }
         });
@@ -143,7 +143,7 @@ private:
         };
         if (!vertices_.is_clamped[fan]) add(fan, 1);
         for (const auto& [n, sides] : neighbours(fan))
-            if (vertices_.kinds[n] == VertexKind::smooth && !vertices_.is_clamped[n]
+            if (vertices_.classes[n] == VertexClass::smooth && !vertices_.is_clamped[n]
                 && (vertices_.directions[n] | own) > same_sheet_cosine)
                 add(n, 0.5 * sides);
         if (!(sum > 0)) return p;
@@ -158,7 +158,7 @@ private:
         double ahead = 0, behind = 0;
         for (const auto& [n, sides] : neighbours(fan)) {
             if (vertices_.is_clamped[n]) return p;
-            if (vertices_.kinds[n] == VertexKind::smooth) continue;
+            if (vertices_.classes[n] == VertexClass::smooth) continue;
             const Vec3 way = vertices_.positions[n] - p;
             const double s = way | along;
             if (std::abs(s) < along_cosine * way.norm()) continue;
@@ -209,7 +209,7 @@ void extend_borders(const OctreeLevel& level, const CornerLattice& lattice, cons
     const double h = level.voxel_size;
     for_chunks(fans.size(), fans_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t v = begin; v < end; ++v) {
-            if (!fans.open[v] || vertices.kinds[v] != VertexKind::smooth) continue;
+            if (!fans.open[v] || vertices.classes[v] != VertexClass::smooth) continue;
             const auto fan = static_cast<Index>(v);
             const NormalSet* set = own_set(sets, vertices.voxel[v], vertices.directions[v]);
             if (!set) continue;

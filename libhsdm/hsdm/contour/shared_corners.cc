@@ -35,7 +35,7 @@ public:
 private:
     /// Where its planes meet?
     bool is_corner(Index fan) const {
-        return vertices_.kinds[fan] == VertexKind::corner && !vertices_.is_clamped[fan];
+        return vertices_.classes[fan] == VertexClass::corner && !vertices_.is_clamped[fan];
     }
 
     bool can_hold(Index fan, const VertexPositions::Beyond& beyond) const {

@@ -194,9 +194,9 @@ public:
         const bool upward = (solution.steep | problem_.planes[0].normal) > 0;
         result.directions[fan] =
             solution.rank > 1 && sheets > 1 ? solution.free : solution.steep * (upward ? 1.0 : -1.0);
-        result.kinds[fan] = sheets == 1 || solution.rank < 2 ? VertexKind::smooth
-                            : solution.rank == 2             ? VertexKind::edge
-                                                             : VertexKind::corner;
+        result.classes[fan] = sheets == 1 || solution.rank < 2 ? VertexClass::smooth
+                              : solution.rank == 2             ? VertexClass::edge
+                                                               : VertexClass::corner;
     }
 
 private:
@@ -426,7 +426,7 @@ VertexPositions place_vertices(const OctreeLevel& level, const CornerLattice& la
                                const RelationTest& related, const Crossings& crossings, const Fans& fans) {
     VertexPositions result;
     result.positions.resize(fans.size());
-    result.kinds.resize(fans.size());
+    result.classes.resize(fans.size());
     result.directions.resize(fans.size());
     result.voxel.resize(fans.size());
     result.is_clamped.resize(fans.size());

@@ -2,15 +2,13 @@
 // Section 3.4.2, where a vertex lies: on its sheet, or where the sheets of a crease or a corner meet.
 
 #include "hsdm/contour/fans.hh"
+#include "hsdm/mesh/vertex_class.hh"
 
 namespace hsdm {
 
-/// Vertex kinds of section 3.3, known here from the number of sheets that meet.
-enum class VertexKind : std::uint8_t { smooth = 0, edge = 1, corner = 2 };
-
 struct VertexPositions {
-    std::vector<Vec3> positions; ///< per fan, relative to the octree's origin
-    std::vector<VertexKind> kinds;
+    std::vector<Vec3> positions;      ///< per fan, relative to the octree's origin
+    std::vector<VertexClass> classes; ///< per fan, known from the number of sheets that meet
     /// Per fan: of a smooth vertex the sheet's unit normal, of an edge vertex a unit vector along the crease.
     std::vector<Vec3> directions;
     std::vector<Index> voxel; ///< per fan, its voxel; where no point lies in it, that of the nearest set

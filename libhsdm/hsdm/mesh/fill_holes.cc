@@ -144,7 +144,7 @@ private:
     std::vector<Index> path_;
 };
 
-/// A new vertex at the mean of a loop's, with their mean normal and the properties of the first.
+/// A new vertex at the mean of a loop's, with their mean normal and origin and properties of the first.
 Index add_middle(PolygonMesh& mesh, std::span<const Index> loop) {
     Vec3 position(0, 0, 0), normal(0, 0, 0);
     for (Index v : loop) position += mesh.positions[v];
@@ -153,7 +153,12 @@ Index add_middle(PolygonMesh& mesh, std::span<const Index> loop) {
         for (Index v : loop) normal += mesh.normals[v];
         mesh.normals.push_back(unit(normal));
     }
-    for (VertexProperty& property : mesh.properties) property.values.push_back(property.values[loop[0]]);
+    const auto as_first = [&](auto& values) {
+        const auto value = values[loop[0]];
+        values.push_back(value);
+    };
+    if (!mesh.origin.empty()) as_first(mesh.origin);
+    for (VertexProperty& property : mesh.properties) as_first(property.values);
     return static_cast<Index>(mesh.vertex_count() - 1);
 }
 

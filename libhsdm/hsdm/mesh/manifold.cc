@@ -421,6 +421,7 @@ Index copy_vertex(PolygonMesh& mesh, Index source) {
     };
     copy(mesh.positions);
     if (!mesh.normals.empty()) copy(mesh.normals);
+    if (!mesh.origin.empty()) copy(mesh.origin);
     for (VertexProperty& property : mesh.properties) copy(property.values);
     return static_cast<Index>(mesh.vertex_count() - 1);
 }
@@ -480,6 +481,7 @@ std::size_t remove_isolated_vertices(PolygonMesh& mesh) {
     };
     compact(mesh.positions);
     if (!mesh.normals.empty()) compact(mesh.normals);
+    if (!mesh.origin.empty()) compact(mesh.origin);
     for (VertexProperty& property : mesh.properties) compact(property.values);
     for (Index& v : mesh.corners) v = renumbered[v];
     return removed;

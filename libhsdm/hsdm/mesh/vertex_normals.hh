@@ -1,6 +1,8 @@
 #pragma once
 // What phase 3 leaves on the mesh's vertices: class, and one to three normals (section 3.3, Fig. 11).
 
+#include "hsdm/mesh/vertex_class.hh"
+
 #include <OpenMesh/Core/IO/SR_store.hh>
 #include <OpenMesh/Core/Utils/PropertyManager.hh>
 
@@ -9,9 +11,6 @@
 #include <iostream>
 
 namespace hsdm {
-
-/// Fig. 11: (a) smooth vertex, (b) on a sharp edge, (c) sharp corner.
-enum class VertexClass : std::uint8_t { smooth = 0, edge = 1, corner = 2 };
 
 /// The names of the mesh properties; part of the command's contract.
 inline constexpr const char* vertex_class_property = "hsdm_vertex_class"; ///< std::uint8_t, a VertexClass
