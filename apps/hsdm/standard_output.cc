@@ -20,9 +20,10 @@ StandardOutput::~StandardOutput() {
 }
 
 void StandardOutput::finish() {
-    if (sync() != 0)
-        throw Error("standard output", std::string("could not be written: ") + std::strerror(error_)
-                                           + "; is the reader still there, and room on the disk?");
+    if (sync() == 0 && std::cout) return;
+    throw Error("standard output", "could not be written"
+                                       + (error_ ? std::string(": ") + std::strerror(error_) : "")
+                                       + "; is the reader still there, and room on the disk?");
 }
 
 StandardOutput::int_type StandardOutput::overflow(int_type character) {
@@ -34,10 +35,10 @@ StandardOutput::int_type StandardOutput::overflow(int_type character) {
 int StandardOutput::sync() {
     for (const char* next = pbase(); next < pptr() && error_ == 0;) {
         const auto written = write(STDOUT_FILENO, next, static_cast<std::size_t>(pptr() - next));
-        if (written >= 0)
+        if (written > 0)
             next += written;
-        else if (errno != EINTR)
-            error_ = errno;
+        else if (written == 0 || errno != EINTR)
+            error_ = written == 0 ? EIO : errno;
     }
     setp(buffer_.data(), buffer_.data() + buffer_.size());
     return error_ == 0 ? 0 : -1;

@@ -2,7 +2,7 @@
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/pipeline/adaptive_grid.hh"
-#include "hsdm/quality/distance.hh"
+#include "hsdm/quality/distance_to_surface.hh"
 #include "hsdm/reconstruct.hh"
 #include "hsdm/spatial/mesh_distance.hh"
 #include "support/sample.hh"

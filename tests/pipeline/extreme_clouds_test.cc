@@ -261,6 +261,33 @@ TEST_CASE("points of a part too small for its voxels are told", "[pipeline]") {
     CHECK((told->where - place).norm() < 0.1);
 }
 
+TEST_CASE("points of a surface are not told as left out", "[pipeline]") {
+    PointCloud cloud = support::sample(support::sphere(1), {.points = 20000, .position_noise = 0.06});
+    ReconstructOptions options;
+    SECTION("that noise has taken off it") {
+        options.normals = NormalSource::estimate;
+        options.depth = 6;
+    }
+    SECTION("within the bound") {
+        cloud = support::sample(support::sphere(1), {.points = 20000});
+        options.max_error = MaxError{0.05, true};
+    }
+    SECTION("of a component that was to go") {
+        cloud = support::sample(support::sphere(1), {.points = 20000});
+        for (std::size_t i = 0; i < 5000; ++i) {
+            cloud.positions.push_back(0.3 * cloud.positions[i] + Vec3(3, 0, 0));
+            cloud.normals.push_back(cloud.normals[i]);
+        }
+        options.min_component = MinComponent{1, true};
+    }
+    const Report report = reconstruct(cloud, options).report;
+    CHECK(report.mesh.closed);
+    for (const Report::Dropped& dropped : report.dropped) {
+        INFO(dropped.count << ' ' << dropped.what);
+        CHECK(dropped.what.find("off the mesh") == std::string::npos);
+    }
+}
+
 TEST_CASE("a cloud whose arrays do not fit together is refused", "[pipeline]") {
     const PointCloud cloud = step_cloud(500);
     const auto refused = [&](auto change) {

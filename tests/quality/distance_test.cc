@@ -1,4 +1,4 @@
-#include "hsdm/quality/distance.hh"
+#include "hsdm/quality/distance_to_surface.hh"
 #include "hsdm/spatial/facet_cells.hh"
 #include "hsdm/spatial/mesh_distance.hh"
 #include "hsdm/spatial/self_intersections.hh"

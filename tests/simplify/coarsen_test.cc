@@ -1,6 +1,6 @@
 #include "hsdm/contour/extended_facets.hh"
 #include "hsdm/errors.hh"
-#include "hsdm/quality/distance.hh"
+#include "hsdm/quality/distance_to_surface.hh"
 #include "hsdm/simplify/coarsen.hh"
 #include "hsdm/spatial/mesh_distance.hh"
 #include "hsdm/spatial/self_intersections.hh"

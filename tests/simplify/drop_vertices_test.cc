@@ -1,4 +1,4 @@
-#include "hsdm/quality/distance.hh"
+#include "hsdm/quality/distance_to_surface.hh"
 #include "hsdm/quality/topology.hh"
 #include "hsdm/simplify/dissolve.hh"
 #include "hsdm/simplify/drop_vertices.hh"

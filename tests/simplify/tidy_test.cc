@@ -1,5 +1,5 @@
 #include "hsdm/mesh/area_vector.hh"
-#include "hsdm/quality/distance.hh"
+#include "hsdm/quality/distance_to_surface.hh"
 #include "hsdm/quality/topology.hh"
 #include "hsdm/simplify/tidy.hh"
 #include "hsdm/simplify/trouble.hh"

@@ -186,7 +186,7 @@ Discarded cut_empty_space(Octree& octree, const PointCloud& cloud, CloudFrame& f
     constexpr double spacings_per_voxel = 3, most_scraps = 0.02;
     Discarded discarded;
     while (spacings_per_voxel * estimate_spacing(octree) < octree.voxel_size(deepest_level)) {
-        const CloudFrame cut = with_cuts(octree, cloud, frame, least_gap);
+        const CloudFrame cut = with_cuts(octree, cloud, frame, least_gap / frame.unit());
         if (!cut.has_cuts()) return discarded;
         std::vector<std::uint8_t> marks;
         const std::size_t scraps = mark_scraps(octree, cloud, cut, marks);

@@ -17,11 +17,11 @@ Discarded drop_far_away(Octree& octree, const PointCloud& cloud, CloudFrame& fra
 
 /// Where the spacing of the points is finer than the finest depth can follow, shortens the empty space
 /// between parts (CloudFrame::cut_gaps): gaps along an axis of 2^-12 of the cube, then narrower ones too, to
-/// about the extent of the largest part, though not below `least_gap`. What lies between cuts is a part if it
-/// holds 64 points; others are removed if they are two percent of all points together, and else nothing is
-/// cut: a lattice is no crowd of parts. The octree's positions are then those of the frame. Returns how many
-/// went, and where in the cloud. O(1) if the spacing is not too fine, else O(n log n) a round; rounds halve
-/// the gaps.
+/// about the extent of the largest part, though not below `least_gap` (in the cloud's units). What lies
+/// between cuts is a part if it holds 64 points; others are removed if they are two percent of all points
+/// together, and else nothing is cut: a lattice is no crowd of parts. The octree's positions are then those
+/// of the frame. Returns how many went, and where in the cloud. O(1) if the spacing is not too fine, else O(n
+/// log n) a round; rounds halve the gaps.
 Discarded cut_empty_space(Octree& octree, const PointCloud& cloud, CloudFrame& frame, double least_gap = 0);
 
 } // namespace hsdm

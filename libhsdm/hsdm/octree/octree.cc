@@ -258,7 +258,7 @@ Discarded remove_points(Octree& octree, std::span<const std::uint8_t> marked) {
 
 bool has_voxels(const Box& bounds) {
     return all_finite(std::array{bounds.lo, bounds.hi}) && bounds.extent() > 0
-           && std::isfinite(cells / bounds.extent());
+           && std::isfinite(bounds.extent()) && std::isfinite(cells / bounds.extent());
 }
 
 bool fit_to_points(Octree& octree) {

@@ -74,7 +74,7 @@ void rearrange(Octree& octree, std::vector<Vec3> positions, double extent);
 /// coordinates of `bounds`. O(n), parallel.
 Discarded remove_points(Octree& octree, std::span<const std::uint8_t> marked);
 
-/// Whether a cube as large as this box has voxels: their edges and all coordinates are numbers above zero.
+/// Whether a cube as large as this box has voxels: all coordinates are numbers, and edges numbers above zero.
 bool has_voxels(const Box& bounds);
 
 /// After points were removed: `bounds` becomes the box of those left, and they are rearranged in the cube of

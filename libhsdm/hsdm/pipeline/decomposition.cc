@@ -54,8 +54,8 @@ Decomposition::Decomposition(InputCloud& input, const ReconstructOptions& option
     Discarded far = drop_far_away(octree, cloud, frame);
     frame.check_reach();
     constexpr double voxels_between_parts = 16; // farther than anything reaches from voxel to voxel
-    far.add(cut_empty_space(octree, cloud, frame,
-                            voxels_between_parts * options.voxel_size.value_or(0) / frame.unit()));
+    far.add(cut_empty_space(octree, cloud, frame, voxels_between_parts * options.voxel_size.value_or(0)));
+    frame.check_reach();
     far_away_ = far.count;
     if (far_away_ > 0) report.rejected["points_outlying"] = far_away_;
     note_dropped("points far from all others", far, CloudFrame(), report);

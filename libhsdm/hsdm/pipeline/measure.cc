@@ -3,7 +3,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/islands.hh"
 #include "hsdm/pipeline/adaptive_grid.hh"
-#include "hsdm/quality/distance.hh"
+#include "hsdm/quality/distance_to_surface.hh"
 #include "hsdm/quality/topology.hh"
 
 #include <tbb/parallel_invoke.h>
@@ -37,22 +37,30 @@ void measure_mesh(const PolygonMesh& facets, Report& report) {
     m.closed = t.closed();
 }
 
-/// Returns the points whose voxel no facet came out of. A vertex lies in its voxel or beside it: farther from
-/// the mesh than from one end of the voxel to the other no point is that has one.
-Discarded measure_error(std::span<const Vec3> points, const Octree& octree, const PolygonMesh& facets,
+/// Points on a uniform grid are looked up by their voxels: facets are as large as these.
+Distance distance_of(std::span<const Vec3> points, const PolygonMesh& facets, FacetKnowledge& known,
+                     const DistanceOptions& options, const Report& report) {
+    if (report.grid.kind != "uniform") return points_to_mesh(points, facets, options);
+    if (!known.cells) known.cells.emplace(facets, report.grid.voxel_size);
+    return points_to_mesh_by_cells(points, facets, *known.cells, options.beyond);
+}
+
+/// Returns the points that the mesh leaves out: they are farther from it than from one end of a voxel to the
+/// other, or than the bound, and not because of their noise.
+Discarded measure_error(std::span<const Vec3> points, const MethodInput& in, const PolygonMesh& facets,
                         FacetKnowledge& known, double enough, Report& report) {
-    const bool by_cells = report.grid.kind == "uniform"; // facets are as large as voxels
-    const double diagonal = std::numbers::sqrt3 * report.grid.voxel_size;
-    if (by_cells && !known.cells) known.cells.emplace(facets, report.grid.voxel_size);
-    const Distance distance =
-        by_cells ? points_to_mesh_by_cells(points, facets, *known.cells, diagonal)
-                 : points_to_mesh(points, facets, {.enough = enough, .beyond = std::max(diagonal, enough)});
+    DistanceOptions options{.enough = enough};
+    options.beyond = std::max(std::numbers::sqrt3 * report.grid.voxel_size, report.grid.max_error);
+    Distance distance = distance_of(points, facets, known, options, report);
     report.error.points_to_mesh_max = distance.max;
     report.error.points_to_mesh_mean = distance.mean;
     report.error.points_to_mesh_rms = distance.rms;
-    report.error.normalised_max = distance.max / octree.bounds.diagonal();
+    report.error.normalised_max = distance.max / in.octree.bounds.diagonal();
+    const std::span<const Vec3> moved = in.octree.positions;
+    if (distance.beyond > 0 && points.data() != moved.data())
+        distance = distance_of(moved, facets, known, options, report);
     if (distance.beyond == 0) return {};
-    return {distance.beyond, points[distance.first_beyond] + octree.origin};
+    return {distance.beyond, moved[distance.first_beyond] + in.octree.origin};
 }
 
 } // namespace
@@ -70,11 +78,10 @@ void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, Polyg
                       FacetKnowledge& known, Report& report) {
     const Octree& octree = in.octree; // no structured bindings: clang 14 cannot capture them
     const ReconstructOptions& options = in.options;
-    bool measured = report.grid.max_error > 0;
-    Discarded off;
-    if (measured)
-        off =
-            measure_error(points, octree, facets, known, options.measure ? 0 : report.grid.max_error, report);
+    const double enough = options.measure ? 0 : report.grid.max_error;
+    bool measured = report.grid.max_error > 0 || (options.measure && options.min_component);
+    Discarded off; // of all components: those that are to go are told by themselves
+    if (measured) off = measure_error(points, in, facets, known, enough, report);
     check_error_kept(report, in.frame.unit());
     if (options.min_component) {
         const auto [value, of_largest] = *options.min_component;
@@ -94,7 +101,9 @@ void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, Polyg
     }
     tbb::parallel_invoke(
         [&] {
-            if (!measured) off = measure_error(points, octree, facets, known, 0, report);
+            if (measured) return;
+            const Discarded left_out = measure_error(points, in, facets, known, 0, report);
+            if (!options.min_component) off = left_out;
         },
         [&] { measure_mesh(facets, report); });
     note_dropped("points more than a voxel's diagonal off the mesh", off, in.frame, report);

@@ -3,6 +3,7 @@
 #include "hsdm/cloud/cloud_frame.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/point_cloud.hh"
+#include "hsdm/quality/distance_to_surface.hh"
 #include "hsdm/spatial/mesh_distance.hh"
 
 namespace hsdm {

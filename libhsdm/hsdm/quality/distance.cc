@@ -1,6 +1,7 @@
 #include "hsdm/quality/distance.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/quality/distance_to_surface.hh"
 #include "hsdm/spatial/cell_search.hh"
 #include "hsdm/spatial/mesh_distance.hh"
 #include "hsdm/spatial/surface_walk.hh"

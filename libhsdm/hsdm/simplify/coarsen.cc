@@ -2,6 +2,7 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/quality/distance_to_surface.hh"
 #include "hsdm/simplify/clusters.hh"
 #include "hsdm/simplify/dissolve.hh"
 #include "hsdm/simplify/merge_leaves.hh"

@@ -4,6 +4,7 @@
 
 #include "hsdm/quality/distance.hh"
 #include "hsdm/simplify/cell_tree.hh"
+#include "hsdm/spatial/facet_cells.hh"
 
 namespace hsdm {
 

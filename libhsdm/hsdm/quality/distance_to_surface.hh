@@ -1,0 +1,30 @@
+#pragma once
+// Distances of many points to a surface that there is a tree, a walk or a grid of cells for already.
+
+#include "hsdm/quality/distance.hh"
+
+namespace hsdm {
+
+class FacetCells;
+class MeshDistance;
+class SurfaceWalk;
+
+/// Every point against its nearest triangle, through the tree; parallel, quickest when neighbours in the list
+/// are neighbours in space, the same bits for any thread count. Zero for an empty list.
+Distance points_to_mesh(std::span<const Vec3> points, const MeshDistance& mesh,
+                        double beyond = std::numeric_limits<double>::infinity());
+
+/// Every point against its nearest triangle by walks and searches, parallel, the same bits for any thread
+/// count: for points that lie close to the surface.
+Distance points_to_surface(std::span<const Vec3> points, const SurfaceWalk& surface,
+                           const DistanceOptions& options = {});
+
+/// Every point against its nearest triangle by the cells of the mesh: in half the time where facets are about
+/// as large as cells and the points of a cell follow each other in the list, as in a mesh of a uniform octree
+/// level and its voxels; by the tree where cells are not usable. Distances may differ from those of the tree
+/// by rounding.
+Distance points_to_mesh_by_cells(std::span<const Vec3> points, const PolygonMesh& mesh,
+                                 const FacetCells& cells,
+                                 double beyond = std::numeric_limits<double>::infinity());
+
+} // namespace hsdm
