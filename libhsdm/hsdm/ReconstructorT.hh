@@ -20,6 +20,7 @@ namespace hsdm {
 template <class Mesh>
 class ReconstructorT {
 public:
+    /// Keeps a reference: the mesh must outlive it. Nothing happens to it yet.
     explicit ReconstructorT(Mesh& mesh) : mesh_(mesh) {}
     ReconstructorT(const ReconstructorT&) = delete;
     ReconstructorT& operator=(const ReconstructorT&) = delete;

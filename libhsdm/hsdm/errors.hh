@@ -10,8 +10,11 @@ namespace hsdm {
 /// Bad input or output. what() reads `FILE:LINE: what, and what to do`; `FILE: ...` where no line applies.
 class Error : public std::runtime_error {
 public:
+    /// The message as it is, where no file is to be named.
     explicit Error(const std::string& message) : std::runtime_error(message) {}
+    /// `FILE: message`.
     Error(const std::string& file, const std::string& message) : std::runtime_error(file + ": " + message) {}
+    /// `FILE:LINE: message`; lines count from 1.
     Error(const std::string& file, std::size_t line, const std::string& message)
         : std::runtime_error(file + ":" + std::to_string(line) + ": " + message) {}
 };

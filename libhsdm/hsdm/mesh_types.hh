@@ -8,11 +8,15 @@ namespace hsdm {
 
 /// Double points and normals; status bits (feature, deleted, locked) on vertices, edges and faces.
 struct MeshTraits : OpenMesh::DefaultTraitsDouble {
+    /// A normal and status bits per vertex.
     VertexAttributes(OpenMesh::Attributes::Normal | OpenMesh::Attributes::Status);
+    /// Status bits per edge.
     EdgeAttributes(OpenMesh::Attributes::Status);
+    /// A normal and status bits per facet.
     FaceAttributes(OpenMesh::Attributes::Normal | OpenMesh::Attributes::Status);
 };
 
+/// Half-edge mesh of polygons with these traits.
 using PolyMesh = OpenMesh::PolyMesh_ArrayKernelT<MeshTraits>;
 
 } // namespace hsdm

@@ -1,15 +1,16 @@
 #pragma once
-// What a processing module is: a shared library that exports one function, `hsdm_plugin`, and tells of itself
-// in its section `.hsdm_plugin`, so that what it is and how it was built is read without running it. A
-// module:
-//
-//     std::string scale(hsdm::PolyMesh& mesh, const hsdm::PluginOptions& options) {
-//         options.allow({"factor"});
-//         const double factor = options.number("factor", 1);
-//         for (const auto v : mesh.vertices()) mesh.set_point(v, factor * mesh.point(v));
-//         return "scaled by " + options.text("factor", "1");
-//     }
-//     HSDM_PLUGIN("scale", "multiplies all coordinates", "factor (1)", scale)
+/// \file
+/// What a processing module is: a shared library that exports one function, `hsdm_plugin`, and tells of
+/// itself in its section `.hsdm_plugin`, so that what it is and how it was built is read without running it.
+/// A module:
+///
+///     std::string scale(hsdm::PolyMesh& mesh, const hsdm::PluginOptions& options) {
+///         options.allow({"factor"});
+///         const double factor = options.number("factor", 1);
+///         for (const auto v : mesh.vertices()) mesh.set_point(v, factor * mesh.point(v));
+///         return "scaled by " + options.text("factor", "1");
+///     }
+///     HSDM_PLUGIN("scale", "multiplies all coordinates", "factor (1)", scale)
 
 #include "hsdm/mesh_types.hh"
 #include "hsdm/version.hh"
@@ -23,12 +24,15 @@
 
 namespace hsdm {
 
+/// For HSDM_STRINGIFY alone.
 #define HSDM_STRINGIFY_(x) #x
+/// What a macro stands for, as a string literal.
 #define HSDM_STRINGIFY(x) HSDM_STRINGIFY_(x)
 
 /// Version of this interface. The record's first two texts and PluginInfo's first two members stay what they
 /// are in every version.
 #define HSDM_PLUGIN_ABI 2
+/// The same as a number.
 inline constexpr std::uint32_t plugin_abi = HSDM_PLUGIN_ABI;
 
 /// What module and loader must have in common to share a mesh: hsdm, compiler, OpenMesh.
@@ -38,9 +42,10 @@ inline constexpr std::uint32_t plugin_abi = HSDM_PLUGIN_ABI;
 /// How the record begins.
 #define HSDM_PLUGIN_MARK "hsdm module " HSDM_STRINGIFY(HSDM_PLUGIN_ABI)
 
+/// One `key=value`, as it was given.
 struct PluginOption {
-    const char* key;
-    const char* value;
+    const char* key;   ///< ends with zero
+    const char* value; ///< ends with zero
 };
 
 /// What `hsdm_plugin` returns. Everything points to memory that lives as long as the process.
@@ -56,18 +61,22 @@ struct PluginInfo {
 /// The `key=value` options a module was called with.
 class PluginOptions {
 public:
+    /// Keeps the pointer: the options must outlive it.
     PluginOptions(const PluginOption* options, std::size_t count) : options_(options), count_(count) {}
 
     /// Throws OptionError for a key that is not among the known, or is given twice.
     void allow(std::initializer_list<const char*> known) const;
+    /// Whether the key is given.
     bool has(const char* key) const { return find(key) != nullptr; }
-    /// The value, or the fallback where the key is not given. Throws OptionError for what is no number.
+    /// The value, or the fallback where the key is not given. Throws OptionError for no finite number.
     double number(const char* key, double fallback) const;
+    /// The same for whole numbers that an int holds.
     int integer(const char* key, int fallback) const;
     /// As integer(), of 0 or more.
     int count(const char* key, int fallback) const;
     /// An angle above 0 and below 180 degrees, which the value is in; it and the fallback in radians.
     double angle(const char* key, double fallback) const;
+    /// The value as it was given, or the fallback.
     std::string text(const char* key, const char* fallback) const;
 
 private:
@@ -77,8 +86,11 @@ private:
     std::size_t count_;
 };
 
-/// Carries a module's C++ function over the C interface: exceptions become the message and the result.
+/// A module's work: changes the mesh and returns one line on what it did. May throw; OptionError for a wrong
+/// option.
 using PluginFunction = std::string (*)(PolyMesh&, const PluginOptions&);
+/// Carries a module's function over the C interface: exceptions become the message and the result, which are
+/// as PluginInfo::process has them.
 int run_plugin(PluginFunction function, PolyMesh& mesh, const PluginOption* options, std::size_t count,
                char* message, std::size_t capacity) noexcept;
 

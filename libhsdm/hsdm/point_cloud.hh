@@ -13,7 +13,7 @@ namespace hsdm {
 
 /// One more value per point (intensity, quality, label ...), by the name its file gave it.
 struct Scalar {
-    std::string name;
+    std::string name;           ///< as the file gave it
     std::vector<double> values; ///< one per point
     bool is_label = false;      ///< integers that must not be averaged: a vertex takes the majority's
 };
@@ -25,14 +25,17 @@ Box bounds_of(std::span<const Vec3> positions);
 
 /// Points in the cloud's units, structure of arrays. Optional arrays are empty or hold one entry per point.
 struct PointCloud {
-    std::vector<Vec3> positions;
-    std::vector<Vec3> normals; ///< as the file gave them; not required to be unit vectors or outward
+    std::vector<Vec3> positions; ///< in the cloud's units
+    std::vector<Vec3> normals;   ///< as the file gave them; not required to be unit vectors or outward
     std::vector<std::array<std::uint8_t, 4>> colors; ///< red, green, blue, alpha
-    std::vector<Scalar> scalars;
-    std::optional<Vec3> sensor; ///< where the scanner stood, if the file says
+    std::vector<Scalar> scalars;                     ///< further values, each with one entry per point
+    std::optional<Vec3> sensor;                      ///< where the scanner stood, if the file says
 
+    /// Number of points.
     std::size_t size() const { return positions.size(); }
+    /// Whether there are normals, of whatever length.
     bool has_normals() const { return !normals.empty(); }
+    /// Box of the positions. O(n), parallel.
     Box bounds() const { return bounds_of(positions); }
 };
 

@@ -11,35 +11,45 @@ namespace hsdm {
 
 /// A value per vertex under the name it is written with (e.g. `hsdm_vertex_class`).
 struct VertexProperty {
-    enum class Type { uint8, int32, float32, float64 };
-    std::string name;
-    Type type = Type::float64;
-    std::vector<double> values;
+    /// How values are stored in a file and on an OpenMesh mesh.
+    enum class Type {
+        uint8,   ///< unsigned, 8 bits
+        int32,   ///< signed, 32 bits
+        float32, ///< float
+        float64, ///< double
+    };
+    std::string name;           ///< in files and on OpenMesh meshes
+    Type type = Type::float64;  ///< all values must fit it
+    std::vector<double> values; ///< one per vertex
 };
 
 /// Polygons over shared vertices, as flat arrays: facet f is corners[first[f]] .. corners[first[f + 1]].
 struct PolygonMesh {
-    std::vector<Vec3> positions;
-    std::vector<Vec3> normals; ///< empty or one unit normal per vertex
-    std::vector<Index> corners;
-    std::vector<Index> first{0};
-    std::vector<VertexProperty> properties;
-    std::vector<Index>
-        origin; ///< empty, or per vertex the number its maker gave it, which copies of it keep: what else
-                ///< is known of vertices need not travel with them. Nothing writes it
+    std::vector<Vec3> positions;            ///< per vertex
+    std::vector<Vec3> normals;              ///< empty or one unit normal per vertex
+    std::vector<Index> corners;             ///< vertices of all facets, one facet after the other
+    std::vector<Index> first{0};            ///< per facet, where its corners begin; at the end their number
+    std::vector<VertexProperty> properties; ///< each with one value per vertex
+    /// Empty, or per vertex the number its maker gave it, which copies of it keep: what else is known of
+    /// vertices need not travel with them. Nothing writes it.
+    std::vector<Index> origin;
 
+    /// Number of vertices, isolated ones too.
     std::size_t vertex_count() const { return positions.size(); }
+    /// Number of facets.
     std::size_t facet_count() const { return first.size() - 1; }
+    /// Vertices of facet f < facet_count(), in its order; valid until facets are added.
     std::span<const Index> facet(std::size_t f) const {
         return {corners.data() + first[f], corners.data() + first[f + 1]};
     }
+    /// Appends a facet; nothing is checked.
     void add_facet(std::span<const Index> vertices) {
         corners.insert(corners.end(), vertices.begin(), vertices.end());
         first.push_back(static_cast<Index>(corners.size()));
     }
 };
 
-/// Of the positions of a facet's corners.
+/// Box of the positions of a facet's corners.
 inline Box box_of(const PolygonMesh& mesh, std::size_t facet) {
     Box box;
     for (Index v : mesh.facet(facet)) box.add(mesh.positions[v]);

@@ -12,17 +12,25 @@
 
 namespace hsdm {
 
+/// How facets are made of the points of a level.
 enum class Method {
     automatic, ///< the better one: extended
     basic,     ///< sections 3.1 to 3.3, positions only
     extended,  ///< section 3.4, with normals, given or estimated
 };
+/// Where normals of points come from.
 enum class NormalSource {
     automatic, ///< the cloud's, if it has some, else estimated
     given,     ///< the cloud's; an error if it has none
     estimate,  ///< from the positions, whether the cloud has some or not
 };
-enum class Holes { automatic, keep, close };
+/// Which boundary loops are closed. A loop that could be closed only by folding stays open.
+enum class Holes {
+    automatic, ///< those that are small against the sampling
+    keep,      ///< none
+    close,     ///< all
+};
+/// What vertices stand for.
 enum class Grid {
     automatic, ///< adaptive with max_error, else uniform
     uniform,   ///< one vertex per voxel and sheet
@@ -41,6 +49,7 @@ struct MinComponent {
     bool of_largest = false; ///< a share of the largest component's area, else a number of facets
 };
 
+/// What a reconstruction is to do; the defaults suit most scans. Lengths are in the cloud's units.
 struct ReconstructOptions {
     /// Resolution: at most one of the three; by default the voxel follows from the points' spacing and
     /// noise (choose_voxel).
@@ -51,10 +60,10 @@ struct ReconstructOptions {
     /// surface would be farther than this from the points. Without it an adaptive grid keeps a tenth of a
     /// voxel.
     std::optional<MaxError> max_error;
-    Grid grid = Grid::automatic;
-    Method method = Method::automatic;
-    NormalSource normals = NormalSource::automatic;
-    Holes holes = Holes::automatic;
+    Grid grid = Grid::automatic;                    ///< uniform or adaptive
+    Method method = Method::automatic;              ///< basic or extended
+    NormalSource normals = NormalSource::automatic; ///< given or estimated; the basic method uses none
+    Holes holes = Holes::automatic;                 ///< which are closed
     /// Sheets less than a voxel apart that face the same way are layers of one surface, as misregistered
     /// scans leave them (extended method; see NormalSetOptions).
     bool merge_layers = false;
@@ -74,9 +83,10 @@ struct ReconstructOptions {
     std::function<bool(const char* phase, double done)> progress; ///< done in [0, 1]; return false to cancel
 };
 
+/// A surface and how it came about.
 struct Reconstruction {
     PolyMesh mesh; ///< with the `hsdm_...` properties and status bits, in the cloud's coordinates
-    Report report;
+    Report report; ///< in the cloud's units
 };
 
 /// Throws OptionError for options that fit no cloud. What follows here does so too, before any work.

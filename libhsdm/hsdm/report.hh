@@ -11,65 +11,98 @@
 
 namespace hsdm {
 
+/// Counts, errors and times of one reconstruction. Lengths are in the cloud's units, times in seconds.
 struct Report {
     std::map<std::string, std::string> options; ///< as given or chosen, by their command-line names
 
+    /// The cloud.
     struct Input {
-        std::string file;
-        std::size_t points = 0, dropped_nonfinite = 0, merged_duplicates = 0;
+        std::string file;                           ///< set by the command, else empty
+        std::size_t points = 0,                     ///< with finite coordinates
+            dropped_nonfinite = 0,                  ///< left out, as a coordinate was NaN or Inf
+            merged_duplicates = 0;                  ///< equal to another in position and normal, counted once
         std::optional<std::size_t> first_nonfinite; ///< index in the cloud of the first point without
-        bool has_normals = false;
-        Box bbox;
-        double spacing = 0; ///< mean distance between neighbouring points
-    } input;
+        bool has_normals = false;                   ///< given, whether used or not
+        Box bbox;                                   ///< of the points that were not dropped
+        double spacing = 0;                         ///< mean distance between neighbouring points
+    } input;                                        ///< what went in
 
+    /// The octree's level that the surface was made on.
     struct Grid {
-        std::string kind = "uniform";
-        int depth = 0;
-        double voxel_size = 0;
-        std::size_t voxels = 0;
+        std::string kind = "uniform";              ///< or "adaptive"
+        int depth = 0;                             ///< of the octree; an adaptive grid's finest level
+        double voxel_size = 0;                     ///< edge of a voxel at that depth
+        std::size_t voxels = 0;                    ///< that hold a point, at that depth
         std::vector<std::size_t> leaves_per_level; ///< index = level
-        std::size_t sets = 0, balance_splits = 0, merged = 0;
-        double max_error = 0;          ///< the bound an adaptive grid keeps; 0 for a uniform one
+        std::size_t sets = 0,   ///< normal sets of the extended method; of the basic one the voxels
+            balance_splits = 0, ///< leaves of an adaptive grid subdivided to balance the octree
+            merged = 0;         ///< vertices of an adaptive grid that others stand for, beyond their leaves
+        double max_error = 0;   ///< the bound an adaptive grid keeps; 0 for a uniform one
         std::size_t points_beyond = 0; ///< farther than that, from the finest surface already
-    } grid;
+    } grid;                            ///< where it was made
 
+    /// Topology of the mesh; zero without ReconstructOptions::measure.
     struct Mesh {
-        std::size_t vertices = 0, edges = 0, faces = 0, triangles = 0, quads = 0, larger = 0;
-        std::size_t components = 0, boundary_loops = 0, boundary_edges = 0;
-        long euler = 0, genus = 0;
-        bool closed = false;
-    } mesh;
+        std::size_t vertices = 0,   ///< of a facet
+            edges = 0,              ///< each counted once
+            faces = 0,              ///< facets, the sum of the next three
+            triangles = 0,          ///< facets of three corners
+            quads = 0,              ///< facets of four corners
+            larger = 0;             ///< facets of five or more corners
+        std::size_t components = 0, ///< connected across edges
+            boundary_loops = 0,     ///< closed rows of boundary edges
+            boundary_edges = 0;     ///< with one facet
+        long euler = 0,             ///< V - E + F
+            genus = 0;              ///< as Topology::genus()
+        bool closed = false;        ///< no boundary edge
+    } mesh;                         ///< what came out
 
+    /// Phase 3; zero without ReconstructOptions::classify.
     struct Features {
-        std::size_t sharp_edges = 0, smooth_vertices = 0, edge_vertices = 0, corner_vertices = 0;
-    } features;
+        std::size_t sharp_edges = 0, ///< edges with the status bit `feature`
+            smooth_vertices = 0,     ///< vertices on no sharp edge
+            edge_vertices = 0,       ///< vertices that a sharp line passes or ends at
+            corner_vertices = 0;     ///< vertices where sharp lines meet or turn
+    } features;                      ///< sharp edges and classes of vertices
 
+    /// Distances of the points from the mesh, section 4; zero without ReconstructOptions::measure.
     struct Error {
-        double points_to_mesh_max = 0, points_to_mesh_mean = 0, points_to_mesh_rms = 0;
-        double normalised_max = 0; ///< max over the diagonal of the bounding box
+        double points_to_mesh_max = 0, ///< one-sided Hausdorff distance
+            points_to_mesh_mean = 0,   ///< mean distance
+            points_to_mesh_rms = 0;    ///< root of the mean square
+        double normalised_max = 0;     ///< max over the diagonal of the bounding box
         /// Of an adaptive grid: the mesh from the surface on the finest grid; 0 for a uniform one.
-        double mesh_to_surface_max = 0, mesh_to_surface_mean = 0;
-    } error;
+        double mesh_to_surface_max = 0,
+               mesh_to_surface_mean = 0; ///< the mean of the same
+    } error;                             ///< how far the points are from it
 
     std::map<std::string, std::size_t> rejected; ///< by stage: what it refused, mended or split
 
     /// Of the input or the surface: what was there and is not in the mesh, and where the first of it was.
     struct Dropped {
-        std::string what; ///< e.g. "points far from all others"
-        std::size_t count = 0;
-        Vec3 where{0, 0, 0}; ///< in the cloud's coordinates
+        std::string what;      ///< e.g. "points far from all others"
+        std::size_t count = 0; ///< > 0
+        Vec3 where{0, 0, 0};   ///< in the cloud's coordinates
     };
-    std::vector<Dropped> dropped;
+    std::vector<Dropped> dropped; ///< in the order of the stages
 
+    /// Wall-clock time.
     struct Seconds {
-        double read = 0, normals = 0, octree = 0, graph = 0, facets = 0, mesh = 0, features = 0, error = 0,
-               write = 0, total = 0;
-    } seconds;
+        double read = 0,  ///< set by the command
+            normals = 0,  ///< and noise, outliers, points moved onto their surface
+            octree = 0,   ///< phase 1, and its level
+            graph = 0,    ///< phase 2a: connectivity graph, or normal sets
+            facets = 0,   ///< phase 2b, and an adaptive grid
+            mesh = 0,     ///< half-edge mesh
+            features = 0, ///< phase 3
+            error = 0,    ///< Error and Mesh
+            write = 0,    ///< set by the command
+            total = 0;    ///< all of it; of reconstruct_levels() by level, phase 1 with the first
+    } seconds;            ///< how long it took
 
-    std::size_t peak_memory_bytes = 0;
-    int threads = 0;
-    std::string failure; ///< why there is no mesh (see reconstruct_levels); empty: there is one
+    std::size_t peak_memory_bytes = 0; ///< of the whole process so far
+    int threads = 0;                   ///< at most so many worked
+    std::string failure;               ///< why there is no mesh (see reconstruct_levels); empty: there is one
 };
 
 /// The report as JSON text, keys as in the command's contract; what is not finite is left out.

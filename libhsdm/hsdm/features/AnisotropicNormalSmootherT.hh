@@ -25,6 +25,7 @@ namespace hsdm {
 template <class Mesh>
 class AnisotropicNormalSmootherT {
 public:
+    /// Keeps a reference: the mesh must outlive it. Requests the attributes it works with.
     explicit AnisotropicNormalSmootherT(Mesh& mesh);
     ~AnisotropicNormalSmootherT();
     AnisotropicNormalSmootherT(const AnisotropicNormalSmootherT&) = delete;

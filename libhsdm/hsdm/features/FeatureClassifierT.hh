@@ -24,6 +24,7 @@ namespace hsdm {
 template <class Mesh>
 class FeatureClassifierT {
 public:
+    /// Keeps a reference: the mesh must outlive it. Requests the attributes it works with.
     explicit FeatureClassifierT(Mesh& mesh);
     ~FeatureClassifierT();
     FeatureClassifierT(const FeatureClassifierT&) = delete;

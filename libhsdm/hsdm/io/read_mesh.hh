@@ -16,8 +16,8 @@ PolygonMesh read_mesh(const std::string& path);
 
 /// What a file holds: a mesh with facets, or, if it has none, its points.
 struct MeshOrPoints {
-    PolygonMesh mesh;
-    PointFile points;
+    PolygonMesh mesh; ///< empty if the file has no facets
+    PointFile points; ///< empty if it has
 };
 
 /// Reads whichever it is, found as read_points finds formats; "-" is standard input. Throws as the two do.

@@ -10,6 +10,7 @@
 
 namespace hsdm {
 
+/// How a file is to be read, where it does not say so itself.
 struct ReadOptions {
     /// One of point_formats(); empty: by the content where that is a sure sign, else by the file's extension.
     std::string format;
@@ -24,7 +25,7 @@ std::span<const std::string_view> point_formats();
 
 /// What was read, beside the cloud.
 struct PointFile {
-    PointCloud cloud;
+    PointCloud cloud;      ///< in the file's units
     std::string format;    ///< the format found, by the names above
     std::size_t faces = 0; ///< faces in the file, which were skipped
     /// Points without coordinates, left out while reading: pixels and rays without a return.

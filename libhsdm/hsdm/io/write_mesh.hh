@@ -8,8 +8,16 @@
 
 namespace hsdm {
 
-enum class MeshFormat { off, stl, ply, obj, om };
+/// What a mesh is written as.
+enum class MeshFormat {
+    off, ///< text: positions and facets
+    stl, ///< triangles, binary or text
+    ply, ///< binary or text, with normals and vertex properties
+    obj, ///< text, with normals
+    om,  ///< OpenMesh's own, with normals and vertex properties
+};
 
+/// How it is written.
 struct WriteOptions {
     bool ascii = false; ///< PLY and STL: text instead of binary (OFF and OBJ are always text)
 };

@@ -7,15 +7,18 @@
 
 namespace hsdm {
 
+/// What to_mesh() did besides copying.
 struct ToMeshCounts {
     std::size_t rejected =
         0; ///< facets that would have broken the 2-manifold; 0 for what our own facet stages make
     std::size_t split_vertices =
         0; ///< vertices added where facets met in a vertex only: each fan has its own
 };
+/// The mesh and the counts in one.
 struct ToMeshResult {
-    PolyMesh mesh;
-    std::size_t rejected = 0, split_vertices = 0; ///< as ToMeshCounts
+    PolyMesh mesh;            ///< an oriented 2-manifold
+    std::size_t rejected = 0, ///< as ToMeshCounts
+        split_vertices = 0;   ///< as ToMeshCounts
 };
 
 /// Builds the half-edge mesh: always an oriented 2-manifold, possibly with boundary. A facet is rejected if

@@ -5,13 +5,17 @@
 
 namespace hsdm {
 
+/// How closely to look.
 struct CompareOptions {
     std::size_t samples = 200000; ///< points spread over the area of a mesh, > 0
 };
 
+/// The distances of a from b and of b from a.
 struct Comparison {
-    Distance a_to_b, b_to_a; ///< in the units of the two
-    double diagonal = 0;     ///< of the box around both, to normalise by
+    Distance a_to_b,     ///< of a from b, in the units of the two
+        b_to_a;          ///< of b from a
+    double diagonal = 0; ///< of the box around both, to normalise by
+    /// Two-sided Hausdorff distance: the larger maximum.
     double hausdorff() const { return std::max(a_to_b.max, b_to_a.max); }
 };
 

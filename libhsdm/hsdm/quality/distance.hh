@@ -10,9 +10,9 @@ namespace hsdm {
 
 /// One-sided distance of a set of points to a surface, in the cloud's units.
 struct Distance {
-    double max = 0; ///< one-sided Hausdorff distance
-    double mean = 0;
-    double rms = 0;
+    double max = 0;               ///< one-sided Hausdorff distance
+    double mean = 0;              ///< mean distance
+    double rms = 0;               ///< root of the mean square
     std::size_t farthest = 0;     ///< index of the point at distance max
     std::size_t beyond = 0;       ///< how many points lie farther than was asked
     std::size_t first_beyond = 0; ///< index of the first of them, if there is one

@@ -7,13 +7,19 @@
 
 namespace hsdm {
 
+/// Counts of a polygon mesh. What is said of edges, components, boundary, manifoldness and euler leaves out
+/// corners that repeat the one before them, and facets that have fewer than three others.
 struct Topology {
-    std::size_t vertices = 0; ///< used by a facet
-    std::size_t isolated_vertices = 0;
-    std::size_t edges = 0, faces = 0;
-    std::size_t triangles = 0, quads = 0, larger = 0;
-    std::size_t components = 0;
-    std::size_t boundary_edges = 0, boundary_loops = 0;
+    std::size_t vertices = 0;             ///< used by a facet
+    std::size_t isolated_vertices = 0;    ///< used by none
+    std::size_t edges = 0,                ///< each counted once
+        faces = 0;                        ///< facets
+    std::size_t triangles = 0,            ///< facets of three corners
+        quads = 0,                        ///< facets of four corners
+        larger = 0;                       ///< facets of five or more corners
+    std::size_t components = 0;           ///< facets connected across edges
+    std::size_t boundary_edges = 0,       ///< with one facet
+        boundary_loops = 0;               ///< closed rows of boundary edges
     std::size_t nonmanifold_edges = 0;    ///< with three or more facets
     std::size_t nonmanifold_vertices = 0; ///< whose facets form more than one fan
     std::size_t misoriented_edges = 0;    ///< whose two facets run along it the same way
@@ -22,7 +28,9 @@ struct Topology {
     long euler = 0;                    ///< V - E + F
     double signed_volume = 0;          ///< positive if closed and outward
 
+    /// Whether no edge has three or more facets and each vertex has one fan.
     bool manifold() const { return nonmanifold_edges == 0 && nonmanifold_vertices == 0; }
+    /// Whether there is a facet and no boundary.
     bool closed() const { return faces > 0 && boundary_edges == 0; }
     /// Sum over components of the closed surface each becomes when its boundary loops are capped.
     long genus() const {
@@ -48,9 +56,10 @@ struct FacetShape {
     double quad_share = 0; ///< quads / facets
     double scaled_jacobian_median =
         0; ///< of quads: the least over its corners of |e1 x e2| / (|e1| |e2|), signed
-    double scaled_jacobian_min = 0;
-    double edge_length_mean = 0;
+    double scaled_jacobian_min = 0; ///< the least of any quad
+    double edge_length_mean = 0;    ///< over the sides of all facets, in the mesh's units
 };
+/// Measures the facets of a mesh; all but the edge length is 0 where there are no quads. O(corners).
 FacetShape measure_shape(const PolygonMesh& mesh);
 
 } // namespace hsdm
