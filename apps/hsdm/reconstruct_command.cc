@@ -216,12 +216,12 @@ private:
         if (arguments_.quiet) return true;
         const std::string written = spoken_name(target(report).mesh);
         if (arguments_.inputs.size() == 1 && !levels_) {
-            print_summary(text_, report, written);
+            text_ << summary_of(report, written);
         } else {
-            print_line(text_, report, written);
+            text_ << line_of(report, written);
         }
         if (made.text_for_precision) text_ << text_for_precision;
-        if (arguments_.verbose) print_details(text_, report);
+        if (arguments_.verbose) text_ << details_of(report);
         return true;
     }
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <iomanip>
-#include <ostream>
+#include <string_view>
+#include <utility>
 
 namespace hsdm::command {
 namespace {
@@ -60,6 +60,20 @@ std::string seconds(double value) {
     return text;
 }
 
+/// A text put together before any of it is written: without memory there is none, rather than half of one.
+class Text {
+public:
+    Text& operator<<(std::string_view more) {
+        text_ += more;
+        return *this;
+    }
+    Text& operator<<(int number) { return *this << std::to_string(number); }
+    std::string take() && { return std::move(text_); }
+
+private:
+    std::string text_;
+};
+
 std::string dropped_words(const Report::Dropped& dropped) {
     return dropped.what + ": " + grouped(dropped.count) + ", the first at " + number(dropped.where[0], 6)
            + ' ' + number(dropped.where[1], 6) + ' ' + number(dropped.where[2], 6);
@@ -90,7 +104,8 @@ std::string topology_words(const Report::Mesh& mesh) {
     return text + ", genus " + std::to_string(mesh.genus);
 }
 
-void print_summary(std::ostream& out, const Report& r, const std::string& written) {
+std::string summary_of(const Report& r, const std::string& written) {
+    Text out;
     const Vec3 size = r.input.bbox.size();
     out << "cloud     " << plural(r.input.points, "point", "points") << ", " << normals_words(r) << ", "
         << number(size[0]) << " x " << number(size[1]) << " x " << number(size[2]) << ", spacing "
@@ -117,30 +132,42 @@ void print_summary(std::ostream& out, const Report& r, const std::string& writte
     out << "\nerror     points to mesh: max " << number(r.error.points_to_mesh_max, 3) << " ("
         << number(100 * r.error.normalised_max, 3) << " % of the diagonal), mean "
         << number(r.error.points_to_mesh_mean, 3) << bound_words(r) << "\nwritten   " << printable(written)
-        << " in " << seconds(r.seconds.total) << '\n';
+        << " in " << seconds(r.seconds.total) << "\n";
+    return std::move(out).take();
 }
 
-void print_details(std::ostream& out, const Report& r) {
+std::string details_of(const Report& r) {
+    Text out;
     const Report::Seconds& s = r.seconds;
-    out << "seconds  " << std::fixed << std::setprecision(3) << " read " << s.read << ", octree " << s.octree
-        << ", normals " << s.normals << ", graph " << s.graph << ", facets " << s.facets << ", mesh "
-        << s.mesh << ", features " << s.features << ", error " << s.error << ", write " << s.write << '\n'
-        << std::defaultfloat << std::setprecision(6);
+    const std::pair<const char*, double> phases[] = {
+        {"read", s.read},         {"octree", s.octree}, {"normals", s.normals},
+        {"graph", s.graph},       {"facets", s.facets}, {"mesh", s.mesh},
+        {"features", s.features}, {"error", s.error},   {"write", s.write}};
+    out << "seconds  ";
+    for (const auto& [name, taken] : phases) {
+        char text[64];
+        std::snprintf(text, sizeof text, "%s %s %.3f", name == phases[0].first ? "" : ",", name, taken);
+        out << text;
+    }
+    out << "\n";
     out << "features  " << grouped(r.features.smooth_vertices) << " smooth, "
         << grouped(r.features.edge_vertices) << " edge, " << grouped(r.features.corner_vertices)
         << " corner vertices\n";
     for (const auto& [stage, count] : r.rejected)
-        if (count > 0) out << "rejected  " << stage << ": " << grouped(count) << '\n';
+        if (count > 0) out << "rejected  " << stage << ": " << grouped(count) << "\n";
     out << "memory    " << grouped(r.peak_memory_bytes / 1000000) << " MB at most, " << r.threads
         << " threads\n";
+    return std::move(out).take();
 }
 
-void print_line(std::ostream& out, const Report& r, const std::string& written) {
+std::string line_of(const Report& r, const std::string& written) {
+    Text out;
     out << printable(written) << ": " << grouped(r.input.points) << " points, depth " << r.grid.depth << ", "
         << grouped(r.mesh.faces) << " faces, " << topology_words(r.mesh) << islands_words(r) << ", error "
         << number(100 * r.error.normalised_max, 3) << " %, " << seconds(r.seconds.total);
     for (const Report::Dropped& dropped : r.dropped) out << "; dropped " << dropped_words(dropped);
-    out << '\n';
+    out << "\n";
+    return std::move(out).take();
 }
 
 } // namespace hsdm::command

@@ -3,16 +3,16 @@
 
 #include "hsdm/report.hh"
 
-#include <iosfwd>
+#include <string>
 
 namespace hsdm::command {
 
 /// About six lines: the cloud, the voxels and why, the mesh, its topology, its error, the time.
-void print_summary(std::ostream& out, const Report& report, const std::string& written);
+std::string summary_of(const Report& report, const std::string& written);
 /// What --verbose adds: seconds of every phase, what was rejected, memory.
-void print_details(std::ostream& out, const Report& report);
+std::string details_of(const Report& report);
 /// One line, for many inputs.
-void print_line(std::ostream& out, const Report& report, const std::string& written);
+std::string line_of(const Report& report, const std::string& written);
 
 /// "closed, genus 3", "open, 2 boundary loops of 40 edges, genus 0".
 std::string topology_words(const Report::Mesh& mesh);
