@@ -11,6 +11,7 @@
 #include "hsdm/io/write_mesh.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/mesh_types.hh"
+#include "hsdm/modules/plugin_loader.hh"
 #include "hsdm/plugin.hh"
 #include "hsdm/point_cloud.hh"
 #include "hsdm/polygon_mesh.hh"

@@ -198,3 +198,12 @@ TEST_CASE("points are put in the order of a larger cube, or at other places", "[
         CHECK((octree.normals[i] - cloud.normals[source].normalized()).norm() < 1e-12);
     }
 }
+
+TEST_CASE("a cube whose voxels are no numbers is refused", "[octree]") {
+    const double most = 1.7e308, least = 1e-310;
+    for (const double far : {most, least}) {
+        PointCloud cloud;
+        cloud.positions = {{-far, 0, 0}, {far, 0, 0}, {0, far, 0}, {0, 0, far}};
+        CHECK_THROWS_WITH(build_octree(cloud), Catch::Contains("too large or too small"));
+    }
+}

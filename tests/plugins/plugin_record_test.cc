@@ -1,3 +1,4 @@
+#include "hsdm/io/source_bytes.hh"
 #include "hsdm/modules/plugin_record.hh"
 #include "hsdm/plugin.hh"
 

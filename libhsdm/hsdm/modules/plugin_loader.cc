@@ -1,6 +1,7 @@
 #include "hsdm/modules/plugin_loader.hh"
 
 #include "hsdm/errors.hh"
+#include "hsdm/io/source_bytes.hh"
 #include "hsdm/modules/trusted_path.hh"
 #include "hsdm/plugin.hh"
 

@@ -22,7 +22,9 @@ public:
     /// be loaded.
     explicit Plugin(const std::string& path);
 
+    /// Of the shared library, as it was given.
     const std::string& path() const { return path_; }
+    /// By which it is asked for.
     const std::string& name() const { return record_.name; }
     const std::string& description() const { return record_.description; } ///< one line
     const std::string& options() const { return record_.options; } ///< one line: keys, units, defaults
@@ -50,8 +52,11 @@ Plugin load_plugin(const std::string& name, const std::vector<std::string>& fold
 /// What a folder offers, one entry per shared library; a folder that is not looked into is one with a
 /// problem.
 struct PluginListing {
-    std::string path, name, description, options;
-    std::string problem; ///< empty, or why the module cannot be used
+    std::string path;        ///< of the shared library or the folder
+    std::string name;        ///< by which it is asked for
+    std::string description; ///< one line
+    std::string options;     ///< one line: keys, units, defaults
+    std::string problem;     ///< empty, or why the module cannot be used
 };
 
 /// All modules of the folders, by folder and name; of two with the same file name the first counts. Loads
@@ -61,8 +66,8 @@ std::vector<PluginListing> list_plugins(const std::vector<std::string>& folders 
 /// `name` or `name:key=value,key=value`. A colon in the name is written `\:`; of a path it may stand as it
 /// is, if there is a file so far.
 struct PluginRequest {
-    std::string name;
-    std::vector<std::pair<std::string, std::string>> options;
+    std::string name;                                         ///< or path
+    std::vector<std::pair<std::string, std::string>> options; ///< key, value
 };
 /// Throws OptionError for an empty name or key and a part without '='.
 PluginRequest parse_plugin_request(const std::string& text);

@@ -1,5 +1,6 @@
 #include "hsdm/modules/plugin_record.hh"
 
+#include "hsdm/io/source_bytes.hh"
 #include "hsdm/plugin.hh"
 
 #include <link.h>

@@ -1,11 +1,13 @@
 #pragma once
 // What a processing module tells of itself in its file, read without running any of it.
 
-#include "hsdm/io/source_bytes.hh"
-
 #include <cstdint>
 #include <optional>
 #include <string>
+
+namespace hsdm::io {
+class SourceBytes;
+}
 
 namespace hsdm {
 
