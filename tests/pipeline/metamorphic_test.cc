@@ -59,7 +59,7 @@ TEST_CASE("which axis is which, and on which side normals are, does not change t
     ReconstructOptions how;
     how.voxel_size = options.voxel;
     std::size_t of_other_topology = 0; // one in six hundred has a hole where the other has none
-    constexpr double few = 0.01; // of all: facets at creases and corners, worked on in Morton order
+    constexpr double few = 0.01;       // of all: facets at creases and corners, worked on in Morton order
     for (const PointCloud& cloud : large_solids(5, options)) {
         const Reconstruction expected = reconstruct(cloud, how);
         for (const Change& change : changes) {
