@@ -1,4 +1,3 @@
-// hsdm_bench: seconds of every phase over clouds of growing size, at a fixed number of points per voxel.
 
 #include "hsdm/octree/spacing.hh"
 #include "hsdm/reconstruct.hh"

@@ -35,7 +35,7 @@ std::string normals_words(const Report& report) {
     return report.input.has_normals ? "normals estimated anew" : "normals estimated";
 }
 
-std::string islands_words(const Report& report) {
+std::string small_component_words(const Report& report) {
     const auto dropped = report.rejected.find("components_small");
     if (dropped == report.rejected.end() || dropped->second == 0) return "";
     return "; " + plural(dropped->second, "small component", "small components") + " dropped";
@@ -127,7 +127,7 @@ std::string summary_of(const Report& r, const std::string& written) {
         << plural(r.mesh.vertices, "vertex", "vertices") << ", " << plural(r.mesh.faces, "face", "faces")
         << " (" << grouped(r.mesh.quads) << " quads, " << grouped(r.mesh.triangles) << " triangles), "
         << plural(r.features.sharp_edges, "sharp edge", "sharp edges") << "\ntopology  "
-        << topology_words(r.mesh) << islands_words(r);
+        << topology_words(r.mesh) << small_component_words(r);
     for (const Report::Dropped& dropped : r.dropped) out << "\ndropped   " << dropped_words(dropped);
     out << "\nerror     points to mesh: max " << number(r.error.points_to_mesh_max, 3) << " ("
         << number(100 * r.error.normalised_max, 3) << " % of the diagonal), mean "
@@ -163,8 +163,8 @@ std::string details_of(const Report& r) {
 std::string line_of(const Report& r, const std::string& written) {
     Text out;
     out << printable(written) << ": " << grouped(r.input.points) << " points, depth " << r.grid.depth << ", "
-        << grouped(r.mesh.faces) << " faces, " << topology_words(r.mesh) << islands_words(r) << ", error "
-        << number(100 * r.error.normalised_max, 3) << " %, " << seconds(r.seconds.total);
+        << grouped(r.mesh.faces) << " faces, " << topology_words(r.mesh) << small_component_words(r)
+        << ", error " << number(100 * r.error.normalised_max, 3) << " %, " << seconds(r.seconds.total);
     for (const Report::Dropped& dropped : r.dropped) out << "; dropped " << dropped_words(dropped);
     out << "\n";
     return std::move(out).take();

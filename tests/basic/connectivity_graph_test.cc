@@ -1,5 +1,5 @@
 #include "hsdm/basic/connectivity_graph.hh"
-#include "hsdm/basic/vertex_position.hh"
+#include "hsdm/basic/voxel_centroid.hh"
 #include "hsdm/errors.hh"
 
 #include <catch2/catch.hpp>
@@ -41,7 +41,7 @@ TEST_CASE("a vertex lies at the centroid of its voxel's points", "[basic]") {
     cloud.positions.insert(cloud.positions.end(), {{4.25, 4.5, 4.5}, {4.75, 4.5, 4.75}, {4.5, 4.5, 4.25}});
     const Octree octree = build_octree(cloud);
     const OctreeLevel level = extract_level(octree, 3);
-    const Vec3 p = vertex_position(octree, level, level.find(VoxelCoord{4, 4, 4})) + octree.origin;
+    const Vec3 p = voxel_centroid(octree, level, level.find(VoxelCoord{4, 4, 4})) + octree.origin;
     CHECK((p - Vec3(4.5, 4.5, 4.5)).norm() < 1e-15);
 }
 

@@ -1,6 +1,6 @@
 #include "hsdm/contour/shared_corners.hh"
 
-#include "hsdm/contour/settle_crossings.hh"
+#include "hsdm/contour/grid_signs.hh"
 #include "support/sample.hh"
 
 #include <catch2/catch.hpp>
@@ -18,9 +18,9 @@ struct Found {
     support::Pose pose;
     Octree octree;
     OctreeLevel level;
-    CornerLattice lattice;
+    GridPoints grid;
     Crossings crossings;
-    Fans fans;
+    DualVertices duals;
     std::vector<EdgeCollapse> edges;
 
     Found(const Vec3& box_size, std::uint64_t seed) : size(box_size) {
@@ -33,21 +33,20 @@ struct Found {
         const double h = level.voxel_size;
         const NormalSets sets = build_normal_sets(octree, level);
         const RelationTest related({}, h);
-        lattice = build_corner_lattice(level);
-        LocalSheets local = group_local_sheets(lattice, sets, related, h);
-        extend_lattice(lattice, local, level);
-        crossings =
-            settle_crossings(lattice, local, sets, find_crossings(lattice, local, sets, related, h), h);
-        fans = build_fans(lattice, crossings, pair_crossings(lattice, crossings, sets, related));
-        edges = shared_corners(lattice, crossings, fans, h,
-                               place_vertices(level, lattice, sets, related, crossings, fans));
+        grid = build_grid_points(level);
+        LocalSheets local = group_local_sheets(grid, sets, related, h);
+        extend_grid_points(grid, local, level);
+        crossings = label_grid_signs(grid, local, sets, find_crossings(grid, local, sets, related, h), h);
+        duals = build_dual_vertices(grid, crossings, pair_crossings(grid, crossings, sets, related));
+        edges = shared_corners(grid, crossings, duals, h,
+                               place_vertices(level, grid, sets, related, crossings, duals));
     }
 
     Vec3 to_local(const Vec3& p) const { return pose.to_local(p + octree.origin); }
     /// Does a chain pass the box's top or bottom?
-    bool sees_side(Index fan, bool top) const {
-        return std::ranges::any_of(fans.fan(fan), [&](Node node) {
-            const double up = pose.unrotate(crossings.crossings[node / 4].normal)[2];
+    bool sees_side(Index dual, bool top) const {
+        return std::ranges::any_of(duals.corners_of(dual), [&](FacetCorner corner) {
+            const double up = pose.unrotate(crossings.crossings[corner / 4].normal)[2];
             return (top ? up : -up) > 0.9;
         });
     }

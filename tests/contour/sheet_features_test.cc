@@ -1,6 +1,6 @@
 #include "hsdm/contour/sheet_features.hh"
 
-#include "hsdm/contour/extended_facets.hh"
+#include "hsdm/contour/dual_contour.hh"
 #include "hsdm/features/features.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/mesh/vertex_normals.hh"
@@ -22,7 +22,7 @@ struct Part {
     Octree octree;
     OctreeLevel level;
     NormalSets sets;
-    ExtendedFacets facets;
+    DualContour facets;
     SheetFeatures features;
 
     Part(const PointCloud& cloud, double voxel_size, bool turned = false) {
@@ -33,7 +33,7 @@ struct Part {
         octree = build_octree(cloud, options);
         level = extract_level(octree, depth);
         sets = build_normal_sets(octree, level);
-        facets = reconstruct_extended(octree, level, sets);
+        facets = dual_contour(octree, level, sets);
         if (turned)
             for (std::size_t f = 0; f < facets.mesh.facet_count(); ++f)
                 std::reverse(facets.mesh.corners.begin() + facets.mesh.first[f],

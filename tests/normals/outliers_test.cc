@@ -37,7 +37,7 @@ TEST_CASE("strays are removed, a surface of uneven density keeps its points", "[
         Octree octree = build_octree(cloud);
         const std::size_t before = octree.size();
         Neighbors neighbors = find_neighbors(octree);
-        const std::size_t dropped = drop_outliers(octree, neighbors).count;
+        const std::size_t dropped = drop_outliers_by_distance(octree, neighbors).count;
         CHECK(dropped == static_cast<std::size_t>(strays));
         CHECK(octree.size() == before - dropped);
         CHECK(octree.codes.size() == octree.size());
@@ -50,7 +50,7 @@ TEST_CASE("strays are removed, a surface of uneven density keeps its points", "[
             CHECK((cloud.positions[octree.source[i]] - p).norm() < 1e-9);
         }
         CHECK(neighbors.index == find_neighbors(octree).index);
-        CHECK(drop_outliers(octree, neighbors).count == 0);
+        CHECK(drop_outliers_by_distance(octree, neighbors).count == 0);
     }
 }
 
@@ -116,8 +116,8 @@ TEST_CASE("strays go though they are a tenth of all points, the surface stays", 
         REQUIRE(static_cast<double>(before.strays) > 0.5 * share * 20000);
         Octree by_position = build_octree(cloud), by_normal = by_position;
         Neighbors neighbors = find_neighbors(by_position);
-        drop_outliers(by_position, neighbors);
-        drop_strays(by_normal);
+        drop_outliers_by_distance(by_position, neighbors);
+        drop_outliers_by_normals(by_normal);
         for (const Octree* octree : {&by_position, &by_normal}) {
             const Left after = count(octree->positions, octree->origin);
             CHECK(after.surface + 2 >= before.surface);
@@ -132,9 +132,9 @@ TEST_CASE("rods, wires, borders and sparse parts are no strays", "[normals]") {
     const PointCloud cloud = frail_parts();
     const auto fewest = cloud.size() - cloud.size() / 2000;
     Octree octree = build_octree(cloud);
-    CHECK(drop_strays(octree).count == 0);
+    CHECK(drop_outliers_by_normals(octree).count == 0);
     Neighbors neighbors = find_neighbors(octree);
-    drop_outliers(octree, neighbors);
+    drop_outliers_by_distance(octree, neighbors);
     CHECK(octree.size() >= fewest);
     std::size_t wire = 0;
     for (const Vec3& p : octree.positions) wire += (p + octree.origin)[0] > 15;
@@ -166,7 +166,7 @@ TEST_CASE("a cube that fits again is that of the points left", "[normals]") {
     cloud.normals.emplace_back(1, 0, 0);
     Octree octree = build_octree(cloud, {.placement = CubePlacement::centred});
     Neighbors neighbors = find_neighbors(octree);
-    REQUIRE(drop_outliers(octree, neighbors).count == 1);
+    REQUIRE(drop_outliers_by_distance(octree, neighbors).count == 1);
     CHECK(fit_to_points(octree));
     CHECK_FALSE(fit_to_points(octree));
     CHECK(octree.extent == Approx(clean.extent).epsilon(1e-12));

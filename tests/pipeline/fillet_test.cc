@@ -1,6 +1,6 @@
-#include "hsdm/contour/extended_facets.hh"
+#include "hsdm/contour/dual_contour.hh"
 #include "hsdm/mesh/area_vector.hh"
-#include "hsdm/simplify/coarsen.hh"
+#include "hsdm/simplify/simplify.hh"
 #include "support/check.hh"
 #include "support/sample.hh"
 
@@ -59,10 +59,9 @@ Part coarse_part(const support::Solid& solid, const support::SampleOptions& opti
     constexpr int depth = 6;
     Part part{build_octree(support::sample(solid, options)), {}, 0};
     const OctreeLevel level = extract_level(part.octree, depth);
-    const PolygonMesh fine =
-        reconstruct_extended(part.octree, level, build_normal_sets(part.octree, level)).mesh;
+    const PolygonMesh fine = dual_contour(part.octree, level, build_normal_sets(part.octree, level)).mesh;
     part.error = share * part.octree.bounds.diagonal();
-    part.coarse = coarsen(fine, part.octree.positions, part.octree.extent, depth, {.max_error = part.error});
+    part.coarse = simplify(fine, part.octree.positions, part.octree.extent, depth, {.max_error = part.error});
     for (Vec3& p : part.coarse.mesh.positions) p += part.octree.origin;
     return part;
 }

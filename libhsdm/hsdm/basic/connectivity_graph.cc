@@ -1,6 +1,6 @@
 #include "hsdm/basic/connectivity_graph.hh"
 
-#include "hsdm/basic/vertex_position.hh"
+#include "hsdm/basic/voxel_centroid.hh"
 #include "hsdm/errors.hh"
 
 #include <tbb/blocked_range.h>
@@ -120,7 +120,7 @@ void make_half_edges(const Choices& choices, bool mutual, ConnectivityGraph& gra
 ConnectivityGraph extract_graph(const Octree& octree, const OctreeLevel& level, const GraphOptions& options) {
     check(options.neighbors);
     ConnectivityGraph graph;
-    graph.positions = vertex_positions(octree, level);
+    graph.positions = voxel_centroids(octree, level);
     graph.voxel.resize(level.size());
     std::iota(graph.voxel.begin(), graph.voxel.end(), Index{0});
     make_half_edges(choose_all(level, graph.positions, options.neighbors), options.mutual, graph);

@@ -9,7 +9,7 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t corners_per_chunk = 1024;
+constexpr std::size_t grid_points_per_chunk = 1024;
 constexpr double far_from_data =
     1.0; // voxels: from the crossing to the centroid of the nearest set of its sheet
 constexpr double fair_share = 0.25; // of the points expected in a voxel: fewer, and the sheet ends in it
@@ -40,23 +40,18 @@ struct Candidate {
 /// What the crossings of one edge are decided from. Reused from edge to edge.
 class EdgeCrossings {
 public:
-    EdgeCrossings(const CornerLattice& lattice, const LocalSheets& local, const NormalSets& sets,
+    EdgeCrossings(const GridPoints& grid, const LocalSheets& local, const NormalSets& sets,
                   const RelationTest& related, double voxel_size, const CrossingOptions& options)
-        : lattice_(lattice),
-          local_(local),
-          sets_(sets),
-          related_(related),
-          h_(voxel_size),
-          options_(options) {}
+        : grid_(grid), local_(local), sets_(sets), related_(related), h_(voxel_size), options_(options) {}
 
     std::size_t dropped_beyond_crease = 0;
 
-    void find(Index corner, unsigned axis, std::vector<Candidate>& found) {
-        ends_[0] = corner, ends_[1] = lattice_.next[corner][axis], axis_ = axis;
+    void find(Index grid_point, unsigned axis, std::vector<Candidate>& found) {
+        ends_[0] = grid_point, ends_[1] = grid_.next[grid_point][axis], axis_ = axis;
         if (ends_[1] == no_index
             || (local_.members_at(ends_[0]).empty() && local_.members_at(ends_[1]).empty()) || passes_by())
             return;
-        const VoxelCoord c = lattice_.coord(corner);
+        const VoxelCoord c = grid_.coord(grid_point);
         low_ = Vec3(c[0], c[1], c[2]) * h_;
         join_sheets();
         if (!measure()) return;
@@ -280,7 +275,7 @@ private:
         return {sheets_[i].t, sheets_[i].normal, 3 * ends_[0] + axis_, set, sheets_[i].leaving(), carried};
     }
 
-    const CornerLattice& lattice_;
+    const GridPoints& grid_;
     const LocalSheets& local_;
     const NormalSets& sets_;
     const RelationTest& related_;
@@ -302,18 +297,18 @@ private:
 
 } // namespace
 
-CrossingCandidates find_crossings(const CornerLattice& lattice, const LocalSheets& local,
-                                  const NormalSets& sets, const RelationTest& related, double voxel_size,
+CrossingCandidates find_crossings(const GridPoints& grid, const LocalSheets& local, const NormalSets& sets,
+                                  const RelationTest& related, double voxel_size,
                                   const CrossingOptions& options) {
     CrossingCandidates result;
-    const std::size_t n = lattice.size();
+    const std::size_t n = grid.size();
     result.crossings.first.assign(3 * n + 1, 0);
-    const std::size_t chunks = chunk_count(n, corners_per_chunk);
+    const std::size_t chunks = chunk_count(n, grid_points_per_chunk);
     std::vector<std::vector<Crossing>> found(chunks);
     std::vector<std::vector<std::uint8_t>> standing(chunks);
     std::vector<std::size_t> dropped(chunks);
-    for_chunks(n, corners_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        EdgeCrossings edge(lattice, local, sets, related, voxel_size, options);
+    for_chunks(n, grid_points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        EdgeCrossings edge(grid, local, sets, related, voxel_size, options);
         std::vector<Candidate> on_edge;
         for (std::size_t c = begin; c < end; ++c)
             for (unsigned axis = 0; axis < 3; ++axis) {
@@ -334,8 +329,8 @@ CrossingCandidates find_crossings(const CornerLattice& lattice, const LocalSheet
     return result;
 }
 
-Vec3 crossing_position(const CornerLattice& lattice, const Crossing& crossing, double voxel_size) {
-    const VoxelCoord c = lattice.coord(crossing.edge / 3);
+Vec3 crossing_position(const GridPoints& grid, const Crossing& crossing, double voxel_size) {
+    const VoxelCoord c = grid.coord(crossing.edge / 3);
     Vec3 p(c[0], c[1], c[2]);
     p[crossing.edge % 3] += crossing.t;
     return p * voxel_size;

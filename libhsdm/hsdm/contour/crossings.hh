@@ -15,11 +15,11 @@ struct CrossingOptions {
 
 /// A sheet crossing a grid edge.
 struct Crossing {
-    double t;       ///< position along the edge, [0, 1] from its lower corner
+    double t;       ///< position along the edge, [0, 1] from its lower grid point
     Vec3 normal;    ///< unit normal of the sheet there
-    Index edge;     ///< 3 * lower corner + axis
+    Index edge;     ///< 3 * lower grid point + axis
     Index set;      ///< the sheet's set nearest to the crossing
-    bool leaving;   ///< the lower corner is inside, the upper one outside
+    bool leaving;   ///< the lower grid point is inside, the upper one outside
     bool supported; ///< the data carries the sheet into all four voxels beside the edge, slivers apart
 };
 
@@ -29,7 +29,7 @@ struct Crossings {
     std::vector<Crossing> crossings;
     std::vector<Index> first{0};
     std::size_t dropped_beyond_crease = 0; ///< clipped by the sheet's crease partner
-    std::size_t settled = 0;               ///< taken back, brought back or made (settle_crossings)
+    std::size_t settled = 0;               ///< taken back, brought back or made (label_grid_signs)
     std::size_t trimmed = 0;               ///< beyond the end of the data (trim_unsupported)
     std::size_t tips = 0;                  ///< pairs that only a tip made (drop_tips)
 
@@ -45,11 +45,11 @@ struct CrossingCandidates {
     std::vector<std::uint8_t> standing; ///< per crossing
 };
 
-CrossingCandidates find_crossings(const CornerLattice& lattice, const LocalSheets& sheets,
-                                  const NormalSets& sets, const RelationTest& related, double voxel_size,
+CrossingCandidates find_crossings(const GridPoints& grid, const LocalSheets& sheets, const NormalSets& sets,
+                                  const RelationTest& related, double voxel_size,
                                   const CrossingOptions& options = {});
 
 /// Where a crossing lies, relative to the octree's origin.
-Vec3 crossing_position(const CornerLattice& lattice, const Crossing& crossing, double voxel_size);
+Vec3 crossing_position(const GridPoints& grid, const Crossing& crossing, double voxel_size);
 
 } // namespace hsdm

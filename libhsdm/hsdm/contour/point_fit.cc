@@ -28,13 +28,14 @@ struct Foot {
 };
 
 /// Appends the triangles round a vertex, two of each facet.
-void list_triangles(Index fan, const Fans& fans, const std::vector<Vec3>& at, std::vector<Around>& around) {
-    for (Node node : fans.fan(fan)) {
-        const Index x = node / 4;
-        const unsigned j = node % 4, next = (j + 1) % 4, across = (j + 2) % 4, before = (j + 3) % 4;
-        const Index opposite = fans.at(x, across, across);
-        around.emplace_back(at, fan, fans.at(x, next, j), opposite);
-        around.emplace_back(at, fan, opposite, fans.at(x, before, before));
+void list_triangles(Index dual, const DualVertices& duals, const std::vector<Vec3>& at,
+                    std::vector<Around>& around) {
+    for (FacetCorner corner : duals.corners_of(dual)) {
+        const Index x = corner / 4;
+        const unsigned j = corner % 4, next = (j + 1) % 4, across = (j + 2) % 4, before = (j + 3) % 4;
+        const Index opposite = duals.at(x, across, across);
+        around.emplace_back(at, dual, duals.at(x, next, j), opposite);
+        around.emplace_back(at, dual, opposite, duals.at(x, before, before));
     }
 }
 
@@ -73,26 +74,26 @@ double PointFit::Heights::variance() const {
     return freedom > 1e-12 * weight * weight ? std::max(squares, 0.0) / freedom : m * m;
 }
 
-PointFit::PointFit(const Octree& octree, const OctreeLevel& level, const Fans& fans,
-                   const VertexPositions& vertices)
+PointFit::PointFit(const Octree& octree, const OctreeLevel& level, const DualVertices& duals,
+                   const PlacedVertices& vertices)
     : octree_(octree),
       level_(level),
-      fans_(fans),
+      duals_(duals),
       vertices_(vertices),
-      of_voxel_(std::span(vertices.voxel).first(fans.size()), level.size()) {}
+      of_voxel_(std::span(vertices.voxel).first(duals.size()), level.size()) {}
 
-void PointFit::gather_beside(Index voxel, std::vector<Index>& fans) const {
-    fans.clear();
+void PointFit::gather_beside(Index voxel, std::vector<Index>& duals) const {
+    duals.clear();
     const VoxelCoord at = level_.coord(voxel);
     for (std::size_t k = 0; k < 6; ++k) { // the first six are those beside its faces
         const VoxelCoord& d = neighbor_offsets[k];
         const Index x = level_.find({at[0] + d[0], at[1] + d[1], at[2] + d[2]});
-        if (x != no_index) fans.insert(fans.end(), of_voxel_.of(x).begin(), of_voxel_.of(x).end());
+        if (x != no_index) duals.insert(duals.end(), of_voxel_.of(x).begin(), of_voxel_.of(x).end());
     }
 }
 
 PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
-    Measure result{std::vector<double>(level_.size(), 0), std::vector<Heights>(fans_.size())};
+    Measure result{std::vector<double>(level_.size(), 0), std::vector<Heights>(duals_.size())};
     // Vertices of other chunks' voxels get their share afterwards, in the order of the chunks.
     std::vector<std::vector<Foreign>> foreign(chunk_count(level_.size(), per_chunk));
     for_chunks(level_.size(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
@@ -103,7 +104,7 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
             const std::span<const Index> near = of_voxel_.of(x).empty() ? beside : of_voxel_.of(x);
             const bool flat = near.size() == 1 && vertices_.classes[near[0]] == VertexClass::smooth;
             around.clear();
-            for (Index fan : near) list_triangles(fan, fans_, positions, around);
+            for (Index dual : near) list_triangles(dual, duals_, positions, around);
             if (around.empty()) continue;
             const std::size_t first = level_.first_point[x], last = level_.first_point[x + 1];
             const std::size_t stride = (last - first + points_per_voxel - 1) / points_per_voxel;
@@ -115,7 +116,7 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
                 for (std::size_t k = 0; k < 3; ++k) {
                     const Index v = foot.corners[k];
                     const double height = vertices_.directions[v] | way;
-                    if (vertices_.classes[v] != VertexClass::smooth || fans_.open[v]
+                    if (vertices_.classes[v] != VertexClass::smooth || duals_.open[v]
                         || (octree_.normals[i] | vertices_.directions[v]) < same_sheet_cosine
                         || std::abs(height) < same_sheet_cosine * distance) // beside the facets
                         continue;
@@ -128,7 +129,7 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
         }
     });
     for (const std::vector<Foreign>& share : foreign)
-        for (const Foreign& f : share) result.heights[f.fan].add(f.weight, f.height);
+        for (const Foreign& f : share) result.heights[f.dual].add(f.weight, f.height);
     return result;
 }
 
@@ -136,18 +137,18 @@ std::vector<double> PointFit::rises(const std::vector<Heights>& heights) const {
     struct Moments {
         double square, variance; // of the mean
     };
-    std::vector<Moments> of_mean(fans_.size());
-    for_chunks(fans_.size(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+    std::vector<Moments> of_mean(duals_.size());
+    for_chunks(duals_.size(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t v = begin; v < end; ++v)
             of_mean[v] = {heights[v].mean() * heights[v].mean(), heights[v].variance()};
     });
-    std::vector<double> rises(fans_.size(), 0);
-    for_chunks(fans_.size(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+    std::vector<double> rises(duals_.size(), 0);
+    for_chunks(duals_.size(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t v = begin; v < end; ++v) {
             Moments sum{0, 0};
-            for (Node node : fans_.fan(static_cast<Index>(v)))
+            for (FacetCorner corner : duals_.corners_of(static_cast<Index>(v)))
                 for (unsigned j = 0; j < 4; ++j) {
-                    const Moments& other = of_mean[fans_.at(node / 4, j, j)];
+                    const Moments& other = of_mean[duals_.at(corner / 4, j, j)];
                     sum.square += other.square;
                     sum.variance += other.variance;
                 }

@@ -1,7 +1,7 @@
 #pragma once
 // How well the facets round vertices fit the points of their voxels.
 
-#include "hsdm/contour/vertex_placement.hh"
+#include "hsdm/contour/place_vertices.hh"
 #include "hsdm/core/groups.hh"
 
 namespace hsdm {
@@ -10,9 +10,9 @@ namespace hsdm {
 /// in the voxel, or in the voxels beside it where it has none.
 class PointFit {
 public:
-    /// O(fans + voxels). Everything given must outlive it; positions are given anew to measure().
-    PointFit(const Octree& octree, const OctreeLevel& level, const Fans& fans,
-             const VertexPositions& vertices);
+    /// O(dual vertices + voxels). Everything given must outlive it; positions are given anew to measure().
+    PointFit(const Octree& octree, const OctreeLevel& level, const DualVertices& duals,
+             const PlacedVertices& vertices);
 
     /// Heights over the facets of the points whose feet lie round a vertex, each weighing what the vertex
     /// weighs at its foot (barycentric).
@@ -27,26 +27,26 @@ public:
         std::vector<double> misfit;   ///< per voxel the sum of the distances of its points from the facets
         std::vector<Heights> heights; ///< per vertex; none for all but smooth ones inside the surface
     };
-    /// O(fans), parallel, the same for any number of threads.
+    /// O(dual vertices), parallel, the same for any number of threads.
     Measure measure(const std::vector<Vec3>& positions) const;
 
     /// Per vertex how far the sheet should move along the vertex's direction to pass amid its points: their
     /// mean height; less, down to nothing, where the means round the vertex are no larger than chance makes
-    /// them (twice their own variance), so that noise moves nothing. O(fans), parallel.
+    /// them (twice their own variance), so that noise moves nothing. O(dual vertices), parallel.
     std::vector<double> rises(const std::vector<Heights>& heights) const;
 
 private:
     struct Foreign {
-        Index fan;
+        Index dual;
         double weight, height;
     };
-    void gather_beside(Index voxel, std::vector<Index>& fans) const;
+    void gather_beside(Index voxel, std::vector<Index>& duals) const;
 
     const Octree& octree_;
     const OctreeLevel& level_;
-    const Fans& fans_;
-    const VertexPositions& vertices_;
-    Members of_voxel_; // its fans
+    const DualVertices& duals_;
+    const PlacedVertices& vertices_;
+    Groups of_voxel_; // its dual vertices
 };
 
 } // namespace hsdm

@@ -12,20 +12,20 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t fans_per_chunk = 1024;
+constexpr std::size_t duals_per_chunk = 1024;
 constexpr double same_sheet_cosine = 0.77; // normals within 40 degrees
 constexpr double along_cosine = 0.8;       // an edge this parallel to a crease lies on it
 constexpr double margin = 0.002;           // voxels: vertices stay this far from their voxel's faces
 constexpr double farther = 0.1;            // share by which a voxel's points may get farther off
 constexpr double nearness = 0.01;          // squared voxels: added to squared distances in weights
 
-/// As far from one position of a fan's vertex towards another as its voxel allows.
-Vec3 within_voxel(const CornerLattice& lattice, const Crossings& crossings, const Fans& fans, Index fan,
+/// As far from one position of a dual vertex's vertex towards another as its voxel allows.
+Vec3 within_voxel(const GridPoints& grid, const Crossings& crossings, const DualVertices& duals, Index dual,
                   double h, const Vec3& from, const Vec3& to) {
-    const Node node = fans.fan(fan)[0];
-    const Index edge = crossings.crossings[node / 4].edge;
-    const unsigned octant = Ring::octant(edge % 3, node % 4);
-    const VoxelCoord corner = lattice.coord(edge / 3);
+    const FacetCorner corner = duals.corners_of(dual)[0];
+    const Index edge = crossings.crossings[corner / 4].edge;
+    const unsigned octant = Ring::octant(edge % 3, corner % 4);
+    const VoxelCoord corner = grid.coord(edge / 3);
     const Vec3 way = to - from;
     double share = 1;
     for (unsigned k = 0; k < 3; ++k) {
@@ -43,12 +43,12 @@ double sum_of(const std::vector<double>& all) {
 
 class Relaxation {
 public:
-    Relaxation(double voxel_size, const CornerLattice& lattice, const Crossings& crossings, const Fans& fans,
-               VertexPositions& vertices)
+    Relaxation(double voxel_size, const GridPoints& grid, const Crossings& crossings,
+               const DualVertices& duals, PlacedVertices& vertices)
         : h_(voxel_size),
-          lattice_(lattice),
+          grid_(grid),
           crossings_(crossings),
-          fans_(fans),
+          duals_(duals),
           vertices_(vertices),
           placed_(vertices.positions) {
         list_neighbours();
@@ -56,14 +56,14 @@ public:
 
     void round(double step) {
         next_ = vertices_.positions;
-        for_chunks(fans_.size(), fans_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for_chunks(duals_.size(), duals_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t v = begin; v < end; ++v) {
-                const auto fan = static_cast<Index>(v);
-                if (fans_.open[v]) continue;
+                const auto dual = static_cast<Index>(v);
+                if (duals_.open[v]) continue;
                 if (vertices_.classes[v] == VertexClass::smooth)
-                    next_[v] = kept_in(fan, on_sheet(fan, moved_on_sheet(fan, step)));
+                    next_[v] = kept_in(dual, on_sheet(dual, moved_on_sheet(dual, step)));
                 else if (vertices_.classes[v] == VertexClass::edge)
-                    next_[v] = kept_in(fan, moved_along_crease(fan, step));
+                    next_[v] = kept_in(dual, moved_along_crease(dual, step));
             }
         });
         vertices_.positions.swap(next_);
@@ -81,7 +81,7 @@ public:
             return;
         }
         rise(fit.rises(after.heights));
-        for (std::size_t v = 0; v < fans_.size(); ++v) {
+        for (std::size_t v = 0; v < duals_.size(); ++v) {
             const Index voxel = vertices_.voxel[v];
             if (after.misfit[voxel] > (1 + farther) * before.misfit[voxel])
                 vertices_.positions[v] = placed_[v];
@@ -93,16 +93,16 @@ private:
     struct Neighbour {
         Index vertex, sides;
     };
-    std::span<const Neighbour> neighbours(Index fan) const {
-        return {neighbours_.data() + 2 * std::size_t{fans_.first[fan]}, neighbour_count_[fan]};
+    std::span<const Neighbour> neighbours(Index dual) const {
+        return {neighbours_.data() + 2 * std::size_t{duals_.first[dual]}, neighbour_count_[dual]};
     }
 
     void list_neighbours() {
-        neighbours_.resize(2 * fans_.nodes.size());
-        neighbour_count_.resize(fans_.size());
-        for_chunks(fans_.size(), fans_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        neighbours_.resize(2 * duals_.corners.size());
+        neighbour_count_.resize(duals_.size());
+        for_chunks(duals_.size(), duals_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t v = begin; v < end; ++v) {
-                Neighbour* const first = neighbours_.data() + 2 * std::size_t{fans_.first[v]};
+                Neighbour* const first = neighbours_.data() + 2 * std::size_t{duals_.first[v]};
                 Neighbour* last = first;
                 const auto add = [&](Index n) {
                     Neighbour* const known =
@@ -110,29 +110,29 @@ private:
                     if (known == last) *last++ = {n, 0};
                     ++known->sides;
                 };
-                for (Node node : fans_.fan(static_cast<Index>(v))) {
-                    const Index x = node / 4;
-                    const unsigned j = node % 4;
-                    add(fans_.at(x, (j + 1) % 4, j));
-                    add(fans_.at(x, (j + 3) % 4, (j + 3) % 4));
+                for (FacetCorner corner : duals_.corners_of(static_cast<Index>(v))) {
+                    const Index x = corner / 4;
+                    const unsigned j = corner % 4;
+                    add(duals_.at(x, (j + 1) % 4, j));
+                    add(duals_.at(x, (j + 3) % 4, (j + 3) % 4));
                 }
                 neighbour_count_[v] = static_cast<Index>(last - first);
             }
         });
     }
 
-    Vec3 moved_on_sheet(Index fan, double step) const {
-        const Vec3& p = vertices_.positions[fan];
+    Vec3 moved_on_sheet(Index dual, double step) const {
+        const Vec3& p = vertices_.positions[dual];
         Vec3 mean(0, 0, 0);
-        for (const Neighbour& n : neighbours(fan)) mean += vertices_.positions[n.vertex] * n.sides;
-        const Vec3 way = mean / static_cast<double>(2 * fans_.fan(fan).size()) - p;
-        const Vec3& normal = vertices_.directions[fan];
+        for (const Neighbour& n : neighbours(dual)) mean += vertices_.positions[n.vertex] * n.sides;
+        const Vec3 way = mean / static_cast<double>(2 * duals_.corners_of(dual).size()) - p;
+        const Vec3& normal = vertices_.directions[dual];
         return p + (way - normal * (normal | way)) * step;
     }
 
     /// The point of the sheet below or above p: as high as the vertices of the sheet around it were placed.
-    Vec3 on_sheet(Index fan, const Vec3& p) const {
-        const Vec3& own = vertices_.directions[fan];
+    Vec3 on_sheet(Index dual, const Vec3& p) const {
+        const Vec3& own = vertices_.directions[dual];
         Vec3 normal(0, 0, 0), place(0, 0, 0);
         double sum = 0;
         const auto add = [&](Index v, double share) {
@@ -141,8 +141,8 @@ private:
             place += placed_[v] * weight;
             sum += weight;
         };
-        if (!vertices_.is_clamped[fan]) add(fan, 1);
-        for (const auto& [n, sides] : neighbours(fan))
+        if (!vertices_.is_clamped[dual]) add(dual, 1);
+        for (const auto& [n, sides] : neighbours(dual))
             if (vertices_.classes[n] == VertexClass::smooth && !vertices_.is_clamped[n]
                 && (vertices_.directions[n] | own) > same_sheet_cosine)
                 add(n, 0.5 * sides);
@@ -152,11 +152,11 @@ private:
     }
 
     /// Towards the middle between the next vertices on the crease, if there is one either way.
-    Vec3 moved_along_crease(Index fan, double step) const {
-        const Vec3& p = vertices_.positions[fan];
-        const Vec3& along = vertices_.directions[fan];
+    Vec3 moved_along_crease(Index dual, double step) const {
+        const Vec3& p = vertices_.positions[dual];
+        const Vec3& along = vertices_.directions[dual];
         double ahead = 0, behind = 0;
-        for (const auto& [n, sides] : neighbours(fan)) {
+        for (const auto& [n, sides] : neighbours(dual)) {
             if (vertices_.is_clamped[n]) return p;
             if (vertices_.classes[n] == VertexClass::smooth) continue;
             const Vec3 way = vertices_.positions[n] - p;
@@ -169,7 +169,7 @@ private:
 
     /// Moves vertices along their directions.
     void rise(const std::vector<double>& heights) {
-        for_chunks(fans_.size(), fans_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for_chunks(duals_.size(), duals_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t v = begin; v < end; ++v)
                 if (heights[v] != 0) {
                     const Vec3 to = vertices_.positions[v] + vertices_.directions[v] * heights[v];
@@ -178,18 +178,18 @@ private:
         });
     }
 
-    Vec3 kept_in(Index fan, const Vec3& p) const {
-        return within_voxel(lattice_, crossings_, fans_, fan, h_, vertices_.positions[fan], p);
+    Vec3 kept_in(Index dual, const Vec3& p) const {
+        return within_voxel(grid_, crossings_, duals_, dual, h_, vertices_.positions[dual], p);
     }
 
     double h_;
-    const CornerLattice& lattice_;
+    const GridPoints& grid_;
     const Crossings& crossings_;
-    const Fans& fans_;
-    VertexPositions& vertices_;
+    const DualVertices& duals_;
+    PlacedVertices& vertices_;
     const std::vector<Vec3> placed_;
     std::vector<Vec3> next_;
-    std::vector<Neighbour> neighbours_; // those of a fan begin at twice its first node
+    std::vector<Neighbour> neighbours_; // those of a dual vertex begin at twice its first corner
     std::vector<Index> neighbour_count_;
 };
 
@@ -203,50 +203,52 @@ const NormalSet* own_set(const NormalSets& sets, Index voxel, const Vec3& normal
 
 } // namespace
 
-void extend_borders(const OctreeLevel& level, const CornerLattice& lattice, const NormalSets& sets,
-                    const Crossings& crossings, const Fans& fans, VertexPositions& vertices) {
+void extend_borders(const OctreeLevel& level, const GridPoints& grid, const NormalSets& sets,
+                    const Crossings& crossings, const DualVertices& duals, PlacedVertices& vertices) {
     const std::vector<Vec3> placed = vertices.positions;
     const double h = level.voxel_size;
-    for_chunks(fans.size(), fans_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for_chunks(duals.size(), duals_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t v = begin; v < end; ++v) {
-            if (!fans.open[v] || vertices.classes[v] != VertexClass::smooth) continue;
-            const auto fan = static_cast<Index>(v);
+            if (!duals.open[v] || vertices.classes[v] != VertexClass::smooth) continue;
+            const auto dual = static_cast<Index>(v);
             const NormalSet* set = own_set(sets, vertices.voxel[v], vertices.directions[v]);
             if (!set) continue;
             // The facets lie inwards; along the border the first and the last neighbour lead on.
-            const auto nodes = fans.fan(fan);
-            const auto beside = [&](Node node, bool enters) {
-                const unsigned j = node % 4;
-                const bool lower = crossings.crossings[node / 4].leaving == enters;
-                return placed[fans.at(node / 4, lower ? (j + 3) % 4 : (j + 1) % 4, lower ? (j + 3) % 4 : j)];
+            const auto corners = duals.corners_of(dual);
+            const auto beside = [&](FacetCorner corner, bool enters) {
+                const unsigned j = corner % 4;
+                const bool lower = crossings.crossings[corner / 4].leaving == enters;
+                return placed[duals.at(corner / 4, lower ? (j + 3) % 4 : (j + 1) % 4,
+                                       lower ? (j + 3) % 4 : j)];
             };
-            const Vec3 first = beside(nodes.front(), true), last = beside(nodes.back(), false);
+            const Vec3 first = beside(corners.front(), true), last = beside(corners.back(), false);
             Vec3 inner(0, 0, 0);
-            for (Node node : nodes) inner += placed[fans.at(node / 4, (node + 2) % 4, (node + 2) % 4)];
+            for (FacetCorner corner : corners)
+                inner += placed[duals.at(corner / 4, (corner + 2) % 4, (corner + 2) % 4)];
             const Vec3 along = unit(last - first);
-            Vec3 outward = placed[v] - inner / static_cast<double>(nodes.size());
+            Vec3 outward = placed[v] - inner / static_cast<double>(corners.size());
             outward -= along * (along | outward);
             outward = unit(outward - set->normal * (set->normal | outward));
             const double reach = (outward | (set->centroid - placed[v]))
                                  + std::sqrt(3 * std::max(0.0, set->spread.along(outward)));
             if (!(reach > 0)) continue;
             const Vec3 to = placed[v] + outward * reach;
-            vertices.positions[v] = within_voxel(lattice, crossings, fans, fan, h, placed[v], to);
+            vertices.positions[v] = within_voxel(grid, crossings, duals, dual, h, placed[v], to);
         }
     });
 }
 
-void relax_vertices(const Octree& octree, const OctreeLevel& level, const CornerLattice& lattice,
-                    const Crossings& crossings, const Fans& fans, const RelaxOptions& options,
-                    VertexPositions& vertices) {
+void relax_vertices(const Octree& octree, const OctreeLevel& level, const GridPoints& grid,
+                    const Crossings& crossings, const DualVertices& duals, const RelaxOptions& options,
+                    PlacedVertices& vertices) {
     if (options.rounds < 0)
         throw OptionError("relaxation rounds " + std::to_string(options.rounds) + ": must be 0 or more");
     if (!(options.step > 0 && options.step <= 1))
         throw OptionError("relaxation step " + std::to_string(options.step) + ": must lie in (0, 1]");
     if (options.rounds == 0 && !options.fit) return;
-    Relaxation relaxation(level.voxel_size, lattice, crossings, fans, vertices);
+    Relaxation relaxation(level.voxel_size, grid, crossings, duals, vertices);
     for (int round = 0; round < options.rounds; ++round) relaxation.round(options.step);
-    if (options.fit) relaxation.fit(PointFit(octree, level, fans, vertices));
+    if (options.fit) relaxation.fit(PointFit(octree, level, duals, vertices));
 }
 
 } // namespace hsdm

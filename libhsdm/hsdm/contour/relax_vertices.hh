@@ -1,7 +1,7 @@
 #pragma once
 // Vertices moved along the surface so that facets come nearer to squares.
 
-#include "hsdm/contour/vertex_placement.hh"
+#include "hsdm/contour/place_vertices.hh"
 
 namespace hsdm {
 
@@ -18,13 +18,14 @@ struct RelaxOptions {
 /// lie amid the points (PointFit::rises). Where after the first of the two a voxel's points are a tenth
 /// farther from the facets than as placed, its vertices go back; all do if the points in all are farther.
 /// O(rounds * crossings), parallel; the same for any number of threads. Throws OptionError.
-void relax_vertices(const Octree& octree, const OctreeLevel& level, const CornerLattice& lattice,
-                    const Crossings& crossings, const Fans& fans, const RelaxOptions& options,
-                    VertexPositions& vertices);
+void relax_vertices(const Octree& octree, const OctreeLevel& level, const GridPoints& grid,
+                    const Crossings& crossings, const DualVertices& duals, const RelaxOptions& options,
+                    PlacedVertices& vertices);
 
 /// Moves the vertices of borders outwards within their sheet and voxel, to where the points of the voxel's
-/// own set end: evenly spread, they reach sqrt(3) standard deviations from their mean. O(fans), parallel.
-void extend_borders(const OctreeLevel& level, const CornerLattice& lattice, const NormalSets& sets,
-                    const Crossings& crossings, const Fans& fans, VertexPositions& vertices);
+/// own set end: evenly spread, they reach sqrt(3) standard deviations from their mean. O(dual vertices),
+/// parallel.
+void extend_borders(const OctreeLevel& level, const GridPoints& grid, const NormalSets& sets,
+                    const Crossings& crossings, const DualVertices& duals, PlacedVertices& vertices);
 
 } // namespace hsdm

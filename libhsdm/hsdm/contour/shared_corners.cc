@@ -12,49 +12,49 @@ constexpr double same_sheet_cosine = 0.77; // normals within 40 degrees
 
 class SharedCorners {
 public:
-    SharedCorners(const CornerLattice& lattice, const Crossings& crossings, const Fans& fans,
-                  double voxel_size, const VertexPositions& vertices)
-        : lattice_(lattice), crossings_(crossings), fans_(fans), h_(voxel_size), vertices_(vertices) {}
+    SharedCorners(const GridPoints& grid, const Crossings& crossings, const DualVertices& duals,
+                  double voxel_size, const PlacedVertices& vertices)
+        : grid_(grid), crossings_(crossings), duals_(duals), h_(voxel_size), vertices_(vertices) {}
 
-    void find(const VertexPositions::Beyond& beyond, std::vector<EdgeCollapse>& edges) {
-        if (fans_.open[beyond.fan]) return;
+    void find(const PlacedVertices::Beyond& beyond, std::vector<EdgeCollapse>& edges) {
+        if (duals_.open[beyond.dual]) return;
         holders_.clear();
-        for (Node node : fans_.fan(beyond.fan)) {
-            const Index x = node / 4;
-            const unsigned j = node % 4;
-            for (Index next : {fans_.at(x, (j + 1) % 4, j), fans_.at(x, (j + 3) % 4, (j + 3) % 4)})
+        for (FacetCorner corner : duals_.corners_of(beyond.dual)) {
+            const Index x = corner / 4;
+            const unsigned j = corner % 4;
+            for (Index next : {duals_.at(x, (j + 1) % 4, j), duals_.at(x, (j + 3) % 4, (j + 3) % 4)})
                 if (can_hold(next, beyond))
                     holders_.push_back({!is_corner(next), outside(next, beyond.position), next});
         }
         std::sort(holders_.begin(), holders_.end());
         holders_.erase(std::unique(holders_.begin(), holders_.end()), holders_.end());
         for (const auto& [has_none, distance, holder] : holders_)
-            edges.push_back({beyond.fan, holder, has_none ? beyond.position : vertices_.positions[holder]});
+            edges.push_back({beyond.dual, holder, has_none ? beyond.position : vertices_.positions[holder]});
     }
 
 private:
     /// Where its planes meet?
-    bool is_corner(Index fan) const {
-        return vertices_.classes[fan] == VertexClass::corner && !vertices_.is_clamped[fan];
+    bool is_corner(Index dual) const {
+        return vertices_.classes[dual] == VertexClass::corner && !vertices_.is_clamped[dual];
     }
 
-    bool can_hold(Index fan, const VertexPositions::Beyond& beyond) const {
-        if (fan == beyond.fan || fans_.open[fan] || !may_reach(fan, beyond)) return false;
+    bool can_hold(Index dual, const PlacedVertices::Beyond& beyond) const {
+        if (dual == beyond.dual || duals_.open[dual] || !may_reach(dual, beyond)) return false;
         const double near = same_place * h_;
-        if (is_corner(fan)) return (vertices_.positions[fan] - beyond.position).norm() < near;
-        const auto nodes = fans_.fan(fan);
-        return std::all_of(nodes.begin(), nodes.end(), [&](Node node) {
-            const Crossing& x = crossings_.crossings[node / 4];
-            return std::abs(x.normal | (beyond.position - crossing_position(lattice_, x, h_))) < near
+        if (is_corner(dual)) return (vertices_.positions[dual] - beyond.position).norm() < near;
+        const auto corners = duals_.corners_of(dual);
+        return std::all_of(corners.begin(), corners.end(), [&](FacetCorner corner) {
+            const Crossing& x = crossings_.crossings[corner / 4];
+            return std::abs(x.normal | (beyond.position - crossing_position(grid_, x, h_))) < near
                    && has_sheet(beyond, x.normal);
         });
     }
 
     /// May the vertex of a neighbouring voxel lie at the corner, in its own voxel or beyond a face of that
     /// across which no sheet crosses an edge?
-    bool may_reach(Index fan, const VertexPositions::Beyond& beyond) const {
-        if (outside(fan, beyond.position) < same_place) return true;
-        const VoxelCoord here = voxel_of(beyond.fan), there = voxel_of(fan);
+    bool may_reach(Index dual, const PlacedVertices::Beyond& beyond) const {
+        if (outside(dual, beyond.position) < same_place) return true;
+        const VoxelCoord here = voxel_of(beyond.dual), there = voxel_of(dual);
         unsigned axis = 0;
         while (axis < 2 && here[axis] == there[axis]) ++axis;
         if (there[axis] != here[axis] + beyond.step[axis]) return false;
@@ -63,14 +63,14 @@ private:
         return true;
     }
 
-    static bool has_sheet(const VertexPositions::Beyond& beyond, const Vec3& normal) {
+    static bool has_sheet(const PlacedVertices::Beyond& beyond, const Vec3& normal) {
         return std::ranges::any_of(beyond.normals,
                                    [&](const Vec3& n) { return (n | normal) > same_sheet_cosine; });
     }
 
-    /// How far a point lies beyond the faces of a fan's voxel, in voxels; 0 inside.
-    double outside(Index fan, const Vec3& point) const {
-        const VoxelCoord voxel = voxel_of(fan);
+    /// How far a point lies beyond the faces of a dual vertex's voxel, in voxels; 0 inside.
+    double outside(Index dual, const Vec3& point) const {
+        const VoxelCoord voxel = voxel_of(dual);
         double most = 0;
         for (unsigned k = 0; k < 3; ++k) {
             const double at = point[k] / h_ - voxel[k];
@@ -79,20 +79,20 @@ private:
         return most;
     }
 
-    VoxelCoord voxel_of(Index fan) const {
-        const Node node = fans_.fan(fan)[0];
-        const Index edge = crossings_.crossings[node / 4].edge;
-        const unsigned octant = Ring::octant(edge % 3, node % 4);
-        VoxelCoord voxel = lattice_.coord(edge / 3);
+    VoxelCoord voxel_of(Index dual) const {
+        const FacetCorner corner = duals_.corners_of(dual)[0];
+        const Index edge = crossings_.crossings[corner / 4].edge;
+        const unsigned octant = Ring::octant(edge % 3, corner % 4);
+        VoxelCoord voxel = grid_.coord(edge / 3);
         for (unsigned k = 0; k < 3; ++k) voxel[k] += static_cast<int>(octant >> k & 1u) - 1;
         return voxel;
     }
 
-    const CornerLattice& lattice_;
+    const GridPoints& grid_;
     const Crossings& crossings_;
-    const Fans& fans_;
+    const DualVertices& duals_;
     double h_;
-    const VertexPositions& vertices_;
+    const PlacedVertices& vertices_;
     // Those with the corner already first, then by how far beyond their voxels it lies.
     std::vector<std::tuple<bool, double, Index>> holders_;
 };
@@ -115,12 +115,12 @@ std::vector<EdgeCollapse> with_one_corner_each(const std::vector<EdgeCollapse>& 
 
 } // namespace
 
-std::vector<EdgeCollapse> shared_corners(const CornerLattice& lattice, const Crossings& crossings,
-                                         const Fans& fans, double voxel_size,
-                                         const VertexPositions& vertices) {
+std::vector<EdgeCollapse> shared_corners(const GridPoints& grid, const Crossings& crossings,
+                                         const DualVertices& duals, double voxel_size,
+                                         const PlacedVertices& vertices) {
     std::vector<EdgeCollapse> edges;
-    SharedCorners corners(lattice, crossings, fans, voxel_size, vertices);
-    for (const VertexPositions::Beyond& beyond : vertices.beyond) corners.find(beyond, edges);
+    SharedCorners corners(grid, crossings, duals, voxel_size, vertices);
+    for (const PlacedVertices::Beyond& beyond : vertices.beyond) corners.find(beyond, edges);
     return with_one_corner_each(edges, same_place * voxel_size);
 }
 

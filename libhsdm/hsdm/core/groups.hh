@@ -8,10 +8,10 @@
 namespace hsdm {
 
 /// The members of groups, each group's in ascending order.
-class Members {
+class Groups {
 public:
     /// `group`: per member, below `count`, or no_index for one that is in none. O(members + count).
-    Members(std::span<const Index> group, std::size_t count) : first_(count + 1, 0) {
+    Groups(std::span<const Index> group, std::size_t count) : first_(count + 1, 0) {
         for (Index g : group)
             if (g != no_index) ++first_[g + 1];
         counts_to_first(first_);

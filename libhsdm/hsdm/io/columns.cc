@@ -17,7 +17,7 @@ struct Sample {
 };
 
 /// True if nearly all vectors that are there (not zero, not NaN) have length 1 within what two decimals of
-/// rounding leave; a few strays among them do not make a colour of a normal.
+/// rounding leave; a few outliers among them do not make a colour of a normal.
 bool are_unit_vectors(const Sample& sample, std::size_t first) {
     std::size_t unit = 0, other = 0;
     for (std::size_t row = 0; row < sample.rows(); ++row) {

@@ -34,9 +34,4 @@ EstimatedNormals estimate_normals(const Octree& octree, const Neighbors& neighbo
 std::vector<Vec3> refined_normals(const Octree& octree, const Neighbors& neighbors,
                                   const EstimatedNormals& estimate);
 
-/// For normals that are oriented: each point near a crease, or whose normal stands alone, takes the normal
-/// that most of its neighbours on one plane with it agree on. Turns single points that were oriented wrongly.
-/// O(n), parallel.
-void settle_normals(const Octree& octree, const Neighbors& neighbors, EstimatedNormals& estimate);
-
 } // namespace hsdm

@@ -17,7 +17,7 @@ struct NormalConsistency {
     /// More steep pairs than flat ones: the noise is perhaps not small against the spacing.
     bool rough() const { return steep > flat; }
 
-    /// More contradictions than thin parts and strays cause: ten pairs, and over 0.05 % of the flat or 15 %
+    /// More contradictions than thin parts and outliers cause: ten pairs, and over 0.05 % of the flat or 15 %
     /// of the creased.
     bool doubtful() const;
     /// Sum of the two shares.

@@ -1,6 +1,7 @@
 #include "hsdm/normals/normals.hh"
 
 #include "hsdm/normals/noise.hh"
+#include "hsdm/normals/vote_on_normals.hh"
 
 #include <tbb/parallel_invoke.h>
 
@@ -22,7 +23,7 @@ Neighbors choose_neighbors(const Octree& octree, int count, Neighbors neighbors)
 NormalsReport make_normals(Octree& octree, const NormalsOptions& options) {
     NormalsReport report;
     Neighbors nearest = find_neighbors(octree);
-    report.outliers = drop_outliers(octree, nearest, options.outliers);
+    report.outliers = drop_outliers_by_distance(octree, nearest, options.outliers);
     OrientOptions orient = options.orient;
     if (const Vec3 origin = octree.origin; report.outliers.count > 0 && fit_to_points(octree)) {
         nearest = find_neighbors(octree); // in another order, and in voxels that fit what is left
@@ -38,7 +39,7 @@ NormalsReport make_normals(Octree& octree, const NormalsOptions& options) {
     turn_normals(orientation, refined);
     estimate.normals = std::move(refined);
     report.orientation = orientation.report;
-    settle_normals(octree, neighbors, estimate);
+    vote_on_normals(octree, neighbors, estimate);
     report.noise = estimate.noise;
     report.bent = estimate.bent.size();
     report.missing = static_cast<std::size_t>(std::count_if(estimate.normals.begin(), estimate.normals.end(),

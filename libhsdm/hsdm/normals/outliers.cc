@@ -84,7 +84,8 @@ Density level_of_density(const Octree& octree, double points_per_voxel) {
 /// Of the neighbours, how many continue the point's plane with a normal like its own. A dense surface far
 /// away is in no plane that the point continues.
 int support(const Octree& octree, Index i, std::span<const Index> neighbors,
-            const std::vector<std::uint8_t>& is_sparse, double farthest, const StrayOptions& options) {
+            const std::vector<std::uint8_t>& is_sparse, double farthest,
+            const NormalOutlierOptions& options) {
     const double least_cosine = std::cos(options.most_angle);
     int count = 0;
     for (Index n : neighbors) {
@@ -99,7 +100,7 @@ int support(const Octree& octree, Index i, std::span<const Index> neighbors,
 
 } // namespace
 
-Discarded drop_outliers(Octree& octree, Neighbors& neighbors, const OutlierOptions& options) {
+Discarded drop_outliers_by_distance(Octree& octree, Neighbors& neighbors, const OutlierOptions& options) {
     Discarded total;
     for (int round = 0; round < options.rounds && neighbors.count > 0; ++round) {
         const Discarded some = remove_points(octree, find_outliers(octree, neighbors, options));
@@ -111,7 +112,7 @@ Discarded drop_outliers(Octree& octree, Neighbors& neighbors, const OutlierOptio
     return total;
 }
 
-Discarded drop_strays(Octree& octree, const StrayOptions& options) {
+Discarded drop_outliers_by_normals(Octree& octree, const NormalOutlierOptions& options) {
     const Density density = level_of_density(octree, options.points_per_voxel);
     const std::vector<Index>& first = density.first_point;
     const auto most = static_cast<Index>(std::max(1.0, options.most_share * density.typical));

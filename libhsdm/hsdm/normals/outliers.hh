@@ -1,5 +1,5 @@
 #pragma once
-// Points that are of no surface: strays between and around the surfaces.
+// Points that are of no surface: outliers between and around the surfaces.
 
 #include "hsdm/core/discarded.hh"
 #include "hsdm/normals/neighbors.hh"
@@ -15,7 +15,7 @@ struct OutlierOptions {
     double least_volume = 0.2;  ///< neighbours' deviation from their plane that is a volume's, in reaches
     double least_height = 0.45; ///< distance from the neighbours' plane, in reaches, and more than three of
                                 ///< their deviations
-    int rounds = 3;             ///< the fewer strays there are, the more those left stand out
+    int rounds = 3;             ///< the fewer outliers there are, the more those left stand out
 };
 
 /// Removes the points that are far from their neighbours while these are near each other, or far from all;
@@ -23,9 +23,9 @@ struct OutlierOptions {
 /// of the farthest of its neighbours, which changes slowly along a sampled surface, as does its plane however
 /// sparse it is. Returns how many, and where in the coordinates of the octree's bounds; the neighbours are
 /// those of the points left. O(n) per round, parallel.
-Discarded drop_outliers(Octree& octree, Neighbors& neighbors, const OutlierOptions& options = {});
+Discarded drop_outliers_by_distance(Octree& octree, Neighbors& neighbors, const OutlierOptions& options = {});
 
-struct StrayOptions {
+struct NormalOutlierOptions {
     double points_per_voxel = 8; ///< of a typical point's voxel: on such a level sparse voxels are looked for
     double most_share = 0.125;   ///< of those points in a sparse voxel
     int neighbors = 16;          ///< per point of a sparse voxel, [3, 64]
@@ -38,6 +38,6 @@ struct StrayOptions {
 /// The same where normals are known: among the points in sparse voxels, those that too few neighbours agree
 /// with. O(n), parallel; little more than the points are read once where hardly any voxel is sparse. Throws
 /// OptionError.
-Discarded drop_strays(Octree& octree, const StrayOptions& options = {});
+Discarded drop_outliers_by_normals(Octree& octree, const NormalOutlierOptions& options = {});
 
 } // namespace hsdm

@@ -175,7 +175,7 @@ SmoothReport smooth_known_noise(Octree& octree, double noise, Neighbors& neighbo
     OutlierOptions removal;
     removal.most_stretch = options.most_stretch;
     removal.rounds = rounds_of_removal;
-    report.between = drop_outliers(octree, neighbors, removal);
+    report.between = drop_outliers_by_distance(octree, neighbors, removal);
     return report;
 }
 

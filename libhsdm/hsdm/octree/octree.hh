@@ -1,5 +1,5 @@
 #pragma once
-// Phase 1, section 3.1: the Hierarchical Space Decomposition Model (HSDM), a linear octree.
+// Phase 1, section 3.1: the Hierarchical Space PreparedCloud Model (HSDM), a linear octree.
 
 #include "hsdm/core/discarded.hh"
 #include "hsdm/core/morton_index.hh"

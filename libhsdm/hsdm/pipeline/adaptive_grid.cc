@@ -3,7 +3,7 @@
 #include "hsdm/errors.hh"
 #include "hsdm/pipeline/attributes.hh"
 #include "hsdm/reconstruct.hh"
-#include "hsdm/simplify/coarsen.hh"
+#include "hsdm/simplify/simplify.hh"
 
 #include <cstdio>
 
@@ -32,8 +32,8 @@ std::vector<VertexProperty> properties_of(const PolygonMesh& fine, const Adaptiv
 PolygonMesh adaptive_grid(const MethodInput& in, std::span<const Vec3> points, const PolygonMesh& fine,
                           const FacetCells* cells, Report& report) {
     const double bound = error_bound(in);
-    AdaptiveMesh coarse = coarsen(fine, points, in.octree.extent, in.level.depth,
-                                  {.max_error = bound, .measure = in.options.measure}, cells);
+    AdaptiveMesh coarse = simplify(fine, points, in.octree.extent, in.level.depth,
+                                   {.max_error = bound, .measure = in.options.measure}, cells);
     report.grid.kind = "adaptive";
     report.grid.leaves_per_level = coarse.leaves_per_level;
     report.grid.balance_splits = coarse.balance_splits;

@@ -117,7 +117,7 @@ std::vector<VertexProperty> average_attributes(const PointCloud& cloud, const Oc
 std::vector<VertexProperty> merge_attributes(std::span<const VertexProperty> properties,
                                              std::span<const Index> into, std::size_t count) {
     using Type = VertexProperty::Type;
-    const Members members(into, count);
+    const Groups members(into, count);
     std::vector<VertexProperty> result;
     for (const VertexProperty& property : properties) {
         VertexProperty merged{property.name, property.type, std::vector<double>(count)};

@@ -1,10 +1,10 @@
 #include "hsdm/pipeline/extended_method.hh"
 
-#include "hsdm/contour/extended_facets.hh"
-#include "hsdm/contour/extended_graph.hh"
-#include "hsdm/contour/lonely_sets.hh"
+#include "hsdm/contour/dual_contour.hh"
+#include "hsdm/contour/outlier_sets.hh"
 #include "hsdm/contour/sheet_features.hh"
 #include "hsdm/pipeline/attributes.hh"
+#include "hsdm/pipeline/extended_graph.hh"
 #include "hsdm/pipeline/phase_geometry.hh"
 #include "hsdm/quality/topology.hh"
 
@@ -18,8 +18,8 @@ constexpr double widest_hole = 20;       // spacings of the points
 constexpr double widest_hole_voxels = 6; // where voxels are wide against the spacing
 
 /// keep closes nothing, auto the loops that are small against the sampling, close all.
-ExtendedOptions extended_options(const ReconstructOptions& options, double spacing_in_voxels) {
-    ExtendedOptions result;
+DualContourOptions extended_options(const ReconstructOptions& options, double spacing_in_voxels) {
+    DualContourOptions result;
     result.holes.max_diameter = std::max(widest_hole * spacing_in_voxels, widest_hole_voxels);
     result.holes.insist = true;
     result.fill = options.holes != Holes::keep;
@@ -33,7 +33,7 @@ void note_dropped(const std::string& what, Discarded relative, const MethodInput
     note_dropped(what, relative, in.frame, report);
 }
 
-void note_counts(const ExtendedFacets& facets, Report& report) {
+void note_counts(const DualContour& facets, Report& report) {
     report.rejected["crossings_beyond_crease"] = facets.beyond_crease;
     report.rejected["crossings_settled"] = facets.settled;
     report.rejected["crossings_beyond_data"] = facets.trimmed;
@@ -42,7 +42,7 @@ void note_counts(const ExtendedFacets& facets, Report& report) {
     report.rejected["corners_merged"] = facets.corners_merged;
     report.rejected["edges_halved"] = facets.midpoints;
     report.rejected["doublets_merged"] = facets.doublets;
-    report.rejected["facets_debris"] = facets.debris.count;
+    report.rejected["facets_debris"] = facets.splinters.count;
     report.rejected["holes_closed"] = facets.holes.closed;
     report.rejected["holes_refused"] = facets.holes.refused;
     report.rejected["facets_degenerate"] = facets.manifold.degenerate;
@@ -69,18 +69,18 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
     const NormalSets sets = in.phases.run("sets", 0.2, report.seconds.graph, [&] {
         NormalSets all = build_normal_sets(in.octree, in.level, {.merge_layers = in.options.merge_layers});
         const RelationTest related({}, in.level.voxel_size);
-        const Discarded strays = drop_lonely_sets(in.level, related, all);
-        report.rejected["points_stray"] = strays.count;
-        note_dropped("points that no neighbour continues", strays, in, report);
+        const Discarded outliers = drop_outlier_sets(in.level, related, all);
+        report.rejected["points_stray"] = outliers.count;
+        note_dropped("points that no neighbour continues", outliers, in, report);
         return all;
     });
     report.grid.sets = sets.sets.size();
-    ExtendedFacets facets = in.phases.run("facets", 0.3, report.seconds.facets, [&] {
+    DualContour facets = in.phases.run("facets", 0.3, report.seconds.facets, [&] {
         const double spacing = report.input.spacing / in.level.voxel_size;
-        return reconstruct_extended(in.octree, in.level, sets, extended_options(in.options, spacing));
+        return dual_contour(in.octree, in.level, sets, extended_options(in.options, spacing));
     });
     note_counts(facets, report);
-    note_dropped("facets of splinters", facets.debris, in, report);
+    note_dropped("facets of splinters", facets.splinters, in, report);
     const bool turned = turn_solid_outward(facets.mesh);
     report.rejected["normals_turned"] = turned ? in.octree.size() : 0;
     if (in.options.classify) {

@@ -1,7 +1,7 @@
 #include "hsdm/pipeline/measure.hh"
 
 #include "hsdm/core/chunks.hh"
-#include "hsdm/mesh/islands.hh"
+#include "hsdm/mesh/small_components.hh"
 #include "hsdm/pipeline/adaptive_grid.hh"
 #include "hsdm/quality/distance_to_surface.hh"
 #include "hsdm/quality/topology.hh"
@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::size_t points_per_chunk = 1 << 14;
 
-void note_islands(const Islands& islands, Report& report) {
-    report.rejected["components_small"] = islands.components;
-    report.rejected["facets_of_small_components"] = islands.facets.count;
+void note_small_components(const SmallComponents& small, Report& report) {
+    report.rejected["components_small"] = small.components;
+    report.rejected["facets_of_small_components"] = small.facets.count;
 }
 
 void measure_mesh(const PolygonMesh& facets, Report& report) {
@@ -85,11 +85,12 @@ void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, Polyg
     check_error_kept(report, in.frame.unit());
     if (options.min_component) {
         const auto [value, of_largest] = *options.min_component;
-        Islands islands = drop_islands(facets, known.hints, {of_largest ? 0 : value, of_largest ? value : 0});
-        note_islands(islands, report);
-        islands.facets.first += octree.origin;
-        note_dropped("facets of components smaller than asked for", islands.facets, in.frame, report);
-        if (islands.components > 0) {
+        SmallComponents small =
+            drop_small_components(facets, known.hints, {of_largest ? 0 : value, of_largest ? value : 0});
+        note_small_components(small, report);
+        small.facets.first += octree.origin;
+        note_dropped("facets of components smaller than asked for", small.facets, in.frame, report);
+        if (small.components > 0) {
             known.links.reset();
             known.cells.reset();
             measured = false;

@@ -5,11 +5,11 @@
 #include "hsdm/mesh/turn_outward.hh"
 #include "hsdm/pipeline/adaptive_grid.hh"
 #include "hsdm/pipeline/basic_method.hh"
-#include "hsdm/pipeline/decomposition.hh"
 #include "hsdm/pipeline/extended_method.hh"
 #include "hsdm/pipeline/measure.hh"
 #include "hsdm/pipeline/options.hh"
-#include "hsdm/quality/drop_unsound.hh"
+#include "hsdm/pipeline/prepared_cloud.hh"
+#include "hsdm/quality/degenerate_facets.hh"
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -68,7 +68,7 @@ void check_facets(const PolygonMesh& facets, const OctreeLevel& level) {
 
 void leave_out_unsound(const MethodInput& in, PolygonMesh& facets, FacetKnowledge& known, Report& report) {
     if (!known.links) known.links = link_facets(facets);
-    Discarded unsound = drop_unsound(facets, in.octree.origin, in.frame, *known.links, known.hints);
+    Discarded unsound = drop_degenerate_facets(facets, in.octree.origin, in.frame, *known.links, known.hints);
     report.rejected["facets_unsound"] = unsound.count;
     if (unsound.count == 0) return;
     known.cells.reset();
@@ -88,7 +88,7 @@ std::size_t face_outward(const CloudFrame& frame, PolygonMesh& facets, FacetKnow
 }
 
 /// Phases 2 and 3 on one level of a decomposition; on the `last` one what is not needed any more is let go.
-void reconstruct_level(InputCloud& cloud, Decomposition& decomposition, int depth, bool last,
+void reconstruct_level(InputCloud& cloud, PreparedCloud& decomposition, int depth, bool last,
                        const ReconstructOptions& options, const Phases& phases, Reconstruction& result) {
     const Octree& octree = decomposition.octree;
     Report report = decomposition.report;
@@ -142,7 +142,7 @@ void reconstruct_level(InputCloud& cloud, Decomposition& decomposition, int dept
     result.report = std::move(report);
 }
 
-Reconstruction failed_level(const Decomposition& decomposition, int depth, const std::exception& error,
+Reconstruction failed_level(const PreparedCloud& decomposition, int depth, const std::exception& error,
                             const Phases& phases) {
     Reconstruction result;
     result.report = decomposition.report;
@@ -163,7 +163,7 @@ void run(InputCloud& cloud, const ReconstructOptions& options, std::optional<std
     if (options.normals == NormalSource::given && !(*cloud).has_normals())
         throw Error("normals given were asked for, but the cloud has none");
     const bool estimate = must_estimate(*cloud, options); // before the octree takes the normals
-    Decomposition decomposition(cloud, options, Phases(options, 0, 1));
+    PreparedCloud decomposition(cloud, options, Phases(options, 0, 1));
     Report& report = decomposition.report;
     report.input.dropped_nonfinite = cloud.dropped().nonfinite;
     if (cloud.dropped().nonfinite > 0) report.input.first_nonfinite = cloud.dropped().first_nonfinite;

@@ -193,7 +193,7 @@ std::size_t count_duplicates(const PolygonMesh& mesh) {
     tbb::parallel_for(Range(0, keys.size(), chunk), [&](const Range& range) {
         for (std::size_t f = range.begin(); f != range.end(); ++f) {
             keys[f] = {mesh.facet(f).size(), static_cast<Index>(f)};
-            for (Index v : mesh.facet(f)) keys[f].set += mix(v);
+            for (Index v : mesh.facet(f)) keys[f].set += hash_index(v);
         }
     });
     tbb::parallel_sort(keys.begin(), keys.end());

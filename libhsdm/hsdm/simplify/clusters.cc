@@ -4,7 +4,7 @@
 #include "hsdm/core/disjoint_sets.hh"
 #include "hsdm/core/groups.hh"
 #include "hsdm/simplify/border_vertices.hh"
-#include "hsdm/simplify/parts.hh"
+#include "hsdm/simplify/divide_by_planes.hh"
 
 #include <tbb/parallel_sort.h>
 
@@ -129,7 +129,7 @@ private:
         for_chunks(part.size(), clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t i = begin; i < end; ++i) part[i] = joined.find(static_cast<Index>(i));
         });
-        const Members members(part, part.size());
+        const Groups members(part, part.size());
         std::vector<std::uint8_t> missed(below.size(), 0);
         for_chunks(below.size(), clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t i = begin; i < end; ++i) {
@@ -143,7 +143,7 @@ private:
         return part;
     }
 
-    void divide_missed(const std::vector<std::uint8_t>& missed, const Members& members,
+    void divide_missed(const std::vector<std::uint8_t>& missed, const Groups& members,
                        const ClusterLevel& below, std::size_t level, std::vector<Index>& part) {
         std::vector<std::array<Index, 3>> sides; // piece, and two of its members that touch
         const auto is_inside = [&](const Edge& edge) {
@@ -194,7 +194,7 @@ private:
     /// Sums up what the clusters below carry, and lets go of edges and facets that lie in one cluster or can
     /// no more do so.
     void rise(const ClusterLevel& below, std::size_t count) {
-        const Members members(below.parent, count);
+        const Groups members(below.parent, count);
         std::vector<Quadric> sums(count);
         std::vector<int> euler(count, 0);
         for_chunks(count, clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {

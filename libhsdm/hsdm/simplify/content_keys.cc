@@ -15,17 +15,17 @@ Key ring_key(std::span<const Index> ring, std::span<const Key> places) {
     for (std::size_t i = 1; i < ring.size(); ++i)
         if (places[ring[i]] < places[ring[least]]) least = i;
     Key key = ring.size();
-    for (std::size_t i = least; i < ring.size(); ++i) key = mix(key ^ places[ring[i]]);
-    for (std::size_t i = 0; i < least; ++i) key = mix(key ^ places[ring[i]]);
+    for (std::size_t i = least; i < ring.size(); ++i) key = hash_index(key ^ places[ring[i]]);
+    for (std::size_t i = 0; i < least; ++i) key = hash_index(key ^ places[ring[i]]);
     // How a ring is cut depends on where it starts.
-    return ring.size() > 3 ? mix(key ^ least) : key;
+    return ring.size() > 3 ? hash_index(key ^ least) : key;
 }
 
 } // namespace
 
 Key place_key(const Vec3& place) {
     Key key = 1;
-    for (unsigned k = 0; k < 3; ++k) key = mix(key ^ std::bit_cast<Key>(place[k]));
+    for (unsigned k = 0; k < 3; ++k) key = hash_index(key ^ std::bit_cast<Key>(place[k]));
     return key;
 }
 

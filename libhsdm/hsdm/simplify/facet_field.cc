@@ -47,7 +47,7 @@ void link_facets(const PolygonMesh& mesh, FacetField& field) {
         const Index next = side + 1;
         return mesh.corners[next == mesh.first[facet_of[side] + 1] ? mesh.first[facet_of[side]] : next];
     };
-    const Members sides_from(mesh.corners, mesh.vertex_count());
+    const Groups sides_from(mesh.corners, mesh.vertex_count());
     field.beside.assign(mesh.corners.size(), no_index);
     for_facets(field.size(), [&](Index f) {
         for (Index side = mesh.first[f]; side < mesh.first[f + 1]; ++side)

@@ -2,7 +2,7 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/area_vector.hh"
-#include "hsdm/simplify/belts.hh"
+#include "hsdm/simplify/developable_regions.hh"
 #include "hsdm/simplify/facet_field.hh"
 #include "hsdm/simplify/strips.hh"
 
@@ -52,7 +52,8 @@ public:
 
     PlanarPatches run() {
         find_flat_ground();
-        for (const Belt& belt : find_belts(field_, patches_.patch)) add_strips(belt);
+        for (const DevelopableRegion& region : find_developable_regions(field_, patches_.patch))
+            add_strips(region);
         release_margins();
         return std::move(patches_);
     }
@@ -137,13 +138,13 @@ private:
         return facets.size() <= most;
     }
 
-    void add_strips(const Belt& belt) {
-        const std::optional<Strips> strips = cut_to_strips(field_, belt, tolerance_);
+    void add_strips(const DevelopableRegion& region) {
+        const std::optional<Strips> strips = cut_to_strips(field_, region, tolerance_);
         if (!strips) return;
         std::vector<Index> counts(strips->planes.size(), 0);
         for (Index k : strips->of) ++counts[k];
-        for (std::size_t i = 0; i < belt.facets.size(); ++i) {
-            const Index f = belt.facets[i], k = strips->of[i];
+        for (std::size_t i = 0; i < region.facets.size(); ++i) {
+            const Index f = region.facets[i], k = strips->of[i];
             if (counts[k] >= least_strip
                 && std::abs(strips->planes[k].height(field_.centre[f])) < most_height * tolerance_)
                 patches_.patch[f] = static_cast<Index>(patches_.planes.size()) + k;

@@ -11,10 +11,10 @@ struct PlanarPatches {
 };
 
 /// Patches of a 2-manifold that keep within `tolerance` of their planes (the mesh's units, > 0), but for
-/// facets at their margins. First flat ground, then belts, cut to strips of even width (cut_to_strips). What
-/// is neither, or too small, has none. In the spirit of Cohen-Steiner, Alliez, Desbrun, Variational Shape
-/// Approximation (2004), whose proxies on a cylinder are strips too, but where each is sure to go from end to
-/// end. O(n log n) where facets are even, parallel in parts, the same bits for any number of threads.
+/// facets at their margins. First flat ground, then regions, cut to strips of even width (cut_to_strips).
+/// What is neither, or too small, has none. In the spirit of Cohen-Steiner, Alliez, Desbrun, Variational
+/// Shape Approximation (2004), whose proxies on a cylinder are strips too, but where each is sure to go from
+/// end to end. O(n log n) where facets are even, parallel in parts, the same bits for any number of threads.
 PlanarPatches find_planar_patches(const PolygonMesh& mesh, double tolerance);
 
 /// Per vertex the planes of its facets, each by its share of their area, and the vertex itself.

@@ -14,7 +14,7 @@ constexpr double half_of_rms = 1.677;    // of a parabola about its mean: half o
 constexpr double rise_of_mean = 1.0 / 3; // ... and how far its mean is off the middle, in such halves
 constexpr double bin_width = 0.02;       // radians
 constexpr int rounds = 4;                // of fitting planes and letting them take over
-constexpr double least_lean = 0.05;      // of a belt's area to one side, or it goes all round
+constexpr double least_lean = 0.05;      // of a region's area to one side, or it goes all round
 constexpr double least_along = 0.7;      // cosine of a facet's mean normal with its strip's
 constexpr int most_tries = 16;           // of numbers of strips: what bends two ways takes ever more
 
@@ -46,15 +46,15 @@ struct StripSum {
 
 class Cutting {
 public:
-    Cutting(const FacetField& field, const Belt& belt)
-        : field_(field), belt_(belt), share_(belt.facets.size()) {
+    Cutting(const FacetField& field, const DevelopableRegion& region)
+        : field_(field), belt_(region), share_(region.facets.size()) {
         double lo = std::numeric_limits<double>::max(), hi = -lo;
-        for (Index f : belt.facets) {
+        for (Index f : region.facets) {
             sum_ += field.area[f];
             all_area_ += field.area[f].norm();
             origin_ += field.centre[f];
-            lo = std::min(lo, belt.axis.direction | field.centre[f]);
-            hi = std::max(hi, belt.axis.direction | field.centre[f]);
+            lo = std::min(lo, region.axis.direction | field.centre[f]);
+            hi = std::max(hi, region.axis.direction | field.centre[f]);
         }
         const auto count = static_cast<double>(share_.size());
         origin_ /= count;
@@ -75,7 +75,7 @@ public:
     }
 
 private:
-    /// Round the axis: where lines on the belt are by the directions of normals, weighted so that strips of
+    /// Round the axis: where lines on the region are by the directions of normals, weighted so that strips of
     /// equal shares span equal heights. An arc of the angle a and the radius r spans r a^2 / 8, so shares go
     /// with the square root of r, the length per angle.
     void find_shares() {
@@ -157,7 +157,7 @@ private:
 
     double outward() const { return belt_.convex ? 1 : -1; }
 
-    /// A facet goes to the plane beside it that it is farther outside of, or inside where the belt is
+    /// A facet goes to the plane beside it that it is farther outside of, or inside where the region is
     /// concave: so the line where two planes meet is where one strip ends and the next begins.
     void take_over() {
         const std::size_t m = strips_.planes.size();
@@ -178,8 +178,8 @@ private:
     }
 
     const FacetField& field_;
-    const Belt& belt_;
-    std::vector<double> share_;           // per facet, of the way round the belt, 0 to 1
+    const DevelopableRegion& belt_;
+    std::vector<double> share_;           // per facet, of the way round the region, 0 to 1
     Vec3 sum_{0, 0, 0}, origin_{0, 0, 0}; // of area vectors; middle
     double all_area_ = 0;                 // sum of their lengths
     double facets_along_ = 0;             // the axis
@@ -188,8 +188,9 @@ private:
 
 } // namespace
 
-std::optional<Strips> cut_to_strips(const FacetField& field, const Belt& belt, double tolerance) {
-    return Cutting(field, belt).run(tolerance);
+std::optional<Strips> cut_to_strips(const FacetField& field, const DevelopableRegion& region,
+                                    double tolerance) {
+    return Cutting(field, region).run(tolerance);
 }
 
 } // namespace hsdm

@@ -1,16 +1,16 @@
 #pragma once
 // Rows of facets for what bends one way only.
 
-#include "hsdm/simplify/belts.hh"
+#include "hsdm/simplify/developable_regions.hh"
 #include "hsdm/simplify/quadric.hh"
 
 #include <optional>
 
 namespace hsdm {
 
-/// A belt cut along straight lines on it, rulings, into planes.
+/// A region cut along straight lines on it, rulings, into planes.
 struct Strips {
-    std::vector<Index> of; ///< per facet of the belt
+    std::vector<Index> of; ///< per facet of the region
     std::vector<Plane> planes;
 };
 
@@ -18,6 +18,7 @@ struct Strips {
 /// much as the others; none if strips so narrow are not resolved by the facets. The surface bulges to either
 /// side of a plane alike, and where neighbours' planes meet one takes over from the other. O(n) for each of a
 /// few numbers of strips.
-std::optional<Strips> cut_to_strips(const FacetField& field, const Belt& belt, double tolerance);
+std::optional<Strips> cut_to_strips(const FacetField& field, const DevelopableRegion& region,
+                                    double tolerance);
 
 } // namespace hsdm

@@ -100,8 +100,8 @@ std::vector<std::uint8_t> flat_fans(const PolygonMesh& mesh, const std::vector<I
             const std::size_t n = facet.size();
             for (std::size_t k = 0; k < n; ++k) {
                 const Index v = vertex[facet[k]];
-                const std::uint64_t next = mix(vertex[facet[(k + 1) % n]]),
-                                    last = mix(vertex[facet[(k + n - 1) % n]]);
+                const std::uint64_t next = hash_index(vertex[facet[(k + 1) % n]]),
+                                    last = hash_index(vertex[facet[(k + n - 1) % n]]);
                 fans[v].ends.fetch_add(next - last, std::memory_order_relaxed);
                 const std::uint32_t turns = turns_at(mesh, facet, k, sights[v]);
                 if (turns > 0) fans[v].turns.fetch_add(turns, std::memory_order_relaxed);

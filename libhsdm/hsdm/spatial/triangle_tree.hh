@@ -15,7 +15,7 @@ using TrianglePair = std::array<Index, 2>;
 /// Implicit 4-ary tree. Triangles are ordered so that every four make a block, every four blocks a node of
 /// level 0, every four nodes of level k a node of level k + 1: children are found by arithmetic, a node is
 /// nothing but the boxes of its four children. Everything is relative to the centre of the mesh, in double
-/// precision: a search costs no more where a stray lies far from the mesh, or the mesh has one far from
+/// precision: a search costs no more where an outlier lies far from the mesh, or the mesh has one far from
 /// itself.
 class TriangleTree {
 public:

@@ -1,0 +1,25 @@
+#include "hsdm/basic/voxel_centroid.hh"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+namespace hsdm {
+
+Vec3 voxel_centroid(const Octree& octree, const OctreeLevel& level, Index voxel) {
+    const Index begin = level.first_point[voxel], end = level.first_point[voxel + 1];
+    Vec3 sum(0, 0, 0);
+    for (Index p = begin; p < end; ++p) sum += octree.positions[p];
+    return sum / static_cast<double>(end - begin);
+}
+
+std::vector<Vec3> voxel_centroids(const Octree& octree, const OctreeLevel& level) {
+    std::vector<Vec3> positions(level.size());
+    tbb::parallel_for(tbb::blocked_range<Index>(0, static_cast<Index>(level.size()), 4096),
+                      [&](const tbb::blocked_range<Index>& range) {
+                          for (Index v = range.begin(); v != range.end(); ++v)
+                              positions[v] = voxel_centroid(octree, level, v);
+                      });
+    return positions;
+}
+
+} // namespace hsdm

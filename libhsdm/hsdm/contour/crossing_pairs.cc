@@ -1,0 +1,147 @@
+#include "hsdm/contour/crossing_pairs.hh"
+
+#include "hsdm/core/chunks.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t grid_points_per_chunk = 2048;
+
+/// A crossing on the perimeter of a face.
+struct Stop {
+    Index crossing;
+    std::uint8_t ring_face;
+    Vec3 position; // voxels, relative to the face's lower corner
+};
+
+/// The crossings of one face, sorted by whether the perimeter leaves or enters the solid there.
+class FacePairing {
+public:
+    FacePairing(const GridPoints& grid, const Crossings& crossings, const NormalSets& sets,
+                const RelationTest& related)
+        : grid_(grid), crossings_(crossings), sets_(sets), related_(related) {}
+
+    /// Calls join(exit, enter, opposed) for every pair and left_open(stop) for what finds no partner.
+    template <class Join, class LeftOpen>
+    void pair(Index grid_point, unsigned normal_axis, Join&& join, LeftOpen&& left_open) {
+        exits_.clear();
+        enters_.clear();
+        gather(grid_point, normal_axis);
+        if (exits_.size() == 1 && enters_.size() == 1) {
+            join(exits_[0], enters_[0], opposed(of(exits_[0]), of(enters_[0])));
+            return;
+        }
+        while (!exits_.empty() && !enters_.empty()) join_best(join);
+        for (const Stop& s : exits_) left_open(s);
+        for (const Stop& s : enters_) left_open(s);
+    }
+
+private:
+    void gather(Index grid_point, unsigned n) {
+        const unsigned u = (n + 1) % 3, v = (n + 2) % 3;
+        const Index pu = grid_.next[grid_point][u], pv = grid_.next[grid_point][v];
+        add(grid_point, u, 1, true, 0, v);
+        add(grid_point, v, 2, false, 0, u);
+        if (pu != no_index) add(pu, v, 0, true, 1, u);
+        if (pv != no_index) add(pv, u, 3, false, 1, v);
+    }
+
+    void add(Index grid_point, unsigned axis, std::uint8_t ring_face, bool forward, double across,
+             unsigned across_axis) {
+        const Index edge = 3 * grid_point + axis;
+        for (Index x = crossings_.first[edge]; x < crossings_.first[edge + 1]; ++x) {
+            const Crossing& crossing = crossings_.crossings[x];
+            Vec3 position(0, 0, 0);
+            position[axis] = crossing.t;
+            position[across_axis] = across;
+            (crossing.leaving == forward ? exits_ : enters_).push_back({x, ring_face, position});
+        }
+    }
+
+    const Crossing& of(const Stop& s) const { return crossings_.crossings[s.crossing]; }
+
+    Relation relation(const Stop& a, const Stop& b) const {
+        if (of(a).set == of(b).set) return Relation::smooth;
+        return related_(sets_.sets[of(a).set], sets_.sets[of(b).set]);
+    }
+
+    /// 0 for one sheet, more the less two crossings look like parts of one surface.
+    double cost(const Stop& a, const Stop& b) const {
+        const Crossing &x = of(a), &y = of(b);
+        const Vec3 d = b.position - a.position;
+        const double off_plane = std::abs(x.normal | d) + std::abs(y.normal | d);
+        const Relation r = relation(a, b);
+        return (1 - (x.normal | y.normal)) + off_plane
+               + (r == Relation::smooth ? 0
+                  : r == Relation::none ? 2
+                                        : 1);
+    }
+
+    /// Faces with two or more of each kind are rare: the cheapest pair first, ties by number.
+    template <class Join>
+    void join_best(Join&& join) {
+        double least = std::numeric_limits<double>::infinity();
+        std::size_t best_exit = 0, best_enter = 0;
+        if (exits_.size() == 2 && enters_.size() == 2) { // exactly: the better of the two pairings
+            const double straight = cost(exits_[0], enters_[0]) + cost(exits_[1], enters_[1]);
+            const double swapped = cost(exits_[0], enters_[1]) + cost(exits_[1], enters_[0]);
+            best_enter = straight <= swapped ? 0 : 1;
+        } else {
+            for (std::size_t i = 0; i < exits_.size(); ++i)
+                for (std::size_t j = 0; j < enters_.size(); ++j)
+                    if (const double c = cost(exits_[i], enters_[j]); c < least)
+                        least = c, best_exit = i, best_enter = j;
+        }
+        const Stop &exit = exits_[best_exit], &enter = enters_[best_enter];
+        join(exit, enter, opposed(of(exit), of(enter)));
+        exits_.erase(exits_.begin() + static_cast<std::ptrdiff_t>(best_exit));
+        enters_.erase(enters_.begin() + static_cast<std::ptrdiff_t>(best_enter));
+    }
+
+    const GridPoints& grid_;
+    const Crossings& crossings_;
+    const NormalSets& sets_;
+    const RelationTest& related_;
+    std::vector<Stop> exits_, enters_;
+};
+
+} // namespace
+
+Links pair_crossings(const GridPoints& grid, const Crossings& crossings, const NormalSets& sets,
+                     const RelationTest& related) {
+    Links links;
+    links.of_crossing.resize(crossings.crossings.size());
+    const std::size_t n = grid.size();
+    std::vector<std::size_t> rims(chunk_count(n, grid_points_per_chunk), 0), joined_faces(rims);
+    std::vector<std::vector<Link>> crowded(rims.size());
+    for_chunks(n, grid_points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        FacePairing face(grid, crossings, sets, related);
+        std::vector<Link> in_face;
+        auto join = [&](const Stop& a, const Stop& b, bool rim) {
+            links.of_crossing[a.crossing][a.ring_face] = {b.crossing, b.ring_face, rim};
+            links.of_crossing[b.crossing][b.ring_face] = {a.crossing, a.ring_face, rim};
+            rims[chunk] += rim;
+            ++joined_faces[chunk];
+            in_face.push_back({a.crossing, a.ring_face, rim});
+        };
+        auto left_open = [&](const Stop& s) { in_face.push_back({s.crossing, s.ring_face, false}); };
+        for (std::size_t c = begin; c < end; ++c)
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                in_face.clear();
+                face.pair(static_cast<Index>(c), axis, join, left_open);
+                if (in_face.size() < 2) continue;
+                crowded[chunk].insert(crowded[chunk].end(), in_face.begin(), in_face.end());
+                crowded[chunk].push_back({});
+            }
+    });
+    links.crowded = joined(crowded);
+    for (std::size_t r : rims) links.rims += r;
+    links.open = 4 * links.of_crossing.size();
+    for (std::size_t j : joined_faces) links.open -= 2 * j;
+    return links;
+}
+
+} // namespace hsdm

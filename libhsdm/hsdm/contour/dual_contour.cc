@@ -1,0 +1,364 @@
+#include "hsdm/contour/dual_contour.hh"
+
+#include "hsdm/contour/grid_signs.hh"
+#include "hsdm/contour/move_to_creases.hh"
+#include "hsdm/contour/shared_corners.hh"
+#include "hsdm/contour/trim_crossings.hh"
+#include "hsdm/core/chunks.hh"
+#include "hsdm/mesh/doublets.hh"
+
+#include <algorithm>
+#include <numeric>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t edges_per_chunk = 4096;
+constexpr std::size_t values_per_chunk = 1 << 14;
+
+/// Vertices on mesh edges. Two links across one face whose ends are the same two vertices would make one edge
+/// with four facets; a vertex in the middle of all but the first keeps them apart.
+class Midpoints {
+public:
+    Midpoints(const GridPoints& grid, const NormalSets& sets, const Crossings& crossings, const Links& links,
+              const DualVertices& duals, double h, PlacedVertices& vertices)
+        : of_side_(crossings.crossings.size() * (links.crowded.empty() ? 0 : 4), no_index), count_(0) {
+        std::vector<std::pair<Index, Index>> seen;
+        for (const Link& end : links.crowded) {
+            if (end.crossing == no_index) {
+                seen.clear();
+                continue;
+            }
+            const Link& other = links.of_crossing[end.crossing][end.face];
+            const bool open = other.crossing == no_index;
+            const bool strip = end.rim && !open && !same_ends(duals, end, other);
+            const auto halve = [&](const Link& side, const Vec3& position) {
+                of_side_[4 * side.crossing + side.face] = static_cast<Index>(vertices.positions.size());
+                vertices.positions.push_back(position);
+                vertices.classes.push_back(VertexClass::smooth);
+                vertices.voxel.push_back(sets.sets[crossings.crossings[side.crossing].set].voxel);
+                ++count_;
+            };
+            const Vec3 a = crossing_position(grid, crossings.crossings[end.crossing], h);
+            const bool halved = repeated(duals, end, seen);
+            if (open || strip) {
+                if (halved) halve(end, a);
+                if (strip && repeated(duals, other, seen))
+                    halve(other, crossing_position(grid, crossings.crossings[other.crossing], h));
+            } else if (halved) {
+                halve(end, 0.5 * (a + crossing_position(grid, crossings.crossings[other.crossing], h)));
+                of_side_[4 * other.crossing + other.face] = mid(end);
+            }
+        }
+    }
+
+    Index mid(const Link& side) const {
+        return of_side_.empty() ? no_index : of_side_[4 * side.crossing + side.face];
+    }
+    std::size_t count() const { return count_; }
+
+private:
+    /// Does an edge seen before join the same two vertices as this side? If not, it counts as seen from now
+    /// on.
+    static bool repeated(const DualVertices& duals, const Link& side,
+                         std::vector<std::pair<Index, Index>>& seen) {
+        const std::pair<Index, Index> pair{duals.at(side.crossing, Ring::low[side.face], side.face),
+                                           duals.at(side.crossing, Ring::high[side.face], side.face)};
+        if (std::find(seen.begin(), seen.end(), pair) != seen.end()) return true;
+        seen.push_back(pair);
+        return false;
+    }
+
+    static bool same_ends(const DualVertices& duals, const Link& a, const Link& b) {
+        return duals.at(a.crossing, Ring::low[a.face], a.face)
+                   == duals.at(b.crossing, Ring::low[b.face], b.face)
+               && duals.at(a.crossing, Ring::high[a.face], a.face)
+                      == duals.at(b.crossing, Ring::high[b.face], b.face);
+    }
+    std::vector<Index> of_side_; // per crossing and face of its ring
+    std::size_t count_;
+};
+
+/// Appends facets to a mesh from crossings, links and dual vertices.
+class FacetBuilder {
+public:
+    FacetBuilder(const Crossings& crossings, const Links& links, const DualVertices& duals,
+                 const Midpoints& midpoints, const PlacedVertices& vertices, PolygonMesh& mesh)
+        : crossings_(crossings),
+          links_(links),
+          duals_(duals),
+          midpoints_(midpoints),
+          vertices_(vertices),
+          mesh_(mesh) {}
+
+    /// The facets round one grid edge: crossings first to end.
+    void add_facets(Index first, Index end) {
+        round_.clear();
+        for (Index x = first; x < end; ++x) {
+            gather(x);
+            if (polygon_.size() == 4)
+                round_.push_back({{polygon_[0], polygon_[1], polygon_[2], polygon_[3]}, 2});
+            else
+                mesh_.add_facet(polygon_);
+        }
+        for (Quad& quad : round_) quad.cut = crease_diagonal(quad.corners);
+        for (std::size_t i = 0; i < round_.size(); ++i) keep_diagonals_apart(i);
+        for (const Quad& quad : round_) add_quad(quad);
+    }
+
+    /// The strip round a thin part's rim, between the two sides' vertices; once per rim.
+    void add_strips(Index x) {
+        for (std::uint8_t k = 0; k < 4; ++k) {
+            const Link& link = links_.of_crossing[x][k];
+            if (!link.rim || 4 * x + k > 4 * link.crossing + link.face) continue;
+            // The facet of x runs from ring position k to k + 1 if it leaves; the strip runs against it.
+            unsigned from = (k + 1u) % 4, to = k;
+            if (!crossings_.crossings[x].leaving) std::swap(from, to);
+            const Index y = link.crossing;
+            const std::array<Index, 4> ring{duals_.at(x, from, k), duals_.at(x, to, k),
+                                            duals_.at(y, Ring::across(to, k, link.face), link.face),
+                                            duals_.at(y, Ring::across(from, k, link.face), link.face)};
+            if (ring[0] == ring[3] && ring[1] == ring[2]) continue; // not cut: an ordinary edge
+            polygon_.clear();
+            add(ring[0]);
+            add(midpoints_.mid({x, k}));
+            add(ring[1]);
+            if (ring[2] != ring[1]) add(ring[2]);
+            add(midpoints_.mid(link));
+            if (ring[3] != ring[0]) add(ring[3]);
+            mesh_.add_facet(polygon_);
+        }
+    }
+
+private:
+    void add(Index vertex) {
+        if (vertex != no_index) polygon_.push_back(vertex);
+    }
+
+    Vec3 triangle_normal(Index a, Index b, Index c) const {
+        const auto& p = vertices_.positions;
+        return (p[b] - p[a]) % (p[c] - p[a]);
+    }
+
+    struct Quad {
+        std::array<Index, 4> corners;
+        std::size_t cut; // along the diagonal from this corner, 0 or 1; 2: not cut
+    };
+
+    void gather(Index x) {
+        polygon_.clear();
+        for (std::uint8_t j = 0; j < 4; ++j) {
+            const Index before = duals_.at(x, j, (j + 3u) % 4), after = duals_.at(x, j, j);
+            add(before);
+            if (after != before) add(after);
+            add(midpoints_.mid({x, j}));
+        }
+        if (!crossings_.crossings[x].leaving) std::reverse(polygon_.begin(), polygon_.end());
+    }
+
+    /// Where a crease runs across a quad, corner to corner, the quad is cut there: the paper's refinement
+    /// triangles. Folds of less than 30 degrees are those of round parts a voxel or two thick.
+    std::size_t crease_diagonal(const std::array<Index, 4>& q) const {
+        constexpr double cos_fold = 0.866, cos_other = 0.95;
+        for (std::size_t d = 0; d < 2; ++d) {
+            const Index a = q[d], b = q[d + 1], c = q[d + 2], e = q[(d + 3) % 4];
+            if (vertices_.classes[a] == VertexClass::smooth || vertices_.classes[c] == VertexClass::smooth)
+                continue;
+            const Vec3 n0 = triangle_normal(a, b, c), n1 = triangle_normal(a, c, e);
+            const Vec3 m0 = triangle_normal(b, c, e), m1 = triangle_normal(b, e, a);
+            const double fold = (n0 | n1) / std::max(n0.norm() * n1.norm(), 1e-300);
+            const double other = (m0 | m1) / std::max(m0.norm() * m1.norm(), 1e-300);
+            if (fold <= cos_fold && other <= cos_other) return d;
+        }
+        return 2;
+    }
+
+    static bool has_diagonal(const std::array<Index, 4>& q, std::size_t d, const std::array<Index, 4>& r) {
+        const auto is = [&](std::size_t i) {
+            return (r[i] == q[d] && r[i + 2] == q[d + 2]) || (r[i] == q[d + 2] && r[i + 2] == q[d]);
+        };
+        return is(0) || is(1);
+    }
+
+    /// Two facets round one grid edge may have two opposite corners in common. One of them is cut along the
+    /// other diagonal, or both would be triangulated along the same: the first that has a crease there keeps
+    /// it.
+    void keep_diagonals_apart(std::size_t i) {
+        for (std::size_t j = 0; j < round_.size(); ++j)
+            for (std::size_t d = 0; d < 2 && j != i; ++d) {
+                if (!has_diagonal(round_[i].corners, d, round_[j].corners)) continue;
+                const bool mine = round_[i].cut == d, first = i < j;
+                const bool theirs =
+                    round_[j].cut < 2 && has_diagonal(round_[j].corners, round_[j].cut, round_[i].corners);
+                if (mine ? theirs && !first : theirs || !first) round_[i].cut = 1 - d;
+            }
+    }
+
+    void add_quad(const Quad& quad) {
+        const auto& q = quad.corners;
+        if (quad.cut == 2) {
+            mesh_.add_facet(q);
+            return;
+        }
+        const std::size_t d = quad.cut;
+        const std::array<Index, 3> t0{q[d], q[d + 1], q[d + 2]}, t1{q[d], q[d + 2], q[(d + 3) % 4]};
+        mesh_.add_facet(t0);
+        mesh_.add_facet(t1);
+    }
+
+    const Crossings& crossings_;
+    const Links& links_;
+    const DualVertices& duals_;
+    const Midpoints& midpoints_;
+    const PlacedVertices& vertices_;
+    PolygonMesh& mesh_;
+    std::vector<Index> polygon_;
+    std::vector<Quad> round_;
+};
+
+/// The facets of all parts, one part after the other.
+PolygonMesh joined_facets(const std::vector<PolygonMesh>& parts) {
+    PolygonMesh mesh;
+    std::vector<std::size_t> corner(parts.size() + 1, 0), facet(parts.size() + 1, 0);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        corner[i + 1] = corner[i] + parts[i].corners.size();
+        facet[i + 1] = facet[i] + parts[i].facet_count();
+    }
+    mesh.corners.resize(corner.back());
+    mesh.first.resize(facet.back() + 1);
+    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
+        std::ranges::copy(parts[i].corners, mesh.corners.begin() + static_cast<std::ptrdiff_t>(corner[i]));
+        for (std::size_t f = 0; f < parts[i].facet_count(); ++f)
+            mesh.first[facet[i] + f + 1] = static_cast<Index>(corner[i]) + parts[i].first[f + 1];
+    });
+    return mesh;
+}
+
+/// The facets round all crossed grid edges, then the strips at rims and the caps of dual vertices.
+PolygonMesh facets_of(const Crossings& crossings, const Links& links, const DualVertices& duals,
+                      const Midpoints& midpoints, const PlacedVertices& vertices) {
+    const std::size_t edges = crossings.first.size() - 1;
+    const std::size_t chunks = chunk_count(edges, edges_per_chunk);
+    std::vector<PolygonMesh> parts(2 * chunks); // facets, then strips
+    for_chunks(edges, edges_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        FacetBuilder builder(crossings, links, duals, midpoints, vertices, parts[chunk]);
+        for (std::size_t e = begin; e < end; ++e)
+            builder.add_facets(crossings.first[e], crossings.first[e + 1]);
+        FacetBuilder strip_builder(crossings, links, duals, midpoints, vertices, parts[chunks + chunk]);
+        for (Index x = crossings.first[begin]; x < crossings.first[end]; ++x) strip_builder.add_strips(x);
+    });
+    PolygonMesh mesh = joined_facets(parts);
+    for (const std::vector<Index>& cap : duals.caps) mesh.add_facet(cap);
+    return mesh;
+}
+
+/// The values of the vertices that came of those that the values are of.
+template <class T>
+std::vector<T> of_origins(const std::vector<T>& values, const std::vector<Index>& origin) {
+    std::vector<T> result(origin.size());
+    for_chunks(result.size(), values_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) result[i] = values[origin[i]];
+    });
+    return result;
+}
+
+/// Class and voxel are known by origin while vertices are split or dropped.
+void settle_origins(DualContour& result) {
+    result.classes = of_origins(result.classes, result.mesh.origin);
+    result.voxel = of_origins(result.voxel, result.mesh.origin);
+    result.mesh.origin = std::vector<Index>();
+}
+
+/// Returns how many vertices another took the place of.
+std::size_t merge_corners(std::span<const EdgeCollapse> edges, PolygonMesh& mesh,
+                          std::vector<VertexClass>& classes) {
+    const std::vector<std::uint8_t> collapsed = collapse_edges(mesh, edges);
+    for (std::size_t i = 0; i < collapsed.size(); ++i)
+        if (collapsed[i]) classes[mesh.origin[edges[i].to]] = VertexClass::corner;
+    const auto count = static_cast<std::size_t>(std::ranges::count(collapsed, 1));
+    if (count > 0) remove_isolated_vertices(mesh);
+    return count;
+}
+
+/// Builds the facets, and returns which of their edges are to be collapsed. Grid points, crossings and dual
+/// vertices, the largest part of the memory, are gone afterwards.
+std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
+                                       const DualContourOptions& options, DualContour& result) {
+    const double h = level.voxel_size;
+    const RelationTest related(options.relation, h);
+    GridPoints grid = build_grid_points(level);
+    Crossings crossings = [&] {
+        LocalSheets local = group_local_sheets(grid, sets, related, h);
+        extend_grid_points(grid, local, level);
+        return label_grid_signs(grid, local, sets,
+                                find_crossings(grid, local, sets, related, h, options.crossing), h);
+    }();
+    Links links = pair_crossings(grid, crossings, sets, related);
+    for (int round = 0; round < 3 && trim_unsupported(crossings, links) > 0; ++round)
+        links = pair_crossings(grid, crossings, sets, related);
+    for (int round = 0; round < 3 && drop_tips(sets, related, links, crossings) > 0; ++round)
+        links = pair_crossings(grid, crossings, sets, related);
+    const DualVertices duals = build_dual_vertices(grid, crossings, links);
+    PlacedVertices vertices = place_vertices(level, grid, sets, related, crossings, duals);
+    grid.index = {}; // place_vertices was the last to look for grid points
+    extend_borders(level, grid, sets, crossings, duals, vertices);
+    relax_vertices(octree, level, grid, crossings, duals, options.relax, vertices);
+    separate_sides(crossings, duals, h, vertices.positions);
+    std::vector<EdgeCollapse> to_corners = shared_corners(grid, crossings, duals, h, vertices);
+
+    const Midpoints midpoints(grid, sets, crossings, links, duals, h, vertices);
+    result.mesh = facets_of(crossings, links, duals, midpoints, vertices);
+    result.mesh.positions = std::move(vertices.positions);
+    if (move_to_creases(result.mesh, h, vertices) > 0) { // quads may fold elsewhere
+        vertices.positions = std::move(result.mesh.positions);
+        result.mesh = PolygonMesh(); // before there is another
+        result.mesh = facets_of(crossings, links, duals, midpoints, vertices);
+        result.mesh.positions = std::move(vertices.positions);
+    }
+    result.mesh.origin.resize(result.mesh.vertex_count());
+    std::iota(result.mesh.origin.begin(), result.mesh.origin.end(), Index(0));
+    result.classes = std::move(vertices.classes);
+    result.voxel = std::move(vertices.voxel);
+    result.midpoints = midpoints.count();
+    result.crossings = crossings.crossings.size();
+    result.beyond_crease = crossings.dropped_beyond_crease;
+    result.settled = crossings.settled;
+    result.trimmed = crossings.trimmed;
+    result.tips = crossings.tips;
+    result.open = links.open;
+    result.rims = links.rims;
+    result.cut = duals.cut;
+    result.clamped = vertices.clamped;
+    return to_corners;
+}
+
+} // namespace
+
+DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
+                         const DualContourOptions& options) {
+    DualContour result;
+    const double h = level.voxel_size;
+    const std::vector<EdgeCollapse> to_corners = build_facets(octree, level, sets, options, result);
+    result.corners_merged = merge_corners(to_corners, result.mesh, result.classes);
+    result.splinters = drop_splinters(result.mesh, options.splinters);
+    if (options.fill) {
+        FillHolesOptions holes = options.holes;
+        holes.max_diameter *= h;
+        result.holes = fill_holes(result.mesh, holes);
+    }
+    result.doublets = merge_doublets(
+        result.mesh, [&](Index v) { return result.classes[result.mesh.origin[v]] == VertexClass::smooth; });
+    result.manifold = make_manifold(result.mesh);
+    result.splinters.add(drop_splinters(result.mesh, options.splinters));
+    if (result.splinters.count > 0) remove_isolated_vertices(result.mesh);
+    UntangleOptions untangle_options = options.untangle;
+    untangle_options.reach *= h;
+    untangle_options.nearby *= h;
+    result.cells.emplace(result.mesh, h);
+    result.intersections = untangle(result.mesh, untangle_options, &*result.cells);
+    if (result.intersections.moved > 0) result.cells.reset();
+    settle_origins(result);
+    return result;
+}
+
+} // namespace hsdm

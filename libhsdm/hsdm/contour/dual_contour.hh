@@ -1,0 +1,43 @@
+#pragma once
+// Section 3.4.2 as a whole: sets -> local sheets -> crossings -> pairs -> dual vertices -> facets.
+
+#include "hsdm/contour/relax_vertices.hh"
+#include "hsdm/contour/untangle.hh"
+#include "hsdm/mesh/fill_holes.hh"
+#include "hsdm/mesh/manifold.hh"
+#include "hsdm/mesh/small_components.hh"
+
+#include <optional>
+
+namespace hsdm {
+
+struct DualContourOptions {
+    RelationOptions relation;
+    CrossingOptions crossing;
+    RelaxOptions relax;
+    SplinterOptions splinters;
+    FillHolesOptions holes{.max_edges = 24, .max_diameter = 6}; ///< lengths in voxels here
+    UntangleOptions untangle{.reach = 0.5, .nearby = 1};        ///< lengths in voxels here
+    bool fill = true;                                           ///< close small boundary loops
+};
+
+struct DualContour {
+    PolygonMesh mesh;                 ///< relative to the octree's origin; an oriented 2-manifold
+    std::vector<VertexClass> classes; ///< per vertex
+    std::vector<Index> voxel;         ///< per vertex, the occupied voxel it stands for
+    std::size_t crossings = 0, beyond_crease = 0, settled = 0, trimmed = 0, tips = 0, open = 0, rims = 0,
+                cut = 0, clamped = 0;
+    std::size_t corners_merged = 0; ///< vertices made one with that of the voxel that holds their corner
+    std::size_t midpoints = 0;      ///< vertices added so that no two mesh edges join the same two vertices
+    std::size_t doublets = 0;       ///< pairs of facets round one vertex made one
+    Discarded splinters;            ///< facets of splinters, removed
+    FillHolesCounts holes;
+    UntangleCounts intersections;
+    std::optional<FacetCells> cells; ///< the mesh's, by voxels; empty if it was moved since
+    ManifoldCounts manifold;         ///< what the last check still had to mend
+};
+
+DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
+                         const DualContourOptions& options = {});
+
+} // namespace hsdm

@@ -1,0 +1,281 @@
+#include "hsdm/contour/dual_vertices.hh"
+
+#include "hsdm/core/chunks.hh"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t crossings_per_chunk = 4096;
+constexpr double side_cosine = 0.77; // a rim's own face is 40 degrees and more from the sides
+constexpr double tip_reach = 1.0;    // voxels: from a voxel's centre to the tip of a wedge that it can serve
+constexpr double least_width = 0.05; // voxels: a narrower face is none; one vertex serves both its creases
+
+/// The chain of corners through one corner, inside one voxel.
+class Chain {
+public:
+    Chain(const Crossings& crossings, const Links& links) : crossings_(crossings), links_(links) {}
+
+    std::vector<FacetCorner> corners;
+    bool closed = false;
+
+    /// The facets run along the chain: each comes to the vertex beside the face where the chain enters it.
+    void walk(FacetCorner start) {
+        corners.clear();
+        closed = false;
+        const bool leaving = crossings_.crossings[start / 4].leaving;
+        forward(start, leaving ? start % 4 : (start + 3) % 4);
+        if (closed) return;
+        // Open: the other half, then in order from end to end.
+        std::vector<FacetCorner> tail = std::move(corners);
+        corners.clear();
+        forward(start, leaving ? (start + 3) % 4 : start % 4);
+        std::reverse(corners.begin(), corners.end());
+        corners.insert(corners.end(), tail.begin() + 1, tail.end());
+    }
+
+private:
+    /// Leaves `start` through face k of its ring and goes on until the chain closes or ends.
+    void forward(FacetCorner start, unsigned k) {
+        FacetCorner corner = start;
+        corners.push_back(corner);
+        for (;;) {
+            const Link& link = links_.of_crossing[corner / 4][k];
+            if (link.crossing == no_index) return;
+            const unsigned j = Ring::across(corner % 4, k, link.face);
+            corner = 4 * link.crossing + j;
+            if (corner == start) {
+                closed = true;
+                return;
+            }
+            corners.push_back(corner);
+            k = link.face == j ? (j + 3) % 4 : j; // out by the other of the two faces at this ring position
+        }
+    }
+
+    const Crossings& crossings_;
+    const Links& links_;
+};
+
+/// The vertices one chain becomes: ranges of a rotated copy of its corners.
+struct Cut {
+    struct Piece {
+        std::size_t first, end; // in `corners`
+        std::uint8_t shared;    // 1: its first corner is also the last of the piece before, 2: its last alike
+    };
+    std::vector<FacetCorner> corners;
+    std::vector<Piece> pieces;
+};
+
+/// Cuts a chain so that no vertex gets both sides of a thin part. Wherever the chain leads from one side to
+/// the other there must be a cut: across the link if that goes round a rim, else in the facet of the rim's
+/// own face between them.
+class ChainCutter {
+public:
+    ChainCutter(const GridPoints& grid, const Crossings& crossings, const Links& links)
+        : grid_(grid), crossings_(crossings), links_(links) {}
+
+    void cut(const Chain& chain, Cut& result) {
+        find_cuts(chain);
+        const std::size_t n = chain.corners.size();
+        result.corners.clear();
+        result.pieces.clear();
+        // A closed chain starts at its first cut, which is never after the last corner: there are two at
+        // least.
+        const std::size_t begin = chain.closed && !cuts_.empty() ? (cuts_[0] + 1) / 2 : 0;
+        for (std::size_t i = 0; i < n; ++i) result.corners.push_back(chain.corners[(begin + i) % n]);
+        const bool around = chain.closed && !cuts_.empty() && cuts_[0] % 2 == 0;
+        if (around) result.corners.push_back(result.corners[0]);
+        std::size_t first = 0;
+        unsigned shared = around;
+        for (std::size_t c = chain.closed ? 1 : 0; c < cuts_.size(); ++c) {
+            const std::size_t at = cuts_[c] - 2 * begin;
+            const unsigned at_node = at % 2 == 0;
+            result.pieces.push_back({first, at / 2 + 1, static_cast<std::uint8_t>(shared | at_node << 1)});
+            first = (at + 1) / 2;
+            shared = at_node;
+        }
+        result.pieces.push_back(
+            {first, result.corners.size(), static_cast<std::uint8_t>(shared | unsigned{around} << 1)});
+    }
+
+private:
+    static constexpr std::size_t none = ~std::size_t{0};
+
+    /// Fills cuts_, ascending: 2 i for corner i, 2 i + 1 for the link after it.
+    void find_cuts(const Chain& chain) {
+        cuts_.clear();
+        if (!any_opposite(chain)) return;
+        const std::size_t n = chain.corners.size();
+        // The shortest way from each corner to one of the other side, and where to cut it.
+        length_.assign(n, 2 * n);
+        place_.assign(n, none);
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t steps = 1; steps < n && (chain.closed || i + steps < n) && place_[i] == none;
+                 ++steps) {
+                place_[i] = place_of_cut(chain, i, steps);
+                if (place_[i] != none) length_[i] = steps;
+            }
+        for (std::size_t i = 0; i < n; ++i)
+            if (place_[i] != none && !holds_shorter(i, chain)) cuts_.push_back(place_[i]);
+        std::sort(cuts_.begin(), cuts_.end());
+        cuts_.erase(std::unique(cuts_.begin(), cuts_.end()), cuts_.end());
+        if (chain.closed && cuts_.size() < 2) cuts_.clear();
+    }
+
+    bool any_opposite(const Chain& chain) const {
+        for (std::size_t i = 0; i < chain.corners.size(); ++i)
+            for (std::size_t j = 0; j < i; ++j)
+                if (opposed(of(chain.corners[i]), of(chain.corners[j]))) return true;
+        return false;
+    }
+
+    /// Where to cut the way of so many steps from corner i; none if it does not lead to the other side.
+    std::size_t place_of_cut(const Chain& chain, std::size_t i, std::size_t steps) const {
+        const std::size_t n = chain.corners.size();
+        const FacetCorner a = chain.corners[i], b = chain.corners[(i + steps) % n];
+        if (steps == 1) {
+            const unsigned exit = of(a).leaving ? a % 4 : (a + 3) % 4;
+            return links_.of_crossing[a / 4][exit].rim && !meet_nearby(a, b) ? 2 * i + 1 : none;
+        }
+        if (!opposed(of(a), of(b)) || meet_nearby(a, b)) return none;
+        // The middle one of the corners between that lie on neither side.
+        std::size_t best = none, best_off = n;
+        for (std::size_t step = 1; step < steps; ++step) {
+            const std::size_t off = 2 * step > steps ? 2 * step - steps : steps - 2 * step;
+            const std::size_t corner = (i + step) % n;
+            if (off < best_off && width(chain.corners[corner], a, b) > least_width)
+                best = 2 * corner, best_off = off;
+        }
+        return best;
+    }
+
+    /// Do the planes of two corners meet near the voxel? Then they make the tip of a wedge, not a thin part.
+    bool meet_nearby(FacetCorner a, FacetCorner b) const {
+        const unsigned octant = Ring::octant(of(a).edge % 3, a % 4);
+        const VoxelCoord corner = grid_.coord(of(a).edge / 3);
+        Vec3 centre;
+        for (unsigned k = 0; k < 3; ++k) centre[k] = corner[k] + static_cast<int>(octant >> k & 1u) - 0.5;
+        const double k = of(a).normal | (crossing_position(grid_, of(a), 1) - centre);
+        const double l = of(b).normal | (crossing_position(grid_, of(b), 1) - centre);
+        const double cosine = of(a).normal | of(b).normal;
+        return k * k + l * l - 2 * cosine * k * l < tip_reach * tip_reach * (1 - cosine * cosine);
+    }
+
+    /// How wide a face is between the planes of two sides, in voxels; 0 if it belongs to one of them.
+    double width(FacetCorner face, FacetCorner a, FacetCorner b) const {
+        double sum = 0;
+        for (FacetCorner side : {a, b}) {
+            const Vec3& n = of(side).normal;
+            const double cosine = of(face).normal | n;
+            if (cosine > side_cosine) return 0;
+            const Vec3 d = crossing_position(grid_, of(side), 1) - crossing_position(grid_, of(face), 1);
+            sum += (n | d) / std::sqrt(std::max(1 - cosine * cosine, 0.01));
+        }
+        return sum;
+    }
+
+    /// Does the way from corner i to the other side hold another such way?
+    bool holds_shorter(std::size_t i, const Chain& chain) const {
+        const std::size_t n = chain.corners.size();
+        for (std::size_t step = 1; step < length_[i] && (chain.closed || i + step < n); ++step)
+            if (step + length_[(i + step) % n] <= length_[i]) return true;
+        return false;
+    }
+
+    const Crossing& of(FacetCorner corner) const { return crossings_.crossings[corner / 4]; }
+
+    const GridPoints& grid_;
+    const Crossings& crossings_;
+    const Links& links_;
+    std::vector<std::size_t> cuts_, length_, place_;
+};
+
+struct ChunkDualVertices {
+    std::vector<FacetCorner> corners;
+    std::vector<Index> sizes;
+    std::vector<std::uint8_t> shared, open;
+    std::vector<std::pair<std::size_t, std::size_t>> caps; // first dual vertex, number of dual vertices
+    std::vector<std::size_t> after_cut;
+    std::size_t cut = 0;
+
+    void add(const Cut& cut_chain, bool closed) {
+        const std::size_t pieces = cut_chain.pieces.size();
+        if (pieces > 1) ++cut;
+        for (std::size_t i = 1; i < pieces; ++i) after_cut.push_back(sizes.size() + i);
+        if (pieces > 2 && closed) caps.emplace_back(sizes.size(), pieces);
+        for (const Cut::Piece& piece : cut_chain.pieces) {
+            corners.insert(corners.end(),
+                           cut_chain.corners.begin() + static_cast<std::ptrdiff_t>(piece.first),
+                           cut_chain.corners.begin() + static_cast<std::ptrdiff_t>(piece.end));
+            sizes.push_back(static_cast<Index>(piece.end - piece.first));
+            shared.push_back(piece.shared);
+            open.push_back(!closed);
+        }
+    }
+};
+
+void append(const ChunkDualVertices& chunk, DualVertices& duals) {
+    const auto base = static_cast<Index>(duals.size());
+    duals.cut += chunk.cut;
+    duals.corners.insert(duals.corners.end(), chunk.corners.begin(), chunk.corners.end());
+    duals.open.insert(duals.open.end(), chunk.open.begin(), chunk.open.end());
+    for (Index size : chunk.sizes) duals.first.push_back(duals.first.back() + size);
+    for (std::size_t dual : chunk.after_cut) duals.after_cut.push_back(base + static_cast<Index>(dual));
+    for (const auto& [first, count] : chunk.caps) {
+        std::vector<Index>
+            cap; // the facets at the cuts run from dual vertex to dual vertex, the cap against them
+        for (std::size_t i = count; i-- > 0;) cap.push_back(base + static_cast<Index>(first + i));
+        duals.caps.push_back(std::move(cap));
+    }
+}
+
+/// The sides of every corner that belong to a dual vertex: both, but of a corner shared with another dual
+/// vertex one.
+void number_sides(const Crossings& crossings, std::span<const std::uint8_t> shared, DualVertices& duals) {
+    duals.of_side.assign(8 * crossings.crossings.size(), no_index);
+    for_chunks(duals.size(), crossings_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t v = begin; v < end; ++v) {
+            const auto corners = duals.corners_of(static_cast<Index>(v));
+            for (std::size_t i = 0; i < corners.size(); ++i) {
+                const std::size_t leaves_by = crossings.crossings[corners[i] / 4].leaving;
+                const std::size_t corner = corners[i];
+                if (i > 0 || !(shared[v] & 1u))
+                    duals.of_side[2 * corner + 1 - leaves_by] = static_cast<Index>(v);
+                if (i + 1 < corners.size() || !(shared[v] & 2u))
+                    duals.of_side[2 * corner + leaves_by] = static_cast<Index>(v);
+            }
+        }
+    });
+}
+
+} // namespace
+
+DualVertices build_dual_vertices(const GridPoints& grid, const Crossings& crossings, const Links& links) {
+    const std::size_t n = crossings.crossings.size();
+    std::vector<ChunkDualVertices> chunks(chunk_count(n, crossings_per_chunk));
+    for_chunks(n, crossings_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+        Chain chain(crossings, links);
+        ChainCutter cutter(grid, crossings, links);
+        Cut cut;
+        for (std::size_t corner = 4 * begin; corner < 4 * end; ++corner) {
+            chain.walk(static_cast<FacetCorner>(corner));
+            if (*std::min_element(chain.corners.begin(), chain.corners.end()) != corner)
+                continue; // another corner's chain
+            cutter.cut(chain, cut);
+            chunks[c].add(cut, chain.closed);
+        }
+    });
+    DualVertices duals;
+    std::vector<std::uint8_t> shared;
+    for (const ChunkDualVertices& chunk : chunks) {
+        append(chunk, duals);
+        shared.insert(shared.end(), chunk.shared.begin(), chunk.shared.end());
+    }
+    number_sides(crossings, shared, duals);
+    return duals;
+}
+
+} // namespace hsdm

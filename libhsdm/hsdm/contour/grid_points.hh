@@ -1,0 +1,38 @@
+#pragma once
+// The grid points round the occupied voxels of a level.
+
+#include "hsdm/core/morton_index.hh"
+#include "hsdm/octree/octree.hh"
+
+namespace hsdm {
+
+/// The grid points at the corners of the occupied voxels of a level, in Morton order; behind them, also in
+/// Morton order, those that extend_grid_points added.
+struct GridPoints {
+    std::vector<MortonCode> codes;
+    /// Per grid point, the voxel in each octant or no_index: bit k of the octant's number is set on the upper
+    /// side of axis k.
+    std::vector<std::array<Index, 8>> voxels;
+    /// Per grid point, the next up each axis, or no_index.
+    std::vector<std::array<Index, 3>> next;
+
+    MortonIndex index; ///< code -> grid point
+
+    std::size_t size() const { return codes.size(); }
+    /// In voxels; -1 and 2^depth + 1 are the margin around the bounding cube.
+    VoxelCoord coord(Index grid_point) const {
+        const VoxelCoord c = morton_decode(codes[grid_point]);
+        return {c[0] - 1, c[1] - 1, c[2] - 1};
+    }
+    static MortonCode code(const VoxelCoord& c) {
+        return morton_encode(VoxelCoord{c[0] + 1, c[1] + 1, c[2] + 1});
+    }
+};
+GridPoints build_grid_points(const OctreeLevel& level);
+/// Per grid point, the next down each axis, or no_index: the inverse of `next`.
+std::vector<std::array<Index, 3>> grid_points_below(const GridPoints& grid);
+
+/// Adds grid points by their codes, ascending and none there yet, and connects them.
+void add_grid_points(GridPoints& grid, std::span<const MortonCode> codes);
+
+} // namespace hsdm

@@ -1,0 +1,333 @@
+#include "hsdm/contour/grid_signs.hh"
+
+#include "hsdm/core/chunks.hh"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t grid_points_per_chunk = 2048;
+constexpr int rounds = 8;
+
+// What it costs to contradict the evidence, in crossings taken back.
+constexpr double cost_of_weak = 0.25;   // taking back a crossing that the data do not carry
+constexpr double cost_of_return = 0.75; // bringing back one beyond a crease or beyond the data
+constexpr double cost_of_invention = 2; // a crossing where no sheet has one
+constexpr double cost_of_a_leak = 8;    // a crossing that leaves a side open
+constexpr double most_belief = 1;       // a side against all sheets around a grid point
+constexpr double surface_error = 0.15;  // voxels: how far off its planes a sheet may pass
+constexpr double impossible = 1e30;
+
+using Side = std::uint8_t;
+constexpr Side inside = 0, outside = 1, unknown = 2;
+
+/// The cheapest choice among an edge's crossings that leads from one side to another by turns.
+class EdgeChoice {
+public:
+    explicit EdgeChoice(const CrossingCandidates& candidates)
+        : list_(candidates.crossings), standing_(candidates.standing) {}
+
+    static constexpr std::size_t most = 128; // sheets of an edge
+
+    /// How firmly a standing crossing stands.
+    double weight(Index x) const { return list_.crossings[x].supported ? 1 : cost_of_weak; }
+    double cost_of_taking(Index x) const { return standing_[x] ? 0 : cost_of_return; }
+    double cost_of_leaving(Index x) const { return standing_[x] ? weight(x) : 0; }
+    Side side_before(Index x) const { return list_.crossings[x].leaving ? inside : outside; }
+
+    double cost(Index edge, Side low, Side high) const {
+        std::array<double, 2> after = at_upper_end(high);
+        for (Index x = list_.first[edge + 1]; x-- > list_.first[edge];) after = before(x, after);
+        return after[low];
+    }
+
+    /// Calls take(x, taken) for every crossing, lowest first; returns the side beyond the last.
+    template <class Take>
+    Side choose(Index edge, Side low, Side high, Take&& take) const {
+        const Index begin = list_.first[edge];
+        const std::size_t n = list_.first[edge + 1] - begin;
+        std::array<std::array<double, 2>, most + 1> after;
+        after[n] = at_upper_end(high);
+        for (std::size_t k = n; k-- > 0;) after[k] = before(begin + static_cast<Index>(k), after[k + 1]);
+        Side side = low;
+        for (std::size_t k = 0; k < n; ++k) {
+            const Index x = begin + static_cast<Index>(k);
+            const bool taken =
+                side == side_before(x) && after[k][side] < after[k + 1][side] + cost_of_leaving(x);
+            if (taken) side = 1 - side;
+            take(x, taken);
+        }
+        return side;
+    }
+
+private:
+    static std::array<double, 2> at_upper_end(Side high) {
+        std::array<double, 2> cost{cost_of_invention, cost_of_invention};
+        cost[high] = 0;
+        return cost;
+    }
+
+    /// Costs from each side before a crossing, given those after it.
+    std::array<double, 2> before(Index x, const std::array<double, 2>& after) const {
+        const Side from = side_before(x), to = 1 - from;
+        std::array<double, 2> cost{after[0] + cost_of_leaving(x), after[1] + cost_of_leaving(x)};
+        cost[from] = std::min(cost[from], after[to] + cost_of_taking(x));
+        return cost;
+    }
+
+    const Crossings& list_;
+    const std::vector<std::uint8_t>& standing_;
+};
+
+/// The sides of the grid points and what follows from them.
+class SignLabelling {
+public:
+    SignLabelling(const GridPoints& grid, const LocalSheets& sheets, const NormalSets& sets,
+                  const CrossingCandidates& candidates, double voxel_size)
+        : grid_(grid),
+          sheets_(sheets),
+          sets_(sets),
+          list_(candidates.crossings),
+          standing_(candidates.standing),
+          choice_(candidates),
+          h_(voxel_size),
+          side_(grid.size(), unknown),
+          belief_(grid.size(), 0),
+          below_(grid_points_below(grid)) {}
+
+    Crossings run() {
+        believe();
+        vote(true);
+        for (int ring = 0; ring < 3; ++ring) vote(false, ring < 2);
+        settle();
+        return chosen();
+    }
+
+private:
+    template <class F>
+    void for_corners(F&& f) const {
+        for_chunks(grid_.size(), grid_points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t c = begin; c < end; ++c) f(static_cast<Index>(c));
+        });
+    }
+
+    /// Calls f(neighbour) for the up to six grid points that share an edge with this one.
+    template <class F>
+    void for_neighbors(Index c, F&& f) const {
+        for (unsigned a = 0; a < 3; ++a)
+            for (Index n : {grid_.next[c][a], below_[c][a]})
+                if (n != no_index) f(n);
+    }
+
+    /// The standing crossing of an edge nearest to one of its ends, or no_index.
+    Index nearest_standing(Index edge, bool upper) const {
+        const Index n = list_.first[edge + 1] - list_.first[edge];
+        for (Index k = 0; k < n; ++k) {
+            const Index x = upper ? list_.first[edge + 1] - 1 - k : list_.first[edge] + k;
+            if (standing_[x]) return x;
+        }
+        return no_index;
+    }
+
+    /// What an edge says about one of its ends: positive outside. Without a standing crossing, what is known
+    /// about its other end.
+    double vote(Index edge, bool upper, Side other, bool carried_only) const {
+        const Index x = nearest_standing(edge, upper);
+        if (x == no_index) return carried_only || other == unknown ? 0 : other == outside ? 1 : -1;
+        if (carried_only && !list_.crossings[x].supported) return 0;
+        return list_.crossings[x].leaving == upper ? choice_.weight(x) : -choice_.weight(x);
+    }
+
+    /// What the sheets around a grid point say of it by themselves: the mean of its distances to them, by
+    /// nearness, over the mean of their sizes; 1 outside of all, -1 inside of all. Where a sheet passes too
+    /// near for its error, nothing.
+    void believe() {
+        for_corners([&](Index c) {
+            double sum = 0, size = 0;
+            for (const LocalSheet& sheet : sheets_.sheets_at(c)) {
+                if (std::abs(sheet.distance) < surface_error * h_ * sheet.weight) return;
+                sum += sheet.distance;
+                size += std::abs(sheet.distance);
+            }
+            if (size > 0) belief_[c] = most_belief * sum / size;
+        });
+    }
+
+    /// The edges of a grid point say on which side it lies: at first by the crossings that the data carry
+    /// alone. Farther off, where sheets are only continued, the side of the neighbours says more.
+    void vote(bool carried_only, bool undecided = true) {
+        std::vector<Side> next = side_;
+        for_corners([&](Index c) {
+            if (side_[c] != unknown) return;
+            double sum = belief_[c];
+            for (unsigned a = 0; a < 3; ++a) {
+                const Index up = grid_.next[c][a], down = below_[c][a];
+                if (up != no_index) sum += vote(3 * c + a, false, side_[up], carried_only);
+                if (down != no_index) sum += vote(3 * down + a, true, side_[down], carried_only);
+            }
+            if (sum != 0 || !undecided) next[c] = sum < 0 ? inside : outside;
+        });
+        side_ = std::move(next);
+    }
+
+    /// Would a crossing here leave a side open: is a face beside the edge not all there, or no set near?
+    bool leaks(Index edge) const {
+        const Index lower = edge / 3, upper = grid_.next[lower][edge % 3];
+        for (unsigned a : {(edge + 1) % 3, (edge + 2) % 3})
+            for (Index end : {lower, upper})
+                if (grid_.next[end][a] == no_index || below_[end][a] == no_index) return true;
+        return sheets_.members_at(lower).empty() && sheets_.members_at(upper).empty();
+    }
+
+    double edge_cost(Index edge, Side low, Side high) const {
+        if (low == unknown || high == unknown) return 0;
+        return choice_.cost(edge, low, high) + (low != high && leaks(edge) ? cost_of_a_leak : 0);
+    }
+
+    double corner_cost(Index c, Side side) const {
+        double sum = 0;
+        for (unsigned a = 0; a < 3; ++a) {
+            const Index up = grid_.next[c][a], down = below_[c][a];
+            if (up != no_index) sum += edge_cost(3 * c + a, side, side_[up]);
+            if (down != no_index) sum += edge_cost(3 * down + a, side_[down], side);
+        }
+        return sum;
+    }
+
+    /// The grid points at edges that contradict their ends, and those next to them.
+    std::vector<Index> doubtful() const {
+        std::vector<std::vector<Index>> parts(chunk_count(grid_.size(), grid_points_per_chunk));
+        for_corners([&](Index c) {
+            if (side_[c] == unknown || corner_cost(c, side_[c]) == 0) return;
+            auto& part = parts[c / grid_points_per_chunk];
+            part.push_back(c);
+            for_neighbors(c, [&](Index n) {
+                if (side_[n] != unknown) part.push_back(n);
+            });
+        });
+        std::vector<Index> grid_points = joined(parts);
+        std::sort(grid_points.begin(), grid_points.end());
+        grid_points.erase(std::unique(grid_points.begin(), grid_points.end()), grid_points.end());
+        return grid_points;
+    }
+
+    /// Doubtful grid points change sides while that helps. Grid points of one colour of the chessboard share
+    /// no edge, so their order does not matter.
+    void settle() {
+        const std::vector<Index> grid_points = doubtful();
+        std::vector<std::uint8_t> changed(grid_points.size());
+        for (int round = 0; round < rounds; ++round) {
+            std::fill(changed.begin(), changed.end(), 0);
+            for (int colour : {0, 1})
+                for_chunks(grid_points.size(), 512, [&](std::size_t begin, std::size_t end, std::size_t) {
+                    for (std::size_t k = begin; k < end; ++k) {
+                        const Index c = grid_points[k];
+                        const VoxelCoord v = grid_.coord(c);
+                        if (((v[0] + v[1] + v[2]) & 1) != colour) continue;
+                        const Side other = 1 - side_[c];
+                        const double gain = (other == outside ? 1 : -1) * belief_[c];
+                        if (corner_cost(c, other) + 1e-9 >= corner_cost(c, side_[c]) + gain) continue;
+                        side_[c] = other;
+                        changed[k] = 1;
+                    }
+                });
+            if (std::find(changed.begin(), changed.end(), 1) == changed.end()) break;
+        }
+    }
+
+    /// Appends an edge's crossings.
+    void choose(Index edge, std::vector<Crossing>& out, std::size_t& changes) const {
+        const Index begin = list_.first[edge], end = list_.first[edge + 1];
+        const Index upper = grid_.next[edge / 3][edge % 3];
+        const Side low = side_[edge / 3], high = upper == no_index ? unknown : side_[upper];
+        if (low == unknown || high == unknown) {
+            for (Index x = begin; x < end; ++x)
+                if (standing_[x]) out.push_back(list_.crossings[x]);
+            return;
+        }
+        const Side reached = choice_.choose(edge, low, high, [&](Index x, bool taken) {
+            if (taken) out.push_back(list_.crossings[x]);
+            changes += taken != (standing_[x] != 0);
+        });
+        if (reached != high && invent(edge, reached == inside, out)) ++changes;
+    }
+
+    /// The set seen from an edge's ends that lies nearest to its middle, one whose normal agrees with the
+    /// crossing's direction if there is any; no_index if neither end sees a set.
+    Index set_near(Index edge, bool leaving, const Vec3& middle) const {
+        std::tuple<bool, double, Index> best{true, impossible, no_index};
+        for (Index end : {edge / 3, grid_.next[edge / 3][edge % 3]})
+            for (const SheetMember& m : sheets_.members_at(end)) {
+                const NormalSet& s = sets_.sets[m.set];
+                best = std::min(
+                    best, {(s.normal[edge % 3] > 0) != leaving, (s.centroid - middle).sqrnorm(), m.set});
+            }
+        return std::get<2>(best);
+    }
+
+    /// A crossing where the plane of the nearest set crosses the edge, or as near to that as it can be.
+    bool invent(Index edge, bool leaving, std::vector<Crossing>& out) const {
+        const unsigned axis = edge % 3;
+        const VoxelCoord c = grid_.coord(edge / 3);
+        Vec3 middle = Vec3(c[0], c[1], c[2]) * h_;
+        middle[axis] += 0.5 * h_;
+        const Index set = set_near(edge, leaving, middle);
+        if (set == no_index) return false;
+        const NormalSet& s = sets_.sets[set];
+        Crossing crossing{0.5, s.normal, edge, set, leaving, false};
+        if ((s.normal[axis] > 0) == leaving) {
+            const double rise = s.normal[axis] * h_;
+            crossing.t = rise == 0 ? 0.5 : 0.5 + (s.normal | (s.centroid - middle)) / rise;
+        } else {
+            crossing.normal = Vec3(0, 0, 0);
+            crossing.normal[axis] = leaving ? 1 : -1;
+        }
+        crossing.t = std::clamp(crossing.t, 0.01, 0.99);
+        if (!out.empty() && out.back().edge == edge) crossing.t = std::max(crossing.t, out.back().t);
+        out.push_back(crossing);
+        return true;
+    }
+
+    Crossings chosen() const {
+        Crossings result;
+        result.dropped_beyond_crease = list_.dropped_beyond_crease;
+        result.first.assign(3 * grid_.size() + 1, 0);
+        std::vector<std::vector<Crossing>> parts(chunk_count(grid_.size(), grid_points_per_chunk));
+        std::vector<std::size_t> changes(parts.size());
+        for_chunks(grid_.size(), grid_points_per_chunk,
+                   [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+                       for (std::size_t edge = 3 * begin; edge < 3 * end; ++edge) {
+                           const std::size_t before = parts[chunk].size();
+                           choose(static_cast<Index>(edge), parts[chunk], changes[chunk]);
+                           result.first[edge + 1] = static_cast<Index>(parts[chunk].size() - before);
+                       }
+                   });
+        result.crossings = joined(parts);
+        counts_to_first(result.first);
+        for (std::size_t n : changes) result.settled += n;
+        return result;
+    }
+
+    const GridPoints& grid_;
+    const LocalSheets& sheets_;
+    const NormalSets& sets_;
+    const Crossings& list_;
+    const std::vector<std::uint8_t>& standing_;
+    EdgeChoice choice_;
+    double h_;
+    std::vector<Side> side_;
+    std::vector<double> belief_;
+    std::vector<std::array<Index, 3>> below_;
+};
+
+} // namespace
+
+Crossings label_grid_signs(const GridPoints& grid, const LocalSheets& sheets, const NormalSets& sets,
+                           const CrossingCandidates& candidates, double voxel_size) {
+    return SignLabelling(grid, sheets, sets, candidates, voxel_size).run();
+}
+
+} // namespace hsdm

@@ -1,0 +1,191 @@
+#include "hsdm/contour/move_to_creases.hh"
+
+#include "hsdm/mesh/area_vector.hh"
+#include "hsdm/mesh/part_of.hh"
+#include "hsdm/spatial/self_intersections.hh"
+
+#include <algorithm>
+
+namespace hsdm {
+namespace {
+
+constexpr int most_rounds = 4;
+constexpr double turn_cosine = 0.7; // of a facet's normal with that before, and with its sheet's
+constexpr double nearest = 0.1;     // voxels, to another vertex
+constexpr double least_sine = 0.02; // of a triangle's corner
+
+/// The facets at some vertices.
+class FacetsAt {
+public:
+    FacetsAt(const PolygonMesh& mesh, const std::vector<std::uint8_t>& vertices) {
+        for (Index f = 0; f < mesh.facet_count(); ++f)
+            for (Index v : mesh.facet(f))
+                if (vertices[v]) pairs_.emplace_back(v, f);
+        std::sort(pairs_.begin(), pairs_.end());
+    }
+
+    template <class Test>
+    bool all_of(Index vertex, const Test& test) const {
+        auto it = std::lower_bound(pairs_.begin(), pairs_.end(), std::pair{vertex, Index{0}});
+        for (; it != pairs_.end() && it->first == vertex; ++it)
+            if (!test(it->second)) return false;
+        return true;
+    }
+
+    /// In order, each once.
+    std::vector<Index> facets() const {
+        std::vector<Index> result;
+        for (const auto& [vertex, facet] : pairs_) result.push_back(facet);
+        std::sort(result.begin(), result.end());
+        result.erase(std::unique(result.begin(), result.end()), result.end());
+        return result;
+    }
+
+private:
+    std::vector<std::pair<Index, Index>> pairs_; // vertex and facet
+};
+
+/// The cosine of a facet's normal with the nearer one of two; of a facet of several triangles the least, if
+/// they all end at the corner for which that is largest: with three corners on a crease a quad has a straight
+/// one, and across a crease it folds. -1 if triangles are too thin.
+double along(const std::vector<Vec3>& ring, const std::array<Vec3, 2>& normals) {
+    const std::size_t n = ring.size();
+    double best = -1;
+    for (std::size_t from = 0; from < n; ++from) {
+        double least = 1;
+        for (std::size_t i = 1; i + 1 < n && least > best; ++i) {
+            const Vec3 &a = ring[from], &b = ring[(from + i) % n], &c = ring[(from + i + 1) % n];
+            const Vec3 up = (b - a) % (c - a);
+            const double length = up.norm();
+            const bool thin = length <= least_sine * (b - a).norm() * (c - a).norm();
+            least = thin ? -1 : std::min(least, std::max(up | normals[0], up | normals[1]) / length);
+        }
+        best = std::max(best, least);
+    }
+    return best;
+}
+
+/// Moves vertices to creases, and back again where that makes facets intersect.
+class CreaseMoves {
+public:
+    CreaseMoves(PolygonMesh& mesh, double voxel_size, const std::vector<PlacedVertices::OnCrease>& on_creases)
+        : mesh_(mesh),
+          voxel_size_(voxel_size),
+          on_creases_(on_creases),
+          wanted_(marked(mesh.positions.size(), on_creases)),
+          at_(mesh, wanted_),
+          beside_(facets_beside()),
+          moved_(on_creases.size(), 0) {
+        for (const auto& v : on_creases) was_.push_back(mesh.positions[v.dual]);
+    }
+
+    /// Returns, per wanted vertex, whether it has moved.
+    const std::vector<std::uint8_t>& run() {
+        bool any = true; // one that moves may make way for another
+        for (int round = 0; round < most_rounds && any; ++round) {
+            any = false;
+            for (std::size_t i = 0; i < moved_.size(); ++i)
+                if (!moved_[i] && suits_all(i)) {
+                    mesh_.positions[on_creases_[i].dual] = on_creases_[i].position;
+                    moved_[i] = 1;
+                    any = true;
+                }
+        }
+        while (take_back_intersecting()) // each time one at least
+            while (take_back_unsuited()) {
+            }
+        return moved_;
+    }
+
+private:
+    static std::vector<std::uint8_t> marked(std::size_t count,
+                                            const std::vector<PlacedVertices::OnCrease>& vertices) {
+        std::vector<std::uint8_t> result(count, 0);
+        for (const auto& v : vertices) result[v.dual] = 1;
+        return result;
+    }
+
+    /// Those that share vertices with facets at wanted vertices.
+    std::vector<Index> facets_beside() const {
+        std::vector<std::uint8_t> beside(wanted_.size(), 0);
+        for (Index f : at_.facets())
+            for (Index v : mesh_.facet(f)) beside[v] = 1;
+        return FacetsAt(mesh_, beside).facets();
+    }
+
+    bool take_back(std::size_t i) {
+        mesh_.positions[on_creases_[i].dual] = was_[i];
+        moved_[i] = 0;
+        return true;
+    }
+
+    bool take_back_intersecting() {
+        bool any = false;
+        for (const auto& pair : find_self_intersections(part_of(mesh_, beside_)).facet_pairs)
+            for (Index f : pair)
+                for (Index v : mesh_.facet(beside_[f])) {
+                    if (!wanted_[v]) continue;
+                    const auto at =
+                        std::ranges::lower_bound(on_creases_, v, {}, &PlacedVertices::OnCrease::dual);
+                    const auto i = static_cast<std::size_t>(at - on_creases_.begin());
+                    if (moved_[i]) any = take_back(i);
+                }
+        return any;
+    }
+
+    /// Those whose facets are not what they should be, now that others have gone back.
+    bool take_back_unsuited() {
+        bool any = false;
+        for (std::size_t i = 0; i < moved_.size(); ++i)
+            if (moved_[i] && !suits_all(i)) any = take_back(i);
+        return any;
+    }
+
+    bool suits_all(std::size_t i) {
+        return at_.all_of(on_creases_[i].dual, [&](Index f) { return suits(f, i); });
+    }
+
+    /// Are a facet's sides, normal and triangles as they should be with one of its vertices on its crease, or
+    /// no worse than with it where it was?
+    bool suits(Index facet, std::size_t i) {
+        const PlacedVertices::OnCrease& to = on_creases_[i];
+        after_.clear();
+        before_.clear();
+        for (Index v : mesh_.facet(facet)) {
+            before_.push_back(v == to.dual ? was_[i] : mesh_.positions[v]);
+            after_.push_back(v == to.dual ? to.position : mesh_.positions[v]);
+            const double side = (after_.back() - to.position).norm();
+            if (v != to.dual && side < nearest * voxel_size_ && side < (after_.back() - was_[i]).norm())
+                return false;
+        }
+        const Vec3 now = area_vector(after_), then = area_vector(before_);
+        if ((now | then) <= turn_cosine * now.norm() * then.norm()) return false;
+        const double is = along(after_, to.normals);
+        return is > turn_cosine || is >= along(before_, to.normals);
+    }
+
+    PolygonMesh& mesh_;
+    double voxel_size_;
+    const std::vector<PlacedVertices::OnCrease>& on_creases_;
+    std::vector<std::uint8_t> wanted_; // per vertex
+    FacetsAt at_;                      // those
+    std::vector<Index> beside_;
+    std::vector<std::uint8_t> moved_;  // per wanted vertex, like
+    std::vector<Vec3> was_;            // where it was
+    std::vector<Vec3> after_, before_; // of a facet
+};
+
+} // namespace
+
+std::size_t move_to_creases(PolygonMesh& mesh, double voxel_size, PlacedVertices& vertices) {
+    if (vertices.on_creases.empty()) return 0;
+    CreaseMoves moves(mesh, voxel_size, vertices.on_creases);
+    const std::vector<std::uint8_t>& moved = moves.run();
+    for (std::size_t i = 0; i < moved.size(); ++i)
+        if (moved[i]) vertices.is_clamped[vertices.on_creases[i].dual] = 0;
+    const auto count = static_cast<std::size_t>(std::ranges::count(moved, 1));
+    vertices.clamped -= count;
+    return count;
+}
+
+} // namespace hsdm

@@ -1,0 +1,97 @@
+#include "hsdm/contour/outlier_sets.hh"
+
+#include "hsdm/core/chunks.hh"
+
+#include <algorithm>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t sets_per_chunk = 1024;
+
+/// Points in a set, the mean that a point sees: full voxels count more than clipped ones.
+double typical_count(const NormalSets& sets) {
+    struct Sum {
+        std::uint64_t points = 0, squares = 0;
+    };
+    std::vector<Sum> sums(chunk_count(sets.sets.size(), sets_per_chunk));
+    for_chunks(sets.sets.size(), sets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        for (std::size_t s = begin; s < end; ++s) {
+            const std::uint64_t count = sets.sets[s].count;
+            sums[chunk].points += count;
+            sums[chunk].squares += count * count;
+        }
+    });
+    double points = 0, squares = 0;
+    for (const Sum& sum : sums) {
+        points += static_cast<double>(sum.points);
+        squares += static_cast<double>(sum.squares);
+    }
+    return points > 0 ? squares / points : 0;
+}
+
+/// Is set s an outlier? `group` is scratch.
+bool is_stray(const OctreeLevel& level, const RelationTest& related, const NormalSets& sets, double most,
+              std::size_t most_sets, Index s, std::vector<Index>& group) {
+    group.assign(1, s);
+    for (std::size_t i = 0; i < group.size(); ++i) {
+        const NormalSet& set = sets.sets[group[i]];
+        const VoxelCoord at = level.coord(set.voxel);
+        for (const VoxelCoord& offset : neighbor_offsets) {
+            const Index voxel = level.find({at[0] + offset[0], at[1] + offset[1], at[2] + offset[2]});
+            if (voxel == no_index) continue;
+            for (Index t = sets.first[voxel]; t < sets.first[voxel + 1]; ++t) {
+                if (related(set, sets.sets[t]) != Relation::smooth) continue;
+                if (sets.sets[t].count > most) return false;
+                if (std::find(group.begin(), group.end(), t) == group.end()) group.push_back(t);
+            }
+            if (group.size() > most_sets) return false;
+        }
+    }
+    return true;
+}
+
+Vec3 middle_of(const OctreeLevel& level, Index voxel) {
+    const VoxelCoord c = level.coord(voxel);
+    return (Vec3(c[0], c[1], c[2]) + Vec3(0.5, 0.5, 0.5)) * level.voxel_size;
+}
+
+void remove(const std::vector<std::uint8_t>& lonely, NormalSets& sets) {
+    std::vector<Index> renumbered(sets.sets.size(), no_index);
+    Index kept = 0;
+    for (std::size_t v = 0, s = 0; v + 1 < sets.first.size(); ++v) {
+        const Index end = sets.first[v + 1];
+        sets.first[v] = kept;
+        for (; s < end; ++s)
+            if (!lonely[s]) {
+                renumbered[s] = kept;
+                sets.sets[kept++] = sets.sets[s];
+            }
+    }
+    sets.first.back() = kept;
+    sets.sets.resize(kept);
+    for (Index& s : sets.of_point)
+        if (s != no_index) s = renumbered[s];
+}
+
+} // namespace
+
+Discarded drop_outlier_sets(const OctreeLevel& level, const RelationTest& related, NormalSets& sets,
+                            const OutlierSetOptions& options) {
+    const double most = std::max(1.0, options.most_share * typical_count(sets));
+    std::vector<std::uint8_t> lonely(sets.sets.size(), 0);
+    for_chunks(sets.sets.size(), sets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        std::vector<Index> group;
+        for (std::size_t s = begin; s < end; ++s)
+            lonely[s] =
+                sets.sets[s].count <= most
+                && is_stray(level, related, sets, most, options.most_sets, static_cast<Index>(s), group);
+    });
+    Discarded points;
+    for (std::size_t s = 0; s < lonely.size(); ++s)
+        if (lonely[s]) points.add({sets.sets[s].count, middle_of(level, sets.sets[s].voxel)});
+    if (points.count > 0) remove(lonely, sets);
+    return points;
+}
+
+} // namespace hsdm

@@ -1,0 +1,450 @@
+#include "hsdm/contour/place_vertices.hh"
+
+#include "hsdm/core/chunks.hh"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t duals_per_chunk = 1024;
+constexpr double margin = 0.002;         // voxels: vertices stay this far from their voxel's faces
+constexpr double least_singular = 0.003; // eigenvalues below this share of the largest are cut
+constexpr double hold = 0.002;        // of the largest eigenvalue: pull to the mean in directions left open
+constexpr double side_gap = 0.02;     // voxels: half the least distance between two sides cut apart
+constexpr double farthest_out = 0.5;  // voxels, of vertices that leave theirs
+constexpr double clear_corner = 0.03; // voxels: root mean square of what a corner's planes may miss it by
+constexpr double clear_crease = 0.01; // ... and a crease's, of a vertex that moves there later
+constexpr double crease_out = 0.25;   // voxels, of such a vertex
+constexpr double new_sheet_cosine = 0.77; // normals farther apart than 40 degrees belong to different sheets
+
+struct Plane {
+    Vec3 normal;
+    Vec3 point;
+    double weight;
+};
+
+/// The planes one vertex is placed by, and the box it must stay in.
+struct Problem {
+    std::vector<Plane> planes;
+    Vec3 mean; // of the crossings: inside the box, since they lie on its surface
+    Vec3 lo;   // of the voxel
+    double size = 0;
+};
+
+/// A normal of each sheet the planes belong to, of three at most.
+struct SheetNormals {
+    std::array<Vec3, 3> normals;
+    int count = 0;
+
+    explicit SheetNormals(const std::vector<Plane>& planes) {
+        for (const Plane& plane : planes) {
+            const auto end = normals.begin() + count;
+            if (std::any_of(normals.begin(), end,
+                            [&](const Vec3& n) { return (n | plane.normal) > new_sheet_cosine; }))
+                continue;
+            *end = plane.normal;
+            if (++count == 3) break;
+        }
+    }
+};
+
+struct Solution {
+    Vec3 position;
+    int rank = 0; // directions the planes determine
+    Vec3 steep;   // rank 1: the common normal, of either sign
+    Vec3 free;    // rank 2: along the crease
+    // The energy x A x - 2 b x that the position minimises, x relative to the mean, open directions held
+    // lightly.
+    Eigen::Matrix3d a;
+    Eigen::Vector3d b;
+};
+
+/// min sum w (n . (x - p))^2, the least change from the mean in the directions the planes leave open.
+Solution least_squares(const Problem& problem, int most_rank) {
+    Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d b = Eigen::Vector3d::Zero();
+    for (const Plane& plane : problem.planes) {
+        const Eigen::Vector3d n(plane.normal[0], plane.normal[1], plane.normal[2]);
+        a += plane.weight * n * n.transpose();
+        b += plane.weight * (plane.normal | (plane.point - problem.mean)) * n;
+    }
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
+    eigen.computeDirect(a);
+    const Eigen::Vector3d values = eigen.eigenvalues(); // ascending
+    Solution solution;
+    solution.a = hold * values[2] * Eigen::Matrix3d::Identity();
+    solution.b.setZero();
+    Eigen::Vector3d x = Eigen::Vector3d::Zero();
+    for (int k = 2; k >= 0 && solution.rank < most_rank; --k) {
+        if (values[k] < least_singular * values[2] || values[k] <= 0) break;
+        const Eigen::Vector3d v = eigen.eigenvectors().col(k);
+        x += v * (v.dot(b) / values[k]);
+        solution.a += values[k] * v * v.transpose();
+        solution.b += v.dot(b) * v;
+        ++solution.rank;
+    }
+    const Eigen::Vector3d free = eigen.eigenvectors().col(0);
+    solution.position = problem.mean + Vec3(x[0], x[1], x[2]);
+    const Eigen::Vector3d steep = eigen.eigenvectors().col(2);
+    solution.free = Vec3(free[0], free[1], free[2]);
+    solution.steep = Vec3(steep[0], steep[1], steep[2]);
+    return solution;
+}
+
+/// Root mean square distance of a point from the planes.
+double misfit(const Vec3& p, const Problem& problem) {
+    double sum = 0, weight = 0;
+    for (const Plane& plane : problem.planes) {
+        const double d = plane.normal | (p - plane.point);
+        sum += plane.weight * d * d;
+        weight += plane.weight;
+    }
+    return std::sqrt(sum / weight);
+}
+
+/// `slack` voxels from the faces; negative: so far beyond them at most.
+bool inside(const Vec3& p, const Problem& problem, double slack = margin) {
+    for (unsigned k = 0; k < 3; ++k) {
+        const double at = (p[k] - problem.lo[k]) / problem.size;
+        if (at < slack || at > 1 - slack) return false;
+    }
+    return true;
+}
+
+Vec3 clamped(Vec3 p, const Problem& problem) {
+    const double slack = margin * problem.size;
+    for (unsigned k = 0; k < 3; ++k)
+        p[k] = std::clamp(p[k], problem.lo[k] + slack, problem.lo[k] + problem.size - slack);
+    return p;
+}
+
+/// The point of the box with the least energy: the least of those inside the box, on its faces, edges and
+/// corners, each by a linear system for the coordinates not held at a bound.
+Vec3 least_in_box(const Solution& solution, const Problem& problem) {
+    const double slack = margin * problem.size;
+    Eigen::Vector3d lo, hi;
+    for (unsigned k = 0; k < 3; ++k) {
+        lo[k] = problem.lo[k] + slack - problem.mean[k];
+        hi[k] = problem.lo[k] + problem.size - slack - problem.mean[k];
+    }
+    Eigen::Vector3d best = Eigen::Vector3d::Zero();
+    double least = std::numeric_limits<double>::infinity();
+    for (int way = 1; way < 27; ++way) { // per axis: free, at the lower, at the upper bound
+        const std::array<int, 3> held{way % 3, way / 3 % 3, way / 9};
+        Eigen::Matrix3d a = solution.a;
+        Eigen::Vector3d b = solution.b;
+        for (int k = 0; k < 3; ++k) {
+            const auto axis = static_cast<std::size_t>(k);
+            if (held[axis] == 0) continue;
+            a.row(k).setZero();
+            a(k, k) = 1;
+            b[k] = held[axis] == 1 ? lo[k] : hi[k];
+        }
+        Eigen::Vector3d x = a.partialPivLu().solve(b);
+        if (((x - lo).array() < -1e-9 * problem.size).any()
+            || ((hi - x).array() < -1e-9 * problem.size).any())
+            continue;
+        const double energy = x.dot(solution.a * x) - 2 * solution.b.dot(x);
+        if (energy < least) least = energy, best = x;
+    }
+    return clamped(problem.mean + Vec3(best[0], best[1], best[2]), problem);
+}
+
+class Placer {
+public:
+    Placer(const OctreeLevel& level, const GridPoints& grid, const NormalSets& sets,
+           const RelationTest& related, const Crossings& crossings, const DualVertices& duals,
+           const std::vector<std::uint8_t>& crosses)
+        : level_(level),
+          grid_(grid),
+          sets_(sets),
+          related_(related),
+          crossings_(crossings),
+          duals_(duals),
+          crosses_(crosses) {}
+
+    std::vector<PlacedVertices::Beyond> beyond;
+    std::vector<PlacedVertices::OnCrease> on_creases;
+
+    void place(Index dual, PlacedVertices& result) {
+        gather(dual);
+        const Index nearest = sets_.sets[crossings_.crossings[duals_.corners_of(dual)[0] / 4].set].voxel;
+        result.voxel[dual] = voxel_ != no_index ? voxel_ : nearest;
+        int sheets = SheetNormals(problem_.planes).count;
+        Solution solution = least_squares(problem_, sheets);
+        if (sheets == 2 && solution.rank == 2 && add_corner_plane(dual)) {
+            sheets = 3;
+            solution = least_squares(problem_, sheets);
+        }
+        if (!inside(solution.position, problem_) && !may_leave(solution.position)) {
+            note_corner(dual, solution);
+            const Vec3 unclamped = solution.position;
+            result.is_clamped[dual] = keep_inside(solution);
+            if (result.is_clamped[dual] && sheets == 2
+                && meet(2, solution, unclamped, crease_out, clear_crease)) {
+                const SheetNormals both(problem_.planes);
+                on_creases.push_back({dual, unclamped, {both.normals[0], both.normals[1]}});
+            }
+        }
+        result.positions[dual] = solution.position;
+        const bool upward = (solution.steep | problem_.planes[0].normal) > 0;
+        result.directions[dual] =
+            solution.rank > 1 && sheets > 1 ? solution.free : solution.steep * (upward ? 1.0 : -1.0);
+        result.classes[dual] = sheets == 1 || solution.rank < 2 ? VertexClass::smooth
+                               : solution.rank == 2             ? VertexClass::edge
+                                                                : VertexClass::corner;
+    }
+
+private:
+    void gather(Index dual) {
+        problem_.planes.clear();
+        problem_.size = level_.voxel_size;
+        const auto corners = duals_.corners_of(dual);
+        const Crossing& some = crossings_.crossings[corners[0] / 4];
+        const unsigned octant = Ring::octant(some.edge % 3, corners[0] % 4);
+        voxel_ = grid_.voxels[some.edge / 3][octant];
+        const VoxelCoord c = grid_.coord(some.edge / 3);
+        for (unsigned k = 0; k < 3; ++k)
+            problem_.lo[k] = (c[k] + static_cast<int>(octant >> k & 1u) - 1) * level_.voxel_size;
+        problem_.mean = Vec3(0, 0, 0);
+        for (FacetCorner corner : corners) {
+            const Crossing& crossing = crossings_.crossings[corner / 4];
+            const Vec3 p = crossing_position(grid_, crossing, level_.voxel_size);
+            problem_.planes.push_back({crossing.normal, p, 1});
+            problem_.mean += p;
+        }
+        problem_.mean /= static_cast<double>(corners.size());
+        if (voxel_ != no_index) add_own_sets(corners);
+    }
+
+    /// The voxel's own sets: those of the dual vertex's sheets, and those in a crease with them that cross no
+    /// edge of the voxel (a narrow rim).
+    void add_own_sets(std::span<const FacetCorner> corners) {
+        near_.clear();
+        for (FacetCorner corner : corners) near_.push_back(crossings_.crossings[corner / 4].set);
+        std::sort(near_.begin(), near_.end());
+        near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
+        const std::size_t crossing_sets = near_.size();
+        for (Index s = sets_.first[voxel_]; s < sets_.first[voxel_ + 1]; ++s) {
+            const bool same = std::any_of(
+                near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(crossing_sets), [&](Index t) {
+                    return s == t || related_(sets_.sets[s], sets_.sets[t]) == Relation::smooth;
+                });
+            if (!same) continue;
+            add_plane(s);
+            near_.push_back(s);
+        }
+        for (Index s = sets_.first[voxel_]; s < sets_.first[voxel_ + 1]; ++s) {
+            if (crosses_[s] || std::find(near_.begin(), near_.end(), s) != near_.end()) continue;
+            const bool crease = std::any_of(near_.begin(), near_.end(), [&](Index t) {
+                const Relation r = related_(sets_.sets[s], sets_.sets[t]);
+                return r == Relation::convex || r == Relation::concave;
+            });
+            if (crease) add_plane(s);
+        }
+    }
+
+    /// The tip of a corner may reach into a voxel without a point of one of its sheets: of the sets around
+    /// that make a crease with both of the dual vertex's sheets, the one whose plane cuts their crease in
+    /// this voxel nearest to itself.
+    bool add_corner_plane(Index dual) {
+        const auto corners = duals_.corners_of(dual);
+        Index best = no_index;
+        double nearest = std::numeric_limits<double>::infinity();
+        const std::size_t planes = problem_.planes.size();
+        for (FacetCorner corner : corners)
+            for (Index voxel : grid_.voxels[crossings_.crossings[corner / 4].edge / 3]) {
+                if (voxel == no_index || voxel == voxel_) continue;
+                for (Index s = sets_.first[voxel]; s < sets_.first[voxel + 1]; ++s) {
+                    if (s == best || !creases_with_all(s, corners)) continue;
+                    add_plane(s);
+                    const Solution corner = least_squares(problem_, 3);
+                    problem_.planes.resize(planes);
+                    const double d = (corner.position - sets_.sets[s].centroid).sqrnorm();
+                    if (corner.rank == 3 && inside(corner.position, problem_, -margin)
+                        && (d < nearest || (d == nearest && s < best)))
+                        nearest = d, best = s;
+                }
+            }
+        if (best != no_index) add_plane(best);
+        return best != no_index;
+    }
+
+    bool creases_with_all(Index s, std::span<const FacetCorner> corners) const {
+        return std::all_of(corners.begin(), corners.end(), [&](FacetCorner corner) {
+            const Relation r = related_(sets_.sets[s], sets_.sets[crossings_.crossings[corner / 4].set]);
+            return r == Relation::convex || r == Relation::concave;
+        });
+    }
+
+    void add_plane(Index s) {
+        const NormalSet& set = sets_.sets[s];
+        problem_.planes.push_back({set.normal, set.centroid, 0.5 * std::min<double>(set.count, 6)});
+    }
+
+    /// A bulge, crease or corner may reach through a face of the voxel without crossing an edge of the next
+    /// one. If none of its sheets does so, that voxel has no vertex on them, and this one may lie there; on
+    /// the far side of an edge or corner of the voxel if that holds for all voxels around.
+    bool may_leave(const Vec3& position) const {
+        if (!inside(position, problem_, -farthest_out)) return false;
+        const VoxelCoord step = step_to(position);
+        for (unsigned way = 1; way < 8; ++way)
+            if (is_crossed(step, way)) return false;
+        return true;
+    }
+
+    /// Do the planes of as many sheets meet there, at most so many voxels outside, and so well?
+    bool meet(int sheets, const Solution& solution, const Vec3& position, double out, double clear) const {
+        return solution.rank == sheets && inside(position, problem_, -out)
+               && misfit(position, problem_) <= clear * problem_.size;
+    }
+
+    /// For the voxels around, whose own vertices may stand for this corner.
+    void note_corner(Index dual, const Solution& solution) {
+        if (!meet(3, solution, solution.position, farthest_out, clear_corner)) return;
+        const SheetNormals sheets(problem_.planes);
+        if (sheets.count < 3) return;
+        const VoxelCoord step = step_to(solution.position);
+        unsigned crossed = 0;
+        for (unsigned way = 1; way < 8; ++way) crossed |= unsigned{is_crossed(step, way)} << way;
+        beyond.push_back({dual, solution.position, sheets.normals, step, static_cast<std::uint8_t>(crossed)});
+    }
+
+    /// To the voxel that a position less than a voxel away lies in.
+    VoxelCoord step_to(const Vec3& position) const {
+        VoxelCoord step;
+        for (unsigned k = 0; k < 3; ++k) {
+            const double at = (position[k] - problem_.lo[k]) / problem_.size;
+            step[k] = (at > 1 - margin) - (at < margin);
+        }
+        return step;
+    }
+
+    /// Is there a voxel that many steps away, along the axes of `way`, and does one of the vertex's sheets
+    /// cross an edge of it?
+    bool is_crossed(const VoxelCoord& step, unsigned way) const {
+        VoxelCoord beside;
+        for (unsigned k = 0; k < 3; ++k) {
+            beside[k] = static_cast<int>(std::lround(problem_.lo[k] / problem_.size));
+            if (!(way >> k & 1u)) continue;
+            if (step[k] == 0) return false;
+            beside[k] += step[k];
+        }
+        return is_crossed(beside);
+    }
+
+    /// Does one of the vertex's sheets cross an edge of this voxel?
+    bool is_crossed(const VoxelCoord& voxel) const {
+        for (unsigned corner = 0; corner < 8; ++corner) {
+            VoxelCoord c = voxel;
+            for (unsigned k = 0; k < 3; ++k) c[k] += static_cast<int>(corner >> k & 1u);
+            const Index lower = grid_.index.find(GridPoints::code(c));
+            if (lower == no_index) continue;
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                if (corner >> axis & 1u) continue;
+                for (const Crossing& x : crossings_.on_edge(3 * lower + axis))
+                    if (has_sheet(x.normal)) return true;
+            }
+        }
+        return false;
+    }
+
+    bool has_sheet(const Vec3& normal) const {
+        return std::any_of(problem_.planes.begin(), problem_.planes.end(),
+                           [&](const Plane& plane) { return (plane.normal | normal) > new_sheet_cosine; });
+    }
+
+    /// Returns whether the planes were missed for it.
+    bool keep_inside(Solution& solution) const {
+        if ((solution.position - clamped(solution.position, problem_)).norm() > 0.5 * problem_.size
+            && solution.rank > 1) {
+            // Planes that meet far away say nothing about this voxel.
+            solution = least_squares(problem_, 1);
+            if (inside(solution.position, problem_)) return false;
+        }
+        solution.position = least_in_box(solution, problem_);
+        return true;
+    }
+
+    const OctreeLevel& level_;
+    const GridPoints& grid_;
+    const NormalSets& sets_;
+    const RelationTest& related_;
+    const Crossings& crossings_;
+    const DualVertices& duals_;
+    const std::vector<std::uint8_t>& crosses_;
+    Problem problem_;
+    std::vector<Index> near_;
+    Index voxel_ = no_index;
+};
+
+/// Which sets belong to a sheet that crosses an edge of their own voxel.
+std::vector<std::uint8_t> sets_that_cross(const GridPoints& grid, const NormalSets& sets,
+                                          const RelationTest& related, const Crossings& crossings,
+                                          const DualVertices& duals) {
+    std::vector<std::uint8_t> crosses(sets.sets.size(), 0);
+    std::vector<std::vector<Index>> found(chunk_count(duals.size(), duals_per_chunk));
+    for_chunks(duals.size(), duals_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        for (std::size_t v = begin; v < end; ++v)
+            for (FacetCorner corner : duals.corners_of(static_cast<Index>(v))) {
+                const Crossing& x = crossings.crossings[corner / 4];
+                const Index voxel = grid.voxels[x.edge / 3][Ring::octant(x.edge % 3, corner % 4)];
+                if (voxel == no_index) continue;
+                for (Index s = sets.first[voxel]; s < sets.first[voxel + 1]; ++s)
+                    if (s == x.set || related(sets.sets[s], sets.sets[x.set]) == Relation::smooth)
+                        found[chunk].push_back(s);
+            }
+    });
+    for (const auto& list : found)
+        for (Index s : list) crosses[s] = 1;
+    return crosses;
+}
+
+} // namespace
+
+void separate_sides(const Crossings& crossings, const DualVertices& duals, double voxel_size,
+                    std::vector<Vec3>& positions) {
+    const auto outward = [&](std::size_t v) {
+        Vec3 sum(0, 0, 0);
+        for (FacetCorner corner : duals.corners_of(static_cast<Index>(v)))
+            sum += crossings.crossings[corner / 4].normal;
+        const double length = sum.norm();
+        return length > 0 ? sum / length : Vec3(0, 0, 1);
+    };
+    for (std::size_t v : duals.after_cut) {
+        const Vec3 d = positions[v] - positions[v - 1], one = outward(v - 1), other = outward(v);
+        if (std::max(std::abs(d | one), std::abs(d | other)) > 2 * side_gap * voxel_size) continue;
+        positions[v - 1] += one * (side_gap * voxel_size);
+        positions[v] += other * (side_gap * voxel_size);
+    }
+}
+
+PlacedVertices place_vertices(const OctreeLevel& level, const GridPoints& grid, const NormalSets& sets,
+                              const RelationTest& related, const Crossings& crossings,
+                              const DualVertices& duals) {
+    PlacedVertices result;
+    result.positions.resize(duals.size());
+    result.classes.resize(duals.size());
+    result.directions.resize(duals.size());
+    result.voxel.resize(duals.size());
+    result.is_clamped.resize(duals.size());
+    const auto crosses = sets_that_cross(grid, sets, related, crossings, duals);
+    std::vector<std::vector<PlacedVertices::Beyond>> beyond(chunk_count(duals.size(), duals_per_chunk));
+    std::vector<std::vector<PlacedVertices::OnCrease>> on_creases(beyond.size());
+    for_chunks(duals.size(), duals_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        Placer placer(level, grid, sets, related, crossings, duals, crosses);
+        for (std::size_t v = begin; v < end; ++v) placer.place(static_cast<Index>(v), result);
+        beyond[chunk] = std::move(placer.beyond);
+        on_creases[chunk] = std::move(placer.on_creases);
+    });
+    result.beyond = joined(beyond);
+    result.on_creases = joined(on_creases);
+    result.clamped = static_cast<std::size_t>(std::ranges::count(result.is_clamped, 1));
+    return result;
+}
+
+} // namespace hsdm

@@ -1,0 +1,167 @@
+#include "hsdm/contour/trim_crossings.hh"
+
+#include <algorithm>
+#include <utility>
+
+namespace hsdm {
+namespace {
+
+/// Sides: a shorter boundary loop is a defect to close, not a border; and the same of the hole in the data
+/// around it, whose outline is more ragged.
+constexpr std::ptrdiff_t longest_defect = 16, longest_outline = 20;
+
+bool is_open(const Link& link) {
+    return link.crossing == no_index;
+}
+
+/// The boundary loops of the mesh to be.
+struct OpenLoops {
+    std::vector<Index> of_side;        ///< per side (4 * crossing + face); no_index: joined
+    std::vector<std::ptrdiff_t> sides; ///< per loop
+};
+
+OpenLoops find_open_loops(const Crossings& crossings, const Links& links) {
+    const auto open = [&](std::size_t side) { return is_open(links.of_crossing[side / 4][side % 4]); };
+    // From an open side round the vertex at its end, face by face, to the next open one.
+    const auto next = [&](std::size_t side) {
+        auto k = static_cast<unsigned>(side % 4);
+        auto x = static_cast<Index>(side / 4);
+        unsigned j = crossings.crossings[x].leaving ? (k + 1) % 4 : k; // where the side ends
+        for (;;) {
+            k = k == j ? (j + 3) % 4 : j;
+            const Link& link = links.of_crossing[x][k];
+            if (link.crossing == no_index) return 4 * std::size_t{x} + k;
+            j = Ring::across(j, k, link.face);
+            x = link.crossing;
+            k = link.face;
+        }
+    };
+    OpenLoops loops;
+    loops.of_side.assign(4 * links.of_crossing.size(), no_index);
+    for (std::size_t start = 0; start < loops.of_side.size(); ++start) {
+        if (!open(start) || loops.of_side[start] != no_index) continue;
+        const auto number = static_cast<Index>(loops.sides.size());
+        loops.sides.push_back(0);
+        for (std::size_t side = start; loops.of_side[side] == no_index; side = next(side)) {
+            loops.of_side[side] = number;
+            ++loops.sides[number];
+        }
+    }
+    return loops;
+}
+
+/// A connected patch of crossings that the data do not carry, and what its sides are.
+struct Patch {
+    std::vector<Index> crossings;
+    std::vector<Index> open;      ///< of each open side, the loop; ascending
+    std::ptrdiff_t bordering = 0; ///< sides joined to crossings that the data carry
+};
+
+/// Patches that a boundary loop reaches.
+std::vector<Patch> find_patches(const Crossings& crossings, const Links& links, const OpenLoops& loops) {
+    const auto& list = crossings.crossings;
+    std::vector<Patch> patches;
+    std::vector<std::uint8_t> seen(list.size(), 0);
+    for (Index start = 0; start < list.size(); ++start) {
+        const auto& around = links.of_crossing[start];
+        if (list[start].supported || seen[start] || std::none_of(around.begin(), around.end(), is_open))
+            continue;
+        Patch patch{{start}, {}};
+        seen[start] = 1;
+        for (std::size_t i = 0; i < patch.crossings.size(); ++i)
+            for (std::size_t k = 0; k < 4; ++k) {
+                const std::size_t side = 4 * std::size_t{patch.crossings[i]} + k;
+                const Index other = links.of_crossing[side / 4][k].crossing;
+                if (other == no_index)
+                    patch.open.push_back(loops.of_side[side]);
+                else if (list[other].supported)
+                    ++patch.bordering;
+                else if (!std::exchange(seen[other], std::uint8_t{1}))
+                    patch.crossings.push_back(other);
+            }
+        std::sort(patch.open.begin(), patch.open.end());
+        patches.push_back(std::move(patch));
+    }
+    return patches;
+}
+
+/// Per loop, is it too long for a mere defect? What counts is the hole in the data: of a pipe's end that the
+/// surface runs on beyond, the sides that the loop has without the patches beside it.
+std::vector<std::uint8_t> find_borders(const OpenLoops& loops, const std::vector<Patch>& patches) {
+    std::vector<std::ptrdiff_t> outline = loops.sides;
+    for (const Patch& patch : patches)
+        for (auto at = patch.open.begin(); at != patch.open.end();) {
+            const auto end = std::upper_bound(at, patch.open.end(), *at);
+            outline[*at] += patch.bordering - (end - at);
+            at = end;
+        }
+    std::vector<std::uint8_t> is_border(outline.size());
+    for (std::size_t l = 0; l < outline.size(); ++l)
+        is_border[l] = loops.sides[l] > longest_defect || outline[l] > longest_outline;
+    return is_border;
+}
+
+/// Is a patch to be taken back? Beyond a border always; beside a mere defect only if the boundary gets
+/// shorter, as it does for a fin or a splinter.
+bool ends_beyond(const Patch& patch, std::span<const std::uint8_t> is_border) {
+    return std::any_of(patch.open.begin(), patch.open.end(), [&](Index loop) { return is_border[loop] != 0; })
+           || patch.bordering < std::ssize(patch.open);
+}
+
+/// Returns how many.
+std::size_t remove_crossings(std::span<const std::uint8_t> removed, Crossings& crossings) {
+    auto& list = crossings.crossings;
+    std::size_t kept = 0;
+    for (std::size_t e = 0, x = 0; e + 1 < crossings.first.size(); ++e) {
+        const std::size_t end = crossings.first[e + 1];
+        crossings.first[e] = static_cast<Index>(kept);
+        for (; x < end; ++x)
+            if (!removed[x]) list[kept++] = list[x];
+    }
+    crossings.first.back() = static_cast<Index>(kept);
+    const std::size_t count = list.size() - kept;
+    list.resize(kept);
+    return count;
+}
+
+} // namespace
+
+std::size_t trim_unsupported(Crossings& crossings, const Links& links) {
+    auto& list = crossings.crossings;
+    for (Index x = 0; x < list.size(); ++x) {
+        const auto& around = links.of_crossing[x];
+        // Hangs by one side at most.
+        if (std::count_if(around.begin(), around.end(), is_open) >= 3) list[x].supported = false;
+    }
+    const OpenLoops loops = find_open_loops(crossings, links);
+    const std::vector<Patch> patches = find_patches(crossings, links, loops);
+    const std::vector<std::uint8_t> is_border = find_borders(loops, patches);
+    std::vector<std::uint8_t> removed(list.size(), 0);
+    for (const Patch& patch : patches)
+        if (ends_beyond(patch, is_border))
+            for (Index x : patch.crossings) removed[x] = 1;
+    const std::size_t count = remove_crossings(removed, crossings);
+    crossings.trimmed += count;
+    return count;
+}
+
+std::size_t drop_tips(const NormalSets& sets, const RelationTest& related, const Links& links,
+                      Crossings& crossings) {
+    const auto& list = crossings.crossings;
+    const auto are_sides = [&](const Crossing& x, const Crossing& y) {
+        return opposed(x, y) && related(sets.sets[x.set], sets.sets[y.set]) == Relation::none;
+    };
+    std::vector<std::uint8_t> removed(list.size(), 0);
+    for (Index x = 0; x + 1 < list.size(); ++x) {
+        if (list[x].edge != list[x + 1].edge) continue;
+        const auto& around = links.of_crossing[x];
+        const auto joined = std::count_if(around.begin(), around.end(),
+                                          [&](const Link& link) { return link.crossing == x + 1; });
+        if (joined >= 3 && !are_sides(list[x], list[x + 1])) removed[x] = removed[x + 1] = 1;
+    }
+    const std::size_t count = remove_crossings(removed, crossings);
+    crossings.tips += count / 2;
+    return count / 2;
+}
+
+} // namespace hsdm

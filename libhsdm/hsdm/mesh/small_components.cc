@@ -1,0 +1,126 @@
+#include "hsdm/mesh/small_components.hh"
+
+#include "hsdm/core/chunks.hh"
+#include "hsdm/core/disjoint_sets.hh"
+#include "hsdm/mesh/area_vector.hh"
+#include "hsdm/mesh/manifold.hh"
+#include "hsdm/mesh/remove_facets.hh"
+
+#include <array>
+#include <atomic>
+#include <iterator>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t facets_per_chunk = 4096;
+
+/// The connected components of a mesh, each known by the least of its vertices.
+class Components {
+public:
+    explicit Components(const PolygonMesh& mesh)
+        : mesh_(mesh), vertices_(mesh.vertex_count()), facets_(mesh.vertex_count(), 0) {
+        for_facets([&](std::size_t begin, std::size_t end) {
+            for (std::size_t f = begin; f < end; ++f)
+                for (Index v : mesh.facet(f)) vertices_.join(mesh.facet(f)[0], v);
+        });
+        for_facets([&](std::size_t begin, std::size_t end) {
+            for (std::size_t first = begin, f = begin; f < end;
+                 first = f) { // facets of one come in long runs
+                const Index component = of(f);
+                while (++f < end && of(f) == component) continue;
+                std::atomic_ref(facets_[component]).fetch_add(f - first, std::memory_order_relaxed);
+            }
+        });
+    }
+
+    Index of(std::size_t facet) { return vertices_.find(mesh_.facet(facet)[0]); }
+    /// Per vertex, the facets of the component that is known by it; else 0.
+    const std::vector<std::size_t>& facets() const { return facets_; }
+    std::vector<double> areas() {
+        std::vector<double> areas(facets_.size(), 0);
+        for (std::size_t f = 0; f < mesh_.facet_count(); ++f)
+            areas[of(f)] += area_vector(mesh_, mesh_.facet(f)).norm();
+        return areas;
+    }
+    /// Of the components of no more facets than `most`: do they have a border?
+    std::vector<std::uint8_t> are_open(std::size_t most) {
+        std::vector<std::array<Index, 2>> sides, reverse;
+        for (std::size_t f = 0; f < mesh_.facet_count(); ++f) {
+            if (facets_[of(f)] > most) continue;
+            const auto ring = mesh_.facet(f);
+            for (std::size_t i = 0; i < ring.size(); ++i) {
+                sides.push_back({ring[i], ring[(i + 1) % ring.size()]});
+                reverse.push_back({ring[(i + 1) % ring.size()], ring[i]});
+            }
+        }
+        std::sort(sides.begin(), sides.end());
+        std::sort(reverse.begin(), reverse.end());
+        std::vector<std::array<Index, 2>> alone;
+        std::set_difference(sides.begin(), sides.end(), reverse.begin(), reverse.end(),
+                            std::back_inserter(alone));
+        std::vector<std::uint8_t> open(facets_.size(), 0);
+        for (const auto& side : alone) open[vertices_.find(side[0])] = 1;
+        return open;
+    }
+
+private:
+    template <class Act>
+    void for_facets(const Act& act) const {
+        for_chunks(mesh_.facet_count(), facets_per_chunk,
+                   [&](std::size_t begin, std::size_t end, std::size_t) { act(begin, end); });
+    }
+
+    const PolygonMesh& mesh_;
+    DisjointSets vertices_;
+    std::vector<std::size_t> facets_;
+};
+
+/// Removes the components c for which is_small(c).
+template <class IsSmall>
+SmallComponents remove_components(PolygonMesh& mesh, std::vector<EdgeHint>& hints, Components& components,
+                                  IsSmall is_small) {
+    SmallComponents removed;
+    std::vector<std::uint8_t> small(components.facets().size(), 0);
+    for (std::size_t c = 0; c < small.size(); ++c)
+        if (components.facets()[c] > 0 && is_small(c)) small[c] = 1, ++removed.components;
+    if (removed.components > 0)
+        removed.facets =
+            remove_facets(mesh, hints, [&](std::size_t f) { return small[components.of(f)] != 0; });
+    return removed;
+}
+
+} // namespace
+
+Discarded drop_splinters(PolygonMesh& mesh, const SplinterOptions& options) {
+    if (mesh.facet_count() == 0) return {};
+    Components components(mesh);
+    const std::vector<std::size_t>& sizes = components.facets();
+    const auto largest = static_cast<double>(*std::max_element(sizes.begin(), sizes.end()));
+    const std::vector<std::uint8_t> open = components.are_open(options.most_open);
+    std::vector<EdgeHint> none;
+    return remove_components(mesh, none, components,
+                             [&](std::size_t c) {
+                                 return sizes[c] <= (open[c] ? options.most_open : options.most_facets)
+                                        && static_cast<double>(sizes[c]) * options.least_ratio <= largest;
+                             })
+        .facets;
+}
+
+SmallComponents drop_small_components(PolygonMesh& mesh, FeatureHints& hints,
+                                      const SmallComponentOptions& options) {
+    if (mesh.facet_count() == 0) return {};
+    Components components(mesh);
+    const std::vector<double> areas = components.areas();
+    const auto largest =
+        static_cast<std::size_t>(std::max_element(areas.begin(), areas.end()) - areas.begin());
+    SmallComponents removed = remove_components(mesh, hints.sides, components, [&](std::size_t c) {
+        if (c == largest) return false;
+        return static_cast<double>(components.facets()[c]) < options.least_facets || options.least_share >= 1
+               || areas[c] < options.least_share * areas[largest];
+    });
+    if (removed.components > 0) remove_isolated_vertices(mesh);
+    return removed;
+}
+
+} // namespace hsdm

@@ -1,0 +1,36 @@
+#pragma once
+// Connected components that are too small to be a part.
+
+#include "hsdm/core/discarded.hh"
+#include "hsdm/mesh/feature_hints.hh"
+#include "hsdm/polygon_mesh.hh"
+
+namespace hsdm {
+
+struct SplinterOptions {
+    std::size_t most_facets = 20; ///< ten quads round two grid points, cut in two; more are a part
+    std::size_t most_open = 32;   ///< of a component with a border; more are a piece of the surface
+    double least_ratio = 32;      ///< of the facets of the largest component to those of a splinter
+};
+
+/// Removes the components (facets joined by shared vertices) that are splinters beside the largest one: a few
+/// facets on their own beside a surface of many. Vertices stay. Returns the number of facets removed, and
+/// where. O(facets), parallel.
+Discarded drop_splinters(PolygonMesh& mesh, const SplinterOptions& options = {});
+
+struct SmallComponentOptions {
+    double least_facets = 0; ///< smaller components go
+    double least_share = 0;  ///< of the largest component's area, in [0, 1]: 1 keeps that one alone
+};
+
+struct SmallComponents {
+    std::size_t components = 0; ///< removed
+    Discarded facets;
+};
+
+/// Removes the components that are smaller than asked for, with their vertices and the hints of their sides.
+/// The largest by area always stays. O(facets), parallel in parts.
+SmallComponents drop_small_components(PolygonMesh& mesh, FeatureHints& hints,
+                                      const SmallComponentOptions& options);
+
+} // namespace hsdm

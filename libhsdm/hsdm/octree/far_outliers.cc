@@ -1,0 +1,208 @@
+#include "hsdm/octree/far_outliers.hh"
+
+#include "hsdm/core/chunks.hh"
+#include "hsdm/octree/spacing.hh"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t points_per_chunk = 1 << 14;
+
+/// All but the outer two percent along each axis, of a sample.
+Box box_of_most(const Octree& octree, const PointCloud& cloud) {
+    constexpr std::size_t samples = 1 << 12;
+    const std::size_t stride = octree.size() / samples + 1;
+    Box box{Vec3(0, 0, 0), Vec3(0, 0, 0)};
+    std::vector<double> values;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        values.clear();
+        for (std::size_t i = 0; i < octree.size(); i += stride)
+            values.push_back(cloud.positions[octree.source[i]][axis]);
+        std::sort(values.begin(), values.end());
+        const std::size_t outer = std::max<std::size_t>(1, values.size() / 50);
+        if (2 * outer >= values.size()) return box;
+        box.lo[axis] = values[outer];
+        box.hi[axis] = values[values.size() - 1 - outer];
+    }
+    return box;
+}
+
+constexpr std::size_t fewest_of_part = 64; // eight voxels of a surface, by eight points each
+
+/// A point's code in some grid, and its place in the octree.
+using Places = std::vector<std::pair<MortonCode, Index>>;
+
+/// In the grid of the cube twice as large whose least corner lies a third of a cube below: what lies across
+/// the planes of one grid on all levels lies between those of the other.
+Places shifted_places(const Octree& octree) {
+    constexpr double last = (1 << morton_levels) - 1;
+    Places places(octree.size());
+    for_chunks(places.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) {
+            std::array<std::uint32_t, 3> c;
+            for (unsigned k = 0; k < 3; ++k) {
+                const double x = (octree.positions[i][k] / octree.extent + 1.0 / 3) / 2;
+                c[k] = static_cast<std::uint32_t>(std::clamp(x * (last + 1), 0.0, last));
+            }
+            places[i] = {morton_encode(c[0], c[1], c[2]), static_cast<Index>(i)};
+        }
+    });
+    tbb::parallel_sort(places.begin(), places.end());
+    return places;
+}
+
+/// Takes the marks off what is a part: marked points of a voxel that have the space around for themselves.
+/// Outliers over a volume are 512 times as many in a voxel eight times as large.
+void spare_parts(const Places& places, std::vector<std::uint8_t>& far) {
+    constexpr unsigned levels_around = 3;
+    std::vector<Index> marked(places.size() + 1, 0); // of the points before
+    for (std::size_t i = 0; i < places.size(); ++i) marked[i + 1] = marked[i] + far[places[i].second];
+    for (unsigned level = morton_levels; level >= levels_around; --level) {
+        const unsigned shift = 3 * (morton_levels - level), shift_around = shift + 3 * levels_around;
+        for (std::size_t begin = 0, end = 0; begin < places.size(); begin = end) {
+            while (end < places.size() && places[end].first >> shift == places[begin].first >> shift) ++end;
+            const Index count = marked[end] - marked[begin];
+            if (count < fewest_of_part) continue;
+            const auto place = [&](MortonCode first) { // of the first point that is not before
+                return std::partition_point(places.begin(), places.end(),
+                                            [&](const auto& p) { return p.first >> shift_around < first; });
+            };
+            const MortonCode around = places[begin].first >> shift_around;
+            const auto first = place(around), last = place(around + 1);
+            if (static_cast<std::size_t>(last - first) <= 2 * std::size_t{count})
+                for (auto p = first; p != last; ++p) far[p->second] = 0;
+        }
+    }
+}
+
+void spare_parts(const Octree& octree, std::vector<std::uint8_t>& far) {
+    Places places(octree.size());
+    for (std::size_t i = 0; i < places.size(); ++i) places[i] = {octree.codes[i], static_cast<Index>(i)};
+    spare_parts(places, far);
+    spare_parts(shifted_places(octree), far);
+}
+
+/// A frame for the points that are left: those that went may have been all that made it large.
+CloudFrame frame_of_rest(const Octree& octree, const PointCloud& cloud) {
+    Box left;
+    for (Index point : octree.source) left.add(cloud.positions[point]);
+    return CloudFrame(left);
+}
+
+/// Positions as the frame has them, in a cube about their box. False, and nothing done, if that has no
+/// voxels, as that of parts 2^1000 times as far apart as they are large.
+bool take_anew(Octree& octree, const PointCloud& cloud, const CloudFrame& frame) {
+    std::vector<Vec3> positions(octree.size());
+    for_chunks(positions.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i)
+            positions[i] = frame.to_work(cloud.positions[octree.source[i]]);
+    });
+    const Box bounds = bounds_of(positions);
+    if (!has_voxels(bounds)) return false;
+    octree.bounds = bounds;
+    octree.extent = bounds.extent();
+    octree.origin = centred_origin(bounds, octree.extent);
+    for (Vec3& p : positions) p -= octree.origin;
+    rearrange(octree, std::move(positions), octree.extent);
+    return true;
+}
+
+/// Cuts gaps along every axis. Returns the longest stretch between cuts.
+double cut_gaps(const Octree& octree, const PointCloud& cloud, double widest, CloudFrame& frame) {
+    const CloudFrame uncut = frame = frame.without_cuts();
+    std::vector<double> coordinates(octree.size());
+    double longest = 0;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        for_chunks(coordinates.size(), points_per_chunk,
+                   [&](std::size_t begin, std::size_t end, std::size_t) {
+                       for (std::size_t i = begin; i < end; ++i)
+                           coordinates[i] = uncut.to_work(cloud.positions[octree.source[i]])[axis];
+                   });
+        longest = std::max(longest, frame.cut_gaps(axis, coordinates, widest));
+    }
+    return longest;
+}
+
+/// Marks the points of what lies between cuts and is too little to be a part. Returns how many.
+std::size_t mark_scraps(const Octree& octree, const PointCloud& cloud, const CloudFrame& frame,
+                        std::vector<std::uint8_t>& marks) {
+    const CloudFrame uncut = frame.without_cuts();
+    std::vector<std::pair<std::array<Index, 3>, Index>> points(octree.size());
+    for_chunks(points.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i)
+            points[i] = {frame.stretch_of_uncut(uncut.to_work(cloud.positions[octree.source[i]])),
+                         static_cast<Index>(i)};
+    });
+    tbb::parallel_sort(points.begin(), points.end());
+    std::size_t count = 0;
+    marks.assign(points.size(), 0);
+    for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {
+        while (end < points.size() && points[end].first == points[begin].first) ++end;
+        if (end - begin >= fewest_of_part) continue;
+        for (std::size_t i = begin; i < end; ++i) marks[points[i].second] = 1;
+        count += end - begin;
+    }
+    return count;
+}
+
+/// The frame with all gaps cut that are wide against parts; without cuts if there are none.
+CloudFrame with_cuts(const Octree& octree, const PointCloud& cloud, CloudFrame frame, double least_gap) {
+    constexpr double gaps_per_extent = 1 << 12;
+    double widest = std::max(octree.extent / gaps_per_extent, least_gap);
+    for (;;) {
+        const double longest = cut_gaps(octree, cloud, widest, frame);
+        if (!(longest > 0)) return frame.without_cuts();              // single places
+        if (widest <= std::max(2 * longest, least_gap)) return frame; // as wide as parts, at any depth apart
+        widest = std::max(longest, least_gap);
+    }
+}
+
+} // namespace
+
+Discarded drop_far_outliers(Octree& octree, const PointCloud& cloud, CloudFrame& frame) {
+    constexpr double cubes_least = 1 << 12, margin = 1 << 10; // of the box that most points lie in
+    const Box core = box_of_most(octree, cloud); // as the cloud has it: outliers may have made its unit huge
+    const double extent = core.extent();
+    if (!(extent > 0) || cubes_least * extent >= octree.extent * frame.unit()) return {};
+    std::vector<std::uint8_t> far(octree.size(), 0);
+    for (std::size_t i = 0; i < far.size(); ++i) {
+        const Vec3& p = cloud.positions[octree.source[i]];
+        const Vec3 below = core.lo - p, above = p - core.hi;
+        far[i] = std::max(below.max(), above.max()) > margin * extent;
+    }
+    spare_parts(octree, far);
+    Discarded discarded = remove_points(octree, far);
+    if (discarded.count == 0) return {};
+    discarded.first = frame.to_cloud(discarded.first);
+    if (const CloudFrame rest = frame_of_rest(octree, cloud); take_anew(octree, cloud, rest)) frame = rest;
+    return discarded;
+}
+
+Discarded cut_empty_space(Octree& octree, const PointCloud& cloud, CloudFrame& frame, double least_gap) {
+    constexpr double spacings_per_voxel = 3, most_scraps = 0.02;
+    Discarded discarded;
+    while (spacings_per_voxel * estimate_spacing(octree) < octree.voxel_size(deepest_level)) {
+        const CloudFrame cut = with_cuts(octree, cloud, frame, least_gap / frame.unit());
+        if (!cut.has_cuts()) return discarded;
+        std::vector<std::uint8_t> marks;
+        const std::size_t scraps = mark_scraps(octree, cloud, cut, marks);
+        if (static_cast<double>(scraps) > most_scraps * static_cast<double>(octree.size())) return discarded;
+        if (scraps == 0) {
+            if (take_anew(octree, cloud, cut)) frame = cut;
+            return discarded;
+        }
+        Discarded some = remove_points(octree, marks);
+        some.first = frame.to_cloud(some.first);
+        discarded.add(some);
+        const CloudFrame rest = frame_of_rest(octree, cloud);
+        if (!take_anew(octree, cloud, rest)) return discarded;
+        frame = rest;
+    }
+    return discarded;
+}
+
+} // namespace hsdm

@@ -1,0 +1,165 @@
+#include "hsdm/pipeline/prepared_cloud.hh"
+
+#include "hsdm/errors.hh"
+#include "hsdm/normals/mend_normals.hh"
+#include "hsdm/normals/noise.hh"
+#include "hsdm/normals/normals.hh"
+#include "hsdm/octree/far_outliers.hh"
+#include "hsdm/octree/spacing.hh"
+#include "hsdm/pipeline/method.hh"
+#include "hsdm/pipeline/options.hh"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace hsdm {
+namespace {
+
+constexpr double widest_voxel =
+    1 << 20; // extents of the cloud; all its points share eight voxels long before
+
+/// Throws Error for points that span no surface.
+void check_spread(const Octree& octree) {
+    constexpr std::size_t fewest = 4;
+    constexpr double negligible = 1e-9;
+    if (octree.size() < fewest)
+        throw Error("only " + std::to_string(octree.size())
+                    + " different points; a surface needs 4, and a good one many more");
+    const Vec3& first = octree.positions.front();
+    // Of the longest side of the box, one end at least is half its length away from any point.
+    const double far = octree.bounds.extent() / 4;
+    const auto other = std::find_if(octree.positions.begin(), octree.positions.end(),
+                                    [&](const Vec3& p) { return (p - first).max_abs() > far; });
+    // Far from the origin the coordinates' own last digit is the larger noise.
+    const double reach = std::max(octree.bounds.lo.max_abs(), octree.bounds.hi.max_abs());
+    const double tolerance = negligible * octree.extent + 4 * std::numeric_limits<double>::epsilon() * reach;
+    const Vec3 along = other != octree.positions.end() ? (*other - first).normalized() : Vec3(0, 0, 0);
+    for (const Vec3& p : octree.positions)
+        if (((p - first) % along).norm() > tolerance) return;
+    throw Error("all points lie on a line; there is no surface in them");
+}
+
+} // namespace
+
+PreparedCloud::PreparedCloud(InputCloud& input, const ReconstructOptions& options, const Phases& phases) {
+    const PointCloud& cloud = *input;
+    report.input.has_normals = cloud.has_normals(); // before the octree takes them
+    OctreeOptions octree_options;
+    octree_options.placement = CubePlacement::centred;
+    octree_options.use_normals = options.normals != NormalSource::estimate;
+    frame = CloudFrame(cloud.bounds());
+    octree_options.unit = frame.unit();
+    octree =
+        phases.run("octree", 0, report.seconds.octree, [&] { return input.take_octree(octree_options); });
+    Discarded far = drop_far_outliers(octree, cloud, frame);
+    frame.check_reach();
+    constexpr double voxels_between_parts = 16; // farther than anything reaches from voxel to voxel
+    far.add(cut_empty_space(octree, cloud, frame, voxels_between_parts * options.voxel_size.value_or(0)));
+    frame.check_reach();
+    far_away_ = far.count;
+    if (far_away_ > 0) report.rejected["points_outlying"] = far_away_;
+    note_dropped("points far from all others", far, CloudFrame(), report);
+    check_spread(octree);
+    report.input.points = cloud.size();
+    report.input.merged_duplicates = octree.merged_duplicates;
+    report.input.bbox = octree.bounds;
+    report.input.spacing = estimate_spacing(octree);
+}
+
+void PreparedCloud::provide_normals(const PointCloud& cloud, const Phases& phases) {
+    NormalsOptions normals_options;
+    normals_options.orient.sensor = sensor_of(cloud);
+    const NormalsReport made = phases.run("normals", 0.05, report.seconds.normals,
+                                          [&] { return make_normals(octree, normals_options); });
+    note_outliers(made.outliers);
+    note_smoothing(made.smoothed);
+    report.rejected["normals_near_creases"] = made.bent;
+    report.rejected["normals_missing"] = made.missing;
+    report.rejected["normals_by_volume"] = made.orientation.by_volume;
+}
+
+void PreparedCloud::check_given_normals(const PointCloud& cloud, const Phases& phases) {
+    report.rejected["normals_mended"] = phases.run("normals", 0.05, report.seconds.normals, [&] {
+        const NormalConsistency consistency = check_normals(octree);
+        if (consistency.rough() && octree.size() > 1)
+            noise_ = noise_deviation(octree, find_neighbors(octree));
+        return consistency.doubtful() ? mend_normals(octree, sensor_of(cloud)) : std::size_t{0};
+    });
+    note_outliers(phases.run("strays", 0.08, report.seconds.normals, [&] {
+        const Discarded outliers = drop_outliers_by_normals(octree);
+        if (outliers.count > 0) fit_to_points(octree);
+        return outliers;
+    }));
+}
+
+int PreparedCloud::choose_resolution(const ReconstructOptions& options) {
+    if (options.depth) {
+        report.options["depth"] = std::to_string(*options.depth);
+        report.options["resolution"] = "as asked by depth";
+        return *options.depth;
+    }
+    if (options.voxel_size) {
+        report.options["voxel-size"] = text_of(*options.voxel_size);
+        report.options["resolution"] = "as asked by voxel size";
+        return fit_voxels(*options.voxel_size / frame.unit());
+    }
+    if (options.max_error) { // as fine as two spacings only where the error needs it
+        const DepthChoice choice = choose_depth(octree, report.input.spacing, 2, frame.unit());
+        report.options["resolution"] = choice.reason;
+        return choice.depth;
+    }
+    const VoxelChoice choice = choose_voxel(octree, report.input.spacing, noise_, frame.unit());
+    report.options["resolution"] = choice.reason;
+    return fit_voxels(choice.size);
+}
+
+void PreparedCloud::smooth_for_depth(int depth, const Phases& phases) {
+    constexpr double harmless = 0.3; // of a voxel
+    if (moved_ || noise_ <= harmless * octree.voxel_size(depth)) return;
+    note_smoothing(phases.run("noise", 0.1, report.seconds.normals, [&] {
+        Neighbors neighbors;
+        return smooth_known_noise(octree, noise_, neighbors);
+    }));
+}
+
+void PreparedCloud::note_outliers(const Discarded& outliers) {
+    report.rejected["points_outlying"] = far_away_ + outliers.count;
+    note_dropped("points off every surface", outliers, frame, report);
+    if (outliers.count == 0) return;
+    report.input.bbox = octree.bounds;
+    report.input.spacing = estimate_spacing(octree);
+}
+
+std::optional<Vec3> PreparedCloud::sensor_of(const PointCloud& cloud) const {
+    if (!cloud.sensor) return std::nullopt;
+    return frame.to_work(*cloud.sensor) - octree.origin;
+}
+
+void PreparedCloud::note_smoothing(const SmoothReport& smoothed) {
+    report.rejected["points_between_sheets"] = smoothed.between.count;
+    note_dropped("noisy points between sheets", smoothed.between, frame, report);
+    noise_ = smoothed.noise;
+    moved_ = noise_ > 0;
+    if (!moved_) return;
+    report.rejected["points_moved"] = octree.size();
+    report.input.spacing = estimate_spacing(octree); // noise makes it look wider
+}
+
+int PreparedCloud::fit_voxels(double voxel_size) {
+    const double extent = octree.bounds.extent();
+    if (voxel_size > widest_voxel * extent)
+        throw OptionError("voxel_size " + text_of(voxel_size * frame.unit()) + ": must be at most "
+                          + text_of(widest_voxel * extent * frame.unit())
+                          + ", a million times the cloud's extent");
+    int depth = 1;
+    double cube = 2 * voxel_size;
+    for (; cube < extent && depth < deepest_level; ++depth) cube *= 2;
+    if (cube < extent)
+        throw OptionError("voxel_size " + text_of(voxel_size * frame.unit()) + ": must be at least "
+                          + text_of(extent * frame.unit() / (1 << deepest_level))
+                          + ", the cloud's extent over 2^16");
+    rearrange(octree, std::move(octree.positions), cube);
+    return depth;
+}
+
+} // namespace hsdm

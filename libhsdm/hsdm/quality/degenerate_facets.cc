@@ -1,0 +1,78 @@
+#include "hsdm/quality/degenerate_facets.hh"
+
+#include "hsdm/core/chunks.hh"
+#include "hsdm/mesh/remove_facets.hh"
+#include "hsdm/quality/topology.hh"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t facets_per_chunk = 1 << 12;
+
+/// The facets are over the same vertices. They share a side, or the test is not asked.
+bool are_over_the_same(std::span<const Index> a, std::span<const Index> b) {
+    return a.size() == b.size() && std::all_of(a.begin(), a.end(), [&](Index v) {
+               return std::find(b.begin(), b.end(), v) != b.end();
+           });
+}
+
+/// Is there a facet beside this one over the same vertices? Two over four vertices or fewer share a side.
+bool is_of_pillow(const PolygonMesh& mesh, const FacetLinks& links, std::size_t f) {
+    for (Index side = mesh.first[f]; side < mesh.first[f + 1]; ++side) {
+        const Index twin = links.twin[side];
+        if (twin != no_index && are_over_the_same(mesh.facet(f), mesh.facet(links.facet[twin]))) return true;
+    }
+    return false;
+}
+
+/// Is it one of fewer than four facets that make a closed surface? No space lies between them.
+bool is_of_flat_component(const PolygonMesh& mesh, const FacetLinks& links, std::size_t f) {
+    constexpr std::size_t fewest = 4;
+    std::array<std::size_t, fewest> found{f};
+    std::size_t count = 1;
+    for (std::size_t i = 0; i < count; ++i)
+        for (Index side = mesh.first[found[i]]; side < mesh.first[found[i] + 1]; ++side) {
+            if (links.twin[side] == no_index) return false;
+            const std::size_t next = links.facet[links.twin[side]];
+            if (std::find(found.begin(), found.begin() + count, next) != found.begin() + count) continue;
+            if (count + 1 == fewest) return false;
+            found[count++] = next;
+        }
+    return true;
+}
+
+/// Does the facet bridge space that was cut out?
+bool spans_cut(const PolygonMesh& mesh, const Vec3& origin, const CloudFrame& frame, std::size_t f) {
+    const auto facet = mesh.facet(f);
+    const auto stretch = frame.stretch_of(mesh.positions[facet[0]] + origin);
+    return std::any_of(facet.begin(), facet.end(),
+                       [&](Index v) { return frame.stretch_of(mesh.positions[v] + origin) != stretch; });
+}
+
+} // namespace
+
+Discarded drop_degenerate_facets(PolygonMesh& mesh, const Vec3& origin, const CloudFrame& frame,
+                                 FacetLinks& links, FeatureHints& hints) {
+    std::vector<std::uint8_t> unsound(mesh.facet_count());
+    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        std::vector<Vec3> ring;
+        for (std::size_t f = begin; f < end; ++f) {
+            ring.clear();
+            for (Index v : mesh.facet(f)) ring.push_back(frame.to_cloud(mesh.positions[v] + origin));
+            unsound[f] = has_no_area(ring) || is_of_pillow(mesh, links, f)
+                         || is_of_flat_component(mesh, links, f)
+                         || (frame.has_cuts() && spans_cut(mesh, origin, frame, f));
+        }
+    });
+    if (std::find(unsound.begin(), unsound.end(), 1) == unsound.end()) return {};
+    const Discarded dropped =
+        remove_facets(mesh, hints.sides, [&](std::size_t f) { return unsound[f] != 0; });
+    links = link_facets(mesh);
+    return dropped;
+}
+
+} // namespace hsdm

@@ -1,0 +1,19 @@
+#pragma once
+// The last look at facets before they become a mesh.
+
+#include "hsdm/cloud/cloud_frame.hh"
+#include "hsdm/core/discarded.hh"
+#include "hsdm/mesh/facet_links.hh"
+#include "hsdm/mesh/feature_hints.hh"
+
+namespace hsdm {
+
+/// Removes the facets that no sound mesh holds: those without area where the mesh will stand, at `origin` in
+/// the frame, for there coordinates are rounded; two facets over the same vertices, and closed surfaces of
+/// fewer than four, which enclose nothing; and those across space that the frame has cut out. Clouds of a few
+/// points or of extreme shape leave such. Hints go with their facets; `links` are the mesh's, and are linked
+/// anew if something goes. Returns how many went, and where relative to the origin. O(corners), parallel.
+Discarded drop_degenerate_facets(PolygonMesh& mesh, const Vec3& origin, const CloudFrame& frame,
+                                 FacetLinks& links, FeatureHints& hints);
+
+} // namespace hsdm

@@ -1,0 +1,246 @@
+#include "hsdm/simplify/decimate.hh"
+
+#include "hsdm/simplify/collapse_by_distance.hh"
+#include "hsdm/simplify/collapse_by_planes.hh"
+#include "hsdm/simplify/leaf_doublets.hh"
+#include "hsdm/simplify/nonmanifold_vertices.hh"
+#include "hsdm/simplify/remesh_by_flips.hh"
+
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <iterator>
+#include <numeric>
+
+namespace hsdm {
+namespace {
+
+constexpr double least_share = 0.2; // of the tolerance: what goes wrong below is not merged
+constexpr double few_leaves = 0.02; // of all: so few need not be merged
+constexpr double drop_share = 1.75; // of the tolerance: with twice that, places not looked at go far
+constexpr int most_rings = 4;       // of facets around something wrong
+constexpr int most_doublings = 32;  // of how far to look for the fine surface
+
+struct Faults {
+    FaultCounts counts;
+    bool manifold = true;
+    std::vector<Index> vertices;              // where no 2-manifold is
+    std::vector<std::array<Index, 3>> leaves; // vertices of those beside what is too far off or intersects
+
+    bool no_worse_than(const FaultCounts& other) const {
+        return manifold && counts.crossing <= other.crossing && counts.distant <= other.distant
+               && counts.points <= other.points;
+    }
+};
+
+/// The leaves' mesh with vertices merged. A vertex with a tolerance of 0 is to stay.
+using Merge = std::function<CollapsedMesh(const std::vector<double>& tolerance)>;
+
+/// A way to merge, and how to go on from there.
+struct DecimationStep {
+    Merge merge;
+    Diagonals diagonals; ///< of the facets between
+};
+
+/// Merges vertices of a mesh as far as nothing gets worse.
+class DecimationRounds {
+public:
+    DecimationRounds(const LeafMesh& leaves, MeshChecks& checks, const DecimateOptions& options)
+        : leaves_(leaves),
+          checks_(checks),
+          options_(options),
+          tolerance_(leaves.mesh.vertex_count(), checks.band().tolerance()) {}
+
+    DecimatedLeaves run(const DecimationStep& step) {
+        for (int round = 0; round < options_.rounds; ++round) {
+            merge_once(step);
+            const Faults faults = find_faults();
+            result_.faults = faults.counts;
+            if (faults.no_worse_than(options_.faults)) return std::move(result_);
+            const std::size_t kept = keep(faults.leaves);
+            if (kept + keep_closer(faults.vertices) > 0) continue;
+            std::vector<Index> vertices; // that nothing else helps
+            for (const auto& leaves : faults.leaves)
+                for (Index leaf : leaves) vertices.push_back(result_.vertex[leaf]);
+            if (keep_closer(vertices) == 0) break;
+        }
+        result_.mesh = leaves_.mesh;
+        result_.vertex.resize(leaves_.mesh.vertex_count());
+        std::iota(result_.vertex.begin(), result_.vertex.end(), Index{0});
+        result_.faults = find_faults().counts;
+        return std::move(result_);
+    }
+
+private:
+    void merge_once(const DecimationStep& step) {
+        auto [mesh, stands_for, flipped] = step.merge(tolerance_);
+        result_.mesh = std::move(mesh);
+        std::vector<std::uint8_t> merged(stands_for.size(), 0);
+        for (Index v = 0; v < stands_for.size(); ++v)
+            merged[stands_for[v]] |= stands_for[v] != v || flipped[v] != 0
+                                     || result_.mesh.positions[v] != leaves_.mesh.positions[v];
+        const std::vector<Index> leaf = drop_replaced(result_.mesh, stands_for);
+        result_.vertex = std::move(stands_for);
+        has_merged_ = picked(merged, leaf);
+        // What nothing has changed stays as it is.
+        std::vector<std::uint8_t> settled(leaf.size(), 1);
+        for (Index v : with_neighbours(result_.mesh, has_merged_)) settled[v] = 0;
+        remesh_by_flips(result_.mesh, checks_.band(), settled, step.diagonals, tidied_);
+    }
+
+    /// Marked vertices, and those that share facets with them.
+    static std::vector<Index> with_neighbours(const PolygonMesh& mesh,
+                                              const std::vector<std::uint8_t>& marked) {
+        std::vector<Index> found;
+        for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+            const auto ring = mesh.facet(f);
+            if (std::any_of(ring.begin(), ring.end(), [&](Index v) { return marked[v]; }))
+                found.insert(found.end(), ring.begin(), ring.end());
+        }
+        return found;
+    }
+
+    Faults find_faults() {
+        const PolygonMesh& mesh = result_.mesh;
+        Findings found;
+        Faults faults;
+        tbb::parallel_invoke([&] { faults.vertices = nonmanifold_vertices(mesh); },
+                             [&] { found = checks_.look_at(mesh); });
+        faults.manifold = faults.vertices.empty();
+        faults.counts = found.count();
+        for (Index v : found.far.fine_vertices) {
+            const Index leaf = leaves_.vertex[v];
+            faults.leaves.push_back({leaf, leaf, leaf});
+        }
+        for (Index v : found.far.vertices) add_leaves(mesh.positions[v], faults.leaves);
+        for (const Vec3& place : found.far.on_facets) add_leaves(place, faults.leaves);
+        for (Index p : found.far_points.points) add_leaves(checks_.bound().point(p), faults.leaves);
+        for (const auto& [f, g] : found.crossing)
+            for (Index v : mesh.facet(diagonal(g) < diagonal(f) ? g : f))
+                add_leaves(mesh.positions[v], faults.leaves);
+        result_.far_points = std::move(found.far_points);
+        return faults;
+    }
+
+    /// Of a facet's box, squared.
+    double diagonal(Index facet) const {
+        const Box box = box_of(result_.mesh, facet);
+        return (box.hi - box.lo).sqrnorm();
+    }
+
+    /// Those at a triangle of the fine surface near a place.
+    void add_leaves(const Vec3& place, std::vector<std::array<Index, 3>>& leaves) const {
+        const SurfaceWalk& fine = checks_.bound().to_fine();
+        Index triangle = no_index, hint = no_index;
+        double reach = checks_.band().tolerance();
+        for (int k = 0; k < most_doublings && triangle == no_index; ++k, reach *= 2)
+            triangle = fine.triangle_within(place, reach, hint);
+        if (triangle == no_index) return;
+        const auto [a, b, c] = fine.corners(triangle);
+        leaves.push_back({leaves_.vertex[a], leaves_.vertex[b], leaves_.vertex[c]});
+    }
+
+    bool may_be_kept(Index leaf) const { return tolerance_[leaf] > 0 && has_merged_[result_.vertex[leaf]]; }
+
+    /// Vertices of the leaves at faults are to stay as they were or, where they do so already, those around
+    /// them: so what is wrong in one place costs no vertices elsewhere. Returns how many that concerns.
+    std::size_t keep(const std::vector<std::array<Index, 3>>& faults) {
+        std::vector<Index> kept;
+        std::vector<std::uint8_t> around(tolerance_.size(), 0);
+        bool is_helped = true;
+        for (const auto& leaves : faults) {
+            const std::size_t before = kept.size();
+            std::copy_if(leaves.begin(), leaves.end(), std::back_inserter(kept),
+                         [&](Index leaf) { return may_be_kept(leaf); });
+            if (kept.size() > before) continue;
+            is_helped = false;
+            for (Index leaf : leaves) around[leaf] = 1;
+        }
+        for (int ring = 0; ring < most_rings && !is_helped; ++ring)
+            for (Index leaf : with_neighbours(leaves_.mesh, around)) {
+                around[leaf] = 1;
+                if (!may_be_kept(leaf)) continue;
+                kept.push_back(leaf);
+                is_helped = true;
+            }
+        std::sort(kept.begin(), kept.end());
+        kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+        for (Index leaf : kept) tolerance_[leaf] = 0;
+        return kept.size();
+    }
+
+    /// What was merged into these vertices is to miss its planes by less or, where nothing was, what was
+    /// merged around them. Returns how many vertices of the leaves that concerns.
+    std::size_t keep_closer(const std::vector<Index>& vertices) {
+        std::vector<std::uint8_t> wrong(result_.mesh.vertex_count(), 0);
+        for (Index v : vertices) wrong[v] = 1;
+        for (int ring = 0; ring < most_rings && !vertices.empty(); ++ring) {
+            if (const std::size_t count = lower_tolerances(wrong); count > 0) return count;
+            for (Index v : with_neighbours(result_.mesh, wrong)) wrong[v] = 1;
+        }
+        return 0;
+    }
+
+    std::size_t lower_tolerances(const std::vector<std::uint8_t>& wrong) {
+        std::vector<Index> concerned;
+        for (Index leaf = 0; leaf < tolerance_.size(); ++leaf) {
+            const Index v = result_.vertex[leaf];
+            if (wrong[v] && has_merged_[v] && tolerance_[leaf] > 0) concerned.push_back(leaf);
+        }
+        const bool few =
+            static_cast<double>(concerned.size()) < few_leaves * static_cast<double>(tolerance_.size());
+        for (Index leaf : concerned) {
+            double& tolerance = tolerance_[leaf];
+            tolerance = few || tolerance < least_share * checks_.band().tolerance() ? 0 : 0.5 * tolerance;
+        }
+        return concerned.size();
+    }
+
+    const LeafMesh& leaves_;
+    MeshChecks& checks_;
+    const DecimateOptions& options_;
+    std::vector<double> tolerance_;        // per vertex of the leaves
+    std::vector<std::uint8_t> has_merged_; // per vertex of the result
+    RemeshedGroups tidied_;                // in the round before
+    DecimatedLeaves result_;
+};
+
+/// What stands for what stands for each.
+std::vector<Index> through(const std::vector<Index>& first, const std::vector<Index>& second) {
+    std::vector<Index> result(first.size());
+    std::transform(first.begin(), first.end(), result.begin(), [&](Index v) { return second[v]; });
+    return result;
+}
+
+} // namespace
+
+DecimatedLeaves decimate(const LeafMesh& leaves, std::vector<Quadric> planes, MeshChecks& checks,
+                         const DecimateOptions& options) {
+    std::vector<PlaneCollapse> plane_collapses; // of the round before, which most are again
+    const CollapsingMesh unmerged(leaves.mesh);
+    const auto by_planes = [&](const std::vector<double>& tolerance) {
+        return collapse_by_planes(unmerged, planes, tolerance, plane_collapses);
+    };
+    DecimatedLeaves merged = DecimationRounds(leaves, checks, options).run({by_planes, Diagonals::may_flip});
+    planes = std::vector<Quadric>(); // dropping asks for distances
+
+    const LeafMesh base{std::move(merged.mesh), through(leaves.vertex, merged.vertex)};
+    DecimateOptions drop_options = options;
+    drop_options.faults = merged.faults;
+    const CollapsingMesh undropped(base.mesh);
+    const std::vector<DistanceCollapse> drops =
+        find_distance_collapses(undropped, checks.bound().to_fine(), drop_share * checks.band().tolerance());
+    const auto by_distance = [&](const std::vector<double>& tolerance) {
+        std::vector<std::uint8_t> may_go(tolerance.size()); // what was wrong once stays
+        for (std::size_t v = 0; v < may_go.size(); ++v) may_go[v] = tolerance[v] >= checks.band().tolerance();
+        return collapse_by_distance(undropped, drops, may_go);
+    };
+    DecimatedLeaves dropped =
+        DecimationRounds(base, checks, drop_options).run({by_distance, Diagonals::stay});
+    dropped.vertex = through(merged.vertex, dropped.vertex);
+    return dropped;
+}
+
+} // namespace hsdm

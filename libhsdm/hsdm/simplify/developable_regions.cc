@@ -1,0 +1,104 @@
+#include "hsdm/simplify/developable_regions.hh"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hsdm {
+namespace {
+
+constexpr double most_ratio = 0.35; // of the spreads of normals where a region begins
+constexpr double most_off = 0.08;   // a mean normal's cosine with the axis, from the region's: 5 degrees
+constexpr int most_trims = 2;       // of a facet: bounds the work
+constexpr double most_off_trimmed = 0.03; // ... once the axis is known
+constexpr double most_deviation = 0.01;   // ... root mean square over the region
+constexpr double cone_share = 0.3;        // of a cylinder's deviation that a cone's must not exceed
+constexpr std::size_t least_facets = 60;  // of a region
+constexpr std::size_t first_refit = 40;   // facets, and again whenever there are twice as many
+
+Axis cylinder_axis(const NormalSum& normals) {
+    const Variation variation = normals.about_zero();
+    return {variation.direction[0], 0, variation.deviation[0]};
+}
+
+Axis cone_axis(const NormalSum& normals) {
+    const Variation variation = normals.about_mean();
+    const Vec3& direction = variation.direction[0];
+    return {direction, direction | normals.mean(), variation.deviation[0]};
+}
+
+/// A cone's only where a cylinder's will not do: of a narrow arc normals have one angle to many directions.
+Axis axis_of(const NormalSum& normals) {
+    const Axis cylinder = cylinder_axis(normals);
+    if (cylinder.deviation <= most_deviation) return cylinder;
+    const Axis cone = cone_axis(normals);
+    return cone.deviation < cone_share * cylinder.deviation ? cone : cylinder;
+}
+
+/// Lets go of what bends away at the margins, and fits the axis to the rest. Returns what it lets go of.
+std::vector<Index> trim(const FacetField& field, DevelopableRegion& region) {
+    NormalSum normals;
+    std::vector<Index> trimmed;
+    std::erase_if(region.facets, [&](Index f) {
+        const double cosine = region.axis.direction | field.mean_normal[f];
+        if (std::abs(cosine - region.axis.cosine) > most_off_trimmed) {
+            trimmed.push_back(f);
+            return true;
+        }
+        normals.add(field.mean_normal[f], field.area[f].norm());
+        return false;
+    });
+    region.axis = axis_of(normals);
+    return trimmed;
+}
+
+DevelopableRegion grow(const FacetField& field, Index seed, const std::vector<Index>& taken,
+                       std::vector<std::uint8_t>& seen) {
+    DevelopableRegion region{{seed}, cylinder_axis(field.around[seed]), field.convex[seed] != 0};
+    region.axis.cosine = region.axis.direction | field.mean_normal[seed];
+    seen[seed] = 1;
+    NormalSum normals;
+    std::size_t refit = first_refit;
+    for (std::size_t next = 0; next < region.facets.size(); ++next) {
+        const Index f = region.facets[next];
+        normals.add(field.mean_normal[f], field.area[f].norm());
+        if (next + 1 == refit) {
+            region.axis = axis_of(normals);
+            refit *= 2;
+        }
+        field.for_beside(f, [&](Index g) {
+            if (taken[g] != no_index || seen[g] || (field.convex[g] != 0) != region.convex) return;
+            const double cosine = region.axis.direction | field.mean_normal[g];
+            if (std::abs(cosine - region.axis.cosine) > most_off) return;
+            seen[g] = 1;
+            region.facets.push_back(g);
+        });
+    }
+    region.axis = axis_of(normals);
+    return region;
+}
+
+} // namespace
+
+std::vector<DevelopableRegion> find_developable_regions(const FacetField& field,
+                                                        const std::vector<Index>& taken) {
+    std::vector<std::pair<double, Index>> seeds;
+    for (Index f = 0; f < field.size(); ++f)
+        if (taken[f] == no_index && field.next_spread[f] <= most_ratio * field.spread[f])
+            seeds.emplace_back(field.next_spread[f] / std::max(field.spread[f], 1e-12), f);
+    std::sort(seeds.begin(), seeds.end());
+    std::vector<DevelopableRegion> regions;
+    std::vector<std::uint8_t> seen(field.size(), 0), trims(field.size(), 0);
+    for (const auto& [ratio, seed] : seeds) {
+        if (seen[seed]) continue;
+        DevelopableRegion region = grow(field, seed, taken, seen);
+        const std::vector<Index> trimmed = trim(field, region);
+        if (region.facets.size() < least_facets || region.axis.deviation > most_deviation) continue;
+        regions.push_back(std::move(region));
+        for (Index f : trimmed)
+            if (++trims[f] <= most_trims) seen[f] = 0; // for another region
+    }
+    return regions;
+}
+
+} // namespace hsdm

@@ -1,0 +1,117 @@
+#include "hsdm/simplify/intersection_check.hh"
+
+#include "hsdm/core/chunks.hh"
+#include "hsdm/mesh/part_of.hh"
+#include "hsdm/point_cloud.hh"
+#include "hsdm/spatial/self_intersections.hh"
+
+#include <algorithm>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t facets_per_chunk = 4096;
+
+/// Whether a box may touch one of others: some cell of a grid has a part of both. Counts are summed up along
+/// the axes, so that a large box takes no longer than a small one.
+class BoxGrid {
+public:
+    /// All boxes lie inside. Cells follow their number: to clear many for a few would take longer than these.
+    BoxGrid(const Box& whole, std::size_t boxes) : lo_(whole.lo) {
+        constexpr unsigned least_bits = 2, most_bits = 6;
+        for (bits_ = least_bits; bits_ < most_bits && std::size_t{1} << 3 * bits_ < boxes; ++bits_) continue;
+        counts_.assign(std::size_t{1} << 3 * bits_, 0);
+        for (unsigned k = 0; k < 3; ++k)
+            scale_[k] = whole.size()[k] > 0 ? static_cast<double>(side() - 1) / whole.size()[k] : 0;
+    }
+
+    void add(const Box& box) {
+        for_corners(box, [&](std::size_t at, int sign) { counts_[at] -= sign; });
+    }
+
+    /// Of boxes over each cell, then of covered cells before each.
+    void sum_up() {
+        add_along_axes();
+        const std::size_t next = 1 + side() + side() * side(); // in all directions; no box has the last cells
+        for (std::size_t i = counts_.size(); i-- > 0;) counts_[i] = i >= next && counts_[i - next] > 0;
+        add_along_axes();
+    }
+
+    bool touches(const Box& box) const {
+        std::int32_t covered = 0;
+        for_corners(box, [&](std::size_t at, int sign) { covered += sign * counts_[at]; });
+        return covered > 0;
+    }
+
+private:
+    std::size_t side() const { return std::size_t{1} << bits_; }
+
+    std::size_t cell_of(double x, unsigned axis) const {
+        return std::min(static_cast<std::size_t>((x - lo_[axis]) * scale_[axis]), side() - 2);
+    }
+
+    /// The cells at the lower ends of a box and behind the upper ones; 1 or -1 as a sum over it has them.
+    template <class F>
+    void for_corners(const Box& box, F&& visit) const {
+        for (unsigned corner = 0; corner < 8; ++corner) {
+            std::size_t at = 0;
+            int sign = 1;
+            for (unsigned k = 0; k < 3; ++k) {
+                const bool upper = corner >> k & 1;
+                at |= (upper ? cell_of(box.hi[k], k) + 1 : cell_of(box.lo[k], k)) << bits_ * k;
+                if (!upper) sign = -sign;
+            }
+            visit(at, sign);
+        }
+    }
+
+    void add_along_axes() {
+        for (unsigned shift = 0; shift < 3 * bits_; shift += bits_)
+            for (std::size_t i = 0; i < counts_.size(); ++i)
+                if (i >> shift & (side() - 1)) counts_[i] += counts_[i - (std::size_t{1} << shift)];
+    }
+
+    Vec3 lo_, scale_;
+    unsigned bits_; // of a cell's place along an axis
+    std::vector<std::int32_t> counts_;
+};
+
+/// Marked facets and those whose boxes may touch theirs, ascending.
+std::vector<Index> with_touching(const PolygonMesh& mesh, const std::vector<std::uint8_t>& marked) {
+    BoxGrid grid(bounds_of(mesh.positions), mesh.facet_count());
+    for (std::size_t f = 0; f < marked.size(); ++f)
+        if (marked[f]) grid.add(box_of(mesh, f));
+    grid.sum_up();
+    std::vector<std::vector<Index>> parts(chunk_count(marked.size(), facets_per_chunk));
+    for_chunks(marked.size(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+        for (std::size_t f = begin; f < end; ++f)
+            if (marked[f] || grid.touches(box_of(mesh, f))) parts[c].push_back(static_cast<Index>(f));
+    });
+    return joined(parts);
+}
+
+} // namespace
+
+std::vector<std::array<Index, 2>> IntersectionCheck::find(const PolygonMesh& mesh) {
+    std::vector<Key> keys = facet_keys(mesh, place_keys(mesh.positions));
+    const std::vector<Index> due = with_touching(mesh, changed(keys));
+    auto pairs = find_self_intersections(part_of(mesh, due)).facet_pairs;
+    for (auto& pair : pairs)
+        for (Index& f : pair) {
+            f = due[f];
+            keys[f] = no_key;
+        }
+    clear_ = KeySet(keys);
+    return pairs;
+}
+
+/// Per facet; of facets in the same place all but one, whatever they were before.
+std::vector<std::uint8_t> IntersectionCheck::changed(std::span<const Key> keys) const {
+    KeySet seen(keys.size());
+    std::vector<std::uint8_t> result(keys.size());
+    for (std::size_t f = 0; f < keys.size(); ++f)
+        result[f] = !seen.insert(keys[f]) || !clear_.contains(keys[f]);
+    return result;
+}
+
+} // namespace hsdm

@@ -1,0 +1,461 @@
+#include "hsdm/simplify/remesh_by_flips.hh"
+
+#include "hsdm/core/chunks.hh"
+#include "hsdm/core/disjoint_sets.hh"
+#include "hsdm/core/hash.hh"
+#include "hsdm/mesh/straight_corners.hh"
+#include "hsdm/mesh/triangle_sides.hh"
+#include "hsdm/simplify/triangle_shape.hh"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace hsdm {
+namespace {
+
+constexpr int most_sweeps = 4;
+constexpr std::size_t triangles_per_chunk = 1024, sides_per_chunk = 3 * triangles_per_chunk;
+
+constexpr double better_shape = 1.1; // a flip for shape gains at least this factor
+constexpr double flip_cosine = 0.94; // for shape: normals up to 20 degrees apart
+constexpr double join_cosine = 0.77; // normals of a quad's halves up to 40 degrees apart
+constexpr double least_corner = 0.2; // of a quad's corners: the sine of the sharpest or bluntest angle
+constexpr double reflex = -0.01;     // sine of a corner; straight ones do no harm, and a cut costs a facet
+constexpr double was_quad = 0.3;     // added to the corner's sine of what was a quad before
+
+class FlipRemeshing {
+public:
+    FlipRemeshing(PolygonMesh& mesh, ToleranceEnvelope& fine, std::span<const std::uint8_t> settled,
+                  RemeshedGroups& before)
+        : mesh_(mesh),
+          fine_(fine),
+          before_(before),
+          tolerance_(fine.tolerance()),
+          names_(place_keys(mesh.positions)),
+          vertices_(names_),
+          facet_names_(facet_keys(mesh, names_)) {
+        std::vector<std::uint8_t> whole(mesh.facet_count());
+        for (std::size_t f = 0; f < whole.size(); ++f) {
+            const auto ring = mesh.facet(f);
+            whole[f] =
+                ring.size() > 4 || std::all_of(ring.begin(), ring.end(), [&](Index v) { return settled[v]; });
+        }
+        group_ = before_.find(mesh, facet_names_, vertices_, names_, whole);
+        cut_what_is_new(whole);
+        if (is_sound() || kept_.facet_count() == 0) return;
+        group_.assign(group_.size(), no_index);
+        cut_what_is_new(std::move(whole));
+    }
+
+    RemeshCounts run(Diagonals diagonals) {
+        RemeshCounts counts;
+        const int sweeps = diagonals == Diagonals::may_flip ? most_sweeps : 0;
+        look_.assign(corners_.size(), Look::none);
+        united_.emplace(half_.size());
+        std::vector<std::uint8_t> turned(half_.size(), 1);
+        for (int sweep = 0; sweep < sweeps; ++sweep) {
+            turned_.assign(half_.size(), 0);
+            judge_all(turned);
+            std::size_t flipped = 0;
+            for (Index s = 0; s < corners_.size(); ++s)
+                if (waits_[s / 3] && is_due(s, turned)) flipped += flip(s);
+            counts.flipped += flipped;
+            turned.swap(turned_);
+            if (flipped == 0) break;
+        }
+        counts.joined = join();
+        before_ = std::move(now_);
+        mesh_.corners = std::move(kept_.corners);
+        mesh_.first = std::move(kept_.first);
+        return counts;
+    }
+
+private:
+    const Vec3& at(Index v) const { return mesh_.positions[v]; }
+
+    /// Can the vertex do with a facet less?
+    bool spares(Index v) const { return facets_[v] > least_facets_[v]; }
+
+    Vec3 middle(Index a, Index b) const { return 0.5 * (at(a) + at(b)); }
+
+    /// How far the lines a-b and c-d miss each other: what a quad with these diagonals is off a plane.
+    double warp(Index a, Index b, Index c, Index d) const {
+        const Vec3 across = (at(b) - at(a)) % (at(d) - at(c));
+        const double length = across.norm();
+        return length > 0 ? std::abs(across | (at(c) - at(a))) / length : 0;
+    }
+
+    /// Whether an edge is on the fine surface, if that was asked.
+    enum class Look : std::uint8_t { none, on, off };
+    Look look(Index a, Index b, Index& hint) const {
+        return fine_.holds(middle(a, b), hint) ? Look::on : Look::off;
+    }
+
+    void cut_what_is_new(std::vector<std::uint8_t> whole) {
+        // A diagonal may be an edge of other facets already: such quads are not cut.
+        do cut_all(whole);
+        while (keep_whole(whole));
+        facets_.assign(mesh_.vertex_count(), 0);
+        for (Index v : corners_) ++facets_[v];
+        for (Index v : kept_.corners) ++facets_[v];
+    }
+
+    /// What groups became beside others they need not become beside these: one may count on an edge that
+    /// another took out, or on a facet that another gave to a vertex.
+    bool is_sound() const {
+        if (crowded_) return false;
+        for (std::size_t v = 0; v < facets_.size(); ++v)
+            if (facets_[v] > 0 && facets_[v] < least_facets_[v]) return false;
+        return true;
+    }
+
+    void cut_all(const std::vector<std::uint8_t>& whole) {
+        kept_ = {};
+        now_ = {};
+        half_.clear();
+        facet_.clear();
+        std::vector<std::uint8_t> seen(before_.size(), 0);
+        for (std::size_t f = 0; f < whole.size(); ++f) {
+            const auto ring = mesh_.facet(f);
+            if (whole[f]) {
+                kept_.add_facet(ring);
+                continue;
+            }
+            if (const Index group = group_[f]; group != no_index) {
+                if (seen[group]) continue;
+                seen[group] = 1;
+                before_.append(group, vertices_, kept_);
+                now_.copy(before_, group);
+                continue;
+            }
+            facet_.resize(facet_.size() + ring.size() - 2, static_cast<Index>(f));
+            half_.resize(facet_.size(), ring.size() == 4);
+        }
+        corners_.resize(3 * facet_.size());
+        for_chunks(facet_.size(), triangles_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t t = begin; t < end; ++t)
+                if (t == 0 || facet_[t - 1] != facet_[t]) cut(mesh_.facet(facet_[t]), &corners_[3 * t]);
+        });
+        link();
+    }
+
+    /// Marks the quads whose diagonals are not theirs alone; false if there is none.
+    bool keep_whole(std::vector<std::uint8_t>& whole) const {
+        bool any = false;
+        for (Index s = 0; s < corners_.size(); s += 3) {
+            if (!half_[s / 3] || (twin_[s] != no_index && facet_[twin_[s] / 3] == facet_[s / 3])) continue;
+            whole[facet_[s / 3]] = 1;
+            any = true;
+        }
+        return any;
+    }
+
+    /// Three corners, or six with the diagonal as side 0 of either half.
+    void cut(std::span<const Index> f, Index* out) const {
+        if (f.size() == 3) {
+            std::copy(f.begin(), f.end(), out);
+            return;
+        }
+        const double shape02 = std::min(triangle_shape(at(f[0]), at(f[1]), at(f[2])),
+                                        triangle_shape(at(f[0]), at(f[2]), at(f[3])));
+        const double shape13 = std::min(triangle_shape(at(f[0]), at(f[1]), at(f[3])),
+                                        triangle_shape(at(f[1]), at(f[2]), at(f[3])));
+        const std::array<Index, 6> halves = shape02 >= shape13
+                                                ? std::array{f[2], f[0], f[1], f[0], f[2], f[3]}
+                                                : std::array{f[1], f[3], f[0], f[3], f[1], f[2]};
+        std::copy(halves.begin(), halves.end(), out);
+    }
+
+    void link() {
+        TriangleSides sides = link_triangles(corners_, kept_, mesh_.vertex_count());
+        twin_ = std::move(sides.twin);
+        crowded_ = sides.crowded;
+        least_facets_.resize(mesh_.vertex_count());
+        for (std::size_t v = 0; v < least_facets_.size(); ++v) least_facets_[v] = sides.border[v] ? 1 : 3;
+    }
+
+    /// Whether two vertices, the first at this corner, are known to share no edge: its fan must be whole.
+    bool apart(Index corner, Index other) const {
+        Index s = corner;
+        do {
+            if (corners_[next_side(s)] == other || corners_[previous_side(s)] == other) return false;
+            s = twin_[s] == no_index ? no_index : next_side(twin_[s]);
+        } while (s != no_index && s != corner);
+        return s == corner;
+    }
+
+    /// What two triangles alone tell of the diagonal between them.
+    struct Verdict {
+        bool flips = false;       ///< is the other one better?
+        Look before = Look::none; ///< this one's
+        Look after = Look::none;  ///< the other one's
+    };
+
+    /// Is this the side to ask at, and was one of its triangles turned?
+    bool is_due(Index s, const std::vector<std::uint8_t>& turned) const {
+        return twin_[s] != no_index && s < twin_[s] && (turned[s / 3] || turned[twin_[s] / 3]);
+    }
+
+    void judge_all(const std::vector<std::uint8_t>& turned) {
+        verdicts_.resize(corners_.size());
+        waits_.assign(half_.size(), 0);
+        for_chunks(corners_.size(), sides_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            Index hint = no_index;
+            for (auto s = static_cast<Index>(begin); s < end; ++s) {
+                if (!is_due(s, turned)) continue;
+                verdicts_[s] = judge(s, hint);
+                look_[s] = look_[twin_[s]] = verdicts_[s].before;
+                waits_[s / 3] |= verdicts_[s].flips;
+            }
+        });
+    }
+
+    Verdict judge(Index s, Index& hint) const {
+        const Index t = twin_[s], a = corners_[s], b = corners_[t], c = corners_[previous_side(s)],
+                    d = corners_[previous_side(t)];
+        const Look before = look_[s];
+        const Vec3 ab = at(b) - at(a), bc = at(c) - at(b), ca = at(a) - at(c), ad = at(d) - at(a),
+                   db = at(b) - at(d), cd = at(d) - at(c);
+        const Vec3 first = ca % cd, second = cd % db, sum = first + second;
+        if ((first | sum) <= 0 || (second | sum) <= 0) return {false, before, Look::none};
+        const Vec3 old1 = ca % ab, old2 = ab % db;
+        const double first_norm = first.norm(), second_norm = second.norm(), old1_norm = old1.norm(),
+                     old2_norm = old2.norm();
+        const double ab2 = ab.sqrnorm(), bc2 = bc.sqrnorm(), ca2 = ca.sqrnorm(), ad2 = ad.sqrnorm(),
+                     db2 = db.sqrnorm(), cd2 = cd.sqrnorm();
+        const double old_shape =
+            std::min(triangle_shape(old1_norm, ab2 + bc2 + ca2), triangle_shape(old2_norm, ab2 + ad2 + db2));
+        const double new_shape = std::min(triangle_shape(first_norm, ca2 + ad2 + cd2),
+                                          triangle_shape(second_norm, db2 + bc2 + cd2));
+        if (new_shape < std::min(least_shape, old_shape)) return {false, before, Look::none};
+        const bool gains =
+            new_shape >= better_shape * old_shape
+            && (first | second) >= flip_cosine * first_norm * second_norm
+            && (old_shape <= least_shape || (old1 | old2) >= flip_cosine * old1_norm * old2_norm);
+        if (warp(a, b, c, d) <= tolerance_) return {gains, before, before};
+        if (before != Look::none) return judge_bent({a, b, c, d}, before, gains, hint);
+        // What is not known yet follows from the four places alone.
+        Key key = 1;
+        for (Index v : {a, b, c, d}) key = hash_index(key ^ names_[v]);
+        const unsigned known = fine_.remembered(key, [&] {
+            const Verdict verdict = judge_bent({a, b, c, d}, Look::none, gains, hint);
+            return unsigned{verdict.flips} + 2 * static_cast<unsigned>(verdict.before)
+                   + 8 * unsigned{verdict.after == Look::on};
+        });
+        return {known % 2 == 1, static_cast<Look>(known / 2 % 4), known / 8 == 1 ? Look::on : Look::none};
+    }
+
+    /// The two triangles at a-b, their other corners c and d, are not in a plane; would their shape gain?
+    Verdict judge_bent(const std::array<Index, 4>& corners, Look before, bool gains, Index& hint) const {
+        const auto [a, b, c, d] = corners;
+        if (before == Look::none) before = look(a, b, hint);
+        if (before == Look::off) {
+            const double was = fine_.surface().distance(middle(a, b), hint);
+            const auto is_beyond = [&](const Vec3& place, double share) {
+                return fine_.surface().is_beyond(place, share * was, hint);
+            };
+            return {!is_beyond(middle(c, d), 0.5) && !is_beyond((at(a) + at(c) + at(d)) / 3, 1)
+                        && !is_beyond((at(b) + at(c) + at(d)) / 3, 1),
+                    before, Look::none};
+        }
+        if (!gains) return {false, before, Look::none};
+        const Look after = look(c, d, hint);
+        return {after == Look::on, before, after};
+    }
+
+    /// Lays the diagonal of the two triangles at side s the other way if that is better.
+    bool flip(Index s) {
+        const Index t = twin_[s], c = corners_[previous_side(s)], d = corners_[previous_side(t)];
+        if (c == d || !spares(corners_[s]) || !spares(corners_[t])) return false;
+        const bool stale = turned_[s / 3] || turned_[t / 3];
+        const Verdict verdict = stale ? judge(s, hint_) : verdicts_[s];
+        look_[s] = look_[t] = verdict.before;
+        if (!verdict.flips || (!apart(previous_side(s), d) && !apart(previous_side(t), c))) return false;
+        turn(s, t, verdict.after);
+        return true;
+    }
+
+    void turn(Index s, Index t, Look now) {
+        const Index a = corners_[s], b = corners_[t], c = corners_[previous_side(s)],
+                    d = corners_[previous_side(t)];
+        const Index ca = twin_[previous_side(s)], bc = twin_[next_side(s)], ad = twin_[next_side(t)],
+                    db = twin_[previous_side(t)];
+        const Look look_ca = look_[previous_side(s)], look_bc = look_[next_side(s)],
+                   look_ad = look_[next_side(t)], look_db = look_[previous_side(t)];
+        const Index one = s - s % 3, two = t - t % 3;
+        turned_[one / 3] = turned_[two / 3] = 1;
+        united_->join(one / 3, two / 3);
+        for (const Index side : {one, two, ca, bc, ad, db})
+            if (side != no_index) waits_[side / 3] = 1;
+        const auto place = [&](Index from, std::array<Index, 3> corners) {
+            for (Index k = 0; k < 3; ++k) corners_[from + k] = corners[k];
+        };
+        place(one, {d, c, a}); // the diagonal is side 0 of either
+        place(two, {c, d, b});
+        half_[one / 3] = half_[two / 3] = 0;
+        const auto tie = [&](Index x, Index y, Look look) {
+            twin_[x] = y;
+            look_[x] = look;
+            if (y != no_index) twin_[y] = x, look_[y] = look;
+        };
+        tie(one, two, now);
+        tie(one + 1, ca, look_ca);
+        tie(one + 2, ad, look_ad);
+        tie(two + 1, db, look_db);
+        tie(two + 2, bc, look_bc);
+        --facets_[a], --facets_[b], ++facets_[c], ++facets_[d];
+    }
+
+    struct Quad {
+        double score;
+        Index side;
+    };
+
+    std::optional<Quad> quad_across(Index s) const {
+        const Index t = twin_[s], a = corners_[s], b = corners_[t], c = corners_[previous_side(s)],
+                    d = corners_[previous_side(t)];
+        const Vec3 one = triangle_normal(at(a), at(b), at(c)), two = triangle_normal(at(b), at(a), at(d));
+        if (c == d || (one | two) < join_cosine * one.norm() * two.norm()) return std::nullopt;
+        const std::array<Vec3, 4> along{at(d) - at(a), at(b) - at(d), at(c) - at(b), at(a) - at(c)};
+        std::array<double, 4> length;
+        for (std::size_t i = 0; i < 4; ++i) length[i] = along[i].norm();
+        const Vec3 up = (one + two).normalized();
+        double least = 1;
+        for (std::size_t i = 0, before = 3; i < 4; before = i++) {
+            const double sine = ((along[before] % along[i]) | up) / (length[before] * length[i]);
+            if (!(sine >= least_corner)) return std::nullopt; // not a number where corners coincide
+            least = std::min(least, sine);
+        }
+        // Whoever cuts the quad takes the shorter diagonal: it must be the one that is there, or do no harm.
+        const bool shorter = (at(b) - at(a)).sqrnorm() <= (at(d) - at(c)).sqrnorm();
+        if (!shorter && warp(a, b, c, d) > tolerance_) return std::nullopt;
+        const bool whole = half_[s / 3] && half_[t / 3] && s % 3 == 0 && t % 3 == 0;
+        return Quad{least + (whole ? was_quad : 0), s};
+    }
+
+    std::vector<Quad> possible_quads() const {
+        std::vector<std::vector<Quad>> parts(chunk_count(corners_.size(), sides_per_chunk));
+        for_chunks(corners_.size(), sides_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+            for (auto s = static_cast<Index>(begin); s < end; ++s)
+                if (twin_[s] != no_index && s < twin_[s])
+                    if (const auto quad = quad_across(s)) parts[c].push_back(*quad);
+        });
+        return joined(parts);
+    }
+
+    std::size_t join() {
+        std::vector<Quad> quads = possible_quads();
+        tbb::parallel_sort(quads.begin(), quads.end(), [](const Quad& p, const Quad& q) {
+            return p.score != q.score ? p.score > q.score : p.side < q.side;
+        });
+        std::vector<Index> partner(half_.size(), no_index); // per triangle, the side that goes
+        std::size_t joined = 0;
+        for (const Quad& quad : quads) {
+            const Index s = quad.side, t = twin_[s], a = corners_[s], b = corners_[t];
+            if (partner[s / 3] != no_index || partner[t / 3] != no_index) continue;
+            if (!spares(a) || !spares(b)) continue;
+            --facets_[a], --facets_[b];
+            partner[s / 3] = s;
+            partner[t / 3] = t;
+            united_->join(s / 3, t / 3);
+            ++joined;
+        }
+        add_groups(partner);
+        return joined;
+    }
+
+    /// What is left of the triangles, group by group.
+    void add_groups(const std::vector<Index>& partner) {
+        const auto [first, members] = groups();
+        std::vector<Key> facets;
+        for (std::size_t g = 0; g + 1 < first.size(); ++g) {
+            const auto group = std::span(members).subspan(first[g], first[g + 1] - first[g]);
+            facets.clear();
+            for (Index t : group)
+                if (t == 0 || facet_[t - 1] != facet_[t]) facets.push_back(facet_names_[facet_[t]]);
+            now_.begin(facets);
+            for (Index t : group) {
+                const Index s = partner[t];
+                if (s == no_index)
+                    add_to_group(std::array{corners_[3 * t], corners_[3 * t + 1], corners_[3 * t + 2]});
+                else if (s < twin_[s])
+                    add_to_group(std::array{corners_[s], corners_[previous_side(twin_[s])],
+                                            corners_[next_side(s)], corners_[previous_side(s)]});
+            }
+        }
+    }
+
+    void add_to_group(std::span<const Index> ring) {
+        kept_.add_facet(ring);
+        now_.add_ring(ring, names_);
+    }
+
+    /// Triangles that were flipped or joined together, and halves of the same quad.
+    struct Groups {
+        std::vector<Index> first, members;
+    };
+    Groups groups() {
+        Groups result;
+        std::vector<Index> number(half_.size());
+        Index count = 0;
+        for (Index t = 1; t < number.size(); ++t)
+            if (facet_[t - 1] == facet_[t]) united_->join(t - 1, t);
+        for (Index t = 0; t < number.size(); ++t) { // the least member stands for all
+            const Index least = united_->find(t);
+            number[t] = least == t ? count++ : number[least];
+        }
+        // Two to the right, so that filling the triangles in moves them to their places.
+        result.first.assign(count + 2, 0);
+        result.members.resize(number.size());
+        for (Index n : number) ++result.first[n + 2];
+        counts_to_first(result.first);
+        for (Index t = 0; t < number.size(); ++t) result.members[result.first[number[t] + 1]++] = t;
+        result.first.pop_back();
+        return result;
+    }
+
+    PolygonMesh& mesh_;
+    ToleranceEnvelope& fine_;
+    RemeshedGroups& before_;
+    RemeshedGroups now_;
+    double tolerance_;
+    std::vector<Key> names_;             // per vertex, of its place
+    KeyIndex vertices_;                  // by names
+    std::vector<Key> facet_names_;       // per facet
+    std::vector<Index> group_;           // per facet, of those that became before what they are to become
+    std::optional<DisjointSets> united_; // triangles that were turned or joined together
+    PolygonMesh kept_;                   // facets that are done
+    std::vector<Index> corners_;         // three per triangle
+    std::vector<std::uint8_t> half_;   // per triangle, is it half of a former quad, the diagonal its side 0?
+    std::vector<Index> facet_;         // per triangle, the facet it was cut from
+    std::vector<Index> twin_;          // per side of a triangle
+    bool crowded_ = false;             // has some edge more than two facets?
+    std::vector<Look> look_;           // per side
+    std::vector<Verdict> verdicts_;    // per side, as of the sweep's start
+    std::vector<std::uint8_t> turned_; // per triangle, in this sweep
+    std::vector<std::uint8_t> waits_;  // per triangle, has it sides to be turned or judged anew?
+    Index hint_ = no_index;
+    std::vector<Index> facets_, least_facets_; // per vertex: three, or one at a border
+};
+
+} // namespace
+
+RemeshCounts remesh_by_flips(PolygonMesh& mesh, ToleranceEnvelope& fine,
+                             std::span<const std::uint8_t> settled, Diagonals diagonals) {
+    RemeshedGroups none;
+    return remesh_by_flips(mesh, fine, settled, diagonals, none);
+}
+
+RemeshCounts remesh_by_flips(PolygonMesh& mesh, ToleranceEnvelope& fine,
+                             std::span<const std::uint8_t> settled, Diagonals diagonals,
+                             RemeshedGroups& before) {
+    const RemeshCounts counts = FlipRemeshing(mesh, fine, settled, before).run(diagonals);
+    cut_straight_corners(mesh, reflex);
+    return counts;
+}
+
+} // namespace hsdm

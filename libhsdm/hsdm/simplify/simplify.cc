@@ -1,0 +1,350 @@
+#include "hsdm/simplify/simplify.hh"
+
+#include "hsdm/core/chunks.hh"
+#include "hsdm/errors.hh"
+#include "hsdm/quality/distance_to_surface.hh"
+#include "hsdm/simplify/clusters.hh"
+#include "hsdm/simplify/decimate.hh"
+#include "hsdm/simplify/leaf_doublets.hh"
+#include "hsdm/simplify/nonmanifold_vertices.hh"
+#include "hsdm/simplify/planar_patches.hh"
+#include "hsdm/simplify/remesh_by_flips.hh"
+
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t vertices_per_chunk = 2048, facets_per_chunk = 8192;
+constexpr std::size_t fewest_samples = 10000, most_samples = 100000;
+constexpr double spacing = 0.5; // of places on facets, in voxels of the fine mesh
+constexpr double planes_share =
+    0.35;                           // of the error: what planes of a leaf may be missed by, root mean square
+constexpr double patch_share = 0.5; // ... and how far the surface may be off a patch's plane
+
+/// A cluster: a vertex of the result.
+struct Place {
+    int level = 0;
+    Index cluster = no_index;
+    Index cell = no_index;
+};
+
+class Simplification {
+public:
+    Simplification(const PolygonMesh& fine, std::span<const Vec3> points, double extent, int depth,
+                   const SimplifyOptions& options, const FacetCells* cells)
+        : fine_(fine),
+          points_(points),
+          options_(options),
+          tree_(build_cell_tree(fine.positions, extent, depth)) {
+        tbb::parallel_invoke( // either has steps that one thread takes alone
+            [&] {
+                patches_ = find_planar_patches(fine, patch_share * options.max_error);
+                planes_ = vertex_planes(fine, patches_, tolerance());
+                clusters_ = build_clusters(fine, tree_, planes_, tolerance());
+            },
+            [&] {
+                checks_.emplace(fine, cells, points, options.max_error,
+                                spacing * extent / static_cast<double>(1u << depth), tolerance());
+            });
+    }
+
+    AdaptiveMesh run() {
+        int round = 0;
+        while (round < options_.rounds && split_what_is_wrong() > 0) ++round;
+        if (round == options_.rounds || result_.points_beyond > result_.unreachable)
+            settle_for_fine();
+        else
+            merge();
+        count_leaves();
+        if (options_.measure) {
+            const std::size_t samples =
+                std::clamp(2 * result_.mesh.facet_count(), fewest_samples, most_samples);
+            result_.to_fine =
+                points_to_surface(sample_surface(result_.mesh, samples), checks_->bound().to_fine());
+        }
+        result_.vertex = std::move(vertex_);
+        return std::move(result_);
+    }
+
+private:
+    /// One mesh over the leaves as they are; returns how many leaves have to be smaller.
+    std::size_t split_what_is_wrong() {
+        result_.balance_splits += balance(tree_);
+        collapse();
+        drop_doublets();
+        const std::size_t troubled = split_troubled();
+        result_.topology_splits += troubled;
+        if (troubled > 0) return troubled; // all else needs a 2-manifold
+        remesh_by_flips(result_.mesh, checks_->band(), own(), Diagonals::may_flip, tidied_);
+        const Findings found = checks_->look_at(result_.mesh);
+        faults_ = found.count();
+        set_beyond(found.far_points);
+        const std::size_t crossing = split_intersecting(found), distant = split_distant(found);
+        result_.intersection_splits += crossing;
+        result_.error_splits += distant;
+        return crossing + distant;
+    }
+
+    /// Makes do with fewer vertices than leaves.
+    void merge() {
+        LeafMesh leaves{std::move(result_.mesh), std::move(vertex_)};
+        std::vector<Quadric> leaf_planes(leaves.mesh.vertex_count());
+        for (std::size_t v = 0; v < planes_.size(); ++v) leaf_planes[leaves.vertex[v]] += planes_[v];
+        // Where doublets were dropped a neighbour has their planes too.
+        for (std::size_t v = 0; v < leaf_planes.size(); ++v)
+            leaf_planes[v].drop_shared(leaves.mesh.positions[v], tolerance());
+        planes_ = std::vector<Quadric>();
+        DecimatedLeaves merged = decimate(leaves, std::move(leaf_planes), *checks_,
+                                          {.faults = faults_, .rounds = options_.rounds});
+        result_.mesh = std::move(merged.mesh);
+        result_.merged = leaves.mesh.vertex_count() - result_.mesh.vertex_count();
+        set_beyond(merged.far_points);
+        vertex_ = std::move(leaves.vertex);
+        std::vector<Index> number(coarse_.size(), no_index);
+        const std::vector<Index> nearest = nearest_leaves(leaves.mesh, merged.vertex);
+        for (Index v = 0; v < nearest.size(); ++v) number[nearest[v]] = v;
+        for (Index& v : vertex_) v = number[v];
+        coarse_ = picked(coarse_, nearest);
+    }
+
+    /// Per vertex of the result the nearest of those that were merged there.
+    std::vector<Index> nearest_leaves(const PolygonMesh& leaves, const std::vector<Index>& vertex) const {
+        std::vector<Index> nearest(result_.mesh.vertex_count(), no_index);
+        for (Index leaf = 0; leaf < vertex.size(); ++leaf) {
+            Index& best = nearest[vertex[leaf]];
+            const Vec3& place = result_.mesh.positions[vertex[leaf]];
+            if (best == no_index
+                || (leaves.positions[leaf] - place).sqrnorm() < (leaves.positions[best] - place).sqrnorm())
+                best = leaf;
+        }
+        return nearest;
+    }
+
+    void set_beyond(const FarPoints& far) {
+        result_.points_beyond = far.beyond;
+        result_.unreachable = far.unreachable;
+    }
+
+    void settle_for_fine() {
+        for (CellLevel& level : tree_.levels)
+            if (&level != &tree_.levels.back()) level.whole.assign(level.whole.size(), 0);
+        collapse();
+        set_beyond(checks_->far_points(result_.mesh));
+    }
+
+    /// The leaf and the cluster of every fine vertex.
+    void locate() {
+        places_.resize(fine_.vertex_count());
+        for_chunks(places_.size(), vertices_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+            for (std::size_t v = begin; v < end; ++v) {
+                Place place{tree_.depth(), static_cast<Index>(v), tree_.of_vertex[v]};
+                while (place.level > 0) {
+                    const auto level = static_cast<std::size_t>(place.level);
+                    const Index up = tree_.levels[level].parent[place.cell];
+                    if (!tree_.levels[level - 1].whole[up]) break;
+                    place.cluster = clusters_[level].parent[place.cluster];
+                    place.cell = up;
+                    --place.level;
+                }
+                places_[v] = place;
+            }
+        });
+    }
+
+    /// The mesh over the leaves: a facet stays while it has three different vertices.
+    void collapse() {
+        locate();
+        std::vector<std::vector<Index>> number(clusters_.size());
+        for (std::size_t level = 0; level < clusters_.size(); ++level)
+            number[level].assign(clusters_[level].size(), no_index);
+        PolygonMesh& mesh = result_.mesh = PolygonMesh();
+        coarse_.clear();
+        vertex_.resize(fine_.vertex_count());
+        for (std::size_t v = 0; v < places_.size(); ++v) {
+            const Place& place = places_[v];
+            Index& n = number[static_cast<std::size_t>(place.level)][place.cluster];
+            if (n == no_index) {
+                n = static_cast<Index>(coarse_.size());
+                coarse_.push_back(place);
+                mesh.positions.push_back(
+                    clusters_[static_cast<std::size_t>(place.level)].positions[place.cluster]);
+            }
+            vertex_[v] = n;
+        }
+        std::vector<PolygonMesh> parts(chunk_count(fine_.facet_count(), facets_per_chunk));
+        std::vector<std::vector<Index>> pinched(parts.size());
+        for_chunks(fine_.facet_count(), facets_per_chunk,
+                   [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+                       std::vector<Index> ring, open;
+                       for (std::size_t f = begin; f < end; ++f) {
+                           ring.clear();
+                           for (Index v : fine_.facet(f)) ring.push_back(vertex_[v]);
+                           if (!add_loops(ring, open, parts[chunk]))
+                               pinched[chunk].push_back(static_cast<Index>(f));
+                       }
+                   });
+        for (const PolygonMesh& part : parts)
+            for (std::size_t f = 0; f < part.facet_count(); ++f) mesh.add_facet(part.facet(f));
+        pinched_ = joined(pinched);
+    }
+
+    /// Their neighbours take over the fine vertices.
+    void drop_doublets() {
+        std::vector<Index> stands_for = dissolve_doublets(result_.mesh);
+        coarse_ = picked(coarse_, drop_replaced(result_.mesh, stands_for));
+        for (Index& v : vertex_) v = stands_for[v];
+    }
+
+    double tolerance() const { return planes_share * options_.max_error; }
+
+    /// Per vertex of the result, is it one of the fine mesh?
+    std::vector<std::uint8_t> own() const {
+        std::vector<std::uint8_t> result(coarse_.size());
+        for (std::size_t v = 0; v < result.size(); ++v) result[v] = coarse_[v].level == tree_.depth();
+        return result;
+    }
+
+    /// The simple loops of three vertices and more that are left of a facet whose vertices coincide in part.
+    /// False if corners coincide that are not next to each other: what the surface has between them could be
+    /// a handle. `open` is room to work in.
+    static bool add_loops(std::vector<Index>& ring, std::vector<Index>& open, PolygonMesh& mesh) {
+        ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+        while (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
+        bool simple = true;
+        open.clear();
+        for (Index v : ring) {
+            const auto seen = std::find(open.begin(), open.end(), v);
+            if (seen != open.end()) {
+                simple = false;
+                if (open.end() - seen >= 3)
+                    mesh.add_facet({&*seen, static_cast<std::size_t>(open.end() - seen)});
+                open.erase(seen, open.end());
+            }
+            open.push_back(v);
+        }
+        if (open.size() >= 3) mesh.add_facet(open);
+        return simple;
+    }
+
+    std::size_t split_at(const Place& place) { return tree_.split(place.level, place.cell); }
+
+    std::size_t split_troubled() {
+        std::size_t splits = 0;
+        std::vector<std::uint8_t> due(result_.mesh.vertex_count(), 0);
+        std::vector<Index> troubled = nonmanifold_vertices(result_.mesh);
+        add_lost(troubled);
+        for (Index v : troubled) splits += split_at(coarse_[v]);
+        for (Index f : pinched_)
+            for (Index v : fine_.facet(f)) splits += split_at(places_[v]);
+        if (splits > 0 || troubled.empty()) return splits;
+        // Vertices of the deepest level alone cannot be helped: their neighbours can.
+        for (Index v : troubled) due[v] = 1;
+        for (std::size_t f = 0; f < result_.mesh.facet_count(); ++f) {
+            const auto ring = result_.mesh.facet(f);
+            if (std::none_of(ring.begin(), ring.end(), [&](Index v) { return due[v]; })) continue;
+            for (Index v : ring) splits += split_at(coarse_[v]);
+        }
+        return splits;
+    }
+
+    /// Vertices whose facets have all gone: a piece of the surface as small as a leaf.
+    void add_lost(std::vector<Index>& troubled) const {
+        std::vector<std::uint8_t> lost(coarse_.size(), 0);
+        for (Index v : fine_.corners) lost[vertex_[v]] = 1;
+        for (Index v : result_.mesh.corners) lost[v] = 0;
+        for (Index v = 0; v < lost.size(); ++v)
+            if (lost[v]) troubled.push_back(v);
+    }
+
+    std::size_t split_intersecting(const Findings& found) {
+        std::size_t splits = 0;
+        for (const auto& pair : found.crossing)
+            for (Index f : pair) splits += split_facet(f);
+        return splits;
+    }
+
+    std::size_t split_distant(const Findings& found) {
+        std::size_t splits = 0;
+        for (Index v : found.far.fine_vertices) splits += split_at(places_[v]);
+        for (Index v : found.far.vertices) splits += split_at(coarse_[v]);
+        for (Index f : found.far.facets) splits += split_facet(f);
+        for (Index p : found.far_points.points) splits += split_near(points_[p]);
+        return splits;
+    }
+
+    std::size_t split_facet(Index f) {
+        std::size_t splits = 0;
+        for (Index v : result_.mesh.facet(f)) splits += split_at(coarse_[v]);
+        return splits;
+    }
+
+    /// The leaves around a point; where there are none to subdivide, those of the facet nearest to it.
+    std::size_t split_near(const Vec3& point) {
+        const std::size_t splits = split_around(point);
+        if (splits > 0) return splits;
+        const Index facet = checks_->bound().nearest_facet(point);
+        return facet == no_index ? 0 : split_facet(facet);
+    }
+
+    /// The leaf that holds a point, or else those around it.
+    std::size_t split_around(const Vec3& point) {
+        const MortonCode code = tree_.code_at(point);
+        std::size_t splits = 0;
+        for (int level = tree_.depth() - 1; level >= 0; --level)
+            if (const Index cell = tree_.find(level, code >> 3 * (tree_.depth() - level)); cell != no_index)
+                splits += tree_.split(level, cell);
+        for (int level = tree_.depth() - 1; level >= 0 && splits == 0; --level) {
+            const VoxelCoord at = morton_decode(code >> 3 * (tree_.depth() - level));
+            for (int k = 0; k < 27; ++k) {
+                const VoxelCoord n{at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1};
+                if (n[0] < 0 || n[1] < 0 || n[2] < 0) continue;
+                if (const Index cell = tree_.find(level, morton_encode(n)); cell != no_index)
+                    splits += tree_.split(level, cell);
+            }
+        }
+        return splits;
+    }
+
+    void count_leaves() {
+        result_.leaves_per_level.assign(tree_.levels.size(), 0);
+        for (int level = 0; level <= tree_.depth(); ++level)
+            for (Index c = 0; c < tree_.levels[static_cast<std::size_t>(level)].codes.size(); ++c)
+                result_.leaves_per_level[static_cast<std::size_t>(level)] += tree_.is_leaf(level, c);
+        result_.level.clear();
+        for (const Place& place : coarse_) result_.level.push_back(static_cast<std::uint8_t>(place.level));
+    }
+
+    const PolygonMesh& fine_;
+    std::span<const Vec3> points_;
+    const SimplifyOptions& options_;
+    CellTree tree_;
+    PlanarPatches patches_;
+    std::vector<Quadric> planes_; // per fine vertex
+    std::vector<ClusterLevel> clusters_;
+    std::vector<Place> places_;  // per fine vertex
+    std::vector<Index> vertex_;  // per fine vertex, the vertex of the result
+    std::vector<Place> coarse_;  // per vertex of the result
+    std::vector<Index> pinched_; // facets of the fine mesh with opposite corners in one vertex
+    RemeshedGroups tidied_;      // in the round before
+    std::optional<MeshChecks> checks_;
+    FaultCounts faults_; // of the last round, whether leaves could be smaller there or not
+    AdaptiveMesh result_;
+};
+
+} // namespace
+
+AdaptiveMesh simplify(const PolygonMesh& fine, std::span<const Vec3> points, double extent, int depth,
+                      const SimplifyOptions& options, const FacetCells* cells) {
+    if (!(options.max_error > 0 && std::isfinite(options.max_error)))
+        throw OptionError("max_error " + std::to_string(options.max_error) + ": must be positive and finite");
+    if (options.rounds < 1)
+        throw OptionError("rounds " + std::to_string(options.rounds) + ": must be 1 or more");
+    return Simplification(fine, points, extent, depth, options, cells).run();
+}
+
+} // namespace hsdm

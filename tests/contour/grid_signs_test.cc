@@ -1,0 +1,120 @@
+#include "hsdm/contour/grid_signs.hh"
+
+#include "hsdm/contour/crossing_pairs.hh"
+#include "support/sample.hh"
+
+#include <catch2/catch.hpp>
+#include <tbb/global_control.h>
+
+using namespace hsdm;
+
+namespace {
+
+/// All that comes before label_grid_signs.
+struct Found {
+    Octree octree;
+    OctreeLevel level;
+    NormalSets sets;
+    RelationTest related;
+    GridPoints grid;
+    LocalSheets local;
+    CrossingCandidates candidates;
+
+    Found(const support::Solid& solid, std::size_t points, int depth)
+        : octree(build_octree(scan(solid, points), {})),
+          level(extract_level(octree, depth)),
+          sets(build_normal_sets(octree, level)),
+          related({}, level.voxel_size),
+          grid(build_grid_points(level)),
+          local(group_local_sheets(grid, sets, related, level.voxel_size)) {
+        extend_grid_points(grid, local, level);
+        candidates = find_crossings(grid, local, sets, related, level.voxel_size);
+    }
+
+    static PointCloud scan(const support::Solid& solid, std::size_t points) {
+        support::SampleOptions options;
+        options.points = points;
+        return support::sample(solid, options);
+    }
+
+    Crossings settled() const { return label_grid_signs(grid, local, sets, candidates, level.voxel_size); }
+    Crossings standing() const {
+        Crossings result;
+        for (Index edge = 0; edge + 1 < candidates.crossings.first.size(); ++edge) {
+            for (Index x = candidates.crossings.first[edge]; x < candidates.crossings.first[edge + 1]; ++x)
+                if (candidates.standing[x]) result.crossings.push_back(candidates.crossings.crossings[x]);
+            result.first.push_back(static_cast<Index>(result.crossings.size()));
+        }
+        return result;
+    }
+    std::size_t open_sides(const Crossings& crossings) const {
+        return pair_crossings(grid, crossings, sets, related).open;
+    }
+};
+
+} // namespace
+
+TEST_CASE("crossings that agree leave no side open and are left alone", "[contour]") {
+    const Found found(support::sphere(1), 20000, 4);
+    const Crossings crossings = found.settled();
+    CHECK(crossings.settled == 0);
+    CHECK(crossings.crossings.size() > 500);
+    CHECK(found.open_sides(crossings) == 0);
+}
+
+TEST_CASE("crossings lost at random come back and the surface closes", "[contour]") {
+    Found found(support::torus(1, 0.4), 40000, 5);
+    const std::size_t all = found.settled().crossings.size();
+    support::Random random(3);
+    std::size_t lost = 0;
+    for (auto& standing : found.candidates.standing)
+        if (standing && random.uniform() < 0.05) standing = 0, ++lost;
+    const Crossings crossings = found.settled();
+    CHECK(lost > 50);
+    CHECK(crossings.settled == lost);
+    CHECK(crossings.crossings.size() == all);
+    CHECK(found.open_sides(crossings) == 0);
+}
+
+TEST_CASE("where many creases meet, settling closes most faces that the sheets leave open",
+          "[contour][slow]") {
+    using support::box;
+    support::Random random(8);
+    std::size_t open_before = 0, open_after = 0;
+    for (int i = 0; i < 12; ++i) {
+        const support::Solid solid = (box({1, 1, 1}) | box({1, 0.9, 0.8}).placed(random_pose(random, 0.4)))
+                                     - box({0.8, 0.9, 1}).placed(random_pose(random, 0.4));
+        const Found found(solid, 15000, 5);
+        open_before += found.open_sides(found.standing());
+        open_after += found.open_sides(found.settled());
+    }
+    CHECK(open_before > 1000);
+    CHECK(open_after < open_before / 3);
+}
+
+TEST_CASE("settled crossings do not depend on the number of threads", "[contour]") {
+    const Found found(support::mechanical_part(), 20000, 5);
+    const Crossings many = found.settled();
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const Crossings single = found.settled();
+    CHECK(many.first == single.first);
+    CHECK(many.settled == single.settled);
+    bool same = many.crossings.size() == single.crossings.size();
+    for (std::size_t i = 0; same && i < many.crossings.size(); ++i)
+        same =
+            many.crossings[i].t == single.crossings[i].t && many.crossings[i].set == single.crossings[i].set;
+    CHECK(same);
+}
+
+TEST_CASE("a box whose faces lie on grid planes keeps its corners", "[contour]") {
+    const support::Solid cube = support::box({1, 1, 1});
+    const Found found(cube, 3000, 3);
+    const Crossings crossings = found.settled();
+    CHECK(found.open_sides(crossings) == 0);
+    double farthest = 0;
+    for (const Crossing& x : crossings.crossings)
+        farthest =
+            std::max(farthest, std::abs(cube.distance(crossing_position(found.grid, x, found.level.voxel_size)
+                                                      + found.octree.origin)));
+    CHECK(farthest < 0.15 * found.level.voxel_size);
+}

@@ -1,0 +1,116 @@
+#include "hsdm/mesh/small_components.hh"
+#include "hsdm/quality/topology.hh"
+
+#include <catch2/catch.hpp>
+
+#include <array>
+
+using namespace hsdm;
+
+namespace {
+
+/// A strip of n quads, of unit length and the given width, beside the mesh.
+void add_strip(PolygonMesh& mesh, Index n, double width = 1) {
+    const auto base = static_cast<Index>(mesh.vertex_count());
+    for (Index i = 0; i <= n; ++i)
+        for (double y : {0.0, width}) mesh.positions.emplace_back(i, y, base);
+    for (Index i = 0; i < n; ++i)
+        mesh.add_facet(std::array{base + 2 * i, base + 2 * i + 2, base + 2 * i + 3, base + 2 * i + 1});
+    if (mesh.properties.empty()) return;
+    for (std::size_t v = base; v < mesh.vertex_count(); ++v) mesh.properties[0].values.push_back(n);
+}
+
+/// A closed box of six quads beside the mesh.
+void add_box(PolygonMesh& mesh) {
+    const auto base = static_cast<Index>(mesh.vertex_count());
+    for (unsigned k = 0; k < 8; ++k) mesh.positions.emplace_back(k & 1, k >> 1 & 1, base + (k >> 2));
+    for (const std::array<Index, 4>& q : {std::array<Index, 4>{0, 2, 3, 1},
+                                          {0, 1, 5, 4},
+                                          {1, 3, 7, 5},
+                                          {3, 2, 6, 7},
+                                          {2, 0, 4, 6},
+                                          {4, 5, 7, 6}})
+        mesh.add_facet(std::array{base + q[0], base + q[1], base + q[2], base + q[3]});
+}
+
+/// Strips of 2, 100, 40 and 10 quads; the third has the largest area.
+PolygonMesh strips() {
+    PolygonMesh mesh;
+    mesh.properties.push_back({"length", VertexProperty::Type::float64, {}});
+    add_strip(mesh, 2, 1);
+    add_strip(mesh, 100, 1);
+    add_strip(mesh, 40, 4);
+    add_strip(mesh, 10, 1);
+    return mesh;
+}
+
+std::size_t components_left(const SmallComponentOptions& options) {
+    PolygonMesh mesh = strips();
+    FeatureHints hints;
+    drop_small_components(mesh, hints, options);
+    return measure_topology(mesh).components;
+}
+
+} // namespace
+
+TEST_CASE("splinters beside a large surface are dropped, small parts are not", "[mesh]") {
+    PolygonMesh mesh;
+    add_strip(mesh, 32);
+    add_strip(mesh, 1100);
+    add_strip(mesh, 33);
+    add_strip(mesh, 1);
+    add_box(mesh);
+    CHECK(drop_splinters(mesh, {.most_facets = 5, .most_open = 32, .least_ratio = 32}).count == 33);
+    CHECK(mesh.facet_count() == 1139);
+    CHECK(drop_splinters(mesh).count == 6);
+    CHECK(drop_splinters(mesh).count == 0);
+}
+
+TEST_CASE("a few facets are no splinter where all components are small", "[mesh]") {
+    PolygonMesh mesh;
+    add_strip(mesh, 4);
+    add_strip(mesh, 120);
+    CHECK(drop_splinters(mesh).count == 0);
+    CHECK(drop_splinters(mesh, {.most_facets = 12, .most_open = 32, .least_ratio = 25}).count == 4);
+    PolygonMesh none;
+    CHECK(drop_splinters(none).count == 0);
+}
+
+TEST_CASE("components smaller than asked for are dropped, the largest never", "[mesh]") {
+    CHECK(components_left({.least_facets = 0}) == 4);
+    CHECK(components_left({.least_facets = 2}) == 4);
+    CHECK(components_left({.least_facets = 3}) == 3);
+    CHECK(components_left({.least_facets = 41}) == 2); // the largest by area has 40 facets
+    CHECK(components_left({.least_facets = 1e9}) == 1);
+    CHECK(components_left({.least_share = 0}) == 4);
+    CHECK(components_left({.least_share = 0.0126}) == 3);
+    CHECK(components_left({.least_share = 0.07}) == 2);
+    CHECK(components_left({.least_share = 1}) == 1);
+}
+
+TEST_CASE("of two components of one size, only the first is the largest", "[mesh]") {
+    PolygonMesh mesh = strips();
+    add_strip(mesh, 40, 4);
+    FeatureHints hints;
+    CHECK(drop_small_components(mesh, hints, {.least_share = 1}).components == 4);
+    CHECK(mesh.facet_count() == 40);
+}
+
+TEST_CASE("vertices, their properties and the hints go with their component", "[mesh]") {
+    PolygonMesh mesh = strips();
+    FeatureHints hints;
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f)
+        hints.sides.insert(hints.sides.end(), 4, f < 102 ? EdgeHint::smooth : EdgeHint::sharp);
+    const SmallComponents dropped = drop_small_components(mesh, hints, {.least_facets = 11});
+    CHECK(dropped.components == 2);
+    CHECK(dropped.facets.count == 12);
+    CHECK(measure_topology(mesh).isolated_vertices == 0);
+    REQUIRE(mesh.properties[0].values.size() == mesh.vertex_count());
+    CHECK(mesh.properties[0].values.front() == 100);
+    CHECK(mesh.properties[0].values.back() == 40);
+    REQUIRE(hints.sides.size() == 4 * 140);
+    CHECK(hints.sides[4 * 100 - 1] == EdgeHint::smooth);
+    CHECK(hints.sides[4 * 100] == EdgeHint::sharp);
+    PolygonMesh empty;
+    CHECK(drop_small_components(empty, hints, {.least_facets = 5}).components == 0);
+}

@@ -1,0 +1,102 @@
+#include "hsdm/simplify/distance_check.hh"
+
+#include <catch2/catch.hpp>
+
+#include <array>
+#include <cmath>
+
+using namespace hsdm;
+
+namespace {
+
+constexpr Index side = 9; // vertices
+
+/// A roof of quads over a square, 1 high along its middle.
+PolygonMesh roof() {
+    PolygonMesh mesh;
+    for (Index y = 0; y < side; ++y)
+        for (Index x = 0; x < side; ++x) mesh.positions.emplace_back(x, y, 1 - std::abs(double(x) - 4) / 4);
+    for (Index y = 0; y + 1 < side; ++y)
+        for (Index x = 0; x + 1 < side; ++x) {
+            const Index v = y * side + x;
+            mesh.add_facet(std::array{v, v + 1, v + side + 1, v + side});
+        }
+    return mesh;
+}
+
+/// Vertices of the roof's own, and one quad over four of them.
+PolygonMesh quad_over(const PolygonMesh& roof, std::array<Index, 4> corners) {
+    PolygonMesh mesh;
+    for (Index v : corners) mesh.positions.push_back(roof.positions[v]);
+    mesh.add_facet(std::array<Index, 4>{0, 1, 2, 3});
+    return mesh;
+}
+
+} // namespace
+
+TEST_CASE("a facet over the fine mesh's own vertices is looked at", "[simplify]") {
+    const PolygonMesh fine = roof();
+    DistanceCheck check(fine, nullptr, {}, 0.1, 1);
+    CHECK(check.find_far(fine).size() == 0);
+    // From eaves to eaves, under the ridge.
+    const FarPlaces under =
+        check.find_far(quad_over(fine, {0, side - 1, side * side - 1, side * (side - 1)}));
+    CHECK(under.facets.size() == 1);
+    CHECK(under.vertices.empty());
+    CHECK(!under.fine_vertices.empty());
+    // One slope of two.
+    const FarPlaces slope = check.find_far(quad_over(fine, {0, 4, side * (side - 1) + 4, side * (side - 1)}));
+    CHECK(slope.facets.empty());
+    CHECK(slope.fine_vertices.size() == std::size_t{4} * side);
+}
+
+TEST_CASE("what was near a facet that has gone is measured again, in any order of vertices", "[simplify]") {
+    const PolygonMesh fine = roof();
+    const std::vector<Vec3> points = {Vec3(1.5, 4, 0.375), Vec3(6.5, 4, 0.375), Vec3(6.5, 4, 3)};
+    DistanceCheck check(fine, nullptr, points, 0.1, 1);
+    const std::array<Index, 4> left{0, 4, side * (side - 1) + 4, side * (side - 1)};
+    const std::array<Index, 4> right{4, side - 1, side * side - 1, side * (side - 1) + 4};
+    PolygonMesh both = quad_over(fine, left);
+    for (Index v : right) both.positions.push_back(fine.positions[v]);
+    both.add_facet(std::array<Index, 4>{4, 5, 6, 7});
+    CHECK(check.find_far(both).size() == 0);
+    FarPoints far = check.find_far_points();
+    CHECK(far.beyond == 1);
+    CHECK(far.unreachable == 1); // the fine mesh is as far from it
+    CHECK(far.points.empty());
+    check.find_far(quad_over(fine, left));
+    far = check.find_far_points();
+    CHECK(far.beyond == 2);
+    CHECK(far.points == std::vector<Index>{1, 2}); // the last one is farther than it need be
+    PolygonMesh again;                             // the same facets, numbered the other way
+    again.positions.assign(both.positions.rbegin(), both.positions.rend());
+    again.add_facet(std::array<Index, 4>{7, 6, 5, 4});
+    again.add_facet(std::array<Index, 4>{3, 2, 1, 0});
+    CHECK(check.find_far(again).size() == 0);
+    CHECK(check.find_far_points().points.empty());
+}
+
+TEST_CASE("what was far from the fine mesh is so each time", "[simplify]") {
+    const PolygonMesh fine = roof();
+    DistanceCheck check(fine, nullptr, {}, 0.1, 1);
+    PolygonMesh lifted = fine;
+    for (Vec3& p : lifted.positions) p[2] += p[0] < 3.5 ? 0.05 : 0.2;
+    const FarPlaces first = check.find_far(lifted), second = check.find_far(lifted);
+    CHECK(first.vertices.size() == std::size_t{5} * side);
+    CHECK(first.facets.size() == std::size_t{5} * (side - 1));
+    CHECK(second.vertices == first.vertices);
+    CHECK(second.facets == first.facets);
+}
+
+TEST_CASE("the bound is kept with room for rounding", "[simplify]") {
+    constexpr double bound = 0.1;
+    const PolygonMesh fine = roof();
+    const Vec3 up = Vec3(-1, 0, 4).normalized(); // from the left slope
+    for (const auto& [distance, far] :
+         {std::pair{(1 - 1e-10) * bound, true}, std::pair{(1 - 1e-8) * bound, false}}) {
+        const std::vector<Vec3> points = {Vec3(2, 4, 0.5) + up * distance};
+        DistanceCheck check(fine, nullptr, points, bound, 1);
+        check.find_far(fine);
+        CHECK(check.find_far_points().beyond == (far ? 1 : 0));
+    }
+}

@@ -1,0 +1,65 @@
+#include "hsdm/mesh/manifold.hh"
+#include "hsdm/quality/topology.hh"
+#include "hsdm/simplify/leaf_doublets.hh"
+
+#include <catch2/catch.hpp>
+
+#include <array>
+
+using namespace hsdm;
+
+namespace {
+
+PolygonMesh cube_without_top() {
+    PolygonMesh mesh;
+    for (unsigned k = 0; k < 8; ++k) mesh.positions.emplace_back(k & 1, k >> 1 & 1, k >> 2);
+    for (const std::array<Index, 4>& q :
+         {std::array<Index, 4>{0, 2, 3, 1}, {0, 1, 5, 4}, {1, 3, 7, 5}, {3, 2, 6, 7}, {2, 0, 4, 6}})
+        mesh.add_facet(q);
+    return mesh;
+}
+
+} // namespace
+
+TEST_CASE("two facets round one vertex become one", "[simplify]") {
+    PolygonMesh mesh = cube_without_top();
+    mesh.positions.emplace_back(0.5, 0.5, 1);
+    mesh.add_facet(std::array<Index, 4>{4, 5, 7, 8});
+    mesh.add_facet(std::array<Index, 4>{8, 7, 6, 4});
+    const std::vector<Index> stands_for = dissolve_doublets(mesh);
+    CHECK((stands_for[8] == 4 || stands_for[8] == 7));
+    CHECK(stands_for[3] == 3);
+    CHECK(remove_isolated_vertices(mesh) == 1);
+    const Topology t = measure_topology(mesh);
+    CHECK(t.closed());
+    CHECK(t.quads == 6);
+    CHECK(t.euler == 2);
+}
+
+TEST_CASE("triangles back to back go, and the edge that they doubled is one again", "[simplify]") {
+    PolygonMesh mesh = cube_without_top();
+    mesh.positions.emplace_back(0.5, 0, 1); // a flap of two triangles beyond the edge 4, 5
+    mesh.add_facet(std::array<Index, 4>{4, 5, 7, 6});
+    mesh.add_facet(std::array<Index, 3>{4, 5, 8});
+    mesh.add_facet(std::array<Index, 3>{8, 5, 4});
+    REQUIRE_FALSE(measure_topology(mesh).manifold());
+    const std::vector<Index> stands_for = dissolve_doublets(mesh);
+    CHECK((stands_for[8] == 4 || stands_for[8] == 5));
+    CHECK(remove_isolated_vertices(mesh) == 1);
+    const Topology t = measure_topology(mesh);
+    CHECK(t.closed());
+    CHECK(t.manifold());
+    CHECK(t.euler == 2);
+}
+
+TEST_CASE("a component of two facets stays, and so does a border", "[simplify]") {
+    PolygonMesh bubble;
+    bubble.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    bubble.add_facet(std::array<Index, 3>{0, 1, 2});
+    bubble.add_facet(std::array<Index, 3>{2, 1, 0});
+    dissolve_doublets(bubble);
+    CHECK(bubble.facet_count() == 2);
+    PolygonMesh open = cube_without_top(); // two facets at each vertex of the rim
+    dissolve_doublets(open);
+    CHECK(open.facet_count() == 5);
+}

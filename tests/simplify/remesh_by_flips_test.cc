@@ -1,0 +1,118 @@
+#include "hsdm/mesh/area_vector.hh"
+#include "hsdm/quality/distance_to_surface.hh"
+#include "hsdm/quality/topology.hh"
+#include "hsdm/simplify/nonmanifold_vertices.hh"
+#include "hsdm/simplify/remesh_by_flips.hh"
+
+#include <catch2/catch.hpp>
+
+#include <array>
+#include <cmath>
+
+using namespace hsdm;
+
+namespace {
+
+constexpr Index side = 7; // vertices
+
+/// A sheet of quads over a square, `height` at (x, y) up; the vertices by rows.
+template <class Height>
+PolygonMesh sheet(const Height& height) {
+    PolygonMesh mesh;
+    for (Index y = 0; y < side; ++y)
+        for (Index x = 0; x < side; ++x) mesh.positions.emplace_back(x, y, height(double(x), double(y)));
+    for (Index y = 0; y + 1 < side; ++y)
+        for (Index x = 0; x + 1 < side; ++x) {
+            const Index v = y * side + x;
+            mesh.add_facet(std::array{v, v + 1, v + side + 1, v + side});
+        }
+    return mesh;
+}
+
+RemeshCounts tidied(PolygonMesh& mesh, const PolygonMesh& fine, bool settled = false) {
+    constexpr double tolerance = 0.05;
+    const SurfaceWalk surface(fine);
+    ToleranceEnvelope band(surface, tolerance, mesh.vertex_count());
+    return remesh_by_flips(mesh, band, std::vector<std::uint8_t>(mesh.vertex_count(), settled));
+}
+
+/// Every quad cut from its first corner.
+PolygonMesh cut_in_two(const PolygonMesh& quads) {
+    PolygonMesh cut;
+    cut.positions = quads.positions;
+    for (std::size_t f = 0; f < quads.facet_count(); ++f) {
+        const auto q = quads.facet(f);
+        cut.add_facet(std::array{q[0], q[1], q[2]});
+        cut.add_facet(std::array{q[0], q[2], q[3]});
+    }
+    return cut;
+}
+
+bool has_edge(const PolygonMesh& mesh, Index a, Index b) {
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+        const auto ring = mesh.facet(f);
+        for (std::size_t i = 0; i < ring.size(); ++i)
+            if (ring[i] == a && ring[(i + 1) % ring.size()] == b) return true;
+    }
+    return false;
+}
+
+} // namespace
+
+TEST_CASE("triangles of a flat sheet become quads again", "[simplify]") {
+    const PolygonMesh flat = sheet([](double, double) { return 0.0; });
+    PolygonMesh mesh = cut_in_two(flat);
+    const RemeshCounts counts = tidied(mesh, flat);
+    CHECK(counts.joined >= 30); // of 36
+    CHECK(nonmanifold_vertices(mesh).empty());
+    CHECK(measure_topology(mesh).euler == 1);
+}
+
+TEST_CASE("what is remembered of one mesh changes nothing in the next", "[simplify]") {
+    const PolygonMesh mesh =
+        cut_in_two(sheet([](double x, double y) { return 0.06 * std::sin(2 * x) * std::cos(3 * y); }));
+    const SurfaceWalk surface(sheet([](double x, double y) { return 0.02 * x * y / 6; }));
+    ToleranceEnvelope band(surface, 0.05, mesh.vertex_count());
+    const std::vector<std::uint8_t> settled(mesh.vertex_count(), 0);
+    PolygonMesh first = mesh, second = mesh;
+    const RemeshCounts once = remesh_by_flips(first, band, settled),
+                       again = remesh_by_flips(second, band, settled);
+    CHECK(once.flipped > 0);
+    CHECK(again.flipped == once.flipped);
+    CHECK(second.corners == first.corners);
+    CHECK(second.first == first.first);
+}
+
+TEST_CASE("quads across a crease are cut along it", "[simplify]") {
+    // A roof whose ridge runs along the diagonals from (x, x) to (x + 1, x + 1).
+    PolygonMesh mesh = sheet([](double x, double y) { return -std::abs(x - y); });
+    const PolygonMesh fine = cut_in_two(mesh);
+    tidied(mesh, fine);
+    for (Index i = 0; i + 1 < side; ++i) {
+        INFO("ridge from " << i);
+        const Index v = i * side + i;
+        CHECK((has_edge(mesh, v, v + side + 1) || has_edge(mesh, v + side + 1, v)));
+    }
+    CHECK(points_to_mesh(fine.positions, mesh).max < 1e-12);
+    CHECK(nonmanifold_vertices(mesh).empty());
+    CHECK(measure_topology(mesh).euler == 1);
+}
+
+TEST_CASE("a triangle without area is no half of a quad", "[simplify]") {
+    PolygonMesh mesh;
+    mesh.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0.5, 1, 0), Vec3(1, 0, 0)};
+    mesh.add_facet(std::array<Index, 3>{0, 1, 2});
+    mesh.add_facet(std::array<Index, 3>{1, 0, 3}); // its third corner lies on its first
+    const PolygonMesh before = mesh;
+    CHECK(tidied(mesh, before).joined == 0);
+    CHECK(mesh.facet_count() == 2);
+}
+
+TEST_CASE("settled facets stay as they are", "[simplify]") {
+    PolygonMesh mesh = sheet([](double x, double y) { return -std::abs(x - y); });
+    const PolygonMesh before = mesh;
+    const RemeshCounts counts = tidied(mesh, before, true);
+    CHECK(counts.flipped == 0);
+    CHECK(counts.joined == 0);
+    CHECK(mesh.corners == before.corners);
+}
