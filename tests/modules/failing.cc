@@ -1,6 +1,6 @@
 // A module whose function throws, and of which other code runs as soon as it is loaded.
 
-#include "plugins/when_loaded.hh"
+#include "modules/when_loaded.hh"
 
 #include "hsdm/plugin.hh"
 

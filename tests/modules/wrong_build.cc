@@ -1,6 +1,6 @@
 // A module of the right interface, built for another hsdm, with code that runs as soon as it is loaded.
 
-#include "plugins/when_loaded.hh"
+#include "modules/when_loaded.hh"
 
 #include "hsdm/plugin.hh"
 

@@ -262,10 +262,10 @@ private:
                 for (Index s = sets_.first[voxel]; s < sets_.first[voxel + 1]; ++s) {
                     if (s == best || !creases_with_all(s, corners)) continue;
                     add_plane(s);
-                    const Solution corner = least_squares(problem_, 3);
+                    const Solution apex = least_squares(problem_, 3);
                     problem_.planes.resize(planes);
-                    const double d = (corner.position - sets_.sets[s].centroid).sqrnorm();
-                    if (corner.rank == 3 && inside(corner.position, problem_, -margin)
+                    const double d = (apex.position - sets_.sets[s].centroid).sqrnorm();
+                    if (apex.rank == 3 && inside(apex.position, problem_, -margin)
                         && (d < nearest || (d == nearest && s < best)))
                         nearest = d, best = s;
                 }

@@ -25,11 +25,11 @@ Vec3 within_voxel(const GridPoints& grid, const Crossings& crossings, const Dual
     const FacetCorner corner = duals.corners_of(dual)[0];
     const Index edge = crossings.crossings[corner / 4].edge;
     const unsigned octant = Ring::octant(edge % 3, corner % 4);
-    const VoxelCoord corner = grid.coord(edge / 3);
+    const VoxelCoord lower = grid.coord(edge / 3);
     const Vec3 way = to - from;
     double share = 1;
     for (unsigned k = 0; k < 3; ++k) {
-        const double lo = (corner[k] + static_cast<int>(octant >> k & 1u) - 1 + margin) * h;
+        const double lo = (lower[k] + static_cast<int>(octant >> k & 1u) - 1 + margin) * h;
         const double hi = lo + (1 - 2 * margin) * h;
         if (way[k] > 0 && to[k] > hi) share = std::min(share, (hi - from[k]) / way[k]);
         if (way[k] < 0 && to[k] < lo) share = std::min(share, (lo - from[k]) / way[k]);

@@ -70,8 +70,8 @@ MortonCode code_of(const Vec3& relative, double scale) {
     return morton_encode(c[0], c[1], c[2]);
 }
 
-/// Sorts by cells of level 11, or by all of the code where one of these is crowded: an outlier far away leaves
-/// few cells to all other points. Returns by how many bits codes of one cell may differ.
+/// Sorts by cells of level 11, or by all of the code where one of these is crowded: an outlier far away
+/// leaves few cells to all other points. Returns by how many bits codes of one cell may differ.
 int sort_by_cells(std::vector<CodeIndex>& keys) {
     constexpr int in_cell = 3 * (morton_levels - 11);
     constexpr std::size_t crowd = 256;
