@@ -2,6 +2,7 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/radix_sort.hh"
+#include "hsdm/mesh/edge_table.hh"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -171,7 +172,6 @@ public:
 
     void run() {
         link_corners();
-        collect_edges();
         pair_edges();
         assign_vertices();
         for (int round = 0; round < pairing_rounds && flip_crowded_edges(); ++round) assign_vertices();
@@ -197,67 +197,43 @@ private:
     }
 
     void link_corners() {
-        next_.resize(mesh_.corners.size());
+        next_ = next_sides(mesh_);
         facet_.resize(mesh_.corners.size());
         for_each(mesh_.facet_count(), [&](std::size_t f) {
-            for (Index c = mesh_.first[f]; c < mesh_.first[f + 1]; ++c) {
-                next_[c] = c + 1 < mesh_.first[f + 1] ? c + 1 : mesh_.first[f];
-                facet_[c] = static_cast<Index>(f);
-            }
+            std::fill(facet_.begin() + mesh_.first[f], facet_.begin() + mesh_.first[f + 1],
+                      static_cast<Index>(f));
         });
     }
 
-    /// Half-edges by lower vertex, then upper vertex, then number: those of one edge come together.
-    void collect_edges() {
-        const std::size_t n = mesh_.vertex_count(), m = mesh_.corners.size();
-        first_at_.assign(n + 1, 0);
-        auto lower = [&](std::size_t h) {
-            return std::min(start(static_cast<Index>(h)), finish(static_cast<Index>(h)));
-        };
-        for_each(m, [&](std::size_t h) {
-            std::atomic_ref(first_at_[lower(h) + 1]).fetch_add(1, std::memory_order_relaxed);
-        });
-        std::partial_sum(first_at_.begin(), first_at_.end(), first_at_.begin());
-        std::vector<Index> next(first_at_.begin(), first_at_.end() - 1);
-        by_edge_.resize(m);
-        for_each(m, [&](std::size_t h) {
-            by_edge_[std::atomic_ref(next[lower(h)]).fetch_add(1, std::memory_order_relaxed)] =
-                static_cast<Index>(h);
-        });
-        for_each(n, [&](std::size_t v) {
-            std::sort(by_edge_.begin() + first_at_[v], by_edge_.begin() + first_at_[v + 1],
-                      [&](Index a, Index b) { return std::pair(upper(a), a) < std::pair(upper(b), b); });
-        });
-    }
     Index upper(Index h) const { return std::max(start(h), finish(h)); }
 
+    /// Twins of the edges that two opposite half-edges share; the others are gathered and paired by angles.
     void pair_edges() {
         twin_.assign(mesh_.corners.size(), no_index);
-        std::vector<std::vector<ComplexEdge>> parts(chunk_count(mesh_.vertex_count(), grain));
-        for_chunks(mesh_.vertex_count(), grain, [&](std::size_t first, std::size_t last, std::size_t chunk) {
-            for (std::size_t v = first; v < last; ++v) pair_edges_at(v, parts[chunk]);
+        const EdgeTable edges(mesh_);
+        std::vector<std::vector<Index>> sizes(edges.chunks()), half_edges(edges.chunks());
+        edges.for_edges([&](Index, std::span<const EdgeSide> edge, std::size_t c) {
+            if (edge.size() == 1) return;
+            const Index a = edge[0].side, b = edge[1].side;
+            if (edge.size() == 2 && start(a) != start(b)) {
+                twin_[a] = b;
+                twin_[b] = a;
+                return;
+            }
+            sizes[c].push_back(static_cast<Index>(edge.size()));
+            for (const EdgeSide& side : edge) half_edges[c].push_back(side.side);
         });
-        complex_ = joined(parts);
+        by_edge_ = joined(half_edges);
+        Index begin = 0;
+        for (Index size : joined(sizes)) {
+            complex_.push_back({begin, begin + size});
+            begin += size;
+        }
         if (!complex_.empty()) angle_.resize(mesh_.corners.size());
         for (ComplexEdge& edge : complex_) order_by_angle(edge);
         for (ComplexEdge& edge : complex_) {
             edge.outside = bend(edge, true) < bend(edge, false) - 1e-6;
             pair(edge, edge.outside);
-        }
-    }
-
-    /// Of the edges whose lower vertex is v; those of more than two half-edges are left for later.
-    void pair_edges_at(std::size_t v, std::vector<ComplexEdge>& left) {
-        for (Index begin = first_at_[v], end = begin; begin < first_at_[v + 1]; begin = end) {
-            while (end < first_at_[v + 1] && upper(by_edge_[end]) == upper(by_edge_[begin])) ++end;
-            if (end - begin == 1) continue;
-            const Index a = by_edge_[begin], b = by_edge_[begin + 1];
-            if (end - begin == 2 && start(a) != start(b)) {
-                twin_[a] = b;
-                twin_[b] = a;
-            } else {
-                left.push_back({begin, end});
-            }
         }
     }
 
@@ -405,7 +381,7 @@ private:
     PolygonMesh& mesh_;
     ManifoldCounts& counts_;
     std::vector<Index> next_, facet_, twin_;
-    std::vector<Index> first_at_, by_edge_;
+    std::vector<Index> by_edge_; ///< half-edges of complex edges
     std::vector<ComplexEdge> complex_;
     std::vector<double> angle_;
     std::vector<Index> vertex_of_;                ///< per corner, its vertex in the new mesh

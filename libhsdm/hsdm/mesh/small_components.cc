@@ -3,12 +3,9 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/disjoint_sets.hh"
 #include "hsdm/mesh/area_vector.hh"
+#include "hsdm/mesh/edge_table.hh"
 #include "hsdm/mesh/manifold.hh"
 #include "hsdm/mesh/remove_facets.hh"
-
-#include <array>
-#include <atomic>
-#include <iterator>
 
 namespace hsdm {
 namespace {
@@ -45,22 +42,21 @@ public:
     }
     /// Of the components of no more facets than `most`: do they have a border?
     std::vector<std::uint8_t> are_open(std::size_t most) {
-        std::vector<std::array<Index, 2>> sides, reverse;
-        for (std::size_t f = 0; f < mesh_.facet_count(); ++f) {
-            if (facets_[of(f)] > most) continue;
-            const auto ring = mesh_.facet(f);
-            for (std::size_t i = 0; i < ring.size(); ++i) {
-                sides.push_back({ring[i], ring[(i + 1) % ring.size()]});
-                reverse.push_back({ring[(i + 1) % ring.size()], ring[i]});
-            }
-        }
-        std::sort(sides.begin(), sides.end());
-        std::sort(reverse.begin(), reverse.end());
-        std::vector<std::array<Index, 2>> alone;
-        std::set_difference(sides.begin(), sides.end(), reverse.begin(), reverse.end(),
-                            std::back_inserter(alone));
         std::vector<std::uint8_t> open(facets_.size(), 0);
-        for (const auto& side : alone) open[vertices_.find(side[0])] = 1;
+        const EdgeTable edges(mesh_.vertex_count(), [&](const auto& visit) {
+            for (std::size_t f = 0; f < mesh_.facet_count(); ++f) {
+                if (facets_[of(f)] > most) continue;
+                Index side = mesh_.first[f + 1] - 1;
+                for (Index next = mesh_.first[f]; next < mesh_.first[f + 1]; side = next++)
+                    visit(mesh_.corners[side], mesh_.corners[next], side);
+            }
+        });
+        edges.for_edges([&](Index lower, std::span<const EdgeSide> edge, std::size_t) {
+            const auto upwards = std::ranges::count_if(
+                edge, [&](const EdgeSide& side) { return mesh_.corners[side.side] == lower; });
+            if (2 * upwards != std::ssize(edge))
+                std::atomic_ref(open[vertices_.find(lower)]).store(1, std::memory_order_relaxed);
+        });
         return open;
     }
 

@@ -236,39 +236,6 @@ bool collides(const Pieces& pieces, std::span<const Index> polygon, const EdgeSe
 
 } // namespace
 
-EdgeSet::EdgeSet(const PolygonMesh& mesh, std::span<const Index> vertices) {
-    std::vector<std::uint8_t> marked(mesh.vertex_count(), 0);
-    shared_.assign(mesh.vertex_count(), 0);
-    for (Index v : vertices) {
-        shared_[v] |= marked[v];
-        marked[v] = 1;
-    }
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-        const auto facet = mesh.facet(f);
-        for (std::size_t i = 0; i < facet.size(); ++i) {
-            const Index a = facet[i], b = facet[i + 1 < facet.size() ? i + 1 : 0];
-            if (marked[a] && marked[b]) edges_.push_back(key(a, b));
-        }
-    }
-    std::sort(edges_.begin(), edges_.end());
-}
-
-std::uint64_t EdgeSet::key(Index a, Index b) {
-    return static_cast<std::uint64_t>(std::min(a, b)) << 32 | std::max(a, b);
-}
-
-bool EdgeSet::contains(Index a, Index b) const {
-    return std::binary_search(edges_.begin(), edges_.end(), key(a, b)) || added_.contains(key(a, b));
-}
-
-void EdgeSet::add(std::span<const Index> facet) {
-    for (std::size_t i = 0; i < facet.size(); ++i) {
-        const Index a = facet[i], b = facet[i + 1 < facet.size() ? i + 1 : 0];
-        // Vertices that came after this set belong to one polygon alone.
-        if (std::max(a, b) < shared_.size() && shared_[a] && shared_[b]) added_.insert(key(a, b));
-    }
-}
-
 Pieces split_polygon(const PolygonMesh& mesh, std::span<const Index> polygon,
                      std::span<const Vec3> side_normals, const EdgeSet& edges,
                      const SplitPolygonOptions& options) {

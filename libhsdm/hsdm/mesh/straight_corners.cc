@@ -2,6 +2,7 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/area_vector.hh"
+#include "hsdm/mesh/edge_set.hh"
 
 #include <algorithm>
 #include <array>
@@ -51,33 +52,18 @@ std::vector<Cut> possible_cuts(const PolygonMesh& mesh, double least_sine) {
     return joined(parts);
 }
 
-/// Of the edges that facets have, those that a diagonal may be, in order.
-std::vector<Edge> possible_edges(const PolygonMesh& mesh, const std::vector<Cut>& due) {
-    std::vector<std::uint8_t> met(mesh.vertex_count(), 0);
-    for (const Cut& cut : due) met[cut.diagonal[0]] = met[cut.diagonal[1]] = 1;
-    std::vector<Edge> edges;
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-        const auto ring = mesh.facet(f);
-        for (std::size_t i = 0; i < ring.size(); ++i) {
-            const Index a = ring[i], b = ring[(i + 1) % ring.size()];
-            if (met[a] && met[b]) edges.push_back(edge(a, b));
-        }
-    }
-    std::sort(edges.begin(), edges.end());
-    return edges;
-}
-
 /// Removes the cuts whose diagonal is an edge already or that of a facet before; leaves them by facet.
 void keep_allowed(const PolygonMesh& mesh, std::vector<Cut>& due) {
     if (due.empty()) return;
-    const std::vector<Edge> edges = possible_edges(mesh, due);
+    std::vector<Index> ends;
+    for (const Cut& cut : due) ends.insert(ends.end(), cut.diagonal.begin(), cut.diagonal.end());
+    const EdgeSet edges(mesh, ends);
     std::sort(due.begin(), due.end(), [](const Cut& a, const Cut& b) {
         return a.diagonal != b.diagonal ? a.diagonal < b.diagonal : a.facet < b.facet;
     });
     const auto same = [](const Cut& a, const Cut& b) { return a.diagonal == b.diagonal; };
     due.erase(std::unique(due.begin(), due.end(), same), due.end());
-    std::erase_if(
-        due, [&](const Cut& cut) { return std::binary_search(edges.begin(), edges.end(), cut.diagonal); });
+    std::erase_if(due, [&](const Cut& cut) { return edges.contains(cut.diagonal[0], cut.diagonal[1]); });
     std::sort(due.begin(), due.end(), [](const Cut& a, const Cut& b) { return a.facet < b.facet; });
 }
 

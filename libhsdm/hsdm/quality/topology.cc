@@ -3,6 +3,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/disjoint_sets.hh"
 #include "hsdm/core/hash.hh"
+#include "hsdm/mesh/edge_table.hh"
 #include "hsdm/mesh/triangulate.hh"
 
 #include <tbb/blocked_range.h>
@@ -50,47 +51,6 @@ Loops clean_loops(const PolygonMesh& mesh) {
     return loops;
 }
 
-/// Half-edges grouped by their edge: one counting sort by the lesser vertex, then each vertex's few by the
-/// greater one.
-struct EdgeGroups {
-    struct HalfEdge {
-        Index greater, corner;
-        auto operator<=>(const HalfEdge&) const = default;
-    };
-    std::vector<HalfEdge> sorted;
-    std::vector<Index> first; ///< edge e is sorted[first[e]] .. sorted[first[e + 1]]
-
-    std::size_t size() const { return first.size() - 1; }
-    Index uses(std::size_t e) const { return first[e + 1] - first[e]; }
-};
-
-EdgeGroups group_edges(const Loops& loops, std::size_t vertices) {
-    const std::size_t corners = loops.vertex.size();
-    auto ends = [&](std::size_t c) { return std::minmax(loops.vertex[c], loops.vertex[loops.next[c]]); };
-    std::vector<Index> bucket(vertices + 1, 0);
-    for (std::size_t c = 0; c < corners; ++c) ++bucket[ends(c).first + 1];
-    std::partial_sum(bucket.begin(), bucket.end(), bucket.begin());
-    std::vector<Index> at(bucket.begin(), bucket.end() - 1);
-
-    EdgeGroups groups;
-    groups.sorted.resize(corners);
-    for (std::size_t c = 0; c < corners; ++c) {
-        const auto [lesser, greater] = ends(c);
-        groups.sorted[at[lesser]++] = {greater, static_cast<Index>(c)};
-    }
-    tbb::parallel_for(Range(0, vertices, chunk), [&](const Range& range) {
-        for (std::size_t v = range.begin(); v != range.end(); ++v)
-            std::sort(groups.sorted.begin() + bucket[v], groups.sorted.begin() + bucket[v + 1]);
-    });
-    groups.first.reserve(corners / 2 + 1);
-    for (std::size_t v = 0; v < vertices; ++v)
-        for (Index i = bucket[v]; i < bucket[v + 1]; ++i)
-            if (i == bucket[v] || groups.sorted[i].greater != groups.sorted[i - 1].greater)
-                groups.first.push_back(i);
-    groups.first.push_back(static_cast<Index>(corners));
-    return groups;
-}
-
 /// Corners joined where they follow each other round a vertex (fans), facets across edges (components), and
 /// what edges show.
 struct Fans {
@@ -99,14 +59,22 @@ struct Fans {
     std::vector<unsigned char> branches; ///< per vertex: an edge with three or more facets ends there
 };
 
+EdgeTable edges_of(const Loops& loops, std::size_t vertices) {
+    return EdgeTable(vertices, [&](const auto& visit) {
+        for_chunks(loops.vertex.size(), chunk, [&](std::size_t c, std::size_t end, std::size_t) {
+            for (; c < end; ++c) visit(loops.vertex[c], loops.vertex[loops.next[c]], static_cast<Index>(c));
+        });
+    });
+}
+
 /// Joins what an edge joins; returns whether its two facets run along it the same way.
-bool join_at_edge(const Loops& loops, const EdgeGroups& groups, std::size_t e, Fans& fans) {
-    const Index h = groups.sorted[groups.first[e]].corner;
+bool join_at_edge(const Loops& loops, std::span<const EdgeSide> edge, Fans& fans) {
+    const Index h = edge.front().side;
     bool misoriented = false;
-    for (Index i = groups.first[e] + 1; i < groups.first[e + 1]; ++i) {
-        const Index other = groups.sorted[i].corner;
+    for (const EdgeSide& beside : edge.subspan(1)) {
+        const Index other = beside.side;
         const bool same_way = loops.vertex[other] == loops.vertex[h];
-        misoriented |= groups.uses(e) == 2 && same_way;
+        misoriented |= edge.size() == 2 && same_way;
         fans.corners.join(h, same_way ? other : loops.next[other]);
         fans.corners.join(loops.next[h], same_way ? loops.next[other] : other);
         fans.facets.join(loops.facet[h], loops.facet[other]);
@@ -114,30 +82,34 @@ bool join_at_edge(const Loops& loops, const EdgeGroups& groups, std::size_t e, F
     return misoriented;
 }
 
-Fans measure_edges(const Loops& loops, const EdgeGroups& groups, std::size_t vertices,
-                   std::size_t facet_count, Topology& topology) {
-    Fans fans{DisjointSets(loops.vertex.size()), DisjointSets(facet_count), std::vector<Index>(vertices, 0),
-              std::vector<unsigned char>(vertices, 0)};
-    std::vector<std::size_t> misoriented(chunk_count(groups.size(), chunk), 0);
-    for_chunks(groups.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
-        for (std::size_t e = begin; e < end; ++e) misoriented[c] += join_at_edge(loops, groups, e, fans);
+/// Counts edges into `topology`; returns the half-edges on the boundary, by their edges.
+std::vector<Index> measure_edges(const Loops& loops, std::size_t vertices, Fans& fans, Topology& topology) {
+    const EdgeTable table = edges_of(loops, vertices);
+    struct Sums {
+        std::size_t edges = 0, misoriented = 0, branching = 0;
+    };
+    std::vector<Sums> sums(table.chunks());
+    std::vector<std::vector<Index>> boundary(table.chunks());
+    table.for_edges([&](Index lower, std::span<const EdgeSide> edge, std::size_t c) {
+        ++sums[c].edges;
+        sums[c].misoriented += join_at_edge(loops, edge, fans);
+        if (edge.size() == 1) boundary[c].push_back(edge[0].side);
+        if (edge.size() < 3) return;
+        ++sums[c].branching;
+        for (Index v : {lower, edge[0].upper}) // edges of other chunks may end there
+            std::atomic_ref(fans.branches[v]).store(1, std::memory_order_relaxed);
     });
-    topology.misoriented_edges = std::accumulate(misoriented.begin(), misoriented.end(), std::size_t{0});
-    for (std::size_t e = 0; e < groups.size(); ++e) {
-        const Index uses = groups.uses(e), h = groups.sorted[groups.first[e]].corner;
-        topology.boundary_edges += uses == 1;
-        topology.nonmanifold_edges += uses > 2;
-        if (uses > 2) fans.branches[loops.vertex[h]] = fans.branches[loops.vertex[loops.next[h]]] = 1;
+    for (const Sums& sum : sums) {
+        topology.edges += sum.edges;
+        topology.misoriented_edges += sum.misoriented;
+        topology.nonmanifold_edges += sum.branching;
     }
     for (Index c = 0; c < loops.vertex.size(); ++c) fans.fans[loops.vertex[c]] += fans.corners.find(c) == c;
-    return fans;
+    return joined(boundary);
 }
 
 /// The two boundary edges of one fan follow each other along a loop.
-std::size_t count_boundary_loops(const Loops& loops, const EdgeGroups& groups, Fans& fans) {
-    std::vector<Index> boundary; // half-edges
-    for (std::size_t e = 0; e < groups.size(); ++e)
-        if (groups.uses(e) == 1) boundary.push_back(groups.sorted[groups.first[e]].corner);
+std::size_t count_boundary_loops(const Loops& loops, const std::vector<Index>& boundary, Fans& fans) {
     std::vector<Index> seen(loops.vertex.size(), no_index); // by fan: the boundary edge met first
     DisjointSets chains(boundary.size());
     std::size_t count = boundary.size();
@@ -271,9 +243,10 @@ Topology measure_connectivity(const PolygonMesh& mesh) {
     topology.isolated_vertices = vertices - topology.vertices;
 
     const Loops loops = clean_loops(mesh);
-    const EdgeGroups groups = group_edges(loops, vertices);
-    topology.edges = groups.size();
-    Fans fans = measure_edges(loops, groups, vertices, topology.faces, topology);
+    Fans fans{DisjointSets(loops.vertex.size()), DisjointSets(topology.faces),
+              std::vector<Index>(vertices, 0), std::vector<unsigned char>(vertices, 0)};
+    const std::vector<Index> boundary = measure_edges(loops, vertices, fans, topology);
+    topology.boundary_edges = boundary.size();
     std::size_t on_surface = 0;
     for (std::size_t v = 0; v < vertices; ++v) {
         on_surface += fans.fans[v] > 0;
@@ -283,7 +256,7 @@ Topology measure_connectivity(const PolygonMesh& mesh) {
         const bool begins_facet = c == 0 || loops.facet[c] != loops.facet[c - 1];
         topology.components += begins_facet && fans.facets.find(loops.facet[c]) == loops.facet[c];
     }
-    topology.boundary_loops = count_boundary_loops(loops, groups, fans);
+    topology.boundary_loops = count_boundary_loops(loops, boundary, fans);
     topology.euler =
         static_cast<long>(on_surface) - static_cast<long>(topology.edges) + static_cast<long>(loops.count);
     return topology;

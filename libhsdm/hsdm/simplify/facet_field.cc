@@ -1,8 +1,8 @@
 #include "hsdm/simplify/facet_field.hh"
 
 #include "hsdm/core/chunks.hh"
-#include "hsdm/core/groups.hh"
 #include "hsdm/mesh/area_vector.hh"
+#include "hsdm/mesh/edge_table.hh"
 
 #include <Eigen/Eigenvalues>
 
@@ -37,24 +37,16 @@ void measure_facets(const PolygonMesh& mesh, FacetField& field) {
     });
 }
 
-/// Sides are found among those that start where they end.
 void link_facets(const PolygonMesh& mesh, FacetField& field) {
     std::vector<Index> facet_of(mesh.corners.size());
     for_facets(field.size(), [&](Index f) {
         std::fill(facet_of.begin() + mesh.first[f], facet_of.begin() + mesh.first[f + 1], f);
     });
-    const auto end_of = [&](Index side) {
-        const Index next = side + 1;
-        return mesh.corners[next == mesh.first[facet_of[side] + 1] ? mesh.first[facet_of[side]] : next];
-    };
-    const Groups sides_from(mesh.corners, mesh.vertex_count());
     field.beside.assign(mesh.corners.size(), no_index);
-    for_facets(field.size(), [&](Index f) {
-        for (Index side = mesh.first[f]; side < mesh.first[f + 1]; ++side)
-            for (const Index twin : sides_from.of(end_of(side)))
-                if (end_of(twin) == mesh.corners[side]
-                    && (field.normal[f] | field.normal[facet_of[twin]]) > smooth_cosine)
-                    field.beside[side] = facet_of[twin];
+    EdgeTable(mesh).for_edges([&](Index, std::span<const EdgeSide> edge, std::size_t) {
+        if (edge.size() != 2) return;
+        const Index a = edge[0].side, b = edge[1].side, f = facet_of[a], g = facet_of[b];
+        if ((field.normal[f] | field.normal[g]) > smooth_cosine) field.beside[a] = g, field.beside[b] = f;
     });
 }
 

@@ -1,60 +1,16 @@
 #include "hsdm/simplify/nonmanifold_vertices.hh"
 
-#include "hsdm/core/chunks.hh"
 #include "hsdm/core/disjoint_sets.hh"
 #include "hsdm/mesh/area_vector.hh"
+#include "hsdm/mesh/edge_table.hh"
 
-#include <algorithm>
-#include <atomic>
 #include <limits>
 
 namespace hsdm {
 namespace {
 
-constexpr std::size_t vertices_per_chunk = 1024, facets_per_chunk = 2048;
+constexpr std::size_t facets_per_chunk = 2048;
 constexpr double flat = 1e-6; // twice a facet's area over its squared length, or a side over its length
-
-/// A side of a facet: corner `corner` starts it, `next` ends it.
-struct Side {
-    Index low, high, corner, next;
-    bool forward; // from low to high
-};
-
-template <class F>
-void for_each_side(const PolygonMesh& mesh, const F& visit) {
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-        const Index begin = mesh.first[f], end = mesh.first[f + 1];
-        for (Index c = begin; c < end; ++c) {
-            const Index next = c + 1 == end ? begin : c + 1;
-            const Index a = mesh.corners[c], b = mesh.corners[next];
-            visit(Side{std::min(a, b), std::max(a, b), c, next, a < b});
-        }
-    }
-}
-
-/// Of every edge, those one after the other, by ascending corners; those of the edges whose lower vertex is v
-/// from first[v] to first[v + 1].
-struct SortedSides {
-    std::vector<Side> sides;
-    std::vector<Index> first;
-};
-
-SortedSides sorted_sides(const PolygonMesh& mesh) {
-    std::vector<Side> sides(mesh.corners.size());
-    // Two to the right, so that filling the sides in moves them to their places.
-    std::vector<Index> first(mesh.vertex_count() + 2, 0);
-    for_each_side(mesh, [&](const Side& side) { ++first[side.low + 2]; });
-    counts_to_first(first);
-    for_each_side(mesh, [&](const Side& side) { sides[first[side.low + 1]++] = side; });
-    for_chunks(mesh.vertex_count(), vertices_per_chunk, [&](std::size_t v, std::size_t end, std::size_t) {
-        for (; v < end; ++v)
-            std::sort(sides.begin() + first[v], sides.begin() + first[v + 1],
-                      [](const Side& a, const Side& b) {
-                          return a.high != b.high ? a.high < b.high : a.corner < b.corner;
-                      });
-    });
-    return {std::move(sides), std::move(first)};
-}
 
 std::vector<Index> flat_facets(const PolygonMesh& mesh) {
     std::vector<std::vector<Index>> parts(chunk_count(mesh.facet_count(), facets_per_chunk));
@@ -78,27 +34,22 @@ std::vector<Index> flat_facets(const PolygonMesh& mesh) {
 } // namespace
 
 std::vector<Index> nonmanifold_vertices(const PolygonMesh& mesh) {
-    const SortedSides sorted = sorted_sides(mesh);
-    const auto& sides = sorted.sides;
-    const auto& first = sorted.first;
     std::vector<std::uint8_t> troubled(mesh.vertex_count(), 0), border(mesh.vertex_count(), 0);
     DisjointSets fans(mesh.corners.size());
     // Edges of other chunks may end at the same vertex.
-    const auto mark = [](std::vector<std::uint8_t>& marks, const Side& side) {
-        for (Index v : {side.low, side.high}) std::atomic_ref(marks[v]).store(1, std::memory_order_relaxed);
+    const auto mark = [](std::vector<std::uint8_t>& marks, Index v, Index w) {
+        for (Index end : {v, w}) std::atomic_ref(marks[end]).store(1, std::memory_order_relaxed);
     };
-    for_chunks(mesh.vertex_count(), vertices_per_chunk, [&](std::size_t v, std::size_t last, std::size_t) {
-        for (std::size_t begin = first[v], end = begin; begin < first[last]; begin = end) {
-            const Side& a = sides[begin];
-            while (end < first[last] && sides[end].low == a.low && sides[end].high == a.high) ++end;
-            if (end - begin == 1) {
-                mark(border, a);
-            } else if (const Side& b = sides[begin + 1]; end - begin == 2 && a.forward != b.forward) {
-                fans.join(a.corner, b.next);
-                fans.join(a.next, b.corner);
-            } else {
-                mark(troubled, a);
-            }
+    const std::vector<Index> next = next_sides(mesh);
+    EdgeTable(mesh).for_edges([&](Index lower, std::span<const EdgeSide> edge, std::size_t) {
+        const Index a = edge.front().side, b = edge.back().side;
+        if (edge.size() == 1) {
+            mark(border, lower, edge[0].upper);
+        } else if (edge.size() == 2 && mesh.corners[a] != mesh.corners[b]) {
+            fans.join(a, next[b]);
+            fans.join(next[a], b);
+        } else {
+            mark(troubled, lower, edge[0].upper);
         }
     });
     std::vector<Index> root(mesh.vertex_count(), no_index), facets(mesh.vertex_count(), 0);
