@@ -1,11 +1,9 @@
 #include "hsdm/basic/basic_facets.hh"
 
 #include "hsdm/basic/false_facets.hh"
+#include "hsdm/core/chunks.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/mesh/split_polygon.hh"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
@@ -15,14 +13,6 @@
 
 namespace hsdm {
 namespace {
-
-template <class Body>
-void for_each(std::size_t count, const Body& body) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 2048),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                          for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
-                      });
-}
 
 /// A facet or a candidate: its half-edges in order, and the same as vertices.
 struct Facet {
@@ -104,7 +94,7 @@ private:
 
     void test_hits() {
         hit_.resize(2 * loops_.size());
-        for_each(hit_.size(), [&](std::size_t c) {
+        for_each_index(hit_.size(), 2048, [&](std::size_t c) {
             hit_[c] = hits_neighbor_voxel(level_, graph_, candidate(static_cast<Index>(c)).corners());
         });
         counts_.hit_test = static_cast<std::size_t>(std::count(hit_.begin(), hit_.end(), 1));

@@ -1,10 +1,8 @@
 #include "hsdm/basic/connectivity_graph.hh"
 
 #include "hsdm/basic/voxel_centroid.hh"
+#include "hsdm/core/chunks.hh"
 #include "hsdm/errors.hh"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <atomic>
 #include <bit>
@@ -15,14 +13,6 @@ namespace hsdm {
 namespace {
 
 constexpr Index grain = 4096;
-
-template <class Body>
-void for_each(std::size_t count, const Body& body) {
-    tbb::parallel_for(tbb::blocked_range<Index>(0, static_cast<Index>(count), grain),
-                      [&](const tbb::blocked_range<Index>& range) {
-                          for (Index i = range.begin(); i != range.end(); ++i) body(i);
-                      });
-}
 
 /// Each vertex's chosen neighbours: those of vertex v are target[first[v]] .. target[first[v + 1]].
 struct Choices {
@@ -72,14 +62,14 @@ Choices choose_all(const OctreeLevel& level, const std::vector<Vec3>& positions,
     Choices choices;
     choices.first.assign(n + 1, 0);
     std::vector<std::vector<Index>> targets(chunks);
-    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+    for_each_task(chunks, [&](std::size_t chunk) {
         targets[chunk].reserve(5 * grain);
         for (std::size_t v = chunk * grain; v < std::min(n, (chunk + 1) * grain); ++v)
             choices.first[v + 1] = choose(level, positions, static_cast<Index>(v), options, targets[chunk]);
     });
     std::partial_sum(choices.first.begin(), choices.first.end(), choices.first.begin());
     choices.target.resize(choices.first.back());
-    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+    for_each_task(chunks, [&](std::size_t chunk) {
         std::copy(targets[chunk].begin(), targets[chunk].end(),
                   choices.target.begin() + choices.first[chunk * grain]);
     });
@@ -92,7 +82,7 @@ void make_half_edges(const Choices& choices, bool mutual, ConnectivityGraph& gra
     const std::size_t n = graph.vertex_count();
     std::vector<Index> degree(n, 0);
     auto for_each_edge = [&](auto&& enter) {
-        for_each(n, [&](Index v) {
+        for_each_index(n, grain, [&](Index v) {
             for (Index i = choices.first[v]; i < choices.first[v + 1]; ++i) {
                 const Index u = choices.target[i];
                 const bool both = choices.chose(u, v);
@@ -110,7 +100,7 @@ void make_half_edges(const Choices& choices, bool mutual, ConnectivityGraph& gra
     for_each_edge([&](Index from, Index to) {
         graph.end[std::atomic_ref(next[from]).fetch_add(1, std::memory_order_relaxed)] = to;
     });
-    for_each(n, [&](Index v) {
+    for_each_index(n, grain, [&](Index v) {
         std::sort(graph.end.begin() + graph.first_edge[v], graph.end.begin() + graph.first_edge[v + 1]);
     });
 }
@@ -125,7 +115,7 @@ ConnectivityGraph extract_graph(const Octree& octree, const OctreeLevel& level, 
     std::iota(graph.voxel.begin(), graph.voxel.end(), Index{0});
     make_half_edges(choose_all(level, graph.positions, options.neighbors), options.mutual, graph);
     graph.twin.resize(graph.half_edge_count());
-    for_each(graph.vertex_count(), [&](Index v) {
+    for_each_index(graph.vertex_count(), grain, [&](Index v) {
         for (Index h = graph.first_edge[v]; h < graph.first_edge[v + 1]; ++h)
             graph.twin[h] = graph.find(graph.end[h], v);
     });

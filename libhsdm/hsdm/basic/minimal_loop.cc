@@ -1,6 +1,6 @@
 #include "hsdm/basic/minimal_loop.hh"
 
-#include <tbb/parallel_for.h>
+#include "hsdm/core/chunks.hh"
 
 #include <algorithm>
 #include <cassert>
@@ -139,7 +139,7 @@ std::vector<Loop> minimal_loops_through(const ConnectivityGraph& graph, Index fi
 LoopList find_short_loops(const ConnectivityGraph& graph) {
     const std::size_t n = graph.vertex_count(), chunks = (n + grain - 1) / grain;
     std::vector<std::vector<Index>> half_edges(chunks), sizes(chunks);
-    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+    for_each_task(chunks, [&](std::size_t chunk) {
         half_edges[chunk].reserve(5 * grain);
         for (std::size_t v = chunk * grain; v < std::min(n, (chunk + 1) * grain); ++v)
             loops_from(graph, static_cast<Index>(v), half_edges[chunk], sizes[chunk]);
@@ -152,7 +152,7 @@ LoopList find_short_loops(const ConnectivityGraph& graph) {
     LoopList list;
     list.half_edges.resize(edge_at.back());
     list.begin.resize(loop_at.back() + 1);
-    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+    for_each_task(chunks, [&](std::size_t chunk) {
         std::copy(half_edges[chunk].begin(), half_edges[chunk].end(),
                   list.half_edges.begin() + static_cast<std::ptrdiff_t>(edge_at[chunk]));
         auto at = static_cast<Index>(edge_at[chunk]);

@@ -1,7 +1,6 @@
 #include "hsdm/basic/voxel_centroid.hh"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+#include "hsdm/core/chunks.hh"
 
 namespace hsdm {
 
@@ -14,11 +13,7 @@ Vec3 voxel_centroid(const Octree& octree, const OctreeLevel& level, Index voxel)
 
 std::vector<Vec3> voxel_centroids(const Octree& octree, const OctreeLevel& level) {
     std::vector<Vec3> positions(level.size());
-    tbb::parallel_for(tbb::blocked_range<Index>(0, static_cast<Index>(level.size()), 4096),
-                      [&](const tbb::blocked_range<Index>& range) {
-                          for (Index v = range.begin(); v != range.end(); ++v)
-                              positions[v] = voxel_centroid(octree, level, v);
-                      });
+    for_each_index(level.size(), 4096, [&](Index v) { positions[v] = voxel_centroid(octree, level, v); });
     return positions;
 }
 

@@ -1,7 +1,8 @@
 #include "hsdm/point_cloud.hh"
 
+#include "hsdm/core/chunks.hh"
+
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
@@ -52,9 +53,9 @@ Box bounds_of(std::span<const Vec3> positions) {
 Dropped drop_nonfinite(PointCloud& cloud) {
     Dropped dropped;
     std::atomic<std::size_t> bad_points = 0, bad_normals = 0;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cloud.size(), 1 << 14), [&](const auto& range) {
+    for_chunks(cloud.size(), 1 << 14, [&](std::size_t begin, std::size_t end, std::size_t) {
         std::size_t points = 0, normals = 0;
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+        for (std::size_t i = begin; i != end; ++i) {
             if (!is_finite(cloud.positions[i])) {
                 ++points;
             } else if (cloud.has_normals()) {

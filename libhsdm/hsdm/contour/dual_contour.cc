@@ -226,7 +226,7 @@ PolygonMesh joined_facets(const std::vector<PolygonMesh>& parts) {
     }
     mesh.corners.resize(corner.back());
     mesh.first.resize(facet.back() + 1);
-    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
+    for_each_task(parts.size(), [&](std::size_t i) {
         std::ranges::copy(parts[i].corners, mesh.corners.begin() + static_cast<std::ptrdiff_t>(corner[i]));
         for (std::size_t f = 0; f < parts[i].facet_count(); ++f)
             mesh.first[facet[i] + f + 1] = static_cast<Index>(corner[i]) + parts[i].first[f + 1];

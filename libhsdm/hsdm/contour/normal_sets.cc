@@ -1,10 +1,9 @@
 #include "hsdm/contour/normal_sets.hh"
 
+#include "hsdm/core/chunks.hh"
 #include "hsdm/errors.hh"
 
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 #include <limits>
@@ -275,7 +274,7 @@ NormalSets build_normal_sets(const Octree& octree, const OctreeLevel& level,
     const std::size_t chunks = (level.size() + voxels_per_chunk - 1) / voxels_per_chunk;
     std::vector<std::vector<NormalSet>> sets_of_chunk(chunks);
     tbb::enumerable_thread_specific<Scratch> scratch;
-    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+    for_each_task(chunks, [&](std::size_t chunk) {
         std::vector<NormalSet>& sets = sets_of_chunk[chunk];
         for (std::size_t v = chunk * voxels_per_chunk;
              v < std::min(level.size(), (chunk + 1) * voxels_per_chunk); ++v) {
@@ -307,12 +306,11 @@ NormalSets build_normal_sets(const Octree& octree, const OctreeLevel& level,
     std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
     result.sets.reserve(result.first.back());
     for (const auto& sets : sets_of_chunk) result.sets.insert(result.sets.end(), sets.begin(), sets.end());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, level.size(), voxels_per_chunk),
-                      [&](const auto& range) {
-                          for (std::size_t v = range.begin(); v != range.end(); ++v)
-                              for (Index i = level.first_point[v]; i < level.first_point[v + 1]; ++i)
-                                  if (result.of_point[i] != no_index) result.of_point[i] += result.first[v];
-                      });
+    for_chunks(level.size(), voxels_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t v = begin; v != end; ++v)
+            for (Index i = level.first_point[v]; i < level.first_point[v + 1]; ++i)
+                if (result.of_point[i] != no_index) result.of_point[i] += result.first[v];
+    });
     return result;
 }
 

@@ -16,11 +16,25 @@ inline std::size_t chunk_count(std::size_t n, std::size_t chunk_size) {
     return (n + chunk_size - 1) / chunk_size;
 }
 
+/// Calls f(i) for each i below n, in parallel, each a task of its own: they should be few and large.
+template <class F>
+void for_each_task(std::size_t n, F&& f) {
+    tbb::parallel_for(std::size_t{0}, n, f);
+}
+
 /// Calls f(begin, end, chunk) for consecutive ranges of [0, n), in parallel.
 template <class F>
 void for_chunks(std::size_t n, std::size_t chunk_size, F&& f) {
-    tbb::parallel_for(std::size_t{0}, chunk_count(n, chunk_size), [&](std::size_t chunk) {
+    for_each_task(chunk_count(n, chunk_size), [&](std::size_t chunk) {
         f(chunk * chunk_size, std::min(n, (chunk + 1) * chunk_size), chunk);
+    });
+}
+
+/// Calls f(i) for each index i below n, in parallel by chunks.
+template <class F>
+void for_each_index(std::size_t n, std::size_t chunk_size, F&& f) {
+    for_chunks(n, chunk_size, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (auto i = static_cast<Index>(begin); i < end; ++i) f(i);
     });
 }
 
@@ -30,7 +44,7 @@ std::vector<T> joined(const std::vector<std::vector<T>>& parts) {
     std::vector<std::size_t> offset(parts.size() + 1, 0);
     for (std::size_t i = 0; i < parts.size(); ++i) offset[i + 1] = offset[i] + parts[i].size();
     std::vector<T> whole(offset.back());
-    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
+    for_each_task(parts.size(), [&](std::size_t i) {
         std::copy(parts[i].begin(), parts[i].end(), whole.begin() + static_cast<std::ptrdiff_t>(offset[i]));
     });
     return whole;

@@ -1,6 +1,6 @@
 #include "hsdm/core/radix_sort.hh"
 
-#include <tbb/parallel_for.h>
+#include "hsdm/core/chunks.hh"
 
 #include <algorithm>
 #include <array>
@@ -43,14 +43,14 @@ void radix_sort(std::vector<CodeIndex>& keys, int high, int low) {
     std::vector<CodeIndex> buffer(n);
     std::vector<Histogram> histograms(chunks);
     for (int shift = low; shift < high; shift += digit_bits) {
-        tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+        for_each_task(chunks, [&](std::size_t chunk) {
             Histogram& histogram = histograms[chunk];
             histogram.fill(0);
             for (std::size_t i = chunk * chunk_size; i < std::min(n, (chunk + 1) * chunk_size); ++i)
                 ++histogram[digit(keys[i], shift)];
         });
         if (!counts_to_offsets(histograms, n)) continue;
-        tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+        for_each_task(chunks, [&](std::size_t chunk) {
             Histogram& histogram = histograms[chunk];
             for (std::size_t i = chunk * chunk_size; i < std::min(n, (chunk + 1) * chunk_size); ++i)
                 buffer[histogram[digit(keys[i], shift)]++] = keys[i];

@@ -139,22 +139,21 @@ void FeatureClassifierT<Mesh>::classify_vertices(const std::vector<Vec3>& facet_
                                                  FeatureCounts& counts) {
     auto classes = kept_vertex_property<std::uint8_t>(mesh_, vertex_class_property);
     std::array<std::atomic<std::size_t>, 3> count{};
-    tbb::parallel_for(
-        tbb::blocked_range<int>(0, static_cast<int>(mesh_.n_vertices()), 1 << 11), [&](const auto& range) {
-            VertexFanT<Mesh> fan(mesh_, facet_normals);
-            std::array<std::size_t, 3> here{};
-            for (int i = range.begin(); i != range.end(); ++i) {
-                const OpenMesh::VertexHandle v(i);
-                auto& status = mesh_.status(v);
-                if (status.deleted()) continue;
-                fan.gather(v);
-                const VertexClass kind = vertex_class(fan.sharp_edges(), fan.turn(), options_.corner_angle);
-                classes[v] = static_cast<std::uint8_t>(kind);
-                if (!status.locked()) status.set_feature(kind != VertexClass::smooth);
-                if (!mesh_.is_isolated(v)) ++here[static_cast<std::size_t>(kind)];
-            }
-            for (std::size_t k = 0; k < 3; ++k) count[k] += here[k];
-        });
+    for_chunks(mesh_.n_vertices(), 1 << 11, [&](std::size_t begin, std::size_t end, std::size_t) {
+        VertexFanT<Mesh> fan(mesh_, facet_normals);
+        std::array<std::size_t, 3> here{};
+        for (std::size_t i = begin; i != end; ++i) {
+            const OpenMesh::VertexHandle v(static_cast<int>(i));
+            auto& status = mesh_.status(v);
+            if (status.deleted()) continue;
+            fan.gather(v);
+            const VertexClass kind = vertex_class(fan.sharp_edges(), fan.turn(), options_.corner_angle);
+            classes[v] = static_cast<std::uint8_t>(kind);
+            if (!status.locked()) status.set_feature(kind != VertexClass::smooth);
+            if (!mesh_.is_isolated(v)) ++here[static_cast<std::size_t>(kind)];
+        }
+        for (std::size_t k = 0; k < 3; ++k) count[k] += here[k];
+    });
     counts.smooth_vertices = count[0];
     counts.edge_vertices = count[1];
     counts.corner_vertices = count[2];

@@ -1,12 +1,10 @@
 #pragma once
 // Flat views of any OpenMesh mesh that both modules of phase 3 start from.
 
+#include "hsdm/core/chunks.hh"
 #include "hsdm/features/normal_filter.hh"
 #include "hsdm/features/sectors.hh"
 #include "hsdm/mesh/facet_normal.hh"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <vector>
 
@@ -26,8 +24,8 @@ Normal to_normal(const Vec3& v) {
 /// Calls body(handle) for handles 0 .. count - 1, in parallel; the body tells deleted elements itself.
 template <class Handle, class Body>
 void for_each_handle(std::size_t count, const Body& body) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1 << 12), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) body(Handle(static_cast<int>(i)));
+    for_chunks(count, 1 << 12, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i != end; ++i) body(Handle(static_cast<int>(i)));
     });
 }
 

@@ -80,21 +80,20 @@ void write_vertex_normals(Mesh& mesh, const std::vector<Vec3>& facet_normals, bo
     using Normal = typename Mesh::Normal;
     auto normals = kept_vertex_property<VertexNormalsT<Mesh>>(mesh, vertex_normals_property);
     auto counts = kept_vertex_property<std::uint8_t>(mesh, normal_count_property);
-    tbb::parallel_for(
-        tbb::blocked_range<int>(0, static_cast<int>(mesh.n_vertices()), 1 << 11), [&](const auto& range) {
-            VertexFanT<Mesh> fan(mesh, facet_normals);
-            for (int i = range.begin(); i != range.end(); ++i) {
-                const OpenMesh::VertexHandle v(i);
-                if (mesh.status(v).deleted()) continue;
-                fan.gather(v);
-                const SectorNormals sectors = sector_normals(fan.facets());
-                counts[v] = static_cast<std::uint8_t>(sectors.count);
-                for (std::size_t k = 0; k < 3; ++k) normals[v][k] = to_normal<Normal>(sectors.normals[k]);
-                if (!standard_normals || mesh.status(v).locked() || sectors.count == 0) continue;
-                const Vec3 mean = unit_or_zero(sectors.normals[0] + sectors.normals[1] + sectors.normals[2]);
-                mesh.set_normal(v, to_normal<Normal>(mean.sqrnorm() > 0 ? mean : sectors.normals[0]));
-            }
-        });
+    for_chunks(mesh.n_vertices(), 1 << 11, [&](std::size_t begin, std::size_t end, std::size_t) {
+        VertexFanT<Mesh> fan(mesh, facet_normals);
+        for (std::size_t i = begin; i != end; ++i) {
+            const OpenMesh::VertexHandle v(static_cast<int>(i));
+            if (mesh.status(v).deleted()) continue;
+            fan.gather(v);
+            const SectorNormals sectors = sector_normals(fan.facets());
+            counts[v] = static_cast<std::uint8_t>(sectors.count);
+            for (std::size_t k = 0; k < 3; ++k) normals[v][k] = to_normal<Normal>(sectors.normals[k]);
+            if (!standard_normals || mesh.status(v).locked() || sectors.count == 0) continue;
+            const Vec3 mean = unit_or_zero(sectors.normals[0] + sectors.normals[1] + sectors.normals[2]);
+            mesh.set_normal(v, to_normal<Normal>(mean.sqrnorm() > 0 ? mean : sectors.normals[0]));
+        }
+    });
 }
 
 } // namespace hsdm

@@ -1,9 +1,7 @@
 #include "hsdm/features/normal_filter.hh"
 
+#include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/facet_normal.hh"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
@@ -23,9 +21,9 @@ std::size_t filter_normals(const FacetNeighbours& neighbours, const std::vector<
     const double settled = 2 * std::sin(settled_angle / 2); // as a chord between unit vectors
     std::vector<Vec3> next(normals.size());
     std::atomic<std::size_t> turning = 0;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, normals.size(), 1 << 12), [&](const auto& range) {
+    for_chunks(normals.size(), 1 << 12, [&](std::size_t begin, std::size_t end, std::size_t) {
         std::size_t here = 0;
-        for (std::size_t f = range.begin(); f != range.end(); ++f) {
+        for (std::size_t f = begin; f != end; ++f) {
             next[f] = normals[f];
             if (neighbours.first[f] == neighbours.first[f + 1]) continue;
             Vec3 sum = normals[f] * area[f];

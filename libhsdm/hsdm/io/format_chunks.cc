@@ -1,6 +1,6 @@
 #include "hsdm/io/format_chunks.hh"
 
-#include <tbb/parallel_for.h>
+#include "hsdm/core/chunks.hh"
 
 #include <algorithm>
 #include <bit>
@@ -16,7 +16,7 @@ void write_chunks(AtomicFile& file, std::size_t count,
     std::vector<std::string> texts(std::min(chunks_at_once, (count + chunk - 1) / chunk));
     for (std::size_t round = 0; round < count; round += chunk * chunks_at_once) {
         const std::size_t chunks = std::min(chunks_at_once, (count - round + chunk - 1) / chunk);
-        tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t i) {
+        for_each_task(chunks, [&](std::size_t i) {
             const std::size_t begin = round + i * chunk;
             texts[i].clear();
             format(texts[i], begin, std::min(count, begin + chunk));

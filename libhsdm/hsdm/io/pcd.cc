@@ -1,10 +1,8 @@
+#include "hsdm/core/chunks.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/formats.hh"
 #include "hsdm/io/lzf.hh"
 #include "hsdm/io/ply.hh"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -213,12 +211,12 @@ PlyHeader ply_header_of(const PcdHeader& pcd) {
 std::unique_ptr<char[]> interleave(const char* values, const PcdHeader& pcd, std::size_t row) {
     const auto count = static_cast<std::size_t>(pcd.points);
     std::unique_ptr<char[]> points(new char[count * row]);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
+    for_chunks(count, 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
         std::size_t offset = 0; // in a point
         for (const PcdField& field : pcd.fields) {
             const std::size_t size = field.size * field.count;
             const char* from = values + offset * count;
-            for (std::size_t i = range.begin(); i != range.end(); ++i)
+            for (std::size_t i = begin; i != end; ++i)
                 std::memcpy(points.get() + i * row + offset, from + i * size, size);
             offset += size;
         }

@@ -1,8 +1,6 @@
+#include "hsdm/core/chunks.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/ply.hh"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -168,11 +166,11 @@ struct FixedVertices {
 template <class Use>
 void for_each_block(const FixedVertices& vertices, const std::vector<Column>& columns, const Use& use) {
     const std::size_t blocks = (vertices.count + block_rows - 1) / block_rows;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks, 16), [&](const auto& range) {
+    for_chunks(blocks, 16, [&](std::size_t begin, std::size_t end, std::size_t) {
         std::array<double, block_rows> values;
         const std::size_t stride = vertices.stride;
         const std::unique_ptr<char[]> scratch(new char[std::min(block_rows, vertices.count) * stride]);
-        for (std::size_t block = range.begin(); block != range.end(); ++block) {
+        for (std::size_t block = begin; block != end; ++block) {
             const std::size_t first = block * block_rows, rows = std::min(block_rows, vertices.count - first);
             const char* bytes =
                 vertices.bytes.piece(vertices.offset + first * stride, rows * stride, scratch.get());

@@ -1,9 +1,7 @@
 #include "hsdm/io/rows.hh"
 
+#include "hsdm/core/chunks.hh"
 #include "hsdm/errors.hh"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -164,7 +162,7 @@ std::vector<std::uint64_t> rows_per_chunk(const Text& text,
                                           const std::vector<std::pair<const char*, const char*>>& chunks,
                                           bool comments) {
     std::vector<std::uint64_t> counts(chunks.size(), 0);
-    tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t i) {
+    for_each_task(chunks.size(), [&](std::size_t i) {
         Text chunk = text;
         chunk.begin = chunks[i].first;
         chunk.end = chunks[i].second;
@@ -188,7 +186,7 @@ Rows::Rows(const Text& text, const RowLayout& layout) : columns_(layout.cells.si
     blocks_.resize(chunks.size());
     std::vector<RowError> errors(chunks.size());
     std::vector<std::vector<Count>> counts(chunks.size());
-    tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t i) {
+    for_each_task(chunks.size(), [&](std::size_t i) {
         ChunkParser parser(text, layout, chunks[i].first, chunks[i].second);
         parser.run(blocks_[i].values);
         errors[i] = parser.error;
@@ -238,7 +236,7 @@ double Rows::color_factor(const std::vector<Column>& columns, bool fractions) co
 
 PointCloud Rows::to_cloud(const std::vector<Column>& columns, double factor) && {
     CloudColumns cloud(columns, size_, factor);
-    tbb::parallel_for(std::size_t(0), blocks_.size(), [&](std::size_t i) {
+    for_each_task(blocks_.size(), [&](std::size_t i) {
         const Block& block = blocks_[i];
         if (block.values.empty()) return;
         for (std::size_t c = 0; c < columns_; ++c)
@@ -254,7 +252,7 @@ PointCloud Rows::to_cloud_by_halves() const {
     const std::size_t half = size_ / 2;
     cloud.positions.resize(half);
     cloud.normals.resize(half);
-    tbb::parallel_for(std::size_t(0), blocks_.size(), [&](std::size_t b) {
+    for_each_task(blocks_.size(), [&](std::size_t b) {
         const Block& block = blocks_[b];
         for (std::size_t i = 0; i * columns_ < block.values.size(); ++i) {
             const double* v = block.values.data() + i * columns_;

@@ -1,9 +1,8 @@
 #include "hsdm/io/source_bytes.hh"
 
+#include "hsdm/core/chunks.hh"
 #include "hsdm/core/huge_pages.hh"
 #include "hsdm/errors.hh"
-
-#include <tbb/parallel_for.h>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -99,7 +98,7 @@ std::string_view SourceBytes::view() const {
     if (!complete_) {
         auto all = uninitialised(size_);
         const std::size_t blocks = (size_ + block_size - 1) / block_size;
-        tbb::parallel_for(std::size_t(0), blocks, [&](std::size_t block) {
+        for_each_task(blocks, [&](std::size_t block) {
             const std::size_t offset = block * block_size;
             read_at(all.get() + offset, std::min(block_size, size_ - offset), offset);
         });

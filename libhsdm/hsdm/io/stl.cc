@@ -1,9 +1,8 @@
+#include "hsdm/core/chunks.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/formats.hh"
 #include "hsdm/io/tagged.hh"
 #include "hsdm/mesh/weld.hh"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -44,7 +43,7 @@ std::vector<Vec3> read_binary_corners(const SourceBytes& bytes) {
                         + " triangles than a triangle has; the header's count is wrong, correct it");
     const char* data = bytes.view().data();
     std::vector<Vec3> corners(3 * static_cast<std::size_t>(count));
-    tbb::parallel_for(std::size_t(0), static_cast<std::size_t>(count), [&](std::size_t f) {
+    for_each_task(static_cast<std::size_t>(count), [&](std::size_t f) {
         const char* at = data + header_size + f * facet_size + 12; // behind the facet's normal
         for (std::size_t i = 0; i < 9; ++i)
             corners[3 * f + i / 3][i % 3] = static_cast<double>(load_float(at + 4 * i));

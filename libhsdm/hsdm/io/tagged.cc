@@ -1,10 +1,9 @@
 #include "hsdm/io/tagged.hh"
 
+#include "hsdm/core/chunks.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/columns.hh"
 #include "hsdm/io/formats.hh"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -127,7 +126,7 @@ void set_colors(PointCloud& cloud, const std::vector<Vec3>& colors) {
 TaggedLines read_tagged(const Text& text, const Tags& tags) {
     const auto pieces = text.chunks();
     std::vector<Chunk> chunks(pieces.size());
-    tbb::parallel_for(std::size_t(0), pieces.size(), [&](std::size_t i) {
+    for_each_task(pieces.size(), [&](std::size_t i) {
         ChunkReader(text, tags).run(pieces[i].first, pieces[i].second, chunks[i]);
     });
     TaggedLines lines;

@@ -1,7 +1,6 @@
 #include "hsdm/mesh/facet_links.hh"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+#include "hsdm/core/chunks.hh"
 
 #include <algorithm>
 #include <atomic>
@@ -11,13 +10,6 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t grain = 1 << 13;
-
-template <class Body>
-void for_each_index(std::size_t count, const Body& body) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) body(static_cast<Index>(i));
-    });
-}
 
 bool is_proper(std::span<const Index> facet, std::size_t vertex_count) {
     if (facet.size() < 3) return false;
@@ -67,7 +59,7 @@ private:
     void find_proper_facets() {
         links_.accepted.resize(facets_.facet_count());
         links_.facet.resize(facets_.corners.size());
-        for_each_index(facets_.facet_count(), [&](Index f) {
+        for_each_index(facets_.facet_count(), grain, [&](Index f) {
             links_.accepted[f] = is_proper(facets_.facet(f), facets_.vertex_count());
             for (Index c = facets_.first[f]; c < facets_.first[f + 1]; ++c) links_.facet[c] = f;
         });
@@ -87,7 +79,7 @@ private:
         std::vector<Index> fill(first_out_.begin(), first_out_.end() - 1);
         for_each_accepted_side(
             [&](Index c) { out_[fill[start(c)]++] = static_cast<std::uint64_t>(end(c)) << 32 | c; });
-        for_each_index(facets_.vertex_count(), [&](Index v) {
+        for_each_index(facets_.vertex_count(), grain, [&](Index v) {
             std::sort(out_.begin() + first_out_[v], out_.begin() + first_out_[v + 1]);
         });
     }
@@ -103,7 +95,7 @@ private:
     /// Whether two facets run along an edge the same way.
     bool is_contested() const {
         std::atomic<bool> contested = false;
-        for_each_index(facets_.vertex_count(), [&](Index v) {
+        for_each_index(facets_.vertex_count(), grain, [&](Index v) {
             const auto sides = sides_out(v);
             for (std::size_t i = 1; i < sides.size(); ++i)
                 if (end_of(sides[i]) == end_of(sides[i - 1])) contested = true;
@@ -129,7 +121,7 @@ private:
 
     void find_twins() {
         links_.twin.assign(facets_.corners.size(), no_index);
-        for_each_index(facets_.facet_count(), [&](Index f) {
+        for_each_index(facets_.facet_count(), grain, [&](Index f) {
             if (!links_.accepted[f]) return;
             for (Index c = facets_.first[f]; c < facets_.first[f + 1]; ++c) {
                 const Index u = start(c), v = end(c);
@@ -175,7 +167,7 @@ private:
         links_.side_out.resize(count);
         links_.open_in.resize(count);
         std::vector<char> several(count, 0);
-        for_each_index(count, [&](Index i) {
+        for_each_index(count, grain, [&](Index i) {
             const Index v = links_.source[i];
             several[i] = assign_fan(fan_start(v), i) < sides_out(v).size();
         });

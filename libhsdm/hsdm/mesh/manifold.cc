@@ -4,9 +4,6 @@
 #include "hsdm/core/radix_sort.hh"
 #include "hsdm/mesh/edge_table.hh"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -19,16 +16,8 @@
 namespace hsdm {
 namespace {
 
-using Range = tbb::blocked_range<std::size_t>;
 constexpr std::size_t grain = 1 << 13;
 constexpr int pairing_rounds = 6;
-
-template <class Body>
-void for_each(std::size_t count, const Body& body) {
-    tbb::parallel_for(Range(0, count, grain), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
-    });
-}
 
 // ---- step 1: simple facets, each set of vertices once --------------------------------------------------
 
@@ -63,7 +52,7 @@ void add_simple_parts(std::span<const Index> facet, PolygonMesh& out, std::size_
 
 void keep_simple(PolygonMesh& mesh, ManifoldCounts& counts) {
     std::atomic<bool> all_simple{true};
-    for_each(mesh.facet_count(), [&](std::size_t f) {
+    for_each_index(mesh.facet_count(), grain, [&](std::size_t f) {
         if (!is_simple(mesh.facet(f))) all_simple.store(false, std::memory_order_relaxed);
     });
     if (all_simple) return;
@@ -140,7 +129,7 @@ void remove_facets(PolygonMesh& mesh, const std::vector<std::uint8_t>& removed) 
 
 void remove_duplicates(PolygonMesh& mesh, ManifoldCounts& counts) {
     std::vector<CodeIndex> keys(mesh.facet_count());
-    for_each(keys.size(), [&](std::size_t f) {
+    for_each_index(keys.size(), grain, [&](std::size_t f) {
         keys[f] = {vertex_set_hash(mesh.facet(f)), static_cast<Index>(f)};
     });
     radix_sort(keys, 32);
@@ -199,7 +188,7 @@ private:
     void link_corners() {
         next_ = next_sides(mesh_);
         facet_.resize(mesh_.corners.size());
-        for_each(mesh_.facet_count(), [&](std::size_t f) {
+        for_each_index(mesh_.facet_count(), grain, [&](std::size_t f) {
             std::fill(facet_.begin() + mesh_.first[f], facet_.begin() + mesh_.first[f + 1],
                       static_cast<Index>(f));
         });

@@ -1,10 +1,8 @@
 #include "hsdm/mesh/split_polygon.hh"
 
+#include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/facet_links.hh"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -272,8 +270,8 @@ std::size_t split_large_facets(PolygonMesh& mesh) {
     const auto split = [&](std::size_t i) {
         pieces[i] = split_polygon(mesh, mesh.facet(large[i]), normals_around(mesh, links, large[i]), edges);
     };
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, large.size(), 256), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) split(i);
+    for_chunks(large.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i != end; ++i) split(i);
     });
 
     // Diagonals that two polygons share the ends of may coincide: the later polygon is split anew.

@@ -1,12 +1,10 @@
 #include "hsdm/mesh/triangulate.hh"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+#include "hsdm/core/chunks.hh"
 
 namespace hsdm {
 namespace {
 
-using Range = tbb::blocked_range<std::size_t>;
 constexpr std::size_t grain = 1 << 12;
 
 /// Corners looked at before a polygon's remaining ears are given up and fanned: bounds the time that a
@@ -100,8 +98,8 @@ Triangulation triangulate(const PolygonMesh& mesh) {
         result.first[f + 1] = result.first[f] + (corners < 3 ? 0 : corners - 2);
     }
     result.triangles.resize(result.first.back());
-    tbb::parallel_for(Range(0, facets, grain), [&](const Range& range) {
-        for (std::size_t f = range.begin(); f != range.end(); ++f)
+    for_chunks(facets, grain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t f = begin; f != end; ++f)
             cut(mesh.positions, mesh.facet(f), result.triangles.data() + result.first[f]);
     });
     return result;
@@ -109,8 +107,8 @@ Triangulation triangulate(const PolygonMesh& mesh) {
 
 std::vector<Index> facet_of_triangle(const Triangulation& triangulation) {
     std::vector<Index> facet(triangulation.size());
-    tbb::parallel_for(Range(0, triangulation.first.size() - 1, grain), [&](const Range& range) {
-        for (std::size_t f = range.begin(); f != range.end(); ++f)
+    for_chunks(triangulation.first.size() - 1, grain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t f = begin; f != end; ++f)
             std::fill(facet.begin() + triangulation.first[f], facet.begin() + triangulation.first[f + 1],
                       static_cast<Index>(f));
     });

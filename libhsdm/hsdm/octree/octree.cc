@@ -4,8 +4,6 @@
 #include "hsdm/core/radix_sort.hh"
 #include "hsdm/errors.hh"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
 #include <cmath>
@@ -25,7 +23,6 @@ Vec3 centred_origin(const Box& bounds, double extent) {
 
 namespace {
 
-using Range = tbb::blocked_range<std::size_t>;
 constexpr std::size_t grain = 1 << 14;
 constexpr double cells = 1 << morton_levels; // along an edge of the cube
 constexpr std::size_t ahead = 16; // points asked for before they are needed: their order is not the cloud's
@@ -50,9 +47,9 @@ template <class T, class Change>
 std::vector<T> gathered(const std::vector<T>& values, const std::vector<Index>& places,
                         const Change& change) {
     std::vector<T> result(places.size());
-    tbb::parallel_for(Range(0, places.size(), grain), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            if (i + ahead < range.end()) __builtin_prefetch(&values[places[i + ahead]]);
+    for_chunks(places.size(), grain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i != end; ++i) {
+            if (i + ahead < end) __builtin_prefetch(&values[places[i + ahead]]);
             result[i] = change(values[places[i]]);
         }
     });
@@ -104,7 +101,7 @@ void order_points(std::span<const Vec3> positions, std::span<const Vec3> normals
         while (i > 0 && i < keys.size() && same_cell(keys[i - 1], keys[i])) ++i;
         first[chunk] = i;
     }
-    tbb::parallel_for(std::size_t{0}, first.size() - 1, [&](std::size_t chunk) {
+    for_each_task(first.size() - 1, [&](std::size_t chunk) {
         const auto last = keys.begin() + static_cast<std::ptrdiff_t>(first[chunk + 1]);
         for (auto begin = keys.begin() + static_cast<std::ptrdiff_t>(first[chunk]); begin < last;) {
             auto end = begin + 1;
@@ -146,8 +143,8 @@ std::size_t merge_equal(std::span<const Vec3> positions, std::span<const Vec3> n
 std::vector<Index> take_order(std::vector<CodeIndex>& keys, std::vector<MortonCode>& codes) {
     std::vector<Index> order(keys.size());
     codes.resize(keys.size());
-    tbb::parallel_for(Range(0, keys.size(), grain), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+    for_chunks(keys.size(), grain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i != end; ++i) {
             codes[i] = keys[i].code;
             order[i] = keys[i].index;
         }
@@ -196,8 +193,8 @@ Octree build(const PointCloud& cloud, std::vector<Vec3>* ours, const OctreeOptio
     const bool with_values = !cloud.colors.empty() || !cloud.scalars.empty();
     const double scale = cells / octree.extent, per_unit = 1 / options.unit;
     std::vector<CodeIndex> keys(n);
-    tbb::parallel_for(Range(0, n, grain), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i)
+    for_chunks(n, grain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i != end; ++i)
             keys[i] = {code_of(cloud.positions[i] * per_unit - octree.origin, scale), static_cast<Index>(i)};
     });
     const std::span<const Vec3> normals = with_normals ? cloud.normals : std::span<const Vec3>();
@@ -231,8 +228,8 @@ void rearrange(Octree& octree, std::vector<Vec3> positions, double extent) {
     const Vec3 shift = before - octree.origin;
     const double scale = cells / extent;
     std::vector<CodeIndex> keys(positions.size());
-    tbb::parallel_for(Range(0, keys.size(), grain), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+    for_chunks(keys.size(), grain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i != end; ++i) {
             positions[i] += shift;
             keys[i] = {code_of(positions[i], scale), static_cast<Index>(i)};
         }
@@ -284,14 +281,14 @@ std::vector<Index> find_runs(const std::vector<MortonCode>& codes, int shift) {
     // Two passes over fixed chunks: count the runs that begin in each, then write them at their offset.
     auto begins = [&](std::size_t i) { return i == 0 || codes[i] >> shift != codes[i - 1] >> shift; };
     std::vector<std::size_t> offset(chunks + 1, 0);
-    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+    for_each_task(chunks, [&](std::size_t chunk) {
         std::size_t count = 0;
         for (std::size_t i = chunk * grain; i < std::min(n, (chunk + 1) * grain); ++i) count += begins(i);
         offset[chunk + 1] = count;
     });
     std::partial_sum(offset.begin(), offset.end(), offset.begin());
     std::vector<Index> runs(offset.back() + 1);
-    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+    for_each_task(chunks, [&](std::size_t chunk) {
         std::size_t run = offset[chunk];
         for (std::size_t i = chunk * grain; i < std::min(n, (chunk + 1) * grain); ++i)
             if (begins(i)) runs[run++] = static_cast<Index>(i);
@@ -304,8 +301,8 @@ std::vector<Index> find_runs(const std::vector<MortonCode>& codes, int shift) {
 void fill_level(const std::vector<MortonCode>& codes, int shift, const std::vector<Index>& runs,
                 OctreeLevel& level) {
     level.codes.resize(runs.size() - 1);
-    tbb::parallel_for(Range(0, level.codes.size(), grain), [&](const Range& range) {
-        for (std::size_t v = range.begin(); v != range.end(); ++v) level.codes[v] = codes[runs[v]] >> shift;
+    for_chunks(level.codes.size(), grain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t v = begin; v != end; ++v) level.codes[v] = codes[runs[v]] >> shift;
     });
     level.build_index();
 }
@@ -332,8 +329,8 @@ OctreeLevel coarser_level(const OctreeLevel& finer, int depth) {
     const int shift = 3 * (finer.depth - depth);
     level.first_point = find_runs(finer.codes, shift);
     fill_level(finer.codes, shift, level.first_point, level);
-    tbb::parallel_for(Range(0, level.first_point.size(), grain), [&](const Range& range) {
-        for (std::size_t v = range.begin(); v != range.end(); ++v)
+    for_chunks(level.first_point.size(), grain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t v = begin; v != end; ++v)
             level.first_point[v] = finer.first_point[level.first_point[v]];
     });
     return level;

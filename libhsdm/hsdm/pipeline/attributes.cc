@@ -1,9 +1,7 @@
 #include "hsdm/pipeline/attributes.hh"
 
+#include "hsdm/core/chunks.hh"
 #include "hsdm/core/groups.hh"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -51,9 +49,9 @@ public:
     VertexProperty operator()(const std::string& name, VertexProperty::Type type, bool is_label,
                               const ValueOf& value_of) const {
         VertexProperty property{name, type, std::vector<double>(voxel_.size())};
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, voxel_.size(), 1 << 10), [&](const auto& range) {
+        for_chunks(voxel_.size(), 1 << 10, [&](std::size_t begin, std::size_t end, std::size_t) {
             std::vector<double> values;
-            for (std::size_t v = range.begin(); v != range.end(); ++v) {
+            for (std::size_t v = begin; v != end; ++v) {
                 values.clear();
                 for (Index p = level_.first_point[voxel_[v]]; p < level_.first_point[voxel_[v] + 1]; ++p)
                     values.push_back(value_at(octree_.source[p], is_label, value_of));
@@ -121,9 +119,9 @@ std::vector<VertexProperty> merge_attributes(std::span<const VertexProperty> pro
     std::vector<VertexProperty> result;
     for (const VertexProperty& property : properties) {
         VertexProperty merged{property.name, property.type, std::vector<double>(count)};
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1 << 10), [&](const auto& range) {
+        for_chunks(count, 1 << 10, [&](std::size_t begin, std::size_t end, std::size_t) {
             std::vector<double> values;
-            for (std::size_t v = range.begin(); v != range.end(); ++v) {
+            for (std::size_t v = begin; v != end; ++v) {
                 values.clear();
                 for (Index member : members.of(v)) values.push_back(property.values[member]);
                 double& value = merged.values[v];

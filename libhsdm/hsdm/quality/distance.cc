@@ -6,8 +6,6 @@
 #include "hsdm/spatial/mesh_distance.hh"
 #include "hsdm/spatial/surface_walk.hh"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -174,7 +172,7 @@ std::vector<Vec3> sample_surface(const PolygonMesh& mesh, std::size_t count) {
     if (!(area.back() > 0)) return samples;
     samples.resize(count);
     constexpr std::size_t grain = 1 << 12;
-    tbb::parallel_for(std::size_t{0}, (count + grain - 1) / grain, [&](std::size_t c) {
+    for_each_task((count + grain - 1) / grain, [&](std::size_t c) {
         for (std::size_t i = c * grain; i < std::min(count, (c + 1) * grain); ++i) {
             // Evenly spaced along the running area; inside the triangle the additive recurrence of the two
             // generalised golden ratios of the plane, folded into the triangle.

@@ -6,8 +6,6 @@
 #include "hsdm/mesh/edge_table.hh"
 #include "hsdm/mesh/triangulate.hh"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
@@ -16,7 +14,6 @@
 namespace hsdm {
 namespace {
 
-using Range = tbb::blocked_range<std::size_t>;
 constexpr std::size_t chunk = 1 << 12; // of sums: fixed, so that rounding does not depend on threads
 
 /// The facets as loops without immediate repeats of a vertex; a loop left with fewer than three corners has
@@ -147,10 +144,9 @@ bool is_degenerate(const PolygonMesh& mesh, std::span<const Index> facet, std::v
 
 std::size_t count_degenerate(const PolygonMesh& mesh) {
     std::vector<unsigned char> degenerate(mesh.facet_count());
-    tbb::parallel_for(Range(0, degenerate.size(), chunk), [&](const Range& range) {
+    for_chunks(degenerate.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         std::vector<Vec3> ring;
-        for (std::size_t f = range.begin(); f != range.end(); ++f)
-            degenerate[f] = is_degenerate(mesh, mesh.facet(f), ring);
+        for (std::size_t f = begin; f != end; ++f) degenerate[f] = is_degenerate(mesh, mesh.facet(f), ring);
     });
     return static_cast<std::size_t>(std::count(degenerate.begin(), degenerate.end(), 1));
 }
@@ -162,8 +158,8 @@ std::size_t count_duplicates(const PolygonMesh& mesh) {
         auto operator<=>(const Key&) const = default;
     };
     std::vector<Key> keys(mesh.facet_count());
-    tbb::parallel_for(Range(0, keys.size(), chunk), [&](const Range& range) {
-        for (std::size_t f = range.begin(); f != range.end(); ++f) {
+    for_chunks(keys.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t f = begin; f != end; ++f) {
             keys[f] = {mesh.facet(f).size(), static_cast<Index>(f)};
             for (Index v : mesh.facet(f)) keys[f].set += hash_index(v);
         }
@@ -182,7 +178,7 @@ std::size_t count_duplicates(const PolygonMesh& mesh) {
 template <class Term>
 double chunked_sum(std::size_t n, Term term) {
     std::vector<double> sums((n + chunk - 1) / chunk, 0.0);
-    tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t c) {
+    for_each_task(sums.size(), [&](std::size_t c) {
         double sum = 0;
         for (std::size_t i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) sum += term(i);
         sums[c] = sum;

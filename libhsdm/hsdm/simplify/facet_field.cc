@@ -16,18 +16,11 @@ constexpr int most_sides_away = 3;
 constexpr double smooth_cosine = 0.9; // of normals of neighbours: 26 degrees
 constexpr std::size_t facets_per_chunk = 2048;
 
-template <class Act>
-void for_facets(std::size_t count, const Act& act) {
-    for_chunks(count, facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (auto f = static_cast<Index>(begin); f < end; ++f) act(f);
-    });
-}
-
 void measure_facets(const PolygonMesh& mesh, FacetField& field) {
     field.area.resize(mesh.facet_count());
     field.centre.resize(field.size());
     field.normal.resize(field.size());
-    for_facets(field.size(), [&](Index f) {
+    for_each_index(field.size(), facets_per_chunk, [&](Index f) {
         const auto ring = mesh.facet(f);
         field.area[f] = area_vector(mesh, ring);
         field.normal[f] = unit(field.area[f]);
@@ -39,7 +32,7 @@ void measure_facets(const PolygonMesh& mesh, FacetField& field) {
 
 void link_facets(const PolygonMesh& mesh, FacetField& field) {
     std::vector<Index> facet_of(mesh.corners.size());
-    for_facets(field.size(), [&](Index f) {
+    for_each_index(field.size(), facets_per_chunk, [&](Index f) {
         std::fill(facet_of.begin() + mesh.first[f], facet_of.begin() + mesh.first[f + 1], f);
     });
     field.beside.assign(mesh.corners.size(), no_index);
@@ -54,14 +47,14 @@ void gather_normals(FacetField& field) {
     std::vector<double> bend(field.size(), 0), wider_bend(field.size());
     std::vector<NormalSum> wider(field.size());
     field.around.resize(field.size());
-    for_facets(field.size(), [&](Index f) {
+    for_each_index(field.size(), facets_per_chunk, [&](Index f) {
         field.around[f].add(field.normal[f], field.area[f].norm());
         field.for_beside(f, [&](Index g) {
             bend[f] += (field.normal[g] - field.normal[f]) | (field.centre[g] - field.centre[f]);
         });
     });
     for (int away = 0; away < most_sides_away; ++away) {
-        for_facets(field.size(), [&](Index f) {
+        for_each_index(field.size(), facets_per_chunk, [&](Index f) {
             wider[f] = field.around[f];
             wider_bend[f] = bend[f];
             field.for_beside(f, [&](Index g) {
@@ -73,14 +66,14 @@ void gather_normals(FacetField& field) {
         bend.swap(wider_bend);
     }
     field.convex.resize(field.size());
-    for_facets(field.size(), [&](Index f) { field.convex[f] = bend[f] > 0; });
+    for_each_index(field.size(), facets_per_chunk, [&](Index f) { field.convex[f] = bend[f] > 0; });
 }
 
 void measure_bend(FacetField& field) {
     field.spread.resize(field.size());
     field.next_spread.resize(field.size());
     field.mean_normal.resize(field.size());
-    for_facets(field.size(), [&](Index f) {
+    for_each_index(field.size(), facets_per_chunk, [&](Index f) {
         const std::array<double, 3> deviation = field.around[f].deviation();
         field.spread[f] = deviation[2];
         field.next_spread[f] = deviation[1];

@@ -7,7 +7,6 @@
 #include "hsdm/spatial/triangle_tree.hh"
 #include "hsdm/spatial/triangles_meet.hh"
 
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
@@ -30,14 +29,13 @@ public:
           tree_(mesh.positions, cut_.triangles),
           flat_(flat_fans(mesh, welded_)),
           collinear_(cut_.size()) {
-        tbb::parallel_for(std::size_t{0}, cut_.size(),
-                          [&](std::size_t t) { collinear_[t] = is_collinear(place(t).corner); });
+        for_each_task(cut_.size(), [&](std::size_t t) { collinear_[t] = is_collinear(place(t).corner); });
     }
 
     SelfIntersections run() const {
         const std::size_t chunks = (tree_.block_count() + blocks_per_chunk - 1) / blocks_per_chunk;
         std::vector<std::vector<FacetPair>> found(chunks);
-        tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+        for_each_task(chunks, [&](std::size_t chunk) {
             const std::size_t end = std::min(tree_.block_count(), (chunk + 1) * blocks_per_chunk);
             std::vector<TrianglePair> candidates;
             for (std::size_t block = chunk * blocks_per_chunk; block < end; ++block) {

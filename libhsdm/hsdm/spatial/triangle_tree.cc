@@ -1,7 +1,8 @@
 #include "hsdm/spatial/triangle_tree.hh"
 
+#include "hsdm/core/chunks.hh"
+
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/parallel_reduce.h>
 
@@ -81,8 +82,8 @@ TriangleTree::TriangleTree(const std::vector<Vec3>& positions, const std::vector
 void TriangleTree::set_order(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                              Order order) {
     std::vector<Item> items(triangles.size());
-    tbb::parallel_for(Range(0, items.size(), grain), [&](const Range& range) {
-        for (std::size_t t = range.begin(); t != range.end(); ++t) {
+    for_chunks(items.size(), grain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t t = begin; t != end; ++t) {
             Box box;
             for (Index v : triangles[t]) box.add(positions[v] - centre_);
             const Vec3 middle = (box.lo + box.hi) / 2;
@@ -93,8 +94,8 @@ void TriangleTree::set_order(const std::vector<Vec3>& positions, const std::vect
     if (order == Order::compact) split(items.data(), items.data() + items.size());
     triangle_of_.resize(items.size());
     place_of_.resize(items.size());
-    tbb::parallel_for(Range(0, items.size(), grain), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+    for_chunks(items.size(), grain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i != end; ++i) {
             triangle_of_[i] = items[i].triangle;
             place_of_[items[i].triangle] = static_cast<Index>(i);
         }
@@ -106,8 +107,8 @@ void TriangleTree::fill_blocks(const std::vector<Vec3>& positions, const std::ve
     const std::size_t parents = (blocks + width - 1) / width;
     blocks_ = std::make_unique_for_overwrite<Block[]>(blocks);
     std::vector<Boxes> boxes(parents);
-    tbb::parallel_for(Range(0, parents * width, grain), [&](const Range& range) {
-        for (std::size_t b = range.begin(); b != range.end(); ++b) {
+    for_chunks(parents * width, grain, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t b = begin; b != end; ++b) {
             Box box;
             for (std::size_t lane = 0; b < blocks && lane < width; ++lane) {
                 const std::size_t place = std::min(b * width + lane, triangle_of_.size() - 1);
