@@ -76,8 +76,8 @@ private:
         const Relation r = relation(a, b);
         return (1 - (x.normal | y.normal)) + off_plane
                + (r == Relation::smooth ? 0
-                  : r == Relation::none ? 2
-                                        : 1);
+                  : r == Relation::none ? pairing::cost_of_strangers
+                                        : pairing::cost_of_crease);
     }
 
     /// Faces with two or more of each kind are rare: the cheapest pair first, ties by number.

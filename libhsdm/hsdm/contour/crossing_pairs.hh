@@ -2,6 +2,7 @@
 // Crossings joined across grid faces: each join is an edge of the mesh, so whatever is joined to whatever,
 // the facets form a 2-manifold. See docs/sheets.md.
 
+#include "hsdm/contour/constants.hh"
 #include "hsdm/contour/crossings.hh"
 
 namespace hsdm {
@@ -25,8 +26,7 @@ struct Ring {
 
 /// Do two crossings face opposite ways, as the two sides of a thin part or of a wedge?
 inline bool opposed(const Crossing& x, const Crossing& y) {
-    constexpr double most_cosine = -0.3;
-    return (x.normal | y.normal) < most_cosine;
+    return (x.normal | y.normal) < pairing::opposed_cosine;
 }
 
 /// Where face k of a crossing's ring leads: to which crossing, and which face of that one's ring it is.

@@ -1,5 +1,6 @@
 #include "hsdm/contour/crossings.hh"
 
+#include "hsdm/contour/constants.hh"
 #include "hsdm/contour/plane_area.hh"
 #include "hsdm/core/chunks.hh"
 
@@ -10,11 +11,6 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t grid_points_per_chunk = 1024;
-constexpr double far_from_data =
-    1.0; // voxels: from the crossing to the centroid of the nearest set of its sheet
-constexpr double fair_share = 0.25; // of the points expected in a voxel: fewer, and the sheet ends in it
-constexpr double surface_error =
-    0.1; // voxels: how far off a sheet's plane its points may lie, in another voxel
 
 /// A sheet along one edge: the union of the local sheets at the two ends that share a set beside the edge.
 struct EdgeSheet {
@@ -226,20 +222,22 @@ private:
         double density = 0; // of the sampling here: the sheet itself may only be clipped voxels
         for (std::size_t j = 0; j < count_; ++j) density = std::max(density, sheets_[j].density());
         unsigned doubtful = 0;
-        for (unsigned v = 0; v < 4; ++v) doubtful |= unsigned{sheet.held[v] < fair_share * density} << v;
+        for (unsigned v = 0; v < 4; ++v)
+            doubtful |= unsigned{sheet.held[v] < crossing::fair_share * density} << v;
         if (doubtful == 0) return true;
         std::array<HalfSpace, 16> clips;
         const std::size_t clip_count = partner_half_spaces(i, clips);
         const double offset = sheet.normal | position(i);
         for (unsigned v = 0; v < 4; ++v) {
             if (!(doubtful >> v & 1u)) continue;
-            Vec3 lo = low_ + Vec3(1, 1, 1) * (surface_error * h_);
+            Vec3 lo = low_ + Vec3(1, 1, 1) * (crossing::plane_error * h_);
             if (!(v & 1u)) lo[(axis_ + 1) % 3] -= h_;
             if (!(v & 2u)) lo[(axis_ + 2) % 3] -= h_;
-            const double area = plane_area(sheet.normal, offset, lo, (1 - 2 * surface_error) * h_,
+            const double area = plane_area(sheet.normal, offset, lo, (1 - 2 * crossing::plane_error) * h_,
                                            {clips.data(), clip_count});
             const double expected = area * density / (h_ * h_);
-            if (expected > options_.sliver_points && sheet.held[v] < fair_share * expected) return false;
+            if (expected > options_.sliver_points && sheet.held[v] < crossing::fair_share * expected)
+                return false;
         }
         return true;
     }
@@ -271,7 +269,7 @@ private:
                 const double d = (sets_.sets[m.set].centroid - x).sqrnorm();
                 if (d < nearest || (d == nearest && m.set < set)) nearest = d, set = m.set;
             }
-        carried = carried && nearest < far_from_data * far_from_data * h_ * h_;
+        carried = carried && nearest < crossing::far_from_data * crossing::far_from_data * h_ * h_;
         return {sheets_[i].t, sheets_[i].normal, 3 * ends_[0] + axis_, set, sheets_[i].leaving(), carried};
     }
 

@@ -10,7 +10,7 @@ struct CrossingOptions {
     /// Points. A voxel beside a crossed edge that holds none of the sheet is taken for a sliver that the
     /// sampling missed while fewer points than this are expected in it; beyond, the surface ends there and
     /// the facet is left out.
-    double sliver_points = 6;
+    double sliver_points = crossing::sliver_points;
 };
 
 /// A sheet crossing a grid edge.

@@ -159,7 +159,6 @@ private:
     /// Where a crease runs across a quad, corner to corner, the quad is cut there: the paper's refinement
     /// triangles. Folds of less than 30 degrees are those of round parts a voxel or two thick.
     std::size_t crease_diagonal(const std::array<Index, 4>& q) const {
-        constexpr double cos_fold = 0.866, cos_other = 0.95;
         for (std::size_t d = 0; d < 2; ++d) {
             const Index a = q[d], b = q[d + 1], c = q[d + 2], e = q[(d + 3) % 4];
             if (vertices_.classes[a] == VertexClass::smooth || vertices_.classes[c] == VertexClass::smooth)
@@ -168,7 +167,7 @@ private:
             const Vec3 m0 = triangle_normal(b, c, e), m1 = triangle_normal(b, e, a);
             const double fold = (n0 | n1) / std::max(n0.norm() * n1.norm(), 1e-300);
             const double other = (m0 | m1) / std::max(m0.norm() * m1.norm(), 1e-300);
-            if (fold <= cos_fold && other <= cos_other) return d;
+            if (fold <= creases::fold_cosine && other <= creases::other_fold_cosine) return d;
         }
         return 2;
     }
@@ -294,9 +293,10 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
                                 find_crossings(grid, local, sets, related, h, options.crossing), h);
     }();
     Links links = pair_crossings(grid, crossings, sets, related);
-    for (int round = 0; round < 3 && trim_unsupported(crossings, links) > 0; ++round)
+    for (int round = 0; round < pairing::trim_rounds && trim_unsupported(crossings, links) > 0; ++round)
         links = pair_crossings(grid, crossings, sets, related);
-    for (int round = 0; round < 3 && drop_tips(sets, related, links, crossings) > 0; ++round)
+    for (int round = 0; round < pairing::trim_rounds && drop_tips(sets, related, links, crossings) > 0;
+         ++round)
         links = pair_crossings(grid, crossings, sets, related);
     const DualVertices duals = build_dual_vertices(grid, crossings, links);
     PlacedVertices vertices = place_vertices(level, grid, sets, related, crossings, duals);

@@ -16,9 +16,10 @@ struct DualContourOptions {
     CrossingOptions crossing;
     RelaxOptions relax;
     SplinterOptions splinters;
-    FillHolesOptions holes{.max_edges = 24, .max_diameter = 6}; ///< lengths in voxels here
-    UntangleOptions untangle{.reach = 0.5, .nearby = 1};        ///< lengths in voxels here
-    bool fill = true;                                           ///< close small boundary loops
+    /// Lengths of these two in voxels here.
+    FillHolesOptions holes{.max_edges = holes::most_edges, .max_diameter = holes::widest};
+    UntangleOptions untangle{.reach = untangling::reach, .nearby = untangling::nearby};
+    bool fill = true; ///< close small boundary loops
 };
 
 struct DualContour {

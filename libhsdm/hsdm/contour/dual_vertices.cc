@@ -1,5 +1,6 @@
 #include "hsdm/contour/dual_vertices.hh"
 
+#include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
 
 #include <algorithm>
@@ -9,9 +10,6 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t crossings_per_chunk = 4096;
-constexpr double side_cosine = 0.77; // a rim's own face is 40 degrees and more from the sides
-constexpr double tip_reach = 1.0;    // voxels: from a voxel's centre to the tip of a wedge that it can serve
-constexpr double least_width = 0.05; // voxels: a narrower face is none; one vertex serves both its creases
 
 /// The chain of corners through one corner, inside one voxel.
 class Chain {
@@ -146,7 +144,7 @@ private:
         for (std::size_t step = 1; step < steps; ++step) {
             const std::size_t off = 2 * step > steps ? 2 * step - steps : steps - 2 * step;
             const std::size_t corner = (i + step) % n;
-            if (off < best_off && width(chain.corners[corner], a, b) > least_width)
+            if (off < best_off && width(chain.corners[corner], a, b) > cuts::least_width)
                 best = 2 * corner, best_off = off;
         }
         return best;
@@ -161,7 +159,7 @@ private:
         const double k = of(a).normal | (crossing_position(grid_, of(a), 1) - centre);
         const double l = of(b).normal | (crossing_position(grid_, of(b), 1) - centre);
         const double cosine = of(a).normal | of(b).normal;
-        return k * k + l * l - 2 * cosine * k * l < tip_reach * tip_reach * (1 - cosine * cosine);
+        return k * k + l * l - 2 * cosine * k * l < cuts::tip_reach * cuts::tip_reach * (1 - cosine * cosine);
     }
 
     /// How wide a face is between the planes of two sides, in voxels; 0 if it belongs to one of them.
@@ -170,7 +168,7 @@ private:
         for (FacetCorner side : {a, b}) {
             const Vec3& n = of(side).normal;
             const double cosine = of(face).normal | n;
-            if (cosine > side_cosine) return 0;
+            if (cosine > relations::same_sheet_cosine) return 0;
             const Vec3 d = crossing_position(grid_, of(side), 1) - crossing_position(grid_, of(face), 1);
             sum += (n | d) / std::sqrt(std::max(1 - cosine * cosine, 0.01));
         }

@@ -1,5 +1,6 @@
 #include "hsdm/contour/grid_signs.hh"
 
+#include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
 
 #include <algorithm>
@@ -10,15 +11,8 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t grid_points_per_chunk = 2048;
-constexpr int rounds = 8;
 
 // What it costs to contradict the evidence, in crossings taken back.
-constexpr double cost_of_weak = 0.25;   // taking back a crossing that the data do not carry
-constexpr double cost_of_return = 0.75; // bringing back one beyond a crease or beyond the data
-constexpr double cost_of_invention = 2; // a crossing where no sheet has one
-constexpr double cost_of_a_leak = 8;    // a crossing that leaves a side open
-constexpr double most_belief = 1;       // a side against all sheets around a grid point
-constexpr double surface_error = 0.15;  // voxels: how far off its planes a sheet may pass
 constexpr double impossible = 1e30;
 
 using Side = std::uint8_t;
@@ -33,8 +27,8 @@ public:
     static constexpr std::size_t most = 128; // sheets of an edge
 
     /// How firmly a standing crossing stands.
-    double weight(Index x) const { return list_.crossings[x].supported ? 1 : cost_of_weak; }
-    double cost_of_taking(Index x) const { return standing_[x] ? 0 : cost_of_return; }
+    double weight(Index x) const { return list_.crossings[x].supported ? 1 : signs::cost_of_weak; }
+    double cost_of_taking(Index x) const { return standing_[x] ? 0 : signs::cost_of_return; }
     double cost_of_leaving(Index x) const { return standing_[x] ? weight(x) : 0; }
     Side side_before(Index x) const { return list_.crossings[x].leaving ? inside : outside; }
 
@@ -65,7 +59,7 @@ public:
 
 private:
     static std::array<double, 2> at_upper_end(Side high) {
-        std::array<double, 2> cost{cost_of_invention, cost_of_invention};
+        std::array<double, 2> cost{signs::cost_of_invention, signs::cost_of_invention};
         cost[high] = 0;
         return cost;
     }
@@ -101,7 +95,7 @@ public:
     Crossings run() {
         believe();
         vote(true);
-        for (int ring = 0; ring < 3; ++ring) vote(false, ring < 2);
+        for (int ring = 0; ring < signs::vote_rounds; ++ring) vote(false, ring + 1 < signs::vote_rounds);
         settle();
         return chosen();
     }
@@ -148,11 +142,11 @@ private:
         for_corners([&](Index c) {
             double sum = 0, size = 0;
             for (const LocalSheet& sheet : sheets_.sheets_at(c)) {
-                if (std::abs(sheet.distance) < surface_error * h_ * sheet.weight) return;
+                if (std::abs(sheet.distance) < sheets::surface_error * h_ * sheet.weight) return;
                 sum += sheet.distance;
                 size += std::abs(sheet.distance);
             }
-            if (size > 0) belief_[c] = most_belief * sum / size;
+            if (size > 0) belief_[c] = signs::most_belief * sum / size;
         });
     }
 
@@ -184,7 +178,7 @@ private:
 
     double edge_cost(Index edge, Side low, Side high) const {
         if (low == unknown || high == unknown) return 0;
-        return choice_.cost(edge, low, high) + (low != high && leaks(edge) ? cost_of_a_leak : 0);
+        return choice_.cost(edge, low, high) + (low != high && leaks(edge) ? signs::cost_of_leak : 0);
     }
 
     double corner_cost(Index c, Side side) const {
@@ -219,7 +213,7 @@ private:
     void settle() {
         const std::vector<Index> grid_points = doubtful();
         std::vector<std::uint8_t> changed(grid_points.size());
-        for (int round = 0; round < rounds; ++round) {
+        for (int round = 0; round < signs::settle_rounds; ++round) {
             std::fill(changed.begin(), changed.end(), 0);
             for (int colour : {0, 1})
                 for_chunks(grid_points.size(), 512, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -285,7 +279,7 @@ private:
             crossing.normal = Vec3(0, 0, 0);
             crossing.normal[axis] = leaving ? 1 : -1;
         }
-        crossing.t = std::clamp(crossing.t, 0.01, 0.99);
+        crossing.t = std::clamp(crossing.t, signs::end_gap, 1 - signs::end_gap);
         if (!out.empty() && out.back().edge == edge) crossing.t = std::max(crossing.t, out.back().t);
         out.push_back(crossing);
         return true;

@@ -1,5 +1,6 @@
 #include "hsdm/contour/local_sheets.hh"
 
+#include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
 
 #include <tbb/parallel_sort.h>
@@ -11,10 +12,6 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t grid_points_per_chunk = 2048;
-constexpr double surface_error = 0.15; // voxels: how far off its planes a sheet may pass
-constexpr int closure_rounds = 8;
-constexpr double least_closure_cosine = 0.35; // 70 degrees
-constexpr double nearness = 0.5; // voxels: a set's say falls off with its distance from the grid point
 
 /// The sets around one grid point and their sheets, on the stack.
 struct SheetsAtPoint {
@@ -70,13 +67,14 @@ struct SheetsAtPoint {
     }
 
     void measure(const Vec3& position, const NormalSets& sets, double voxel_size) {
-        const double falloff = 1 / (nearness * nearness * voxel_size * voxel_size);
+        const double falloff = 1 / (sheets::nearness * sheets::nearness * voxel_size * voxel_size);
         for (std::size_t k = 0; k < sheet_count; ++k) sheets[k] = {};
         for (std::size_t i = 0; i < member_count; ++i) {
             const NormalSet& set = sets.sets[members[i].set];
             const Vec3 d = position - set.centroid;
             LocalSheet& sheet = sheets[members[i].sheet];
-            const double weight = std::min<double>(set.count, 8) * std::exp(-d.sqrnorm() * falloff);
+            const double weight =
+                std::min<double>(set.count, sheets::most_points) * std::exp(-d.sqrnorm() * falloff);
             sheet.weight += weight;
             sheet.distance += weight * (set.normal | d);
             sheet.normal += weight * set.normal;
@@ -95,7 +93,7 @@ struct SheetsAtPoint {
                 static_cast<std::uint8_t>(octants[members[i].sheet] | 1u << members[i].octant);
         for (std::size_t k = 0; k < sheet_count; ++k) {
             LocalSheet& sheet = sheets[k];
-            if (std::abs(sheet.distance) > surface_error * voxel_size * sheet.weight) continue;
+            if (std::abs(sheet.distance) > sheets::surface_error * voxel_size * sheet.weight) continue;
             const Vec3 toward =
                 sheet.distance < 0 ? sheet.normal : -sheet.normal; // from the grid point to the sheet
             unsigned axis = 0;
@@ -170,7 +168,7 @@ void close_sheets(const GridPoints& grid, const NormalSets& sets, LocalSheets& s
         Index grid_point;
         std::uint8_t kept, merged;
     };
-    for (int round = 0; round < closure_rounds; ++round) {
+    for (int round = 0; round < sheets::closure_rounds; ++round) {
         std::vector<std::vector<Merge>> found(chunk_count(open.size(), 256));
         for_chunks(open.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
             for (std::size_t k = begin; k < end; ++k) {
@@ -180,7 +178,8 @@ void close_sheets(const GridPoints& grid, const NormalSets& sets, LocalSheets& s
                     for (std::size_t j = i + 1; j < members.size(); ++j) {
                         if (members[i].sheet == members[j].sheet) continue;
                         const Index a = members[i].set, b = members[j].set;
-                        if ((sets.sets[a].normal | sets.sets[b].normal) < least_closure_cosine) continue;
+                        if ((sets.sets[a].normal | sets.sets[b].normal) < sheets::least_closure_cosine)
+                            continue;
                         if (!joined_nearby(grid, sheets, c, a, b)) continue;
                         found[chunk].push_back({open[k], std::min(members[i].sheet, members[j].sheet),
                                                 std::max(members[i].sheet, members[j].sheet)});

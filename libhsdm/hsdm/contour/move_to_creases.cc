@@ -1,5 +1,6 @@
 #include "hsdm/contour/move_to_creases.hh"
 
+#include "hsdm/contour/constants.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/part_of.hh"
 #include "hsdm/spatial/self_intersections.hh"
@@ -8,11 +9,6 @@
 
 namespace hsdm {
 namespace {
-
-constexpr int most_rounds = 4;
-constexpr double turn_cosine = 0.7; // of a facet's normal with that before, and with its sheet's
-constexpr double nearest = 0.1;     // voxels, to another vertex
-constexpr double least_sine = 0.02; // of a triangle's corner
 
 /// The facets at some vertices.
 class FacetsAt {
@@ -57,7 +53,7 @@ double along(const std::vector<Vec3>& ring, const std::array<Vec3, 2>& normals) 
             const Vec3 &a = ring[from], &b = ring[(from + i) % n], &c = ring[(from + i + 1) % n];
             const Vec3 up = (b - a) % (c - a);
             const double length = up.norm();
-            const bool thin = length <= least_sine * (b - a).norm() * (c - a).norm();
+            const bool thin = length <= creases::least_sine * (b - a).norm() * (c - a).norm();
             least = thin ? -1 : std::min(least, std::max(up | normals[0], up | normals[1]) / length);
         }
         best = std::max(best, least);
@@ -82,7 +78,7 @@ public:
     /// Returns, per wanted vertex, whether it has moved.
     const std::vector<std::uint8_t>& run() {
         bool any = true; // one that moves may make way for another
-        for (int round = 0; round < most_rounds && any; ++round) {
+        for (int round = 0; round < creases::move_rounds && any; ++round) {
             any = false;
             for (std::size_t i = 0; i < moved_.size(); ++i)
                 if (!moved_[i] && suits_all(i)) {
@@ -155,13 +151,14 @@ private:
             before_.push_back(v == to.dual ? was_[i] : mesh_.positions[v]);
             after_.push_back(v == to.dual ? to.position : mesh_.positions[v]);
             const double side = (after_.back() - to.position).norm();
-            if (v != to.dual && side < nearest * voxel_size_ && side < (after_.back() - was_[i]).norm())
+            if (v != to.dual && side < creases::least_distance * voxel_size_
+                && side < (after_.back() - was_[i]).norm())
                 return false;
         }
         const Vec3 now = area_vector(after_), then = area_vector(before_);
-        if ((now | then) <= turn_cosine * now.norm() * then.norm()) return false;
+        if ((now | then) <= creases::turn_cosine * now.norm() * then.norm()) return false;
         const double is = along(after_, to.normals);
-        return is > turn_cosine || is >= along(before_, to.normals);
+        return is > creases::turn_cosine || is >= along(before_, to.normals);
     }
 
     PolygonMesh& mesh_;

@@ -1,5 +1,6 @@
 #include "hsdm/contour/normal_sets.hh"
 
+#include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/errors.hh"
 
@@ -40,8 +41,7 @@ public:
     void run() {
         if (!one_direction()) {
             find_modes();
-            assign_to_nearest();
-            assign_to_nearest();
+            for (int round = 0; round < sets::lloyd_rounds; ++round) assign_to_nearest();
         }
         const std::size_t directions = modes_.size();
         for (std::size_t k = 0; k < directions; ++k) split_parallel_sheets(static_cast<std::uint8_t>(k));
@@ -72,7 +72,8 @@ public:
         const double length = normal.norm();
         normal = length > 0 ? normal / length : Vec3(0, 0, 1);
         // Noise in the normals must not push the set out of its own neighbourhood.
-        const double lift = std::clamp(0.5 * below / n, -0.1 * voxel_size_, 0.1 * voxel_size_);
+        const double lift =
+            std::clamp(0.5 * below / n, -sets::most_lift * voxel_size_, sets::most_lift * voxel_size_);
         return {position + normal * lift, normal, n, voxel, spread};
     }
 
@@ -106,7 +107,7 @@ private:
         while (static_cast<int>(modes_.size()) < options_.max_sets) {
             Vec3 mode;
             if (!densest(mode)) break;
-            for (int round = 0; round < 3; ++round) mode = mean_within(mode);
+            for (int round = 0; round < sets::mode_rounds; ++round) mode = mean_within(mode);
             const auto k = static_cast<std::uint8_t>(modes_.size());
             modes_.push_back(mode);
             Index taken = 0;
@@ -204,9 +205,8 @@ private:
         const auto [below, width_below] = across(mode, 0, cut);
         const auto [above, width_above] = across(mode, cut, offsets_.size());
         if ((above - below).norm() > std::max(width_below, width_above)) return false;
-        constexpr double faces_back = -0.7;
         for (Index i = 0; i < size_; ++i) {
-            if (!has_normal(i) || (normal(i) | mode) > faces_back) continue;
+            if (!has_normal(i) || (normal(i) | mode) > sets::faces_back) continue;
             const double offset = mode | octree_.positions[begin_ + i];
             if (offset > offsets_[cut - 1].first && offset < offsets_[cut].first) return false;
         }

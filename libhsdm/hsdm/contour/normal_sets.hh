@@ -2,14 +2,16 @@
 // Section 3.4.1: the points of a voxel sorted into normal-consistent sets, so that two sheets in one voxel
 // stay two.
 
+#include "hsdm/contour/constants.hh"
 #include "hsdm/octree/octree.hh"
 
 namespace hsdm {
 
 struct NormalSetOptions {
-    double cluster_angle =
-        0.61;               ///< radians, (0, pi/2): points of a set lie within this angle of its mean normal
-    double sheet_gap = 0.3; ///< voxels, > 0: parallel sheets farther apart than this are two sets
+    /// radians, (0, pi/2): points of a set lie within this angle of its mean normal
+    double cluster_angle = sets::cluster_angle;
+    /// voxels, > 0: parallel sheets farther apart than this are two sets
+    double sheet_gap = sets::sheet_gap;
     /// Parallel sheets stay one set where they lie over each other, face the same way and none between them
     /// faces back. No solid has such sheets: they are one surface, scanned twice.
     bool merge_layers = false;

@@ -7,9 +7,10 @@
 namespace hsdm {
 
 struct OutlierSetOptions {
-    double most_share =
-        0.125; ///< of the points of a typical set: an outlier set has no more, or just one point
-    std::size_t most_sets = 4; ///< that are smoothly related from voxel to voxel; more are a surface
+    /// of the points of a typical set: an outlier set has no more, or just one point
+    double most_share = stray_sets::most_share;
+    /// that are smoothly related from voxel to voxel; more are a surface
+    std::size_t most_sets = stray_sets::most_sets;
 };
 
 /// Removes the outliers from their voxels; their points belong to no set afterwards: sets of a few points

@@ -1,5 +1,6 @@
 #include "hsdm/contour/place_vertices.hh"
 
+#include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
 
 #include <Eigen/Eigenvalues>
@@ -11,15 +12,6 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t duals_per_chunk = 1024;
-constexpr double margin = 0.002;         // voxels: vertices stay this far from their voxel's faces
-constexpr double least_singular = 0.003; // eigenvalues below this share of the largest are cut
-constexpr double hold = 0.002;        // of the largest eigenvalue: pull to the mean in directions left open
-constexpr double side_gap = 0.02;     // voxels: half the least distance between two sides cut apart
-constexpr double farthest_out = 0.5;  // voxels, of vertices that leave theirs
-constexpr double clear_corner = 0.03; // voxels: root mean square of what a corner's planes may miss it by
-constexpr double clear_crease = 0.01; // ... and a crease's, of a vertex that moves there later
-constexpr double crease_out = 0.25;   // voxels, of such a vertex
-constexpr double new_sheet_cosine = 0.77; // normals farther apart than 40 degrees belong to different sheets
 
 struct Plane {
     Vec3 normal;
@@ -44,7 +36,7 @@ struct SheetNormals {
         for (const Plane& plane : planes) {
             const auto end = normals.begin() + count;
             if (std::any_of(normals.begin(), end,
-                            [&](const Vec3& n) { return (n | plane.normal) > new_sheet_cosine; }))
+                            [&](const Vec3& n) { return (n | plane.normal) > relations::same_sheet_cosine; }))
                 continue;
             *end = plane.normal;
             if (++count == 3) break;
@@ -76,11 +68,11 @@ Solution least_squares(const Problem& problem, int most_rank) {
     eigen.computeDirect(a);
     const Eigen::Vector3d values = eigen.eigenvalues(); // ascending
     Solution solution;
-    solution.a = hold * values[2] * Eigen::Matrix3d::Identity();
+    solution.a = placement::hold * values[2] * Eigen::Matrix3d::Identity();
     solution.b.setZero();
     Eigen::Vector3d x = Eigen::Vector3d::Zero();
     for (int k = 2; k >= 0 && solution.rank < most_rank; --k) {
-        if (values[k] < least_singular * values[2] || values[k] <= 0) break;
+        if (values[k] < placement::least_singular * values[2] || values[k] <= 0) break;
         const Eigen::Vector3d v = eigen.eigenvectors().col(k);
         x += v * (v.dot(b) / values[k]);
         solution.a += values[k] * v * v.transpose();
@@ -107,7 +99,7 @@ double misfit(const Vec3& p, const Problem& problem) {
 }
 
 /// `slack` voxels from the faces; negative: so far beyond them at most.
-bool inside(const Vec3& p, const Problem& problem, double slack = margin) {
+bool inside(const Vec3& p, const Problem& problem, double slack = placement::margin) {
     for (unsigned k = 0; k < 3; ++k) {
         const double at = (p[k] - problem.lo[k]) / problem.size;
         if (at < slack || at > 1 - slack) return false;
@@ -116,7 +108,7 @@ bool inside(const Vec3& p, const Problem& problem, double slack = margin) {
 }
 
 Vec3 clamped(Vec3 p, const Problem& problem) {
-    const double slack = margin * problem.size;
+    const double slack = placement::margin * problem.size;
     for (unsigned k = 0; k < 3; ++k)
         p[k] = std::clamp(p[k], problem.lo[k] + slack, problem.lo[k] + problem.size - slack);
     return p;
@@ -125,7 +117,7 @@ Vec3 clamped(Vec3 p, const Problem& problem) {
 /// The point of the box with the least energy: the least of those inside the box, on its faces, edges and
 /// corners, each by a linear system for the coordinates not held at a bound.
 Vec3 least_in_box(const Solution& solution, const Problem& problem) {
-    const double slack = margin * problem.size;
+    const double slack = placement::margin * problem.size;
     Eigen::Vector3d lo, hi;
     for (unsigned k = 0; k < 3; ++k) {
         lo[k] = problem.lo[k] + slack - problem.mean[k];
@@ -185,7 +177,7 @@ public:
             const Vec3 unclamped = solution.position;
             result.is_clamped[dual] = keep_inside(solution);
             if (result.is_clamped[dual] && sheets == 2
-                && meet(2, solution, unclamped, crease_out, clear_crease)) {
+                && meet(2, solution, unclamped, placement::crease_out, placement::clear_crease)) {
                 const SheetNormals both(problem_.planes);
                 on_creases.push_back({dual, unclamped, {both.normals[0], both.normals[1]}});
             }
@@ -265,7 +257,7 @@ private:
                     const Solution apex = least_squares(problem_, 3);
                     problem_.planes.resize(planes);
                     const double d = (apex.position - sets_.sets[s].centroid).sqrnorm();
-                    if (apex.rank == 3 && inside(apex.position, problem_, -margin)
+                    if (apex.rank == 3 && inside(apex.position, problem_, -placement::margin)
                         && (d < nearest || (d == nearest && s < best)))
                         nearest = d, best = s;
                 }
@@ -283,14 +275,16 @@ private:
 
     void add_plane(Index s) {
         const NormalSet& set = sets_.sets[s];
-        problem_.planes.push_back({set.normal, set.centroid, 0.5 * std::min<double>(set.count, 6)});
+        problem_.planes.push_back(
+            {set.normal, set.centroid,
+             placement::point_weight * std::min<double>(set.count, placement::most_points)});
     }
 
     /// A bulge, crease or corner may reach through a face of the voxel without crossing an edge of the next
     /// one. If none of its sheets does so, that voxel has no vertex on them, and this one may lie there; on
     /// the far side of an edge or corner of the voxel if that holds for all voxels around.
     bool may_leave(const Vec3& position) const {
-        if (!inside(position, problem_, -farthest_out)) return false;
+        if (!inside(position, problem_, -placement::farthest_out)) return false;
         const VoxelCoord step = step_to(position);
         for (unsigned way = 1; way < 8; ++way)
             if (is_crossed(step, way)) return false;
@@ -305,7 +299,7 @@ private:
 
     /// For the voxels around, whose own vertices may stand for this corner.
     void note_corner(Index dual, const Solution& solution) {
-        if (!meet(3, solution, solution.position, farthest_out, clear_corner)) return;
+        if (!meet(3, solution, solution.position, placement::farthest_out, placement::clear_corner)) return;
         const SheetNormals sheets(problem_.planes);
         if (sheets.count < 3) return;
         const VoxelCoord step = step_to(solution.position);
@@ -319,7 +313,7 @@ private:
         VoxelCoord step;
         for (unsigned k = 0; k < 3; ++k) {
             const double at = (position[k] - problem_.lo[k]) / problem_.size;
-            step[k] = (at > 1 - margin) - (at < margin);
+            step[k] = (at > 1 - placement::margin) - (at < placement::margin);
         }
         return step;
     }
@@ -354,13 +348,15 @@ private:
     }
 
     bool has_sheet(const Vec3& normal) const {
-        return std::any_of(problem_.planes.begin(), problem_.planes.end(),
-                           [&](const Plane& plane) { return (plane.normal | normal) > new_sheet_cosine; });
+        return std::any_of(problem_.planes.begin(), problem_.planes.end(), [&](const Plane& plane) {
+            return (plane.normal | normal) > relations::same_sheet_cosine;
+        });
     }
 
     /// Returns whether the planes were missed for it.
     bool keep_inside(Solution& solution) const {
-        if ((solution.position - clamped(solution.position, problem_)).norm() > 0.5 * problem_.size
+        if ((solution.position - clamped(solution.position, problem_)).norm()
+                > placement::far_meeting * problem_.size
             && solution.rank > 1) {
             // Planes that meet far away say nothing about this voxel.
             solution = least_squares(problem_, 1);
@@ -417,9 +413,9 @@ void separate_sides(const Crossings& crossings, const DualVertices& duals, doubl
     };
     for (std::size_t v : duals.after_cut) {
         const Vec3 d = positions[v] - positions[v - 1], one = outward(v - 1), other = outward(v);
-        if (std::max(std::abs(d | one), std::abs(d | other)) > 2 * side_gap * voxel_size) continue;
-        positions[v - 1] += one * (side_gap * voxel_size);
-        positions[v] += other * (side_gap * voxel_size);
+        if (std::max(std::abs(d | one), std::abs(d | other)) > 2 * placement::side_gap * voxel_size) continue;
+        positions[v - 1] += one * (placement::side_gap * voxel_size);
+        positions[v] += other * (placement::side_gap * voxel_size);
     }
 }
 

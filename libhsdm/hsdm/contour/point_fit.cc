@@ -1,5 +1,6 @@
 #include "hsdm/contour/point_fit.hh"
 
+#include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/spatial/point_triangle.hh"
 
@@ -9,9 +10,6 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t per_chunk = 512;
-constexpr std::size_t points_per_voxel = 8;
-constexpr double same_sheet_cosine = 0.77; // normals within 40 degrees
-constexpr double doubt = 2;                // times the variance that squared rises must exceed
 
 /// A triangle of the facets round a vertex.
 struct Around {
@@ -107,7 +105,8 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
             for (Index dual : near) list_triangles(dual, duals_, positions, around);
             if (around.empty()) continue;
             const std::size_t first = level_.first_point[x], last = level_.first_point[x + 1];
-            const std::size_t stride = (last - first + points_per_voxel - 1) / points_per_voxel;
+            const std::size_t stride =
+                (last - first + relaxation::points_per_voxel - 1) / relaxation::points_per_voxel;
             for (std::size_t i = first; i < last; i += stride) {
                 const Foot foot = find_foot(octree_.positions[i], around, flat);
                 const double distance = std::sqrt(foot.nearest.squared_distance);
@@ -117,8 +116,8 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
                     const Index v = foot.corners[k];
                     const double height = vertices_.directions[v] | way;
                     if (vertices_.classes[v] != VertexClass::smooth || duals_.open[v]
-                        || (octree_.normals[i] | vertices_.directions[v]) < same_sheet_cosine
-                        || std::abs(height) < same_sheet_cosine * distance) // beside the facets
+                        || (octree_.normals[i] | vertices_.directions[v]) < relations::same_sheet_cosine
+                        || std::abs(height) < relaxation::upright_cosine * distance) // beside the facets
                         continue;
                     if (vertices_.voxel[v] >= begin && vertices_.voxel[v] < end)
                         result.heights[v].add(foot.nearest.weights[k], height);
@@ -152,8 +151,8 @@ std::vector<double> PointFit::rises(const std::vector<Heights>& heights) const {
                     sum.square += other.square;
                     sum.variance += other.variance;
                 }
-            if (sum.square > doubt * sum.variance)
-                rises[v] = heights[v].mean() * (1 - doubt * sum.variance / sum.square);
+            if (sum.square > relaxation::doubt * sum.variance)
+                rises[v] = heights[v].mean() * (1 - relaxation::doubt * sum.variance / sum.square);
         }
     });
     return rises;

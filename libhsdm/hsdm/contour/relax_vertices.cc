@@ -1,5 +1,6 @@
 #include "hsdm/contour/relax_vertices.hh"
 
+#include "hsdm/contour/constants.hh"
 #include "hsdm/contour/point_fit.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/errors.hh"
@@ -13,11 +14,6 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t duals_per_chunk = 1024;
-constexpr double same_sheet_cosine = 0.77; // normals within 40 degrees
-constexpr double along_cosine = 0.8;       // an edge this parallel to a crease lies on it
-constexpr double margin = 0.002;           // voxels: vertices stay this far from their voxel's faces
-constexpr double farther = 0.1;            // share by which a voxel's points may get farther off
-constexpr double nearness = 0.01;          // squared voxels: added to squared distances in weights
 
 /// As far from one position of a dual vertex's vertex towards another as its voxel allows.
 Vec3 within_voxel(const GridPoints& grid, const Crossings& crossings, const DualVertices& duals, Index dual,
@@ -29,8 +25,8 @@ Vec3 within_voxel(const GridPoints& grid, const Crossings& crossings, const Dual
     const Vec3 way = to - from;
     double share = 1;
     for (unsigned k = 0; k < 3; ++k) {
-        const double lo = (lower[k] + static_cast<int>(octant >> k & 1u) - 1 + margin) * h;
-        const double hi = lo + (1 - 2 * margin) * h;
+        const double lo = (lower[k] + static_cast<int>(octant >> k & 1u) - 1 + placement::margin) * h;
+        const double hi = lo + (1 - 2 * placement::margin) * h;
         if (way[k] > 0 && to[k] > hi) share = std::min(share, (hi - from[k]) / way[k]);
         if (way[k] < 0 && to[k] < lo) share = std::min(share, (lo - from[k]) / way[k]);
     }
@@ -83,7 +79,7 @@ public:
         rise(fit.rises(after.heights));
         for (std::size_t v = 0; v < duals_.size(); ++v) {
             const Index voxel = vertices_.voxel[v];
-            if (after.misfit[voxel] > (1 + farther) * before.misfit[voxel])
+            if (after.misfit[voxel] > (1 + relaxation::farther) * before.misfit[voxel])
                 vertices_.positions[v] = placed_[v];
         }
     }
@@ -136,7 +132,7 @@ private:
         Vec3 normal(0, 0, 0), place(0, 0, 0);
         double sum = 0;
         const auto add = [&](Index v, double share) {
-            const double weight = share / ((p - placed_[v]).sqrnorm() / (h_ * h_) + nearness);
+            const double weight = share / ((p - placed_[v]).sqrnorm() / (h_ * h_) + relaxation::nearness);
             normal += vertices_.directions[v] * weight;
             place += placed_[v] * weight;
             sum += weight;
@@ -144,8 +140,8 @@ private:
         if (!vertices_.is_clamped[dual]) add(dual, 1);
         for (const auto& [n, sides] : neighbours(dual))
             if (vertices_.classes[n] == VertexClass::smooth && !vertices_.is_clamped[n]
-                && (vertices_.directions[n] | own) > same_sheet_cosine)
-                add(n, 0.5 * sides);
+                && (vertices_.directions[n] | own) > relations::same_sheet_cosine)
+                add(n, relaxation::side_weight * sides);
         if (!(sum > 0)) return p;
         normal.normalize();
         return p - normal * (normal | (p - place / sum));
@@ -161,7 +157,7 @@ private:
             if (vertices_.classes[n] == VertexClass::smooth) continue;
             const Vec3 way = vertices_.positions[n] - p;
             const double s = way | along;
-            if (std::abs(s) < along_cosine * way.norm()) continue;
+            if (std::abs(s) < relaxation::along_cosine * way.norm()) continue;
             (s > 0 ? ahead : behind) = s > 0 ? std::max(ahead, s) : std::min(behind, s);
         }
         return ahead > 0 && behind < 0 ? p + along * (0.5 * step * (ahead + behind)) : p;
@@ -197,7 +193,8 @@ private:
 const NormalSet* own_set(const NormalSets& sets, Index voxel, const Vec3& normal) {
     const NormalSet* best = nullptr;
     for (const NormalSet& set : sets.of_voxel(voxel))
-        if ((set.normal | normal) > same_sheet_cosine && (!best || set.count > best->count)) best = &set;
+        if ((set.normal | normal) > relations::same_sheet_cosine && (!best || set.count > best->count))
+            best = &set;
     return best;
 }
 

@@ -6,9 +6,11 @@
 namespace hsdm {
 
 struct RelaxOptions {
-    int rounds = 3;    ///< >= 0: moves within the sheet
-    double step = 0.7; ///< (0, 1]: share of the way to the mean of the neighbours in a round
-    bool fit = true;   ///< after that, move the sheet towards the points
+    /// >= 0: moves within the sheet
+    int rounds = relaxation::rounds;
+    /// (0, 1]: share of the way to the mean of the neighbours in a round
+    double step = relaxation::step;
+    bool fit = true; ///< after that, move the sheet towards the points
 };
 
 /// Moves smooth vertices within their sheet towards the mean of their neighbours, those of a crease along it

@@ -1,17 +1,11 @@
 #include "hsdm/contour/set_relation.hh"
 
+#include "hsdm/contour/constants.hh"
 #include "hsdm/errors.hh"
 
 #include <cmath>
 
 namespace hsdm {
-namespace {
-/// Planes closer to parallel than this have no useful line in common (about 6 degrees).
-constexpr double least_sine_squared = 0.01;
-/// Voxels: how far a set's points may reach beyond the plane they should end at.
-constexpr double overshoot = 0.3;
-} // namespace
-
 RelationTest::RelationTest(const RelationOptions& options, double voxel_size)
     : cos_smooth_(std::cos(options.smooth_angle)),
       gap_(options.smooth_gap * voxel_size),
@@ -33,7 +27,7 @@ Relation RelationTest::operator()(const NormalSet& a, const NormalSet& b) const 
 
 Relation RelationTest::crease(const NormalSet& a, const NormalSet& b, double cosine) const {
     const double sine_squared = 1 - cosine * cosine;
-    if (sine_squared < least_sine_squared) return Relation::none;
+    if (sine_squared < relations::least_sine_squared) return Relation::none;
     const Vec3 chord = b.centroid - a.centroid;
     const double b_above_a = a.normal | chord;
     const double a_above_b = -(b.normal | chord);
@@ -51,7 +45,8 @@ bool RelationTest::ends_at(const NormalSet& set, const Vec3& plane, double above
     const double reach = std::sqrt(3 * std::max(0.0, set.spread.along(plane)));
     const double sine = std::sqrt(1 - cosine * cosine);
     const double spacing = 0.5 * voxel_size_ / std::sqrt(static_cast<double>(set.count));
-    return short_of - reach < (crease_gap_ + spacing) * sine && reach - short_of < overshoot * voxel_size_;
+    return short_of - reach < (crease_gap_ + spacing) * sine
+           && reach - short_of < relations::overshoot * voxel_size_;
 }
 
 } // namespace hsdm

@@ -14,10 +14,12 @@ enum class Relation : std::uint8_t {
 };
 
 struct RelationOptions {
-    double smooth_angle =
-        0.70; ///< radians, (0, pi/2): normals closer than this belong to one sheet (40 degrees)
-    double smooth_gap = 0.3; ///< voxels: how far two sets of one sheet may lie apart along their mean normal
-    double crease_gap = 0.5; ///< voxels: how far from the points of both sets the planes of a crease may meet
+    /// radians, (0, pi/2): normals closer than this belong to one sheet (40 degrees)
+    double smooth_angle = relations::smooth_angle;
+    /// voxels: how far two sets of one sheet may lie apart along their mean normal
+    double smooth_gap = relations::smooth_gap;
+    /// voxels: how far from the points of both sets the planes of a crease may meet
+    double crease_gap = relations::crease_gap;
 };
 
 /// The relation of two sets of the same or of adjacent voxels. Symmetric. Smooth: small angle, and the chord

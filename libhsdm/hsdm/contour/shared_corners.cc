@@ -1,14 +1,13 @@
 #include "hsdm/contour/shared_corners.hh"
 
+#include "hsdm/contour/constants.hh"
+
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 
 namespace hsdm {
 namespace {
-
-constexpr double same_place = 0.1; // voxels: corners this near are one, planes this near pass through it
-constexpr double same_sheet_cosine = 0.77; // normals within 40 degrees
 
 class SharedCorners {
 public:
@@ -40,7 +39,7 @@ private:
 
     bool can_hold(Index dual, const PlacedVertices::Beyond& beyond) const {
         if (dual == beyond.dual || duals_.open[dual] || !may_reach(dual, beyond)) return false;
-        const double near = same_place * h_;
+        const double near = creases::same_place * h_;
         if (is_corner(dual)) return (vertices_.positions[dual] - beyond.position).norm() < near;
         const auto corners = duals_.corners_of(dual);
         return std::all_of(corners.begin(), corners.end(), [&](FacetCorner corner) {
@@ -53,7 +52,7 @@ private:
     /// May the vertex of a neighbouring voxel lie at the corner, in its own voxel or beyond a face of that
     /// across which no sheet crosses an edge?
     bool may_reach(Index dual, const PlacedVertices::Beyond& beyond) const {
-        if (outside(dual, beyond.position) < same_place) return true;
+        if (outside(dual, beyond.position) < creases::same_place) return true;
         const VoxelCoord here = voxel_of(beyond.dual), there = voxel_of(dual);
         unsigned axis = 0;
         while (axis < 2 && here[axis] == there[axis]) ++axis;
@@ -64,8 +63,8 @@ private:
     }
 
     static bool has_sheet(const PlacedVertices::Beyond& beyond, const Vec3& normal) {
-        return std::ranges::any_of(beyond.normals,
-                                   [&](const Vec3& n) { return (n | normal) > same_sheet_cosine; });
+        return std::ranges::any_of(
+            beyond.normals, [&](const Vec3& n) { return (n | normal) > relations::same_sheet_cosine; });
     }
 
     /// How far a point lies beyond the faces of a dual vertex's voxel, in voxels; 0 inside.
@@ -121,7 +120,7 @@ std::vector<EdgeCollapse> shared_corners(const GridPoints& grid, const Crossings
     std::vector<EdgeCollapse> edges;
     SharedCorners corners(grid, crossings, duals, voxel_size, vertices);
     for (const PlacedVertices::Beyond& beyond : vertices.beyond) corners.find(beyond, edges);
-    return with_one_corner_each(edges, same_place * voxel_size);
+    return with_one_corner_each(edges, creases::same_place * voxel_size);
 }
 
 } // namespace hsdm

@@ -1,5 +1,6 @@
 #include "hsdm/contour/sheet_features.hh"
 
+#include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/facet_normal.hh"
@@ -10,16 +11,6 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t facets_per_chunk = 1024;
-constexpr double least_cosine = 0.5;  // between a facet and its set
-constexpr double least_fold = 0.7;    // of the crease angle: flatter edges are not looked at
-constexpr double off_fold_sine = 0.5; // normals farther out of the fold's plane belong to other sheets
-constexpr double end_band = 0.25; // of the fold's angle: normals this close to one sheet's are that sheet's
-constexpr double most_between = 0.1; // of the points round a crease
-constexpr double least_side = 0.05;  // of them: each side of a crease has as many
-constexpr double nearby = 0.75;      // voxels from the edge: a second look where a small radius would show
-constexpr double chord = 0.5;        // voxels: how far positions are compared with normals
-constexpr double most_tilted = 0.4;  // of the points between in the whole cloud
-constexpr double most_tilt = 0.125;  // of the fold's angle, between chords and normals
 
 /// The angle at an edge, measured in the plane across it from one sheet's normal to the other's.
 struct Fold {
@@ -43,13 +34,13 @@ public:
         for (Index v : voxels)
             for (Index i = level_.first_point[v]; i < level_.first_point[v + 1]; ++i) {
                 const Vec3& n = octree_.normals[i];
-                if (n.sqrnorm() < 0.5 || std::abs(n | axis) > off_fold_sine) continue;
+                if (n.sqrnorm() < 0.5 || std::abs(n | axis) > edge_hints::off_fold_sine) continue;
                 const double direction = std::atan2(n | along, n | fold.from);
                 if (direction < -0.5 * angle_ || direction > 1.5 * angle_) continue;
                 const Vec3 arm = octree_.positions[i] - a;
                 const Vec3 off_edge = arm - edge * std::clamp(arm | edge, 0.0, length);
-                points_.push_back(
-                    {arm | along, arm | fold.from, direction, off_edge.norm() <= nearby * level_.voxel_size});
+                points_.push_back({arm | along, arm | fold.from, direction,
+                                   off_edge.norm() <= edge_hints::nearby * level_.voxel_size});
             }
     }
 
@@ -65,8 +56,8 @@ public:
             near_middle += p.near && is_middle;
         }
         const auto all = static_cast<double>(points_.size());
-        return low > least_side * all && high > least_side * all && middle <= most_between * all
-               && near_middle <= most_between * near;
+        return low > edge_hints::least_side * all && high > edge_hints::least_side * all
+               && middle <= edge_hints::most_between * all && near_middle <= edge_hints::most_between * near;
     }
 
     /// Of the points between, how many have a normal that chords to the points close by contradict. On a
@@ -76,7 +67,7 @@ public:
         for (const Point& p : points_) {
             if (!between(p)) continue;
             ++middle;
-            tilted += std::abs(tilt(p)) > most_tilt * angle_;
+            tilted += std::abs(tilt(p)) > edge_hints::most_tilt * angle_;
         }
     }
 
@@ -88,14 +79,17 @@ private:
     };
 
     bool between(const Point& p) const {
-        return p.direction >= end_band * angle_ && p.direction <= (1 - end_band) * angle_;
+        return p.direction >= edge_hints::end_band * angle_
+               && p.direction <= (1 - edge_hints::end_band) * angle_;
     }
 
     double tilt(const Point& p) const {
         double rise = 0, run = 0;
         for (const Point& q : points_) {
             const double dx = q.x - p.x, dy = q.y - p.y, mean = 0.5 * (p.direction + q.direction);
-            if (dx * dx + dy * dy > chord * chord * level_.voxel_size * level_.voxel_size) continue;
+            if (dx * dx + dy * dy
+                > edge_hints::chord * edge_hints::chord * level_.voxel_size * level_.voxel_size)
+                continue;
             const double forward = dx * std::cos(mean) - dy * std::sin(mean);
             const double up = dx * std::sin(mean) + dy * std::cos(mean);
             rise += forward >= 0 ? up : -up;
@@ -163,9 +157,9 @@ Index SheetFacets::set(Index f) const {
             const NormalSet& set = sets_.sets[s];
             const Vec3 arm = (centre - set.centroid) / level_.voxel_size;
             const double cosine = set.normal | normals_[f];
-            if (cosine < least_cosine) continue;
+            if (cosine < edge_hints::least_cosine) continue;
             // Of one sheet's sets the nearest: a twentieth tells them apart and sways nothing else.
-            const double cost = 1 - cosine + std::abs(set.normal | arm) + 0.05 * arm.norm();
+            const double cost = 1 - cosine + std::abs(set.normal | arm) + edge_hints::arm_weight * arm.norm();
             if (cost < least || (cost == least && s < best)) least = cost, best = s;
         }
     return best;
@@ -176,14 +170,15 @@ public:
     EdgeJudge(const Octree& octree, const OctreeLevel& level, const SheetFacets& facets, double crease_angle)
         : facets_(facets),
           crease_angle_(crease_angle),
-          flat_(std::cos(least_fold * crease_angle) + 1e-9), // so that rounding decides nothing here
+          flat_(std::cos(edge_hints::least_fold * crease_angle)
+                + 1e-9), // so that rounding decides nothing here
           points_(octree, level) {}
 
     /// The edge of facets f and g from a to b.
     EdgeHint judge(Index f, Index g, const Vec3& a, const Vec3& b, Tally& tally) {
         if ((facets_.normal(f) | facets_.normal(g)) > flat_) return EdgeHint::none;
         const Fold facets(facets_.normal(f), facets_.normal(g));
-        if (!(facets.angle >= least_fold * crease_angle_)) return EdgeHint::none;
+        if (!(facets.angle >= edge_hints::least_fold * crease_angle_)) return EdgeHint::none;
         const Index one = facets_.set(f), other = facets_.set(g);
         Fold fold = one != other
                         ? Fold(facets_.sheet_normal(one, facets.from), facets_.sheet_normal(other, facets.to))
@@ -235,7 +230,8 @@ SheetFeatures sheet_features(const Octree& octree, const OctreeLevel& level, con
         tilted += t.tilted;
     }
     if (static_cast<double>(tilted)
-        > most_tilted * static_cast<double>(middle)) { // smeared or noisy normals: what bends may be them
+        > edge_hints::most_tilted
+              * static_cast<double>(middle)) { // smeared or noisy normals: what bends may be them
         std::replace(sides.begin(), sides.end(), EdgeHint::smooth, EdgeHint::none);
         result.doubtful = std::exchange(result.smooth, 0);
     }

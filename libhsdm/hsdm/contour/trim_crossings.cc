@@ -6,10 +6,6 @@
 namespace hsdm {
 namespace {
 
-/// Sides: a shorter boundary loop is a defect to close, not a border; and the same of the hole in the data
-/// around it, whose outline is more ragged.
-constexpr std::ptrdiff_t longest_defect = 16, longest_outline = 20;
-
 bool is_open(const Link& link) {
     return link.crossing == no_index;
 }
@@ -97,7 +93,7 @@ std::vector<std::uint8_t> find_borders(const OpenLoops& loops, const std::vector
         }
     std::vector<std::uint8_t> is_border(outline.size());
     for (std::size_t l = 0; l < outline.size(); ++l)
-        is_border[l] = loops.sides[l] > longest_defect || outline[l] > longest_outline;
+        is_border[l] = loops.sides[l] > pairing::longest_defect || outline[l] > pairing::longest_outline;
     return is_border;
 }
 

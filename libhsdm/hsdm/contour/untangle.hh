@@ -1,13 +1,16 @@
 #pragma once
 // Self-intersections that vertex positions cause, taken back by moving those vertices.
 
+#include "hsdm/contour/constants.hh"
 #include "hsdm/spatial/facet_cells.hh"
 
 namespace hsdm {
 
 struct UntangleOptions {
-    int rounds = 6;    ///< at most, >= 0; 0 only counts
-    double step = 0.5; ///< (0, 1]: share of the way a vertex moves to the mean of its neighbours in a round
+    /// at most, >= 0; 0 only counts
+    int rounds = untangling::rounds;
+    /// (0, 1]: share of the way a vertex moves to the mean of its neighbours in a round
+    double step = untangling::step;
     double reach =
         0; ///< how far a vertex may move in all, in the mesh's units; 0: as far as the rounds take it
     double nearby = 0; ///< facets this close to a moved one are checked against it, in the mesh's units, > 0

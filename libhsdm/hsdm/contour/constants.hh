@@ -1,0 +1,425 @@
+#pragma once
+// Tuning values of the extended method (section 3.4), in the order of docs/sheets.md. Lengths are in voxels.
+// What half and double of each do: docs/constants.md.
+
+#include "hsdm/core/tuned.hh"
+
+#include <cstddef>
+
+// normal_sets.hh
+namespace hsdm::sets {
+
+/// radians: points of a set lie within this angle of its mean normal.
+/// Why: 35 degrees, the default angle above which an edge is sharp, so that the faces beside a sharp edge are
+/// two sets.
+HSDM_TUNED double cluster_angle = 0.61;
+
+/// voxels: parallel sheets farther apart than this are two sets.
+/// Why: what a relation takes for one sheet (relations.smooth_gap) must not be split before.
+HSDM_TUNED double sheet_gap = 0.3;
+
+/// rounds: mean shifts from the normal that most others agree with to the mode.
+/// Why: by trial; the mean of a cluster of 35 degrees hardly moves after two.
+HSDM_TUNED int mode_rounds = 3;
+
+/// rounds: assignments of all points to the nearest mode, which then moves to their mean (Lloyd).
+/// Why: by trial; the second settles what the first one's means changed.
+HSDM_TUNED int lloyd_rounds = 2;
+
+/// voxels: a set's centroid moves at most this far along its normal onto the curved surface.
+/// Why: noise in the normals must not push the set out of its own neighbourhood; a third of what one sheet
+/// may be off.
+HSDM_TUNED double most_lift = 0.1;
+
+/// cosine: with a direction, of the normals of a sheet that faces back.
+/// Why: by trial; 135 degrees, halfway from a right angle to opposite.
+HSDM_TUNED double faces_back = -0.7;
+
+} // namespace hsdm::sets
+
+// outlier_sets.hh
+namespace hsdm::stray_sets {
+
+/// share: of the points of a typical set; a set of more is no outlier.
+/// Why: by trial; a corner of the surface that reaches into a voxel by an eighth of its area holds as many.
+HSDM_TUNED double most_share = 0.125;
+
+/// sets: that are smoothly related from voxel to voxel; more are a surface.
+/// Why: by trial; a patch of two by two voxels.
+HSDM_TUNED std::size_t most_sets = 4;
+
+} // namespace hsdm::stray_sets
+
+// set_relation.hh, and who else asks whether two normals belong to one sheet
+namespace hsdm::relations {
+
+/// radians: normals closer than this belong to one sheet.
+/// Why: 40 degrees, beyond the 35 degrees to which a set may spread, so that a round rim of a voxel's radius
+/// stays one sheet (90 degrees over two or three voxels). Creases that are flatter are rounded.
+HSDM_TUNED double smooth_angle = 0.70;
+
+/// cosine: of the same angle, where normals of crossings, planes and vertices are compared.
+/// Why: smooth_angle to two digits; its own cosine, 0.765, would change results by as little.
+HSDM_TUNED double same_sheet_cosine = 0.77;
+
+/// voxels: how far two sets of one sheet may lie apart along their mean normal.
+/// Why: by trial, between the noise of a centroid (under 0.1) and the thinnest plate whose sides face the
+/// same way (0.3 is what docs/sheets.md promises).
+HSDM_TUNED double smooth_gap = 0.3;
+
+/// voxels: how far from the points of both sets the planes of a crease may meet.
+/// Why: a set that ends at a crease in the next voxel lies up to half a voxel from it where points are few.
+HSDM_TUNED double crease_gap = 0.5;
+
+/// squared sine: planes closer to parallel have no line in common.
+/// Why: 6 degrees; beyond smooth_angle only opposite sheets are that parallel, the two sides of a plate.
+HSDM_TUNED double least_sine_squared = 0.01;
+
+/// voxels: how far a set's points may reach beyond the plane they should end at.
+/// Why: as far as sheets may be off each other (smooth_gap).
+HSDM_TUNED double overshoot = 0.3;
+
+} // namespace hsdm::relations
+
+// local_sheets.hh, grid_signs.hh
+namespace hsdm::sheets {
+
+/// voxels: how far off its planes a sheet may pass.
+/// Why: half of smooth_gap: two sets of one sheet that far apart each miss their mean by half of it.
+HSDM_TUNED double surface_error = 0.15;
+
+/// rounds: of joining sheets that are one elsewhere.
+/// Why: bounds the work; a round without change ends it, on clean data the second or third.
+HSDM_TUNED int closure_rounds = 8;
+
+/// cosine: of the normals of two sets that may become one sheet since they are one elsewhere.
+/// Why: 70 degrees: less than the right angle between a plate's side and its rim, through which its two sides
+/// would join.
+HSDM_TUNED double least_closure_cosine = 0.35;
+
+/// voxels: a set's say on a grid point falls off with its distance from it, to 1 / e at this distance.
+/// Why: by trial; centroids of the eight voxels around lie 0.3 to 1.2 from a grid point, the near ones should
+/// decide.
+HSDM_TUNED double nearness = 0.5;
+
+/// points: a set of more has no more say.
+/// Why: by trial; eight points fix a plane's height well, beyond that nearness should decide and not density.
+HSDM_TUNED double most_points = 8;
+
+} // namespace hsdm::sheets
+
+// crossings.hh
+namespace hsdm::crossing {
+
+/// voxels: from a crossing to the centroid of the nearest set of its sheet; beyond, the data do not carry it.
+/// Why: a centroid lies in one of the four voxels beside the edge, at most a voxel and a half off, if the
+/// sheet does.
+HSDM_TUNED double far_from_data = 1.0;
+
+/// share: of the points expected in a voxel; of fewer, the sheet ends in it.
+/// Why: by trial; scans differ in density by two or three from voxel to voxel without an end.
+HSDM_TUNED double fair_share = 0.25;
+
+/// voxels: how far off a sheet's plane its points may lie, in another voxel.
+/// Why: by trial; smaller than sheets.surface_error since only the area of a plane inside a voxel depends on
+/// it.
+HSDM_TUNED double plane_error = 0.1;
+
+/// points: a voxel beside a crossed edge that holds none of the sheet is a sliver that the sampling missed
+/// while fewer are expected in it. Why: with six expected by chance none is there once in four hundred
+/// (exp(-6)).
+HSDM_TUNED double sliver_points = 6;
+
+} // namespace hsdm::crossing
+
+// grid_signs.hh. Costs are in crossings taken back that the data carry.
+namespace hsdm::signs {
+
+/// crossings: cost of taking back one that the data do not carry.
+/// Why: by trial, of 0.25 and 0.5; two of them must weigh less than one that is carried.
+HSDM_TUNED double cost_of_weak = 0.25;
+
+/// crossings: cost of bringing back one beyond a crease or beyond the data.
+/// Why: by trial; cheaper than taking back what is carried, dearer than what is not.
+HSDM_TUNED double cost_of_return = 0.75;
+
+/// crossings: cost of one where no sheet has any.
+/// Why: as much as taking back both crossings of a thin part.
+HSDM_TUNED double cost_of_invention = 2;
+
+/// crossings: cost of one that leaves a side open.
+/// Why: more than all six edges of a grid point can cost otherwise, so that it comes last.
+HSDM_TUNED double cost_of_leak = 8;
+
+/// crossings: cost of a side against all sheets around a grid point.
+/// Why: as much as one crossing that the data carry.
+HSDM_TUNED double most_belief = 1;
+
+/// rounds: of votes by neighbours after the first.
+/// Why: sheets reach three grid points at most beyond the voxels that hold their points; the last round
+/// leaves none undecided.
+HSDM_TUNED int vote_rounds = 3;
+
+/// rounds: of changing sides where that lowers the cost.
+/// Why: bounds the work; a round without change ends it.
+HSDM_TUNED int settle_rounds = 8;
+
+/// voxels: an invented crossing stays this far from the ends of its edge.
+/// Why: by trial; off the grid points by enough that facets there keep an area.
+HSDM_TUNED double end_gap = 0.01;
+
+} // namespace hsdm::signs
+
+// crossing_pairs.hh, trim_crossings.hh
+namespace hsdm::pairing {
+
+/// cosine: of the normals of two crossings that face opposite ways, as the two sides of a thin part or of a
+/// wedge. Why: 107 degrees: creases at a right angle are not opposite, noise of 15 degrees included.
+HSDM_TUNED double opposed_cosine = -0.3;
+
+/// cost: of pairing two crossings across a crease, beside the angle and the distance from each other's
+/// planes. Why: by trial; one sheet is to be preferred at any angle of less than 90 degrees, whose cost is 1.
+HSDM_TUNED double cost_of_crease = 1;
+
+/// cost: of pairing two that have nothing to do with each other.
+/// Why: twice that of a crease.
+HSDM_TUNED double cost_of_strangers = 2;
+
+/// sides: a shorter boundary loop is a defect to close and no border.
+/// Why: the end of a pipe of two voxels has 16 sides.
+HSDM_TUNED int longest_defect = 16;
+
+/// sides: the same of the hole in the data around the loop.
+/// Why: its outline is more ragged; with a slot beside a pipe's end 26 sides were found.
+HSDM_TUNED int longest_outline = 20;
+
+/// rounds: of taking back crossings beyond the data and pairing the others anew; the same of tips.
+/// Why: bounds the work; what the first one leaves is next to nothing.
+HSDM_TUNED int trim_rounds = 3;
+
+} // namespace hsdm::pairing
+
+// dual_vertices.hh
+namespace hsdm::cuts {
+
+/// voxels: from a voxel's middle to the tip of a wedge that it can serve; farther off, two opposite sides are
+/// a thin part. Why: the corner of a voxel is 0.87 from its middle; a vertex may lie outside its voxel by
+/// some more.
+HSDM_TUNED double tip_reach = 1.0;
+
+/// voxels: a narrower face between two sides is none; one vertex serves both its creases.
+/// Why: by trial; as small as the noise of a crossing.
+HSDM_TUNED double least_width = 0.05;
+
+} // namespace hsdm::cuts
+
+// place_vertices.hh
+namespace hsdm::placement {
+
+/// voxels: vertices stay this far from their voxel's faces.
+/// Why: by trial; facets across a face of voxels keep an area, and a vertex is off its planes by no more than
+/// noise.
+HSDM_TUNED double margin = 0.002;
+
+/// share: eigenvalues below this share of the largest are cut.
+/// Why: two planes 6 degrees apart have a ratio of 0.003 (the squared tangent of half the angle): less is no
+/// crease.
+HSDM_TUNED double least_singular = 0.003;
+
+/// share: of the largest eigenvalue; pull to the mean in directions left open, in the box.
+/// Why: below least_singular, so that it outweighs no plane.
+HSDM_TUNED double hold = 0.002;
+
+/// voxels: half the least distance between two sides cut apart.
+/// Why: by trial; facets between them keep an area.
+HSDM_TUNED double side_gap = 0.02;
+
+/// voxels: how far outside its voxel a vertex may lie where no other can be in its way.
+/// Why: half the next voxel; farther off that one's other half would have a vertex of its own.
+HSDM_TUNED double farthest_out = 0.5;
+
+/// voxels: root mean square of what a corner's planes may miss it by.
+/// Why: by trial; three planes always meet, four and more only at a corner.
+HSDM_TUNED double clear_corner = 0.03;
+
+/// voxels: root mean square of what a crease's planes may miss a vertex by that moves there later.
+/// Why: by trial; stricter than a corner's, as such creases are many and moving is worth little where they
+/// are vague.
+HSDM_TUNED double clear_crease = 0.01;
+
+/// voxels: how far outside its voxel such a vertex may lie.
+/// Why: by trial, half of farthest_out: nothing guards it but the facets around.
+HSDM_TUNED double crease_out = 0.25;
+
+/// crossings: weight of one point of the voxel's own sets in least squares.
+/// Why: by trial; a crossing is a mean over some points.
+HSDM_TUNED double point_weight = 0.5;
+
+/// points: a set of more has no more weight.
+/// Why: by trial; three crossings' worth, as many as pass by a vertex on one sheet.
+HSDM_TUNED double most_points = 6;
+
+/// voxels: planes that meet farther outside say nothing, and the sheet alone decides.
+/// Why: as far as a vertex may lie outside (farthest_out).
+HSDM_TUNED double far_meeting = 0.5;
+
+} // namespace hsdm::placement
+
+// relax_vertices.hh
+namespace hsdm::relaxation {
+
+/// rounds: moves within the sheet.
+/// Why: measured; ten gain nothing more.
+HSDM_TUNED int rounds = 3;
+
+/// share: of the way to the mean of the neighbours in a round.
+/// Why: by trial; the whole way makes neighbours change places on a grid.
+HSDM_TUNED double step = 0.7;
+
+/// cosine: an edge this parallel to a crease lies on it.
+/// Why: 37 degrees; by trial, below the 45 degrees of a quad's diagonal.
+HSDM_TUNED double along_cosine = 0.8;
+
+/// share: by which a voxel's points may get farther off before its vertices go back.
+/// Why: by trial; a tenth is within the chance of eight points.
+HSDM_TUNED double farther = 0.1;
+
+/// squared voxels: added to squared distances in weights of neighbours' heights.
+/// Why: a tenth of a voxel squared, so that the weight at a neighbour stays finite.
+HSDM_TUNED double nearness = 0.01;
+
+/// share: weight of a neighbour per side of its edge, against that of the vertex itself.
+/// Why: an edge inside the surface has two sides, so that each neighbour weighs as much as the vertex.
+HSDM_TUNED double side_weight = 0.5;
+
+/// points: of a voxel that facets are compared with, evenly taken.
+/// Why: measured time against gain; eight fix a vertex's height to a third of the noise.
+HSDM_TUNED std::size_t points_per_voxel = 8;
+
+/// factor: on the variance that squared rises must exceed.
+/// Why: where they are equal noise explains the rise; twice moves less than noise would in the mean.
+HSDM_TUNED double doubt = 2;
+
+/// cosine: of the way from the facets to a point with the vertex's direction; less upright, and it lies
+/// beside them. Why: 40 degrees, as of normals of one sheet.
+HSDM_TUNED double upright_cosine = 0.77;
+
+} // namespace hsdm::relaxation
+
+// move_to_creases.hh, shared_corners.hh, and the diagonals of dual_contour.hh
+namespace hsdm::creases {
+
+/// rounds: of moving vertices to creases.
+/// Why: bounds the work; one that moves may make way for another.
+HSDM_TUNED int move_rounds = 4;
+
+/// cosine: of a facet's normal with that before, and with its sheet's.
+/// Why: 45 degrees: a facet laid along the other sheet of a right angle turns by more.
+HSDM_TUNED double turn_cosine = 0.7;
+
+/// voxels: least distance from a vertex that moves to another.
+/// Why: a tenth of a voxel, below which facets are slivers.
+HSDM_TUNED double least_distance = 0.1;
+
+/// sine: of the corners of triangles at such a vertex.
+/// Why: 1 degree: thinner ones have no normal to judge by.
+HSDM_TUNED double least_sine = 0.02;
+
+/// voxels: corners this near are one, planes this near pass through it.
+/// Why: by trial; three times clear_corner, as the planes are those of another voxel.
+HSDM_TUNED double same_place = 0.1;
+
+/// cosine: between the two halves of a quad that is cut along its diagonal on a crease.
+/// Why: 30 degrees: blunter folds are those of round parts a voxel or two thick, nearer to the shape without
+/// the cut.
+HSDM_TUNED double fold_cosine = 0.866;
+
+/// cosine: the same along the other diagonal: a quad that is flat that way is no fold.
+/// Why: 18 degrees; by trial.
+HSDM_TUNED double other_fold_cosine = 0.95;
+
+} // namespace hsdm::creases
+
+// untangle.hh
+namespace hsdm::untangling {
+
+/// rounds: of moving vertices of facets that intersect.
+/// Why: by trial; six steps of a half leave a fiftieth of the way.
+HSDM_TUNED int rounds = 6;
+
+/// share: of the way to the mean of its neighbours that a vertex moves in a round.
+/// Why: by trial; the whole way shrinks what is sharp.
+HSDM_TUNED double step = 0.5;
+
+/// voxels: how far a vertex may move in all.
+/// Why: half a voxel: farther off it is in another one.
+HSDM_TUNED double reach = 0.5;
+
+/// voxels: facets this close to a moved one are checked against it.
+/// Why: reach on both sides.
+HSDM_TUNED double nearby = 1;
+
+} // namespace hsdm::untangling
+
+// which holes dual_contour.hh closes
+namespace hsdm::holes {
+
+/// edges: longer loops stay open.
+/// Why: by trial; longer than a defect (pairing.longest_defect) with room for the loops of several that met.
+HSDM_TUNED int most_edges = 24;
+
+/// voxels: wider loops stay open, where voxels are wide against the spacing.
+/// Why: as wide as a loop of 24 edges can be round.
+HSDM_TUNED double widest = 6;
+
+} // namespace hsdm::holes
+
+// sheet_features.hh
+namespace hsdm::edge_hints {
+
+/// cosine: between a facet and its set.
+/// Why: 60 degrees: a facet across a right angle lies 45 degrees off either set.
+HSDM_TUNED double least_cosine = 0.5;
+
+/// per voxel: of distance from a set's centroid, in what is minimised beside angle and height to find a
+/// facet's set. Why: a twentieth tells sets of one sheet apart and sways nothing else.
+HSDM_TUNED double arm_weight = 0.05;
+
+/// share: of the crease angle; flatter edges are not looked at.
+/// Why: facets of a crease fold less than its sheets where vertices are off by a fraction of a voxel; by
+/// trial.
+HSDM_TUNED double least_fold = 0.7;
+
+/// sine: normals farther out of the fold's plane belong to other sheets.
+/// Why: 30 degrees; by trial.
+HSDM_TUNED double off_fold_sine = 0.5;
+
+/// share: of the fold's angle; normals this close to one sheet's are that sheet's.
+/// Why: the middle half is left for what lies between.
+HSDM_TUNED double end_band = 0.25;
+
+/// share: of the points round a crease, that may lie between its sheets.
+/// Why: a bend of one direction to the other has half of them there; a tenth are noise.
+HSDM_TUNED double most_between = 0.1;
+
+/// share: of them, that each side of a crease has at least.
+/// Why: half of most_between, or the sheet beside is hardly there.
+HSDM_TUNED double least_side = 0.05;
+
+/// voxels: from the edge; a second look where a small radius would show.
+/// Why: by trial; less than a voxel's diagonal, more than half its edge.
+HSDM_TUNED double nearby = 0.75;
+
+/// voxels: how far positions are compared with normals.
+/// Why: by trial; some ten points of a usual cloud.
+HSDM_TUNED double chord = 0.5;
+
+/// share: of the points between in the whole cloud that chords contradict; of more, normals are smeared.
+/// Why: by trial, between clean normals (next to none) and averaged ones (most).
+HSDM_TUNED double most_tilted = 0.4;
+
+/// share: of the fold's angle, between chords and normals.
+/// Why: half of end_band.
+HSDM_TUNED double most_tilt = 0.125;
+
+} // namespace hsdm::edge_hints
