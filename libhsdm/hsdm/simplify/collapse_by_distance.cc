@@ -2,6 +2,7 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/hash.hh"
+#include "hsdm/simplify/constants.hh"
 #include "hsdm/simplify/triangle_shape.hh"
 #include "hsdm/spatial/point_triangle.hh"
 
@@ -12,9 +13,7 @@
 namespace hsdm {
 namespace {
 
-constexpr int most_sweeps = 32;
 constexpr std::size_t vertices_per_chunk = 256, collapses_per_chunk = 32;
-constexpr double smooth_cosine = 0.95; // of normals round a vertex with their mean: 18 degrees
 constexpr double along_edge[] = {0.125, 0.25, 0.375, 0.625, 0.75, 0.875}; // and at the middle, before
 
 /// Of the neighbours of a side's start, its end first; they are left in `ring`.
@@ -37,7 +36,7 @@ public:
     }
 
     std::vector<DistanceCollapse> run() {
-        for (int sweep = 0; sweep < most_sweeps && drop_once(); ++sweep) {
+        for (int sweep = 0; sweep < collapses::most_sweeps && drop_once(); ++sweep) {
         }
         return std::move(drops_);
     }
@@ -162,7 +161,7 @@ private:
             normals.push_back(n.sqrnorm() > 0 ? n.normalized() : n);
             sum += normals.back();
         }
-        const double least = smooth_cosine * sum.norm();
+        const double least = drops::smooth_cosine * sum.norm();
         return std::all_of(normals.begin(), normals.end(),
                            [&](const Vec3& normal) { return (normal | sum) >= least; });
     }

@@ -1,6 +1,7 @@
 #include "hsdm/simplify/collapse_by_planes.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/simplify/constants.hh"
 #include "hsdm/simplify/remove_flat_vertices.hh"
 
 #include <tbb/parallel_sort.h>
@@ -11,11 +12,7 @@
 namespace hsdm {
 namespace {
 
-constexpr int most_sweeps = 32; // each leaves two thirds at most of what can merge
 constexpr std::size_t sides_per_chunk = 2048;
-constexpr double settled_share = 1e-3; // of the tolerance: "where planes meet"
-constexpr double straight_share = 0.1; // of the tolerance: "straight", and "flat"
-constexpr double free_share = 0.1;     // of the tolerance: "about as well"
 
 class PlaneCollapsing {
 public:
@@ -36,7 +33,7 @@ public:
             repeat(plane_collapses);
         settle();
         plane_collapses = std::move(done_);
-        for (double& tolerance : tolerance_) tolerance *= straight_share;
+        for (double& tolerance : tolerance_) tolerance *= collapses::straight_share;
         remove_flat_vertices(mesh_, tolerance_);
         return mesh_.write();
     }
@@ -53,7 +50,7 @@ private:
             if (seen[v] || !planes_[v].has_shared() || !(tolerance_[v] > 0)) continue;
             seen[v] = 1;
             const double was = planes_[v].rms(at(v));
-            if (was <= settled_share * tolerance_[v]) continue;
+            if (was <= collapses::settled_share * tolerance_[v]) continue;
             const Vec3 place = planes_[v].minimum();
             if (planes_[v].rms(place) < was) mesh_.move(s, place, faces_of(v, v));
         }
@@ -102,7 +99,7 @@ private:
     }
 
     void sweep() {
-        for (int sweep = 0; sweep < most_sweeps && merge_once() > 0; ++sweep) {
+        for (int sweep = 0; sweep < collapses::most_sweeps && merge_once() > 0; ++sweep) {
         }
     }
 
@@ -166,7 +163,7 @@ private:
         if (!(tolerance_[from] > 0 && tolerance_[to] > 0)) return false;
         const double most = std::min(tolerance_[from], tolerance_[to]);
         const double there = planes_[from].rms(at(to));
-        return there <= most && there <= planes_[from].rms(at(from)) + free_share * most
+        return there <= most && there <= planes_[from].rms(at(from)) + collapses::free_share * most
                && planes_[to].rms(at(to)) <= most;
     }
 

@@ -1,6 +1,7 @@
 #include "hsdm/simplify/collapsing_mesh.hh"
 
 #include "hsdm/mesh/triangulate.hh"
+#include "hsdm/simplify/constants.hh"
 #include "hsdm/simplify/triangle_shape.hh"
 
 #include <algorithm>
@@ -9,12 +10,8 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t most_facets = 24;  // of a vertex: bounds the work
-constexpr std::size_t most_flipped = 64; // of one that flips give facets
-constexpr double turn_cosine = 0.77;     // normals turn by less than 40 degrees
-
 bool is_along(const Vec3& a, const Vec3& b) {
-    return (a | b) > turn_cosine * a.norm() * b.norm();
+    return (a | b) > collapses::turn_cosine * a.norm() * b.norm();
 }
 
 bool faces_along(const Vec3& normal, std::span<const Vec3> faces) {
@@ -82,7 +79,7 @@ bool CollapsingMesh::ring_of(Index side, std::vector<Index>& ring) const {
 bool CollapsingMesh::may_collapse(const std::vector<Index>& ring, const std::vector<Index>& ring_to,
                                   const Vec3& place, std::span<const Vec3> faces) const {
     if (!is_link(ring, ring_to)) return false;
-    double thinnest = least_shape, thinnest_new = 1;
+    double thinnest = collapses::least_shape, thinnest_new = 1;
     const Index to = ring[0];
     return suits_ring(place, ring, ring_to[0], faces, thinnest, thinnest_new)
            && (place == at(to) || suits_ring(place, ring_to, to, faces, thinnest, thinnest_new))
@@ -92,7 +89,7 @@ bool CollapsingMesh::may_collapse(const std::vector<Index>& ring, const std::vec
 /// No further vertex may be a neighbour of both, and those beside the edge must keep three facets.
 bool CollapsingMesh::is_link(const std::vector<Index>& from, const std::vector<Index>& to) const {
     if (std::min(from.size(), to.size()) < 3 || from.size() + to.size() < 7) return false;
-    if (from.size() + to.size() > most_facets + 4) return false;
+    if (from.size() + to.size() > collapses::most_facets + 4) return false;
     for (std::size_t i = 2; i + 1 < from.size(); ++i)
         if (std::find(to.begin(), to.end(), from[i]) != to.end()) return false;
     return spares(from[1]) && spares(from.back());
@@ -108,7 +105,8 @@ bool CollapsingMesh::suits_ring(const Vec3& place, const std::vector<Index>& rin
         const Vec3 &p = at(ring[i]), &q = at(ring[i + 1]);
         // One vertex amid three others goes even if they are on a line: nothing there could move before, and
         // the next collapse along that line takes the needle.
-        if (ring.size() == 3 && !faces.empty() && triangle_shape(place, p, q) < least_shape) continue;
+        if (ring.size() == 3 && !faces.empty() && triangle_shape(place, p, q) < collapses::least_shape)
+            continue;
         const Vec3 before = triangle_normal(at(centre), p, q), after = triangle_normal(place, p, q);
         if (turns(before, after, faces)) return false;
         thinnest_new = std::min(thinnest_new, triangle_shape(place, p, q));
@@ -138,7 +136,7 @@ bool CollapsingMesh::collapse(Index side, const Vec3& place, std::span<const Vec
 bool CollapsingMesh::move(Index side, const Vec3& place, std::span<const Vec3> faces) {
     const Index v = start(side);
     if (locked_[v] || !ring_of(side, ring_)) return false;
-    double thinnest = least_shape;
+    double thinnest = collapses::least_shape;
     for (std::size_t i = 0; i < ring_.size(); ++i) {
         if ((place - at(v)).sqrnorm() >= (at(ring_[i]) - at(v)).sqrnorm()) return false;
         thinnest = std::min(thinnest, triangle_shape(at(v), at(ring_[i]), at(ring_[(i + 1) % ring_.size()])));
@@ -162,7 +160,7 @@ bool CollapsingMesh::flip(Index side) {
     const Index ca = previous_side(side);
     const Index a = start(side), b = start(other), c = start(ca), d = start(previous_side(other));
     if ((locked_[a] && locked_[b]) || (locked_[c] && locked_[d])) return false;
-    if (!spares(a) || !spares(b) || std::max(facets_[c], facets_[d]) >= most_flipped) return false;
+    if (!spares(a) || !spares(b) || std::max(facets_[c], facets_[d]) >= collapses::most_flipped) return false;
     if (!ring_of(ca, ring_) || std::find(ring_.begin(), ring_.end(), d) != ring_.end()) return false;
     turn_edge(side);
     return true;

@@ -2,6 +2,7 @@
 
 #include "hsdm/simplify/collapse_by_distance.hh"
 #include "hsdm/simplify/collapse_by_planes.hh"
+#include "hsdm/simplify/constants.hh"
 #include "hsdm/simplify/leaf_doublets.hh"
 #include "hsdm/simplify/nonmanifold_vertices.hh"
 #include "hsdm/simplify/remesh_by_flips.hh"
@@ -17,11 +18,7 @@
 namespace hsdm {
 namespace {
 
-constexpr double least_share = 0.2; // of the tolerance: what goes wrong below is not merged
-constexpr double few_leaves = 0.02; // of all: so few need not be merged
-constexpr double drop_share = 1.75; // of the tolerance: with twice that, places not looked at go far
-constexpr int most_rings = 4;       // of facets around something wrong
-constexpr int most_doublings = 32;  // of how far to look for the fine surface
+constexpr int most_doublings = 32; // of how far to look for the fine surface
 
 struct Faults {
     FaultCounts counts;
@@ -158,7 +155,7 @@ private:
             is_helped = false;
             for (Index leaf : leaves) around[leaf] = 1;
         }
-        for (int ring = 0; ring < most_rings && !is_helped; ++ring)
+        for (int ring = 0; ring < decimation::most_rings && !is_helped; ++ring)
             for (Index leaf : with_neighbours(leaves_.mesh, around)) {
                 around[leaf] = 1;
                 if (!may_be_kept(leaf)) continue;
@@ -176,7 +173,7 @@ private:
     std::size_t keep_closer(const std::vector<Index>& vertices) {
         std::vector<std::uint8_t> wrong(result_.mesh.vertex_count(), 0);
         for (Index v : vertices) wrong[v] = 1;
-        for (int ring = 0; ring < most_rings && !vertices.empty(); ++ring) {
+        for (int ring = 0; ring < decimation::most_rings && !vertices.empty(); ++ring) {
             if (const std::size_t count = lower_tolerances(wrong); count > 0) return count;
             for (Index v : with_neighbours(result_.mesh, wrong)) wrong[v] = 1;
         }
@@ -189,11 +186,12 @@ private:
             const Index v = result_.vertex[leaf];
             if (wrong[v] && has_merged_[v] && tolerance_[leaf] > 0) concerned.push_back(leaf);
         }
-        const bool few =
-            static_cast<double>(concerned.size()) < few_leaves * static_cast<double>(tolerance_.size());
+        const bool few = static_cast<double>(concerned.size())
+                         < decimation::few_leaves * static_cast<double>(tolerance_.size());
         for (Index leaf : concerned) {
             double& tolerance = tolerance_[leaf];
-            tolerance = few || tolerance < least_share * checks_.band().tolerance() ? 0 : 0.5 * tolerance;
+            tolerance =
+                few || tolerance < decimation::least_share * checks_.band().tolerance() ? 0 : 0.5 * tolerance;
         }
         return concerned.size();
     }
@@ -230,8 +228,8 @@ DecimatedLeaves decimate(const LeafMesh& leaves, std::vector<Quadric> planes, Me
     DecimateOptions drop_options = options;
     drop_options.faults = merged.faults;
     const CollapsingMesh undropped(base.mesh);
-    const std::vector<DistanceCollapse> drops =
-        find_distance_collapses(undropped, checks.bound().to_fine(), drop_share * checks.band().tolerance());
+    const std::vector<DistanceCollapse> drops = find_distance_collapses(
+        undropped, checks.bound().to_fine(), bounds::drop_share * checks.band().tolerance());
     const auto by_distance = [&](const std::vector<double>& tolerance) {
         std::vector<std::uint8_t> may_go(tolerance.size()); // what was wrong once stays
         for (std::size_t v = 0; v < may_go.size(); ++v) may_go[v] = tolerance[v] >= checks.band().tolerance();

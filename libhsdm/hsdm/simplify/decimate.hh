@@ -2,6 +2,7 @@
 // Leaves are cubes: over flat ground, along straight creases and along cylinders fewer vertices do than there
 // are leaves.
 
+#include "hsdm/simplify/constants.hh"
 #include "hsdm/simplify/mesh_checks.hh"
 #include "hsdm/simplify/quadric.hh"
 
@@ -15,7 +16,8 @@ struct LeafMesh {
 
 struct DecimateOptions {
     FaultCounts faults; ///< that the leaves have already
-    int rounds = 24;    ///< of undoing what makes something wrong, >= 1
+    /// of undoing what makes something wrong, >= 1
+    int rounds = bounds::rounds;
 };
 
 struct DecimatedLeaves {

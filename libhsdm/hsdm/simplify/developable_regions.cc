@@ -1,20 +1,13 @@
 #include "hsdm/simplify/developable_regions.hh"
 
+#include "hsdm/simplify/constants.hh"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace hsdm {
 namespace {
-
-constexpr double most_ratio = 0.35; // of the spreads of normals where a region begins
-constexpr double most_off = 0.08;   // a mean normal's cosine with the axis, from the region's: 5 degrees
-constexpr int most_trims = 2;       // of a facet: bounds the work
-constexpr double most_off_trimmed = 0.03; // ... once the axis is known
-constexpr double most_deviation = 0.01;   // ... root mean square over the region
-constexpr double cone_share = 0.3;        // of a cylinder's deviation that a cone's must not exceed
-constexpr std::size_t least_facets = 60;  // of a region
-constexpr std::size_t first_refit = 40;   // facets, and again whenever there are twice as many
 
 Axis cylinder_axis(const NormalSum& normals) {
     const Variation variation = normals.about_zero();
@@ -30,9 +23,9 @@ Axis cone_axis(const NormalSum& normals) {
 /// A cone's only where a cylinder's will not do: of a narrow arc normals have one angle to many directions.
 Axis axis_of(const NormalSum& normals) {
     const Axis cylinder = cylinder_axis(normals);
-    if (cylinder.deviation <= most_deviation) return cylinder;
+    if (cylinder.deviation <= developable::most_deviation) return cylinder;
     const Axis cone = cone_axis(normals);
-    return cone.deviation < cone_share * cylinder.deviation ? cone : cylinder;
+    return cone.deviation < developable::cone_share * cylinder.deviation ? cone : cylinder;
 }
 
 /// Lets go of what bends away at the margins, and fits the axis to the rest. Returns what it lets go of.
@@ -41,7 +34,7 @@ std::vector<Index> trim(const FacetField& field, DevelopableRegion& region) {
     std::vector<Index> trimmed;
     std::erase_if(region.facets, [&](Index f) {
         const double cosine = region.axis.direction | field.mean_normal[f];
-        if (std::abs(cosine - region.axis.cosine) > most_off_trimmed) {
+        if (std::abs(cosine - region.axis.cosine) > developable::most_off_trimmed) {
             trimmed.push_back(f);
             return true;
         }
@@ -58,7 +51,7 @@ DevelopableRegion grow(const FacetField& field, Index seed, const std::vector<In
     region.axis.cosine = region.axis.direction | field.mean_normal[seed];
     seen[seed] = 1;
     NormalSum normals;
-    std::size_t refit = first_refit;
+    std::size_t refit = developable::first_refit;
     for (std::size_t next = 0; next < region.facets.size(); ++next) {
         const Index f = region.facets[next];
         normals.add(field.mean_normal[f], field.area[f].norm());
@@ -69,7 +62,7 @@ DevelopableRegion grow(const FacetField& field, Index seed, const std::vector<In
         field.for_beside(f, [&](Index g) {
             if (taken[g] != no_index || seen[g] || (field.convex[g] != 0) != region.convex) return;
             const double cosine = region.axis.direction | field.mean_normal[g];
-            if (std::abs(cosine - region.axis.cosine) > most_off) return;
+            if (std::abs(cosine - region.axis.cosine) > developable::most_off) return;
             seen[g] = 1;
             region.facets.push_back(g);
         });
@@ -84,7 +77,7 @@ std::vector<DevelopableRegion> find_developable_regions(const FacetField& field,
                                                         const std::vector<Index>& taken) {
     std::vector<std::pair<double, Index>> seeds;
     for (Index f = 0; f < field.size(); ++f)
-        if (taken[f] == no_index && field.next_spread[f] <= most_ratio * field.spread[f])
+        if (taken[f] == no_index && field.next_spread[f] <= developable::most_ratio * field.spread[f])
             seeds.emplace_back(field.next_spread[f] / std::max(field.spread[f], 1e-12), f);
     std::sort(seeds.begin(), seeds.end());
     std::vector<DevelopableRegion> regions;
@@ -93,10 +86,12 @@ std::vector<DevelopableRegion> find_developable_regions(const FacetField& field,
         if (seen[seed]) continue;
         DevelopableRegion region = grow(field, seed, taken, seen);
         const std::vector<Index> trimmed = trim(field, region);
-        if (region.facets.size() < least_facets || region.axis.deviation > most_deviation) continue;
+        if (region.facets.size() < developable::least_facets
+            || region.axis.deviation > developable::most_deviation)
+            continue;
         regions.push_back(std::move(region));
         for (Index f : trimmed)
-            if (++trims[f] <= most_trims) seen[f] = 0; // for another region
+            if (++trims[f] <= developable::most_trims) seen[f] = 0; // for another region
     }
     return regions;
 }

@@ -4,6 +4,7 @@
 #include "hsdm/core/hash.hh"
 #include "hsdm/mesh/triangulate.hh"
 #include "hsdm/simplify/border_vertices.hh"
+#include "hsdm/simplify/constants.hh"
 
 #include <algorithm>
 #include <array>
@@ -13,8 +14,7 @@
 namespace hsdm {
 namespace {
 
-constexpr double rounding = 1e-9;  // of the bound: room for whoever measures from the same origin otherwise
-constexpr double vertex_share = 2; // of the bound, for vertices of the fine mesh
+constexpr double rounding = 1e-9; // of the bound: room for whoever measures from the same origin otherwise
 constexpr std::size_t places_per_chunk = 2048;
 constexpr std::size_t far_per_chunk = 64; // distances of places that are far take long
 constexpr std::size_t keys_per_chunk = 512, triangles_per_chunk = 1024;
@@ -102,7 +102,8 @@ FarPlaces DistanceCheck::find_far(const PolygonMesh& mesh) {
     const std::optional<SurfaceWalk> before = std::move(to_mesh_);
     to_mesh_.emplace(mesh, cut_, TriangleTree::Order::given);
     if (before) follow_triangles(*before, keys_before);
-    FarPlaces far{far_from(fine_.positions, vertex_share * bound_, near_vertex_), far_vertices(mesh), {}, {}};
+    FarPlaces far{
+        far_from(fine_.positions, bounds::vertex_share * bound_, near_vertex_), far_vertices(mesh), {}, {}};
     find_far_facets(mesh, far);
     return far;
 }

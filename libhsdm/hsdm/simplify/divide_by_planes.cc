@@ -1,12 +1,12 @@
 #include "hsdm/simplify/divide_by_planes.hh"
 
+#include "hsdm/simplify/constants.hh"
+
 #include <algorithm>
 #include <numeric>
 
 namespace hsdm {
 namespace {
-
-constexpr std::size_t most_parts = 4, most_members = 64;
 
 /// Two parts that touch, and what their joint planes are missed by.
 struct Pair {
@@ -34,7 +34,7 @@ public:
             while (part_[part] != part) part = part_[part];
         std::size_t parts = 0;
         for (Index i = 0; i < part_.size(); ++i) parts += part_[i] == i;
-        return parts <= most_parts ? part_ : std::vector<Index>();
+        return parts <= leaf_parts::most_parts ? part_ : std::vector<Index>();
     }
 
 private:
@@ -78,7 +78,7 @@ Vec3 place_in(const Quadric& planes, const Box& box) {
 std::vector<Index> divide_by_planes(std::span<const Quadric> members,
                                     std::span<const std::pair<Index, Index>> adjacent, const Box& box,
                                     double tolerance) {
-    if (members.size() > most_members) return {};
+    if (members.size() > leaf_parts::most_members) return {};
     return Division(members, adjacent, box).run(tolerance);
 }
 

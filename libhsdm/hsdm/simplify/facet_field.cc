@@ -3,6 +3,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/edge_table.hh"
+#include "hsdm/simplify/constants.hh"
 
 #include <Eigen/Eigenvalues>
 
@@ -12,8 +13,6 @@
 namespace hsdm {
 namespace {
 
-constexpr int most_sides_away = 3;
-constexpr double smooth_cosine = 0.9; // of normals of neighbours: 26 degrees
 constexpr std::size_t facets_per_chunk = 2048;
 
 void measure_facets(const PolygonMesh& mesh, FacetField& field) {
@@ -39,7 +38,8 @@ void link_facets(const PolygonMesh& mesh, FacetField& field) {
     EdgeTable(mesh).for_edges([&](Index, std::span<const EdgeSide> edge, std::size_t) {
         if (edge.size() != 2) return;
         const Index a = edge[0].side, b = edge[1].side, f = facet_of[a], g = facet_of[b];
-        if ((field.normal[f] | field.normal[g]) > smooth_cosine) field.beside[a] = g, field.beside[b] = f;
+        if ((field.normal[f] | field.normal[g]) > surroundings::smooth_cosine)
+            field.beside[a] = g, field.beside[b] = f;
     });
 }
 
@@ -53,7 +53,7 @@ void gather_normals(FacetField& field) {
             bend[f] += (field.normal[g] - field.normal[f]) | (field.centre[g] - field.centre[f]);
         });
     });
-    for (int away = 0; away < most_sides_away; ++away) {
+    for (int away = 0; away < surroundings::most_sides_away; ++away) {
         for_each_index(field.size(), facets_per_chunk, [&](Index f) {
             wider[f] = field.around[f];
             wider_bend[f] = bend[f];

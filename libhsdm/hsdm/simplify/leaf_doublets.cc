@@ -1,13 +1,12 @@
 #include "hsdm/simplify/leaf_doublets.hh"
 
 #include "hsdm/mesh/facet_unions.hh"
+#include "hsdm/simplify/constants.hh"
 
 #include <numeric>
 
 namespace hsdm {
 namespace {
-
-constexpr int most_rounds = 16;
 
 std::size_t dissolve_once(PolygonMesh& mesh, std::vector<Index>& stands_for) {
     const VertexFacets at = facets_at_vertices(mesh);
@@ -30,7 +29,7 @@ std::size_t dissolve_once(PolygonMesh& mesh, std::vector<Index>& stands_for) {
 std::vector<Index> dissolve_doublets(PolygonMesh& mesh) {
     std::vector<Index> stands_for(mesh.vertex_count());
     std::iota(stands_for.begin(), stands_for.end(), Index{0});
-    for (int round = 0; round < most_rounds && dissolve_once(mesh, stands_for) > 0; ++round) {
+    for (int round = 0; round < leaf_doublets::most_rounds && dissolve_once(mesh, stands_for) > 0; ++round) {
     }
     for (Index& v : stands_for)
         while (stands_for[v] != v) v = stands_for[v];

@@ -2,6 +2,7 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/area_vector.hh"
+#include "hsdm/simplify/constants.hh"
 #include "hsdm/simplify/developable_regions.hh"
 #include "hsdm/simplify/facet_field.hh"
 #include "hsdm/simplify/strips.hh"
@@ -13,15 +14,6 @@
 namespace hsdm {
 namespace {
 
-constexpr double flat_spread = 0.03;   // of normals round a facet of flat ground, radians
-constexpr double core_share = 0.25;    // of the tolerance, for the core of flat ground
-constexpr double along_cosine = 0.9;   // of a facet's normal with its patch's
-constexpr std::size_t least_flat = 30; // facets of flat ground
-constexpr int released_sides = 3;      // away from a facet without a patch
-constexpr double most_height = 1.5;    // in tolerances: of a strip's facet
-constexpr Index least_strip = 8;       // facets
-constexpr double stale = 1.3;          // by which a height may have grown while the facet waited
-constexpr double stale_height = 0.1;   // of the core's tolerance: less than that does not count
 constexpr std::size_t vertices_per_chunk = 1024;
 
 /// A plane through facets, changed by each.
@@ -63,7 +55,7 @@ private:
     void find_flat_ground() {
         std::vector<std::pair<double, Index>> seeds;
         for (Index f = 0; f < field_.size(); ++f)
-            if (field_.spread[f] <= flat_spread) seeds.emplace_back(field_.spread[f], f);
+            if (field_.spread[f] <= flat_ground::flat_spread) seeds.emplace_back(field_.spread[f], f);
         std::sort(seeds.begin(), seeds.end());
         std::vector<std::uint8_t> seen(field_.size(), 0); // in a core that was not flat
         for (const auto& [spread, seed] : seeds) {
@@ -71,7 +63,7 @@ private:
             std::vector<Index> facets;
             const Plane plane = grow_core(seed, facets);
             const std::size_t core = facets.size();
-            if (core >= least_flat && add_margin(facets, plane)) {
+            if (core >= flat_ground::least_facets && add_margin(facets, plane)) {
                 patches_.planes.push_back(plane);
                 continue;
             }
@@ -104,8 +96,9 @@ private:
             waiting.pop();
             if (patches_.patch[f] != no_index) continue;
             const double height = f == seed ? 0 : std::abs(growing.plane().height(field_.centre[f]));
-            if (height > core_share * tolerance_) continue;
-            if (height > stale * before + stale_height * core_share * tolerance_) {
+            if (height > flat_ground::core_share * tolerance_) continue;
+            if (height > flat_ground::stale * before
+                             + flat_ground::stale_height * flat_ground::core_share * tolerance_) {
                 waiting.push({height, f});
                 continue;
             }
@@ -113,8 +106,8 @@ private:
             facets.push_back(f);
             growing.add(field_.area[f], field_.centre[f]);
             field_.for_beside(f, [&](Index g) {
-                if (patches_.patch[g] == no_index && field_.spread[g] <= flat_spread
-                    && (field_.mean_normal[g] - growing.plane().normal).norm() <= flat_spread)
+                if (patches_.patch[g] == no_index && field_.spread[g] <= flat_ground::flat_spread
+                    && (field_.mean_normal[g] - growing.plane().normal).norm() <= flat_ground::flat_spread)
                     waiting.push({std::abs(growing.plane().height(field_.centre[g])), g});
             });
         }
@@ -128,7 +121,8 @@ private:
         const std::size_t most = facets.size() + facets.size() / 2;
         for (std::size_t next = 0; next < facets.size() && facets.size() <= most; ++next)
             field_.for_beside(facets[next], [&](Index g) {
-                if (patches_.patch[g] != no_index || (field_.normal[g] | plane.normal) <= along_cosine
+                if (patches_.patch[g] != no_index
+                    || (field_.normal[g] | plane.normal) <= flat_ground::along_cosine
                     || std::abs(plane.height(field_.centre[g])) > tolerance_)
                     return;
                 patches_.patch[g] = static_cast<Index>(patches_.planes.size());
@@ -145,8 +139,8 @@ private:
         for (Index k : strips->of) ++counts[k];
         for (std::size_t i = 0; i < region.facets.size(); ++i) {
             const Index f = region.facets[i], k = strips->of[i];
-            if (counts[k] >= least_strip
-                && std::abs(strips->planes[k].height(field_.centre[f])) < most_height * tolerance_)
+            if (counts[k] >= strips::least_facets
+                && std::abs(strips->planes[k].height(field_.centre[f])) < strips::most_height * tolerance_)
                 patches_.patch[f] = static_cast<Index>(patches_.planes.size()) + k;
         }
         patches_.planes.insert(patches_.planes.end(), strips->planes.begin(), strips->planes.end());
@@ -157,7 +151,7 @@ private:
         std::vector<Index> released;
         for (Index f = 0; f < field_.size(); ++f)
             if (patches_.patch[f] == no_index) released.push_back(f);
-        for (int away = 0; away < released_sides; ++away) {
+        for (int away = 0; away < flat_ground::released_sides; ++away) {
             std::vector<Index> next;
             for (Index f : released)
                 field_.for_beside(f, [&](Index g) {

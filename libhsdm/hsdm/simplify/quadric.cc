@@ -1,5 +1,7 @@
 #include "hsdm/simplify/quadric.hh"
 
+#include "hsdm/simplify/constants.hh"
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -47,8 +49,7 @@ Quadric& Quadric::operator+=(const Quadric& other) {
 }
 
 Vec3 Quadric::minimum() const {
-    constexpr double least_angle = 0.02, least_shared_angle = 1e-4; // squares of their tangents
-    const double least_share = is_all_shared() ? least_shared_angle : least_angle;
+    const double least_share = is_all_shared() ? quadrics::least_shared_angle : quadrics::least_angle;
     const Vec3 mean = points_ > 0 ? sum_ / points_ : Vec3(0, 0, 0);
     Eigen::Matrix3d a;
     a << a_[0], a_[1], a_[2], a_[1], a_[3], a_[4], a_[2], a_[4], a_[5];
@@ -113,8 +114,7 @@ void Quadric::drop_shared(const Vec3& x, double tolerance) {
 }
 
 bool Quadric::is_all_shared() const {
-    constexpr double next_to_nothing = 0.01;
-    return shared_count_ > 0 && weight_ <= next_to_nothing * shared_weight_;
+    return shared_count_ > 0 && weight_ <= quadrics::next_to_nothing * shared_weight_;
 }
 
 std::span<const Vec3> Quadric::shared_normals(std::array<Vec3, most_shared>& normals) const {

@@ -5,6 +5,7 @@
 #include "hsdm/core/hash.hh"
 #include "hsdm/mesh/straight_corners.hh"
 #include "hsdm/mesh/triangle_sides.hh"
+#include "hsdm/simplify/constants.hh"
 #include "hsdm/simplify/triangle_shape.hh"
 
 #include <tbb/parallel_sort.h>
@@ -17,15 +18,7 @@
 namespace hsdm {
 namespace {
 
-constexpr int most_sweeps = 4;
 constexpr std::size_t triangles_per_chunk = 1024, sides_per_chunk = 3 * triangles_per_chunk;
-
-constexpr double better_shape = 1.1; // a flip for shape gains at least this factor
-constexpr double flip_cosine = 0.94; // for shape: normals up to 20 degrees apart
-constexpr double join_cosine = 0.77; // normals of a quad's halves up to 40 degrees apart
-constexpr double least_corner = 0.2; // of a quad's corners: the sine of the sharpest or bluntest angle
-constexpr double reflex = -0.01;     // sine of a corner; straight ones do no harm, and a cut costs a facet
-constexpr double was_quad = 0.3;     // added to the corner's sine of what was a quad before
 
 class FlipRemeshing {
 public:
@@ -53,7 +46,7 @@ public:
 
     RemeshCounts run(Diagonals diagonals) {
         RemeshCounts counts;
-        const int sweeps = diagonals == Diagonals::may_flip ? most_sweeps : 0;
+        const int sweeps = diagonals == Diagonals::may_flip ? flips::most_sweeps : 0;
         look_.assign(corners_.size(), Look::none);
         united_.emplace(half_.size());
         std::vector<std::uint8_t> turned(half_.size(), 1);
@@ -231,11 +224,11 @@ private:
             std::min(triangle_shape(old1_norm, ab2 + bc2 + ca2), triangle_shape(old2_norm, ab2 + ad2 + db2));
         const double new_shape = std::min(triangle_shape(first_norm, ca2 + ad2 + cd2),
                                           triangle_shape(second_norm, db2 + bc2 + cd2));
-        if (new_shape < std::min(least_shape, old_shape)) return {false, before, Look::none};
-        const bool gains =
-            new_shape >= better_shape * old_shape
-            && (first | second) >= flip_cosine * first_norm * second_norm
-            && (old_shape <= least_shape || (old1 | old2) >= flip_cosine * old1_norm * old2_norm);
+        if (new_shape < std::min(collapses::least_shape, old_shape)) return {false, before, Look::none};
+        const bool gains = new_shape >= flips::better_shape * old_shape
+                           && (first | second) >= flips::flip_cosine * first_norm * second_norm
+                           && (old_shape <= collapses::least_shape
+                               || (old1 | old2) >= flips::flip_cosine * old1_norm * old2_norm);
         if (warp(a, b, c, d) <= tolerance_) return {gains, before, before};
         if (before != Look::none) return judge_bent({a, b, c, d}, before, gains, hint);
         // What is not known yet follows from the four places alone.
@@ -258,7 +251,8 @@ private:
             const auto is_beyond = [&](const Vec3& place, double share) {
                 return fine_.surface().is_beyond(place, share * was, hint);
             };
-            return {!is_beyond(middle(c, d), 0.5) && !is_beyond((at(a) + at(c) + at(d)) / 3, 1)
+            return {!is_beyond(middle(c, d), flips::nearer_share)
+                        && !is_beyond((at(a) + at(c) + at(d)) / 3, 1)
                         && !is_beyond((at(b) + at(c) + at(d)) / 3, 1),
                     before, Look::none};
         }
@@ -319,7 +313,7 @@ private:
         const Index t = twin_[s], a = corners_[s], b = corners_[t], c = corners_[previous_side(s)],
                     d = corners_[previous_side(t)];
         const Vec3 one = triangle_normal(at(a), at(b), at(c)), two = triangle_normal(at(b), at(a), at(d));
-        if (c == d || (one | two) < join_cosine * one.norm() * two.norm()) return std::nullopt;
+        if (c == d || (one | two) < flips::join_cosine * one.norm() * two.norm()) return std::nullopt;
         const std::array<Vec3, 4> along{at(d) - at(a), at(b) - at(d), at(c) - at(b), at(a) - at(c)};
         std::array<double, 4> length;
         for (std::size_t i = 0; i < 4; ++i) length[i] = along[i].norm();
@@ -327,14 +321,14 @@ private:
         double least = 1;
         for (std::size_t i = 0, before = 3; i < 4; before = i++) {
             const double sine = ((along[before] % along[i]) | up) / (length[before] * length[i]);
-            if (!(sine >= least_corner)) return std::nullopt; // not a number where corners coincide
+            if (!(sine >= flips::least_corner)) return std::nullopt; // not a number where corners coincide
             least = std::min(least, sine);
         }
         // Whoever cuts the quad takes the shorter diagonal: it must be the one that is there, or do no harm.
         const bool shorter = (at(b) - at(a)).sqrnorm() <= (at(d) - at(c)).sqrnorm();
         if (!shorter && warp(a, b, c, d) > tolerance_) return std::nullopt;
         const bool whole = half_[s / 3] && half_[t / 3] && s % 3 == 0 && t % 3 == 0;
-        return Quad{least + (whole ? was_quad : 0), s};
+        return Quad{least + (whole ? flips::was_quad : 0), s};
     }
 
     std::vector<Quad> possible_quads() const {
@@ -454,7 +448,7 @@ RemeshCounts remesh_by_flips(PolygonMesh& mesh, ToleranceEnvelope& fine,
                              std::span<const std::uint8_t> settled, Diagonals diagonals,
                              RemeshedGroups& before) {
     const RemeshCounts counts = FlipRemeshing(mesh, fine, settled, before).run(diagonals);
-    cut_straight_corners(mesh, reflex);
+    cut_straight_corners(mesh, flips::reflex);
     return counts;
 }
 

@@ -1,5 +1,6 @@
 #include "hsdm/simplify/remove_flat_vertices.hh"
 
+#include "hsdm/simplify/constants.hh"
 #include "hsdm/simplify/triangle_shape.hh"
 
 #include <algorithm>
@@ -7,10 +8,6 @@
 
 namespace hsdm {
 namespace {
-
-constexpr int most_rounds = 4;         // one that goes may leave its neighbours straight
-constexpr double flat_cosine = 0.9994; // of normals beside an edge: 2 degrees
-constexpr std::size_t most_neighbours = 64;
 
 class FlatVertexRemoval {
 public:
@@ -32,7 +29,8 @@ private:
     /// crease's end, and where its other end is: 0 on a flat place.
     bool may_go(Index side) {
         vertex_ = mesh_.start(side);
-        if (!gives_way(vertex_) || !mesh_.ring_of(side, ring_) || ring_.size() > most_neighbours)
+        if (!gives_way(vertex_) || !mesh_.ring_of(side, ring_)
+            || ring_.size() > flat_vertices::most_neighbours)
             return false;
         normals_.clear();
         for (std::size_t i = 0; i < ring_.size(); ++i)
@@ -40,7 +38,7 @@ private:
         std::size_t ends[2] = {0, 0}, count = 0;
         for (std::size_t i = 0; i < ring_.size(); ++i) {
             const Vec3 &before = normals_[(i + ring_.size() - 1) % ring_.size()], &after = normals_[i];
-            if ((before | after) > flat_cosine * before.norm() * after.norm()) continue;
+            if ((before | after) > flat_vertices::flat_cosine * before.norm() * after.norm()) continue;
             if (count == 2) return false;
             ends[count++] = i;
         }
@@ -62,7 +60,7 @@ private:
     }
 
     bool take_out(Index side) {
-        least_ = least_shape;
+        least_ = collapses::least_shape;
         for (std::size_t i = 0; i < ring_.size(); ++i)
             least_ = std::min(least_,
                               triangle_shape(at(vertex_), at(ring_[i]), at(ring_[(i + 1) % ring_.size()])));
@@ -153,7 +151,7 @@ private:
 std::size_t remove_flat_vertices(CollapsingMesh& mesh, const std::vector<double>& reach) {
     FlatVertexRemoval straightening(mesh, reach);
     std::size_t removed = 0;
-    for (int round = 0; round < most_rounds; ++round) {
+    for (int round = 0; round < flat_vertices::rounds; ++round) {
         const std::size_t now = straightening.round();
         if (now == 0) break;
         removed += now;

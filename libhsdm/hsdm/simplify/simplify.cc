@@ -4,6 +4,7 @@
 #include "hsdm/errors.hh"
 #include "hsdm/quality/distance_to_surface.hh"
 #include "hsdm/simplify/clusters.hh"
+#include "hsdm/simplify/constants.hh"
 #include "hsdm/simplify/decimate.hh"
 #include "hsdm/simplify/leaf_doublets.hh"
 #include "hsdm/simplify/nonmanifold_vertices.hh"
@@ -21,10 +22,6 @@ namespace {
 
 constexpr std::size_t vertices_per_chunk = 2048, facets_per_chunk = 8192;
 constexpr std::size_t fewest_samples = 10000, most_samples = 100000;
-constexpr double spacing = 0.5; // of places on facets, in voxels of the fine mesh
-constexpr double planes_share =
-    0.35;                           // of the error: what planes of a leaf may be missed by, root mean square
-constexpr double patch_share = 0.5; // ... and how far the surface may be off a patch's plane
 
 /// A cluster: a vertex of the result.
 struct Place {
@@ -43,13 +40,14 @@ public:
           tree_(build_cell_tree(fine.positions, extent, depth)) {
         tbb::parallel_invoke( // either has steps that one thread takes alone
             [&] {
-                patches_ = find_planar_patches(fine, patch_share * options.max_error);
+                patches_ = find_planar_patches(fine, bounds::patch_share * options.max_error);
                 planes_ = vertex_planes(fine, patches_, tolerance());
                 clusters_ = build_clusters(fine, tree_, planes_, tolerance());
             },
             [&] {
                 checks_.emplace(fine, cells, points, options.max_error,
-                                spacing * extent / static_cast<double>(1u << depth), tolerance());
+                                bounds::place_spacing * extent / static_cast<double>(1u << depth),
+                                tolerance());
             });
     }
 
@@ -200,7 +198,7 @@ private:
         for (Index& v : vertex_) v = stands_for[v];
     }
 
-    double tolerance() const { return planes_share * options_.max_error; }
+    double tolerance() const { return bounds::planes_share * options_.max_error; }
 
     /// Per vertex of the result, is it one of the fine mesh?
     std::vector<std::uint8_t> own() const {

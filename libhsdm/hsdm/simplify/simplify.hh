@@ -4,6 +4,7 @@
 
 #include "hsdm/quality/distance.hh"
 #include "hsdm/simplify/cell_tree.hh"
+#include "hsdm/simplify/constants.hh"
 #include "hsdm/spatial/facet_cells.hh"
 
 namespace hsdm {
@@ -11,7 +12,8 @@ namespace hsdm {
 struct SimplifyOptions {
     /// The mesh's units, > 0: how far the coarse surface may lie from the fine one, and points from it.
     double max_error = 0;
-    int rounds = 24;     ///< of looking for what is wrong and subdividing there, >= 1
+    /// of looking for what is wrong and subdividing there, >= 1
+    int rounds = bounds::rounds;
     bool measure = true; ///< else `to_fine` stays zero
 };
 

@@ -1,6 +1,7 @@
 #include "hsdm/simplify/strips.hh"
 
 #include "hsdm/mesh/area_vector.hh"
+#include "hsdm/simplify/constants.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -9,14 +10,8 @@
 namespace hsdm {
 namespace {
 
-constexpr double least_width = 1;        // of a strip, in facets
 constexpr double half_of_rms = 1.677;    // of a parabola about its mean: half of what it spans, sqrt(45) / 4
 constexpr double rise_of_mean = 1.0 / 3; // ... and how far its mean is off the middle, in such halves
-constexpr double bin_width = 0.02;       // radians
-constexpr int rounds = 4;                // of fitting planes and letting them take over
-constexpr double least_lean = 0.05;      // of a region's area to one side, or it goes all round
-constexpr double least_along = 0.7;      // cosine of a facet's mean normal with its strip's
-constexpr int most_tries = 16;           // of numbers of strips: what bends two ways takes ever more
 
 /// Facets of a strip: their plane, and how far they are off it.
 struct StripSum {
@@ -64,11 +59,12 @@ public:
 
     std::optional<Strips> run(double tolerance) {
         std::size_t m = 1;
-        for (int tries = 0; tries < most_tries && resolves(m); ++tries) {
+        for (int tries = 0; tries < strips::most_tries && resolves(m); ++tries) {
             const double missed = cut(m);
             if (missed <= tolerance) return std::move(strips_);
             // What an arc spans goes with the square of its length.
-            const double growth = std::min(0.95 * std::sqrt(missed / tolerance), most_growth(missed));
+            const double growth =
+                std::min(strips::growth * std::sqrt(missed / tolerance), most_growth(missed));
             m = std::max(m + 1, static_cast<std::size_t>(growth * static_cast<double>(m)));
         }
         return std::nullopt;
@@ -81,7 +77,7 @@ private:
     void find_shares() {
         const Vec3& axis = belt_.axis.direction;
         Vec3 x = sum_ - axis * (axis | sum_);
-        if (x.norm() < least_lean * all_area_) { // all round: any direction will do
+        if (x.norm() < strips::least_lean * all_area_) { // all round: any direction will do
             Vec3 other(0, 0, 0);
             other[least_component(axis)] = 1;
             x = axis % other;
@@ -90,7 +86,7 @@ private:
         const Vec3 y = axis % x;
         for (std::size_t i = 0; i < share_.size(); ++i) {
             const Vec3& normal = field_.mean_normal[belt_.facets[i]];
-            share_[i] = std::atan2(normal | y, normal | x) / bin_width;
+            share_[i] = std::atan2(normal | y, normal | x) / strips::bin_width;
         }
         const auto [least, most] = std::minmax_element(share_.begin(), share_.end());
         const double first = *least;
@@ -113,10 +109,11 @@ private:
     }
 
     /// Of the number of strips: strips that turn too far tell nothing but that.
-    static double most_growth(double missed) { return std::isfinite(missed) ? 1000 : 3; }
+    static double most_growth(double missed) { return std::isfinite(missed) ? 1000 : strips::blind_growth; }
 
     bool resolves(std::size_t m) const {
-        return least_width * facets_along_ * static_cast<double>(m) <= static_cast<double>(share_.size());
+        return strips::least_width * facets_along_ * static_cast<double>(m)
+               <= static_cast<double>(share_.size());
     }
 
     /// Returns half of what the worst strip spans across its plane.
@@ -125,7 +122,7 @@ private:
         for (std::size_t i = 0; i < share_.size(); ++i)
             strips_.of[i] = static_cast<Index>(
                 std::min(m - 1, static_cast<std::size_t>(share_[i] * static_cast<double>(m))));
-        for (int round = 0; round < rounds; ++round) {
+        for (int round = 0; round < strips::rounds; ++round) {
             fit_planes();
             take_over();
         }
@@ -144,7 +141,8 @@ private:
             if (!(sums[k].weight > 0)) continue;
             Plane& plane = strips_.planes[k];
             const Vec3& area = sums[k].area;
-            if (area.norm() < least_along * sums[k].weight) missed = std::numeric_limits<double>::infinity();
+            if (area.norm() < strips::least_along * sums[k].weight)
+                missed = std::numeric_limits<double>::infinity();
             const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
             plane.normal = axis * cosine + unit(area - axis * (axis | area)) * sine;
             plane.offset = (plane.normal | sums[k].moment) / sums[k].weight;
@@ -167,7 +165,7 @@ private:
             double highest = std::numeric_limits<double>::lowest();
             for (const std::size_t k : {(was + m - 1) % m, was, (was + 1) % m}) {
                 const Plane& plane = strips_.planes[k];
-                if ((plane.normal | field_.mean_normal[f]) < least_along) continue;
+                if ((plane.normal | field_.mean_normal[f]) < strips::least_along) continue;
                 const double height = outward() * plane.height(field_.centre[f]);
                 if (height > highest) {
                     highest = height;

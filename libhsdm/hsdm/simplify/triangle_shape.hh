@@ -7,8 +7,6 @@
 
 namespace hsdm {
 
-constexpr double least_shape = 0.02; ///< no change of the facets makes thinner triangles than this
-
 /// Twice the area, along the normal.
 inline Vec3 triangle_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
     return (b - a) % (c - a);
