@@ -1,6 +1,7 @@
 #include "hsdm/normals/agglomerate.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/normals/constants.hh"
 
 #include <tbb/parallel_sort.h>
 
@@ -146,14 +147,13 @@ public:
         : sign_(sign), support_(sign.size()), mark_(sign.size(), Mark::stays) {}
 
     void run(const std::vector<SignedEdge>& edges) {
-        constexpr int sweeps = 8;
         for (const SignedEdge& e : edges) support_[e.a] = support_[e.b] = 0;
         for (const SignedEdge& e : edges) {
             const double agreement = agreement_of(e);
             support_[e.a] += agreement;
             support_[e.b] += agreement;
         }
-        for (int sweep = 0; sweep < sweeps && find_contradicted(edges); ++sweep) {
+        for (int sweep = 0; sweep < turning::sweeps && find_contradicted(edges); ++sweep) {
             mark();
             turn();
         }

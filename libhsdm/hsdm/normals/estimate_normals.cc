@@ -2,6 +2,7 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/normals/constants.hh"
 #include "hsdm/normals/height_fit.hh"
 #include "hsdm/normals/neighborhood.hh"
 #include "hsdm/normals/noise.hh"
@@ -14,20 +15,6 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t points_per_chunk = 1024, bent_per_chunk = 256;
-/// Tolerances: from this share on, the spread of the neighbours about their plane says that they bend.
-constexpr double bent_spread = 0.45;
-/// A neighbour's plane is taken over if it holds so many times more neighbours. A bent sheet without a crease
-/// gives its tilted planes up to 1.2 times more.
-constexpr double clear_gain = 1.3;
-/// Neighbours whose normals differ less than this are no sign of a crease (23 and 26 degrees).
-constexpr double cos_differing = 0.92, cos_crease = 0.9;
-/// Neighbours that deviate less from their plane, in reaches, tilt it by some 0.2 degrees.
-constexpr double flat_spread = 0.004;
-/// Slopes: a tilt more uncertain than this (six degrees) is not determined by the neighbours, as beside a
-/// scan line without others near by; one above 30 degrees is none of a smooth surface.
-constexpr double most_variance = 0.01, most_square = 0.33;
-/// From this noise on, about a tenth of the spacing, planes of one neighbourhood are two degrees off.
-constexpr double rough = 0.02;
 
 /// New normals from old ones, whatever the sides of these.
 class Renewal {
@@ -48,7 +35,7 @@ public:
         const Vec3& own = normals_[i];
         const Neighborhood around(octree_, neighbors_, i);
         const double inverse = 1 / estimate_.tolerance[i];
-        Vec3 sum = 0.5 * own;
+        Vec3 sum = estimation::own_weight * own;
         for (std::size_t k = 0; k < around.size(); ++k) {
             const Vec3& other = normals_[around.point(k)];
             const double cosine = own | other;
@@ -90,8 +77,8 @@ public:
 
 private:
     bool may_be_curved(Index i) const {
-        return !(estimate_.spread[i] < flat_spread * neighbors_.reach[i] || normals_[i].sqrnorm() == 0
-                 || differs(i, cos_crease));
+        return !(estimate_.spread[i] < estimation::flat_spread * neighbors_.reach[i]
+                 || normals_[i].sqrnorm() == 0 || differs(i, estimation::crease_cosine));
     }
 
     /// A plane has the normal of the neighbours' centroid, not of the point, where the surface is curved.
@@ -125,7 +112,9 @@ private:
     }
     static Vec3 turned(const Vec3& own, const Vec3& tilt, double variance) {
         const double square = tilt.sqrnorm();
-        if (square <= 2 * variance || variance > most_variance || square > most_square) return own;
+        if (square <= 2 * variance || variance > estimation::most_variance
+            || square > estimation::most_square)
+            return own;
         return (own - tilt * (1 - 2 * variance / square)).normalized();
     }
 
@@ -154,7 +143,8 @@ public:
         for (int round = 0; round < options.rounds; ++round) renew([this](Index i) { return best_plane(i); });
         for (int round = 0; round < options.rounds; ++round)
             renew([this](Index i) {
-                return renewal_.differs(i, cos_crease) ? renewal_.averaged(i) : result_.normals[i];
+                return renewal_.differs(i, estimation::crease_cosine) ? renewal_.averaged(i)
+                                                                      : result_.normals[i];
             });
     }
 
@@ -198,14 +188,14 @@ private:
     /// Not below the spread of the flattest neighbour: where the whole neighbourhood is rough, that is no
     /// crease.
     void choose_tolerance(const EstimateOptions& options) {
-        const double relative =
-            std::clamp(options.noise_tolerance * result_.noise, options.least_tolerance, 0.5);
+        const double relative = std::clamp(options.noise_tolerance * result_.noise, options.least_tolerance,
+                                           estimation::most_tolerance);
         for_chunks(octree_.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t i = begin; i < end; ++i) {
                 double least = result_.spread[i];
                 for (Index j : neighbors_.of(i)) least = std::min(least, result_.spread[j]);
                 const double base = relative * neighbors_.reach[i];
-                result_.tolerance[i] = std::clamp(least, base, 2 * base);
+                result_.tolerance[i] = std::clamp(least, base, estimation::most_widening * base);
             }
         });
     }
@@ -215,7 +205,7 @@ private:
         for_chunks(octree_.size(), points_per_chunk,
                    [&](std::size_t begin, std::size_t end, std::size_t chunk) {
                        for (std::size_t i = begin; i < end; ++i)
-                           if (result_.spread[i] > bent_spread * result_.tolerance[i])
+                           if (result_.spread[i] > estimation::bent_spread * result_.tolerance[i])
                                found[chunk].push_back(static_cast<Index>(i));
                    });
         result_.bent = joined(found);
@@ -252,10 +242,10 @@ private:
 
     Vec3 best_plane(Index i) const {
         const Vec3& own = result_.normals[i];
-        if (!renewal_.differs(i, cos_differing)) return own;
+        if (!renewal_.differs(i, estimation::differing_cosine)) return own;
         const Neighborhood around(octree_, neighbors_, i);
         const double inverse = 1 / result_.tolerance[i];
-        double most = clear_gain
+        double most = estimation::clear_gain
                       * std::max(support(around, VectorPair(own, own), inverse)[0],
                                  centred_support(around, own, inverse));
         const Vec3* best = &own;
@@ -271,13 +261,12 @@ private:
 
     /// Fits a plane to the neighbours that it holds, twice.
     static Vec3 refitted(const Neighborhood& around, Vec3 normal, double inverse) {
-        constexpr double fewest = 3.5; // points, by their weights
-        for (int step = 0; step < 2; ++step) {
+        for (int step = 0; step < estimation::fit_steps; ++step) {
             PlaneSums sums;
             sums.add(Vec3(0, 0, 0), 1);
             for (std::size_t k = 0; k < around.size(); ++k)
                 sums.add(around.offset(k), closeness(normal | around.offset(k), inverse));
-            if (sums.weight < fewest) return normal;
+            if (sums.weight < estimation::fewest) return normal;
             const PlaneFit fit = fit_plane(sums);
             if (fit.normal.sqrnorm() == 0) return normal;
             normal = fit.normal;
@@ -315,7 +304,7 @@ std::vector<Vec3> refined_normals(const Octree& octree, const Neighbors& neighbo
                                   const EstimatedNormals& estimate) {
     const Renewal from_planes(octree, neighbors, estimate, estimate.normals);
     std::vector<Vec3> curved = from_planes.all_curved();
-    if (!(estimate.noise > rough)) return curved;
+    if (!(estimate.noise > estimation::rough)) return curved;
     const Renewal from_curved(octree, neighbors, estimate, curved);
     return from_curved.all([&](Index i) { return from_curved.averaged(i); });
 }

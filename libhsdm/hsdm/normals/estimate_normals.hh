@@ -1,15 +1,19 @@
 #pragma once
 // Normals from positions alone, such that creases stay creases.
 
+#include "hsdm/normals/constants.hh"
 #include "hsdm/normals/neighbors.hh"
 
 namespace hsdm {
 
 struct EstimateOptions {
     /// How far from a plane a point may lie and still be of it: the larger of the two counts.
-    double least_tolerance = 0.05; ///< in radii of the neighbourhood, (0, 0.5): on clean data
-    double noise_tolerance = 3;    ///< in multiples of the noise, > 0
-    int rounds = 2; ///< >= 0: how many neighbourhoods far a crease is looked past; 0 is plain least squares
+    /// in radii of the neighbourhood, (0, 0.5): on clean data
+    double least_tolerance = estimation::least_tolerance;
+    /// in multiples of the noise, > 0
+    double noise_tolerance = estimation::noise_tolerance;
+    /// >= 0: how many neighbourhoods far a crease is looked past; 0 is plain least squares
+    int rounds = estimation::rounds;
 };
 
 struct EstimatedNormals {

@@ -1,6 +1,7 @@
 #include "hsdm/normals/mend_normals.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/normals/constants.hh"
 #include "hsdm/normals/orient_normals.hh"
 #include "hsdm/octree/spacing.hh"
 
@@ -21,17 +22,18 @@ struct Pair {
 
 /// Points far from each other, planes apart and unclear angles say nothing.
 Pair compare(const Octree& octree, std::size_t i, std::size_t j, double farthest) {
-    constexpr double parallel = 0.9, crossing = 0.5, flattest = 0.2, clear = 0.5;
     const Vec3 &n = octree.normals[i], &m = octree.normals[j];
     const Vec3 d = octree.positions[j] - octree.positions[i];
     const double length = d.norm(), cosine = n | m;
     if (n.sqrnorm() == 0 || m.sqrnorm() == 0 || length == 0 || length > farthest) return {};
     const double rise_n = (n | d) / length, rise_m = (m | d) / length;
     const double rise = std::max(std::abs(rise_n), std::abs(rise_m));
-    if (std::abs(cosine) > parallel && rise < flattest) return {Pair::flat, cosine < 0, rise};
-    if (cosine > parallel) return {Pair::steep, false, rise};
+    if (std::abs(cosine) > contradictions::parallel && rise < contradictions::flattest)
+        return {Pair::flat, cosine < 0, rise};
+    if (cosine > contradictions::parallel) return {Pair::steep, false, rise};
     const double mirrored = cosine - 2 * rise_n * rise_m; // see patch_evidence
-    if (std::abs(cosine) < crossing && std::abs(mirrored) > clear) return {Pair::creased, mirrored < 0, rise};
+    if (std::abs(cosine) < contradictions::crossing && std::abs(mirrored) > contradictions::clear)
+        return {Pair::creased, mirrored < 0, rise};
     return {};
 }
 
@@ -67,9 +69,9 @@ double mean_rise(const Octree& octree, double farthest) {
 } // namespace
 
 bool NormalConsistency::doubtful() const {
-    constexpr std::size_t fewest = 10;
-    return (flat_opposed >= fewest && 2000 * flat_opposed > flat)
-           || (creased_opposed >= fewest && 100 * creased_opposed > 15 * creased);
+    return (flat_opposed >= contradictions::fewest && contradictions::flat_per_opposed * flat_opposed > flat)
+           || (creased_opposed >= contradictions::fewest
+               && 100 * creased_opposed > contradictions::creased_percent * creased);
 }
 
 double NormalConsistency::contradiction() const {
@@ -88,8 +90,9 @@ void NormalConsistency::operator+=(const NormalConsistency& other) {
 NormalConsistency check_normals(const Octree& octree) {
     if (!octree.has_normals()) return {};
     // The sides of the thinnest plate are opposed, too, but lie off each other's planes.
-    const double farthest = 2 * estimate_spacing(octree);
-    const double highest = 3 * mean_rise(octree, farthest) + 0.01;
+    const double farthest = contradictions::farthest * estimate_spacing(octree);
+    const double highest =
+        contradictions::most_rises * mean_rise(octree, farthest) + contradictions::added_rise;
     return sum_pairs<NormalConsistency>(octree, farthest, [&](const Pair& pair, NormalConsistency& sum) {
         if (pair.kind == Pair::flat && pair.rise < highest) ++sum.flat, sum.flat_opposed += pair.opposed;
         if (pair.kind == Pair::steep) ++sum.steep;

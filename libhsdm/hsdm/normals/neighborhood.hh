@@ -3,6 +3,7 @@
 // them.
 
 #include "hsdm/core/vector_pair.hh"
+#include "hsdm/normals/constants.hh"
 #include "hsdm/normals/neighbors.hh"
 
 #include <array>
@@ -20,12 +21,13 @@ inline Double2 closeness(Double2 residual, double inverse_tolerance) {
 }
 
 /// Of two normals by their cosine: 1 for the same direction, 0 from 33 degrees on.
-constexpr double least_agreement = 0.7;
 inline double agreement(double cosine) {
-    return std::max(0.0, cosine * cosine - least_agreement) / (1 - least_agreement);
+    return std::max(0.0, cosine * cosine - neighborhoods::least_agreement)
+           / (1 - neighborhoods::least_agreement);
 }
 inline Double2 agreement(Double2 cosine) {
-    return max_lanes(Double2{}, cosine * cosine - least_agreement) / (1 - least_agreement);
+    return max_lanes(Double2{}, cosine * cosine - neighborhoods::least_agreement)
+           / (1 - neighborhoods::least_agreement);
 }
 
 /// The neighbours of two points, each as seen from its own.

@@ -4,6 +4,7 @@
 #include "hsdm/core/huge_pages.hh"
 #include "hsdm/core/lanes.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/normals/constants.hh"
 
 #include <tbb/enumerable_thread_specific.h>
 
@@ -16,13 +17,10 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t leaf_points = 12;
 constexpr std::size_t leaves_per_chunk = 256;
 /// Of a voxel of the finest level so many points are looked at together: were it all of them, time would grow
 /// with their square where a cloud's parts lie so far apart that each is in few voxels.
 constexpr Index crowd = 256;
-/// So many candidates per neighbour wanted keep the nearest away from the rim of the 27 voxels.
-constexpr std::size_t candidates_per_neighbor = 4;
 
 /// Stands for voxels outside the cube; no code has this bit.
 constexpr MortonCode beyond = MortonCode{1} << 63;
@@ -46,8 +44,8 @@ std::vector<Leaf> find_leaves(const std::vector<MortonCode>& codes) {
     leaves.reserve(codes.size() / 4 + 1);
     for (std::size_t i = 0, end = 0; i < codes.size(); i = end) {
         int level = i == 0 ? 0 : split_level(codes[i - 1], codes[i]);
-        if (i + leaf_points < codes.size())
-            level = std::max(level, split_level(codes[i], codes[i + leaf_points]));
+        if (i + neighborhoods::leaf_points < codes.size())
+            level = std::max(level, split_level(codes[i], codes[i + neighborhoods::leaf_points]));
         level = std::min(level, morton_levels);
         const int shift = 3 * (morton_levels - level);
         const std::size_t last = level < morton_levels ? codes.size() : std::min(codes.size(), i + crowd);
@@ -315,7 +313,8 @@ private:
         for (int level = leaf.level;; --level) {
             const MortonCode code = octree_.codes[leaf.begin] >> (3 * (morton_levels - level));
             if (candidates.level == level && candidates.code == code && level < morton_levels) return;
-            if (around(code, level, voxels, count) < candidates_per_neighbor * result_.count && level > 0)
+            if (around(code, level, voxels, count) < neighborhoods::candidates_per_neighbor * result_.count
+                && level > 0)
                 continue;
             candidates.level = level;
             candidates.code = code;

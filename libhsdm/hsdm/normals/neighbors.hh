@@ -1,12 +1,14 @@
 #pragma once
 // The nearest points of every point, read off the octree: no search structure of its own.
 
+#include "hsdm/normals/constants.hh"
 #include "hsdm/octree/octree.hh"
 
 namespace hsdm {
 
 struct NeighborOptions {
-    int count = 16; ///< neighbours per point, [3, 64]; fewer where the cloud itself is smaller
+    /// neighbours per point, [3, 64]; fewer where the cloud itself is smaller
+    int count = neighborhoods::neighbors;
 };
 
 /// The neighbours of point i are index[i * count] .. index[(i + 1) * count - 1], in no order, without i.

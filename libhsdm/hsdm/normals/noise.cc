@@ -1,6 +1,7 @@
 #include "hsdm/normals/noise.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/normals/constants.hh"
 #include "hsdm/normals/plane_fit.hh"
 
 #include <algorithm>
@@ -67,19 +68,21 @@ Octree thinned(const Octree& octree) {
 
 double estimate_noise(const Octree& octree, const Neighbors& neighbors) {
     return lower_third(sampled(octree, [&](std::size_t i) {
-        return neighbors.reach[i] > 0 ? roughness(octree, neighbors, 6, i).distance / neighbors.reach[i] : 0;
+        return neighbors.reach[i] > 0
+                   ? roughness(octree, neighbors, noise::nearest, i).distance / neighbors.reach[i]
+                   : 0;
     }));
 }
 
 double noise_deviation(const Octree& octree, const Neighbors& neighbors) {
-    constexpr std::size_t fewest = 500; // points: below, there is nothing to take a typical value of
     struct Scale {
         std::size_t few;
         double small; ///< against the reach: about five deviations; where all is noise it is 0.23 and 0.30
         double deviation; ///< of a normal distribution whose distances have this lower third
     };
     double deviation = 0;
-    for (const Scale& scale : {Scale{6, 0.15, 1.3}, Scale{12, 0.2, 1.13}}) {
+    for (const Scale& scale :
+         {Scale{noise::nearest, noise::small, 1.3}, Scale{noise::more_nearest, noise::small_of_more, 1.13}}) {
         std::vector<double> distances, relative; // to the reach
         for (const Roughness& r :
              sampled(octree, [&](std::size_t i) { return roughness(octree, neighbors, scale.few, i); })) {
@@ -89,14 +92,13 @@ double noise_deviation(const Octree& octree, const Neighbors& neighbors) {
         deviation = scale.deviation * lower_third(std::move(distances));
         if (lower_third(std::move(relative)) < scale.small) return deviation;
     }
-    if (octree.size() < 4 * fewest) return deviation; // a quarter of them is looked at next
+    if (octree.size() < 4 * noise::fewest) return deviation; // a quarter of them is looked at next
     const Octree thin = thinned(octree);
     return noise_deviation(thin, find_neighbors(thin));
 }
 
 int neighbors_for_noise(double noise) {
-    constexpr double rough = 0.06, very_rough = 0.13;
-    return noise < rough ? 16 : noise < very_rough ? 32 : 64;
+    return noise < noise::rough ? neighborhoods::neighbors : noise < noise::very_rough ? 32 : 64;
 }
 
 } // namespace hsdm

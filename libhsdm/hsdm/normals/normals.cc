@@ -15,7 +15,8 @@ namespace {
 Neighbors choose_neighbors(const Octree& octree, int count, Neighbors neighbors) {
     if (count != 0) return find_neighbors(octree, {.count = count});
     const int wanted = neighbors_for_noise(estimate_noise(octree, neighbors));
-    return wanted > 16 ? find_neighbors(octree, {.count = wanted}) : std::move(neighbors);
+    return wanted > neighborhoods::neighbors ? find_neighbors(octree, {.count = wanted})
+                                             : std::move(neighbors);
 }
 
 } // namespace

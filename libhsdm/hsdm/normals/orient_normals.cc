@@ -1,6 +1,7 @@
 #include "hsdm/normals/orient_normals.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/normals/constants.hh"
 #include "hsdm/normals/outside.hh"
 #include "hsdm/octree/spacing.hh"
 
@@ -12,9 +13,6 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t points_per_chunk = 1 << 14;
-/// What a point of a patch with a view of the outside says, in pairs of neighbours: half of those that it is
-/// compared in. Measured, one view in ten thousand is wrong, one pair of patches in a hundred.
-constexpr float view_weight = 4;
 
 /// Signs of components that no view decided: by the signs that most normals came with if these count, else by
 /// the sensor, else by the signed volume about their own centre.
@@ -44,7 +42,6 @@ std::vector<std::int8_t> free_signs(const Patches& patches, const Signs& signs,
 /// Whether most of what patches see of the outside fits the signs that came out. The wall of a shell thinner
 /// than the space's voxels is overlooked here and there, from within as often as from without.
 bool views_agree(const Patches& patches, const OutsideView& view, const Signs& signs) {
-    constexpr double clear = 0.5;
     const auto outside = static_cast<Index>(patches.size());
     double sum = 0, total = 0;
     for (std::size_t p = 0; p < patches.size(); ++p) {
@@ -52,7 +49,7 @@ bool views_agree(const Patches& patches, const OutsideView& view, const Signs& s
         sum += view.votes[p] * signs.sign[p] * signs.sign[outside] * static_cast<double>(patches.counts[p]);
         total += patches.counts[p];
     }
-    return sum >= clear * total;
+    return sum >= turning::clear_views * total;
 }
 
 } // namespace
@@ -70,7 +67,7 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
     OrientReport& report = result.report;
     for (Index p = 0; p < patches.size(); ++p) {
         if (view.votes[p] == 0) continue;
-        const auto weight = view_weight * static_cast<float>(patches.counts[p]);
+        const auto weight = turning::view_weight * static_cast<float>(patches.counts[p]);
         edges.push_back({p, outside, view.votes[p] * weight, weight});
         report.seen_from_outside += patches.counts[p];
     }

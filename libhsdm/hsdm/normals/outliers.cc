@@ -1,6 +1,7 @@
 #include "hsdm/normals/outliers.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/normals/constants.hh"
 #include "hsdm/normals/plane_fit.hh"
 #include "hsdm/octree/spacing.hh"
 
@@ -27,7 +28,7 @@ bool is_off_surface(const Octree& octree, const Neighbors& neighbors, std::size_
     const double deviation = std::sqrt(std::max(0.0, plane.variance)), reach = neighbors.reach[i];
     if (deviation > options.least_volume * reach) return true;
     const double height = std::abs(plane.normal | plane.centroid);
-    return height > options.least_height * reach && height > 3 * deviation;
+    return height > options.least_height * reach && height > distance_outliers::least_deviations * deviation;
 }
 
 std::vector<std::uint8_t> find_outliers(const Octree& octree, const Neighbors& neighbors,

@@ -1,6 +1,7 @@
 #include "hsdm/normals/outside.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/normals/constants.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -81,9 +82,8 @@ public:
 
     /// Empty space counts if it is seen at two places: one voxel may be empty by chance.
     Sight look(const Vec3& from, const Vec3& along) const {
-        constexpr int steps = 5;                    // of half a voxel
         Index last = occupied, searched = no_index; // most voxels are met twice
-        for (int step = 0; step <= steps; ++step) {
+        for (int step = 0; step <= views::steps; ++step) {
             const VoxelCoord c = voxel_at(from + along * (0.5 * step * level_.voxel_size));
             const Index region = space_.region(c);
             if (region == occupied) {
@@ -109,7 +109,6 @@ private:
     /// The first point of the voxel in front of the patch and off its own plane; some of its points are
     /// looked at.
     Index sheet_ahead(Index voxel, const Vec3& from, const Vec3& along) const {
-        constexpr double off_plane = 1.6, aside = 2; // spacings
         constexpr Index looked_at = 64;
         const Index begin = level_.first_point[voxel], end = level_.first_point[voxel + 1];
         const double h = spacing_;
@@ -118,8 +117,8 @@ private:
         for (Index i = begin; i < end; i += 1 + (end - begin) / looked_at) {
             const Vec3 d = octree_.positions[i] - from;
             const double ahead = d | along;
-            if (ahead > off_plane * h && ahead < nearest
-                && d.sqrnorm() - ahead * ahead < aside * aside * h * h)
+            if (ahead > views::off_plane * h && ahead < nearest
+                && d.sqrnorm() - ahead * ahead < views::aside * views::aside * h * h)
                 nearest = ahead, first = i;
         }
         return first;

@@ -1,14 +1,17 @@
 #pragma once
 // Which side of a patch is outside, seen from far away: the empty space around and inside an object.
 
+#include "hsdm/normals/constants.hh"
 #include "hsdm/normals/patches.hh"
 
 namespace hsdm {
 
 struct OutsideOptions {
-    double voxel_spacings = 3.7; ///< > 0: edge of the voxels of the empty space, at least so many spacings,
-                                 ///< so that it does not leak through a sampled surface
-    int deepest = 7;             ///< octree depth of these voxels at most, [1, 8]: the space is kept densely
+    /// > 0: edge of the voxels of the empty space, at least so many spacings, so that it does not leak
+    /// through a sampled surface
+    double voxel_spacings = views::voxel_spacings;
+    /// octree depth of these voxels at most, [1, 8]: the space is kept densely
+    int deepest = views::deepest;
 };
 
 struct OutsideView {

@@ -1,6 +1,7 @@
 #include "hsdm/normals/patches.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/normals/constants.hh"
 
 #include <algorithm>
 #include <array>
@@ -10,13 +11,6 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t leaves_per_chunk = 256;
-/// Normals of one patch, neighbour to neighbour (about 32 degrees).
-constexpr double least_cosine = 0.85;
-/// Sine of the angle that the chord between two points of one patch may rise out of their planes.
-constexpr double steepest = 0.3;
-/// Points of a leaf are compared with so many of their successors: more only share a voxel of the deepest
-/// level.
-constexpr Index compared = 12;
 
 class PatchBuilder {
 public:
@@ -49,13 +43,14 @@ public:
 
 private:
     bool flat(Index i, Index j, double cosine) const {
-        if (std::abs(cosine) < least_cosine) return false;
+        if (std::abs(cosine) < patches::least_cosine) return false;
         const Vec3& a = estimate_.normals[i];
         const Vec3 sum = cosine < 0 ? a - estimate_.normals[j] : a + estimate_.normals[j];
         const Vec3 d = octree_.positions[j] - octree_.positions[i];
         const double rise = std::abs(sum | d) / sum.norm();
         const double length = d.norm();
-        return rise <= std::max(steepest * length, std::min(estimate_.tolerance[i], 0.5 * length));
+        return rise <= std::max(patches::steepest * length,
+                                std::min(estimate_.tolerance[i], patches::most_rise * length));
     }
 
     /// Numbers the leaf's patches from `base` on; returns how many there are. A patch's number is taken by
@@ -65,7 +60,7 @@ private:
         Index count = 0;
         for (Index i = begin; i < end; ++i) {
             if (estimate_.normals[i].sqrnorm() < 0.5) continue;
-            for (Index j = i - begin > compared ? i - compared : begin; j < i; ++j) {
+            for (Index j = i - begin > patches::compared ? i - patches::compared : begin; j < i; ++j) {
                 if (result_.of_point[j] == no_index || result_.of_point[j] == result_.of_point[i]) continue;
                 const double cosine = estimate_.normals[i] | estimate_.normals[j];
                 if (!flat(i, j, cosine)) continue;
@@ -95,11 +90,6 @@ private:
     const EstimatedNormals& estimate_;
     Patches result_;
 };
-
-/// A pair of points nearer to each other than this, in neighbourhood radii, is compared by how far they lie
-/// off each other's planes, not by the angle of their chord: two sides of a plate oppose each other even
-/// where the chord is slanted.
-constexpr double near_pair = 0.45;
 
 /// Evidence added up edge by edge, but for edges that another one of their place came in between: these are
 /// there twice.
@@ -141,7 +131,8 @@ std::vector<SignedEdge> patch_evidence(const Octree& octree, const Neighbors& ne
             const Index a = patches.of_point[i];
             if (a == no_index) continue;
             const Vec3& n = estimate.normals[i];
-            const double span = std::max(near_pair * neighbors.reach[i], 2 * estimate.tolerance[i]);
+            const double span = std::max(patches::near_pair * neighbors.reach[i],
+                                         patches::near_tolerances * estimate.tolerance[i]);
             const auto around = neighbors.of(i);
             for (std::size_t k = 0; k < around.size(); k += 2) { // half of the pairs say enough
                 const Index j = around[k], b = patches.of_point[j];

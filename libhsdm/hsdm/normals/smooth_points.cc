@@ -2,6 +2,7 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/normals/constants.hh"
 #include "hsdm/normals/neighborhood.hh"
 #include "hsdm/normals/noise.hh"
 #include "hsdm/normals/outliers.hh"
@@ -15,14 +16,6 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t voxels_per_chunk = 256;
-/// In standard deviations of the noise: least radius of the surroundings, and where another sheet begins.
-constexpr double least_radius = 4, another_sheet = 4;
-/// The tilt of a plane falls with noise * spacing / radius^2: at so many geometric means of the two it is
-/// some four degrees.
-constexpr double steady_radius = 6;
-/// Voxels to a radius.
-constexpr std::int32_t reach = 2;
-constexpr int rounds = 3;
 
 /// Points, mean and second moments about it of one voxel.
 struct VoxelSums {
@@ -40,9 +33,9 @@ class Smoothing {
 public:
     Smoothing(const Octree& octree, double noise)
         : noise_(noise),
-          radius_(
-              std::max(least_radius * noise, steady_radius * std::sqrt(noise * estimate_spacing(octree)))),
-          grid_(grid_of(octree, radius_ / reach)) {}
+          radius_(std::max(smoothing::least_radius * noise,
+                           smoothing::steady_radius * std::sqrt(noise * estimate_spacing(octree)))),
+          grid_(grid_of(octree, radius_ / smoothing::reach)) {}
 
     /// The new positions, in the octree's order, relative to its origin.
     std::vector<Vec3> run() {
@@ -90,18 +83,18 @@ private:
     void find_around(Index voxel, std::vector<Index>& around) const {
         const VoxelCoord c = level_.coord(voxel);
         around.clear();
-        for (std::int32_t z = -reach; z <= reach; ++z)
-            for (std::int32_t y = -reach; y <= reach; ++y)
-                for (std::int32_t x = -reach; x <= reach; ++x)
+        for (std::int32_t z = -smoothing::reach; z <= smoothing::reach; ++z)
+            for (std::int32_t y = -smoothing::reach; y <= smoothing::reach; ++y)
+                for (std::int32_t x = -smoothing::reach; x <= smoothing::reach; ++x)
                     if (const Index v = level_.find(VoxelCoord{c[0] + x, c[1] + y, c[2] + z}); v != no_index)
                         around.push_back(v);
     }
 
     /// The plane around the point itself first, then around where it came to lie.
     Vec3 project(const Vec3& point, const std::vector<Index>& around) const {
-        const double inverse_radius = 1 / radius_, inverse_gap = 1 / (another_sheet * noise_);
+        const double inverse_radius = 1 / radius_, inverse_gap = 1 / (smoothing::another_sheet * noise_);
         Vec3 p = point, normal(0, 0, 0);
-        for (int round = 0; round < rounds; ++round) {
+        for (int round = 0; round < smoothing::rounds; ++round) {
             PlaneSums sums;
             for (Index v : around) {
                 const Vec3 d = sums_[v].mean - p;
@@ -145,13 +138,11 @@ void validate(const SmoothOptions& options) {
 } // namespace
 
 double smooth_points(Octree& octree, double noise) {
-    constexpr int most_rounds = 4;
-    constexpr double clearly_less = 0.95;
     std::vector<Vec3> moved;
-    for (int round = 0; round < most_rounds; ++round) {
+    for (int round = 0; round < smoothing::most_rounds; ++round) {
         moved = Smoothing(octree, noise).run();
         const double found = noise_of_moves(octree.positions, moved);
-        if (found > clearly_less * noise || found == 0) break;
+        if (found > smoothing::clearly_less * noise || found == 0) break;
         noise = found;
     }
     rearrange(octree, std::move(moved), octree.extent);
@@ -167,14 +158,13 @@ SmoothReport smooth_noise(Octree& octree, Neighbors& neighbors, const SmoothOpti
 
 SmoothReport smooth_known_noise(Octree& octree, double noise, Neighbors& neighbors,
                                 const SmoothOptions& options) {
-    constexpr int rounds_of_removal = 2;
     validate(options);
     SmoothReport report;
     report.noise = smooth_points(octree, noise);
     neighbors = find_neighbors(octree);
     OutlierOptions removal;
     removal.most_stretch = options.most_stretch;
-    removal.rounds = rounds_of_removal;
+    removal.rounds = smoothing::removal_rounds;
     report.between = drop_outliers_by_distance(octree, neighbors, removal);
     return report;
 }

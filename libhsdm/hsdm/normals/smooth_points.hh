@@ -2,14 +2,17 @@
 // A noisy cloud's points moved onto the surface that they scatter about.
 
 #include "hsdm/core/discarded.hh"
+#include "hsdm/normals/constants.hh"
 #include "hsdm/normals/neighbors.hh"
 
 namespace hsdm {
 
 struct SmoothOptions {
-    double least_noise = 0.4;   ///< >= 0, in spacings: a cloud with less (standard deviation) stays as it is
-    double most_stretch = 1.25; ///< > 1: of a moved point's reach against the median reach of its neighbours;
-                                ///< beyond, it was left between two sheets
+    /// >= 0, in spacings: a cloud with less (standard deviation) stays as it is
+    double least_noise = smoothing::least_noise;
+    /// > 1: of a moved point's reach against the median reach of its neighbours; beyond, it was left between
+    /// two sheets
+    double most_stretch = smoothing::most_stretch;
 };
 
 struct SmoothReport {

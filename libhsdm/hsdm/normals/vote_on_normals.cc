@@ -1,6 +1,7 @@
 #include "hsdm/normals/vote_on_normals.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/normals/constants.hh"
 #include "hsdm/normals/neighborhood.hh"
 
 #include <algorithm>
@@ -10,10 +11,6 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t bent_per_chunk = 256;
-/// Neighbours within this angle of the point's own normal leave it as it is (37 degrees).
-constexpr double cos_settled = 0.8;
-/// Another normal must have so many times the support of the point's own, and some more where that has none.
-constexpr double clear_gain = 1.2, least_support = 0.1;
 
 /// The neighbours that lie on one plane with the point and whose normals agree with a given one.
 class Agreement {
@@ -25,14 +22,14 @@ public:
 
     Vec3 settled(const Vec3& own) const {
         Vec3 best = own;
-        double most = clear_gain * support(VectorPair(own, own))[0] + least_support;
+        double most = votes::clear_gain * support(VectorPair(own, own))[0] + votes::least_support;
         for (std::size_t k = 0; k < around_.size(); k += 2) {
             const std::array<std::size_t, 2> places{k, around_.after(k)};
             const Double2 found = support(VectorPair(normal(places[0]), normal(places[1])));
             for (std::size_t lane = 0; lane < 2; ++lane)
                 if (found[lane] > most) most = found[lane], best = normal(places[lane]);
         }
-        Vec3 sum = best * 0.5;
+        Vec3 sum = best * estimation::own_weight;
         for (std::size_t k = 0; k < around_.size(); ++k)
             sum += normal(k) * weight(VectorPair(best, best), k)[0];
         return sum.sqrnorm() > 0 ? sum.normalized() : own;
@@ -59,16 +56,15 @@ private:
 } // namespace
 
 void vote_on_normals(const Octree& octree, const Neighbors& neighbors, EstimatedNormals& estimate) {
-    constexpr int rounds = 2;
     const std::vector<Index>& bent = estimate.bent;
     std::vector<Vec3> settled(bent.size());
-    for (int round = 0; round < rounds; ++round) {
+    for (int round = 0; round < votes::rounds; ++round) {
         for_chunks(bent.size(), bent_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t b = begin; b < end; ++b) {
                 const Vec3& own = settled[b] = estimate.normals[bent[b]];
                 const auto around = neighbors.of(bent[b]);
                 if (std::any_of(around.begin(), around.end(),
-                                [&](Index j) { return (own | estimate.normals[j]) < cos_settled; }))
+                                [&](Index j) { return (own | estimate.normals[j]) < votes::settled_cosine; }))
                     settled[b] = Agreement(octree, neighbors, estimate, bent[b]).settled(own);
             }
         });
