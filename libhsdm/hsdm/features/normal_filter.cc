@@ -1,6 +1,7 @@
 #include "hsdm/features/normal_filter.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/features/constants.hh"
 #include "hsdm/mesh/facet_normal.hh"
 
 #include <algorithm>
@@ -8,13 +9,6 @@
 #include <cmath>
 
 namespace hsdm {
-namespace {
-
-/// A neighbour counts at most this many times as much as the facet itself.
-constexpr double most_of_own = 2;
-
-} // namespace
-
 std::size_t filter_normals(const FacetNeighbours& neighbours, const std::vector<double>& area,
                            double similarity_angle, double settled_angle, std::vector<Vec3>& normals) {
     const double steepness = -0.5 / (similarity_angle * similarity_angle);
@@ -31,8 +25,9 @@ std::size_t filter_normals(const FacetNeighbours& neighbours, const std::vector<
                 const Index g = neighbours.neighbour[i];
                 if (g == no_index) continue;
                 const double distance = (normals[g] - normals[f]).sqrnorm();
-                sum +=
-                    normals[g] * (std::min(most_of_own * area[f], area[g]) * std::exp(steepness * distance));
+                sum += normals[g]
+                       * (std::min(normal_filters::most_of_own * area[f], area[g])
+                          * std::exp(steepness * distance));
             }
             const Vec3 mean = unit_or_zero(sum);
             if (mean.sqrnorm() > 0) next[f] = mean;

@@ -1,18 +1,13 @@
 #include "hsdm/mesh/collapse_edges.hh"
 
 #include "hsdm/mesh/area_vector.hh"
+#include "hsdm/mesh/constants.hh"
 
 #include <algorithm>
 #include <iterator>
 
 namespace hsdm {
 namespace {
-
-constexpr double least_area = 0.01;     // twice a facet's, over its longest side squared
-constexpr double least_share = 0.5;     // of what a facet with less than that had
-constexpr double least_side = 0.01;     // over the longest
-constexpr std::size_t most_corners = 6; // of united facets
-constexpr int most_rounds = 16;
 
 using RingVertices = std::vector<Index>;
 
@@ -162,7 +157,8 @@ private:
             else
                 std::replace(after.begin(), after.end(), from, to);
             changes_.push_back({r, std::move(after), area_vector(mesh_, rings_[r]),
-                                std::min(least_area, least_share * relative_area(rings_[r]))});
+                                std::min(edge_collapses::least_area,
+                                         edge_collapses::least_share * relative_area(rings_[r]))});
         }
     }
 
@@ -202,7 +198,7 @@ private:
             RingVertices united = starting_at(flat.after, find_in(flat.after, b));
             const RingVertices other = starting_at(beyond->after, find_in(beyond->after, a));
             united.insert(united.end(), other.begin() + 1, other.end() - 1);
-            if (united.size() > most_corners || !is_simple(united)) return false;
+            if (united.size() > edge_collapses::most_corners || !is_simple(united)) return false;
             beyond->after = std::move(united);
             flat.after.clear();
         }
@@ -231,7 +227,8 @@ private:
     /// Are the sides of a ring that end at `centre` long enough?
     bool has_sides(const RingVertices& ring, Index centre) const {
         const std::size_t at = find_in(ring, centre), i = longest_side(ring);
-        const double least = least_side * least_side * squared_length(ring[i], ring[(i + 1) % ring.size()]);
+        const double least = edge_collapses::least_side * edge_collapses::least_side
+                             * squared_length(ring[i], ring[(i + 1) % ring.size()]);
         return squared_length(centre, ring[(at + 1) % ring.size()]) > least
                && squared_length(centre, ring[(at + ring.size() - 1) % ring.size()]) > least;
     }
@@ -282,7 +279,7 @@ std::vector<std::uint8_t> collapse_edges(PolygonMesh& mesh, std::span<const Edge
     if (edges.empty()) return collapsed;
     Patch patch(mesh, edges);
     bool changed = true, any = false;
-    for (int round = 0; changed && round < most_rounds; ++round) {
+    for (int round = 0; changed && round < edge_collapses::most_rounds; ++round) {
         changed = false;
         for (std::size_t i = 0; i < edges.size(); ++i)
             if (!collapsed[i] && patch.collapse(edges[i])) collapsed[i] = 1, changed = any = true;

@@ -2,6 +2,7 @@
 // Hole elimination (sections 3.2.2 and 3.4.2): short boundary loops are closed by facets over their own
 // vertices.
 
+#include "hsdm/mesh/constants.hh"
 #include "hsdm/polygon_mesh.hh"
 
 namespace hsdm {
@@ -11,7 +12,7 @@ struct FillHolesOptions {
     double max_diameter = Box::inf; ///< loops whose box has a longer diagonal stay open, in the mesh's units
     /// Greatest bend between a new facet and its neighbours, in radians, (0, pi]; a loop that cannot be
     /// closed with less is left open. pi is a facet folded back onto its neighbour.
-    double max_bend = 2.6;
+    double max_bend = quad_splitting::most_bend;
     bool quads = true; ///< join triangles to quads where these come out convex
     /// Close what cannot be closed otherwise by a vertex at its middle and triangles around it, however these
     /// come out. Only a loop of two edges stays.

@@ -2,6 +2,7 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/radix_sort.hh"
+#include "hsdm/mesh/constants.hh"
 #include "hsdm/mesh/edge_table.hh"
 
 #include <algorithm>
@@ -17,7 +18,6 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t grain = 1 << 13;
-constexpr int pairing_rounds = 6;
 
 // ---- step 1: simple facets, each set of vertices once --------------------------------------------------
 
@@ -163,7 +163,8 @@ public:
         link_corners();
         pair_edges();
         assign_vertices();
-        for (int round = 0; round < pairing_rounds && flip_crowded_edges(); ++round) assign_vertices();
+        for (int round = 0; round < manifolds::pairing_rounds && flip_crowded_edges(); ++round)
+            assign_vertices();
         subdivide_crowded_edges();
         for (const ComplexEdge& edge : complex_)
             for (Index h : half_edges(edge)) counts_.opened_edges += twin_[h] == no_index;

@@ -2,15 +2,19 @@
 // Connected components that are too small to be a part.
 
 #include "hsdm/core/discarded.hh"
+#include "hsdm/mesh/constants.hh"
 #include "hsdm/mesh/feature_hints.hh"
 #include "hsdm/polygon_mesh.hh"
 
 namespace hsdm {
 
 struct SplinterOptions {
-    std::size_t most_facets = 20; ///< ten quads round two grid points, cut in two; more are a part
-    std::size_t most_open = 32;   ///< of a component with a border; more are a piece of the surface
-    double least_ratio = 32;      ///< of the facets of the largest component to those of a splinter
+    /// ten quads round two grid points, cut in two; more are a part
+    std::size_t most_facets = splinters::most_facets;
+    /// of a component with a border; more are a piece of the surface
+    std::size_t most_open = splinters::most_open;
+    /// of the facets of the largest component to those of a splinter
+    double least_ratio = splinters::least_ratio;
 };
 
 /// Removes the components (facets joined by shared vertices) that are splinters beside the largest one: a few

@@ -2,6 +2,7 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/area_vector.hh"
+#include "hsdm/mesh/constants.hh"
 #include "hsdm/mesh/facet_links.hh"
 
 #include <algorithm>
@@ -11,9 +12,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t exact_edges = 128;
-constexpr double quad_bend = 1.05;    // two triangles that bend more stay two (60 degrees)
-constexpr double least_quality = 0.2; // of a quad's corners: the sine of the sharpest or bluntest angle
 constexpr double infinite = Box::inf;
 
 /// One polygon, triangulated. Its corners are numbered 0 .. n - 1, side i runs from corner i to i + 1.
@@ -29,7 +27,7 @@ public:
 
     /// False if every triangulation folds, has a flat triangle or uses an edge that exists.
     bool run() {
-        while (vertices_.size() > exact_edges)
+        while (vertices_.size() > quad_splitting::exact_edges)
             if (!cut_best_ear()) return false;
         return solve();
     }
@@ -48,7 +46,7 @@ private:
     /// What a bend costs beside the length of its edge; infinite beyond the limit.
     double bend_cost(const Vec3& a, const Vec3& b, double squared_length) const {
         const double cosine = a | b;
-        return cosine < least_cosine_ ? infinite : 4 * squared_length * (1 - cosine);
+        return cosine < least_cosine_ ? infinite : quad_splitting::bend_cost * squared_length * (1 - cosine);
     }
 
     bool diagonal_free(std::size_t i, std::size_t j) const {
@@ -176,11 +174,11 @@ std::vector<Merge> possible_quads(const PolygonMesh& mesh,
         if (sides[s].edge != sides[s + 1].edge) continue;
         const auto &a = triangles[sides[s].triangle], &b = triangles[sides[s + 1].triangle];
         const double cosine = unit(area_vector(mesh, a)) | unit(area_vector(mesh, b));
-        if (cosine < std::cos(quad_bend)) continue;
+        if (cosine < std::cos(quad_splitting::quad_bend)) continue;
         const std::array<Index, 4> quad{a[sides[s].corner], b[(sides[s + 1].corner + 2) % 3],
                                         a[(sides[s].corner + 1) % 3], a[(sides[s].corner + 2) % 3]};
         const double quality = quad_quality(mesh, quad);
-        if (quality > least_quality)
+        if (quality > quad_splitting::least_corner)
             merges.push_back({quality, sides[s].triangle, sides[s + 1].triangle, quad});
     }
     std::stable_sort(merges.begin(), merges.end(),
@@ -192,13 +190,14 @@ std::vector<Merge> possible_quads(const PolygonMesh& mesh,
 /// Triangles joined in pairs often miss this: the shortest diagonals of a hexagon cut out a triangle.
 Pieces halve_hexagon(const PolygonMesh& mesh, std::span<const Index> p, const EdgeSet& edges) {
     Pieces best;
-    double best_quality = least_quality;
+    double best_quality = quad_splitting::least_corner;
     for (std::size_t i = 0; i < 3; ++i) {
         const std::array<Index, 4> a{p[i], p[i + 1], p[i + 2], p[i + 3]},
             b{p[i + 3], p[(i + 4) % 6], p[(i + 5) % 6], p[i]};
         const double quality = std::min(quad_quality(mesh, a), quad_quality(mesh, b));
         const double cosine = unit(area_vector(mesh, a)) | unit(area_vector(mesh, b));
-        if (quality <= best_quality || cosine < std::cos(quad_bend) || edges.contains(p[i], p[i + 3]))
+        if (quality <= best_quality || cosine < std::cos(quad_splitting::quad_bend)
+            || edges.contains(p[i], p[i + 3]))
             continue;
         best = {{a.begin(), a.end()}, {b.begin(), b.end()}};
         best_quality = quality;

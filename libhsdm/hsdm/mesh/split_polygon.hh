@@ -2,13 +2,15 @@
 // Polygons into well-shaped triangles and quads over their own vertices: what closes a hole, and what becomes
 // of a minimal loop of five edges and more.
 
+#include "hsdm/mesh/constants.hh"
 #include "hsdm/mesh/edge_set.hh"
 
 namespace hsdm {
 
 struct SplitPolygonOptions {
-    double max_bend = 2.6; ///< greatest bend of an edge inside or on the polygon, in radians, (0, pi]
-    bool quads = true;     ///< join triangles to quads where these come out convex
+    /// greatest bend of an edge inside or on the polygon, in radians, (0, pi]
+    double max_bend = quad_splitting::most_bend;
+    bool quads = true; ///< join triangles to quads where these come out convex
 };
 
 /// The pieces of a polygon, as facets.

@@ -1,6 +1,7 @@
 #include "hsdm/octree/far_outliers.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/octree/constants.hh"
 #include "hsdm/octree/spacing.hh"
 
 #include <tbb/parallel_sort.h>
@@ -23,15 +24,13 @@ Box box_of_most(const Octree& octree, const PointCloud& cloud) {
         for (std::size_t i = 0; i < octree.size(); i += stride)
             values.push_back(cloud.positions[octree.source[i]][axis]);
         std::sort(values.begin(), values.end());
-        const std::size_t outer = std::max<std::size_t>(1, values.size() / 50);
+        const std::size_t outer = std::max<std::size_t>(1, values.size() / far_points::one_outer_in);
         if (2 * outer >= values.size()) return box;
         box.lo[axis] = values[outer];
         box.hi[axis] = values[values.size() - 1 - outer];
     }
     return box;
 }
-
-constexpr std::size_t fewest_of_part = 64; // eight voxels of a surface, by eight points each
 
 /// A point's code in some grid, and its place in the octree.
 using Places = std::vector<std::pair<MortonCode, Index>>;
@@ -66,7 +65,7 @@ void spare_parts(const Places& places, std::vector<std::uint8_t>& far) {
         for (std::size_t begin = 0, end = 0; begin < places.size(); begin = end) {
             while (end < places.size() && places[end].first >> shift == places[begin].first >> shift) ++end;
             const Index count = marked[end] - marked[begin];
-            if (count < fewest_of_part) continue;
+            if (count < far_points::fewest_of_part) continue;
             const auto place = [&](MortonCode first) { // of the first point that is not before
                 return std::partition_point(places.begin(), places.end(),
                                             [&](const auto& p) { return p.first >> shift_around < first; });
@@ -142,7 +141,7 @@ std::size_t mark_scraps(const Octree& octree, const PointCloud& cloud, const Clo
     marks.assign(points.size(), 0);
     for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {
         while (end < points.size() && points[end].first == points[begin].first) ++end;
-        if (end - begin >= fewest_of_part) continue;
+        if (end - begin >= far_points::fewest_of_part) continue;
         for (std::size_t i = begin; i < end; ++i) marks[points[i].second] = 1;
         count += end - begin;
     }
@@ -151,8 +150,7 @@ std::size_t mark_scraps(const Octree& octree, const PointCloud& cloud, const Clo
 
 /// The frame with all gaps cut that are wide against parts; without cuts if there are none.
 CloudFrame with_cuts(const Octree& octree, const PointCloud& cloud, CloudFrame frame, double least_gap) {
-    constexpr double gaps_per_extent = 1 << 12;
-    double widest = std::max(octree.extent / gaps_per_extent, least_gap);
+    double widest = std::max(octree.extent / far_points::gaps_per_extent, least_gap);
     for (;;) {
         const double longest = cut_gaps(octree, cloud, widest, frame);
         if (!(longest > 0)) return frame.without_cuts();              // single places
@@ -164,15 +162,14 @@ CloudFrame with_cuts(const Octree& octree, const PointCloud& cloud, CloudFrame f
 } // namespace
 
 Discarded drop_far_outliers(Octree& octree, const PointCloud& cloud, CloudFrame& frame) {
-    constexpr double cubes_least = 1 << 12, margin = 1 << 10; // of the box that most points lie in
     const Box core = box_of_most(octree, cloud); // as the cloud has it: outliers may have made its unit huge
     const double extent = core.extent();
-    if (!(extent > 0) || cubes_least * extent >= octree.extent * frame.unit()) return {};
+    if (!(extent > 0) || far_points::boxes_across * extent >= octree.extent * frame.unit()) return {};
     std::vector<std::uint8_t> far(octree.size(), 0);
     for (std::size_t i = 0; i < far.size(); ++i) {
         const Vec3& p = cloud.positions[octree.source[i]];
         const Vec3 below = core.lo - p, above = p - core.hi;
-        far[i] = std::max(below.max(), above.max()) > margin * extent;
+        far[i] = std::max(below.max(), above.max()) > far_points::margin * extent;
     }
     spare_parts(octree, far);
     Discarded discarded = remove_points(octree, far);
@@ -183,14 +180,14 @@ Discarded drop_far_outliers(Octree& octree, const PointCloud& cloud, CloudFrame&
 }
 
 Discarded cut_empty_space(Octree& octree, const PointCloud& cloud, CloudFrame& frame, double least_gap) {
-    constexpr double spacings_per_voxel = 3, most_scraps = 0.02;
     Discarded discarded;
-    while (spacings_per_voxel * estimate_spacing(octree) < octree.voxel_size(deepest_level)) {
+    while (spacings::spacings_per_voxel * estimate_spacing(octree) < octree.voxel_size(deepest_level)) {
         const CloudFrame cut = with_cuts(octree, cloud, frame, least_gap / frame.unit());
         if (!cut.has_cuts()) return discarded;
         std::vector<std::uint8_t> marks;
         const std::size_t scraps = mark_scraps(octree, cloud, cut, marks);
-        if (static_cast<double>(scraps) > most_scraps * static_cast<double>(octree.size())) return discarded;
+        if (static_cast<double>(scraps) > far_points::most_scraps * static_cast<double>(octree.size()))
+            return discarded;
         if (scraps == 0) {
             if (take_anew(octree, cloud, cut)) frame = cut;
             return discarded;

@@ -1,5 +1,7 @@
 #include "hsdm/octree/spacing.hh"
 
+#include "hsdm/octree/constants.hh"
+
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
@@ -15,10 +17,6 @@ using Counts = std::array<std::size_t, morton_levels + 1>;
 
 /// Faces a surface of one unit of area crosses per voxel face, averaged over all directions.
 constexpr double voxels_per_area = 1.5;
-/// Of the voxels that a surface crosses, this share over the root of the points per voxel holds none of them,
-/// being clipped only at a tip (measured: 0.14 at 9 points, 0.10 at 17, 0.06 at 32).
-constexpr double tips = 0.4;
-constexpr double points_per_voxel = 8;
 
 /// The first level at which two codes lie in different voxels; morton_levels + 1 if equal.
 unsigned split_level(MortonCode a, MortonCode b) {
@@ -62,26 +60,25 @@ double estimate_spacing(const Octree& octree) {
     const Counts counts = count_voxels(octree);
     const auto n = static_cast<double>(count_places(octree, counts.back()));
     unsigned level = morton_levels;
-    while (level > 0 && n < points_per_voxel * static_cast<double>(counts[level])) --level;
+    while (level > 0 && n < spacings::points_per_voxel * static_cast<double>(counts[level])) --level;
     const double h = octree.voxel_size(static_cast<int>(level));
     const auto voxels = static_cast<double>(counts[level]);
-    const double seen = 1 - std::min(0.5, tips * std::sqrt(voxels / n));
+    const double seen = 1 - std::min(0.5, spacings::empty_share * std::sqrt(voxels / n));
     return h * std::sqrt(voxels / (voxels_per_area * seen * n));
 }
 
 VoxelChoice choose_voxel(const Octree& octree, double spacing, double noise, double unit) {
-    constexpr double spacings_per_voxel = 3, noises_per_voxel = 2;
     VoxelChoice choice;
     char text[160];
-    if (noises_per_voxel * noise > spacings_per_voxel * spacing) {
-        choice.size = noises_per_voxel * noise;
+    if (spacings::noises_per_voxel * noise > spacings::spacings_per_voxel * spacing) {
+        choice.size = spacings::noises_per_voxel * noise;
         std::snprintf(text, sizeof text,
                       "%g times the noise (standard deviation %.4g, spacing of the points %.4g)",
-                      noises_per_voxel, noise * unit, spacing * unit);
+                      spacings::noises_per_voxel, noise * unit, spacing * unit);
     } else {
-        choice.size = spacings_per_voxel * spacing;
-        std::snprintf(text, sizeof text, "%g spacings of the points (spacing %.4g)", spacings_per_voxel,
-                      spacing * unit);
+        choice.size = spacings::spacings_per_voxel * spacing;
+        std::snprintf(text, sizeof text, "%g spacings of the points (spacing %.4g)",
+                      spacings::spacings_per_voxel, spacing * unit);
     }
     choice.size = std::clamp(choice.size, octree.voxel_size(deepest_level), octree.voxel_size(1));
     choice.reason = text;

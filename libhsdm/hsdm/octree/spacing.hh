@@ -1,6 +1,7 @@
 #pragma once
 // How densely a cloud samples its surface, read off the octree, and the depth that this density carries.
 
+#include "hsdm/octree/constants.hh"
 #include "hsdm/octree/octree.hh"
 
 #include <string>
@@ -37,7 +38,7 @@ struct DepthChoice {
 
 /// The finest depth in [1, 16] whose voxels are at least so many spacings wide. The reason gives lengths
 /// times `unit`.
-DepthChoice choose_depth(const Octree& octree, double spacing, double spacings_per_voxel = 3,
-                         double unit = 1);
+DepthChoice choose_depth(const Octree& octree, double spacing,
+                         double spacings_per_voxel = spacings::spacings_per_voxel, double unit = 1);
 
 } // namespace hsdm

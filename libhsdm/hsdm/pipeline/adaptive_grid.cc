@@ -2,6 +2,7 @@
 
 #include "hsdm/errors.hh"
 #include "hsdm/pipeline/attributes.hh"
+#include "hsdm/pipeline/constants.hh"
 #include "hsdm/reconstruct.hh"
 #include "hsdm/simplify/simplify.hh"
 
@@ -10,10 +11,8 @@
 namespace hsdm {
 namespace {
 
-constexpr double default_error = 0.1; // voxels of the finest level
-
 double error_bound(const MethodInput& in) {
-    if (!in.options.max_error) return default_error * in.level.voxel_size;
+    if (!in.options.max_error) return resolution::default_error * in.level.voxel_size;
     const MaxError& asked = *in.options.max_error;
     return asked.of_diagonal ? asked.value * in.octree.bounds.diagonal() : asked.value / in.frame.unit();
 }

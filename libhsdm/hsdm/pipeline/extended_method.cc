@@ -4,6 +4,7 @@
 #include "hsdm/contour/outlier_sets.hh"
 #include "hsdm/contour/sheet_features.hh"
 #include "hsdm/pipeline/attributes.hh"
+#include "hsdm/pipeline/constants.hh"
 #include "hsdm/pipeline/extended_graph.hh"
 #include "hsdm/pipeline/phase_geometry.hh"
 #include "hsdm/quality/topology.hh"
@@ -14,13 +15,11 @@ namespace hsdm {
 namespace {
 
 // auto: loops up to so wide are small against the sampling
-constexpr double widest_hole = 20;       // spacings of the points
-constexpr double widest_hole_voxels = 6; // where voxels are wide against the spacing
 
 /// keep closes nothing, auto the loops that are small against the sampling, close all.
 DualContourOptions extended_options(const ReconstructOptions& options, double spacing_in_voxels) {
     DualContourOptions result;
-    result.holes.max_diameter = std::max(widest_hole * spacing_in_voxels, widest_hole_voxels);
+    result.holes.max_diameter = std::max(holes::widest_in_spacings * spacing_in_voxels, holes::widest);
     result.holes.insist = true;
     result.fill = options.holes != Holes::keep;
     if (options.holes == Holes::close)

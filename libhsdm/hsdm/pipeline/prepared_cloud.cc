@@ -6,6 +6,7 @@
 #include "hsdm/normals/normals.hh"
 #include "hsdm/octree/far_outliers.hh"
 #include "hsdm/octree/spacing.hh"
+#include "hsdm/pipeline/constants.hh"
 #include "hsdm/pipeline/method.hh"
 #include "hsdm/pipeline/options.hh"
 
@@ -104,7 +105,8 @@ int PreparedCloud::choose_resolution(const ReconstructOptions& options) {
         return fit_voxels(*options.voxel_size / frame.unit());
     }
     if (options.max_error) { // as fine as two spacings only where the error needs it
-        const DepthChoice choice = choose_depth(octree, report.input.spacing, 2, frame.unit());
+        const DepthChoice choice =
+            choose_depth(octree, report.input.spacing, resolution::adaptive_spacings, frame.unit());
         report.options["resolution"] = choice.reason;
         return choice.depth;
     }
@@ -114,8 +116,7 @@ int PreparedCloud::choose_resolution(const ReconstructOptions& options) {
 }
 
 void PreparedCloud::smooth_for_depth(int depth, const Phases& phases) {
-    constexpr double harmless = 0.3; // of a voxel
-    if (moved_ || noise_ <= harmless * octree.voxel_size(depth)) return;
+    if (moved_ || noise_ <= resolution::harmless_noise * octree.voxel_size(depth)) return;
     note_smoothing(phases.run("noise", 0.1, report.seconds.normals, [&] {
         Neighbors neighbors;
         return smooth_known_noise(octree, noise_, neighbors);

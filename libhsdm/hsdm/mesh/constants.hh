@@ -1,0 +1,92 @@
+#pragma once
+// Tuning values of what is done to any mesh. What half and double of each do: docs/constants.md.
+
+#include "hsdm/core/tuned.hh"
+
+#include <cstddef>
+
+// split_polygon.hh, which fill_holes.hh uses
+namespace hsdm::quad_splitting {
+
+/// radians: greatest bend of an edge inside or on a polygon, or between a hole's facets and those around.
+/// Why: 149 degrees: pi is a facet folded back onto its neighbour; sharper tips than 31 degrees are better
+/// left open.
+HSDM_TUNED double most_bend = 2.6;
+
+/// factor: on what a bend of a right angle costs against the square of its edge.
+/// Why: by trial; flat ways round are taken if they are less than twice as long.
+HSDM_TUNED double bend_cost = 4;
+
+/// radians: two triangles that bend more stay two.
+/// Why: 60 degrees: a quad that bends more is drawn and cut differently by everybody.
+HSDM_TUNED double quad_bend = 1.05;
+
+/// sine: of the sharpest or bluntest corner of a quad.
+/// Why: 12 degrees: worse ones are better two triangles. As flips.least_corner.
+HSDM_TUNED double least_corner = 0.2;
+
+/// edges: of a polygon that is split exactly, larger ones lose their best ears first.
+/// Why: bounds the work, which grows with the cube.
+HSDM_TUNED std::size_t exact_edges = 128;
+
+} // namespace hsdm::quad_splitting
+
+// manifold.hh
+namespace hsdm::manifolds {
+
+/// rounds: of pairing facets at crowded edges anew.
+/// Why: bounds the work; what is left is subdivided.
+HSDM_TUNED int pairing_rounds = 6;
+
+} // namespace hsdm::manifolds
+
+// doublets.hh
+namespace hsdm::doublets {
+
+/// cosine: of two facets round one vertex that lie back to back.
+/// Why: 107 degrees, as of sheets that face opposite ways (pairing.opposed_cosine).
+HSDM_TUNED double folded_cosine = -0.3;
+
+} // namespace hsdm::doublets
+
+// collapse_edges.hh
+namespace hsdm::edge_collapses {
+
+/// share: twice a facet's area over its longest side squared; with less it has lost its area.
+/// Why: by trial; a hundredth of a square, the normal of less is rounding.
+HSDM_TUNED double least_area = 0.01;
+
+/// share: of what a facet with less than that had before, which it must keep.
+/// Why: by trial; half, so that what was thin already does not refuse.
+HSDM_TUNED double least_share = 0.5;
+
+/// share: of a side over the longest one; with less its ends are one place.
+/// Why: as least_area.
+HSDM_TUNED double least_side = 0.01;
+
+/// corners: of two facets that are united.
+/// Why: two quads with an edge in common have six.
+HSDM_TUNED std::size_t most_corners = 6;
+
+/// rounds: of trying again those that were refused.
+/// Why: bounds the work; a round without change ends it.
+HSDM_TUNED int most_rounds = 16;
+
+} // namespace hsdm::edge_collapses
+
+// small_components.hh: drop_splinters
+namespace hsdm::splinters {
+
+/// facets: of a closed splinter.
+/// Why: ten quads round two grid points, cut in two; more are a part.
+HSDM_TUNED std::size_t most_facets = 20;
+
+/// facets: of one with a border.
+/// Why: by trial; more are a piece of the surface.
+HSDM_TUNED std::size_t most_open = 32;
+
+/// factor: of the largest component's facets on a splinter's.
+/// Why: by trial; beside a small part a small one is no splinter.
+HSDM_TUNED double least_ratio = 32;
+
+} // namespace hsdm::splinters

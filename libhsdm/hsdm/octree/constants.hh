@@ -1,0 +1,57 @@
+#pragma once
+// Tuning values of spacing, resolution and points far away. What half and double of each do:
+// docs/constants.md.
+
+#include "hsdm/core/tuned.hh"
+
+#include <cstddef>
+
+// spacing.hh
+namespace hsdm::spacings {
+
+/// points: per voxel of the level on which voxels are counted.
+/// Why: so many leave few of a surface's voxels without a point; more see curvature and thin parts.
+HSDM_TUNED double points_per_voxel = 8;
+
+/// share: of the voxels that a surface crosses, times the root of the points per voxel, that holds none.
+/// Why: measured: 0.14 at 9 points, 0.10 at 17, 0.06 at 32.
+HSDM_TUNED double empty_share = 0.4;
+
+/// spacings: edge of the voxel that suits the sampling.
+/// Why: measured: nine points a voxel, which fix a set's normal and leave one voxel in seven a sliver.
+HSDM_TUNED double spacings_per_voxel = 3;
+
+/// deviations: edge of the voxel that suits the noise.
+/// Why: by trial; two sheets of one voxel are told apart by 0.3 of it, and noise reaches as far.
+HSDM_TUNED double noises_per_voxel = 2;
+
+} // namespace hsdm::spacings
+
+// far_outliers.hh
+namespace hsdm::far_points {
+
+/// points: one in so many is left out at either end of each axis for the box that most lie in.
+/// Why: two percent: more garbage than scanners make.
+HSDM_TUNED std::size_t one_outer_in = 50;
+
+/// boxes: that hold most points, across the cloud's box; of fewer nothing is far away.
+/// Why: 4096: the octree's 21 levels still have nine for such a box.
+HSDM_TUNED double boxes_across = 1 << 12;
+
+/// boxes: between a point that is far away and the box of most.
+/// Why: 1024: by trial.
+HSDM_TUNED double margin = 1 << 10;
+
+/// points: of a part, far from all else though it is.
+/// Why: eight voxels of a surface, by eight points each.
+HSDM_TUNED std::size_t fewest_of_part = 64;
+
+/// gaps: across the cloud's box, the widest that is first tried as a cut.
+/// Why: as boxes_across.
+HSDM_TUNED double gaps_per_extent = 1 << 12;
+
+/// share: of the points between cuts that belong to no part; of more, nothing is cut.
+/// Why: by trial; such a cloud is scattered and has no parts.
+HSDM_TUNED double most_scraps = 0.02;
+
+} // namespace hsdm::far_points
