@@ -1,0 +1,80 @@
+#include "hsdm/core/radix_sort.hh"
+#include "support/random.hh"
+
+#include <catch2/catch.hpp>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+
+using namespace hsdm;
+
+namespace {
+
+/// Codes of so many bits, about three keys to a code; the index says where a key was.
+std::vector<CodeIndex> random_keys(std::size_t count, int bits, std::uint64_t seed) {
+    support::Random random(seed);
+    std::vector<MortonCode> codes(count / 3 + 1);
+    for (MortonCode& code : codes) code = random.bits() >> (64 - bits);
+    std::vector<CodeIndex> keys;
+    for (std::size_t i = 0; i < count; ++i)
+        keys.push_back({codes[random.below(codes.size())], static_cast<Index>(i)});
+    return keys;
+}
+
+/// What a stable sort makes of them, by the bits from `low` on.
+std::vector<CodeIndex> expected(std::vector<CodeIndex> keys, int low = 0) {
+    std::stable_sort(keys.begin(), keys.end(),
+                     [low](const CodeIndex& a, const CodeIndex& b) { return a.code >> low < b.code >> low; });
+    return keys;
+}
+
+bool same(const std::vector<CodeIndex>& a, const std::vector<CodeIndex>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const CodeIndex& x, const CodeIndex& y) {
+        return x.code == y.code && x.index == y.index;
+    });
+}
+
+} // namespace
+
+TEST_CASE("keys come out by code, those of one code in the order they had", "[radix_sort]") {
+    // None, one, and a few chunks of 2^16 keys.
+    for (const std::size_t count : {0u, 1u, 2u, 1000u, 65536u, 140001u})
+        for (const int bits : {3, 11, 12, 63}) {
+            INFO(count << " keys of " << bits << " bits");
+            const std::vector<CodeIndex> keys = random_keys(count, bits, count);
+            std::vector<CodeIndex> sorted = keys;
+            radix_sort(sorted, bits);
+            CHECK(same(sorted, expected(keys)));
+        }
+}
+
+TEST_CASE("bits below the lowest that is asked for do not count", "[radix_sort]") {
+    for (const int low : {1, 11, 30}) {
+        INFO("from bit " << low);
+        const std::vector<CodeIndex> keys = random_keys(5000, 63, 3);
+        std::vector<CodeIndex> sorted = keys;
+        radix_sort(sorted, 63, low);
+        CHECK(same(sorted, expected(keys, low)));
+    }
+}
+
+TEST_CASE("digits that all keys share move none", "[radix_sort]") {
+    std::vector<CodeIndex> keys = random_keys(3000, 11, 4);
+    for (CodeIndex& key : keys) key.code = key.code << 22 | 0x155u; // one digit of six differs
+    std::vector<CodeIndex> sorted = keys;
+    radix_sort(sorted, 63);
+    CHECK(same(sorted, expected(keys)));
+    std::vector<CodeIndex> equal(3000, {42, 0});
+    for (Index i = 0; i < equal.size(); ++i) equal[i].index = i;
+    sorted = equal;
+    radix_sort(sorted, 63);
+    CHECK(same(sorted, equal));
+}
+
+TEST_CASE("the order of keys does not depend on the number of threads", "[radix_sort]") {
+    std::vector<CodeIndex> many = random_keys(200000, 24, 5), one = many;
+    radix_sort(many, 24);
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+    radix_sort(one, 24);
+    CHECK(same(many, one));
+}
