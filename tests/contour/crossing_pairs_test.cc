@@ -1,0 +1,164 @@
+#include "contour/stages.hh"
+
+#include <catch2/catch.hpp>
+#include <tbb/global_control.h>
+
+#include <map>
+#include <optional>
+#include <set>
+
+using namespace hsdm;
+using support::Stages;
+
+namespace {
+
+/// Twice the middle of the grid face that face k of a crossing's ring is.
+VoxelCoord middle_of_face(const Stages& stages, Index crossing, unsigned k) {
+    const Index edge = stages.crossings.crossings[crossing].edge;
+    const unsigned axis = edge % 3;
+    VoxelCoord at = stages.grid.coord(edge / 3);
+    for (auto& c : at) c *= 2;
+    ++at[axis];
+    at[(axis + (k % 2 == 1 ? 1 : 2)) % 3] += k == 1 || k == 2 ? 1 : -1;
+    return at;
+}
+
+/// Does the way round the face leave the solid at the crossing? Ways along a and b lead round it one after
+/// the other, so those of faces 0 and 1 run up their edges, those of 2 and 3 down.
+bool exits(const Crossing& crossing, unsigned k) {
+    return crossing.leaving == (k < 2);
+}
+
+void check_links(const Stages& stages) {
+    const auto& list = stages.crossings.crossings;
+    REQUIRE(stages.links.of_crossing.size() == list.size());
+    std::size_t wrong = 0, open = 0, rims = 0;
+    for (Index x = 0; x < list.size(); ++x)
+        for (std::uint8_t k = 0; k < 4; ++k) {
+            const Link& link = stages.links.of_crossing[x][k];
+            open += link.crossing == no_index;
+            rims += link.rim;
+            if (link.crossing == no_index) continue;
+            const Link& back = stages.links.of_crossing[link.crossing][link.face];
+            wrong += back.crossing != x || back.face != k || back.rim != link.rim;
+            wrong += middle_of_face(stages, x, k) != middle_of_face(stages, link.crossing, link.face);
+            wrong += exits(list[x], k) == exits(list[link.crossing], link.face);
+            wrong += link.rim != opposed(list[x], list[link.crossing]);
+        }
+    CHECK(wrong == 0);
+    CHECK(stages.links.open == open);
+    CHECK(2 * stages.links.rims == rims);
+}
+
+/// Per grid face, how many links and open sides there are, where these are two or more.
+std::map<VoxelCoord, int> crowded_faces(const Stages& stages) {
+    std::map<VoxelCoord, int> count;
+    for (Index x = 0; x < stages.crossings.crossings.size(); ++x)
+        for (std::uint8_t k = 0; k < 4; ++k) {
+            const bool open = stages.links.of_crossing[x][k].crossing == no_index;
+            count[middle_of_face(stages, x, k)] += open ? 2 : 1; // a link has two ends
+        }
+    std::erase_if(count, [](const auto& face) { return face.second <= 2; });
+    return count;
+}
+
+support::Solid plate() {
+    return support::box({1, 1, 0.02}).placed(support::turned(Vec3(1, 2, 3), 0.4));
+}
+
+} // namespace
+
+TEST_CASE("links go both ways across a grid face, from what leaves the solid to what enters it",
+          "[contour]") {
+    check_links(Stages(support::sphere(1), 5000, 3));
+    check_links(Stages(support::mechanical_part(), 8000, 4));
+    check_links(Stages(plate(), 5000, 3));
+    check_links(Stages(support::flat_sheet(40, 0.8, 0.3), 3, 1));
+    const Stages anyhow(support::random_cloud(500, 1), 3);
+    check_links(anyhow);
+    CHECK(anyhow.links.open > 0);
+    CHECK(anyhow.links.rims > 0);
+}
+
+TEST_CASE("a round surface is linked all round, without rims", "[contour]") {
+    const Stages stages(support::torus(1, 0.4), 10000, 4);
+    CHECK(stages.links.open == 0);
+    CHECK(stages.links.rims == 0);
+}
+
+TEST_CASE("away from the rim each side of a plate is linked with itself", "[contour]") {
+    const Stages stages(plate(), 8000, 4);
+    const support::Pose pose = support::turned(Vec3(1, 2, 3), 0.4);
+    std::size_t sides = 0, across = 0, doubled = 0;
+    const auto& list = stages.crossings.crossings;
+    for (Index x = 0; x < list.size(); ++x) {
+        const Vec3 p =
+            pose.to_local(crossing_position(stages.grid, list[x], stages.h()) + stages.octree.origin);
+        if (std::max(std::abs(p[0]), std::abs(p[1])) > 0.5 - 2 * stages.h()) continue;
+        doubled += stages.crossings.on_edge(list[x].edge).size() == 2;
+        for (const Link& link : stages.links.of_crossing[x]) {
+            ++sides;
+            across += link.crossing == no_index || (list[link.crossing].normal | list[x].normal) < 0.9;
+        }
+    }
+    CHECK(sides > 200);
+    CHECK(doubled > sides / 8); // most edges are crossed by both sides
+    CHECK(across == 0);
+    CHECK(stages.links.open == 0);
+    CHECK(stages.links.rims > 0);
+}
+
+TEST_CASE("without one of its crossings a closed surface is open on that one's four sides", "[contour]") {
+    Stages stages(support::sphere(1), 5000, 3);
+    const Links before = stages.links;
+    const Index lost = 30;
+    std::vector<std::uint8_t> marked(stages.crossings.crossings.size(), 0);
+    marked[lost] = 1;
+    stages.crossings = support::without(stages.crossings, marked);
+    stages.pair();
+    CHECK(stages.links.open == 4);
+    check_links(stages);
+    for (const Link& link : before.of_crossing[lost]) {
+        const Index x = link.crossing - (link.crossing > lost);
+        CHECK(stages.links.of_crossing[x][link.face].crossing == no_index);
+    }
+}
+
+TEST_CASE("faces with two links or more are listed, one end of each", "[contour]") {
+    for (const bool is_plate : {true, false}) {
+        const Stages stages = is_plate ? Stages(plate(), 5000, 3) : Stages(support::random_cloud(500, 1), 3);
+        std::map<VoxelCoord, int> listed;
+        std::set<VoxelCoord> done;
+        std::optional<VoxelCoord> face;
+        for (const Link& end : stages.links.crowded) {
+            if (end.crossing == no_index) { // after each face's
+                REQUIRE(face);
+                CHECK(done.insert(*face).second);
+                face.reset();
+                continue;
+            }
+            const VoxelCoord at = middle_of_face(stages, end.crossing, end.face);
+            CHECK(face.value_or(at) == at);
+            face = at;
+            listed[at] += 2;
+        }
+        CHECK(!face);
+        CHECK(listed.size() > 20);
+        CHECK(listed == crowded_faces(stages));
+    }
+    CHECK(Stages(support::sphere(1), 5000, 3).links.crowded.empty());
+}
+
+TEST_CASE("links do not depend on the number of threads", "[contour]") {
+    const Stages many(support::mechanical_part(), 8000, 5);
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const Links single = pair_crossings(many.grid, many.crossings, many.sets, many.related);
+    std::size_t differ = 0;
+    for (Index x = 0; x < single.of_crossing.size(); ++x)
+        for (std::uint8_t k = 0; k < 4; ++k) {
+            const Link &a = many.links.of_crossing[x][k], &b = single.of_crossing[x][k];
+            differ += a.crossing != b.crossing || a.face != b.face || a.rim != b.rim;
+        }
+    CHECK(differ == 0);
+    CHECK(many.links.crowded.size() == single.crowded.size());
+}

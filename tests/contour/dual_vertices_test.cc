@@ -1,0 +1,167 @@
+#include "contour/stages.hh"
+
+#include <catch2/catch.hpp>
+#include <tbb/global_control.h>
+
+#include <set>
+
+using namespace hsdm;
+using support::Stages;
+
+namespace {
+
+/// How often each facet corner stands in a vertex.
+std::vector<int> uses(const Stages& stages) {
+    std::vector<int> count(4 * stages.crossings.crossings.size(), 0);
+    for (FacetCorner corner : stages.duals.corners) ++count[corner];
+    return count;
+}
+
+/// The crossing that a vertex's facets lead to from one of its corners, or from which they come there.
+Index beside(const Stages& stages, FacetCorner corner, bool onwards) {
+    const bool leaving = stages.crossings.crossings[corner / 4].leaving;
+    const unsigned j = corner % 4, face = leaving == onwards ? j : (j + 3) % 4;
+    return stages.links.of_crossing[corner / 4][face].crossing;
+}
+
+/// The corners of a vertex lie in one voxel, each linked with the next, round it or from end to end; every
+/// corner has a vertex to either side.
+void check_vertices(const Stages& stages) {
+    const DualVertices& duals = stages.duals;
+    std::vector<std::uint8_t> cut(duals.size() + 1, 0);
+    for (Index v : duals.after_cut) cut[v] = cut[v - 1] = 1;
+    std::size_t wrong = 0;
+    for (Index v = 0; v < duals.size(); ++v) {
+        const auto corners = duals.corners_of(v);
+        REQUIRE(!corners.empty());
+        std::set<Index> crossings;
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            wrong += !crossings.insert(corners[i] / 4).second;
+            wrong += stages.voxel_of(corners[i]).lo != stages.voxel_of(corners[0]).lo;
+            if (i > 0) wrong += beside(stages, corners[i - 1], true) != corners[i] / 4;
+        }
+        if (cut[v]) continue;
+        const Index before = beside(stages, corners.front(), false),
+                    after = beside(stages, corners.back(), true);
+        wrong += before != (duals.open[v] ? no_index : corners.back() / 4);
+        wrong += after != (duals.open[v] ? no_index : corners.front() / 4);
+    }
+    REQUIRE(duals.of_side.size() == 8 * stages.crossings.crossings.size());
+    for (Index v : duals.of_side) wrong += v >= duals.size();
+    CHECK(wrong == 0);
+}
+
+support::Solid plate() {
+    return support::box({1, 1, 0.02}).placed(support::turned(Vec3(1, 2, 3), 0.4));
+}
+
+} // namespace
+
+TEST_CASE("vertices are chains of linked corners in one voxel", "[contour]") {
+    check_vertices(Stages(support::torus(1, 0.4), 10000, 4));
+    check_vertices(Stages(support::mechanical_part(), 8000, 4));
+    check_vertices(Stages(plate(), 5000, 3));
+    check_vertices(Stages(support::flat_sheet(40, 0.8, 0.3), 3, 1));
+    check_vertices(Stages(support::random_cloud(200, 1), 2));
+}
+
+TEST_CASE("where nothing is cut each corner stands in one vertex, and Euler's formula holds", "[contour]") {
+    for (const bool ring : {false, true}) {
+        INFO((ring ? "torus" : "sphere"));
+        const Stages stages(ring ? support::torus(1, 0.4) : support::sphere(1), 10000, 4);
+        CHECK(stages.duals.cut == 0);
+        CHECK(stages.duals.after_cut.empty());
+        CHECK(stages.duals.caps.empty());
+        const std::vector<int> count = uses(stages);
+        CHECK(std::count(count.begin(), count.end(), 1) == std::ssize(count));
+        CHECK(std::count(stages.duals.open.begin(), stages.duals.open.end(), 0)
+              == std::ssize(stages.duals.open));
+        // V - E + F, with F crossings and 4 F / 2 links.
+        const auto facets = std::ssize(stages.crossings.crossings);
+        CHECK(std::ssize(stages.duals.first) - 1 - facets == (ring ? 0 : 2));
+    }
+}
+
+TEST_CASE("where the surface ends its vertices are open, two open sides at each", "[contour]") {
+    const Stages stages(support::flat_sheet(60, 0.8, 0.3), 3, 1);
+    std::size_t open = 0;
+    for (Index v = 0; v < stages.duals.size(); ++v) {
+        int sides = 0;
+        for (FacetCorner corner : stages.duals.corners_of(v))
+            sides += (beside(stages, corner, true) == no_index) + (beside(stages, corner, false) == no_index);
+        CHECK(sides == (stages.duals.open[v] ? 2 : 0));
+        open += stages.duals.open[v];
+    }
+    CHECK(open > 10);
+    CHECK(stages.links.open == open);
+}
+
+TEST_CASE("no vertex has both sides of a plate, and what is cut apart stays in its voxel", "[contour]") {
+    const Stages stages(plate(), 5000, 3);
+    const DualVertices& duals = stages.duals;
+    const Vec3 up = support::turned(Vec3(1, 2, 3), 0.4).rotate(Vec3(0, 0, 1));
+    CHECK(duals.cut > 10);
+    CHECK(duals.after_cut.size() >= duals.cut);
+    std::size_t both = 0;
+    for (Index v = 0; v < duals.size(); ++v) {
+        double least = 0, most = 0;
+        for (FacetCorner corner : duals.corners_of(v)) {
+            const double cosine = stages.crossings.crossings[corner / 4].normal | up;
+            least = std::min(least, cosine);
+            most = std::max(most, cosine);
+        }
+        both += least < -0.9 && most > 0.9;
+    }
+    CHECK(both == 0);
+    for (Index v : duals.after_cut)
+        CHECK(stages.voxel_of(duals.corners_of(v)[0]).lo == stages.voxel_of(duals.corners_of(v - 1)[0]).lo);
+    const std::vector<int> count = uses(stages);
+    CHECK(*std::min_element(count.begin(), count.end()) == 1);
+    CHECK(*std::max_element(count.begin(), count.end()) == 2); // cut in a facet: a corner of either
+}
+
+TEST_CASE("a corner that two vertices share has one of them beside either face", "[contour]") {
+    const Stages stages(plate(), 5000, 3);
+    const DualVertices& duals = stages.duals;
+    const std::vector<int> count = uses(stages);
+    std::size_t wrong = 0;
+    for (Index x = 0; x < stages.crossings.crossings.size(); ++x)
+        for (unsigned j = 0; j < 4; ++j) {
+            const Index before = duals.at(x, j, (j + 3) % 4), after = duals.at(x, j, j);
+            wrong += (before != after) != (count[4 * x + j] == 2);
+            for (Index v : {before, after}) {
+                const auto corners = duals.corners_of(v);
+                wrong += std::find(corners.begin(), corners.end(), 4 * x + j) == corners.end();
+            }
+        }
+    CHECK(wrong == 0);
+}
+
+TEST_CASE("three vertices and more of one closed chain have a cap, which runs against them", "[contour]") {
+    std::size_t caps = 0, wrong = 0;
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+        const Stages stages(support::random_cloud(200, seed), 2);
+        caps += stages.duals.caps.size();
+        const auto& cut = stages.duals.after_cut;
+        const auto is_after_cut = [&](Index v) { return std::binary_search(cut.begin(), cut.end(), v); };
+        for (const std::vector<Index>& cap : stages.duals.caps) {
+            wrong += cap.size() < 3 || !is_after_cut(cap.front()) || is_after_cut(cap.back());
+            for (std::size_t i = 0; i < cap.size(); ++i)
+                wrong += stages.duals.open[cap[i]] || (i > 0 && cap[i] + 1 != cap[i - 1]);
+        }
+    }
+    CHECK(caps > 0);
+    CHECK(wrong == 0);
+}
+
+TEST_CASE("dual vertices do not depend on the number of threads", "[contour]") {
+    const Stages many(plate(), 8000, 4);
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const DualVertices single = build_dual_vertices(many.grid, many.crossings, many.links);
+    CHECK(many.duals.corners == single.corners);
+    CHECK(many.duals.first == single.first);
+    CHECK(many.duals.of_side == single.of_side);
+    CHECK(many.duals.open == single.open);
+    CHECK(many.duals.after_cut == single.after_cut);
+    CHECK(many.duals.caps == single.caps);
+}
