@@ -152,10 +152,8 @@ private:
 
     /// Do the planes of two corners meet near the voxel? Then they make the tip of a wedge, not a thin part.
     bool meet_nearby(FacetCorner a, FacetCorner b) const {
-        const unsigned octant = Ring::octant(of(a).edge % 3, a % 4);
-        const VoxelCoord corner = grid_.coord(of(a).edge / 3);
-        Vec3 centre;
-        for (unsigned k = 0; k < 3; ++k) centre[k] = corner[k] + static_cast<int>(octant >> k & 1u) - 0.5;
+        const VoxelCoord c = CornerVoxel(grid_, crossings_, a).coord;
+        const Vec3 centre = Vec3(c[0], c[1], c[2]) + Vec3(0.5, 0.5, 0.5);
         const double k = of(a).normal | (crossing_position(grid_, of(a), 1) - centre);
         const double l = of(b).normal | (crossing_position(grid_, of(b), 1) - centre);
         const double cosine = of(a).normal | of(b).normal;
@@ -250,6 +248,14 @@ void number_sides(const Crossings& crossings, std::span<const std::uint8_t> shar
 }
 
 } // namespace
+
+CornerVoxel::CornerVoxel(const GridPoints& grid, const Crossings& crossings, FacetCorner corner) {
+    const Index edge = crossings.crossings[corner / 4].edge;
+    const unsigned octant = Ring::octant(edge % 3, corner % 4);
+    const VoxelCoord lower = grid.coord(edge / 3);
+    for (unsigned k = 0; k < 3; ++k) coord[k] = lower[k] + static_cast<int>(octant >> k & 1u) - 1;
+    voxel = grid.voxels[edge / 3][octant];
+}
 
 DualVertices build_dual_vertices(const GridPoints& grid, const Crossings& crossings, const Links& links) {
     const std::size_t n = crossings.crossings.size();

@@ -36,6 +36,14 @@ struct DualVertices {
     }
 };
 
+/// The voxel that a corner is seen from, one of the four round its grid edge.
+struct CornerVoxel {
+    CornerVoxel(const GridPoints& grid, const Crossings& crossings, FacetCorner corner);
+
+    VoxelCoord coord;
+    Index voxel; ///< or no_index, if no point lies in it
+};
+
 /// Walks the chains. One that passes both sides of a thin part is cut between them, at rims and in the facets
 /// of the rim's own face: its sides keep vertices of their own. O(crossings), parallel.
 DualVertices build_dual_vertices(const GridPoints& grid, const Crossings& crossings, const Links& links);

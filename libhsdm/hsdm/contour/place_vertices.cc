@@ -196,12 +196,9 @@ private:
         problem_.planes.clear();
         problem_.size = level_.voxel_size;
         const auto corners = duals_.corners_of(dual);
-        const Crossing& some = crossings_.crossings[corners[0] / 4];
-        const unsigned octant = Ring::octant(some.edge % 3, corners[0] % 4);
-        voxel_ = grid_.voxels[some.edge / 3][octant];
-        const VoxelCoord c = grid_.coord(some.edge / 3);
-        for (unsigned k = 0; k < 3; ++k)
-            problem_.lo[k] = (c[k] + static_cast<int>(octant >> k & 1u) - 1) * level_.voxel_size;
+        const CornerVoxel at(grid_, crossings_, corners[0]);
+        voxel_ = at.voxel;
+        for (unsigned k = 0; k < 3; ++k) problem_.lo[k] = at.coord[k] * level_.voxel_size;
         problem_.mean = Vec3(0, 0, 0);
         for (FacetCorner corner : corners) {
             const Crossing& crossing = crossings_.crossings[corner / 4];
@@ -388,7 +385,7 @@ std::vector<std::uint8_t> sets_that_cross(const GridPoints& grid, const NormalSe
         for (std::size_t v = begin; v < end; ++v)
             for (FacetCorner corner : duals.corners_of(static_cast<Index>(v))) {
                 const Crossing& x = crossings.crossings[corner / 4];
-                const Index voxel = grid.voxels[x.edge / 3][Ring::octant(x.edge % 3, corner % 4)];
+                const Index voxel = CornerVoxel(grid, crossings, corner).voxel;
                 if (voxel == no_index) continue;
                 for (Index s = sets.first[voxel]; s < sets.first[voxel + 1]; ++s)
                     if (s == x.set || related(sets.sets[s], sets.sets[x.set]) == Relation::smooth)

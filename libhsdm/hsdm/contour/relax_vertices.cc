@@ -15,17 +15,14 @@ namespace {
 
 constexpr std::size_t duals_per_chunk = 1024;
 
-/// As far from one position of a dual vertex's vertex towards another as its voxel allows.
+/// As far from one position of a dual vertex towards another as its voxel allows.
 Vec3 within_voxel(const GridPoints& grid, const Crossings& crossings, const DualVertices& duals, Index dual,
                   double h, const Vec3& from, const Vec3& to) {
-    const FacetCorner corner = duals.corners_of(dual)[0];
-    const Index edge = crossings.crossings[corner / 4].edge;
-    const unsigned octant = Ring::octant(edge % 3, corner % 4);
-    const VoxelCoord lower = grid.coord(edge / 3);
+    const VoxelCoord voxel = CornerVoxel(grid, crossings, duals.corners_of(dual)[0]).coord;
     const Vec3 way = to - from;
     double share = 1;
     for (unsigned k = 0; k < 3; ++k) {
-        const double lo = (lower[k] + static_cast<int>(octant >> k & 1u) - 1 + placement::margin) * h;
+        const double lo = (voxel[k] + placement::margin) * h;
         const double hi = lo + (1 - 2 * placement::margin) * h;
         if (way[k] > 0 && to[k] > hi) share = std::min(share, (hi - from[k]) / way[k]);
         if (way[k] < 0 && to[k] < lo) share = std::min(share, (lo - from[k]) / way[k]);

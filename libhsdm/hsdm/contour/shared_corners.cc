@@ -79,12 +79,7 @@ private:
     }
 
     VoxelCoord voxel_of(Index dual) const {
-        const FacetCorner corner = duals_.corners_of(dual)[0];
-        const Index edge = crossings_.crossings[corner / 4].edge;
-        const unsigned octant = Ring::octant(edge % 3, corner % 4);
-        VoxelCoord voxel = grid_.coord(edge / 3);
-        for (unsigned k = 0; k < 3; ++k) voxel[k] += static_cast<int>(octant >> k & 1u) - 1;
-        return voxel;
+        return CornerVoxel(grid_, crossings_, duals_.corners_of(dual)[0]).coord;
     }
 
     const GridPoints& grid_;
