@@ -49,6 +49,15 @@ function(hsdm_sanitize library)
   endif()
 endfunction()
 
+# hsdm_count_lines(LIBRARY): with HSDM_COVERAGE, counts which of its lines and branches run (cmake/coverage.sh).
+option(HSDM_COVERAGE "Count which lines and branches of the library run (clang++ only)" OFF)
+function(hsdm_count_lines library)
+  if(HSDM_COVERAGE)
+    target_compile_options(${library} PRIVATE -fprofile-instr-generate -fcoverage-mapping)
+    target_link_options(${library} PUBLIC -fprofile-instr-generate)
+  endif()
+endfunction()
+
 # hsdm_instrument_for_fuzzers(LIBRARY): counts which of its branches run, by which fuzzers find new inputs. Other
 # programs that link the library are not changed: the sanitizers' runtime has what the counters call. What is compared
 # with what tells a fuzzer words of a format, but nothing in geometry, where recording it takes most of the time.
