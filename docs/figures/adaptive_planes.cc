@@ -14,7 +14,7 @@ Canvas draw_patches() {
     const PlanarPatches patches = find_planar_patches(fine.mesh, 0.5 * error);
     const AdaptiveMesh coarse =
         simplify(fine.mesh, fine.octree.positions, fine.octree.extent, fine.depth, {.max_error = error});
-    Canvas canvas(728, 360);
+    Canvas canvas(728, 366);
     const Vec3 towards(0.75, 1, 0.75);
     const SolidView left(fine.mesh.positions, towards, {14, 14}, 340);
     const auto fill = [&](std::size_t f) {
@@ -23,9 +23,9 @@ Canvas draw_patches() {
     left.draw(canvas, fine.mesh, fill, {.stroke = "#666666", .width = 0.4});
     const SolidView right(fine.mesh.positions, towards, {374, 14}, 340);
     right.draw(canvas, coarse.mesh, [](std::size_t) { return std::string("#ececec"); }, {.width = 1.2});
-    canvas.text({184, 345}, "the fine mesh: " + std::to_string(fine.mesh.facet_count()) + " facets", 13,
+    canvas.text({184, 352}, "the fine mesh: " + std::to_string(fine.mesh.facet_count()) + " facets", 13,
                 "middle");
-    canvas.text({544, 345}, "the result: " + std::to_string(coarse.mesh.facet_count()) + " facets", 13,
+    canvas.text({544, 352}, "the result: " + std::to_string(coarse.mesh.facet_count()) + " facets", 13,
                 "middle");
     return canvas;
 }

@@ -118,10 +118,11 @@ Canvas draw_sets() {
         if (layer.has_voxel(set.voxel))
             draw_set(canvas, panel, layer, set, 0.3, colour::darkened(set_colour(set), 0.6));
     canvas.end_clip();
-    const std::array<Entry, 6> entries{
+    const std::array<Entry, 7> entries{
         Entry{.text = "One layer of voxels"},
         {Entry::Mark::dot, {.stroke = colour::none, .fill = colour::blue}, "points of one side", 2.5},
         {Entry::Mark::dot, {.stroke = colour::none, .fill = colour::orange}, "points of the other", 2.5},
+        {Entry::Mark::dot, {.stroke = colour::none, .fill = colour::purple}, "points of the rim", 2.5},
         {Entry::Mark::dot, {.stroke = colour::none, .fill = colour::black}, "a set: its centroid", 5},
         {Entry::Mark::arrow, {.width = 2}, "and its mean normal"},
         {Entry::Mark::square, {.stroke = "#b5b5b5", .fill = colour::faint}, "voxel that holds points", 7}};

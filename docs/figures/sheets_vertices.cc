@@ -102,6 +102,38 @@ std::vector<Moved> moved_vertices(const Steps& steps) {
     return found;
 }
 
+/// Seen along a crease, in voxels: its two sheets are lines.
+struct AlongCrease {
+    Vec3 x, y, z;
+
+    AlongCrease(const PlacedVertices::OnCrease& crease, double h)
+        : z((crease.normals[0] % crease.normals[1]).normalized()) {
+        if (z[2] < 0) z = -z;
+        x = (Vec3(1, 0, 0) - z * z[0]).normalized();
+        y = z % x;
+        for (Vec3* axis : {&x, &y, &z}) *axis /= h;
+    }
+    Vec3 operator()(const Vec3& p) const { return {x | p, y | p, z | p}; }
+    PolygonMesh operator()(PolygonMesh mesh) const {
+        for (Vec3& p : mesh.positions) p = (*this)(p);
+        return mesh;
+    }
+};
+
+void draw_voxel_along(Canvas& canvas, const Panel& panel, const AlongCrease& view, const Steps& steps,
+                      Index voxel) {
+    const VoxelCoord c = steps.level.coord(voxel);
+    const auto corner = [&](unsigned bits) {
+        const Vec3 p =
+            view(Vec3(c[0] + (bits & 1u), c[1] + (bits >> 1 & 1u), c[2] + (bits >> 2)) * steps.h());
+        return panel({p[0], p[1]});
+    };
+    for (unsigned bits = 0; bits < 8; ++bits)
+        for (unsigned axis = 1; axis < 8; axis *= 2)
+            if ((bits & axis) == 0)
+                canvas.line(corner(bits), corner(bits | axis), {.stroke = colour::grey, .width = 1.2});
+}
+
 /// How far a vertex was off its crease.
 double offset(const Steps& steps, const Moved& moved) {
     const auto& [one, other] = moved.crease->normals;
@@ -174,34 +206,35 @@ Canvas draw_placing() {
 }
 
 Canvas draw_creases_outside() {
-    const auto leaning = turned_box().placed(support::turned(Vec3(1, 0.3, 0), 0.2));
-    const Steps steps(scan(leaning, 30000), 3);
+    const auto upright = support::box({0.9, 0.8, 1.2}).placed(support::turned(up, 0.34));
+    const Steps steps(scan(upright.placed(support::turned(Vec3(1, 0.3, 0), 0.15)), 40000), 3);
     const std::vector<Moved> moved = moved_vertices(steps);
     const Moved shown = farthest_moved(steps, moved);
-    const Vec3 from = steps.placed.positions[shown.crease->dual] / steps.h();
-    const Vec3 to = shown.crease->position / steps.h();
+    const AlongCrease view(*shown.crease, steps.h());
     PolygonMesh before = steps.mesh;
     for (const auto& [crease, vertex] : moved)
         before.positions[vertex] = steps.placed.positions[crease->dual];
+    const Vec3 from = view(steps.placed.positions[shown.crease->dual]), to = view(shown.crease->position);
 
-    const Layer layer(steps, steps.level.coord(steps.placed.voxel[shown.crease->dual])[2]);
-    const Vec2 middle(std::round(to[0]), std::round(to[1])), reach(1.6, 1.1);
-    auto [canvas, panel, legend] = figure_of(middle - reach, middle + reach, 150, 260);
+    const Vec2 middle(to[0], to[1]), reach(0.36, 0.22);
+    auto [canvas, panel, legend] = figure_of(middle - reach, middle + reach, 640, 260);
     canvas.begin_clip(panel.corner, panel.corner + panel.size());
-    draw_voxels(canvas, panel, steps, layer);
-    const double h = steps.h();
-    draw_section(canvas, panel, section(steps.mesh, to[2] * h, 1 / h), section_style);
-    draw_section(canvas, panel, section(before, from[2] * h, 1 / h), before_style);
+    draw_voxel_along(canvas, panel, view, steps, steps.placed.voxel[shown.crease->dual]);
+    draw_section(canvas, panel, section(view(steps.mesh), to[2], 1), section_style);
+    draw_section(canvas, panel, section(view(before), from[2], 1), before_style);
     canvas.circle(panel({from[0], from[1]}), 5, {.width = 1.2, .fill = colour::red});
     canvas.circle(panel({to[0], to[1]}), 5, {.width = 1.2, .fill = colour::orange});
     canvas.end_clip();
+    const Vec2 bar = panel.corner + Vec2(14, panel.size()[1] - 14);
+    canvas.line(bar, bar + Vec2(0.1 * panel.scale, 0), {.width = 3});
+    canvas.text(bar - Vec2(0, 8), "0.1 voxels");
     const std::array<Entry, 6> entries{
         Entry{.text = "One vertex of a crease"},
         {Entry::Mark::dot, {.width = 1.2, .fill = colour::red}, "kept in its voxel", 5},
         {Entry::Mark::dot, {.width = 1.2, .fill = colour::orange}, "moved to its crease", 5},
         {Entry::Mark::line, before_style, "the mesh before, cut there"},
         {Entry::Mark::line, section_style, "the mesh after, cut there"},
-        {Entry::Mark::square, voxel_style, "voxel that holds points", 7}};
+        {Entry::Mark::line, {.stroke = colour::grey, .width = 1.2}, "edge of the voxel"}};
     canvas.legend(legend, entries);
     return canvas;
 }
