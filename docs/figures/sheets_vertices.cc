@@ -124,8 +124,8 @@ void draw_voxel_along(Canvas& canvas, const Panel& panel, const AlongCrease& vie
                       Index voxel) {
     const VoxelCoord c = steps.level.coord(voxel);
     const auto corner = [&](unsigned bits) {
-        const Vec3 p =
-            view(Vec3(c[0] + (bits & 1u), c[1] + (bits >> 1 & 1u), c[2] + (bits >> 2)) * steps.h());
+        const Vec3 lower(c[0], c[1], c[2]), step(bits & 1u, bits >> 1 & 1u, bits >> 2);
+        const Vec3 p = view((lower + step) * steps.h());
         return panel({p[0], p[1]});
     };
     for (unsigned bits = 0; bits < 8; ++bits)

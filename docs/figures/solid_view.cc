@@ -47,7 +47,7 @@ std::vector<Index> SolidView::seen_vertices(const PolygonMesh& mesh) const {
         if (faces(area_vector(mesh, f).normalized()))
             seen.insert(seen.end(), mesh.facet(f).begin(), mesh.facet(f).end());
     std::ranges::sort(seen);
-    seen.erase(std::ranges::unique(seen).begin(), seen.end());
+    seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
     return seen;
 }
 
