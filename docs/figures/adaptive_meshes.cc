@@ -133,7 +133,7 @@ Canvas draw_collapses() {
 
 Canvas draw_flips() {
     const Decimation steps(0.006);
-    Canvas canvas(930, 400);
+    Canvas canvas(965, 400);
     const auto& positions = steps.fine.mesh.positions;
     const SolidView left(positions, towards, {14, 14}, 345), right(positions, towards, {374, 14}, 345);
     draw_named(canvas, left, steps.by_planes, {186, 385}, "before");
@@ -142,7 +142,7 @@ Canvas draw_flips() {
     mark_changes(canvas, left, right, steps.by_planes, steps.remeshed, centre);
     const std::array<Entry, 3> entries{Entry{.text = "Diagonals"},
                                        {Entry::Mark::line, flipped_style, "laid the other way"},
-                                       {Entry::Mark::line, joined_style, "gone: a quad"}};
+                                       {Entry::Mark::line, joined_style, "gone: inside a quad now"}};
     canvas.legend({745, 14}, entries);
     return canvas;
 }
