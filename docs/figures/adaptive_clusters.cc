@@ -171,7 +171,7 @@ Canvas draw_leaves() {
     draw_leaves_of(canvas, panel, cells, before, z);
     draw_section(canvas, panel, section(fine.mesh, z, 1), {.stroke = colour::black, .width = 1.5});
     std::vector<Entry> entries{{.text = "Leaves that a plane cuts"}};
-    for (std::size_t level = 2; level <= 6; ++level)
+    for (std::size_t level = 2; level <= 5; ++level)
         entries.push_back({Entry::Mark::square,
                            {.stroke = colour::grey, .width = 0.8, .fill = level_colour(level)},
                            "level " + std::to_string(level),
