@@ -108,14 +108,14 @@ void Canvas::rectangle(const Vec2& a, const Vec2& b, const Style& style) {
 
 void Canvas::polygon(std::span<const Vec2> corners, const Style& style) {
     body_ += "<path d=\"M";
-    for (std::size_t i = 0; i < corners.size(); ++i) body_ += (i > 0 ? "L" : "") + pair(corners[i]);
+    for (std::size_t i = 0; i < corners.size(); ++i) body_.append(i > 0 ? "L" : "").append(pair(corners[i]));
     body_ += "Z\"" + attributes(style) + "/>\n";
 }
 
 void Canvas::lines(std::span<const std::array<Vec2, 2>> segments, const Style& style) {
     if (segments.empty()) return;
     body_ += "<path stroke-linecap=\"round\" d=\"";
-    for (const auto& [a, b] : segments) body_ += "M" + pair(a) + "L" + pair(b);
+    for (const auto& [a, b] : segments) body_.append("M").append(pair(a)).append("L").append(pair(b));
     body_ += "\"" + attributes(style) + "/>\n";
 }
 
@@ -156,7 +156,8 @@ void Canvas::legend(Vec2 at, std::span<const Entry> entries) {
 }
 
 void Canvas::begin_clip(const Vec2& a, const Vec2& b) {
-    const std::string name = "c" + std::to_string(clips_++);
+    std::string name = "c";
+    name += std::to_string(clips_++);
     body_ += "<clipPath" + attribute("id", name) + ">";
     rectangle(a, b, {.stroke = colour::none, .fill = colour::white});
     body_ += "</clipPath><g" + attribute("clip-path", "url(#" + name + ")") + ">\n";
