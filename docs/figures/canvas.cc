@@ -116,7 +116,7 @@ void Canvas::lines(std::span<const std::array<Vec2, 2>> segments, const Style& s
     if (segments.empty()) return;
     body_ += "<path stroke-linecap=\"round\" d=\"";
     for (const auto& [a, b] : segments) body_.append("M").append(pair(a)).append("L").append(pair(b));
-    body_ += "\"" + attributes(style) + "/>\n";
+    body_.append("\"").append(attributes(style)).append("/>\n");
 }
 
 void Canvas::text(const Vec2& at, const std::string& words, double size, const std::string& anchor,
