@@ -19,7 +19,7 @@ HSDM_TUNED double cluster_angle = 0.61;
 HSDM_TUNED double sheet_gap = 0.3;
 
 /// rounds: mean shifts from the normal that most others agree with to the mode.
-/// Why: by trial; the mean of a cluster of 35 degrees hardly moves after two.
+/// Why: by trial.
 HSDM_TUNED int mode_rounds = 3;
 
 /// rounds: assignments of all points to the nearest mode, which then moves to their mean (Lloyd).
@@ -41,7 +41,7 @@ HSDM_TUNED double faces_back = -0.7;
 namespace hsdm::stray_sets {
 
 /// share: of the points of a typical set; a set of more is no outlier.
-/// Why: by trial; a corner of the surface that reaches into a voxel by an eighth of its area holds as many.
+/// Why: by trial; a surface that clips a voxel by an eighth of its area has neighbours with more.
 HSDM_TUNED double most_share = 0.125;
 
 /// sets: that are smoothly related from voxel to voxel; more are a surface.
@@ -54,8 +54,8 @@ HSDM_TUNED std::size_t most_sets = 4;
 namespace hsdm::relations {
 
 /// radians: normals closer than this belong to one sheet.
-/// Why: 40 degrees, beyond the 35 degrees to which a set may spread, so that a round rim of a voxel's radius
-/// stays one sheet (90 degrees over two or three voxels). Creases that are flatter are rounded.
+/// Why: 40 degrees, beyond the 35 that a set may spread to: sets beside each other on round ground of a voxel
+/// and a half's radius are one sheet. Creases that are flatter are rounded.
 HSDM_TUNED double smooth_angle = 0.70;
 
 /// cosine: of the same angle, where normals of crossings, planes and vertices are compared.
@@ -63,8 +63,7 @@ HSDM_TUNED double smooth_angle = 0.70;
 HSDM_TUNED double same_sheet_cosine = 0.77;
 
 /// voxels: how far two sets of one sheet may lie apart along their mean normal.
-/// Why: by trial, between the noise of a centroid (under 0.1) and the thinnest plate whose sides face the
-/// same way (0.3 is what docs/sheets.md promises).
+/// Why: by trial; docs/sheets.md promises to tell sheets apart from there on.
 HSDM_TUNED double smooth_gap = 0.3;
 
 /// voxels: how far from the points of both sets the planes of a crease may meet.
@@ -89,7 +88,7 @@ namespace hsdm::sheets {
 HSDM_TUNED double surface_error = 0.15;
 
 /// rounds: of joining sheets that are one elsewhere.
-/// Why: bounds the work; a round without change ends it, on clean data the second or third.
+/// Why: bounds the work; a round without change ends it.
 HSDM_TUNED int closure_rounds = 8;
 
 /// cosine: of the normals of two sets that may become one sheet since they are one elsewhere.
@@ -112,12 +111,11 @@ HSDM_TUNED double most_points = 8;
 namespace hsdm::crossing {
 
 /// voxels: from a crossing to the centroid of the nearest set of its sheet; beyond, the data do not carry it.
-/// Why: a centroid lies in one of the four voxels beside the edge, at most a voxel and a half off, if the
-/// sheet does.
+/// Why: by trial; the centroid of a full voxel beside the edge is 0.7 off, that of a clipped one more.
 HSDM_TUNED double far_from_data = 1.0;
 
 /// share: of the points expected in a voxel; of fewer, the sheet ends in it.
-/// Why: by trial; scans differ in density by two or three from voxel to voxel without an end.
+/// Why: by trial; the density of a scan may differ by two or three from voxel to voxel.
 HSDM_TUNED double fair_share = 0.25;
 
 /// voxels: how far off a sheet's plane its points may lie, in another voxel.
@@ -136,7 +134,7 @@ HSDM_TUNED double sliver_points = 6;
 namespace hsdm::signs {
 
 /// crossings: cost of taking back one that the data do not carry.
-/// Why: by trial, of 0.25 and 0.5; two of them must weigh less than one that is carried.
+/// Why: by trial; two of them must weigh less than one that is carried.
 HSDM_TUNED double cost_of_weak = 0.25;
 
 /// crossings: cost of bringing back one beyond a crease or beyond the data.
@@ -156,8 +154,7 @@ HSDM_TUNED double cost_of_leak = 8;
 HSDM_TUNED double most_belief = 1;
 
 /// rounds: of votes by neighbours after the first.
-/// Why: sheets reach three grid points at most beyond the voxels that hold their points; the last round
-/// leaves none undecided.
+/// Why: by trial; what is farther off has no sheet near, and the last round leaves none undecided.
 HSDM_TUNED int vote_rounds = 3;
 
 /// rounds: of changing sides where that lowers the cost.
@@ -194,7 +191,7 @@ HSDM_TUNED int longest_defect = 16;
 HSDM_TUNED int longest_outline = 20;
 
 /// rounds: of taking back crossings beyond the data and pairing the others anew; the same of tips.
-/// Why: bounds the work; what the first one leaves is next to nothing.
+/// Why: bounds the work; a round that takes nothing back ends it.
 HSDM_TUNED int trim_rounds = 3;
 
 } // namespace hsdm::pairing
@@ -293,7 +290,7 @@ HSDM_TUNED double nearness = 0.01;
 HSDM_TUNED double side_weight = 0.5;
 
 /// points: of a voxel that facets are compared with, evenly taken.
-/// Why: measured time against gain; eight fix a vertex's height to a third of the noise.
+/// Why: by trial; eight points tell a mean height to a third of the noise.
 HSDM_TUNED std::size_t points_per_voxel = 8;
 
 /// factor: on the variance that squared rises must exceed.
@@ -391,7 +388,7 @@ HSDM_TUNED double arm_weight = 0.05;
 HSDM_TUNED double least_fold = 0.7;
 
 /// sine: normals farther out of the fold's plane belong to other sheets.
-/// Why: 30 degrees; by trial.
+/// Why: 30 degrees; by trial on the clouds of docs/features.md.
 HSDM_TUNED double off_fold_sine = 0.5;
 
 /// share: of the fold's angle; normals this close to one sheet's are that sheet's.
@@ -407,15 +404,15 @@ HSDM_TUNED double most_between = 0.1;
 HSDM_TUNED double least_side = 0.05;
 
 /// voxels: from the edge; a second look where a small radius would show.
-/// Why: by trial; less than a voxel's diagonal, more than half its edge.
+/// Why: by trial on the clouds of docs/features.md; less than a voxel's diagonal, more than half its edge.
 HSDM_TUNED double nearby = 0.75;
 
 /// voxels: how far positions are compared with normals.
-/// Why: by trial; some ten points of a usual cloud.
+/// Why: by trial on the clouds of docs/features.md; some ten points of a usual cloud.
 HSDM_TUNED double chord = 0.5;
 
 /// share: of the points between in the whole cloud that chords contradict; of more, normals are smeared.
-/// Why: by trial, between clean normals (next to none) and averaged ones (most).
+/// Why: by trial on the clouds of docs/features.md: clean normals have next to none, smeared ones most.
 HSDM_TUNED double most_tilted = 0.4;
 
 /// share: of the fold's angle, between chords and normals.

@@ -21,8 +21,8 @@ HSDM_TUNED int neighbors = 16;
 HSDM_TUNED std::size_t leaf_points = 12;
 
 /// points: in the 27 voxels around per neighbour that is wanted.
-/// Why: with 64 points for 16 neighbours the nearest are in the middle ninth of a sheet and not at the
-/// voxels' rim.
+/// Why: of 64 points on a sheet the nearest 16 lie within 0.85 voxels, and it is a voxel to the rim of the
+/// 27.
 HSDM_TUNED std::size_t candidates_per_neighbor = 4;
 
 /// squared cosine: of two normals that agree not at all.
@@ -51,7 +51,7 @@ HSDM_TUNED double doubtful_stretch = 1.25;
 HSDM_TUNED double doubtful_sparseness = 1.5;
 
 /// reaches: deviation of neighbours from their plane that is a volume's.
-/// Why: points spread over a ball deviate by 0.45, over a crease of a right angle by 0.15.
+/// Why: points spread over a ball deviate by 0.45, over a crease of a right angle by 0.19.
 HSDM_TUNED double least_volume = 0.2;
 
 /// reaches: a point's distance from its neighbours' plane.
@@ -63,7 +63,7 @@ HSDM_TUNED double least_height = 0.45;
 HSDM_TUNED double least_deviations = 3;
 
 /// rounds: of removing.
-/// Why: the fewer outliers there are, the more those left stand out; the third finds few.
+/// Why: by trial; the fewer outliers there are, the more those left stand out.
 HSDM_TUNED int rounds = 3;
 
 } // namespace hsdm::distance_outliers
@@ -155,7 +155,7 @@ HSDM_TUNED double steady_radius = 6;
 HSDM_TUNED std::int32_t reach = 2;
 
 /// rounds: of moving to the plane of where the point came to lie.
-/// Why: by trial; the third moves next to nothing.
+/// Why: by trial.
 HSDM_TUNED int rounds = 3;
 
 /// rounds: of all of that, with the noise that the moves say.
@@ -220,7 +220,7 @@ HSDM_TUNED double crease_cosine = 0.9;
 HSDM_TUNED double fewest = 3.5;
 
 /// steps: of fitting a plane to what it holds.
-/// Why: by trial; the third changes next to nothing.
+/// Why: by trial.
 HSDM_TUNED int fit_steps = 2;
 
 /// points: weight of a point's own normal in means over neighbours.
@@ -278,8 +278,8 @@ HSDM_TUNED double near_tolerances = 2;
 namespace hsdm::views {
 
 /// spacings: edge of the voxels of the empty space at least.
-/// Why: measured: with three, one voxel of a sampled surface in some thousands is empty by chance, and space
-/// leaks.
+/// Why: by trial; with larger voxels walls and slits are not seen, with smaller ones the space leaks through
+/// a sampled surface.
 HSDM_TUNED double voxel_spacings = 3.7;
 
 /// level: of these voxels at most.
@@ -372,7 +372,7 @@ HSDM_TUNED double most_rises = 3;
 HSDM_TUNED double added_rise = 0.01;
 
 /// pairs: that contradict each other at least.
-/// Why: by trial; chance makes a few.
+/// Why: by trial; outliers cause some.
 HSDM_TUNED std::size_t fewest = 10;
 
 /// pairs: flat ones to each that is opposed.
@@ -380,7 +380,7 @@ HSDM_TUNED std::size_t fewest = 10;
 HSDM_TUNED std::size_t flat_per_opposed = 2000;
 
 /// percent: of creased pairs that are opposed.
-/// Why: by trial; sets of clouds with thin parts and right normals have up to 10.
+/// Why: by trial; thin parts and outliers cause some.
 HSDM_TUNED std::size_t creased_percent = 15;
 
 } // namespace hsdm::contradictions

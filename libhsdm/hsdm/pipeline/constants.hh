@@ -25,8 +25,7 @@ HSDM_TUNED double harmless_noise = 0.3;
 namespace hsdm::holes {
 
 /// spacings: wider loops stay open.
-/// Why: by trial; gaps that scanning leaves by chance are under ten spacings, windows and slots are wider
-/// than twenty.
+/// Why: by trial; a gap that the scanning left is to be closed, a window or a slot not.
 HSDM_TUNED double widest_in_spacings = 20;
 
 } // namespace hsdm::holes

@@ -11,8 +11,7 @@
 namespace hsdm::bounds {
 
 /// share: of the error, that the planes of a leaf or of a vertex may be missed by, root mean square.
-/// Why: by trial; with it most leaves pass the measured distances at once, whose maximum is two to three
-/// times the mean.
+/// Why: by trial; the largest distance is two or three times the root mean square.
 HSDM_TUNED double planes_share = 0.35;
 
 /// share: of the error, that the surface may be off a patch's plane.
@@ -34,7 +33,7 @@ HSDM_TUNED double vertex_share = 2;
 HSDM_TUNED double place_spacing = 0.5;
 
 /// rounds: of looking for what is wrong and subdividing or keeping there.
-/// Why: bounds the work; clouds of the suites take under ten.
+/// Why: bounds the work.
 HSDM_TUNED int rounds = 24;
 
 } // namespace hsdm::bounds
@@ -56,7 +55,7 @@ HSDM_TUNED std::size_t most_members = 64;
 namespace hsdm::surroundings {
 
 /// sides: from a facet to those whose normals are gathered with its own.
-/// Why: by trial; some thirty facets, which levels noise and keeps strips of six facets apart.
+/// Why: by trial; some twenty-five facets, which levels noise and keeps strips of six facets apart.
 HSDM_TUNED int most_sides_away = 3;
 
 /// cosine: of normals of neighbours; a sharper edge is not crossed.
@@ -287,7 +286,7 @@ HSDM_TUNED int most_rings = 4;
 namespace hsdm::flips {
 
 /// sweeps: of flipping.
-/// Why: by trial; the fifth finds next to nothing.
+/// Why: bounds the work; by trial.
 HSDM_TUNED int most_sweeps = 4;
 
 /// factor: that a flip for shape gains at least.
