@@ -128,6 +128,31 @@ TEST_CASE("beside a short loop a patch stays, as the boundary would get longer, 
     CHECK(all == beside_long);
 }
 
+TEST_CASE("a loop of up to 16 sides is a defect, a longer one a border", "[contour]") {
+    const Stages whole = sphere();
+    std::size_t most_of_defects = 0, least_of_borders = 100;
+    for (double hole = 0; hole < 4; hole += 0.25) {
+        Stages stages = whole;
+        stages.crossings = support::without(whole.crossings, ring_about(whole, 400, 0, hole));
+        stages.pair();
+        for (Index x = 0; x < stages.links.of_crossing.size(); ++x) { // any with one open side
+            const auto& around = stages.links.of_crossing[x];
+            stages.crossings.crossings[x].supported = true;
+            if (std::ranges::count(around, no_index, &Link::crossing) == 1)
+                support_others(stages.crossings, ring_about(stages, x, 0, 1e-9));
+        }
+        const std::size_t sides = stages.links.open;
+        if (trim_unsupported(stages.crossings, stages.links) > 0)
+            least_of_borders = std::min(least_of_borders, sides);
+        else
+            most_of_defects = std::max(most_of_defects, sides);
+    }
+    CHECK(most_of_defects <= 16);
+    CHECK(most_of_defects >= 12);
+    CHECK(least_of_borders > 16);
+    CHECK(least_of_borders <= 18);
+}
+
 TEST_CASE("a short loop amid a wide patch is a border", "[contour]") {
     const auto [in_patch, gone] = trimmed_about(1, 5); // the patch's outline is what counts
     CHECK(in_patch > 30);
@@ -160,7 +185,7 @@ TEST_CASE("two crossings of one edge joined on three sides are a tip and go", "[
     }
 }
 
-TEST_CASE("the two sides of a thin part stay, the two of a crease go", "[contour]") {
+TEST_CASE("the two sides of a thin part stay, others go", "[contour]") {
     const NormalSet below = set_at({0, 0, 0}, {0, 0, -1}), above = set_at({0, 0, 0.5}, {0, 0, 1});
     REQUIRE(RelationTest({}, 1)(below, above) == Relation::none);
     CHECK(Pair(below, above, 4).drop() == 0);
@@ -168,6 +193,9 @@ TEST_CASE("the two sides of a thin part stay, the two of a crease go", "[contour
     REQUIRE(RelationTest({}, 1)(left, right) == Relation::convex);
     REQUIRE((left.normal | right.normal) < -0.3);
     CHECK(Pair(left, right, 4).drop() == 1);
+    const NormalSet lower = set_at({0, 0, 0}, {0, 0, 1});
+    REQUIRE(RelationTest({}, 1)(lower, above) == Relation::none);
+    CHECK(Pair(lower, above, 4).drop() == 1); // both face up
 }
 
 TEST_CASE("a surface stays closed without its tips", "[contour]") {

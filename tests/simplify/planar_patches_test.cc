@@ -1,5 +1,6 @@
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/simplify/planar_patches.hh"
+#include "simplify/grids.hh"
 
 #include <catch2/catch.hpp>
 #include <tbb/global_control.h>
@@ -10,35 +11,10 @@
 #include <set>
 
 using namespace hsdm;
+using support::arc;
+using support::grid;
 
 namespace {
-
-/// Quads over u in [0, 1] and v in [0, 1], `at` giving their corners; a torn grid, so that no line of it lies
-/// on a ruling.
-template <class At>
-PolygonMesh grid(Index columns, Index rows, const At& at) {
-    PolygonMesh mesh;
-    for (Index r = 0; r <= rows; ++r)
-        for (Index c = 0; c <= columns; ++c) {
-            const double shear =
-                c == 0 || c == columns || r == 0 || r == rows ? 0 : 0.4 * std::sin(7.0 * c + 5.0 * r);
-            mesh.positions.push_back(at((c + shear) / columns, static_cast<double>(r) / rows));
-        }
-    for (Index r = 0; r < rows; ++r)
-        for (Index c = 0; c < columns; ++c) {
-            const Index v = r * (columns + 1) + c;
-            mesh.add_facet(std::array{v, v + 1, v + columns + 2, v + columns + 1});
-        }
-    return mesh;
-}
-
-/// Angle 0 to `angle` round the y axis at `radius`, then along y; outward.
-PolygonMesh arc(double radius, double angle, double narrowing = 0) {
-    return grid(180, 80, [&](double u, double v) {
-        const double r = radius * (1 - narrowing * v);
-        return Vec3(r * std::sin(angle * u), v, r * std::cos(angle * u));
-    });
-}
 
 std::size_t patches_in(const PlanarPatches& patches) {
     std::set<Index> seen(patches.patch.begin(), patches.patch.end());

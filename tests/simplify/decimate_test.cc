@@ -1,0 +1,128 @@
+#include "hsdm/quality/distance_to_surface.hh"
+#include "hsdm/quality/topology.hh"
+#include "hsdm/simplify/decimate.hh"
+#include "hsdm/simplify/planar_patches.hh"
+#include "support/check.hh"
+
+#include <catch2/catch.hpp>
+#include <tbb/global_control.h>
+
+#include <map>
+#include <numeric>
+
+using namespace hsdm;
+
+namespace {
+
+constexpr double bound = 0.05;
+
+/// The surface of a cube of edge 2 about the origin, n * n quads to a face.
+PolygonMesh cube(int n) {
+    PolygonMesh mesh;
+    std::map<std::array<int, 3>, Index> number;
+    const auto vertex = [&](const std::array<int, 3>& at) {
+        const auto [found, added] = number.emplace(at, static_cast<Index>(mesh.positions.size()));
+        if (added) mesh.positions.push_back(Vec3(at[0], at[1], at[2]) * (2.0 / n) - Vec3(1, 1, 1));
+        return found->second;
+    };
+    for (unsigned axis = 0; axis < 3; ++axis)
+        for (int upper = 0; upper < 2; ++upper)
+            for (int i = 0; i < n; ++i)
+                for (int k = 0; k < n; ++k) {
+                    std::array<Index, 4> ring{};
+                    for (unsigned c = 0; c < 4; ++c) {
+                        std::array<int, 3> at{};
+                        at[axis] = upper * n;
+                        at[(axis + 1) % 3] = i + (c == 1 || c == 2);
+                        at[(axis + 2) % 3] = k + (c >= 2);
+                        ring[upper ? c : 3 - c] = vertex(at);
+                    }
+                    mesh.add_facet(ring);
+                }
+    return mesh;
+}
+
+PolygonMesh ball(int n) {
+    PolygonMesh mesh = cube(n);
+    for (Vec3& p : mesh.positions) p.normalize();
+    return mesh;
+}
+
+/// A mesh that is its own leaves, decimated.
+struct Decimated {
+    PolygonMesh fine;
+    DecimatedLeaves result;
+
+    Decimated(PolygonMesh mesh, std::vector<Quadric> planes, const DecimateOptions& options = {})
+        : fine(std::move(mesh)) {
+        LeafMesh leaves{fine, std::vector<Index>(fine.vertex_count())};
+        std::iota(leaves.vertex.begin(), leaves.vertex.end(), Index{0});
+        MeshChecks checks(fine, nullptr, fine.positions, bound, 0.05, 0.35 * bound);
+        result = decimate(leaves, std::move(planes), checks, options);
+    }
+    explicit Decimated(const PolygonMesh& mesh) : Decimated(mesh, vertex_planes(mesh)) {}
+};
+
+void check_kept(const Decimated& d) {
+    const PolygonMesh& mesh = d.result.mesh;
+    CHECK(support::faults(mesh) == "");
+    CHECK(measure_topology(mesh).euler == 2);
+    CHECK(points_to_mesh(d.fine.positions, mesh).max <= bound);
+    CHECK(points_to_mesh(sample_surface(mesh, 2000), d.fine).max <= 1.2 * bound);
+    CHECK(d.result.faults.crossing + d.result.faults.distant + d.result.faults.points == 0);
+    CHECK(d.result.far_points.points.empty());
+    REQUIRE(d.result.vertex.size() == d.fine.vertex_count());
+    std::vector<std::uint8_t> used(mesh.vertex_count(), 0);
+    for (Index v : d.result.vertex) {
+        REQUIRE(v < mesh.vertex_count());
+        used[v] = 1;
+    }
+    CHECK(std::count(used.begin(), used.end(), 1) == std::ssize(used));
+}
+
+} // namespace
+
+TEST_CASE("of a cube its six faces are left, each vertex in one of the corners", "[simplify]") {
+    const Decimated d(cube(8));
+    check_kept(d);
+    CHECK(d.result.mesh.vertex_count() == 8);
+    CHECK(d.result.mesh.facet_count() == 6);
+    for (Index v = 0; v < d.fine.vertex_count(); ++v)
+        if (d.fine.positions[v].norm() > 1.7) // a corner stands for itself
+            CHECK((d.result.mesh.positions[d.result.vertex[v]] - d.fine.positions[v]).norm() < 1e-9);
+}
+
+TEST_CASE("a ball keeps the bound with fewer facets", "[simplify]") {
+    const Decimated d(ball(12));
+    check_kept(d);
+    CHECK(d.result.mesh.facet_count() < d.fine.facet_count() / 3);
+    CHECK(d.result.mesh.facet_count() > 30);
+}
+
+TEST_CASE("where planes allow anything the bound is kept all the same", "[simplify]") {
+    const PolygonMesh fine = ball(8);
+    std::vector<Quadric> none(fine.vertex_count());
+    for (std::size_t v = 0; v < none.size(); ++v) none[v].add_point(fine.positions[v]);
+    const Decimated d(fine, none);
+    check_kept(d);
+    CHECK(d.result.mesh.vertex_count() < fine.vertex_count());
+}
+
+TEST_CASE("if rounds do not suffice the mesh stays as it was", "[simplify]") {
+    const PolygonMesh fine = ball(8);
+    std::vector<Quadric> none(fine.vertex_count());
+    for (std::size_t v = 0; v < none.size(); ++v) none[v].add_point(fine.positions[v]);
+    const Decimated d(fine, none, {.faults = {}, .rounds = 1});
+    check_kept(d);
+    const Decimated enough(cube(6), vertex_planes(cube(6)), {.faults = {}, .rounds = 1});
+    CHECK(enough.result.mesh.facet_count() == 6);
+}
+
+TEST_CASE("decimation does not depend on the number of threads", "[simplify]") {
+    const Decimated many(ball(10));
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const Decimated single(ball(10));
+    CHECK(single.result.mesh.corners == many.result.mesh.corners);
+    CHECK(single.result.mesh.positions == many.result.mesh.positions);
+    CHECK(single.result.vertex == many.result.vertex);
+}
