@@ -179,12 +179,19 @@ TEST_CASE("an edge that exists is not used a second time", "[holes]") {
     FillHolesOptions options;
     options.max_bend = std::numbers::pi;
     options.quads = false;
-    fill_holes(mesh, options);
+    const FillHolesCounts counts = fill_holes(mesh, options);
+    CHECK(counts.loops == 1);
+    CHECK(counts.closed == 1); // by the other diagonal
+    CHECK(counts.facets == 2);
     check_manifold(mesh);
+    const Topology topology = measure_topology(mesh);
+    CHECK(topology.closed());
+    CHECK(topology.euler == 2);
 }
 
 TEST_CASE("holes of random soups leave a manifold", "[holes]") {
     std::mt19937 random(17);
+    std::size_t filled = 0;
     for (int round = 0; round < 200; ++round) {
         PolygonMesh soup;
         for (unsigned i = 0; i < 12; ++i)
@@ -199,10 +206,11 @@ TEST_CASE("holes of random soups leave a manifold", "[holes]") {
         options.max_edges = FillHolesOptions::no_limit;
         options.max_bend = std::numbers::pi;
         options.insist = round % 2 == 1;
-        fill_holes(soup, options);
+        filled += fill_holes(soup, options).closed;
         const Topology topology = measure_topology(soup);
         CHECK(topology.manifold());
         CHECK(topology.misoriented_edges == 0);
         CHECK(topology.duplicate_facets == 0);
     }
+    CHECK(filled > 200);
 }

@@ -88,6 +88,6 @@ TEST_CASE("random solids come out closed, those with large features with the rig
     INFO("another Euler characteristic than the solid's, seeds " << seeds_of(
              outcomes, [](const Outcome& o) { return o.size == FeatureSize::large && !o.right_euler; }));
     CAPTURE(large, right);
+    CHECK(large >= (options.thinnest > 2 ? 20 : 5)); // solids without thin walls are in either family
     CHECK(static_cast<double>(right) >= 0.95 * static_cast<double>(large));
-    if (options.thinnest > 2) CHECK(large >= 20);
 }
