@@ -1,0 +1,125 @@
+#include "hsdm/normals/vote_on_normals.hh"
+#include "support/sample.hh"
+
+#include <catch2/catch.hpp>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+
+using namespace hsdm;
+
+namespace {
+
+/// A scan with exact normals, which tests then spoil.
+struct Scan {
+    Octree octree;
+    Neighbors neighbors;
+    EstimatedNormals estimate;
+
+    explicit Scan(const support::Solid& solid)
+        : octree(build_octree(support::sample(solid, {.points = 4000}))), neighbors(find_neighbors(octree)) {
+        estimate.normals = octree.normals;
+        for (double reach : neighbors.reach) estimate.tolerance.push_back(0.05 * reach);
+        for (Index i = 0; i < octree.size(); ++i) estimate.bent.push_back(i);
+    }
+    void vote() { vote_on_normals(octree, neighbors, estimate); }
+
+    /// Points whose neighbours are not all of one face with them.
+    std::vector<Index> near_creases() const {
+        std::vector<Index> found;
+        for (Index i = 0; i < octree.size(); ++i) {
+            const auto around = neighbors.of(i);
+            if (std::any_of(around.begin(), around.end(),
+                            [&](Index j) { return (octree.normals[i] | octree.normals[j]) < 0.5; }))
+                found.push_back(i);
+        }
+        return found;
+    }
+    /// So near a crease that it may be of either face.
+    bool is_of_both(Index i) const {
+        const auto around = neighbors.of(i);
+        return std::any_of(around.begin(), around.end(), [&](Index j) {
+            const Vec3 d = octree.positions[i] - octree.positions[j];
+            return (octree.normals[i] | octree.normals[j]) < 0.5
+                   && std::abs(octree.normals[j] | d) < 2 * estimate.tolerance[i];
+        });
+    }
+    /// How many normals are off the exact ones by more than ten degrees.
+    std::size_t wrong() const {
+        std::size_t count = 0;
+        for (Index i = 0; i < octree.size(); ++i)
+            count += (estimate.normals[i] | octree.normals[i]) < 0.985 && !is_of_both(i);
+        return count;
+    }
+};
+
+support::Solid cube() {
+    return support::box({1, 1, 1}).placed(support::turned(Vec3(1, 2, 3), 0.5));
+}
+
+} // namespace
+
+TEST_CASE("single points that are oriented wrongly are turned", "[normals]") {
+    for (const support::Solid& solid : {cube(), support::sphere(1)}) {
+        Scan scan(solid);
+        for (Index i = 0; i < scan.octree.size(); i += 23) scan.estimate.normals[i] *= -1;
+        CHECK(scan.wrong() > 150);
+        scan.vote();
+        CHECK(scan.wrong() == 0);
+    }
+}
+
+TEST_CASE("beside a crease points take the normal of their own face", "[normals]") {
+    Scan scan(cube());
+    const std::vector<Index> near = scan.near_creases();
+    for (std::size_t k = 0; k < near.size(); k += 4) { // every fourth has that of the other face
+        const auto around = scan.neighbors.of(near[k]);
+        const auto other = std::find_if(around.begin(), around.end(), [&](Index j) {
+            return (scan.octree.normals[near[k]] | scan.octree.normals[j]) < 0.5;
+        });
+        scan.estimate.normals[near[k]] = scan.octree.normals[*other];
+    }
+    const std::size_t before = scan.wrong();
+    CHECK(before > 100);
+    scan.vote();
+    CHECK(scan.wrong() < before / 20);
+}
+
+TEST_CASE("normals that neighbours agree on stay as they are", "[normals]") {
+    Scan ball(support::sphere(1));
+    ball.vote();
+    CHECK(ball.estimate.normals == ball.octree.normals);
+    Scan box(cube());
+    box.vote();
+    CHECK(box.wrong() == 0); // near creases too
+}
+
+TEST_CASE("points that are not said to be bent have no vote", "[normals]") {
+    Scan scan(cube());
+    scan.estimate.bent = scan.near_creases();
+    std::vector<std::uint8_t> bent(scan.octree.size(), 0);
+    for (Index i : scan.estimate.bent) bent[i] = 1;
+    for (Index i = 0; i < scan.octree.size(); i += 17) scan.estimate.normals[i] *= -1;
+    const std::vector<Vec3> before = scan.estimate.normals;
+    scan.vote();
+    std::size_t changed = 0, turned = 0;
+    for (Index i = 0; i < scan.octree.size(); ++i) {
+        changed += !bent[i] && scan.estimate.normals[i] != before[i];
+        turned += bent[i] && (scan.estimate.normals[i] | before[i]) < 0;
+    }
+    CHECK(changed == 0);
+    CHECK(turned > 20);
+}
+
+TEST_CASE("votes leave unit normals and do not depend on the number of threads", "[normals]") {
+    Scan many(support::mechanical_part());
+    for (Index i = 0; i < many.octree.size(); i += 11) many.estimate.normals[i] *= -1;
+    Scan single = many;
+    many.vote();
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    single.vote();
+    CHECK(single.estimate.normals == many.estimate.normals);
+    double off = 0;
+    for (const Vec3& n : many.estimate.normals) off = std::max(off, std::abs(n.norm() - 1));
+    CHECK(off < 1e-9);
+}
