@@ -85,7 +85,7 @@ TEST_CASE("corners and borders stay, vertices of creases move along these", "[co
     }
     CHECK(aside < 1e-12);
     const Stages sheet(support::flat_sheet(60, 0.8, 0.3), 3, 1);
-    const PlacedVertices on_sheet = relaxed(sheet);
+    const PlacedVertices on_sheet = relaxed(sheet, {.fit = false}); // which might put them back
     CHECK(moved(sheet, on_sheet, [&](Index v) { return sheet.duals.open[v] == 0; }) > 0);
     CHECK(moved(sheet, on_sheet, [&](Index v) { return sheet.duals.open[v] != 0; }) == 0);
 }
@@ -140,9 +140,12 @@ TEST_CASE("more rounds go farther, and a step of none of them nowhere", "[contou
 TEST_CASE("on a curved surface the sheet moves amid the points", "[contour]") {
     const Stages stages(support::sphere(1), 20000, 4);
     const double placed = misfit(stages, stages.vertices.positions);
-    CHECK(misfit(stages, relaxed(stages).positions) < 0.6 * placed);
-    CHECK(misfit(stages, relaxed(stages, {.rounds = 0}).positions) < 0.6 * placed);
-    CHECK(misfit(stages, relaxed(stages, {.fit = false}).positions) > 0.7 * placed);
+    CHECK(misfit(stages, relaxed(stages).positions) < 0.436 * placed); // 0.45 without the second step
+    CHECK(misfit(stages, relaxed(stages, {.rounds = 0}).positions) < 0.5 * placed);
+    // Even vertices are nearer without that, if they keep to the sheet.
+    const double even = misfit(stages, relaxed(stages, {.fit = false}).positions);
+    CHECK(even < 0.9 * placed);
+    CHECK(even > 0.7 * placed);
 }
 
 TEST_CASE("where relaxation brings the points farther off vertices go back, and all if these are in all",
