@@ -16,8 +16,9 @@ struct Scan {
     Neighbors neighbors;
     EstimatedNormals estimate;
 
-    explicit Scan(const support::Solid& solid)
-        : octree(build_octree(support::sample(solid, {.points = 4000}))), neighbors(find_neighbors(octree)) {
+    explicit Scan(const support::Solid& solid) : Scan(support::sample(solid, {.points = 4000})) {}
+    explicit Scan(const PointCloud& cloud, int around = 16)
+        : octree(build_octree(cloud)), neighbors(find_neighbors(octree, {.count = around})) {
         estimate.normals = octree.normals;
         for (double reach : neighbors.reach) estimate.tolerance.push_back(0.05 * reach);
         for (Index i = 0; i < octree.size(); ++i) estimate.bent.push_back(i);
@@ -92,6 +93,28 @@ TEST_CASE("normals that neighbours agree on stay as they are", "[normals]") {
     Scan box(cube());
     box.vote();
     CHECK(box.wrong() == 0); // near creases too
+}
+
+TEST_CASE("a point stays of its face where not clearly more neighbours are of another", "[normals]") {
+    PointCloud cloud; // two faces in grids, on the edge between them two points of either by turns
+    constexpr int side = 30;
+    for (int y = 0; y < side; ++y)
+        for (int k = 1 - side; k < side; ++k) {
+            const bool upright = k < 0 || (k == 0 && y % 4 < 2);
+            const double away = 1.1 * std::abs(k); // so that as many neighbours are of either face
+            cloud.positions.push_back(k < 0 ? Vec3(0, y, away) : Vec3(away, y, 0));
+            cloud.normals.push_back(upright ? Vec3(1, 0, 0) : Vec3(0, 0, 1));
+        }
+    Scan scan(cloud, 26); // twelve of one's own, fourteen others
+    scan.vote();
+    std::size_t on_edge = 0;
+    for (Index i = 0; i < scan.octree.size(); ++i) {
+        const Vec3& p = scan.octree.positions[i];
+        if (p[0] > 0 || p[2] > 0 || p[1] < 8 || p[1] >= side - 8) continue; // ends are lopsided
+        ++on_edge;
+        CHECK((scan.estimate.normals[i] | scan.octree.normals[i]) > 0.9);
+    }
+    CHECK(on_edge == side - 16);
 }
 
 TEST_CASE("points that are not said to be bent have no vote", "[normals]") {

@@ -53,11 +53,12 @@ struct Decimated {
     PolygonMesh fine;
     DecimatedLeaves result;
 
-    Decimated(PolygonMesh mesh, std::vector<Quadric> planes, const DecimateOptions& options = {})
+    Decimated(PolygonMesh mesh, std::vector<Quadric> planes, const DecimateOptions& options = {},
+              double band = 0.35)
         : fine(std::move(mesh)) {
         LeafMesh leaves{fine, std::vector<Index>(fine.vertex_count())};
         std::iota(leaves.vertex.begin(), leaves.vertex.end(), Index{0});
-        MeshChecks checks(fine, nullptr, fine.positions, bound, 0.05, 0.35 * bound);
+        MeshChecks checks(fine, nullptr, fine.positions, bound, 0.05, band * bound);
         result = decimate(leaves, std::move(planes), checks, options);
     }
     explicit Decimated(const PolygonMesh& mesh) : Decimated(mesh, vertex_planes(mesh)) {}
@@ -116,6 +117,16 @@ TEST_CASE("if rounds do not suffice the mesh stays as it was", "[simplify]") {
     check_kept(d);
     const Decimated enough(cube(6), vertex_planes(cube(6)), {.faults = {}, .rounds = 1});
     CHECK(enough.result.mesh.facet_count() == 6);
+}
+
+TEST_CASE("what goes too far is undone where it does, and all else stays merged", "[simplify]") {
+    const PolygonMesh fine = ball(12);
+    constexpr double band = 0.7; // by planes more goes than the bound bears
+    const Decimated once(fine, vertex_planes(fine), {.faults = {}, .rounds = 1}, band);
+    CHECK(once.result.mesh.vertex_count() == fine.vertex_count());
+    const Decimated d(fine, vertex_planes(fine), {}, band);
+    check_kept(d);
+    CHECK(d.result.mesh.vertex_count() < fine.vertex_count() / 5);
 }
 
 TEST_CASE("decimation does not depend on the number of threads", "[simplify]") {

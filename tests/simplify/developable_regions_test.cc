@@ -89,6 +89,41 @@ TEST_CASE("facets that are taken are in no region", "[simplify]") {
         for (Index f : region.facets) CHECK((f % 60 < 30) == (region.facets[0] % 60 < 30));
 }
 
+TEST_CASE("no region begins at a facet that is taken", "[simplify]") {
+    const PolygonMesh mesh = arc(1, 1.8, 0, 60, 30);
+    std::vector<Index> taken(mesh.facet_count(), no_index);
+    for (Index f = 0; f < taken.size(); f += 7) taken[f] = 0;
+    const std::vector<int> count =
+        uses(find_developable_regions(facet_field(mesh), taken), mesh.facet_count());
+    for (Index f = 0; f < taken.size(); ++f) CHECK(count[f] == (taken[f] == no_index ? 1 : 0));
+    taken.assign(taken.size(), 0);
+    CHECK(find_developable_regions(facet_field(mesh), taken).empty());
+}
+
+TEST_CASE("of a bent tube a region is what has one axis: all where it hardly bends", "[simplify]") {
+    for (const double ring : {12.0, 40.0, 60.0, 200.0}) {
+        INFO("bent with a radius of " << ring);
+        const PolygonMesh mesh = grid(60, 60, [ring](double u, double v) {
+            const double turn = 3 * (v - 0.5) / ring, r = ring + std::sin(1.8 * u);
+            return Vec3(r * std::cos(turn), r * std::sin(turn), std::cos(1.8 * u));
+        });
+        const FacetField field = facet_field(mesh);
+        std::size_t most = 0;
+        for (const DevelopableRegion& region : regions_of(mesh)) {
+            double squares = 0, weight = 0;
+            for (Index f : region.facets) {
+                const double off = (region.axis.direction | field.mean_normal[f]) - region.axis.cosine;
+                squares += off * off * field.area[f].norm();
+                weight += field.area[f].norm();
+            }
+            CHECK(std::sqrt(squares / weight) < 0.0101);
+            CHECK(region.axis.deviation == Approx(std::sqrt(squares / weight)).margin(1e-4));
+            most = std::max(most, region.facets.size());
+        }
+        CHECK((most == mesh.facet_count()) == (ring == 200));
+    }
+}
+
 TEST_CASE("what bends two ways, and what has few facets, is no region", "[simplify]") {
     CHECK(regions_of(grid(40, 40, [](double u, double v) {
               const double x = u - 0.5, y = v - 0.5;
