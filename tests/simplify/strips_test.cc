@@ -108,7 +108,7 @@ TEST_CASE("strips lie along the rulings, one after the other, and are about as w
 
 TEST_CASE("planes of neighbouring strips meet where one takes over from the other", "[simplify]") {
     const Bent bent(support::grid(120, 40, [](double u, double v) { // of an ellipse
-        return Vec3(2 * std::sin(angle * u), 2 * v, std::cos(angle * u));
+        return Vec3(3 * std::sin(angle * u), 2 * v, std::cos(angle * u));
     }));
     const std::optional<Strips> strips = bent.cut(0.01);
     REQUIRE(strips);
