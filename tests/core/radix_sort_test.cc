@@ -37,8 +37,8 @@ bool same(const std::vector<CodeIndex>& a, const std::vector<CodeIndex>& b) {
 } // namespace
 
 TEST_CASE("keys come out by code, those of one code in the order they had", "[radix_sort]") {
-    // None, one, and a few chunks of 2^16 keys.
-    for (const std::size_t count : {0u, 1u, 2u, 1000u, 65536u, 140001u})
+    // None, one, and more than a chunk of 2^16 keys.
+    for (const std::size_t count : {0u, 1u, 2u, 1000u, 70000u})
         for (const int bits : {3, 11, 12, 63}) {
             INFO(count << " keys of " << bits << " bits");
             const std::vector<CodeIndex> keys = random_keys(count, bits, count);
@@ -72,7 +72,7 @@ TEST_CASE("digits that all keys share move none", "[radix_sort]") {
 }
 
 TEST_CASE("the order of keys does not depend on the number of threads", "[radix_sort]") {
-    std::vector<CodeIndex> many = random_keys(200000, 24, 5), one = many;
+    std::vector<CodeIndex> many = random_keys(140001, 24, 5), one = many;
     radix_sort(many, 24);
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
     radix_sort(one, 24);
