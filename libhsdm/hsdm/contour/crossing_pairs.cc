@@ -24,7 +24,8 @@ public:
                 const RelationTest& related)
         : grid_(grid), crossings_(crossings), sets_(sets), related_(related) {}
 
-    /// Calls join(exit, enter, opposed) for every pair and left_open(stop) for what finds no partner.
+    /// Calls join(exit, enter, opposed) for every pair and left_open(stop) for every crossing without a
+    /// partner.
     template <class Join, class LeftOpen>
     void pair(Index grid_point, unsigned normal_axis, Join&& join, LeftOpen&& left_open) {
         exits_.clear();
@@ -68,7 +69,7 @@ private:
         return related_(sets_.sets[of(a).set], sets_.sets[of(b).set]);
     }
 
-    /// 0 for one sheet, more the less two crossings look like parts of one surface.
+    /// 0 for two crossings of one flat sheet; the larger, the less they look like parts of one surface.
     double cost(const Stop& a, const Stop& b) const {
         const Crossing &x = of(a), &y = of(b);
         const Vec3 d = b.position - a.position;
@@ -80,7 +81,8 @@ private:
                                         : pairing::cost_of_crease);
     }
 
-    /// Faces with two or more of each kind are rare: the cheapest pair first, ties by number.
+    /// Joins one pair: of two exits and two enters, one of the better pairing; of more (rare) the cheapest
+    /// pair, ties by number.
     template <class Join>
     void join_best(Join&& join) {
         double least = std::numeric_limits<double>::infinity();

@@ -24,7 +24,8 @@ struct EdgeSheet {
 
     bool beside() const { return held[0] + held[1] + held[2] + held[3] > 0; }
     bool leaving() const { return distance[0] < 0; }
-    /// Points per voxel, the mean that a point sees: full voxels count more than clipped ones.
+    /// Points per voxel, the mean over points rather than voxels, so that full voxels count more than clipped
+    /// ones.
     double density() const { return points > 0 ? points_squared / points : 0; }
 };
 
@@ -33,7 +34,7 @@ struct Candidate {
     bool standing;
 };
 
-/// What the crossings of one edge are decided from. Reused from edge to edge.
+/// Finds the crossings of one edge. Reused from edge to edge.
 class EdgeCrossings {
 public:
     EdgeCrossings(const GridPoints& grid, const LocalSheets& local, const NormalSets& sets,
@@ -84,7 +85,8 @@ private:
         return i;
     }
 
-    /// Is there one sheet, on one side of both ends? So it is at most edges, which need no closer look.
+    /// Is there only one sheet, with both ends of the edge on its same side? So it is at most edges, and they
+    /// are skipped.
     bool passes_by() const {
         const auto low = local_.sheets_at(ends_[0]), high = local_.sheets_at(ends_[1]);
         if (low.size() != 1 || high.size() != 1 || !(low[0].weight > 0) || !(high[0].weight > 0))
@@ -180,8 +182,8 @@ private:
         relations_for_ = i;
     }
 
-    /// Is sheet j's side at the crossing of i outside? Ties go by number, so that of two sheets that cross at
-    /// the same place the same way exactly one is kept.
+    /// Is the crossing of sheet i outside sheet j? Ties go by number: of two sheets that cross at the same
+    /// place in the same direction exactly one is kept.
     bool outside_at(std::size_t j, std::size_t i) const {
         const EdgeSheet& a = sheets_[i];
         const EdgeSheet& b = sheets_[j];
@@ -190,9 +192,10 @@ private:
         return b.distance[before ? 0 : 1] >= 0;
     }
 
-    /// A crossing counts if it lies on the solid's surface: inside every convex partner, outside every
-    /// concave one. Two convex partners that meet in a concave crease bound the sheet together: being inside
-    /// one is enough (alike with the words exchanged), as at the top of an L-shaped bracket's inner corner.
+    /// A crossing counts if it lies on the solid's surface: inside every convex crease partner, outside every
+    /// concave one. Two convex partners that meet in a concave crease bound the sheet together, so being
+    /// inside one of them is enough (likewise with convex and concave exchanged); the top of an L-shaped
+    /// bracket at its inner corner is an example.
     bool visible(std::size_t i) const {
         for (std::size_t j = 0; j < count_; ++j) {
             if (j == i || relations_for_ != i) continue;
@@ -215,11 +218,11 @@ private:
         return p;
     }
 
-    /// Does the data carry the sheet into all four voxels beside the edge, slivers apart? In a sliver few
-    /// points are expected; elsewhere at least a fair share of the expected ones must be there.
+    /// Do the data carry the sheet into all four voxels beside the edge, slivers apart? A voxel in which few
+    /// points are expected is a sliver; any other must hold at least a fair share of the points expected.
     bool supported(std::size_t i) const {
         const EdgeSheet& sheet = sheets_[i];
-        double density = 0; // of the sampling here: the sheet itself may only be clipped voxels
+        double density = 0; // the densest sheet's: this sheet may hold clipped voxels only
         for (std::size_t j = 0; j < count_; ++j) density = std::max(density, sheets_[j].density());
         unsigned doubtful = 0;
         for (unsigned v = 0; v < 4; ++v)
@@ -242,7 +245,7 @@ private:
         return true;
     }
 
-    /// Where the sheet lies with regard to its crease partners.
+    /// The half-spaces that its crease partners clip sheet i to. Returns how many.
     std::size_t partner_half_spaces(std::size_t i, std::array<HalfSpace, 16>& clips) const {
         std::size_t n = 0;
         if (relations_for_ != i) return n;
@@ -286,7 +289,7 @@ private:
     std::size_t offset_[2] = {0, 0};
     std::array<std::uint8_t, most> parent_;
     std::array<std::uint8_t, most>
-        number_; // of the edge sheet, per local sheet of the lower, then of the upper end
+        number_; // edge sheet of each local sheet of the lower, then of the upper end
     std::array<EdgeSheet, most> sheets_;
     std::size_t count_ = 0;
     std::array<Relation, most> relations_;

@@ -7,9 +7,9 @@
 namespace hsdm {
 
 struct CrossingOptions {
-    /// Points. A voxel beside a crossed edge that holds none of the sheet is taken for a sliver that the
-    /// sampling missed while fewer points than this are expected in it; beyond, the surface ends there and
-    /// the facet is left out.
+    /// Points. A voxel beside a crossed edge that holds no point of the sheet counts as a sliver that the
+    /// sampling missed if fewer points than this are expected in it. If more are expected, the surface ends
+    /// there and the facet is left out.
     double sliver_points = crossing::sliver_points;
 };
 
@@ -20,7 +20,7 @@ struct Crossing {
     Index edge;     ///< 3 * lower grid point + axis
     Index set;      ///< the sheet's set nearest to the crossing
     bool leaving;   ///< the lower grid point is inside, the upper one outside
-    bool supported; ///< the data carries the sheet into all four voxels beside the edge, slivers apart
+    bool supported; ///< do the data carry the sheet into all four voxels beside the edge, slivers apart?
 };
 
 /// The crossings of every grid edge: those of edge e are crossings[first[e]] .. crossings[first[e + 1]], by
@@ -29,17 +29,18 @@ struct Crossings {
     std::vector<Crossing> crossings;
     std::vector<Index> first{0};
     std::size_t dropped_beyond_crease = 0; ///< clipped by the sheet's crease partner
-    std::size_t settled = 0;               ///< taken back, brought back or made (label_grid_signs)
-    std::size_t trimmed = 0;               ///< beyond the end of the data (trim_unsupported)
-    std::size_t tips = 0;                  ///< pairs that only a tip made (drop_tips)
+    std::size_t settled = 0;               ///< crossings dropped, restored or invented (label_grid_signs)
+    std::size_t trimmed = 0;               ///< dropped beyond the end of the data (trim_unsupported)
+    /// pairs of crossings dropped because only the tip of a corner made them (drop_tips)
+    std::size_t tips = 0;
 
     std::span<const Crossing> on_edge(Index e) const {
         return {crossings.data() + first[e], crossings.data() + first[e + 1]};
     }
 };
 
-/// Every crossing that some sheet has, and which of them stand: those that no crease partner clips and that
-/// the data carry or lie beside.
+/// Every crossing that some sheet has, and which of them are standing: not clipped by a crease partner, and
+/// either carried by the data or with points of the sheet beside the edge.
 struct CrossingCandidates {
     Crossings crossings;
     std::vector<std::uint8_t> standing; ///< per crossing

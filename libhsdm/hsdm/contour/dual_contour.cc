@@ -16,8 +16,8 @@ namespace {
 constexpr std::size_t edges_per_chunk = 4096;
 constexpr std::size_t values_per_chunk = 1 << 14;
 
-/// Vertices on mesh edges. Two links across one face whose ends are the same two vertices would make one edge
-/// with four facets; a vertex in the middle of all but the first keeps them apart.
+/// Extra vertices in the middle of mesh edges. Two links across one face that connect the same two vertices
+/// would make one edge with four facets; a midpoint on all but the first keeps the edges apart.
 class Midpoints {
 public:
     Midpoints(const GridPoints& grid, const NormalSets& sets, const Crossings& crossings, const Links& links,
@@ -58,8 +58,7 @@ public:
     std::size_t count() const { return count_; }
 
 private:
-    /// Does an edge seen before join the same two vertices as this side? If not, it counts as seen from now
-    /// on.
+    /// Does an earlier edge join the same two vertices as this side? If not, the side joins the edges seen.
     static bool repeated(const DualVertices& duals, const Link& side,
                          std::vector<std::pair<Index, Index>>& seen) {
         const std::pair<Index, Index> pair{duals.at(side.crossing, Ring::low[side.face], side.face),
@@ -106,12 +105,13 @@ public:
         for (const Quad& quad : round_) add_quad(quad);
     }
 
-    /// The strip round a thin part's rim, between the two sides' vertices; once per rim.
+    /// The strip of facets along a thin part's rim, between the vertices of its two sides; once per rim link.
     void add_strips(Index x) {
         for (std::uint8_t k = 0; k < 4; ++k) {
             const Link& link = links_.of_crossing[x][k];
             if (!link.rim || 4 * x + k > 4 * link.crossing + link.face) continue;
-            // The facet of x runs from ring position k to k + 1 if it leaves; the strip runs against it.
+            // The half-edge of x's facet runs from ring position k to k + 1 if x leaves; the strip runs the
+            // other way.
             unsigned from = (k + 1u) % 4, to = k;
             if (!crossings_.crossings[x].leaving) std::swap(from, to);
             const Index y = link.crossing;
@@ -156,8 +156,9 @@ private:
         if (!crossings_.crossings[x].leaving) std::reverse(polygon_.begin(), polygon_.end());
     }
 
-    /// Where a crease runs across a quad, corner to corner, the quad is cut there: the paper's refinement
-    /// triangles. Folds of less than 30 degrees are those of round parts a voxel or two thick.
+    /// Where a crease runs along a quad's diagonal, the quad is cut there: the paper's refinement triangles.
+    /// Returns the diagonal's first corner, 2 for none. Folds of less than 30 degrees are left: round parts a
+    /// voxel or two thick have them.
     std::size_t crease_diagonal(const std::array<Index, 4>& q) const {
         for (std::size_t d = 0; d < 2; ++d) {
             const Index a = q[d], b = q[d + 1], c = q[d + 2], e = q[(d + 3) % 4];
@@ -179,9 +180,9 @@ private:
         return is(0) || is(1);
     }
 
-    /// Two facets round one grid edge may have two opposite corners in common. One of them is cut along the
-    /// other diagonal, or both would be triangulated along the same: the first that has a crease there keeps
-    /// it.
+    /// Two facets round one grid edge may share two opposite corners; if both had that diagonal, cut or
+    /// implied, it would be an edge of four triangles. Then the second facet is cut along its other diagonal;
+    /// if only one has a crease there, the one without is.
     void keep_diagonals_apart(std::size_t i) {
         for (std::size_t j = 0; j < round_.size(); ++j)
             for (std::size_t d = 0; d < 2 && j != i; ++d) {
@@ -251,7 +252,7 @@ PolygonMesh facets_of(const Crossings& crossings, const Links& links, const Dual
     return mesh;
 }
 
-/// The values of the vertices that came of those that the values are of.
+/// Per vertex, the value of the vertex that it originated from.
 template <class T>
 std::vector<T> of_origins(const std::vector<T>& values, const std::vector<Index>& origin) {
     std::vector<T> result(origin.size());
@@ -261,14 +262,15 @@ std::vector<T> of_origins(const std::vector<T>& values, const std::vector<Index>
     return result;
 }
 
-/// Class and voxel are known by origin while vertices are split or dropped.
+/// While vertices are split or dropped, classes and voxels are kept per original vertex; from here on per
+/// vertex.
 void settle_origins(DualContour& result) {
     result.classes = of_origins(result.classes, result.mesh.origin);
     result.voxel = of_origins(result.voxel, result.mesh.origin);
     result.mesh.origin = std::vector<Index>();
 }
 
-/// Returns how many vertices another took the place of.
+/// Collapses the edges; returns how many vertices were merged into another that way.
 std::size_t merge_corners(std::span<const EdgeCollapse> edges, PolygonMesh& mesh,
                           std::vector<VertexClass>& classes) {
     const std::vector<std::uint8_t> collapsed = collapse_edges(mesh, edges);
@@ -279,8 +281,8 @@ std::size_t merge_corners(std::span<const EdgeCollapse> edges, PolygonMesh& mesh
     return count;
 }
 
-/// Builds the facets, and returns which of their edges are to be collapsed. Grid points, crossings and dual
-/// vertices, the largest part of the memory, are gone afterwards.
+/// Builds the facets; returns the edges to collapse to corners. Grid points, crossings and dual vertices, the
+/// largest part of the memory, are freed at the end.
 std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
                                        const DualContourOptions& options, DualContour& result) {
     const double h = level.voxel_size;
@@ -311,7 +313,7 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     result.mesh.positions = std::move(vertices.positions);
     if (move_to_creases(result.mesh, h, vertices) > 0) { // quads may fold elsewhere
         vertices.positions = std::move(result.mesh.positions);
-        result.mesh = PolygonMesh(); // before there is another
+        result.mesh = PolygonMesh(); // frees it before the second one is built
         result.mesh = facets_of(crossings, links, duals, midpoints, vertices);
         result.mesh.positions = std::move(vertices.positions);
     }

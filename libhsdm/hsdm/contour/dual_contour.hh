@@ -16,7 +16,7 @@ struct DualContourOptions {
     CrossingOptions crossing;
     RelaxOptions relax;
     SplinterOptions splinters;
-    /// Lengths of these two in voxels here.
+    /// The lengths in these two are in voxels here.
     FillHolesOptions holes{.max_edges = holes::most_edges, .max_diameter = holes::widest};
     UntangleOptions untangle{.reach = untangling::reach, .nearby = untangling::nearby};
     bool fill = true; ///< close small boundary loops
@@ -28,14 +28,15 @@ struct DualContour {
     std::vector<Index> voxel;         ///< per vertex, the occupied voxel it stands for
     std::size_t crossings = 0, beyond_crease = 0, settled = 0, trimmed = 0, tips = 0, open = 0, rims = 0,
                 cut = 0, clamped = 0;
-    std::size_t corners_merged = 0; ///< vertices made one with that of the voxel that holds their corner
-    std::size_t midpoints = 0;      ///< vertices added so that no two mesh edges join the same two vertices
-    std::size_t doublets = 0;       ///< pairs of facets round one vertex made one
-    Discarded splinters;            ///< facets of splinters, removed
+    /// vertices merged into the vertex of the next voxel, which holds their corner (shared_corners)
+    std::size_t corners_merged = 0;
+    std::size_t midpoints = 0; ///< vertices added so that no two mesh edges join the same two vertices
+    std::size_t doublets = 0;  ///< pairs of facets round one vertex merged into one facet
+    Discarded splinters;       ///< facets of splinters, removed
     FillHolesCounts holes;
     UntangleCounts intersections;
-    std::optional<FacetCells> cells; ///< the mesh's, by voxels; empty if it was moved since
-    ManifoldCounts manifold;         ///< what the last check still had to mend
+    std::optional<FacetCells> cells; ///< the mesh's facets by voxel; empty if untangling moved vertices
+    ManifoldCounts manifold;         ///< what make_manifold still had to mend at the end
 };
 
 DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,

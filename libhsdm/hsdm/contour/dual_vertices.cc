@@ -19,14 +19,15 @@ public:
     std::vector<FacetCorner> corners;
     bool closed = false;
 
-    /// The facets run along the chain: each comes to the vertex beside the face where the chain enters it.
+    /// Collects the chain through a corner in the direction in which facets run round the vertex: each
+    /// facet's half-edge to the vertex lies across the face by which the chain enters the corner.
     void walk(FacetCorner start) {
         corners.clear();
         closed = false;
         const bool leaving = crossings_.crossings[start / 4].leaving;
         forward(start, leaving ? start % 4 : (start + 3) % 4);
         if (closed) return;
-        // Open: the other half, then in order from end to end.
+        // Open: walk the other half too, then put both in order from end to end.
         std::vector<FacetCorner> tail = std::move(corners);
         corners.clear();
         forward(start, leaving ? (start + 3) % 4 : start % 4);
@@ -49,7 +50,7 @@ private:
                 return;
             }
             corners.push_back(corner);
-            k = link.face == j ? (j + 3) % 4 : j; // out by the other of the two faces at this ring position
+            k = link.face == j ? (j + 3) % 4 : j; // leave by the other face of this ring position
         }
     }
 
@@ -57,19 +58,22 @@ private:
     const Links& links_;
 };
 
-/// The vertices one chain becomes: ranges of a rotated copy of its corners.
+/// The vertices that one chain is cut into: ranges of its corners, which may begin elsewhere than in the
+/// chain.
 struct Cut {
     struct Piece {
         std::size_t first, end; // in `corners`
-        std::uint8_t shared;    // 1: its first corner is also the last of the piece before, 2: its last alike
+        // bit 0: its first corner is also the last of the piece before; bit 1: its last is also the first of
+        // the next
+        std::uint8_t shared;
     };
     std::vector<FacetCorner> corners;
     std::vector<Piece> pieces;
 };
 
 /// Cuts a chain so that no vertex gets both sides of a thin part. Wherever the chain leads from one side to
-/// the other there must be a cut: across the link if that goes round a rim, else in the facet of the rim's
-/// own face between them.
+/// the other it is cut: across the link if that goes round the rim, else in a facet of the rim's own face,
+/// between the sides.
 class ChainCutter {
 public:
     ChainCutter(const GridPoints& grid, const Crossings& crossings, const Links& links)
@@ -80,8 +84,8 @@ public:
         const std::size_t n = chain.corners.size();
         result.corners.clear();
         result.pieces.clear();
-        // A closed chain starts at its first cut, which is never after the last corner: there are two at
-        // least.
+        // A closed chain is rotated to start at its first cut. It has at least two cuts, so the first is not
+        // after the last corner.
         const std::size_t begin = chain.closed && !cuts_.empty() ? (cuts_[0] + 1) / 2 : 0;
         for (std::size_t i = 0; i < n; ++i) result.corners.push_back(chain.corners[(begin + i) % n]);
         const bool around = chain.closed && !cuts_.empty() && cuts_[0] % 2 == 0;
@@ -107,7 +111,8 @@ private:
         cuts_.clear();
         if (!any_opposite(chain)) return;
         const std::size_t n = chain.corners.size();
-        // The shortest way from each corner to one of the other side, and where to cut it.
+        // From each corner, the shortest way (in steps) along the chain to a corner of the other side, and
+        // where to cut it.
         length_.assign(n, 2 * n);
         place_.assign(n, none);
         for (std::size_t i = 0; i < n; ++i)
@@ -130,7 +135,7 @@ private:
         return false;
     }
 
-    /// Where to cut the way of so many steps from corner i; none if it does not lead to the other side.
+    /// Where to cut the way of `steps` steps from corner i; none if it does not lead to the other side.
     std::size_t place_of_cut(const Chain& chain, std::size_t i, std::size_t steps) const {
         const std::size_t n = chain.corners.size();
         const FacetCorner a = chain.corners[i], b = chain.corners[(i + steps) % n];
@@ -139,7 +144,7 @@ private:
             return links_.of_crossing[a / 4][exit].rim && !meet_nearby(a, b) ? 2 * i + 1 : none;
         }
         if (!opposed(of(a), of(b)) || meet_nearby(a, b)) return none;
-        // The middle one of the corners between that lie on neither side.
+        // The corner nearest to the middle of the way among those that lie on neither side.
         std::size_t best = none, best_off = n;
         for (std::size_t step = 1; step < steps; ++step) {
             const std::size_t off = 2 * step > steps ? 2 * step - steps : steps - 2 * step;
@@ -173,7 +178,7 @@ private:
         return sum;
     }
 
-    /// Does the way from corner i to the other side hold another such way?
+    /// Does the way from corner i to the other side contain a shorter or equal one from a later corner?
     bool holds_shorter(std::size_t i, const Chain& chain) const {
         const std::size_t n = chain.corners.size();
         for (std::size_t step = 1; step < length_[i] && (chain.closed || i + step < n); ++step)
@@ -222,14 +227,14 @@ void append(const ChunkDualVertices& chunk, DualVertices& duals) {
     for (std::size_t dual : chunk.after_cut) duals.after_cut.push_back(base + static_cast<Index>(dual));
     for (const auto& [first, count] : chunk.caps) {
         std::vector<Index>
-            cap; // the facets at the cuts run from dual vertex to dual vertex, the cap against them
+            cap; // facets at the cuts run from each dual vertex to the next, so the cap runs backwards
         for (std::size_t i = count; i-- > 0;) cap.push_back(base + static_cast<Index>(first + i));
         duals.caps.push_back(std::move(cap));
     }
 }
 
-/// The sides of every corner that belong to a dual vertex: both, but of a corner shared with another dual
-/// vertex one.
+/// Fills of_side: both sides of a corner belong to its dual vertex; of a corner shared by two dual vertices,
+/// one side to each.
 void number_sides(const Crossings& crossings, std::span<const std::uint8_t> shared, DualVertices& duals) {
     duals.of_side.assign(8 * crossings.crossings.size(), no_index);
     for_chunks(duals.size(), crossings_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {

@@ -13,12 +13,12 @@ constexpr std::size_t grid_points_per_chunk = 2048;
 constexpr std::array<Index, 8> no_voxels{no_index, no_index, no_index, no_index,
                                          no_index, no_index, no_index, no_index};
 
-/// The corners of voxels of one block of 4 x 4 x 4: voxels of a surface share most of theirs.
+/// The corners of the voxels in one block of 4 x 4 x 4, each once: neighbouring voxels share most of theirs.
 class BlockGridPoints {
 public:
     static constexpr MortonCode voxels = 64;
-    /// The place of a voxel's corner among those of its block; bit k of the number is set on the upper side
-    /// of axis k.
+    /// Index of a voxel's corner in the block's 5 x 5 x 5 grid; bit k of `corner` is set on the upper side of
+    /// axis k.
     static std::size_t place(MortonCode voxel, unsigned corner) {
         const VoxelCoord c = morton_decode(voxel & (voxels - 1));
         return static_cast<std::size_t>(c[0] + static_cast<int>(corner & 1)
@@ -29,7 +29,7 @@ public:
     void add(MortonCode voxel) {
         for (unsigned corner = 0; corner < 8; ++corner) used_.set(place(voxel, corner));
     }
-    /// Calls each(place, code) for the corners of the block's voxels, and starts anew.
+    /// Calls each(place, code) for the corners of the voxels added, then clears the block.
     template <class Each>
     void take(MortonCode block, Each each) {
         const VoxelCoord c = morton_decode(block * voxels);
@@ -43,8 +43,8 @@ private:
     std::bitset<125> used_;
 };
 
-/// Calls each(points, block, begin, end, chunk) for the voxels of every block; a block that lies in two
-/// chunks comes twice.
+/// Calls each(points, block, begin, end, chunk) per block with the range of its voxels; a block that
+/// straddles two chunks comes in two calls.
 template <class Each>
 void for_blocks(const OctreeLevel& level, Each each) {
     for_chunks(level.size(), grid_points_per_chunk,
@@ -76,7 +76,7 @@ std::vector<MortonCode> grid_point_codes(const OctreeLevel& level) {
     return codes;
 }
 
-/// Each voxel is seen from its eight corners.
+/// Enters each voxel at its eight corners.
 void connect_voxels(const OctreeLevel& level, GridPoints& grid) {
     grid.voxels.resize(grid.size(), no_voxels);
     for_blocks(level,
@@ -138,7 +138,7 @@ void add_grid_points(GridPoints& grid, std::span<const MortonCode> codes) {
                 VoxelCoord below = grid.coord(static_cast<Index>(i));
                 --below[axis];
                 const Index point = grid.index.find(GridPoints::code(below));
-                // Those added connect themselves.
+                // Added grid points set their own `next`.
                 if (point != no_index && point < n) grid.next[point][axis] = static_cast<Index>(i);
             }
         }

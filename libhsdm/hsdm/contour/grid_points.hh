@@ -19,7 +19,8 @@ struct GridPoints {
     MortonIndex index; ///< code -> grid point
 
     std::size_t size() const { return codes.size(); }
-    /// In voxels; -1 and 2^depth + 1 are the margin around the bounding cube.
+    /// Integer coordinates, in voxels, from -1 to 2^depth + 1: there is a margin of one voxel around the
+    /// bounding cube.
     VoxelCoord coord(Index grid_point) const {
         const VoxelCoord c = morton_decode(codes[grid_point]);
         return {c[0] - 1, c[1] - 1, c[2] - 1};
@@ -32,7 +33,7 @@ GridPoints build_grid_points(const OctreeLevel& level);
 /// Per grid point, the next down each axis, or no_index: the inverse of `next`.
 std::vector<std::array<Index, 3>> grid_points_below(const GridPoints& grid);
 
-/// Adds grid points by their codes, ascending and none there yet, and connects them.
+/// Adds grid points by their codes (ascending, none present yet) and connects them.
 void add_grid_points(GridPoints& grid, std::span<const MortonCode> codes);
 
 } // namespace hsdm

@@ -12,13 +12,14 @@ namespace {
 
 constexpr std::size_t grid_points_per_chunk = 2048;
 
-// What it costs to contradict the evidence, in crossings taken back.
+// Costs are in units of one supported crossing dropped.
 constexpr double impossible = 1e30;
 
 using Side = std::uint8_t;
 constexpr Side inside = 0, outside = 1, unknown = 2;
 
-/// The cheapest choice among an edge's crossings that leads from one side to another by turns.
+/// The cheapest choice among an edge's crossings that alternates from one given side to the other (dynamic
+/// programming along the edge).
 class EdgeChoice {
 public:
     explicit EdgeChoice(const CrossingCandidates& candidates)
@@ -26,7 +27,7 @@ public:
 
     static constexpr std::size_t most = 128; // sheets of an edge
 
-    /// How firmly a standing crossing stands.
+    /// Cost of dropping a standing crossing.
     double weight(Index x) const { return list_.crossings[x].supported ? 1 : signs::cost_of_weak; }
     double cost_of_taking(Index x) const { return standing_[x] ? 0 : signs::cost_of_return; }
     double cost_of_leaving(Index x) const { return standing_[x] ? weight(x) : 0; }
@@ -64,7 +65,7 @@ private:
         return cost;
     }
 
-    /// Costs from each side before a crossing, given those after it.
+    /// Least cost from each side before a crossing to the edge's upper end, given those after it.
     std::array<double, 2> before(Index x, const std::array<double, 2>& after) const {
         const Side from = side_before(x), to = 1 - from;
         std::array<double, 2> cost{after[0] + cost_of_leaving(x), after[1] + cost_of_leaving(x)};
@@ -76,7 +77,7 @@ private:
     const std::vector<std::uint8_t>& standing_;
 };
 
-/// The sides of the grid points and what follows from them.
+/// Chooses the sides of the grid points, then the crossings.
 class SignLabelling {
 public:
     SignLabelling(const GridPoints& grid, const LocalSheets& sheets, const NormalSets& sets,
@@ -126,8 +127,8 @@ private:
         return no_index;
     }
 
-    /// What an edge says about one of its ends: positive outside. Without a standing crossing, what is known
-    /// about its other end.
+    /// An edge's vote on one of its ends, positive for outside: by its nearest standing crossing, or, without
+    /// one, the side of the other end.
     double vote(Index edge, bool upper, Side other, bool carried_only) const {
         const Index x = nearest_standing(edge, upper);
         if (x == no_index) return carried_only || other == unknown ? 0 : other == outside ? 1 : -1;
@@ -135,9 +136,9 @@ private:
         return list_.crossings[x].leaving == upper ? choice_.weight(x) : -choice_.weight(x);
     }
 
-    /// What the sheets around a grid point say of it by themselves: the mean of its distances to them, by
-    /// nearness, over the mean of their sizes; 1 outside of all, -1 inside of all. Where a sheet passes too
-    /// near for its error, nothing.
+    /// belief_: the vote of the sheets around a grid point, without crossings: the sum of its distances to
+    /// them, weighted by nearness, over the sum of their absolute values; in units of most_belief, 1 if it is
+    /// outside all, -1 inside all. 0 if a sheet passes nearer than its error.
     void believe() {
         for_corners([&](Index c) {
             double sum = 0, size = 0;
@@ -150,8 +151,9 @@ private:
         });
     }
 
-    /// The edges of a grid point say on which side it lies: at first by the crossings that the data carry
-    /// alone. Farther off, where sheets are only continued, the side of the neighbours says more.
+    /// One round of votes for the grid points still unknown: `carried_only`, by crossings that the data
+    /// carry; later also by the sides of neighbours, which tell more farther off, where sheets are only
+    /// continued. Ties stay unknown if `undecided`, else count as outside.
     void vote(bool carried_only, bool undecided = true) {
         std::vector<Side> next = side_;
         for_corners([&](Index c) {
@@ -167,7 +169,8 @@ private:
         side_ = std::move(next);
     }
 
-    /// Would a crossing here leave a side open: is a face beside the edge not all there, or no set near?
+    /// Would a crossing on this edge leave a mesh edge open: is one of the four faces beside it missing, or
+    /// no set seen from its ends?
     bool leaks(Index edge) const {
         const Index lower = edge / 3, upper = grid_.next[lower][edge % 3];
         for (unsigned a : {(edge + 1) % 3, (edge + 2) % 3})
@@ -191,7 +194,7 @@ private:
         return sum;
     }
 
-    /// The grid points at edges that contradict their ends, and those next to them.
+    /// The grid points with an edge whose crossings contradict the sides of its ends, and their neighbours.
     std::vector<Index> doubtful() const {
         std::vector<std::vector<Index>> parts(chunk_count(grid_.size(), grid_points_per_chunk));
         for_corners([&](Index c) {
@@ -208,8 +211,8 @@ private:
         return grid_points;
     }
 
-    /// Doubtful grid points change sides while that helps. Grid points of one colour of the chessboard share
-    /// no edge, so their order does not matter.
+    /// Doubtful grid points change sides while that lowers the cost of their edges. Grid points of one colour
+    /// of a chessboard share no edge, so they can change in any order.
     void settle() {
         const std::vector<Index> grid_points = doubtful();
         std::vector<std::uint8_t> changed(grid_points.size());
@@ -232,7 +235,7 @@ private:
         }
     }
 
-    /// Appends an edge's crossings.
+    /// Appends the crossings chosen for an edge; `changes` counts those that differ from the standing ones.
     void choose(Index edge, std::vector<Crossing>& out, std::size_t& changes) const {
         const Index begin = list_.first[edge], end = list_.first[edge + 1];
         const Index upper = grid_.next[edge / 3][edge % 3];
@@ -249,8 +252,8 @@ private:
         if (reached != high && invent(edge, reached == inside, out)) ++changes;
     }
 
-    /// The set seen from an edge's ends that lies nearest to its middle, one whose normal agrees with the
-    /// crossing's direction if there is any; no_index if neither end sees a set.
+    /// Among the sets seen from an edge's ends the one nearest to its middle, with preference for those whose
+    /// normals agree with the crossing's direction; no_index if neither end sees a set.
     Index set_near(Index edge, bool leaving, const Vec3& middle) const {
         std::tuple<bool, double, Index> best{true, impossible, no_index};
         for (Index end : {edge / 3, grid_.next[edge / 3][edge % 3]})
@@ -262,7 +265,8 @@ private:
         return std::get<2>(best);
     }
 
-    /// A crossing where the plane of the nearest set crosses the edge, or as near to that as it can be.
+    /// Invents a crossing: where the plane of the nearest set crosses the edge, clamped to the edge. False if
+    /// there is no set.
     bool invent(Index edge, bool leaving, std::vector<Crossing>& out) const {
         const unsigned axis = edge % 3;
         const VoxelCoord c = grid_.coord(edge / 3);

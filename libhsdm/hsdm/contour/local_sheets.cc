@@ -52,7 +52,7 @@ struct SheetsAtPoint {
         }
     }
 
-    /// Members whose sheets are known; renumbers the sheets without gaps, in order of their first member.
+    /// Takes members with known sheets; renumbers the sheets without gaps, in order of their first member.
     void take(std::span<const SheetMember> known) {
         std::array<std::uint8_t, most> number;
         number.fill(0xff);
@@ -84,8 +84,8 @@ struct SheetsAtPoint {
         }
     }
 
-    /// A sheet within the error of its planes may pass the grid point on a side where none of its points lie;
-    /// there is no voxel there to carry it. Then the grid point takes the other side's sign.
+    /// A sheet may pass the grid point, nearer than the error of its planes, on a side where it has no
+    /// points; then no voxel can carry it there, and the grid point gets the sign of the sheet's other side.
     void snap(double voxel_size) {
         std::array<std::uint8_t, most> octants{};
         for (std::size_t i = 0; i < member_count; ++i)
@@ -130,7 +130,7 @@ LocalSheets connect_members(const GridPoints& grid, const NormalSets& sets, cons
     return result;
 }
 
-/// Are two sets of one sheet at another grid point near by?
+/// Do two sets belong to one sheet at a neighbouring grid point?
 bool joined_nearby(const GridPoints& grid, const LocalSheets& sheets, const VoxelCoord& c, Index a, Index b) {
     for (const VoxelCoord& o : neighbor_offsets) {
         const Index grid_point = grid.index.find(GridPoints::code({c[0] + o[0], c[1] + o[1], c[2] + o[2]}));
@@ -158,10 +158,10 @@ std::vector<Index> grid_points_with_several(const LocalSheets& sheets) {
     return joined(parts);
 }
 
-/// Closure: two sets that are one sheet at one grid point are one sheet at every grid point they share,
-/// unless their normals are so far apart that they only met round the rim of a thin part. Repeats until
-/// nothing changes; only grid points with several sheets are looked at, and in rounds, so that the order does
-/// not matter.
+/// Closure: two sets of one sheet at one grid point are one sheet at every grid point they share, unless
+/// their normals are so far apart that they were only joined round the rim of a thin part. Repeats until
+/// nothing changes. Only grid points with several sheets are looked at; each round reads the sheets of the
+/// round before, so the order does not matter.
 void close_sheets(const GridPoints& grid, const NormalSets& sets, LocalSheets& sheets) {
     const std::vector<Index> open = grid_points_with_several(sheets);
     struct Merge {
@@ -199,14 +199,14 @@ void close_sheets(const GridPoints& grid, const NormalSets& sets, LocalSheets& s
     }
 }
 
-/// The grid points that the edges crossed from a grid point need: both ends, and the other grid points of the
-/// four faces beside.
+/// Collects grid points that a crossed edge needs and that are missing: its ends, and the other corners of
+/// the four faces beside it.
 class MissingGridPoints {
 public:
     MissingGridPoints(const GridPoints& grid, int side)
         : grid_(grid), below_(grid_points_below(grid)), side_(side) {}
 
-    /// Those of the edge from grid point i up an axis, or down.
+    /// For the edge from grid point i up or down an axis.
     void add(Index i, unsigned axis, bool up, std::vector<MortonCode>& missing) const {
         VoxelCoord c = grid_.coord(i);
         add_beside(i, c, axis, missing);
@@ -217,7 +217,8 @@ public:
     }
 
 private:
-    /// The four grid points beside a grid point, across an axis; the grid point itself may be missing.
+    /// The four neighbours of grid point i at c across an axis; i is no_index if the grid point itself is
+    /// missing.
     void add_beside(Index i, const VoxelCoord& c, unsigned axis, std::vector<MortonCode>& missing) const {
         for (unsigned other : {(axis + 1) % 3, (axis + 2) % 3})
             for (bool up : {false, true}) {
@@ -227,7 +228,8 @@ private:
                 add(d, missing, i == no_index);
             }
     }
-    /// But for those beyond the margin around the bounding cube, and, in doubt, those there are.
+    /// Skips grid points beyond the margin around the bounding cube and, if `in_doubt`, looks up whether they
+    /// exist.
     void add(const VoxelCoord& c, std::vector<MortonCode>& missing, bool in_doubt) const {
         if (std::any_of(c.begin(), c.end(), [&](int x) { return x < -1 || x > side_ + 1; })) return;
         if (!in_doubt || grid_.index.find(grid_.code(c)) == no_index) missing.push_back(grid_.code(c));

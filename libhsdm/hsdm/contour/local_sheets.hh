@@ -19,7 +19,8 @@ struct LocalSheet {
     double weight = 0;
     double distance = 0;  ///< weight times the grid point's signed distance, positive outside
     Vec3 normal{0, 0, 0}; ///< weight times the unit normals
-    double points = 0, points_squared = 0; ///< over its sets: how dense the sampling is here
+    /// sums over its sets, of counts and their squares: the sampling density
+    double points = 0, points_squared = 0;
 };
 
 /// Members and sheets of every grid point: those of grid point c are members[first_member[c]] ..
@@ -43,9 +44,9 @@ struct LocalSheets {
 LocalSheets group_local_sheets(const GridPoints& grid, const NormalSets& sets, const RelationTest& related,
                                double voxel_size);
 
-/// Adds the grid points that a sheet needs where it bulges, by less than the sampling shows, out of the
-/// occupied voxels: the ends of the edges it crosses there and the other corners of the faces beside those
-/// edges. The new grid points have no members. Returns how many were added.
+/// Adds the grid points that a sheet needs where it bulges out of the occupied voxels by less than the
+/// sampling resolves: the far ends of the grid edges it crosses there, and the other corners of the faces
+/// beside those edges. The new grid points have no members. Returns how many were added.
 std::size_t extend_grid_points(GridPoints& grid, LocalSheets& sheets, const OctreeLevel& level);
 
 } // namespace hsdm

@@ -10,7 +10,7 @@
 namespace hsdm {
 namespace {
 
-/// The facets at some vertices.
+/// The facets at marked vertices.
 class FacetsAt {
 public:
     FacetsAt(const PolygonMesh& mesh, const std::vector<std::uint8_t>& vertices) {
@@ -28,7 +28,7 @@ public:
         return true;
     }
 
-    /// In order, each once.
+    /// All of them, ascending, each once.
     std::vector<Index> facets() const {
         std::vector<Index> result;
         for (const auto& [vertex, facet] : pairs_) result.push_back(facet);
@@ -41,9 +41,10 @@ private:
     std::vector<std::pair<Index, Index>> pairs_; // vertex and facet
 };
 
-/// The cosine of a facet's normal with the nearer one of two; of a facet of several triangles the least, if
-/// they all end at the corner for which that is largest: with three corners on a crease a quad has a straight
-/// one, and across a crease it folds. -1 if triangles are too thin.
+/// How well a facet faces along one of two normals: the least cosine of its triangles with the nearer normal.
+/// The triangles fan out from the corner for which that is largest, because a quad with three corners on a
+/// crease has a straight one, and a quad across a crease folds along one diagonal. -1 if triangles are too
+/// thin.
 double along(const std::vector<Vec3>& ring, const std::array<Vec3, 2>& normals) {
     const std::size_t n = ring.size();
     double best = -1;
@@ -77,7 +78,7 @@ public:
 
     /// Returns, per wanted vertex, whether it has moved.
     const std::vector<std::uint8_t>& run() {
-        bool any = true; // one that moves may make way for another
+        bool any = true; // a vertex may become free to move when another has moved
         for (int round = 0; round < creases::move_rounds && any; ++round) {
             any = false;
             for (std::size_t i = 0; i < moved_.size(); ++i)
@@ -87,7 +88,7 @@ public:
                     any = true;
                 }
         }
-        while (take_back_intersecting()) // each time one at least
+        while (take_back_intersecting()) // each pass moves back at least one vertex
             while (take_back_unsuited()) {
             }
         return moved_;
@@ -101,7 +102,7 @@ private:
         return result;
     }
 
-    /// Those that share vertices with facets at wanted vertices.
+    /// Facets that share vertices with facets at wanted vertices.
     std::vector<Index> facets_beside() const {
         std::vector<std::uint8_t> beside(wanted_.size(), 0);
         for (Index f : at_.facets())
@@ -129,7 +130,7 @@ private:
         return any;
     }
 
-    /// Those whose facets are not what they should be, now that others have gone back.
+    /// Moves back vertices whose facets no longer pass the test, now that others have moved back.
     bool take_back_unsuited() {
         bool any = false;
         for (std::size_t i = 0; i < moved_.size(); ++i)
@@ -141,8 +142,8 @@ private:
         return at_.all_of(on_creases_[i].dual, [&](Index f) { return suits(f, i); });
     }
 
-    /// Are a facet's sides, normal and triangles as they should be with one of its vertices on its crease, or
-    /// no worse than with it where it was?
+    /// Does a facet pass the test with vertex i on its crease: other vertices not too close, normal hardly
+    /// turned, facing along a sheet (or as near and as badly before the move)?
     bool suits(Index facet, std::size_t i) {
         const PlacedVertices::OnCrease& to = on_creases_[i];
         after_.clear();
@@ -167,9 +168,9 @@ private:
     std::vector<std::uint8_t> wanted_; // per vertex
     FacetsAt at_;                      // those
     std::vector<Index> beside_;
-    std::vector<std::uint8_t> moved_;  // per wanted vertex, like
-    std::vector<Vec3> was_;            // where it was
-    std::vector<Vec3> after_, before_; // of a facet
+    std::vector<std::uint8_t> moved_;  // per wanted vertex: has it moved?
+    std::vector<Vec3> was_;            // ... its position before
+    std::vector<Vec3> after_, before_; // positions of a facet's vertices
 };
 
 } // namespace

@@ -71,7 +71,7 @@ public:
         });
         const double length = normal.norm();
         normal = length > 0 ? normal / length : Vec3(0, 0, 1);
-        // Noise in the normals must not push the set out of its own neighbourhood.
+        // Limited, because noise in the normals must not push the centroid out of its own points.
         const double lift =
             std::clamp(0.5 * below / n, -sets::most_lift * voxel_size_, sets::most_lift * voxel_size_);
         return {position + normal * lift, normal, n, voxel, spread};
@@ -88,7 +88,7 @@ private:
     const Vec3& normal(Index i) const { return octree_.normals[begin_ + i]; }
     bool has_normal(Index i) const { return normal(i).sqrnorm() > 0.5; }
 
-    /// Most voxels hold one direction; their points need no search.
+    /// Shortcut: in most voxels all normals agree with their mean, and no modes need be searched.
     bool one_direction() {
         Vec3 sum(0, 0, 0);
         for (Index i = 0; i < size_; ++i) sum += normal(i);
@@ -102,7 +102,7 @@ private:
         return true;
     }
 
-    /// Repeatedly takes the direction most of the remaining points agree with.
+    /// Repeatedly takes the mode that most of the unassigned normals lie near.
     void find_modes() {
         while (static_cast<int>(modes_.size()) < options_.max_sets) {
             Vec3 mode;
@@ -121,7 +121,7 @@ private:
         }
     }
 
-    /// The normal, among at most 32 spread over the voxel's points, with the most free normals near it.
+    /// Among at most about 32 of the unassigned normals, the one with the most unassigned normals near it.
     bool densest(Vec3& mode) const {
         Index free = 0;
         for (Index i = 0; i < size_; ++i) free += label_[i] == unassigned && has_normal(i);
@@ -162,8 +162,9 @@ private:
             if (const double length = sums[k].norm(); length > 0) modes_[k] = sums[k] / length;
     }
 
-    /// Splits a direction at its widest gap along the mean normal if the two sides are parallel sheets: on
-    /// one curved sheet the chord between the sides' centroids is perpendicular to the sum of their normals.
+    /// Splits the set of a direction at its widest gap along the mean normal if the two sides are parallel
+    /// sheets: on one curved sheet the chord between the sides' centroids would be perpendicular to the sum
+    /// of their normals.
     void split_parallel_sheets(std::uint8_t k) {
         while (static_cast<int>(modes_.size()) < options_.max_sets) {
             offsets_.clear();
@@ -179,11 +180,11 @@ private:
         }
     }
 
-    /// The place among the offsets behind the widest gap between two parallel sheets that are not to be one;
-    /// 0 if there is none.
+    /// Where to cut the sorted offsets: behind the widest gap between two parallel sheets that merge_layers
+    /// does not keep together; 0 if there is none.
     std::size_t where_to_cut(const Vec3& mode) const {
         const double least = options_.sheet_gap * voxel_size_;
-        double last_gap = std::numeric_limits<double>::infinity(); // the one looked at before
+        double last_gap = std::numeric_limits<double>::infinity(); // the gap tried before
         std::size_t last = 0;
         while (true) {
             std::size_t cut = 0;
@@ -195,12 +196,13 @@ private:
             }
             if (cut == 0 || !parallel_sides(cut)) return 0;
             if (!options_.merge_layers || !double_layer(mode, cut)) return cut;
-            last_gap = widest, last = cut; // a narrower one may have a sheet in it that faces back
+            // try the next narrower gap: a sheet that faces back may lie in it
+            last_gap = widest, last = cut;
         }
     }
 
     /// Two sheets of a solid that lie over each other and face the same way have one between them that faces
-    /// back. Without it they are one surface, scanned twice; beside each other they are a step.
+    /// back. If there is none they are one surface scanned twice, unless they lie side by side (a step).
     bool double_layer(const Vec3& mode, std::size_t cut) const {
         const auto [below, width_below] = across(mode, 0, cut);
         const auto [above, width_above] = across(mode, cut, offsets_.size());
@@ -213,8 +215,8 @@ private:
         return true;
     }
 
-    /// Of some of the points: their mean without its part along the mode, and their root mean square
-    /// distance from it across the mode.
+    /// Of the points `from` to `to` in order of offset: their mean without its component along the mode, and
+    /// their root mean square distance from it, across the mode.
     std::pair<Vec3, double> across(const Vec3& mode, std::size_t from, std::size_t to) const {
         const auto flat = [&](std::size_t i) {
             const Vec3& p = octree_.positions[offsets_[i].second];
@@ -297,7 +299,7 @@ NormalSets build_normal_sets(const Octree& octree, const OctreeLevel& level,
                 rank[order[k]] = static_cast<Index>(k);
             }
             for (Index i = begin; i < end;
-                 ++i) // within the voxel for now; the voxel's first set is added below
+                 ++i) // index within the voxel; the voxel's first set is added below
                 if (clusters.label(i - begin) != unassigned)
                     result.of_point[i] = rank[clusters.label(i - begin)];
             result.first[v + 1] = static_cast<Index>(n);

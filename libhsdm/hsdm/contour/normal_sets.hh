@@ -12,8 +12,8 @@ struct NormalSetOptions {
     double cluster_angle = sets::cluster_angle;
     /// voxels, > 0: parallel sheets farther apart than this are two sets
     double sheet_gap = sets::sheet_gap;
-    /// Parallel sheets stay one set where they lie over each other, face the same way and none between them
-    /// faces back. No solid has such sheets: they are one surface, scanned twice.
+    /// Parallel sheets stay one set if they lie over each other, face the same way and no points between them
+    /// face back. No solid has such sheets: they are one surface scanned twice.
     bool merge_layers = false;
     int max_sets = 8; ///< per voxel, [1, 8]; smaller groups join the nearest
 };

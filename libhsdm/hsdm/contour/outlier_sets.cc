@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t sets_per_chunk = 1024;
 
-/// Points in a set, the mean that a point sees: full voxels count more than clipped ones.
+/// Points in a set, the mean over points rather than sets, so that full voxels count more than clipped ones.
 double typical_count(const NormalSets& sets) {
     struct Sum {
         std::uint64_t points = 0, squares = 0;
@@ -31,8 +31,8 @@ double typical_count(const NormalSets& sets) {
 }
 
 /// Is set s an outlier? `group` is scratch.
-bool is_stray(const OctreeLevel& level, const RelationTest& related, const NormalSets& sets, double most,
-              std::size_t most_sets, Index s, std::vector<Index>& group) {
+bool reaches_few(const OctreeLevel& level, const RelationTest& related, const NormalSets& sets, double most,
+                 std::size_t most_sets, Index s, std::vector<Index>& group) {
     group.assign(1, s);
     for (std::size_t i = 0; i < group.size(); ++i) {
         const NormalSet& set = sets.sets[group[i]];
@@ -56,14 +56,14 @@ Vec3 middle_of(const OctreeLevel& level, Index voxel) {
     return (Vec3(c[0], c[1], c[2]) + Vec3(0.5, 0.5, 0.5)) * level.voxel_size;
 }
 
-void remove(const std::vector<std::uint8_t>& lonely, NormalSets& sets) {
+void remove(const std::vector<std::uint8_t>& is_outlier, NormalSets& sets) {
     std::vector<Index> renumbered(sets.sets.size(), no_index);
     Index kept = 0;
     for (std::size_t v = 0, s = 0; v + 1 < sets.first.size(); ++v) {
         const Index end = sets.first[v + 1];
         sets.first[v] = kept;
         for (; s < end; ++s)
-            if (!lonely[s]) {
+            if (!is_outlier[s]) {
                 renumbered[s] = kept;
                 sets.sets[kept++] = sets.sets[s];
             }
@@ -79,18 +79,18 @@ void remove(const std::vector<std::uint8_t>& lonely, NormalSets& sets) {
 Discarded drop_outlier_sets(const OctreeLevel& level, const RelationTest& related, NormalSets& sets,
                             const OutlierSetOptions& options) {
     const double most = std::max(1.0, options.most_share * typical_count(sets));
-    std::vector<std::uint8_t> lonely(sets.sets.size(), 0);
+    std::vector<std::uint8_t> is_outlier(sets.sets.size(), 0);
     for_chunks(sets.sets.size(), sets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         std::vector<Index> group;
         for (std::size_t s = begin; s < end; ++s)
-            lonely[s] =
+            is_outlier[s] =
                 sets.sets[s].count <= most
-                && is_stray(level, related, sets, most, options.most_sets, static_cast<Index>(s), group);
+                && reaches_few(level, related, sets, most, options.most_sets, static_cast<Index>(s), group);
     });
     Discarded points;
-    for (std::size_t s = 0; s < lonely.size(); ++s)
-        if (lonely[s]) points.add({sets.sets[s].count, middle_of(level, sets.sets[s].voxel)});
-    if (points.count > 0) remove(lonely, sets);
+    for (std::size_t s = 0; s < is_outlier.size(); ++s)
+        if (is_outlier[s]) points.add({sets.sets[s].count, middle_of(level, sets.sets[s].voxel)});
+    if (points.count > 0) remove(is_outlier, sets);
     return points;
 }
 

@@ -19,15 +19,15 @@ struct Plane {
     double weight;
 };
 
-/// The planes one vertex is placed by, and the box it must stay in.
+/// The QEF of one vertex, and the box it must stay in.
 struct Problem {
     std::vector<Plane> planes;
-    Vec3 mean; // of the crossings: inside the box, since they lie on its surface
+    Vec3 mean; // mean of the crossings, which lie on the box's surface: inside the box
     Vec3 lo;   // of the voxel
     double size = 0;
 };
 
-/// A normal of each sheet the planes belong to, of three at most.
+/// One normal per sheet that the planes belong to, at most three.
 struct SheetNormals {
     std::array<Vec3, 3> normals;
     int count = 0;
@@ -49,13 +49,14 @@ struct Solution {
     int rank = 0; // directions the planes determine
     Vec3 steep;   // rank 1: the common normal, of either sign
     Vec3 free;    // rank 2: along the crease
-    // The energy x A x - 2 b x that the position minimises, x relative to the mean, open directions held
-    // lightly.
+    // The energy x A x - 2 b x that the position minimises, x relative to the mean; a small term holds
+    // directions that the planes leave open.
     Eigen::Matrix3d a;
     Eigen::Vector3d b;
 };
 
-/// min sum w (n . (x - p))^2, the least change from the mean in the directions the planes leave open.
+/// Minimises sum w (n . (x - p))^2; stays at the mean in the directions the planes leave open, and in all but
+/// the `most_rank` steepest.
 Solution least_squares(const Problem& problem, int most_rank) {
     Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
@@ -98,7 +99,7 @@ double misfit(const Vec3& p, const Problem& problem) {
     return std::sqrt(sum / weight);
 }
 
-/// `slack` voxels from the faces; negative: so far beyond them at most.
+/// Is a point inside the box by at least `slack` voxels, or, if negative, outside by at most that?
 bool inside(const Vec3& p, const Problem& problem, double slack = placement::margin) {
     for (unsigned k = 0; k < 3; ++k) {
         const double at = (p[k] - problem.lo[k]) / problem.size;
@@ -114,8 +115,8 @@ Vec3 clamped(Vec3 p, const Problem& problem) {
     return p;
 }
 
-/// The point of the box with the least energy: the least of those inside the box, on its faces, edges and
-/// corners, each by a linear system for the coordinates not held at a bound.
+/// The point of the box with the least energy: the best of the minimisers inside the box, on each face, edge
+/// and corner, each from a linear system for the coordinates that are not at a bound.
 Vec3 least_in_box(const Solution& solution, const Problem& problem) {
     const double slack = placement::margin * problem.size;
     Eigen::Vector3d lo, hi;
@@ -237,9 +238,9 @@ private:
         }
     }
 
-    /// The tip of a corner may reach into a voxel without a point of one of its sheets: of the sets around
-    /// that make a crease with both of the dual vertex's sheets, the one whose plane cuts their crease in
-    /// this voxel nearest to itself.
+    /// The tip of a corner may reach into a voxel that holds no point of the third sheet. Adds the plane of a
+    /// set from the voxels around that makes a crease with both of the dual vertex's sheets and cuts their
+    /// crease in this voxel; of several, the one whose centroid is nearest to that point.
     bool add_corner_plane(Index dual) {
         const auto corners = duals_.corners_of(dual);
         Index best = no_index;
@@ -277,9 +278,10 @@ private:
              placement::point_weight * std::min<double>(set.count, placement::most_points)});
     }
 
-    /// A bulge, crease or corner may reach through a face of the voxel without crossing an edge of the next
-    /// one. If none of its sheets does so, that voxel has no vertex on them, and this one may lie there; on
-    /// the far side of an edge or corner of the voxel if that holds for all voxels around.
+    /// May the vertex lie outside its voxel? A bulge, crease or corner may reach through a face of the voxel
+    /// without crossing an edge of the next one. If none of the vertex's sheets crosses an edge of that
+    /// voxel, it has no vertex on them. Beyond an edge or corner of the voxel this must hold for all voxels
+    /// between.
     bool may_leave(const Vec3& position) const {
         if (!inside(position, problem_, -placement::farthest_out)) return false;
         const VoxelCoord step = step_to(position);
@@ -288,13 +290,14 @@ private:
         return true;
     }
 
-    /// Do the planes of as many sheets meet there, at most so many voxels outside, and so well?
+    /// Do the planes of `sheets` sheets determine the position, at most `out` voxels outside, and pass it
+    /// within `clear` voxels?
     bool meet(int sheets, const Solution& solution, const Vec3& position, double out, double clear) const {
         return solution.rank == sheets && inside(position, problem_, -out)
                && misfit(position, problem_) <= clear * problem_.size;
     }
 
-    /// For the voxels around, whose own vertices may stand for this corner.
+    /// Records a corner outside, which the vertex of another voxel may take over (shared_corners).
     void note_corner(Index dual, const Solution& solution) {
         if (!meet(3, solution, solution.position, placement::farthest_out, placement::clear_corner)) return;
         const SheetNormals sheets(problem_.planes);
@@ -305,7 +308,7 @@ private:
         beyond.push_back({dual, solution.position, sheets.normals, step, static_cast<std::uint8_t>(crossed)});
     }
 
-    /// To the voxel that a position less than a voxel away lies in.
+    /// Step from this voxel to the one that holds a position less than a voxel away.
     VoxelCoord step_to(const Vec3& position) const {
         VoxelCoord step;
         for (unsigned k = 0; k < 3; ++k) {
@@ -315,8 +318,8 @@ private:
         return step;
     }
 
-    /// Is there a voxel that many steps away, along the axes of `way`, and does one of the vertex's sheets
-    /// cross an edge of it?
+    /// Take the part of `step` along the axes in mask `way`: does one of the vertex's sheets cross an edge of
+    /// that voxel? False if `step` is 0 along one of them.
     bool is_crossed(const VoxelCoord& step, unsigned way) const {
         VoxelCoord beside;
         for (unsigned k = 0; k < 3; ++k) {
@@ -350,12 +353,13 @@ private:
         });
     }
 
-    /// Returns whether the planes were missed for it.
+    /// Moves the solution into the voxel. False if the steepest direction alone puts it there; true if it had
+    /// to be clamped.
     bool keep_inside(Solution& solution) const {
         if ((solution.position - clamped(solution.position, problem_)).norm()
                 > placement::far_meeting * problem_.size
             && solution.rank > 1) {
-            // Planes that meet far away say nothing about this voxel.
+            // Planes that meet far away say nothing about this voxel: use the steepest direction alone.
             solution = least_squares(problem_, 1);
             if (inside(solution.position, problem_)) return false;
         }
@@ -375,7 +379,7 @@ private:
     Index voxel_ = no_index;
 };
 
-/// Which sets belong to a sheet that crosses an edge of their own voxel.
+/// Per set, does its sheet cross an edge of the set's own voxel?
 std::vector<std::uint8_t> sets_that_cross(const GridPoints& grid, const NormalSets& sets,
                                           const RelationTest& related, const Crossings& crossings,
                                           const DualVertices& duals) {

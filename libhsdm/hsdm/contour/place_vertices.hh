@@ -9,24 +9,25 @@ namespace hsdm {
 struct PlacedVertices {
     std::vector<Vec3> positions;      ///< per dual vertex, relative to the octree's origin
     std::vector<VertexClass> classes; ///< per dual vertex, known from the number of sheets that meet
-    /// Per dual vertex: of a smooth vertex the sheet's unit normal, of an edge vertex a unit vector along the
-    /// crease.
+    /// Per dual vertex, a unit vector: the sheet's normal at a smooth vertex, the crease's direction at an
+    /// edge vertex.
     std::vector<Vec3> directions;
-    std::vector<Index>
-        voxel; ///< per dual vertex, its voxel; where no point lies in it, that of the nearest set
+    std::vector<Index> voxel; ///< per dual vertex, its voxel, or that of the nearest set if its own is empty
     std::vector<std::uint8_t>
-        is_clamped;          ///< per dual vertex, kept in its voxel although its planes meet outside
+        is_clamped;          ///< per dual vertex: was it kept in its voxel although its planes meet outside?
     std::size_t clamped = 0; ///< how many are
-    /// Corners of three sheets that would lie in the next voxel; their vertices are kept in their own.
+    /// A corner of three sheets that lies in the next voxel; the vertex itself was kept in its own.
     struct Beyond {
         Index dual;
         Vec3 position;
         std::array<Vec3, 3> normals; ///< of the three sheets
-        VoxelCoord step;             ///< to the voxel it lies in
-        std::uint8_t crossed; ///< bit w: the voxel along the axes of w only has an edge crossed by the sheets
+        VoxelCoord step;             ///< from the vertex's voxel to the one that the corner lies in
+        /// bit w, w a mask of axes: do the sheets cross an edge of the voxel reached by `step` along these
+        /// axes only?
+        std::uint8_t crossed;
     };
     std::vector<Beyond> beyond; ///< by ascending dual vertex
-    /// Clamped vertices, and where their two sheets meet, up to a quarter of a voxel outside.
+    /// A clamped vertex, and the point up to a quarter of a voxel outside where its two sheets meet.
     struct OnCrease {
         Index dual;
         Vec3 position;
@@ -35,15 +36,17 @@ struct PlacedVertices {
     std::vector<OnCrease> on_creases; ///< by ascending dual vertex
 };
 
-/// Least squares over the planes of the dual vertex's crossings and of the voxel's own sets, towards their
-/// mean point, with as many directions as sheets meet (one, two, three). Inside the voxel, or up to half a
-/// voxel beyond where no vertex of the same sheets can be; else kept in it. O(crossings), parallel.
+/// Minimises the QEF of the planes of the dual vertex's crossings and of the voxel's own sets, solved for as
+/// many directions as sheets meet (one, two, three); in the others the vertex stays at the mean of the
+/// crossings. The minimiser may lie up to half a voxel outside the voxel where no other vertex of the same
+/// sheets can be; otherwise the vertex is kept inside. O(crossings), parallel.
 PlacedVertices place_vertices(const OctreeLevel& level, const GridPoints& grid, const NormalSets& sets,
                               const RelationTest& related, const Crossings& crossings,
                               const DualVertices& duals);
 
-/// The sides of a thin part cut apart in one voxel may end on the same point, and the facets between them
-/// would have no area: such neighbours move apart, each along its own sheet's normal. O(chains cut).
+/// The two sides of a thin part that were cut apart in one voxel may come to lie at the same point; facets
+/// between them would have no area. Moves such pairs apart, each vertex along the normal of its own sheet.
+/// O(chains cut).
 void separate_sides(const Crossings& crossings, const DualVertices& duals, double voxel_size,
                     std::vector<Vec3>& positions);
 

@@ -18,7 +18,7 @@ struct Polygon {
     }
 };
 
-/// Replaces `result` by the part of a polygon whose corners have no positive height.
+/// Sets `result` to the part of a polygon at heights of at most 0.
 template <class Height>
 void clip(const Polygon& polygon, const Height& height, Polygon& result) {
     result.size = 0;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t per_chunk = 512;
 
-/// A triangle of the facets round a vertex.
+/// A triangle of a facet round a vertex.
 struct Around {
     Around(const std::vector<Vec3>& at, Index a, Index b, Index c)
         : triangle(at[a], at[b], at[c]), corners{a, b, c} {}
@@ -19,7 +19,7 @@ struct Around {
     std::array<Index, 3> corners;
 };
 
-/// The nearest point of facets, in the triangle of three vertices.
+/// The point of the facets nearest to a given one, and the vertices of its triangle.
 struct Foot {
     std::array<Index, 3> corners{};
     NearestOfTriangle nearest{Vec3(0, 0, 0), std::numeric_limits<double>::infinity(), {}};
@@ -37,8 +37,8 @@ void list_triangles(Index dual, const DualVertices& duals, const std::vector<Vec
     }
 }
 
-/// The nearest foot inside a triangle, the first where all are about flat; the nearest point of any triangle
-/// where no foot is inside one.
+/// The foot of p: the nearest perpendicular foot inside a triangle (the first found if the facets are about
+/// flat), or, if there is none, the nearest point of any triangle.
 Foot find_foot(const Vec3& p, const std::vector<Around>& around, bool flat) {
     Foot best, foot;
     for (const Around& a : around) {
@@ -67,7 +67,7 @@ void PointFit::Heights::add(double w, double h) {
 double PointFit::Heights::variance() const {
     if (!(weight > 0)) return 0;
     const double m = mean(), squares = height2 - 2 * m * weight2_height + m * m * weight2;
-    // weight^2 / weight2 is how many points of equal weight tell as much.
+    // weight^2 / weight2 is the effective number of points.
     const double freedom = weight * weight - weight2;
     return freedom > 1e-12 * weight * weight ? std::max(squares, 0.0) / freedom : m * m;
 }
@@ -83,7 +83,7 @@ PointFit::PointFit(const Octree& octree, const OctreeLevel& level, const DualVer
 void PointFit::gather_beside(Index voxel, std::vector<Index>& duals) const {
     duals.clear();
     const VoxelCoord at = level_.coord(voxel);
-    for (std::size_t k = 0; k < 6; ++k) { // the first six are those beside its faces
+    for (std::size_t k = 0; k < 6; ++k) { // the first six offsets are those across faces
         const VoxelCoord& d = neighbor_offsets[k];
         const Index x = level_.find({at[0] + d[0], at[1] + d[1], at[2] + d[2]});
         if (x != no_index) duals.insert(duals.end(), of_voxel_.of(x).begin(), of_voxel_.of(x).end());
@@ -92,7 +92,7 @@ void PointFit::gather_beside(Index voxel, std::vector<Index>& duals) const {
 
 PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
     Measure result{std::vector<double>(level_.size(), 0), std::vector<Heights>(duals_.size())};
-    // Vertices of other chunks' voxels get their share afterwards, in the order of the chunks.
+    // Contributions to vertices in other chunks' voxels are added afterwards, in the order of the chunks.
     std::vector<std::vector<Foreign>> foreign(chunk_count(level_.size(), per_chunk));
     for_chunks(level_.size(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         std::vector<Index> beside;
@@ -117,7 +117,8 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
                     const double height = vertices_.directions[v] | way;
                     if (vertices_.classes[v] != VertexClass::smooth || duals_.open[v]
                         || (octree_.normals[i] | vertices_.directions[v]) < relations::same_sheet_cosine
-                        || std::abs(height) < relaxation::upright_cosine * distance) // beside the facets
+                        // the point lies beside the facets, not above
+                        || std::abs(height) < relaxation::upright_cosine * distance)
                         continue;
                     if (vertices_.voxel[v] >= begin && vertices_.voxel[v] < end)
                         result.heights[v].add(foot.nearest.weights[k], height);

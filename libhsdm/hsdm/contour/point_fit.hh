@@ -6,16 +6,16 @@
 
 namespace hsdm {
 
-/// Compares facets with points, of each voxel at most eight, evenly taken: with the facets round the vertices
-/// in the voxel, or in the voxels beside it where it has none.
+/// Compares facets with points, at most eight per voxel, evenly taken. The points of a voxel are compared
+/// with the facets round the voxel's vertices, or, if it has none, round those of the voxels beside it.
 class PointFit {
 public:
     /// O(dual vertices + voxels). Everything given must outlive it; positions are given anew to measure().
     PointFit(const Octree& octree, const OctreeLevel& level, const DualVertices& duals,
              const PlacedVertices& vertices);
 
-    /// Heights over the facets of the points whose feet lie round a vertex, each weighing what the vertex
-    /// weighs at its foot (barycentric).
+    /// Mean height over the facets of the points whose feet lie in facets round a vertex, each weighted by
+    /// the vertex's barycentric weight at the foot.
     struct Heights {
         double weight = 0, height = 0;                       ///< sums of w and w h
         double weight2 = 0, weight2_height = 0, height2 = 0; ///< of w^2, w^2 h and w^2 h^2
@@ -24,15 +24,16 @@ public:
         double variance() const; ///< of the mean
     };
     struct Measure {
-        std::vector<double> misfit;   ///< per voxel the sum of the distances of its points from the facets
-        std::vector<Heights> heights; ///< per vertex; none for all but smooth ones inside the surface
+        /// per voxel, sum of the distances of its sampled points from the facets
+        std::vector<double> misfit;
+        std::vector<Heights> heights; ///< per vertex; empty except at smooth vertices inside the surface
     };
     /// O(dual vertices), parallel, the same for any number of threads.
     Measure measure(const std::vector<Vec3>& positions) const;
 
-    /// Per vertex how far the sheet should move along the vertex's direction to pass amid its points: their
-    /// mean height; less, down to nothing, where the means round the vertex are no larger than chance makes
-    /// them (twice their own variance), so that noise moves nothing. O(dual vertices), parallel.
+    /// Per vertex, how far to move it along its direction so that the sheet passes amid its points: their
+    /// mean height, shrunk where noise explains it. It is 0 where the squares of the means round the vertex
+    /// are no larger than twice their own variance. O(dual vertices), parallel.
     std::vector<double> rises(const std::vector<Heights>& heights) const;
 
 private:

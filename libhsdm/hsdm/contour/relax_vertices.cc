@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t duals_per_chunk = 1024;
 
-/// As far from one position of a dual vertex towards another as its voxel allows.
+/// The point on the way from `from` to `to` where it leaves the dual vertex's voxel, or `to`.
 Vec3 within_voxel(const GridPoints& grid, const Crossings& crossings, const DualVertices& duals, Index dual,
                   double h, const Vec3& from, const Vec3& to) {
     const VoxelCoord voxel = CornerVoxel(grid, crossings, duals.corners_of(dual)[0]).coord;
@@ -62,9 +62,9 @@ public:
         vertices_.positions.swap(next_);
     }
 
-    /// Smooth vertices rise or sink until the facets, not the vertices alone, lie amid the points. Where a
-    /// voxel's points are then farther off than from the facets as placed, its vertices go back; if the
-    /// points are in all, none is moved.
+    /// Moves smooth vertices up or down until the facets, not the vertices alone, lie amid the points. Where
+    /// a voxel's points are then farther off than from the facets as placed, its vertices go back to where
+    /// they were placed; all do if the sum over all points grew.
     void fit(const PointFit& fit) {
         const PointFit::Measure before = fit.measure(placed_);
         rise(fit.rises(before.heights));
@@ -82,7 +82,7 @@ public:
     }
 
 private:
-    /// A vertex at the other end of sides of facets, and of how many: an interior edge has two.
+    /// A neighbouring vertex, and how many facets' half-edges join the two: an interior edge has two.
     struct Neighbour {
         Index vertex, sides;
     };
@@ -123,7 +123,8 @@ private:
         return p + (way - normal * (normal | way)) * step;
     }
 
-    /// The point of the sheet below or above p: as high as the vertices of the sheet around it were placed.
+    /// Projects p onto the sheet: to the mean height of the vertices of the sheet around it, as they were
+    /// placed.
     Vec3 on_sheet(Index dual, const Vec3& p) const {
         const Vec3& own = vertices_.directions[dual];
         Vec3 normal(0, 0, 0), place(0, 0, 0);
@@ -144,7 +145,8 @@ private:
         return p - normal * (normal | (p - place / sum));
     }
 
-    /// Towards the middle between the next vertices on the crease, if there is one either way.
+    /// Moves a crease vertex towards the middle between the next ones on the crease, if there is one either
+    /// way.
     Vec3 moved_along_crease(Index dual, double step) const {
         const Vec3& p = vertices_.positions[dual];
         const Vec3& along = vertices_.directions[dual];
@@ -207,7 +209,8 @@ void extend_borders(const OctreeLevel& level, const GridPoints& grid, const Norm
             const auto dual = static_cast<Index>(v);
             const NormalSet* set = own_set(sets, vertices.voxel[v], vertices.directions[v]);
             if (!set) continue;
-            // The facets lie inwards; along the border the first and the last neighbour lead on.
+            // `outward` points away from the facets' far corners, across the border, whose direction is from
+            // the neighbour before to the one after.
             const auto corners = duals.corners_of(dual);
             const auto beside = [&](FacetCorner corner, bool enters) {
                 const unsigned j = corner % 4;

@@ -1,31 +1,32 @@
 #pragma once
-// Vertices moved along the surface so that facets come nearer to squares.
+// Moves vertices along the surface so that facets become more square.
 
 #include "hsdm/contour/place_vertices.hh"
 
 namespace hsdm {
 
 struct RelaxOptions {
-    /// >= 0: moves within the sheet
+    /// >= 0: rounds of moves within the sheet
     int rounds = relaxation::rounds;
     /// (0, 1]: share of the way to the mean of the neighbours in a round
     double step = relaxation::step;
     bool fit = true; ///< after that, move the sheet towards the points
 };
 
-/// Moves smooth vertices within their sheet towards the mean of their neighbours, those of a crease along it
-/// (not beside one that was kept off its planes: the facets between would grow), corners and borders not at
-/// all, none out of its voxel. The sheet's height at the new place is the mean height of the vertices around
-/// as they were placed. Then smooth vertices rise or sink, twice, until the facets, not the vertices alone,
-/// lie amid the points (PointFit::rises). Where after the first of the two a voxel's points are a tenth
-/// farther from the facets than as placed, its vertices go back; all do if the points in all are farther.
-/// O(rounds * crossings), parallel; the same for any number of threads. Throws OptionError.
+/// Moves smooth vertices within their sheet towards the mean of their neighbours and vertices of a crease
+/// along it; none leaves its voxel. Corners, borders and crease vertices beside a clamped vertex stay (beside
+/// it the facets between, which are off the surface, would grow). At its new place a smooth vertex gets the
+/// mean height of the vertices around as they were placed. Then smooth vertices rise or sink, twice, until
+/// the facets, not the vertices alone, lie amid the points (PointFit::rises). Where after the first of the
+/// two steps a voxel's points are a tenth farther from the facets than as placed, its vertices go back; all
+/// do if the sum over all points grew. O(rounds * crossings), parallel; the same for any number of threads.
+/// Throws OptionError.
 void relax_vertices(const Octree& octree, const OctreeLevel& level, const GridPoints& grid,
                     const Crossings& crossings, const DualVertices& duals, const RelaxOptions& options,
                     PlacedVertices& vertices);
 
-/// Moves the vertices of borders outwards within their sheet and voxel, to where the points of the voxel's
-/// own set end: evenly spread, they reach sqrt(3) standard deviations from their mean. O(dual vertices),
+/// Moves smooth border vertices outwards, within their sheet and voxel, to where the points of the voxel's
+/// own set end: evenly spread points reach sqrt(3) standard deviations from their mean. O(dual vertices),
 /// parallel.
 void extend_borders(const OctreeLevel& level, const GridPoints& grid, const NormalSets& sets,
                     const Crossings& crossings, const DualVertices& duals, PlacedVertices& vertices);

@@ -37,8 +37,9 @@ Relation RelationTest::crease(const NormalSet& a, const NormalSet& b, double cos
                : Relation::none;
 }
 
-/// Do the points of a set end at the other plane, which its centroid lies `above`? Points spread evenly reach
-/// sqrt(3) standard deviations; few points reach less far, by about the spacing between them.
+/// Do the points of a set end at the other set's plane, which its centroid lies `above` (signed)? Evenly
+/// spread points reach sqrt(3) standard deviations from the centroid; few points reach less far, by about
+/// their spacing.
 bool RelationTest::ends_at(const NormalSet& set, const Vec3& plane, double above, bool convex,
                            double cosine) const {
     const double short_of = convex ? -above : above;

@@ -22,9 +22,10 @@ struct RelationOptions {
     double crease_gap = relations::crease_gap;
 };
 
-/// The relation of two sets of the same or of adjacent voxels. Symmetric. Smooth: small angle, and the chord
-/// between the centroids perpendicular to the sum of the normals, as on any circular arc, so curvature does
-/// not count as a gap. Crease: larger angle, planes that meet close to where the points of both end.
+/// The relation of two sets of the same or of adjacent voxels. Symmetric. Smooth: a small angle between the
+/// normals, and a chord between the centroids perpendicular to the sum of the normals, as on any circular
+/// arc, so that curvature is no gap. Crease: a larger angle, and planes that meet close to where the points
+/// of both sets end.
 class RelationTest {
 public:
     /// Throws OptionError.

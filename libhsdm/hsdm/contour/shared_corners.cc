@@ -32,7 +32,7 @@ public:
     }
 
 private:
-    /// Where its planes meet?
+    /// Is a dual vertex a corner that lies where its planes meet?
     bool is_corner(Index dual) const {
         return vertices_.classes[dual] == VertexClass::corner && !vertices_.is_clamped[dual];
     }
@@ -49,8 +49,8 @@ private:
         });
     }
 
-    /// May the vertex of a neighbouring voxel lie at the corner, in its own voxel or beyond a face of that
-    /// across which no sheet crosses an edge?
+    /// May the vertex of a neighbouring voxel lie at the corner: in its own voxel, or beyond a face of it
+    /// into voxels of which no sheet crosses an edge?
     bool may_reach(Index dual, const PlacedVertices::Beyond& beyond) const {
         if (outside(dual, beyond.position) < creases::same_place) return true;
         const VoxelCoord here = voxel_of(beyond.dual), there = voxel_of(dual);
@@ -87,12 +87,13 @@ private:
     const DualVertices& duals_;
     double h_;
     const PlacedVertices& vertices_;
-    // Those with the corner already first, then by how far beyond their voxels it lies.
+    // Candidates: (is no corner itself, how far the corner lies outside its voxel, dual vertex). The best
+    // comes first.
     std::vector<std::tuple<bool, double, Index>> holders_;
 };
 
-/// A vertex can stand for one corner only: of the edges to it those whose corner is the first one's, at the
-/// same place.
+/// A vertex can stand for one corner only: keeps, of the edges to each vertex, those whose corner is at the
+/// place of the first one's.
 std::vector<EdgeCollapse> with_one_corner_each(const std::vector<EdgeCollapse>& edges, double near) {
     std::vector<EdgeCollapse> by_holder = edges, kept;
     std::stable_sort(by_holder.begin(), by_holder.end(),

@@ -20,7 +20,8 @@ struct Fold {
     Fold(const Vec3& a, const Vec3& b) : from(a), to(b), angle(angle_between(a, b)) {}
 };
 
-/// Points around a fold, seen along it: a crease has two directions of normals, a bend all between.
+/// The points around a fold, projected along it: at a crease their normals have two directions, on a bend all
+/// in between.
 class FoldPoints {
 public:
     FoldPoints(const Octree& octree, const OctreeLevel& level) : octree_(octree), level_(level) {}
@@ -46,7 +47,8 @@ public:
 
     bool empty() const { return points_.empty(); }
 
-    /// Points of both sheets and next to none between, near the edge and in all.
+    /// Is the fold a crease: normals of both sheets and hardly any in between, both near the edge and among
+    /// all points?
     bool crease() const {
         double low = 0, high = 0, middle = 0, near = 0, near_middle = 0;
         for (const Point& p : points_) {
@@ -60,9 +62,9 @@ public:
                && middle <= edge_hints::most_between * all && near_middle <= edge_hints::most_between * near;
     }
 
-    /// Of the points between, how many have a normal that chords to the points close by contradict. On a
-    /// smooth arc a chord is perpendicular to the sum of the normals at its ends; normals smeared across a
-    /// crease turn while the points run straight on.
+    /// Counts the points with normals in between, and those of them whose normals contradict the chords to
+    /// the points close by. On a smooth arc a chord is perpendicular to the sum of the normals at its ends;
+    /// if normals are smeared across a crease, they turn while the points run straight on.
     void count_tilted(std::size_t& middle, std::size_t& tilted) const {
         for (const Point& p : points_) {
             if (!between(p)) continue;
@@ -104,12 +106,12 @@ private:
     double angle_ = 0;
 };
 
-/// What one chunk of sides came to.
+/// Counts of one chunk of sides.
 struct Tally {
     std::size_t sharp = 0, smooth = 0, middle = 0, tilted = 0;
 };
 
-/// The facets of a mesh as their sheets see them: facing where the points' normals point.
+/// The facets of a mesh, oriented as the points' normals are.
 class SheetFacets {
 public:
     SheetFacets(const OctreeLevel& level, const NormalSets& sets, const PolygonMesh& mesh,
@@ -122,13 +124,13 @@ public:
     }
 
     const Vec3& normal(Index f) const { return normals_[f]; }
-    /// The set whose sheet a facet is part of: among the sets in its vertices' voxels the one whose plane
-    /// lies nearest in direction and place, or no_index if none faces its way to 60 degrees.
+    /// The set whose sheet a facet is part of: among the sets in its vertices' voxels the one whose plane is
+    /// nearest in direction and position; no_index if none is within 60 degrees of the facet's normal.
     Index set(Index f) const;
     const Vec3& sheet_normal(Index of_set, const Vec3& otherwise) const {
         return of_set != no_index ? sets_.sets[of_set].normal : otherwise;
     }
-    /// Of the vertices of two facets, ascending, each once.
+    /// Voxels of the vertices of two facets, ascending, each once.
     void voxels_of(Index f, Index g, std::vector<Index>& voxels) const {
         voxels.clear();
         for (Index facet : {f, g})
@@ -158,7 +160,8 @@ Index SheetFacets::set(Index f) const {
             const Vec3 arm = (centre - set.centroid) / level_.voxel_size;
             const double cosine = set.normal | normals_[f];
             if (cosine < edge_hints::least_cosine) continue;
-            // Of one sheet's sets the nearest: a twentieth tells them apart and sways nothing else.
+            // The arm's small weight (a twentieth) chooses the nearest of one sheet's sets and sways nothing
+            // else.
             const double cost = 1 - cosine + std::abs(set.normal | arm) + edge_hints::arm_weight * arm.norm();
             if (cost < least || (cost == least && s < best)) least = cost, best = s;
         }
@@ -171,7 +174,7 @@ public:
         : facets_(facets),
           crease_angle_(crease_angle),
           flat_(std::cos(edge_hints::least_fold * crease_angle)
-                + 1e-9), // so that rounding decides nothing here
+                + 1e-9), // slack: only the exact test below decides
           points_(octree, level) {}
 
     /// The edge of facets f and g from a to b.
@@ -231,7 +234,7 @@ SheetFeatures sheet_features(const Octree& octree, const OctreeLevel& level, con
     }
     if (static_cast<double>(tilted)
         > edge_hints::most_tilted
-              * static_cast<double>(middle)) { // smeared or noisy normals: what bends may be them
+              * static_cast<double>(middle)) { // smeared or noisy normals may be all that bends
         std::replace(sides.begin(), sides.end(), EdgeHint::smooth, EdgeHint::none);
         result.doubtful = std::exchange(result.smooth, 0);
     }

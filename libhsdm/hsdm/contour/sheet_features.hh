@@ -1,6 +1,6 @@
 #pragma once
-// Section 3.3 from the sets of section 3.4: which edges of a mesh are creases between two sheets and which
-// only bend. See docs/features.md.
+// Section 3.3 with the sets of section 3.4: which mesh edges are creases between two sheets and which only
+// follow a bend. See docs/features.md.
 
 #include "hsdm/contour/normal_sets.hh"
 #include "hsdm/mesh/facet_links.hh"
@@ -12,12 +12,12 @@ namespace hsdm {
 struct SheetFeatures {
     FeatureHints hints;
     std::size_t sharp = 0;    ///< edges between two sheets that meet at an angle
-    std::size_t smooth = 0;   ///< edges that fold the mesh where the points bend
-    std::size_t doubtful = 0; ///< taken for smooth, but the cloud's normals do not agree with its positions
+    std::size_t smooth = 0;   ///< edges that fold the mesh where the surface bends smoothly
+    std::size_t doubtful = 0; ///< would be smooth, but the cloud's normals contradict its positions
 };
 
-/// Judges the edges of a 2-manifold that fold it by at least 0.7 of `crease_angle` (radians) by the points
-/// around them: at a crease their normals are those of the two sheets, on a bend they lie in between as well.
+/// Judges those edges of a 2-manifold that fold it by at least 0.7 of `crease_angle` (radians), by the points
+/// around them: at a crease their normals are those of the two sheets, on a bend also directions in between.
 /// `links` are the mesh's, `voxel` is the voxel of each vertex; `turned` says that the facets face against
 /// the points' normals. Departs from section 3.3, which knows facets only. Boundary edges and edges without
 /// points get no hint. O(folded edges), parallel; the result does not depend on the number of threads.

@@ -10,15 +10,15 @@ bool is_open(const Link& link) {
     return link.crossing == no_index;
 }
 
-/// The boundary loops of the mesh to be.
+/// The boundary loops that the mesh will have.
 struct OpenLoops {
-    std::vector<Index> of_side;        ///< per side (4 * crossing + face); no_index: joined
-    std::vector<std::ptrdiff_t> sides; ///< per loop
+    std::vector<Index> of_side;        ///< per side (4 * crossing + face), its loop; no_index: joined
+    std::vector<std::ptrdiff_t> sides; ///< per loop, how many sides it has
 };
 
 OpenLoops find_open_loops(const Crossings& crossings, const Links& links) {
     const auto open = [&](std::size_t side) { return is_open(links.of_crossing[side / 4][side % 4]); };
-    // From an open side round the vertex at its end, face by face, to the next open one.
+    // The next open side of the loop: rotates round the vertex at this side's end, face by face.
     const auto next = [&](std::size_t side) {
         auto k = static_cast<unsigned>(side % 4);
         auto x = static_cast<Index>(side / 4);
@@ -46,14 +46,14 @@ OpenLoops find_open_loops(const Crossings& crossings, const Links& links) {
     return loops;
 }
 
-/// A connected patch of crossings that the data do not carry, and what its sides are.
+/// A connected patch of unsupported crossings, and its perimeter.
 struct Patch {
     std::vector<Index> crossings;
-    std::vector<Index> open;      ///< of each open side, the loop; ascending
-    std::ptrdiff_t bordering = 0; ///< sides joined to crossings that the data carry
+    std::vector<Index> open;      ///< the loop of each of its open sides; ascending
+    std::ptrdiff_t bordering = 0; ///< sides joined to supported crossings
 };
 
-/// Patches that a boundary loop reaches.
+/// The patches that touch a boundary loop.
 std::vector<Patch> find_patches(const Crossings& crossings, const Links& links, const OpenLoops& loops) {
     const auto& list = crossings.crossings;
     std::vector<Patch> patches;
@@ -81,8 +81,9 @@ std::vector<Patch> find_patches(const Crossings& crossings, const Links& links, 
     return patches;
 }
 
-/// Per loop, is it too long for a mere defect? What counts is the hole in the data: of a pipe's end that the
-/// surface runs on beyond, the sides that the loop has without the patches beside it.
+/// Per loop, is it a border rather than a defect? Both its own length counts and that of the hole in the
+/// data, that is the loop without the patches beside it (at the open end of a pipe the surface may run on
+/// beyond the data).
 std::vector<std::uint8_t> find_borders(const OpenLoops& loops, const std::vector<Patch>& patches) {
     std::vector<std::ptrdiff_t> outline = loops.sides;
     for (const Patch& patch : patches)
@@ -97,14 +98,14 @@ std::vector<std::uint8_t> find_borders(const OpenLoops& loops, const std::vector
     return is_border;
 }
 
-/// Is a patch to be taken back? Beyond a border always; beside a mere defect only if the boundary gets
-/// shorter, as it does for a fin or a splinter.
+/// Is a patch to be dropped? At a border always; at a mere defect only if the boundary gets shorter, as for a
+/// fin or a splinter.
 bool ends_beyond(const Patch& patch, std::span<const std::uint8_t> is_border) {
     return std::any_of(patch.open.begin(), patch.open.end(), [&](Index loop) { return is_border[loop] != 0; })
            || patch.bordering < std::ssize(patch.open);
 }
 
-/// Returns how many.
+/// Removes marked crossings; returns how many.
 std::size_t remove_crossings(std::span<const std::uint8_t> removed, Crossings& crossings) {
     auto& list = crossings.crossings;
     std::size_t kept = 0;
@@ -126,7 +127,7 @@ std::size_t trim_unsupported(Crossings& crossings, const Links& links) {
     auto& list = crossings.crossings;
     for (Index x = 0; x < list.size(); ++x) {
         const auto& around = links.of_crossing[x];
-        // Hangs by one side at most.
+        // Such a crossing is attached by one side at most.
         if (std::count_if(around.begin(), around.end(), is_open) >= 3) list[x].supported = false;
     }
     const OpenLoops loops = find_open_loops(crossings, links);

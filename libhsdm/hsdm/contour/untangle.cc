@@ -15,8 +15,8 @@ bool overlap(const Box& a, const Box& b, double margin) {
     return true;
 }
 
-/// The trouble and what lies around it, as a mesh of its own. Facets outside cannot meet what moves inside,
-/// because vertices move towards their neighbours and so stay within the neighbourhood's box.
+/// The intersecting facets and those around them, as a mesh of its own. Facets outside cannot meet what moves
+/// inside, because vertices move towards their neighbours and so stay within the neighbourhood's box.
 class Neighbourhood {
 public:
     Neighbourhood(const PolygonMesh& mesh, const std::vector<std::array<Index, 2>>& pairs, double nearby) {
@@ -38,7 +38,7 @@ public:
                 }
         }
         part = part_of(mesh, facets_, &of_vertex_);
-        // A vertex with facets outside must stay: its neighbours are not all here.
+        // A vertex that has facets outside must stay: not all of its neighbours are known here.
         inner_.assign(part.vertex_count(), 1);
         std::size_t next = 0;
         for (std::size_t f = 0; f < mesh.facet_count(); ++f) {

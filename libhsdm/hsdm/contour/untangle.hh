@@ -1,5 +1,5 @@
 #pragma once
-// Self-intersections that vertex positions cause, taken back by moving those vertices.
+// Removes self-intersections by moving vertices.
 
 #include "hsdm/contour/constants.hh"
 #include "hsdm/spatial/facet_cells.hh"
@@ -7,7 +7,7 @@
 namespace hsdm {
 
 struct UntangleOptions {
-    /// at most, >= 0; 0 only counts
+    /// at most so many, >= 0; 0 only counts intersections
     int rounds = untangling::rounds;
     /// (0, 1]: share of the way a vertex moves to the mean of its neighbours in a round
     double step = untangling::step;
@@ -18,15 +18,15 @@ struct UntangleOptions {
 
 struct UntangleCounts {
     std::size_t before = 0; ///< pairs of triangles that intersected
-    std::size_t after = 0;  ///< that still do
-    std::size_t moved = 0;  ///< vertices
+    std::size_t after = 0;  ///< pairs that still do
+    std::size_t moved = 0;  ///< vertices moved
 };
 
 /// Moves the vertices of facets that intersect others towards the mean of their neighbours, round by round,
-/// as long as that leaves fewer intersections; only the neighbourhood of the trouble is looked at again.
-/// Connectivity is untouched. O(t log t) for the search, then O(the neighbourhoods) a round; the same for any
-/// number of threads. `cells`: the mesh's, if its facets are about as large, to find intersections sooner;
-/// they are the mesh's still if none is moved. Throws OptionError.
+/// as long as that leaves fewer intersections; after the first search only facets near the trouble are tested
+/// again. Connectivity is untouched. O(t log t) for the first search, then O(facets near by) a round; the
+/// same for any number of threads. `cells`: those of the mesh, which speed up the search if facets are about
+/// as large as cells; they stay valid if no vertex moves. Throws OptionError.
 UntangleCounts untangle(PolygonMesh& mesh, const UntangleOptions& options, const FacetCells* cells = nullptr);
 
 } // namespace hsdm
