@@ -29,11 +29,11 @@ PolygonMesh sheet(const Height& height) {
     return mesh;
 }
 
-RemeshCounts tidied(PolygonMesh& mesh, const PolygonMesh& fine, bool settled = false) {
+RemeshCounts remeshed(PolygonMesh& mesh, const PolygonMesh& fine, bool fixed = false) {
     constexpr double tolerance = 0.05;
     const SurfaceWalk surface(fine);
-    ToleranceEnvelope band(surface, tolerance, mesh.vertex_count());
-    return remesh_by_flips(mesh, band, std::vector<std::uint8_t>(mesh.vertex_count(), settled));
+    ToleranceEnvelope envelope(surface, tolerance, mesh.vertex_count());
+    return remesh_by_flips(mesh, envelope, std::vector<std::uint8_t>(mesh.vertex_count(), fixed));
 }
 
 /// Every quad cut from its first corner.
@@ -62,7 +62,7 @@ bool has_edge(const PolygonMesh& mesh, Index a, Index b) {
 TEST_CASE("triangles of a flat sheet become quads again", "[simplify]") {
     const PolygonMesh flat = sheet([](double, double) { return 0.0; });
     PolygonMesh mesh = cut_in_two(flat);
-    const RemeshCounts counts = tidied(mesh, flat);
+    const RemeshCounts counts = remeshed(mesh, flat);
     CHECK(counts.joined >= 30); // of 36
     CHECK(nonmanifold_vertices(mesh).empty());
     CHECK(measure_topology(mesh).euler == 1);
@@ -72,11 +72,11 @@ TEST_CASE("what is remembered of one mesh changes nothing in the next", "[simpli
     const PolygonMesh mesh =
         cut_in_two(sheet([](double x, double y) { return 0.06 * std::sin(2 * x) * std::cos(3 * y); }));
     const SurfaceWalk surface(sheet([](double x, double y) { return 0.02 * x * y / 6; }));
-    ToleranceEnvelope band(surface, 0.05, mesh.vertex_count());
-    const std::vector<std::uint8_t> settled(mesh.vertex_count(), 0);
+    ToleranceEnvelope envelope(surface, 0.05, mesh.vertex_count());
+    const std::vector<std::uint8_t> fixed(mesh.vertex_count(), 0);
     PolygonMesh first = mesh, second = mesh;
-    const RemeshCounts once = remesh_by_flips(first, band, settled),
-                       again = remesh_by_flips(second, band, settled);
+    const RemeshCounts once = remesh_by_flips(first, envelope, fixed),
+                       again = remesh_by_flips(second, envelope, fixed);
     CHECK(once.flipped > 0);
     CHECK(again.flipped == once.flipped);
     CHECK(second.corners == first.corners);
@@ -87,7 +87,7 @@ TEST_CASE("quads across a crease are cut along it", "[simplify]") {
     // A roof whose ridge runs along the diagonals from (x, x) to (x + 1, x + 1).
     PolygonMesh mesh = sheet([](double x, double y) { return -std::abs(x - y); });
     const PolygonMesh fine = cut_in_two(mesh);
-    tidied(mesh, fine);
+    remeshed(mesh, fine);
     for (Index i = 0; i + 1 < side; ++i) {
         INFO("ridge from " << i);
         const Index v = i * side + i;
@@ -104,14 +104,14 @@ TEST_CASE("a triangle without area is no half of a quad", "[simplify]") {
     mesh.add_facet(std::array<Index, 3>{0, 1, 2});
     mesh.add_facet(std::array<Index, 3>{1, 0, 3}); // its third corner lies on its first
     const PolygonMesh before = mesh;
-    CHECK(tidied(mesh, before).joined == 0);
+    CHECK(remeshed(mesh, before).joined == 0);
     CHECK(mesh.facet_count() == 2);
 }
 
 TEST_CASE("settled facets stay as they are", "[simplify]") {
     PolygonMesh mesh = sheet([](double x, double y) { return -std::abs(x - y); });
     const PolygonMesh before = mesh;
-    const RemeshCounts counts = tidied(mesh, before, true);
+    const RemeshCounts counts = remeshed(mesh, before, true);
     CHECK(counts.flipped == 0);
     CHECK(counts.joined == 0);
     CHECK(mesh.corners == before.corners);

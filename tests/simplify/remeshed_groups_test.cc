@@ -48,8 +48,8 @@ Rings rings(const PolygonMesh& mesh) {
 void tidy(PolygonMesh& mesh, RemeshedGroups& groups) {
     const PolygonMesh fine = sheet();
     const SurfaceWalk surface(fine);
-    ToleranceEnvelope band(surface, 0.02, mesh.vertex_count());
-    remesh_by_flips(mesh, band, std::vector<std::uint8_t>(mesh.vertex_count(), 0), Diagonals::may_flip,
+    ToleranceEnvelope envelope(surface, 0.02, mesh.vertex_count());
+    remesh_by_flips(mesh, envelope, std::vector<std::uint8_t>(mesh.vertex_count(), 0), Diagonals::may_flip,
                     groups);
 }
 
@@ -197,13 +197,13 @@ TEST_CASE("groups that do not go together are not taken", "[simplify]") {
     groups.begin(std::array{facets[1], facets[3]});
     groups.add_ring(std::array<Index, 3>{a, c, e}, places);
     groups.add_ring(std::array<Index, 3>{a, e, d}, places);
-    const std::vector<std::uint8_t> settled{0, 0, 0, 1, 1, 1, 0};
+    const std::vector<std::uint8_t> fixed{0, 0, 0, 1, 1, 1, 0};
     const std::vector<Index> found = groups.find(mesh, facets, KeyIndex(places), places, {0, 0, 0, 0, 1, 0});
     REQUIRE(found == std::vector<Index>{0, no_index, 0, no_index, no_index, no_index});
     const PolygonMesh fine = mesh;
     const SurfaceWalk surface(fine);
-    ToleranceEnvelope band(surface, 0.01, mesh.vertex_count());
-    remesh_by_flips(mesh, band, settled, Diagonals::may_flip, groups);
+    ToleranceEnvelope envelope(surface, 0.01, mesh.vertex_count());
+    remesh_by_flips(mesh, envelope, fixed, Diagonals::may_flip, groups);
     CHECK(nonmanifold_vertices(mesh).empty());
     CHECK(measure_topology(mesh).euler == 1);
 }

@@ -5,7 +5,8 @@
 namespace hsdm {
 
 std::vector<std::uint8_t> border_vertices(const PolygonMesh& mesh) {
-    // Each vertex of a whole fan is as often behind the one in the middle as before it.
+    // In a closed fan every neighbour follows the vertex in one facet and precedes it in another, so the sum
+    // of their differences is 0.
     std::vector<std::int64_t> balance(mesh.vertex_count(), 0);
     for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
         const auto ring = mesh.facet(f);

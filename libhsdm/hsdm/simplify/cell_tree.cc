@@ -17,11 +17,11 @@ MortonCode CellTree::code_at(const Vec3& position) const {
     const double cells = static_cast<double>(1u << depth());
     std::array<std::uint32_t, 3> c{};
     for (unsigned k = 0; k < 3; ++k) {
-        // A plane that lies on the faces of cells, but for rounding, is all in the upper ones; on the cube's
-        // own upper faces it is inside.
+        // A plane on the faces of cells, up to rounding, goes to the upper cells only; on the cube's upper
+        // faces it counts as inside.
         const double at = position[k] / extent * cells + rounding;
         const double cell = at >= cells && at < cells + 2 * rounding ? cells - 1 : std::floor(at);
-        // Moved by a whole cube, so that positions beside the cube have codes too.
+        // Shifted by a whole cube, so that positions beside the cube have codes too.
         c[k] = static_cast<std::uint32_t>(std::clamp(cell + cells, 0.0, 3 * cells - 1));
     }
     return morton_encode(c[0], c[1], c[2]);
@@ -83,7 +83,7 @@ std::size_t balance(CellTree& tree) {
             const VoxelCoord at = morton_decode(here.codes[c]);
             for (int k = 0; k < 27; ++k) {
                 const std::array<int, 3> step{k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
-                // Two steps along an axis lead to the same parent: the second finds nothing new.
+                // Two of the three steps along an axis lead to the same parent: skip the second.
                 const auto repeats = [&](std::size_t axis) { return step[axis] == (at[axis] % 2 == 0); };
                 if (repeats(0) || repeats(1) || repeats(2)) continue;
                 const VoxelCoord n{at[0] + step[0], at[1] + step[1], at[2] + step[2]};
@@ -91,7 +91,7 @@ std::size_t balance(CellTree& tree) {
                 const Index cell = tree.find(level - 1, morton_encode(n) >> 3);
                 if (cell == no_index || !above.whole[cell]) continue;
                 above.whole[cell] = 0;
-                splits += k != 13; // the cell's own parent was subdivided with it
+                splits += k != 13; // not counted: the cell's own parent was subdivided with it
             }
         }
     }

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t clusters_per_chunk = 1024, edges_per_chunk = 8192, facets_per_chunk = 8192;
 
-/// What of a list is to be kept, in its order; keep() is asked once of each, from many threads.
+/// The items for which keep() is true, in order; keep() is called once per item, from many threads.
 template <class T, class Keep>
 std::vector<T> kept(const std::vector<T>& list, std::size_t per_chunk, const Keep& keep) {
     std::vector<std::vector<T>> parts(chunk_count(list.size(), per_chunk));
@@ -29,8 +29,8 @@ std::vector<T> kept(const std::vector<T>& list, std::size_t per_chunk, const Kee
     return joined(parts);
 }
 
-/// Builds each level of clusters from the one below it. An edge or facet is looked at on the levels where it
-/// joins different clusters, so the lists shrink by a factor of two and more per level.
+/// Builds each level of clusters from the one below. Edges and facets are dropped once all their vertices are
+/// in one cluster, so their lists shrink by a factor of two or more per level.
 class Gathering {
     using Edge = std::pair<Index, Index>;
     using Edges = std::vector<Edge>;
@@ -58,7 +58,8 @@ public:
     }
 
 private:
-    /// Two facets have an edge one way each, unless it is at the border.
+    /// Lists each edge once: an interior edge from the half-edge with the lower start; edges between border
+    /// vertices, which may have one half-edge only, by sorting.
     void gather_edges() {
         const std::vector<std::uint8_t> border = border_vertices(mesh_);
         std::vector<Edges> parts(chunk_count(mesh_.facet_count(), facets_per_chunk)), at_border(parts.size());
@@ -77,12 +78,12 @@ private:
                        }
                    });
         edges_ = joined(parts);
-        Edges beside = joined(at_border); // perhaps there
+        Edges beside = joined(at_border); // edges that may be at the border, some twice
         std::sort(beside.begin(), beside.end());
         edges_.insert(edges_.end(), beside.begin(), std::unique(beside.begin(), beside.end()));
     }
 
-    /// Cells whose children are all whole.
+    /// Per cell, are all its children whole?
     std::vector<std::uint8_t> eligible_cells(std::size_t level) const {
         const CellLevel& below = tree_.levels[level + 1];
         std::vector<std::uint8_t> eligible(tree_.levels[level].codes.size(), 1);
@@ -115,13 +116,13 @@ private:
             }
         }
         here.positions.resize(here.cell.size());
-        rise(below, here.cell.size());
+        carry_up(below, here.cell.size());
         decide(here, eligible, level);
         return here;
     }
 
-    /// Per cluster below, the least one that goes the same way: all that the surface connects in the cell,
-    /// or, where their planes miss each other, those of the same planes.
+    /// Per cluster below, the least one that joins the same cluster here: one cluster is all that the surface
+    /// connects in the cell or, where no point meets its planes, the parts that divide_by_planes makes.
     std::vector<Index> divide(DisjointSets& joined, const ClusterLevel& below,
                               const std::vector<std::uint8_t>& eligible, std::size_t level) {
         const auto& parent_cell = tree_.levels[level + 1].parent;
@@ -145,7 +146,7 @@ private:
 
     void divide_missed(const std::vector<std::uint8_t>& missed, const Groups& members,
                        const ClusterLevel& below, std::size_t level, std::vector<Index>& part) {
-        std::vector<std::array<Index, 3>> sides; // piece, and two of its members that touch
+        std::vector<std::array<Index, 3>> sides; // piece, and two of its members that an edge connects
         const auto is_inside = [&](const Edge& edge) {
             const Index i = current_[edge.first], j = current_[edge.second];
             return i != no_index && j != no_index && i != j && part[i] == part[j] && missed[part[i]];
@@ -156,7 +157,7 @@ private:
         }
         tbb::parallel_sort(sides.begin(), sides.end());
         sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
-        std::vector<std::pair<Index, std::size_t>> pieces; // and where the sides of each begin
+        std::vector<std::pair<Index, std::size_t>> pieces; // piece, and where its sides begin
         std::size_t s = 0;
         for (Index piece = 0; piece < missed.size(); ++piece) {
             if (!missed[piece]) continue;
@@ -173,7 +174,7 @@ private:
         });
     }
 
-    /// The sides begin with the piece's own.
+    /// Divides one piece by its planes. `sides` begins with the piece's own.
     void divide_piece(std::span<const Index> own, std::span<const std::array<Index, 3>> sides, const Box& box,
                       std::vector<Index>& part) const {
         const Index piece = own.front(); // the least stands for it
@@ -191,9 +192,9 @@ private:
         for (std::size_t k = 0; k < parts.size(); ++k) part[own[k]] = own[parts[k]];
     }
 
-    /// Sums up what the clusters below carry, and lets go of edges and facets that lie in one cluster or can
-    /// no more do so.
-    void rise(const ClusterLevel& below, std::size_t count) {
+    /// Sums up quadrics and Euler characteristics of the clusters below, and drops edges and facets that now
+    /// lie in one cluster (counted) or touch a vertex without a cluster.
+    void carry_up(const ClusterLevel& below, std::size_t count) {
         const Groups members(below.parent, count);
         std::vector<Quadric> sums(count);
         std::vector<int> euler(count, 0);
@@ -257,7 +258,7 @@ private:
         const VoxelCoord c = morton_decode(tree_.levels[level].codes[cell]);
         Box box;
         for (unsigned k = 0; k < 3; ++k) {
-            box.lo[k] = c[k] * size - tree_.extent - slack; // codes are moved by a cube
+            box.lo[k] = c[k] * size - tree_.extent - slack; // codes are shifted by a cube
             box.hi[k] = c[k] * size - tree_.extent + size + slack;
         }
         return box;
@@ -266,12 +267,12 @@ private:
     const PolygonMesh& mesh_;
     CellTree& tree_;
     double tolerance_;
-    std::vector<Index> current_; // per vertex, its cluster of the level reached
+    std::vector<Index> current_; // per vertex, its cluster on the current level, or no_index
     Edges edges_;
     std::vector<Index> facets_;
-    std::span<const Quadric> planes_; // per cluster of the level reached
-    std::vector<Quadric> sums_;       // ... above the deepest level
-    std::vector<int> euler_;          // vertices - edges + facets of the surface inside each cluster
+    std::span<const Quadric> planes_; // per cluster of the current level
+    std::vector<Quadric> sums_;       // storage of planes_ above the deepest level
+    std::vector<int> euler_;          // Euler characteristic of the surface inside each cluster
 };
 
 } // namespace

@@ -14,9 +14,10 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t vertices_per_chunk = 256, collapses_per_chunk = 32;
-constexpr double along_edge[] = {0.125, 0.25, 0.375, 0.625, 0.75, 0.875}; // and at the middle, before
+// beside the middle, which is tested first
+constexpr double along_edge[] = {0.125, 0.25, 0.375, 0.625, 0.75, 0.875};
 
-/// Of the neighbours of a side's start, its end first; they are left in `ring`.
+/// Key of the neighbours of a side's start, the side's end first; they are left in `ring`.
 Key ring_key(const CollapsingMesh& mesh, Index side, std::vector<Index>& ring) {
     Key key = mesh.ring_of(side, ring);
     for (Index v : ring) key = hash_index(key ^ v);
@@ -42,15 +43,15 @@ public:
     }
 
 private:
-    /// The start of a side may become its end.
+    /// A candidate: the start of a side collapses onto its end.
     struct Collapse {
         double length;
         Index side;
-        Index hint; ///< for places on what replaces its facets
+        Index hint; ///< a triangle of the fine surface near the facets that replace its own
     };
 
-    /// What is used from vertex to vertex.
-    struct Room {
+    /// Buffers, reused from vertex to vertex.
+    struct Scratch {
         std::vector<Index> ring, ring_to;
         std::vector<Collapse> sides;
         std::vector<Vec3> normals;
@@ -66,7 +67,8 @@ private:
         });
     }
 
-    /// Most places are looked at only when it is settled who goes: half of those that might have to wait.
+    /// One sweep. The many sample places of measure() are tested only for collapses that keep_apart() has
+    /// chosen: half of the candidates have to wait.
     bool drop_once() {
         std::vector<Collapse> collapses = find_collapses();
         tbb::parallel_sort(collapses.begin(), collapses.end(), [](const Collapse& a, const Collapse& b) {
@@ -91,17 +93,17 @@ private:
         const std::vector<Index> out = mesh_.sides_out();
         std::vector<std::vector<Collapse>> parts(chunk_count(out.size(), vertices_per_chunk));
         for_chunks(out.size(), vertices_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
-            Room room;
+            Scratch scratch;
             for (auto v = static_cast<Index>(begin); v < end; ++v)
                 if (out[v] != no_index && (mesh_.has_changed(v) || waits_[v]) && !mesh_.is_locked(v))
-                    add_collapse(out[v], room, parts[c]);
+                    add_collapse(out[v], scratch, parts[c]);
         });
         return joined(parts);
     }
 
-    /// The first in order of length that may be, as far as the middles of new edges tell.
-    void add_collapse(Index first, Room& room, std::vector<Collapse>& found) {
-        auto& [ring, ring_to, sides, normals] = room;
+    /// Adds the shortest side that may collapse, judged by the middles of new edges alone.
+    void add_collapse(Index first, Scratch& scratch, std::vector<Collapse>& found) {
+        auto& [ring, ring_to, sides, normals] = scratch;
         if (!mesh_.ring_of(first, ring) || !is_smooth(mesh_.start(first), ring, normals)) return;
         sides.clear();
         Index s = first;
@@ -125,7 +127,7 @@ private:
         }
     }
 
-    /// Lets those wait whose facets one before them changes.
+    /// Postpones collapses whose facets an earlier one of the list changes.
     void keep_apart(std::vector<Collapse>& collapses) {
         std::vector<std::uint8_t> taken(mesh_.vertex_count(), 0);
         waits_.assign(waits_.size(), 0);
@@ -139,7 +141,7 @@ private:
         });
     }
 
-    /// Finds out which are too far off; their vertices may have others.
+    /// Marks collapses whose new facets are too far off; their vertices are tried again with other sides.
     void measure(const std::vector<Collapse>& collapses) {
         for_chunks(collapses.size(), collapses_per_chunk,
                    [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -166,7 +168,7 @@ private:
                            [&](const Vec3& normal) { return (normal | sum) >= least; });
     }
 
-    /// Is a vertex near the facets that the ring would have without it, fanned out from its first?
+    /// Is a vertex near the facets that replace its own, fanned out from the ring's first vertex?
     bool stays_near(const Vec3& vertex, const std::vector<Index>& ring) const {
         for (std::size_t i = 1; i + 1 < ring.size(); ++i)
             if (PreparedTriangle(mesh_.at(ring[0]), mesh_.at(ring[i]), mesh_.at(ring[i + 1]))
@@ -177,7 +179,8 @@ private:
         return false;
     }
 
-    /// Are the middles of edges from a ring's first vertex near the fine surface? Most that fail do there.
+    /// Are the middles of the new edges, from the ring's first vertex, near the fine surface? Most candidates
+    /// that fail do so here.
     bool has_near_middles(const std::vector<Index>& ring, Index& hint) const {
         const Vec3& to = mesh_.at(ring[0]);
         for (std::size_t i = 2; i + 1 < ring.size(); ++i)
@@ -185,7 +188,8 @@ private:
         return true;
     }
 
-    /// Are these facets, place by place, each beside the one before?
+    /// Are the new facets near the fine surface? Each sample place lies beside the one before, for the hint's
+    /// sake.
     bool is_near(const std::vector<Index>& ring, Index hint) const {
         const Vec3& to = mesh_.at(ring[0]);
         for (std::size_t i = 2; i + 1 < ring.size(); ++i)
@@ -200,16 +204,17 @@ private:
         return true;
     }
 
-    /// From the surface beside what is to go: what is near another sheet hardly replaces this one.
+    /// Measured by walking from the surface beside the vertex, so that being near another sheet does not
+    /// count.
     bool is_off(const Vec3& place, Index& hint) const { return !fine_.leads_within(place, tolerance_, hint); }
 
     CollapsingMesh mesh_;
     const SurfaceWalk& fine_;
     double tolerance_;
     std::vector<DistanceCollapse> drops_;
-    std::vector<std::uint8_t> waits_;   // per vertex, to be looked at again though nothing changed
-    std::vector<std::uint8_t> too_far_; // per side, as measured since its start changed
-    std::vector<Index> beside_;         // per vertex, a triangle of the fine surface
+    std::vector<std::uint8_t> waits_;   // per vertex, look at it again even if nothing changed there
+    std::vector<std::uint8_t> too_far_; // per side, measured as too far off since its start last changed
+    std::vector<Index> beside_;         // per vertex, a triangle of the fine surface near it
     std::vector<Index> ring_;
 };
 

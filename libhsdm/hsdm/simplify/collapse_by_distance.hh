@@ -1,5 +1,5 @@
 #pragma once
-// Vertices that a surface does without, by measured distances.
+// Removes vertices by edge collapses under a bound on the measured distance.
 
 #include "hsdm/simplify/collapsing_mesh.hh"
 #include "hsdm/simplify/content_keys.hh"
@@ -9,25 +9,24 @@
 
 namespace hsdm {
 
-/// A vertex to be taken out by collapsing an edge onto another.
+/// A vertex to be removed by collapsing an edge onto another vertex.
 struct DistanceCollapse {
-    Index side; ///< of the triangles that the mesh is cut into
+    Index side; ///< half-edge of the triangles that the mesh is cut into
     Index vertex, onto;
-    Key ring; ///< of the vertices round it by then
+    Key ring; ///< key of its neighbours at the time
 };
 
-/// Which inner vertices can go where the surface is smooth, each with its shortest edge that may collapse,
-/// those with the shortest first: where it is looked at (along new edges and in the middles of triangles)
-/// what replaces their facets is no farther than the tolerance from the fine surface, nor is the vertex from
-/// that. Planes of vertices, by which collapse_by_planes() goes, refuse a strip of a cylinder that ends
-/// between the vertices of its rims; this takes it. At most 32 sweeps, O(n) each, of fewer vertices;
-/// parallel, the same for any number of threads.
+/// Finds the inner vertices that can be removed where the surface is smooth, each by its shortest edge that
+/// may collapse, shortest first. The facets that replace theirs must lie within the tolerance of the fine
+/// surface at sample places (along new edges and in the middles of triangles), and the vertex within the
+/// tolerance of those facets. The planes of vertices (collapse_by_planes) would keep strips of a cylinder
+/// that end between the vertices of its rims; distances do not. At most 32 sweeps, O(n) each, of ever fewer
+/// vertices; parallel, the same for any number of threads.
 std::vector<DistanceCollapse> find_distance_collapses(CollapsingMesh mesh, const SurfaceWalk& fine,
                                                       double tolerance);
 
-/// Takes vertices out of the mesh that they were found for, in that order, but for those, `may_go` being 0,
-/// that are to stay, which no vertex gives way to either, and for those whose facets are then other ones.
-/// O(n).
+/// Makes these collapses, in order, in the mesh that they were found for. Skips those from or onto a vertex
+/// with `may_go` 0, and those whose vertex has other neighbours by then than when they were found. O(n).
 CollapsedMesh collapse_by_distance(CollapsingMesh mesh, std::span<const DistanceCollapse> drops,
                                    const std::vector<std::uint8_t>& may_go);
 

@@ -26,12 +26,12 @@ public:
     }
 
     CollapsedMesh run(std::vector<PlaneCollapse>& plane_collapses) {
-        settle();
+        move_onto_planes();
         if (plane_collapses.empty())
             merge_all();
         else
             repeat(plane_collapses);
-        settle();
+        move_onto_planes();
         plane_collapses = std::move(done_);
         for (double& tolerance : tolerance_) tolerance *= collapses::straight_share;
         remove_flat_vertices(mesh_, tolerance_);
@@ -41,8 +41,9 @@ public:
 private:
     const Vec3& at(Index v) const { return mesh_.at(v); }
 
-    /// Moves vertices of patches to where their planes meet: only what is there lines up with others.
-    void settle() {
+    /// Moves vertices with shared planes to where these meet, because only vertices that lie there line up
+    /// with others; then undoes folds.
+    void move_onto_planes() {
         std::vector<std::uint8_t> seen(mesh_.vertex_count(), 0);
         for (Index s = 0; s < mesh_.side_count(); ++s) {
             if (mesh_.is_gone(s)) continue;
@@ -64,7 +65,8 @@ private:
             mesh_.unfold(side, faces_of(a, b));
     }
 
-    /// What facets round two vertices that are to be one should face; nothing if not all is known.
+    /// The normals that facets round two vertices to be merged should have; empty if some of their planes are
+    /// not shared.
     std::span<const Vec3> faces_of(Index a, Index b) {
         std::array<Vec3, Quadric::most_shared> of_a, of_b;
         const std::span<const Vec3> first = planes_[a].shared_normals(of_a);
@@ -85,7 +87,7 @@ private:
         }
     }
 
-    /// Others are found where one cannot be repeated.
+    /// Repeats collapses; looks for others only at vertices of those that cannot be repeated.
     void repeat(const std::vector<PlaneCollapse>& plane_collapses) {
         std::vector<std::uint8_t> refused(mesh_.vertex_count(), 0);
         for (const PlaneCollapse& m : plane_collapses)
@@ -103,16 +105,16 @@ private:
         }
     }
 
-    /// The start of a side may merge into its end, at a place.
+    /// A candidate: the start of a side merges into its end, which moves to a place.
     struct Candidate {
         double length;
         Index side;
         Vec3 place;
-        bool either_way; ///< or the end into the start, where that is
+        bool either_way; ///< or else the end into the start, which stays where it is
     };
 
-    /// Vertices merge once in a sweep, those across short edges first: a few sweeps make large facets of
-    /// even size.
+    /// One sweep: each vertex merges at most once, over short edges first, so that a few sweeps make large
+    /// facets of even size.
     std::size_t merge_once() {
         std::vector<Candidate> candidates = find_candidates();
         tbb::parallel_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
@@ -141,8 +143,8 @@ private:
         return joined(parts);
     }
 
-    /// Looks again at edges near which something changed, but at those whose planes were missed only if one
-    /// of the vertices did.
+    /// Adds an edge if it may collapse. Edges near which nothing changed are skipped, and so are those whose
+    /// planes were missed everywhere unless one of their vertices itself moved.
     void add_candidate(Index s, std::vector<Candidate>& candidates) {
         const Index a = mesh_.start(s), b = mesh_.end(s);
         if (!is_first_ && !mesh_.has_changed(a) && !mesh_.has_changed(b)) return;
@@ -158,7 +160,7 @@ private:
             missed_[s] = 1;
     }
 
-    /// Can a second vertex stand for a first, where it is, about as well as that itself?
+    /// Can `to`, where it is, stand for `from` about as well as `from` does itself?
     bool holds(Index from, Index to) const {
         if (!(tolerance_[from] > 0 && tolerance_[to] > 0)) return false;
         const double most = std::min(tolerance_[from], tolerance_[to]);
@@ -167,7 +169,7 @@ private:
                && planes_[to].rms(at(to)) <= most;
     }
 
-    /// Where the planes of both are missed least, if that will do.
+    /// The place where the planes of both are missed least, if they are met there and it is near enough.
     std::optional<Vec3> place_for(Index a, Index b) const {
         if (!(tolerance_[a] > 0 && tolerance_[b] > 0)) return std::nullopt;
         Quadric both = planes_[a];
@@ -178,7 +180,7 @@ private:
         return meet(a, b, place) ? std::optional(place) : std::nullopt;
     }
 
-    /// Do the planes of both meet at a place?
+    /// Does a place meet the planes of both within their tolerances?
     bool meet(Index a, Index b, const Vec3& place) const {
         const double most = std::min(tolerance_[a], tolerance_[b]);
         return most > 0 && planes_[a].rms(place) <= most && planes_[b].rms(place) <= most;
@@ -199,10 +201,10 @@ private:
     std::vector<Quadric> planes_;
     std::vector<double> tolerance_;
     std::vector<PlaneCollapse> done_;
-    std::vector<Vec3> faces_; // of the vertices in hand
+    std::vector<Vec3> faces_; // result of faces_of()
     bool may_move_ = false, is_first_ = true;
-    std::vector<std::uint8_t> moved_;  // per vertex, in the last sweep
-    std::vector<std::uint8_t> missed_; // per side, are the planes of both ends missed everywhere?
+    std::vector<std::uint8_t> moved_;  // per vertex, merged into in the last sweep
+    std::vector<std::uint8_t> missed_; // per side, does no place meet the planes of both ends?
 };
 
 } // namespace

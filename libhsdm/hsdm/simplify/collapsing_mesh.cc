@@ -18,8 +18,8 @@ bool faces_along(const Vec3& normal, std::span<const Vec3> faces) {
     return std::any_of(faces.begin(), faces.end(), [&](const Vec3& n) { return is_along(normal, n); });
 }
 
-/// A facet that faces another way than all of these may turn to one that does not. One that faces away from
-/// one, as where leaves' vertices have passed each other, must not grow.
+/// Does a facet turn too far? One that faced none of `faces` may turn to face one. One that faces away from
+/// one (where leaves' vertices have passed each other) must not grow.
 bool turns(const Vec3& before, const Vec3& after, std::span<const Vec3> faces) {
     if (faces_along(after, faces)) return faces_along(before, faces) && !is_along(before, after);
     return !is_along(before, after) || (faces_along(-after, faces) && after.sqrnorm() > before.sqrnorm());
@@ -48,7 +48,7 @@ CollapsingMesh::CollapsingMesh(const PolygonMesh& mesh)
     lock_facets();
 }
 
-/// A diagonal may be an edge of other facets already.
+/// Locks facets with a diagonal that is already an edge of other facets.
 void CollapsingMesh::lock_facets() {
     for (Index s = 0; s < corners_.size(); ++s) {
         const auto ring = mesh_.facet(facet_[s / 3]);
@@ -86,7 +86,8 @@ bool CollapsingMesh::may_collapse(const std::vector<Index>& ring, const std::vec
            && thinnest_new >= thinnest;
 }
 
-/// No further vertex may be a neighbour of both, and those beside the edge must keep three facets.
+/// The link condition: the ends share no neighbour but the two beside the edge, and those two keep three
+/// facets (one at a border).
 bool CollapsingMesh::is_link(const std::vector<Index>& from, const std::vector<Index>& to) const {
     if (std::min(from.size(), to.size()) < 3 || from.size() + to.size() < 7) return false;
     if (from.size() + to.size() > collapses::most_facets + 4) return false;
@@ -95,7 +96,8 @@ bool CollapsingMesh::is_link(const std::vector<Index>& from, const std::vector<I
     return spares(from[1]) && spares(from.back());
 }
 
-/// The facets round a vertex that keep an area.
+/// Checks the facets of a ring that remain when its centre moves to a place: none may turn. Lowers `thinnest`
+/// to the worst shape before and `thinnest_new` to the worst after.
 bool CollapsingMesh::suits_ring(const Vec3& place, const std::vector<Index>& ring, Index centre,
                                 std::span<const Vec3> faces, double& thinnest, double& thinnest_new) const {
     for (std::size_t i = 0; i < ring.size(); ++i)
@@ -103,8 +105,8 @@ bool CollapsingMesh::suits_ring(const Vec3& place, const std::vector<Index>& rin
             std::min(thinnest, triangle_shape(at(centre), at(ring[i]), at(ring[(i + 1) % ring.size()])));
     for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
         const Vec3 &p = at(ring[i]), &q = at(ring[i + 1]);
-        // One vertex amid three others goes even if they are on a line: nothing there could move before, and
-        // the next collapse along that line takes the needle.
+        // A vertex amid three others may go even if two of these and the place are on a line: the next
+        // collapse along that line removes the needle.
         if (ring.size() == 3 && !faces.empty() && triangle_shape(place, p, q) < collapses::least_shape)
             continue;
         const Vec3 before = triangle_normal(at(centre), p, q), after = triangle_normal(place, p, q);
@@ -198,7 +200,7 @@ bool CollapsingMesh::unfold(Index side, std::span<const Vec3> faces) {
            && flip(side);
 }
 
-/// The facets round the start of a side are not what they were.
+/// Marks the facets round the start of a side as changed.
 void CollapsingMesh::touch(Index side) {
     sides_.clear();
     Index s = side;
@@ -209,7 +211,8 @@ void CollapsingMesh::touch(Index side) {
     } while (s != side);
 }
 
-/// Takes out the two triangles at a side, whose start becomes its end; its fan was touched last.
+/// Removes the two triangles at a side and moves the other corners of its start to its end; touch() must have
+/// listed the start's fan last.
 void CollapsingMesh::remove(Index side) {
     const Index other = twin_[side], to = end(side);
     for (Index out : sides_) corners_[out] = to;

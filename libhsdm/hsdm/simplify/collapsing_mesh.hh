@@ -7,19 +7,19 @@
 
 namespace hsdm {
 
-/// What is left of a mesh. Vertices for which others stand are isolated.
+/// What is left of a mesh after collapses. Vertices that others stand for are isolated.
 struct CollapsedMesh {
     PolygonMesh mesh;
-    std::vector<Index> stands_for;     ///< per vertex the one that stands for it now: itself or another
+    std::vector<Index> stands_for;     ///< per vertex, the one that stands for it now: itself or another
     std::vector<std::uint8_t> flipped; ///< per vertex, was an edge of its triangles laid the other way?
 };
 
-/// A mesh, cut into triangles, of which inner vertices merge into neighbours. Side s runs from start(s) to
-/// end(s). Facets whose diagonals are edges of others too stay whole: their vertices are locked. To begin
-/// anew, copy it before.
+/// A mesh, cut into triangles, whose inner vertices merge into neighbours by edge collapses. Side (half-edge)
+/// s runs from start(s) to end(s). Facets with a diagonal that is also an edge of other facets stay whole:
+/// their vertices are locked. To start over, copy the mesh first.
 class CollapsingMesh {
 public:
-    /// The mesh must outlive it; it stays as it is.
+    /// The mesh must outlive this; it is not changed.
     explicit CollapsingMesh(const PolygonMesh& mesh);
 
     const Vec3& at(Index v) const { return positions_[v]; }
@@ -31,43 +31,46 @@ public:
     Index twin(Index side) const { return twin_[side]; }
     bool is_locked(Index v) const { return locked_[v]; }
 
-    /// Per vertex one of the sides that start there, or no_index.
+    /// Per vertex, one of the sides that start there, or no_index.
     std::vector<Index> sides_out() const;
-    /// The neighbours of a side's start, its end first; false if its facets are not one whole fan.
+    /// Lists the neighbours of a side's start in order, the side's end first; false if its facets do not form
+    /// one closed fan.
     bool ring_of(Index side, std::vector<Index>& ring) const;
 
-    /// Whether the start of a side may become its end, at a place: a 2-manifold stays one (link condition),
-    /// no facet turns by 40 degrees, none gets thinner than all were. The rings are those of its two ends.
-    /// `faces`: the normals that facets there should have, if those are known: then one that has none of them
-    /// may turn to have one, one that faces away from one must not grow, and what a vertex amid three others
-    /// leaves may be a needle.
+    /// May the start of a side collapse onto its end, which moves to a place? A 2-manifold must stay one
+    /// (link condition), no facet may turn by 40 degrees or get thinner than the thinnest there. The rings
+    /// are those of the two ends. `faces`: the normals that facets there should have, if known; then a facet
+    /// that has none of them may turn to one that it should have, a facet that faces away from one must not
+    /// grow, and a vertex amid three others may leave a needle.
     bool may_collapse(const std::vector<Index>& ring, const std::vector<Index>& ring_to, const Vec3& place,
                       std::span<const Vec3> faces = {}) const;
-    /// Makes the start of a side its end, at a place, if that may be; false if it may not.
+    /// Collapses the start of a side onto its end, which moves to a place; false if may_collapse() does not
+    /// allow it.
     bool collapse(Index side, const Vec3& place, std::span<const Vec3> faces = {});
 
-    /// Moves the start of a side by less than its shortest side, if no facet turns by 40 degrees (as above)
-    /// or gets thinner than all were.
+    /// Moves the start of a side by less than its shortest side, unless a facet would turn by 40 degrees (as
+    /// above) or get thinner than the thinnest there.
     bool move(Index side, const Vec3& place, std::span<const Vec3> faces = {});
 
-    /// Lays the edge of a side, which is not gone, between the two vertices opposite, if they have none yet,
-    /// the one that faces the side is no border vertex, neither gets more than 64 facets, and the edge's ends
-    /// keep three. Whether the two triangles are better so is for the caller to know. The new edge is that of
-    /// previous_side(side).
+    /// Flips the edge of a side that is not gone, so that it joins the two vertices opposite. False if these
+    /// already share an edge, the one in the side's triangle is a border vertex, one would get more than 64
+    /// facets, or an end of the edge would keep fewer than three. Whether the new triangles are better is the
+    /// caller's concern. The new edge is that of previous_side(side).
     bool flip(Index side);
-    /// Puts back the edge that was flipped last of those that are not back; `laid`: a side of the new one.
+    /// Undoes the last flip not undone yet; `laid`: a side of the flipped edge.
     void take_back_flip(Index laid) { turn_edge(laid); }
 
-    /// Flips the edge of a side beside a triangle that faces away from one of `faces`, if both then face
-    /// along one, however thin they are: where leaves' vertices have passed each other, the surface lies
-    /// folded on itself.
+    /// Flips the edge of a side if one of its two triangles faces away from one of `faces` and both new
+    /// triangles face along one, however thin they are. Such folds, flat on themselves, come from vertices of
+    /// leaves that have passed each other.
     bool unfold(Index side, std::span<const Vec3> faces);
 
-    /// Has the vertex a facet that is not what it was when changes were forgotten? All have at first.
+    /// Has a facet of the vertex changed since forget_changes()? True for all at first.
     bool has_changed(Index v) const { return changed_[v]; }
     void forget_changes() { changed_.assign(changed_.size(), 0); }
 
-    /// Facets that nothing touched whole, others as triangles. To be called once, at the end.
+    /// The mesh left: facets that nothing touched come out whole, others as triangles. To be called once, at
+    /// the end.
     CollapsedMesh write();
 
 private:
@@ -80,16 +83,16 @@ private:
     void remove(Index side);
     void turn_edge(Index side);
 
-    const PolygonMesh& mesh_; // whose facets they are
+    const PolygonMesh& mesh_; // the mesh given
     std::vector<Vec3> positions_;
     std::vector<Index> stands_for_;
     std::vector<Index> corners_, twin_;           // per side of a triangle; no_index: it is gone
-    std::vector<Index> facet_;                    // per triangle
-    std::vector<Index> facets_;                   // per vertex, how many
+    std::vector<Index> facet_;                    // per triangle, the facet it was cut from
+    std::vector<Index> facets_;                   // per vertex, the number of its triangles
     std::vector<std::uint8_t> border_, locked_;   // per vertex
     std::vector<std::uint8_t> changed_, touched_; // per vertex; per facet
     std::vector<std::uint8_t> flipped_;           // per vertex
-    std::vector<Index> ring_, ring_to_, sides_;   // of one collapse
+    std::vector<Index> ring_, ring_to_, sides_;   // scratch of one collapse
 };
 
 } // namespace hsdm

@@ -17,7 +17,7 @@ Key ring_key(std::span<const Index> ring, std::span<const Key> places) {
     Key key = ring.size();
     for (std::size_t i = least; i < ring.size(); ++i) key = hash_index(key ^ places[ring[i]]);
     for (std::size_t i = 0; i < least; ++i) key = hash_index(key ^ places[ring[i]]);
-    // How a ring is cut depends on where it starts.
+    // How a polygon is cut depends on where its ring starts, so that is part of its key.
     return ring.size() > 3 ? hash_index(key ^ least) : key;
 }
 

@@ -18,13 +18,14 @@
 namespace hsdm {
 namespace {
 
-constexpr int most_doublings = 32; // of how far to look for the fine surface
+constexpr int most_doublings = 32; // of the reach of a search for the fine surface
 
 struct Faults {
     FaultCounts counts;
     bool manifold = true;
-    std::vector<Index> vertices;              // where no 2-manifold is
-    std::vector<std::array<Index, 3>> leaves; // vertices of those beside what is too far off or intersects
+    std::vector<Index> vertices; // where the mesh is no 2-manifold
+    // vertices of the leaves' mesh beside places too far off or intersections
+    std::vector<std::array<Index, 3>> leaves;
 
     bool no_worse_than(const FaultCounts& other) const {
         return manifold && counts.crossing <= other.crossing && counts.distant <= other.distant
@@ -32,23 +33,23 @@ struct Faults {
     }
 };
 
-/// The leaves' mesh with vertices merged. A vertex with a tolerance of 0 is to stay.
+/// Returns the leaves' mesh with vertices merged. A vertex with a tolerance of 0 is to stay.
 using Merge = std::function<CollapsedMesh(const std::vector<double>& tolerance)>;
 
-/// A way to merge, and how to go on from there.
+/// A way to merge vertices, and what the remeshing after it may do.
 struct DecimationStep {
     Merge merge;
-    Diagonals diagonals; ///< of the facets between
+    Diagonals diagonals; ///< of the remeshing
 };
 
-/// Merges vertices of a mesh as far as nothing gets worse.
+/// Merges vertices of a mesh as far as that causes no new faults.
 class DecimationRounds {
 public:
     DecimationRounds(const LeafMesh& leaves, MeshChecks& checks, const DecimateOptions& options)
         : leaves_(leaves),
           checks_(checks),
           options_(options),
-          tolerance_(leaves.mesh.vertex_count(), checks.band().tolerance()) {}
+          tolerance_(leaves.mesh.vertex_count(), checks.envelope().tolerance()) {}
 
     DecimatedLeaves run(const DecimationStep& step) {
         for (int round = 0; round < options_.rounds; ++round) {
@@ -58,7 +59,7 @@ public:
             if (faults.no_worse_than(options_.faults)) return std::move(result_);
             const std::size_t kept = keep(faults.leaves);
             if (kept + keep_closer(faults.vertices) > 0) continue;
-            std::vector<Index> vertices; // that nothing else helps
+            std::vector<Index> vertices; // the faults' own vertices, when nothing above has helped
             for (const auto& leaves : faults.leaves)
                 for (Index leaf : leaves) vertices.push_back(result_.vertex[leaf]);
             if (keep_closer(vertices) == 0) break;
@@ -81,10 +82,10 @@ private:
         const std::vector<Index> leaf = drop_replaced(result_.mesh, stands_for);
         result_.vertex = std::move(stands_for);
         has_merged_ = picked(merged, leaf);
-        // What nothing has changed stays as it is.
-        std::vector<std::uint8_t> settled(leaf.size(), 1);
-        for (Index v : with_neighbours(result_.mesh, has_merged_)) settled[v] = 0;
-        remesh_by_flips(result_.mesh, checks_.band(), settled, step.diagonals, tidied_);
+        // Facets that no merger has changed stay as they are.
+        std::vector<std::uint8_t> fixed(leaf.size(), 1);
+        for (Index v : with_neighbours(result_.mesh, has_merged_)) fixed[v] = 0;
+        remesh_by_flips(result_.mesh, checks_.envelope(), fixed, step.diagonals, remeshed_);
     }
 
     /// Marked vertices, and those that share facets with them.
@@ -121,17 +122,17 @@ private:
         return faults;
     }
 
-    /// Of a facet's box, squared.
+    /// The diagonal of a facet's box, squared.
     double diagonal(Index facet) const {
         const Box box = box_of(result_.mesh, facet);
         return (box.hi - box.lo).sqrnorm();
     }
 
-    /// Those at a triangle of the fine surface near a place.
+    /// Adds the leaves' vertices that stand for the corners of a triangle of the fine surface near a place.
     void add_leaves(const Vec3& place, std::vector<std::array<Index, 3>>& leaves) const {
         const SurfaceWalk& fine = checks_.bound().to_fine();
         Index triangle = no_index, hint = no_index;
-        double reach = checks_.band().tolerance();
+        double reach = checks_.envelope().tolerance();
         for (int k = 0; k < most_doublings && triangle == no_index; ++k, reach *= 2)
             triangle = fine.triangle_within(place, reach, hint);
         if (triangle == no_index) return;
@@ -141,8 +142,9 @@ private:
 
     bool may_be_kept(Index leaf) const { return tolerance_[leaf] > 0 && has_merged_[result_.vertex[leaf]]; }
 
-    /// Vertices of the leaves at faults are to stay as they were or, where they do so already, those around
-    /// them: so what is wrong in one place costs no vertices elsewhere. Returns how many that concerns.
+    /// Sets the tolerance of the leaves' vertices at faults to 0, so that they stay as they were; where all
+    /// of them do already, that of those around them. So a fault in one place costs no vertices elsewhere.
+    /// Returns how many that concerns.
     std::size_t keep(const std::vector<std::array<Index, 3>>& faults) {
         std::vector<Index> kept;
         std::vector<std::uint8_t> around(tolerance_.size(), 0);
@@ -168,8 +170,8 @@ private:
         return kept.size();
     }
 
-    /// What was merged into these vertices is to miss its planes by less or, where nothing was, what was
-    /// merged around them. Returns how many vertices of the leaves that concerns.
+    /// Lowers the tolerances of what was merged into these vertices or, where nothing was, into those around
+    /// them. Returns how many vertices of the leaves that concerns.
     std::size_t keep_closer(const std::vector<Index>& vertices) {
         std::vector<std::uint8_t> wrong(result_.mesh.vertex_count(), 0);
         for (Index v : vertices) wrong[v] = 1;
@@ -190,8 +192,9 @@ private:
                          < decimation::few_leaves * static_cast<double>(tolerance_.size());
         for (Index leaf : concerned) {
             double& tolerance = tolerance_[leaf];
-            tolerance =
-                few || tolerance < decimation::least_share * checks_.band().tolerance() ? 0 : 0.5 * tolerance;
+            tolerance = few || tolerance < decimation::least_share * checks_.envelope().tolerance()
+                            ? 0
+                            : 0.5 * tolerance;
         }
         return concerned.size();
     }
@@ -201,11 +204,11 @@ private:
     const DecimateOptions& options_;
     std::vector<double> tolerance_;        // per vertex of the leaves
     std::vector<std::uint8_t> has_merged_; // per vertex of the result
-    RemeshedGroups tidied_;                // in the round before
+    RemeshedGroups remeshed_;              // results of the round before
     DecimatedLeaves result_;
 };
 
-/// What stands for what stands for each.
+/// Composes two maps: per item of the first, what stands for it after both.
 std::vector<Index> through(const std::vector<Index>& first, const std::vector<Index>& second) {
     std::vector<Index> result(first.size());
     std::transform(first.begin(), first.end(), result.begin(), [&](Index v) { return second[v]; });
@@ -216,23 +219,24 @@ std::vector<Index> through(const std::vector<Index>& first, const std::vector<In
 
 DecimatedLeaves decimate(const LeafMesh& leaves, std::vector<Quadric> planes, MeshChecks& checks,
                          const DecimateOptions& options) {
-    std::vector<PlaneCollapse> plane_collapses; // of the round before, which most are again
+    std::vector<PlaneCollapse> plane_collapses; // of the round before; most of them are made again
     const CollapsingMesh unmerged(leaves.mesh);
     const auto by_planes = [&](const std::vector<double>& tolerance) {
         return collapse_by_planes(unmerged, planes, tolerance, plane_collapses);
     };
     DecimatedLeaves merged = DecimationRounds(leaves, checks, options).run({by_planes, Diagonals::may_flip});
-    planes = std::vector<Quadric>(); // dropping asks for distances
+    planes = std::vector<Quadric>(); // collapse by distance does not need them
 
     const LeafMesh base{std::move(merged.mesh), through(leaves.vertex, merged.vertex)};
     DecimateOptions drop_options = options;
     drop_options.faults = merged.faults;
     const CollapsingMesh undropped(base.mesh);
     const std::vector<DistanceCollapse> drops = find_distance_collapses(
-        undropped, checks.bound().to_fine(), bounds::drop_share * checks.band().tolerance());
+        undropped, checks.bound().to_fine(), bounds::drop_share * checks.envelope().tolerance());
     const auto by_distance = [&](const std::vector<double>& tolerance) {
-        std::vector<std::uint8_t> may_go(tolerance.size()); // what was wrong once stays
-        for (std::size_t v = 0; v < may_go.size(); ++v) may_go[v] = tolerance[v] >= checks.band().tolerance();
+        std::vector<std::uint8_t> may_go(tolerance.size()); // a vertex with a fault in a round before stays
+        for (std::size_t v = 0; v < may_go.size(); ++v)
+            may_go[v] = tolerance[v] >= checks.envelope().tolerance();
         return collapse_by_distance(undropped, drops, may_go);
     };
     DecimatedLeaves dropped =

@@ -1,6 +1,6 @@
 #pragma once
-// Leaves are cubes: over flat ground, along straight creases and along cylinders fewer vertices do than there
-// are leaves.
+// Decimates the mesh over the leaves: leaves are cubes, but flat ground, straight creases and cylinders need
+// fewer vertices than there are leaves.
 
 #include "hsdm/simplify/constants.hh"
 #include "hsdm/simplify/mesh_checks.hh"
@@ -15,8 +15,8 @@ struct LeafMesh {
 };
 
 struct DecimateOptions {
-    FaultCounts faults; ///< that the leaves have already
-    /// of undoing what makes something wrong, >= 1
+    FaultCounts faults; ///< faults of the mesh over the leaves
+    /// rounds of undoing collapses that cause faults, >= 1
     int rounds = bounds::rounds;
 };
 
@@ -27,10 +27,10 @@ struct DecimatedLeaves {
     FarPoints far_points;
 };
 
-/// Merges vertices by their planes, then drops those that the surface does without, where a 2-manifold
-/// remains, no more is beyond the bound of `checks` and no more facets intersect than before, and cuts and
-/// joins facets anew. What is merged where something is wrong has to keep closer to its planes, or stays as
-/// it was, and all else is merged again; where rounds do not suffice the mesh stays as it was before them.
+/// Collapses edges by planes (collapse_by_planes), then by distance (collapse_by_distance), and remeshes by
+/// flips, so that the mesh stays a 2-manifold with no more faults, found by `checks`, than `options.faults`.
+/// Where a round causes faults, the vertices there get smaller tolerances or stay as they were, and the
+/// collapses are repeated; if the rounds do not suffice the mesh is left as it was before that step.
 /// `planes`: per vertex of the leaves.
 DecimatedLeaves decimate(const LeafMesh& leaves, std::vector<Quadric> planes, MeshChecks& checks,
                          const DecimateOptions& options);

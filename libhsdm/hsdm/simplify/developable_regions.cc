@@ -20,7 +20,8 @@ Axis cone_axis(const NormalSum& normals) {
     return {direction, direction | normals.mean(), variation.deviation[0]};
 }
 
-/// A cone's only where a cylinder's will not do: of a narrow arc normals have one angle to many directions.
+/// A cone's axis only if a cylinder's does not fit: the normals of a narrow arc are at one angle to many
+/// directions.
 Axis axis_of(const NormalSum& normals) {
     const Axis cylinder = cylinder_axis(normals);
     if (cylinder.deviation <= developable::most_deviation) return cylinder;
@@ -28,7 +29,7 @@ Axis axis_of(const NormalSum& normals) {
     return cone.deviation < developable::cone_share * cylinder.deviation ? cone : cylinder;
 }
 
-/// Lets go of what bends away at the margins, and fits the axis to the rest. Returns what it lets go of.
+/// Removes facets at the margins that bend away, and fits the axis to the rest. Returns those removed.
 std::vector<Index> trim(const FacetField& field, DevelopableRegion& region) {
     NormalSum normals;
     std::vector<Index> trimmed;
@@ -91,7 +92,7 @@ std::vector<DevelopableRegion> find_developable_regions(const FacetField& field,
             continue;
         regions.push_back(std::move(region));
         for (Index f : trimmed)
-            if (++trims[f] <= developable::most_trims) seen[f] = 0; // for another region
+            if (++trims[f] <= developable::most_trims) seen[f] = 0; // free for another region
     }
     return regions;
 }

@@ -14,26 +14,27 @@
 namespace hsdm {
 namespace {
 
-constexpr double rounding = 1e-9; // of the bound: room for whoever measures from the same origin otherwise
+// share of the bound kept free for rounding, in case someone measures from the same origin in another way
+constexpr double rounding = 1e-9;
 constexpr std::size_t places_per_chunk = 2048;
-constexpr std::size_t far_per_chunk = 64; // distances of places that are far take long
+constexpr std::size_t far_per_chunk = 64; // distances of far places take long to measure
 constexpr std::size_t keys_per_chunk = 512, triangles_per_chunk = 1024;
 
 std::array<Vec3, 3> corners_of(const PolygonMesh& mesh, const Triangle& t) {
     return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
 }
 
-/// The sides that are looked at with this triangle and not with the other one there, whatever the numbers of
-/// the vertices.
+/// The sides of a triangle whose places are sampled with it, not with the triangle beyond; by keys (`names`),
+/// so that vertex numbers do not matter. Sides between border vertices are sampled with both.
 std::array<bool, 3> sides_of(const Triangle& t, const std::vector<std::uint8_t>& border,
                              std::span<const Key> names) {
     const auto takes = [&](Index v, Index w) { return names[v] < names[w] || (border[v] && border[w]); };
     return {takes(t[0], t[1]), takes(t[1], t[2]), takes(t[2], t[0])};
 }
 
-/// Places on a triangle in rows along its longest side, neither rows nor places farther apart than `spacing`;
-/// at least the middles of the sides and one inside. Of sides only those are taken that the other facet there
-/// leaves.
+/// Adds sample places on a triangle in rows along its longest side, neither rows nor places farther apart
+/// than `spacing`; at least the middles of the sides and one inside. On the sides only where `takes_side` is
+/// true.
 void add_places(const std::array<Vec3, 3>& corners, const std::array<bool, 3>& takes_side, double spacing,
                 std::vector<Vec3>& places) {
     std::size_t longest = 0;
@@ -44,7 +45,7 @@ void add_places(const std::array<Vec3, 3>& corners, const std::array<bool, 3>& t
     const Vec3 &a = corners[longest], &b = corners[(longest + 1) % 3], &c = corners[(longest + 2) % 3];
     const bool takes_ab = takes_side[longest], takes_bc = takes_side[(longest + 1) % 3],
                takes_ca = takes_side[(longest + 2) % 3];
-    // Even, as the middles of sides are the farthest from an arc.
+    // An even number, so that middles of sides are places: those are farthest from an arc.
     const auto steps = [&](double length) {
         return 2 * std::max(1, static_cast<int>(std::ceil(length / (2 * spacing))));
     };
@@ -55,7 +56,8 @@ void add_places(const std::array<Vec3, 3>& corners, const std::array<bool, 3>& t
         const Vec3 left = a + (c - a) * up, right = b + (c - b) * up;
         const int columns = steps(length * (1 - up));
         for (int i = 0; i <= columns; ++i) {
-            const int k = r % 2 == 0 ? i : columns - i; // to and fro: each beside the one before
+            // to and fro, so that each place lies beside the one before
+            const int k = r % 2 == 0 ? i : columns - i;
             const bool on_left = k == 0, on_right = k == columns;
             if (r == 0 && (on_left || on_right || !takes_ab)) continue;
             if ((on_left && !takes_ca) || (on_right && !takes_bc)) continue;
@@ -64,15 +66,16 @@ void add_places(const std::array<Vec3, 3>& corners, const std::array<bool, 3>& t
     }
 }
 
-/// What is far of things with these keys, but for those known to be near. From now on all others are known.
+/// The items for which is_far() is true, not testing those with keys in `near`; then sets `near` to the keys
+/// of all the other items. The index of an item is its position in `keys`.
 template <class IsFar>
 std::vector<Index> far_of(std::vector<Key> keys, KeySet& near, const IsFar& is_far) {
     std::vector<std::vector<Index>> parts(chunk_count(keys.size(), keys_per_chunk));
     for_chunks(keys.size(), keys_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
         Index hint = no_index;
-        std::vector<Vec3> room;
+        std::vector<Vec3> scratch;
         for (auto i = static_cast<Index>(begin); i < end; ++i)
-            if (!near.contains(keys[i]) && is_far(i, hint, room)) parts[c].push_back(i);
+            if (!near.contains(keys[i]) && is_far(i, hint, scratch)) parts[c].push_back(i);
     });
     const std::vector<Index> far = joined(parts);
     for (Index i : far) keys[i] = no_key;
@@ -91,14 +94,14 @@ DistanceCheck::DistanceCheck(const PolygonMesh& fine, const FacetCells* cells, s
       cut_(triangulate(fine)),
       to_fine_(cells && cells->usable() ? SurfaceWalk(fine, cut_, *cells) : SurfaceWalk(fine, cut_)) {
     const std::vector<Key> names = place_keys(fine.positions);
-    fine_names_ = KeySet(names);
-    fine_keys_ = KeySet(triangle_keys(cut_, names));
+    fine_vertex_keys_ = KeySet(names);
+    fine_triangle_keys_ = KeySet(triangle_keys(cut_, names));
 }
 
 FarPlaces DistanceCheck::find_far(const PolygonMesh& mesh) {
     cut_ = triangulate(mesh);
-    names_ = place_keys(mesh.positions);
-    const std::vector<Key> keys_before = std::exchange(keys_, triangle_keys(cut_, names_));
+    vertex_keys_ = place_keys(mesh.positions);
+    const std::vector<Key> keys_before = std::exchange(triangle_keys_, triangle_keys(cut_, vertex_keys_));
     const std::optional<SurfaceWalk> before = std::move(to_mesh_);
     to_mesh_.emplace(mesh, cut_, TriangleTree::Order::given);
     if (before) follow_triangles(*before, keys_before);
@@ -109,7 +112,7 @@ FarPlaces DistanceCheck::find_far(const PolygonMesh& mesh) {
 }
 
 void DistanceCheck::follow_triangles(const SurfaceWalk& before, std::span<const Key> keys_before) {
-    const KeyIndex present(keys_);
+    const KeyIndex present(triangle_keys_);
     followed_.resize(keys_before.size());
     for_chunks(followed_.size(), triangles_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         Index hint = no_index;
@@ -125,7 +128,8 @@ void DistanceCheck::follow_triangles(const SurfaceWalk& before, std::span<const 
     });
 }
 
-/// A place that was near a triangle still is if that has stayed.
+/// Indices of the places farther than `bound` from the mesh. A place that was near a triangle of the mesh
+/// before is still near it if this mesh has the same triangle.
 std::vector<Index> DistanceCheck::far_from(std::span<const Vec3> places, double bound,
                                            std::vector<Index>& near) const {
     near.resize(places.size(), no_index);
@@ -146,16 +150,18 @@ std::vector<Index> DistanceCheck::far_from(std::span<const Vec3> places, double 
     return joined(parts);
 }
 
-/// The fine mesh's own vertices need no look.
+/// Vertices of the mesh farther than the bound from the fine mesh; its own vertices are on it and need no
+/// test.
 std::vector<Index> DistanceCheck::far_vertices(const PolygonMesh& mesh) {
-    return far_of(names_, near_names_, [&](Index v, Index& hint, std::vector<Vec3>&) {
-        return !fine_names_.contains(names_[v]) && to_fine_.is_beyond(mesh.positions[v], bound_, hint);
+    return far_of(vertex_keys_, near_vertex_keys_, [&](Index v, Index& hint, std::vector<Vec3>&) {
+        return !fine_vertex_keys_.contains(vertex_keys_[v])
+               && to_fine_.is_beyond(mesh.positions[v], bound_, hint);
     });
 }
 
 void DistanceCheck::find_far_facets(const PolygonMesh& mesh, FarPlaces& far) {
     const std::vector<std::uint8_t> border = border_vertices(mesh);
-    std::vector<Key> keys = keys_; // which sides are looked at depends on borders too
+    std::vector<Key> keys = triangle_keys_; // which sides are sampled depends on borders too
     for (std::size_t t = 0; t < keys.size(); ++t) {
         Key at_border = 0;
         for (Index v : cut_.triangles[t]) at_border = 2 * at_border + border[v];
@@ -163,16 +169,16 @@ void DistanceCheck::find_far_facets(const PolygonMesh& mesh, FarPlaces& far) {
     }
     const auto far_place = [&](Index t, Index& hint, std::vector<Vec3>& places) {
         places.clear();
-        add_places(corners_of(mesh, cut_.triangles[t]), sides_of(cut_.triangles[t], border, names_), spacing_,
-                   places);
+        add_places(corners_of(mesh, cut_.triangles[t]), sides_of(cut_.triangles[t], border, vertex_keys_),
+                   spacing_, places);
         const auto far_one = std::find_if(places.begin(), places.end(), [&](const Vec3& place) {
             return to_fine_.is_beyond(place, bound_, hint);
         });
         return far_one == places.end() ? nullptr : &*far_one;
     };
     const std::vector<Index> triangles =
-        far_of(std::move(keys), near_keys_, [&](Index t, Index& hint, std::vector<Vec3>& places) {
-            return !fine_keys_.contains(keys_[t]) && far_place(t, hint, places);
+        far_of(std::move(keys), near_triangle_keys_, [&](Index t, Index& hint, std::vector<Vec3>& places) {
+            return !fine_triangle_keys_.contains(triangle_keys_[t]) && far_place(t, hint, places);
         });
     std::vector<Vec3> places;
     for (Index t : triangles) {
@@ -189,7 +195,7 @@ FarPoints DistanceCheck::find_far_points() {
     FarPoints found;
     const std::vector<Index> far = far_from(points_, bound_, near_point_);
     measure_to_fine(far);
-    std::vector<Index> missed; // by the fine mesh already
+    std::vector<Index> missed; // points that the fine mesh misses by more than the bound
     double farthest = 0;
     for (Index p : far) {
         if (const double off = off_fine_[p]; off > bound_) {
@@ -201,7 +207,8 @@ FarPoints DistanceCheck::find_far_points() {
     }
     found.beyond = far.size();
     found.unreachable = missed.size();
-    // The largest distance of all is the fine mesh's, if that is beyond the bound.
+    // If the fine mesh misses points by more than the bound, such a point counts only if the mesh is farther
+    // from it than the fine mesh is from any.
     std::vector<double> off(missed.size());
     for_chunks(missed.size(), far_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = begin; i < end; ++i) off[i] = to_mesh_->tree()(points_[missed[i]]);
@@ -211,7 +218,7 @@ FarPoints DistanceCheck::find_far_points() {
     return found;
 }
 
-/// Of points that were not measured in a round before.
+/// Measures the distances of points from the fine mesh that no round before has measured.
 void DistanceCheck::measure_to_fine(const std::vector<Index>& far) {
     if (!far.empty()) off_fine_.resize(points_.size(), -1);
     for_chunks(far.size(), far_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {

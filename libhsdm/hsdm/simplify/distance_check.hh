@@ -8,9 +8,9 @@
 
 namespace hsdm {
 
-/// What is farther from the other mesh than the bound.
+/// Places of one mesh that are farther from the other than the bound.
 struct FarPlaces {
-    std::vector<Index> fine_vertices; ///< than twice the bound
+    std::vector<Index> fine_vertices; ///< farther than twice the bound
     std::vector<Index> vertices;      ///< of the coarse mesh
     std::vector<Index> facets;        ///< of the coarse mesh
     std::vector<Vec3> on_facets;      ///< a place on each of them
@@ -19,33 +19,35 @@ struct FarPlaces {
 };
 
 struct FarPoints {
-    std::vector<Index> points;   ///< farther than the bound, and than any is from the fine mesh
-    std::size_t beyond = 0;      ///< all points farther than the bound
-    std::size_t unreachable = 0; ///< ... and from the fine mesh already
+    /// farther than the bound, and than the farthest point is from the fine mesh (if that is beyond the
+    /// bound)
+    std::vector<Index> points;
+    std::size_t beyond = 0;      ///< number of all points farther than the bound
+    std::size_t unreachable = 0; ///< number of those that are so far from the fine mesh too
 };
 
 /// Compares one mesh after the other with the same fine mesh and points, and measures again only what may
-/// have changed: triangles of two meshes are the same if their corners are at the same places.
+/// have changed: triangles of two meshes are the same if their corners lie at the same places.
 class DistanceCheck {
 public:
-    /// `fine` and `points` must outlive it; bound > 0. `spacing` > 0: of places looked at on a facet.
-    /// `cells`: of the fine mesh, which then must outlive it, or null.
+    /// `fine` and `points` must outlive this; bound > 0. `spacing` > 0: largest distance between sample
+    /// places on a facet. `cells`: those of the fine mesh, which then must outlive this, or null.
     DistanceCheck(const PolygonMesh& fine, const FacetCells* cells, std::span<const Vec3> points,
                   double bound, double spacing);
 
     FarPlaces find_far(const PolygonMesh& mesh);
 
-    /// From the mesh last compared. To be called once after each find_far().
+    /// Compares the points with the mesh last given to find_far(). To be called once after each.
     FarPoints find_far_points();
     Index nearest_facet(const Vec3& place) const { return to_mesh_->tree().nearest_facet(place); }
     const Vec3& point(Index p) const { return points_[p]; }
     const SurfaceWalk& to_fine() const { return to_fine_; }
 
 private:
-    /// What has become of a triangle.
+    /// What a triangle of the mesh before corresponds to in this one.
     struct Followed {
-        Index same = no_index; ///< the one with the same corners
-        Index near = no_index; ///< one that is near its middle, or some way from it
+        Index same = no_index; ///< the triangle with the same corners, if any
+        Index near = no_index; ///< else one near its middle, or at least on the way there
     };
 
     void follow_triangles(const SurfaceWalk& before, std::span<const Key> keys_before);
@@ -57,15 +59,17 @@ private:
     const PolygonMesh& fine_;
     std::span<const Vec3> points_;
     double bound_, spacing_;
-    Triangulation cut_; // of the mesh; before the first one, of the fine mesh
+    Triangulation cut_; // of the mesh; of the fine mesh until the first find_far()
     SurfaceWalk to_fine_;
     std::optional<SurfaceWalk> to_mesh_;
-    KeySet fine_names_, fine_keys_;               // of the fine mesh's vertices and triangles
-    std::vector<Key> names_, keys_;               // of the mesh's
-    std::vector<Followed> followed_;              // per triangle of the mesh before
-    KeySet near_names_, near_keys_;               // of those found near the fine mesh
-    std::vector<Index> near_vertex_, near_point_; // the triangle that a fine vertex, a point is near to
-    std::vector<double> off_fine_;                // per point, from the fine mesh; -1: not known
+    KeySet fine_vertex_keys_, fine_triangle_keys_; // of the fine mesh
+    std::vector<Key> vertex_keys_, triangle_keys_; // of the mesh last compared
+    std::vector<Followed> followed_;               // per triangle of the mesh before
+    KeySet near_vertex_keys_,
+        near_triangle_keys_; // of those found near the fine mesh
+    // per fine vertex, per point: a triangle of the mesh near it, or no_index
+    std::vector<Index> near_vertex_, near_point_;
+    std::vector<double> off_fine_; // per point, its distance from the fine mesh; -1: not measured yet
 };
 
 } // namespace hsdm

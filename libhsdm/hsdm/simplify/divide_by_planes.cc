@@ -8,7 +8,7 @@
 namespace hsdm {
 namespace {
 
-/// Two parts that touch, and what their joint planes are missed by.
+/// Two adjacent parts, and the root mean square error of their joint planes.
 struct Pair {
     Index a, b;
     double rms;

@@ -7,7 +7,7 @@
 
 namespace hsdm {
 
-/// How directions vary: root mean squares along three perpendicular ones, ascending.
+/// How directions vary: root mean squares along three perpendicular axes, ascending.
 struct Variation {
     std::array<double, 3> deviation;
     std::array<Vec3, 3> direction; ///< unit
@@ -19,7 +19,7 @@ public:
     void add(const Vec3& normal, double weight);
     NormalSum& operator+=(const NormalSum& other);
 
-    /// Zero without any of weight, as is all else then.
+    /// Zero if no normal has weight, as are all other results then.
     Vec3 mean() const { return weight_ > 0 ? sum_ / weight_ : Vec3(0, 0, 0); }
     Variation about_zero() const { return about({0, 0, 0}, true); }
     Variation about_mean() const { return about(mean(), true); }
@@ -33,8 +33,8 @@ private:
     double weight_ = 0;
 };
 
-/// Per facet, but for `beside`. Neighbourhoods are facets up to three sides away, the near ones counting
-/// most, that no sharp edge (26 degrees) separates.
+/// Properties of each facet (`beside`: of each side). The neighbourhood of a facet is all facets up to three
+/// sides away, near ones counting most, that no sharp edge (26 degrees) separates from it.
 struct FacetField {
     std::span<const Index> first;  ///< the mesh's
     std::vector<Index> beside;     ///< per side: the facet beyond it, unless the edge is sharp or a border
@@ -43,8 +43,8 @@ struct FacetField {
     std::vector<Vec3> normal;      ///< unit
     std::vector<Vec3> mean_normal; ///< of the neighbourhood, unit
     std::vector<NormalSum> around; ///< normals of the neighbourhood
-    /// Standard deviations of those, in the direction in which they vary most and in that in which they do
-    /// next: their ratio is small where the surface bends one way only.
+    /// Standard deviations of those normals in the direction in which they vary most, and in the next: the
+    /// ratio next_spread / spread is small where the surface bends one way only.
     std::vector<double> spread, next_spread;
     std::vector<std::uint8_t> convex; ///< do normals of the neighbourhood diverge?
 

@@ -12,11 +12,12 @@ namespace {
 
 constexpr std::size_t facets_per_chunk = 4096;
 
-/// Whether a box may touch one of others: some cell of a grid has a part of both. Counts are summed up along
-/// the axes, so that a large box takes no longer than a small one.
+/// May a box touch one of the boxes added? True if some cell of a grid is touched by both. Counts are prefix
+/// sums along the axes, so that a large box takes no longer than a small one.
 class BoxGrid {
 public:
-    /// All boxes lie inside. Cells follow their number: to clear many for a few would take longer than these.
+    /// `whole` holds all boxes. The number of cells follows that of boxes: clearing many cells for a few
+    /// boxes would take longer than testing these.
     BoxGrid(const Box& whole, std::size_t boxes) : lo_(whole.lo) {
         constexpr unsigned least_bits = 2, most_bits = 6;
         for (bits_ = least_bits; bits_ < most_bits && std::size_t{1} << 3 * bits_ < boxes; ++bits_) continue;
@@ -29,10 +30,11 @@ public:
         for_corners(box, [&](std::size_t at, int sign) { counts_[at] -= sign; });
     }
 
-    /// Of boxes over each cell, then of covered cells before each.
+    /// Sums up the number of boxes over each cell, then the number of covered cells before each.
     void sum_up() {
         add_along_axes();
-        const std::size_t next = 1 + side() + side() * side(); // in all directions; no box has the last cells
+        // the next cell in all directions; no box reaches the last cells
+        const std::size_t next = 1 + side() + side() * side();
         for (std::size_t i = counts_.size(); i-- > 0;) counts_[i] = i >= next && counts_[i - next] > 0;
         add_along_axes();
     }
@@ -50,7 +52,8 @@ private:
         return std::min(static_cast<std::size_t>((x - lo_[axis]) * scale_[axis]), side() - 2);
     }
 
-    /// The cells at the lower ends of a box and behind the upper ones; 1 or -1 as a sum over it has them.
+    /// Visits the eight corners of a box in a prefix sum: the cells at its lower ends and behind its upper
+    /// ones, with the sign that the sum over the box gives them.
     template <class F>
     void for_corners(const Box& box, F&& visit) const {
         for (unsigned corner = 0; corner < 8; ++corner) {
@@ -72,7 +75,7 @@ private:
     }
 
     Vec3 lo_, scale_;
-    unsigned bits_; // of a cell's place along an axis
+    unsigned bits_; // per coordinate of a cell
     std::vector<std::int32_t> counts_;
 };
 
@@ -105,7 +108,8 @@ std::vector<std::array<Index, 2>> IntersectionCheck::find(const PolygonMesh& mes
     return pairs;
 }
 
-/// Per facet; of facets in the same place all but one, whatever they were before.
+/// Per facet, has it changed or is it not known to be free of intersections? Of facets at the same place all
+/// but one count as changed.
 std::vector<std::uint8_t> IntersectionCheck::changed(std::span<const Key> keys) const {
     KeySet seen(keys.size());
     std::vector<std::uint8_t> result(keys.size());

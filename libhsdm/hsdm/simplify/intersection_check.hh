@@ -1,5 +1,5 @@
 #pragma once
-// Where coarse meshes pass through themselves.
+// Self-intersections of one coarse mesh after the other.
 
 #include "hsdm/simplify/content_keys.hh"
 
@@ -7,8 +7,8 @@
 
 namespace hsdm {
 
-/// Looks at one mesh after the other, and again only at facets that have changed and those beside them: two
-/// that were in the mesh before and did not intersect do not now.
+/// Finds self-intersections of one mesh after the other, testing only facets that have changed and those near
+/// them: two facets that were in the mesh before and did not intersect do not now.
 class IntersectionCheck {
 public:
     /// The facet_pairs of find_self_intersections. O(n), but for the facets looked at; parallel.
@@ -17,7 +17,7 @@ public:
 private:
     std::vector<std::uint8_t> changed(std::span<const Key> keys) const;
 
-    KeySet clear_; // facets of the mesh before that intersected no other
+    KeySet clear_; // keys of the facets of the mesh before that intersected no other
 };
 
 } // namespace hsdm

@@ -15,7 +15,8 @@ std::size_t dissolve_once(PolygonMesh& mesh, std::vector<Index>& stands_for) {
         const auto [f, g] = at.facets[v];
         if (at.count[v] != 2 || !unions.is_free(f, g)) continue;
         std::vector<Index> ring = united_ring(mesh, f, g, v);
-        // Two triangles may go only if they are not all there is.
+        // Two triangles back to back may be removed only if they are not all there is at their other
+        // vertices.
         if (ring.empty() || (ring.size() < 3 && (at.count[ring.front()] < 3 || at.count[ring.back()] < 3)))
             continue;
         stands_for[v] = ring.front();

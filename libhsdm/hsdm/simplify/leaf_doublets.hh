@@ -1,19 +1,19 @@
 #pragma once
-// Vertices that hold nothing open: only two facets of the coarse mesh meet there.
+// Removes vertices at which only two facets of the coarse mesh meet.
 
 #include "hsdm/polygon_mesh.hh"
 
 namespace hsdm {
 
-/// Takes out inner vertices with only two facets: the two become one, or go altogether if they are triangles
-/// back to back. Sides go in opposite pairs, so closedness, orientation and Euler characteristic of what is
-/// left stay as they are; an edge that only such triangles made one of four facets becomes one of two. Left
-/// alone: vertices whose two facets share more, as in a component of two facets. Returns per vertex the one
-/// that stands for it now: itself, or a neighbour if it was taken out (it is isolated then). O(facets) in
-/// each of a few rounds.
+/// Removes inner vertices with only two facets: the two are merged into one, or removed if they are triangles
+/// back to back. Half-edges go in opposite pairs, so closedness, orientation and Euler characteristic of what
+/// is left do not change, and an edge that had four facets only because of such triangles has two afterwards.
+/// Vertices whose two facets share more stay, as in a component of two facets. Returns per vertex the one
+/// that stands for it now: itself, or a neighbour if it was removed (it is isolated then). O(facets) in each
+/// of a few rounds.
 std::vector<Index> dissolve_doublets(PolygonMesh& mesh);
 
-/// The values of the vertices that are kept.
+/// The values at the indices `kept`.
 template <class T>
 std::vector<T> picked(const std::vector<T>& values, const std::vector<Index>& kept) {
     std::vector<T> result;
@@ -22,8 +22,8 @@ std::vector<T> picked(const std::vector<T>& values, const std::vector<Index>& ke
     return result;
 }
 
-/// Renumbers vertices away for which others stand; `stands_for` has the new numbers afterwards. Returns per
-/// vertex that is left its old number.
+/// Removes vertices that others stand for and renumbers the rest; `stands_for` has the new numbers
+/// afterwards. Returns per vertex that is left its old number.
 std::vector<Index> drop_replaced(PolygonMesh& mesh, std::vector<Index>& stands_for);
 
 } // namespace hsdm

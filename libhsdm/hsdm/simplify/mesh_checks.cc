@@ -7,9 +7,9 @@ namespace hsdm {
 MeshChecks::MeshChecks(const PolygonMesh& fine, const FacetCells* cells, std::span<const Vec3> points,
                        double bound, double spacing, double tolerance)
     : bound_(fine, cells, points, bound, spacing),
-      band_(bound_.to_fine(), tolerance, 2 * fine.vertex_count()) {}
+      envelope_(bound_.to_fine(), tolerance, 2 * fine.vertex_count()) {}
 
-/// At once, as either has steps that one thread takes alone.
+/// The two in parallel, because each has steps that run on one thread.
 Findings MeshChecks::look_at(const PolygonMesh& mesh) {
     Findings found;
     tbb::parallel_invoke([&] { found.crossing = crossing_.find(mesh); },

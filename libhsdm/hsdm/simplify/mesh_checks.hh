@@ -1,5 +1,5 @@
 #pragma once
-// What may be wrong with a coarse mesh, looked for in one after the other.
+// Finds the faults of one coarse mesh after the other.
 
 #include "hsdm/simplify/distance_check.hh"
 #include "hsdm/simplify/intersection_check.hh"
@@ -9,9 +9,9 @@ namespace hsdm {
 
 struct FaultCounts {
     std::size_t crossing = 0; ///< pairs of facets that intersect
-    std::size_t distant =
-        0; ///< places on the mesh beyond the bound, vertices of the fine one beyond twice that
-    std::size_t points = 0; ///< points beyond it
+    /// places on the mesh beyond the bound, and fine vertices beyond twice the bound
+    std::size_t distant = 0;
+    std::size_t points = 0; ///< points beyond the bound
 };
 
 struct Findings {
@@ -22,26 +22,27 @@ struct Findings {
     FaultCounts count() const { return {crossing.size(), far.size(), far_points.points.size()}; }
 };
 
-/// All that is remembered of one mesh for the next.
+/// All checks, with what each remembers of one mesh for the next.
 class MeshChecks {
 public:
-    /// As for DistanceCheck; `tolerance`, the mesh's units, > 0: the width of the band round the fine mesh.
+    /// Arguments as for DistanceCheck; `tolerance`, the mesh's units, > 0: that of the envelope round the
+    /// fine mesh.
     MeshChecks(const PolygonMesh& fine, const FacetCells* cells, std::span<const Vec3> points, double bound,
                double spacing, double tolerance);
     MeshChecks(const MeshChecks&) = delete;
 
     Findings look_at(const PolygonMesh& mesh);
-    /// Without all else.
+    /// Of the checks only that of the points.
     FarPoints far_points(const PolygonMesh& mesh);
 
-    /// Of the mesh last looked at.
+    /// The distance check, as of the mesh last looked at.
     const DistanceCheck& bound() const { return bound_; }
-    ToleranceEnvelope& band() { return band_; }
+    ToleranceEnvelope& envelope() { return envelope_; }
 
 private:
     DistanceCheck bound_;
     IntersectionCheck crossing_;
-    ToleranceEnvelope band_;
+    ToleranceEnvelope envelope_;
 };
 
 } // namespace hsdm

@@ -10,7 +10,8 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t facets_per_chunk = 2048;
-constexpr double flat = 1e-6; // twice a facet's area over its squared length, or a side over its length
+// largest ratio that counts as 0: of twice a facet's area to its squared length, of a side to its length
+constexpr double flat = 1e-6;
 
 std::vector<Index> flat_facets(const PolygonMesh& mesh) {
     std::vector<std::vector<Index>> parts(chunk_count(mesh.facet_count(), facets_per_chunk));

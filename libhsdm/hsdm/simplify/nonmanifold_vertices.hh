@@ -1,14 +1,13 @@
 #pragma once
-// Where a mesh that came from collapsing vertices is no proper 2-manifold.
+// Where a mesh that came from collapsing vertices is not a proper 2-manifold.
 
 #include "hsdm/polygon_mesh.hh"
 
 namespace hsdm {
 
-/// The vertices, ascending, at which facets do not make one proper fan: ends of edges with more than two
-/// facets or two that run the same way, vertices with several fans, inner vertices of only two facets,
-/// corners of facets without area or with a side without length. Empty for a mesh without such. O(corners log
-/// corners), parallel.
+/// The vertices, ascending, whose facets do not form one proper fan: ends of edges with more than two facets
+/// or with two that run the same way, vertices with several fans, inner vertices of only two facets, corners
+/// of facets without area or with a side without length. O(corners log corners), parallel.
 std::vector<Index> nonmanifold_vertices(const PolygonMesh& mesh);
 
 } // namespace hsdm

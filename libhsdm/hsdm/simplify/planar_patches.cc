@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t vertices_per_chunk = 1024;
 
-/// A plane through facets, changed by each.
+/// The plane fitted to facets, updated with each one added.
 class GrowingPlane {
 public:
     void add(const Vec3& area, const Vec3& centre) {
@@ -51,13 +51,13 @@ public:
     }
 
 private:
-    /// The flattest first.
+    /// Grows patches of flat ground, from the flattest facets first.
     void find_flat_ground() {
         std::vector<std::pair<double, Index>> seeds;
         for (Index f = 0; f < field_.size(); ++f)
             if (field_.spread[f] <= flat_ground::flat_spread) seeds.emplace_back(field_.spread[f], f);
         std::sort(seeds.begin(), seeds.end());
-        std::vector<std::uint8_t> seen(field_.size(), 0); // in a core that was not flat
+        std::vector<std::uint8_t> seen(field_.size(), 0); // facets of cores that turned out not to be flat
         for (const auto& [spread, seed] : seeds) {
             if (patches_.patch[seed] != no_index || seen[seed]) continue;
             std::vector<Index> facets;
@@ -77,7 +77,7 @@ private:
         }
     }
 
-    /// A facet that waits for a plane, the nearest first.
+    /// A facet in the queue for a plane, ordered by distance, nearest first.
     struct Waiting {
         double height;
         Index facet;
@@ -86,7 +86,8 @@ private:
         }
     };
 
-    /// Of facets in flat surroundings that face as the plane does, so that what bends does not tilt it.
+    /// Grows the core of a patch: facets with flat surroundings that face as the plane does, so that bent
+    /// margins do not tilt it.
     Plane grow_core(Index seed, std::vector<Index>& facets) {
         GrowingPlane growing;
         std::priority_queue<Waiting> waiting;
@@ -114,9 +115,10 @@ private:
         return growing.plane();
     }
 
-    /// Adds to a core what bends away, as far as the plane does for it. False if that comes to more than half
-    /// of the core's facets: a part of something round, which gains three quarters at least where it may be
-    /// four times as far off, as the distance from a tangent goes with the square of the way along it.
+    /// Adds margins that bend away to a core, as far as its plane fits them. False if these have more than
+    /// half as many facets as the core: then it is part of something round. There the margin would have three
+    /// quarters of it at least, because it may be four times as far off the plane and the distance from a
+    /// tangent grows with the square of the way along it.
     bool add_margin(std::vector<Index>& facets, const Plane& plane) {
         const std::size_t most = facets.size() + facets.size() / 2;
         for (std::size_t next = 0; next < facets.size() && facets.size() <= most; ++next)
@@ -146,7 +148,7 @@ private:
         patches_.planes.insert(patches_.planes.end(), strips->planes.begin(), strips->planes.end());
     }
 
-    /// Close beside what has no patch flat ground ends where it is flat: vertices there need freedom.
+    /// Takes margin facets close to facets without a patch out of theirs: vertices there need freedom.
     void release_margins() {
         std::vector<Index> released;
         for (Index f = 0; f < field_.size(); ++f)
@@ -166,8 +168,7 @@ private:
     FacetField field_;
     double tolerance_;
     PlanarPatches patches_;
-    std::vector<std::uint8_t>
-        margin_; // per facet, is it on flat ground though its surroundings are not flat?
+    std::vector<std::uint8_t> margin_; // per facet, was it added to a patch by add_margin()?
 };
 
 } // namespace

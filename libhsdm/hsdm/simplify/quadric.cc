@@ -85,7 +85,7 @@ double Quadric::rms(const Vec3& x) const {
     return std::max(most, std::sqrt(sum / (weight_ + shared_weight_)));
 }
 
-/// How far shared planes, but for one, miss each other where they meet best near x.
+/// The error of the shared planes without one of them (or null) at the point where they meet best, near x.
 double Quadric::missed_without(const Plane* left_out, const Vec3& x) const {
     Quadric others;
     others.add_point(x);
@@ -96,7 +96,7 @@ double Quadric::missed_without(const Plane* left_out, const Vec3& x) const {
 
 void Quadric::drop_shared(const Vec3& x, double tolerance) {
     while (shared_count_ > 2 && missed_without(nullptr, x) > tolerance) {
-        // Those without which the others meet come first, of them the farthest.
+        // Prefer planes without which the others meet within the tolerance, and of these the farthest.
         std::size_t worst = 0;
         std::pair<double, double> best{std::numeric_limits<double>::infinity(), 0};
         for (std::size_t k = 0; k < shared_count_; ++k) {

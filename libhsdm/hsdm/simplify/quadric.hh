@@ -1,5 +1,6 @@
 #pragma once
-// Sums of squared distances to planes: where a vertex that stands for many lies, and how far off it is.
+// Quadric error metrics: sums of squared distances to planes, for the position of a vertex that stands for
+// many others and its error.
 
 #include "hsdm/polygon_mesh.hh"
 
@@ -15,32 +16,34 @@ struct Plane {
     double height(const Vec3& x) const { return (normal | x) - offset; }
 };
 
-/// sum w (n . x - d)^2 over planes, and the mean of some points to hold on to where the planes leave open.
-/// Planes that many facets share count once each, however many facets those are: four of them, and what there
-/// is beyond these by its facets' weight like any other.
+/// sum w (n . x - d)^2 over planes, and the mean of some points that fixes directions the planes leave open.
+/// Planes shared by many facets (those of patches) count once each, however many facets have them: up to four
+/// of them; further ones are weighted by area like any other plane.
 class Quadric {
 public:
     static constexpr std::size_t most_shared = 4;
 
     void add_plane(const Vec3& normal, const Vec3& point, double weight);
-    /// The plane is to outlive all sums that it is in. Its facets' weight tells what that of others comes to.
+    /// Adds a plane of a patch, which must outlive all sums that it is in. `weight`, of its facets, is what
+    /// the weight of other planes is compared with.
     void add_shared(const Plane& plane, double weight);
     void add_shared(Plane&&, double) = delete;
     void add_point(const Vec3& point);
     Quadric& operator+=(const Quadric& other);
 
-    /// Where the sum is least, the least change from the mean of the points in directions that the planes do
-    /// not determine (eigenvalues below a fiftieth of the largest: normals spread by less fix no position;
-    /// shared planes do from a degree between them on).
+    /// The minimiser; in directions that the planes do not determine (eigenvalues below a fiftieth of the
+    /// largest: normals that spread less fix no position; for shared planes a degree between them suffices)
+    /// the mean of the points.
     Vec3 minimum() const;
-    /// Root of the weighted mean of the squared distances at x, those of facets with shared planes counted as
-    /// zero, or the distance from the farthest shared plane if that is larger; 0 without planes.
+    /// The error at x: the root of the weighted mean of the squared distances, in which facets with shared
+    /// planes count as zero, or the distance from the farthest shared plane if that is larger; 0 without
+    /// planes.
     double rms(const Vec3& x) const;
 
-    /// While shared planes are farther than `tolerance` from where they meet best, lets go of one without
-    /// which the others meet, the farthest from x of several such, down to two.
+    /// While the shared planes miss the point where they meet best by more than `tolerance` and there are
+    /// more than two, drops one without which the others meet; of several such, the farthest from x.
     void drop_shared(const Vec3& x, double tolerance);
-    /// The normals of shared planes, if other facets count next to nothing: else none.
+    /// The normals of the shared planes if other facets have next to no weight, else none.
     std::span<const Vec3> shared_normals(std::array<Vec3, most_shared>& normals) const;
     bool has_shared() const { return shared_count_ > 0; }
 

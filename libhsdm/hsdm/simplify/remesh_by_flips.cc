@@ -22,22 +22,22 @@ constexpr std::size_t triangles_per_chunk = 1024, sides_per_chunk = 3 * triangle
 
 class FlipRemeshing {
 public:
-    FlipRemeshing(PolygonMesh& mesh, ToleranceEnvelope& fine, std::span<const std::uint8_t> settled,
+    FlipRemeshing(PolygonMesh& mesh, ToleranceEnvelope& fine, std::span<const std::uint8_t> fixed,
                   RemeshedGroups& before)
         : mesh_(mesh),
           fine_(fine),
           before_(before),
           tolerance_(fine.tolerance()),
-          names_(place_keys(mesh.positions)),
-          vertices_(names_),
-          facet_names_(facet_keys(mesh, names_)) {
+          vertex_keys_(place_keys(mesh.positions)),
+          vertices_(vertex_keys_),
+          facet_keys_(facet_keys(mesh, vertex_keys_)) {
         std::vector<std::uint8_t> whole(mesh.facet_count());
         for (std::size_t f = 0; f < whole.size(); ++f) {
             const auto ring = mesh.facet(f);
             whole[f] =
-                ring.size() > 4 || std::all_of(ring.begin(), ring.end(), [&](Index v) { return settled[v]; });
+                ring.size() > 4 || std::all_of(ring.begin(), ring.end(), [&](Index v) { return fixed[v]; });
         }
-        group_ = before_.find(mesh, facet_names_, vertices_, names_, whole);
+        group_ = before_.find(mesh, facet_keys_, vertices_, vertex_keys_, whole);
         cut_what_is_new(whole);
         if (is_sound() || kept_.facet_count() == 0) return;
         group_.assign(group_.size(), no_index);
@@ -70,26 +70,26 @@ public:
 private:
     const Vec3& at(Index v) const { return mesh_.positions[v]; }
 
-    /// Can the vertex do with a facet less?
+    /// Can the vertex lose a facet?
     bool spares(Index v) const { return facets_[v] > least_facets_[v]; }
 
     Vec3 middle(Index a, Index b) const { return 0.5 * (at(a) + at(b)); }
 
-    /// How far the lines a-b and c-d miss each other: what a quad with these diagonals is off a plane.
+    /// Distance between the lines a-b and c-d: how far a quad with these diagonals is off a plane.
     double warp(Index a, Index b, Index c, Index d) const {
         const Vec3 across = (at(b) - at(a)) % (at(d) - at(c));
         const double length = across.norm();
         return length > 0 ? std::abs(across | (at(c) - at(a))) / length : 0;
     }
 
-    /// Whether an edge is on the fine surface, if that was asked.
+    /// Is the middle of an edge on the fine surface? `none`: not looked up yet.
     enum class Look : std::uint8_t { none, on, off };
     Look look(Index a, Index b, Index& hint) const {
         return fine_.holds(middle(a, b), hint) ? Look::on : Look::off;
     }
 
     void cut_what_is_new(std::vector<std::uint8_t> whole) {
-        // A diagonal may be an edge of other facets already: such quads are not cut.
+        // A quad whose diagonal is an edge of other facets already must stay whole; try again without.
         do cut_all(whole);
         while (keep_whole(whole));
         facets_.assign(mesh_.vertex_count(), 0);
@@ -97,8 +97,8 @@ private:
         for (Index v : kept_.corners) ++facets_[v];
     }
 
-    /// What groups became beside others they need not become beside these: one may count on an edge that
-    /// another took out, or on a facet that another gave to a vertex.
+    /// Do the results of groups taken over fit together? One made beside other facets may rely on an edge
+    /// that another group has since flipped away, or on a facet that another gave to a vertex.
     bool is_sound() const {
         if (crowded_) return false;
         for (std::size_t v = 0; v < facets_.size(); ++v)
@@ -136,7 +136,7 @@ private:
         link();
     }
 
-    /// Marks the quads whose diagonals are not theirs alone; false if there is none.
+    /// Marks quads whose diagonal is also an edge of other facets; false if there is none.
     bool keep_whole(std::vector<std::uint8_t>& whole) const {
         bool any = false;
         for (Index s = 0; s < corners_.size(); s += 3) {
@@ -147,7 +147,8 @@ private:
         return any;
     }
 
-    /// Three corners, or six with the diagonal as side 0 of either half.
+    /// Writes the three corners of a triangle, or the six of a quad's halves, with the diagonal as side 0 of
+    /// each.
     void cut(std::span<const Index> f, Index* out) const {
         if (f.size() == 3) {
             std::copy(f.begin(), f.end(), out);
@@ -171,7 +172,8 @@ private:
         for (std::size_t v = 0; v < least_facets_.size(); ++v) least_facets_[v] = sides.border[v] ? 1 : 3;
     }
 
-    /// Whether two vertices, the first at this corner, are known to share no edge: its fan must be whole.
+    /// Is it certain that two vertices share no edge? Looks at the fan of the first, at this corner, which
+    /// must be closed.
     bool apart(Index corner, Index other) const {
         Index s = corner;
         do {
@@ -181,14 +183,14 @@ private:
         return s == corner;
     }
 
-    /// What two triangles alone tell of the diagonal between them.
+    /// What two triangles alone say about flipping the diagonal between them.
     struct Verdict {
-        bool flips = false;       ///< is the other one better?
-        Look before = Look::none; ///< this one's
-        Look after = Look::none;  ///< the other one's
+        bool flips = false;       ///< is the other diagonal better?
+        Look before = Look::none; ///< of this diagonal
+        Look after = Look::none;  ///< of the other diagonal
     };
 
-    /// Is this the side to ask at, and was one of its triangles turned?
+    /// Is this the half-edge by which its edge is judged, and has one of its triangles changed?
     bool is_due(Index s, const std::vector<std::uint8_t>& turned) const {
         return twin_[s] != no_index && s < twin_[s] && (turned[s / 3] || turned[twin_[s] / 3]);
     }
@@ -231,9 +233,10 @@ private:
                                || (old1 | old2) >= flips::flip_cosine * old1_norm * old2_norm);
         if (warp(a, b, c, d) <= tolerance_) return {gains, before, before};
         if (before != Look::none) return judge_bent({a, b, c, d}, before, gains, hint);
-        // What is not known yet follows from the four places alone.
+        // The answer depends only on the four places (and the surface), so it can be remembered by their
+        // keys.
         Key key = 1;
-        for (Index v : {a, b, c, d}) key = hash_index(key ^ names_[v]);
+        for (Index v : {a, b, c, d}) key = hash_index(key ^ vertex_keys_[v]);
         const unsigned known = fine_.remembered(key, [&] {
             const Verdict verdict = judge_bent({a, b, c, d}, Look::none, gains, hint);
             return unsigned{verdict.flips} + 2 * static_cast<unsigned>(verdict.before)
@@ -242,7 +245,8 @@ private:
         return {known % 2 == 1, static_cast<Look>(known / 2 % 4), known / 8 == 1 ? Look::on : Look::none};
     }
 
-    /// The two triangles at a-b, their other corners c and d, are not in a plane; would their shape gain?
+    /// The verdict on edge a-b where the corners a, b and the opposite ones, c and d, are not in a plane.
+    /// `gains`: would the flip improve the shape?
     Verdict judge_bent(const std::array<Index, 4>& corners, Look before, bool gains, Index& hint) const {
         const auto [a, b, c, d] = corners;
         if (before == Look::none) before = look(a, b, hint);
@@ -261,7 +265,8 @@ private:
         return {after == Look::on, before, after};
     }
 
-    /// Lays the diagonal of the two triangles at side s the other way if that is better.
+    /// Flips the diagonal at side s if the verdict, judged again if a triangle has changed, says so and the
+    /// topology allows it.
     bool flip(Index s) {
         const Index t = twin_[s], c = corners_[previous_side(s)], d = corners_[previous_side(t)];
         if (c == d || !spares(corners_[s]) || !spares(corners_[t])) return false;
@@ -288,7 +293,7 @@ private:
         const auto place = [&](Index from, std::array<Index, 3> corners) {
             for (Index k = 0; k < 3; ++k) corners_[from + k] = corners[k];
         };
-        place(one, {d, c, a}); // the diagonal is side 0 of either
+        place(one, {d, c, a}); // the new diagonal is side 0 of both
         place(two, {c, d, b});
         half_[one / 3] = half_[two / 3] = 0;
         const auto tie = [&](Index x, Index y, Look look) {
@@ -321,10 +326,11 @@ private:
         double least = 1;
         for (std::size_t i = 0, before = 3; i < 4; before = i++) {
             const double sine = ((along[before] % along[i]) | up) / (length[before] * length[i]);
-            if (!(sine >= flips::least_corner)) return std::nullopt; // not a number where corners coincide
+            if (!(sine >= flips::least_corner)) return std::nullopt; // NaN where corners coincide
             least = std::min(least, sine);
         }
-        // Whoever cuts the quad takes the shorter diagonal: it must be the one that is there, or do no harm.
+        // Others cut a quad along its shorter diagonal: that must be this one, or be no farther off a plane
+        // than the tolerance.
         const bool shorter = (at(b) - at(a)).sqrnorm() <= (at(d) - at(c)).sqrnorm();
         if (!shorter && warp(a, b, c, d) > tolerance_) return std::nullopt;
         const bool whole = half_[s / 3] && half_[t / 3] && s % 3 == 0 && t % 3 == 0;
@@ -346,7 +352,8 @@ private:
         tbb::parallel_sort(quads.begin(), quads.end(), [](const Quad& p, const Quad& q) {
             return p.score != q.score ? p.score > q.score : p.side < q.side;
         });
-        std::vector<Index> partner(half_.size(), no_index); // per triangle, the side that goes
+        // per triangle, the side across which it is joined, or no_index
+        std::vector<Index> partner(half_.size(), no_index);
         std::size_t joined = 0;
         for (const Quad& quad : quads) {
             const Index s = quad.side, t = twin_[s], a = corners_[s], b = corners_[t];
@@ -362,7 +369,7 @@ private:
         return joined;
     }
 
-    /// What is left of the triangles, group by group.
+    /// Writes the remaining triangles and the quads, group by group.
     void add_groups(const std::vector<Index>& partner) {
         const auto [first, members] = groups();
         std::vector<Key> facets;
@@ -370,7 +377,7 @@ private:
             const auto group = std::span(members).subspan(first[g], first[g + 1] - first[g]);
             facets.clear();
             for (Index t : group)
-                if (t == 0 || facet_[t - 1] != facet_[t]) facets.push_back(facet_names_[facet_[t]]);
+                if (t == 0 || facet_[t - 1] != facet_[t]) facets.push_back(facet_keys_[facet_[t]]);
             now_.begin(facets);
             for (Index t : group) {
                 const Index s = partner[t];
@@ -385,10 +392,10 @@ private:
 
     void add_to_group(std::span<const Index> ring) {
         kept_.add_facet(ring);
-        now_.add_ring(ring, names_);
+        now_.add_ring(ring, vertex_keys_);
     }
 
-    /// Triangles that were flipped or joined together, and halves of the same quad.
+    /// Triangles connected by flips or joins, and halves of one quad, as compressed rows.
     struct Groups {
         std::vector<Index> first, members;
     };
@@ -398,11 +405,12 @@ private:
         Index count = 0;
         for (Index t = 1; t < number.size(); ++t)
             if (facet_[t - 1] == facet_[t]) united_->join(t - 1, t);
-        for (Index t = 0; t < number.size(); ++t) { // the least member stands for all
+        for (Index t = 0; t < number.size(); ++t) { // the least member represents its group
             const Index least = united_->find(t);
             number[t] = least == t ? count++ : number[least];
         }
-        // Two to the right, so that filling the triangles in moves them to their places.
+        // Counts are stored two to the right, so that filling in the triangles moves the starts to their
+        // places.
         result.first.assign(count + 2, 0);
         result.members.resize(number.size());
         for (Index n : number) ++result.first[n + 2];
@@ -417,37 +425,37 @@ private:
     RemeshedGroups& before_;
     RemeshedGroups now_;
     double tolerance_;
-    std::vector<Key> names_;             // per vertex, of its place
-    KeyIndex vertices_;                  // by names
-    std::vector<Key> facet_names_;       // per facet
-    std::vector<Index> group_;           // per facet, of those that became before what they are to become
-    std::optional<DisjointSets> united_; // triangles that were turned or joined together
-    PolygonMesh kept_;                   // facets that are done
+    std::vector<Key> vertex_keys_; // key of each vertex's place
+    KeyIndex vertices_;            // vertices by those keys
+    std::vector<Key> facet_keys_;  // key of each facet
+    std::vector<Index> group_; // per facet, its group in `before`, whose result it takes over, or no_index
+    std::optional<DisjointSets> united_; // triangles connected by flips or joins
+    PolygonMesh kept_;                   // facets of the result
     std::vector<Index> corners_;         // three per triangle
     std::vector<std::uint8_t> half_;   // per triangle, is it half of a former quad, the diagonal its side 0?
     std::vector<Index> facet_;         // per triangle, the facet it was cut from
     std::vector<Index> twin_;          // per side of a triangle
-    bool crowded_ = false;             // has some edge more than two facets?
+    bool crowded_ = false;             // does some edge have more than two facets?
     std::vector<Look> look_;           // per side
-    std::vector<Verdict> verdicts_;    // per side, as of the sweep's start
-    std::vector<std::uint8_t> turned_; // per triangle, in this sweep
-    std::vector<std::uint8_t> waits_;  // per triangle, has it sides to be turned or judged anew?
+    std::vector<Verdict> verdicts_;    // per side, as of the start of the sweep
+    std::vector<std::uint8_t> turned_; // per triangle, was it flipped in this sweep?
+    std::vector<std::uint8_t> waits_;  // per triangle, has it sides to flip or to judge again?
     Index hint_ = no_index;
-    std::vector<Index> facets_, least_facets_; // per vertex: three, or one at a border
+    // per vertex, how many facets it has and how many it must keep: three, or one at a border
+    std::vector<Index> facets_, least_facets_;
 };
 
 } // namespace
 
-RemeshCounts remesh_by_flips(PolygonMesh& mesh, ToleranceEnvelope& fine,
-                             std::span<const std::uint8_t> settled, Diagonals diagonals) {
+RemeshCounts remesh_by_flips(PolygonMesh& mesh, ToleranceEnvelope& fine, std::span<const std::uint8_t> fixed,
+                             Diagonals diagonals) {
     RemeshedGroups none;
-    return remesh_by_flips(mesh, fine, settled, diagonals, none);
+    return remesh_by_flips(mesh, fine, fixed, diagonals, none);
 }
 
-RemeshCounts remesh_by_flips(PolygonMesh& mesh, ToleranceEnvelope& fine,
-                             std::span<const std::uint8_t> settled, Diagonals diagonals,
-                             RemeshedGroups& before) {
-    const RemeshCounts counts = FlipRemeshing(mesh, fine, settled, before).run(diagonals);
+RemeshCounts remesh_by_flips(PolygonMesh& mesh, ToleranceEnvelope& fine, std::span<const std::uint8_t> fixed,
+                             Diagonals diagonals, RemeshedGroups& before) {
+    const RemeshCounts counts = FlipRemeshing(mesh, fine, fixed, before).run(diagonals);
     cut_straight_corners(mesh, flips::reflex);
     return counts;
 }

@@ -1,5 +1,6 @@
 #pragma once
-// Facets over leaves of different size, cut and joined anew over the same vertices.
+// Remeshes facets over leaves of different size by edge flips and by joining triangles, over the same
+// vertices.
 
 #include "hsdm/simplify/remeshed_groups.hh"
 #include "hsdm/simplify/tolerance_envelope.hh"
@@ -11,25 +12,24 @@ namespace hsdm {
 enum class Diagonals { may_flip, stay };
 
 struct RemeshCounts {
-    std::size_t flipped = 0; ///< diagonals laid the other way
-    std::size_t joined = 0;  ///< pairs of triangles that became quads
+    std::size_t flipped = 0; ///< diagonals flipped
+    std::size_t joined = 0;  ///< pairs of triangles joined to quads
 };
 
-/// Cuts quads into triangles, lays diagonals where they are near the fine surface (so along creases) and
-/// otherwise so that triangles are well shaped, and joins flat pairs of triangles to convex quads, those
-/// first that are nearest to rectangles. What is in the band round the fine surface, or no more than its
-/// tolerance off a plane, counts as on it. A 2-manifold remains one with the same vertices; facets of which
-/// all vertices are `settled`, and those of more than four corners, stay. At the end quads with a reflex
-/// corner, wherever they are, are cut in two. O(corners log corners).
+/// Cuts quads into triangles, flips diagonals so that they lie on the fine surface (so along creases) and
+/// else so that triangles are well shaped, and joins flat pairs of triangles to convex quads, those nearest
+/// to rectangles first. Diagonals in the envelope `fine`, or of quads no more than its tolerance off a plane,
+/// count as on the surface. A 2-manifold remains one with the same vertices. Facets of which all vertices are
+/// `fixed`, and those of more than four corners, stay. At the end quads with a reflex corner, wherever they
+/// are, are cut in two. O(corners log corners).
 ///
-/// `before`: what became of another mesh's facets, with the same surface and kind of diagonals; where this
-/// one has the same it becomes the same, and only what changed, and what is beside it, is looked at; unless
-/// that does not go together, when all is looked at. It is replaced by what this mesh's became.
-RemeshCounts remesh_by_flips(PolygonMesh& mesh, ToleranceEnvelope& fine,
-                             std::span<const std::uint8_t> settled, Diagonals diagonals,
-                             RemeshedGroups& before);
-RemeshCounts remesh_by_flips(PolygonMesh& mesh, ToleranceEnvelope& fine,
-                             std::span<const std::uint8_t> settled,
+/// `before`: the groups of another mesh that was remeshed with the same surface and `diagonals`. Groups of
+/// facets that this mesh has too get the same result without being looked at, only changed facets and those
+/// beside them are remeshed; if the results do not fit together, all are. On return it holds the groups of
+/// this mesh.
+RemeshCounts remesh_by_flips(PolygonMesh& mesh, ToleranceEnvelope& fine, std::span<const std::uint8_t> fixed,
+                             Diagonals diagonals, RemeshedGroups& before);
+RemeshCounts remesh_by_flips(PolygonMesh& mesh, ToleranceEnvelope& fine, std::span<const std::uint8_t> fixed,
                              Diagonals diagonals = Diagonals::may_flip);
 
 } // namespace hsdm

@@ -25,8 +25,8 @@ public:
 private:
     const Vec3& at(Index v) const { return mesh_.at(v); }
 
-    /// Is the start of a side on a flat place or a straight crease? Leaves its ring, which then begins at the
-    /// crease's end, and where its other end is: 0 on a flat place.
+    /// Is the start of a side on a flat place or a straight crease? Leaves its neighbours in ring_, starting
+    /// at one end of the crease, and the position of its other end in other_end_ (0 on a flat place).
     bool may_go(Index side) {
         vertex_ = mesh_.start(side);
         if (!gives_way(vertex_) || !mesh_.ring_of(side, ring_)
@@ -50,7 +50,7 @@ private:
         return count == 0 || is_straight(at(ring_[0]), at(ring_[other_end_]));
     }
 
-    /// May others merge into it, and it into others?
+    /// May the vertex merge into others, and others into it?
     bool gives_way(Index v) const { return reach_[v] > 0 && !mesh_.is_locked(v); }
 
     /// Does a crease go straight on at the vertex?
@@ -89,9 +89,9 @@ private:
         return goes;
     }
 
-    /// Adds the edges to turn, in order, by the neighbours that they lead to now, so that between the
-    /// crease's ends the vertex keeps one neighbour, or of a whole ring three or four. They are left in
-    /// `chain_`. False if that cannot be.
+    /// Chooses the edges of the vertex to flip: appends to turned_, in order, the neighbours that they lead
+    /// to, so that between the crease's ends the vertex keeps one neighbour, or of a whole ring three or
+    /// four; the remaining neighbours are left in chain_. False if that is impossible.
     bool turn_edges(std::size_t begin, std::size_t end, bool is_ring) {
         Vec3 up(0, 0, 0);
         for (std::size_t i = begin; i < end; ++i) up += normals_[i];
@@ -107,11 +107,12 @@ private:
             turned_.push_back(chain_[ear]);
             chain_.erase(chain_.begin() + static_cast<std::ptrdiff_t>(ear));
         }
-        // Of a ring, four may be left with the vertex between two of them.
+        // Of a ring four may be left, if the vertex lies on the line between two of them.
         return chain_.size() == 3 || (is_ring && chain_.size() == 4);
     }
 
-    /// Of neighbours in the chain whose own two see each other the one with the best triangles.
+    /// Among the neighbours in the chain that can be cut off (the two beside them see each other) the one
+    /// with the best triangles; chain_.size() if there is none.
     std::size_t best_ear(const Vec3& up, bool is_ring) const {
         const std::size_t n = chain_.size();
         std::size_t best = n;
@@ -131,7 +132,7 @@ private:
         return best;
     }
 
-    /// Of the sides that start where this one does, that to a neighbour.
+    /// The side from the start of this one to a neighbour.
     Index side_to(Index side, Index neighbour) const {
         while (mesh_.end(side) != neighbour) side = mesh_.twin(previous_side(side));
         return side;
@@ -141,7 +142,7 @@ private:
     const std::vector<double>& reach_;
     Index vertex_ = no_index;
     std::vector<Index> ring_, chain_, turned_, flipped_;
-    std::vector<Vec3> normals_; // of the triangle from each of the ring to the next
+    std::vector<Vec3> normals_; // per neighbour, of the triangle between it and the next
     std::size_t other_end_ = 0;
     double least_ = 0;
 };
@@ -149,10 +150,10 @@ private:
 } // namespace
 
 std::size_t remove_flat_vertices(CollapsingMesh& mesh, const std::vector<double>& reach) {
-    FlatVertexRemoval straightening(mesh, reach);
+    FlatVertexRemoval removal(mesh, reach);
     std::size_t removed = 0;
     for (int round = 0; round < flat_vertices::rounds; ++round) {
-        const std::size_t now = straightening.round();
+        const std::size_t now = removal.round();
         if (now == 0) break;
         removed += now;
     }

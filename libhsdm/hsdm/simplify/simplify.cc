@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t vertices_per_chunk = 2048, facets_per_chunk = 8192;
 constexpr std::size_t fewest_samples = 10000, most_samples = 100000;
 
-/// A cluster: a vertex of the result.
+/// A cluster, which becomes a vertex of the result.
 struct Place {
     int level = 0;
     Index cluster = no_index;
@@ -38,7 +38,7 @@ public:
           points_(points),
           options_(options),
           tree_(build_cell_tree(fine.positions, extent, depth)) {
-        tbb::parallel_invoke( // either has steps that one thread takes alone
+        tbb::parallel_invoke( // in parallel, because each has steps that run on one thread
             [&] {
                 patches_ = find_planar_patches(fine, bounds::patch_share * options.max_error);
                 planes_ = vertex_planes(fine, patches_, tolerance());
@@ -70,15 +70,15 @@ public:
     }
 
 private:
-    /// One mesh over the leaves as they are; returns how many leaves have to be smaller.
+    /// Builds and checks the mesh over the current leaves, and subdivides those at faults; returns how many.
     std::size_t split_what_is_wrong() {
         result_.balance_splits += balance(tree_);
         collapse();
         drop_doublets();
         const std::size_t troubled = split_troubled();
         result_.topology_splits += troubled;
-        if (troubled > 0) return troubled; // all else needs a 2-manifold
-        remesh_by_flips(result_.mesh, checks_->band(), own(), Diagonals::may_flip, tidied_);
+        if (troubled > 0) return troubled; // the other checks need a 2-manifold
+        remesh_by_flips(result_.mesh, checks_->envelope(), own(), Diagonals::may_flip, remeshed_);
         const Findings found = checks_->look_at(result_.mesh);
         faults_ = found.count();
         set_beyond(found.far_points);
@@ -88,12 +88,12 @@ private:
         return crossing + distant;
     }
 
-    /// Makes do with fewer vertices than leaves.
+    /// Merges vertices of leaves (decimate).
     void merge() {
         LeafMesh leaves{std::move(result_.mesh), std::move(vertex_)};
         std::vector<Quadric> leaf_planes(leaves.mesh.vertex_count());
         for (std::size_t v = 0; v < planes_.size(); ++v) leaf_planes[leaves.vertex[v]] += planes_[v];
-        // Where doublets were dropped a neighbour has their planes too.
+        // A vertex that stands for a dropped doublet has that one's planes too.
         for (std::size_t v = 0; v < leaf_planes.size(); ++v)
             leaf_planes[v].drop_shared(leaves.mesh.positions[v], tolerance());
         planes_ = std::vector<Quadric>();
@@ -110,7 +110,7 @@ private:
         coarse_ = picked(coarse_, nearest);
     }
 
-    /// Per vertex of the result the nearest of those that were merged there.
+    /// Per vertex of the result, the nearest of the leaves' vertices that were merged there.
     std::vector<Index> nearest_leaves(const PolygonMesh& leaves, const std::vector<Index>& vertex) const {
         std::vector<Index> nearest(result_.mesh.vertex_count(), no_index);
         for (Index leaf = 0; leaf < vertex.size(); ++leaf) {
@@ -135,7 +135,7 @@ private:
         set_beyond(checks_->far_points(result_.mesh));
     }
 
-    /// The leaf and the cluster of every fine vertex.
+    /// Finds the leaf and the cluster of every fine vertex.
     void locate() {
         places_.resize(fine_.vertex_count());
         for_chunks(places_.size(), vertices_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -154,7 +154,7 @@ private:
         });
     }
 
-    /// The mesh over the leaves: a facet stays while it has three different vertices.
+    /// Builds the mesh over the leaves: a facet remains if it has three different vertices.
     void collapse() {
         locate();
         std::vector<std::vector<Index>> number(clusters_.size());
@@ -191,7 +191,7 @@ private:
         pinched_ = joined(pinched);
     }
 
-    /// Their neighbours take over the fine vertices.
+    /// Removes doublets; neighbours stand for their fine vertices from then on.
     void drop_doublets() {
         std::vector<Index> stands_for = dissolve_doublets(result_.mesh);
         coarse_ = picked(coarse_, drop_replaced(result_.mesh, stands_for));
@@ -200,16 +200,16 @@ private:
 
     double tolerance() const { return bounds::planes_share * options_.max_error; }
 
-    /// Per vertex of the result, is it one of the fine mesh?
+    /// Per vertex of the result, is it a vertex of the fine mesh?
     std::vector<std::uint8_t> own() const {
         std::vector<std::uint8_t> result(coarse_.size());
         for (std::size_t v = 0; v < result.size(); ++v) result[v] = coarse_[v].level == tree_.depth();
         return result;
     }
 
-    /// The simple loops of three vertices and more that are left of a facet whose vertices coincide in part.
-    /// False if corners coincide that are not next to each other: what the surface has between them could be
-    /// a handle. `open` is room to work in.
+    /// Adds the simple loops of at least three vertices that remain of a facet some of whose vertices
+    /// coincide. False if corners coincide that are not next to each other: what the surface has between them
+    /// could be a handle. `open` is scratch.
     static bool add_loops(std::vector<Index>& ring, std::vector<Index>& open, PolygonMesh& mesh) {
         ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
         while (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
@@ -240,7 +240,7 @@ private:
         for (Index f : pinched_)
             for (Index v : fine_.facet(f)) splits += split_at(places_[v]);
         if (splits > 0 || troubled.empty()) return splits;
-        // Vertices of the deepest level alone cannot be helped: their neighbours can.
+        // Leaves of the deepest level cannot be subdivided: subdivide those of their neighbours.
         for (Index v : troubled) due[v] = 1;
         for (std::size_t f = 0; f < result_.mesh.facet_count(); ++f) {
             const auto ring = result_.mesh.facet(f);
@@ -250,7 +250,7 @@ private:
         return splits;
     }
 
-    /// Vertices whose facets have all gone: a piece of the surface as small as a leaf.
+    /// Adds vertices that have lost all facets: a piece of the surface as small as a leaf.
     void add_lost(std::vector<Index>& troubled) const {
         std::vector<std::uint8_t> lost(coarse_.size(), 0);
         for (Index v : fine_.corners) lost[vertex_[v]] = 1;
@@ -281,7 +281,7 @@ private:
         return splits;
     }
 
-    /// The leaves around a point; where there are none to subdivide, those of the facet nearest to it.
+    /// Subdivides the leaves around a point or, if none can be, those of the facet nearest to it.
     std::size_t split_near(const Vec3& point) {
         const std::size_t splits = split_around(point);
         if (splits > 0) return splits;
@@ -289,7 +289,7 @@ private:
         return facet == no_index ? 0 : split_facet(facet);
     }
 
-    /// The leaf that holds a point, or else those around it.
+    /// Subdivides the leaf that holds a point or, if it cannot be, those around it.
     std::size_t split_around(const Vec3& point) {
         const MortonCode code = tree_.code_at(point);
         std::size_t splits = 0;
@@ -328,9 +328,9 @@ private:
     std::vector<Index> vertex_;  // per fine vertex, the vertex of the result
     std::vector<Place> coarse_;  // per vertex of the result
     std::vector<Index> pinched_; // facets of the fine mesh with opposite corners in one vertex
-    RemeshedGroups tidied_;      // in the round before
+    RemeshedGroups remeshed_;    // results of the round before
     std::optional<MeshChecks> checks_;
-    FaultCounts faults_; // of the last round, whether leaves could be smaller there or not
+    FaultCounts faults_; // of the last round, including those at leaves that cannot be subdivided
     AdaptiveMesh result_;
 };
 

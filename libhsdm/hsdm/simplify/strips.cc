@@ -10,10 +10,11 @@
 namespace hsdm {
 namespace {
 
-constexpr double half_of_rms = 1.677;    // of a parabola about its mean: half of what it spans, sqrt(45) / 4
-constexpr double rise_of_mean = 1.0 / 3; // ... and how far its mean is off the middle, in such halves
+// half the height that a parabola spans, over its root mean square about its mean: sqrt(45) / 4
+constexpr double half_of_rms = 1.677;
+constexpr double rise_of_mean = 1.0 / 3; // distance of its mean height from the middle one, in such halves
 
-/// Facets of a strip: their plane, and how far they are off it.
+/// Sums over the facets of a strip: for their plane and its error.
 struct StripSum {
     Vec3 area{0, 0, 0}, moment{0, 0, 0};
     double squares[6] = {0, 0, 0, 0, 0, 0}; // xx, xy, xz, yy, yz, zz
@@ -29,7 +30,7 @@ struct StripSum {
             for (unsigned j = i; j < 3; ++j) squares[k++] += w * at[i] * at[j];
     }
 
-    /// From the plane, which goes through the mean.
+    /// Root mean square distance from a plane through the mean.
     double rms(const Plane& plane) const {
         const Vec3& n = plane.normal;
         const double square =
@@ -42,7 +43,7 @@ struct StripSum {
 class Cutting {
 public:
     Cutting(const FacetField& field, const DevelopableRegion& region)
-        : field_(field), belt_(region), share_(region.facets.size()) {
+        : field_(field), region_(region), share_(region.facets.size()) {
         double lo = std::numeric_limits<double>::max(), hi = -lo;
         for (Index f : region.facets) {
             sum_ += field.area[f];
@@ -62,7 +63,7 @@ public:
         for (int tries = 0; tries < strips::most_tries && resolves(m); ++tries) {
             const double missed = cut(m);
             if (missed <= tolerance) return std::move(strips_);
-            // What an arc spans goes with the square of its length.
+            // The height that an arc spans grows with the square of its length.
             const double growth =
                 std::min(strips::growth * std::sqrt(missed / tolerance), most_growth(missed));
             m = std::max(m + 1, static_cast<std::size_t>(growth * static_cast<double>(m)));
@@ -71,13 +72,13 @@ public:
     }
 
 private:
-    /// Round the axis: where lines on the region are by the directions of normals, weighted so that strips of
-    /// equal shares span equal heights. An arc of the angle a and the radius r spans r a^2 / 8, so shares go
-    /// with the square root of r, the length per angle.
+    /// Per facet, its position round the axis, 0 to 1, by the direction of its normal, weighted so that
+    /// strips of equal shares span equal heights. An arc of angle a and radius r spans r a^2 / 8, so shares
+    /// grow with the square root of r, the length per angle.
     void find_shares() {
-        const Vec3& axis = belt_.axis.direction;
+        const Vec3& axis = region_.axis.direction;
         Vec3 x = sum_ - axis * (axis | sum_);
-        if (x.norm() < strips::least_lean * all_area_) { // all round: any direction will do
+        if (x.norm() < strips::least_lean * all_area_) { // normals all round: start anywhere
             Vec3 other(0, 0, 0);
             other[least_component(axis)] = 1;
             x = axis % other;
@@ -85,14 +86,14 @@ private:
         x = unit(x);
         const Vec3 y = axis % x;
         for (std::size_t i = 0; i < share_.size(); ++i) {
-            const Vec3& normal = field_.mean_normal[belt_.facets[i]];
+            const Vec3& normal = field_.mean_normal[region_.facets[i]];
             share_[i] = std::atan2(normal | y, normal | x) / strips::bin_width;
         }
         const auto [least, most] = std::minmax_element(share_.begin(), share_.end());
         const double first = *least;
         std::vector<double> until(2 + static_cast<std::size_t>(*most - first), 0);
         for (std::size_t i = 0; i < share_.size(); ++i)
-            until[1 + static_cast<std::size_t>(share_[i] - first)] += field_.area[belt_.facets[i]].norm();
+            until[1 + static_cast<std::size_t>(share_[i] - first)] += field_.area[region_.facets[i]].norm();
         for (std::size_t k = 1; k < until.size(); ++k) until[k] = until[k - 1] + std::sqrt(until[k]);
         for (double& share : share_) {
             const auto k = static_cast<std::size_t>(share - first);
@@ -108,7 +109,8 @@ private:
         return least;
     }
 
-    /// Of the number of strips: strips that turn too far tell nothing but that.
+    /// Largest growth of the number of strips in one try; small if the last strips turned too far, which says
+    /// nothing about the number needed.
     static double most_growth(double missed) { return std::isfinite(missed) ? 1000 : strips::blind_growth; }
 
     bool resolves(std::size_t m) const {
@@ -116,7 +118,7 @@ private:
                <= static_cast<double>(share_.size());
     }
 
-    /// Returns half of what the worst strip spans across its plane.
+    /// Cuts into m strips; returns half of the height that the worst strip spans across its plane.
     double cut(std::size_t m) {
         strips_ = {std::vector<Index>(share_.size()), std::vector<Plane>(m)};
         for (std::size_t i = 0; i < share_.size(); ++i)
@@ -132,10 +134,10 @@ private:
     double fit_planes() {
         std::vector<StripSum> sums(strips_.planes.size());
         for (std::size_t i = 0; i < share_.size(); ++i) {
-            const Index f = belt_.facets[i];
+            const Index f = region_.facets[i];
             sums[strips_.of[i]].add(field_.area[f], field_.centre[f] - origin_);
         }
-        const auto& [axis, cosine, deviation] = belt_.axis;
+        const auto& [axis, cosine, deviation] = region_.axis;
         double missed = 0;
         for (std::size_t k = 0; k < sums.size(); ++k) {
             if (!(sums[k].weight > 0)) continue;
@@ -153,14 +155,14 @@ private:
         return missed;
     }
 
-    double outward() const { return belt_.convex ? 1 : -1; }
+    double outward() const { return region_.convex ? 1 : -1; }
 
-    /// A facet goes to the plane beside it that it is farther outside of, or inside where the region is
-    /// concave: so the line where two planes meet is where one strip ends and the next begins.
+    /// Moves each facet to that of its strip's plane and the two beside it that it is farthest outside of
+    /// (inside of, if the region is concave), so that strips meet where their planes do.
     void take_over() {
         const std::size_t m = strips_.planes.size();
         for (std::size_t i = 0; i < share_.size(); ++i) {
-            const Index f = belt_.facets[i];
+            const Index f = region_.facets[i];
             const std::size_t was = strips_.of[i];
             double highest = std::numeric_limits<double>::lowest();
             for (const std::size_t k : {(was + m - 1) % m, was, (was + 1) % m}) {
@@ -176,11 +178,11 @@ private:
     }
 
     const FacetField& field_;
-    const DevelopableRegion& belt_;
-    std::vector<double> share_;           // per facet, of the way round the region, 0 to 1
-    Vec3 sum_{0, 0, 0}, origin_{0, 0, 0}; // of area vectors; middle
-    double all_area_ = 0;                 // sum of their lengths
-    double facets_along_ = 0;             // the axis
+    const DevelopableRegion& region_;
+    std::vector<double> share_;           // per facet, its position round the region
+    Vec3 sum_{0, 0, 0}, origin_{0, 0, 0}; // sum of area vectors; mean of the facets' centres
+    double all_area_ = 0;                 // sum of the area vectors' lengths
+    double facets_along_ = 0;             // length of the region along the axis, in facets
     Strips strips_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Rows of facets for what bends one way only.
+// Cuts developable regions into strips, which become rows of facets.
 
 #include "hsdm/simplify/developable_regions.hh"
 #include "hsdm/simplify/quadric.hh"
@@ -8,16 +8,16 @@
 
 namespace hsdm {
 
-/// A region cut along straight lines on it, rulings, into planes.
+/// A region cut along its rulings (straight lines on it) into strips with a plane each.
 struct Strips {
-    std::vector<Index> of; ///< per facet of the region
+    std::vector<Index> of; ///< per facet of the region, its strip
     std::vector<Plane> planes;
 };
 
-/// As few strips as keep within `tolerance` of their planes (the mesh's units, > 0), each spanning about as
-/// much as the others; none if strips so narrow are not resolved by the facets. The surface bulges to either
-/// side of a plane alike, and where neighbours' planes meet one takes over from the other. O(n) for each of a
-/// few numbers of strips.
+/// Cuts a region to as few strips as keep within `tolerance` of their planes (the mesh's units, > 0), each
+/// spanning about the same height across its plane; none if strips would be too narrow for the facets to
+/// resolve. The surface bulges to either side of a plane by the same amount, and strips meet where their
+/// planes do. O(n) for each number of strips tried, a few.
 std::optional<Strips> cut_to_strips(const FacetField& field, const DevelopableRegion& region,
                                     double tolerance);
 

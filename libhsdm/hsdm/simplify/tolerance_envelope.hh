@@ -1,5 +1,5 @@
 #pragma once
-// Which places lie on a surface, within a tolerance.
+// The tolerance envelope of a surface: which places lie on it, within a tolerance.
 
 #include "hsdm/simplify/content_keys.hh"
 #include "hsdm/spatial/surface_walk.hh"
@@ -8,17 +8,17 @@
 
 namespace hsdm {
 
-/// Remembers what it was asked: one mesh after the other has most places in common.
+/// Answers are remembered, because most places of one mesh are in the next too.
 class ToleranceEnvelope {
 public:
-    /// `surface` must outlive it; `places`: about as many are remembered, in 16 to 32 bytes each.
+    /// `surface` must outlive this; about `places` answers are remembered, in 16 to 32 bytes each.
     ToleranceEnvelope(const SurfaceWalk& surface, double tolerance, std::size_t places);
 
     /// Is the place no more than the tolerance off the surface? `hint` as for SurfaceWalk. From any thread.
     bool holds(const Vec3& place, Index& hint);
 
-    /// What `find()` returns, below 16, which must follow from the surface and from what the key stands for.
-    /// From any thread.
+    /// The result of `find()`, remembered by `key`. It must be below 16 and depend only on the surface and on
+    /// what the key stands for. From any thread.
     template <class Find>
     unsigned remembered(Key key, const Find& find);
 
@@ -28,13 +28,15 @@ public:
 private:
     const SurfaceWalk& surface_;
     double tolerance_;
-    std::vector<std::atomic<Key>> known_; // a power of two: keys, their last bits the answer
+    // hash table of a power of two slots: keys with the answer in their lowest bits
+    std::vector<std::atomic<Key>> known_;
     int shift_;
 };
 
 template <class Find>
 unsigned ToleranceEnvelope::remembered(Key key, const Find& find) {
-    constexpr std::size_t most_steps = 8; // past slots that others have: whatever finds none is asked again
+    // slots to try; if all are taken by other keys the answer is not stored
+    constexpr std::size_t most_steps = 8;
     constexpr Key answer = 15, taken = 16;
     key = (key | taken) & ~answer;
     std::size_t slot = key >> shift_;
