@@ -16,7 +16,7 @@ std::size_t find_in(const RingVertices& ring, Index v) {
     return static_cast<std::size_t>(std::find(ring.begin(), ring.end(), v) - ring.begin());
 }
 
-/// A ring from position `at` on, all round.
+/// The ring rotated to start at position `at`.
 RingVertices starting_at(const RingVertices& ring, std::size_t at) {
     RingVertices turned = ring;
     std::rotate(turned.begin(), turned.begin() + static_cast<std::ptrdiff_t>(at), turned.end());
@@ -28,7 +28,7 @@ bool is_simple(RingVertices ring) {
     return std::adjacent_find(ring.begin(), ring.end()) == ring.end();
 }
 
-/// The facets around the edges, as rings that may change.
+/// The facets around the edges to collapse, as rings that can be changed.
 class Patch {
 public:
     Patch(PolygonMesh& mesh, std::span<const EdgeCollapse> edges)
@@ -66,7 +66,7 @@ public:
         return false;
     }
 
-    /// Writes the rings back; those of fewer than three vertices are gone.
+    /// Writes the rings back to the mesh, without those of fewer than three vertices.
     void write() const {
         PolygonMesh kept;
         std::size_t next = 0;
@@ -85,10 +85,10 @@ private:
         Index ring;
         RingVertices after;
         Vec3 area_before;
-        double least_area; // over the longest side squared
+        double least_area; // smallest area allowed, over the longest side squared
     };
 
-    /// The vertex in whose place v is now, itself at first.
+    /// The vertex that has replaced v, v itself at first.
     Index stand_in(Index v) const {
         while (stand_in_[slot_[v]] != v) v = stand_in_[slot_[v]];
         return v;
@@ -96,7 +96,7 @@ private:
 
     const std::vector<Index>& rings_at(Index v) const { return rings_at_[slot_[v]]; }
 
-    /// Notes a ring with those of its vertices that edges have.
+    /// Enters a ring at those of its vertices that are ends of edges to collapse.
     void list(Index ring) {
         for (Index v : rings_[ring])
             if (slot_[v] != no_index) rings_at_[slot_[v]].push_back(ring);
@@ -135,14 +135,14 @@ private:
         }
         if (both != 2) return false;
         const std::vector<Index> one = neighbours_of(from), other = neighbours_of(to);
-        // Those of a border have one neighbour more than facets; joined, they would pinch the surface.
+        // A border vertex has one neighbour more than facets; merging two would pinch the surface.
         if (one.size() > rings_at(from).size() && other.size() > rings_at(to).size()) return false;
         std::vector<Index> common;
         std::set_intersection(one.begin(), one.end(), other.begin(), other.end(), std::back_inserter(common));
         return common.size() == triangles;
     }
 
-    /// The rings around an edge as they are after its collapse.
+    /// Lists the changes to the rings around an edge that its collapse makes.
     void gather(Index from, Index to) {
         std::vector<Index> around = rings_at(from);
         around.insert(around.end(), rings_at(to).begin(), rings_at(to).end());
@@ -185,7 +185,8 @@ private:
 
     bool has_area(const Change& change) const { return relative_area(change.after) > change.least_area; }
 
-    /// Unites the rings without area with the one across their longest side, which must end at `centre`.
+    /// Unites each ring without area with the one across its longest side, which must end at `centre`; false
+    /// if that is impossible.
     bool unite_flat(Index centre) {
         for (Change& flat : changes_) {
             if (flat.after.size() < 3 || has_area(flat)) continue;
@@ -194,7 +195,7 @@ private:
             if (a != centre && b != centre) return false;
             Change* beyond = across(flat, a, b);
             if (!beyond) return false;
-            // From b round the flat ring to a, then round the other from behind a to before b.
+            // From b along the flat ring to a, then along the other from after a to before b.
             RingVertices united = starting_at(flat.after, find_in(flat.after, b));
             const RingVertices other = starting_at(beyond->after, find_in(beyond->after, a));
             united.insert(united.end(), other.begin() + 1, other.end() - 1);
@@ -205,7 +206,7 @@ private:
         return true;
     }
 
-    /// The other ring with the side from b to a.
+    /// The change of the other ring that has the side from b to a.
     Change* across(const Change& flat, Index a, Index b) {
         for (Change& change : changes_) {
             const std::size_t at = find_in(change.after, b);
@@ -224,7 +225,7 @@ private:
         });
     }
 
-    /// Are the sides of a ring that end at `centre` long enough?
+    /// Are the sides of a ring at `centre` long enough?
     bool has_sides(const RingVertices& ring, Index centre) const {
         const std::size_t at = find_in(ring, centre), i = longest_side(ring);
         const double least = edge_collapses::least_side * edge_collapses::least_side
@@ -233,7 +234,8 @@ private:
                && squared_length(centre, ring[(at + ring.size() - 1) % ring.size()]) > least;
     }
 
-    /// Counts the facets at each vertex anew, unless one but `gone` would lose its third.
+    /// Updates the facet count of each vertex; false, and no update, if a vertex other than `gone` would lose
+    /// its third facet.
     bool keeps_thirds(Index gone) {
         const auto has_three = [&](Index v) { return v == gone || facet_count_[v] >= 3; };
         std::vector<Index> with_three;
@@ -263,13 +265,13 @@ private:
     }
 
     PolygonMesh& mesh_;
-    std::vector<Index> slot_;                  // per vertex of an edge, its place in rings_at_
-    std::vector<std::vector<Index>> rings_at_; // round each of them
-    std::vector<Index> stand_in_;              // for each of them
-    std::vector<Index> facets_;                // of the rings, ascending
+    std::vector<Index> slot_; // per vertex that is an end of an edge to collapse, its place in
+    std::vector<std::vector<Index>> rings_at_; // per such vertex, the rings around it
+    std::vector<Index> stand_in_;              // per such vertex, the vertex that replaces it
+    std::vector<Index> facets_;                // the facet of each ring, ascending
     std::vector<RingVertices> rings_;
     std::vector<int> facet_count_; // per vertex
-    std::vector<Change> changes_;  // of the edge at hand
+    std::vector<Change> changes_;  // of the current collapse
 };
 
 } // namespace

@@ -7,10 +7,10 @@
 
 namespace hsdm {
 
-/// Makes one facet of the two around every inner vertex that has no third, if `expendable(vertex)` or if the
-/// two are folded onto each other (by more than 107 degrees) and could only intersect when cut into
-/// triangles. The vertex stays, isolated. A 2-manifold remains one: doublets whose union would have fewer
-/// than three corners or a vertex twice are left alone. Returns how many were merged. O(facets).
+/// Merges the two facets around every inner vertex that has no third, if `expendable(vertex)`, or if the two
+/// are folded onto each other by more than 107 degrees, so that they would intersect when cut into triangles.
+/// The vertex stays, isolated. A 2-manifold stays one: doublets whose union would have fewer than three
+/// corners or a vertex twice are left alone. Returns how many were merged. O(facets).
 std::size_t merge_doublets(PolygonMesh& mesh, const std::function<bool(Index)>& expendable);
 
 } // namespace hsdm

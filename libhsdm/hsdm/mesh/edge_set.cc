@@ -32,7 +32,7 @@ bool EdgeSet::contains(Index a, Index b) const {
 void EdgeSet::add(std::span<const Index> facet) {
     for (std::size_t i = 0; i < facet.size(); ++i) {
         const Index a = facet[i], b = facet[i + 1 < facet.size() ? i + 1 : 0];
-        // Vertices that came after this set belong to one polygon alone.
+        // Vertices added to the mesh after this set was made belong to one polygon alone.
         if (std::max(a, b) < shared_.size() && shared_[a] && shared_[b]) added_.insert(key(a, b));
     }
 }

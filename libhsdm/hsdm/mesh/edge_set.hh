@@ -1,5 +1,5 @@
 #pragma once
-// Which edges there are between a few vertices of a mesh: no second one may be laid there.
+// The edges between a few vertices of a mesh, along which no new diagonal may be laid.
 
 #include "hsdm/polygon_mesh.hh"
 
@@ -7,15 +7,15 @@
 
 namespace hsdm {
 
-/// Edges between marked vertices of a mesh, where no diagonal may be laid again.
+/// A set of the edges between given vertices of a mesh.
 class EdgeSet {
 public:
-    /// Of the mesh's edges those with both ends in `vertices`. A vertex that comes there more than once is
-    /// one that several polygons share. O(facets).
+    /// Holds the mesh's edges with both ends in `vertices`. A vertex listed more than once is one that
+    /// several polygons share. O(facets).
     EdgeSet(const PolygonMesh& mesh, std::span<const Index> vertices);
 
     bool contains(Index a, Index b) const;
-    /// Enters the edges of a new facet that other polygons might want too.
+    /// Adds those edges of a new facet that other polygons might use too.
     void add(std::span<const Index> facet);
 
 private:

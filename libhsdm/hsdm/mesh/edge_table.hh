@@ -1,6 +1,6 @@
 #pragma once
-// The sides of facets by the edges that they lie on: where every question about the adjacency of facets
-// begins that may be no 2-manifold yet. Of those that are one, FacetLinks know more.
+// The sides (half-edges) of facets grouped by edge: the basis of every question about adjacency in meshes
+// that may not be 2-manifolds. For 2-manifolds FacetLinks hold more.
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/polygon_mesh.hh"
@@ -11,14 +11,14 @@
 
 namespace hsdm {
 
-/// A side of a facet, which runs from its corner to the facet's next one, on an edge.
+/// A side of a facet, from one of its corners to the next, as part of an edge.
 struct EdgeSide {
     Index upper; ///< the higher one of the edge's two vertices
-    Index side;  ///< number of the corner that it starts at
+    Index side;  ///< the side's number: that of the corner it starts at
     auto operator<=>(const EdgeSide&) const = default;
 };
 
-/// The sides of any facets, those of an edge together and by ascending number.
+/// The sides of any facets, grouped by edge, in each by ascending number.
 class EdgeTable {
 public:
     /// `for_each_side(visit)` calls visit(from, to, side) for each side, from as many threads as it likes;
@@ -27,8 +27,8 @@ public:
     EdgeTable(std::size_t vertex_count, const ForEachSide& for_each_side);
     explicit EdgeTable(const PolygonMesh& mesh);
 
-    /// Calls visit(lower, edge, chunk) for every edge, from its lower vertex to edge[0].upper, with the sides
-    /// that lie on it; in parallel, those of one chunk in order.
+    /// Calls visit(lower, edge, chunk) for every edge, which joins vertex `lower` to edge[0].upper; `edge`
+    /// holds its sides. In parallel, the edges of one chunk in order.
     template <class Visit>
     void for_edges(const Visit& visit) const;
     std::size_t chunks() const { return chunk_count(first_.size() - 1, vertices_per_chunk); }
@@ -36,7 +36,7 @@ public:
 private:
     static constexpr std::size_t vertices_per_chunk = 1024, facets_per_chunk = 4096;
 
-    std::vector<Index> first_; // per vertex, where the sides of edges that it is the lower one of begin
+    std::vector<Index> first_; // per vertex, where the sides of the edges begin whose lower vertex it is
     std::vector<EdgeSide> sides_;
 };
 

@@ -134,7 +134,7 @@ private:
     /// The next side out of the same vertex around the fan, or no_index at its open end.
     Index rotate(Index c) const { return links_.twin[previous_side(facets_, links_.facet[c], c)]; }
 
-    /// Where a walk around the vertex must start so as to see the whole fan of the side.
+    /// Where to start rotating around the vertex so that the whole fan of the side is visited.
     Index fan_start(Index v) const {
         const auto sides = sides_out(v);
         const auto open = std::find_if(sides.begin(), sides.end(), [&](std::uint64_t key) {
@@ -143,7 +143,7 @@ private:
         return side_of(open == sides.end() ? sides.front() : *open);
     }
 
-    /// Gives the fan that starts with side c to the vertex; returns the number of its sides.
+    /// Assigns the fan that starts with side c to the vertex; returns the number of its sides.
     std::size_t assign_fan(Index c, Index vertex) {
         const Index begin = c;
         Index last = c;

@@ -34,7 +34,8 @@ VertexFacets facets_at_vertices(const PolygonMesh& mesh) {
     for_chunks(n, per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t v = begin; v < end; ++v) {
             at.count[v] = static_cast<std::uint8_t>(std::min<Index>(counts[v], 3));
-            if (counts[v] == 2) std::ranges::sort(at.facets[v]); // whoever came first
+            // in ascending order, whichever thread came first
+            if (counts[v] == 2) std::ranges::sort(at.facets[v]);
             if (counts[v] > 2) at.facets[v] = {};
         }
     });
@@ -44,7 +45,7 @@ VertexFacets facets_at_vertices(const PolygonMesh& mesh) {
 std::vector<Index> united_ring(const PolygonMesh& mesh, Index f, Index g, Index between) {
     std::vector<Index> ring = without(mesh.facet(f), between);
     const std::vector<Index> other = without(mesh.facet(g), between);
-    // An inner vertex: where f comes from, g goes to, and the other way round.
+    // The vertex is inner if g goes on where f comes from, and the other way round.
     if (ring.front() != other.back() || ring.back() != other.front()) return {};
     ring.insert(ring.end(), other.begin() + 1, other.end() - 1);
     std::vector<Index> sorted = ring;

@@ -1,5 +1,5 @@
 #pragma once
-// Pairs of facets round a vertex that no other facet has, and what takes their place.
+// Unions of two facets round a vertex that has no other facet.
 
 #include "hsdm/polygon_mesh.hh"
 
@@ -24,7 +24,7 @@ public:
     explicit FacetUnions(const PolygonMesh& mesh) : fate_(mesh.facet_count(), stays) {}
 
     bool is_free(Index f, Index g) const { return f != g && fate_[f] == stays && fate_[g] == stays; }
-    /// A ring of fewer than three vertices leaves no facet.
+    /// Replaces facets f and g by one with this ring, or by none if it has fewer than three vertices.
     void unite(Index f, Index g, std::vector<Index> ring);
     /// Each union stands where its first facet was; positions stay. Returns how many there were.
     std::size_t apply(PolygonMesh& mesh) const;

@@ -28,7 +28,7 @@ double diameter(const PolygonMesh& mesh, std::span<const Index> loop) {
     return box.diagonal();
 }
 
-/// Which side without twin follows which around a hole: succ of a side from a to b is one that ends in a.
+/// Finds which side without twin follows which around a hole: the side after one from a to b ends in a.
 class HoleTracer {
 public:
     explicit HoleTracer(const PolygonMesh& mesh)
@@ -113,7 +113,7 @@ private:
             next_[fans[i].out] = fans[(i + fans.size() - 1) % fans.size()].in;
     }
 
-    /// A loop that comes by a vertex twice is cut into loops there.
+    /// Adds the traced loop; one that visits a vertex twice is cut into loops there.
     void add_simple_loops(BoundaryLoops& loops) {
         std::vector<Index> open;
         for (Index side : path_) {

@@ -14,17 +14,18 @@ struct FillHolesOptions {
     /// closed with less is left open. pi is a facet folded back onto its neighbour.
     double max_bend = quad_splitting::most_bend;
     bool quads = true; ///< join triangles to quads where these come out convex
-    /// Close what cannot be closed otherwise by a vertex at its middle and triangles around it, however these
-    /// come out. Only a loop of two edges stays.
+    /// Also closes loops that cannot be closed otherwise, by a vertex at the middle and triangles around it,
+    /// whatever their shape. Only loops of two edges stay open.
     bool insist = false;
 
     static constexpr int no_limit = std::numeric_limits<int>::max();
 };
 
 struct FillHolesCounts {
-    std::size_t loops = 0;    ///< boundary loops before
-    std::size_t closed = 0;   ///< of these, closed
-    std::size_t refused = 0;  ///< within the limits, but only closed by folding or by an edge used twice
+    std::size_t loops = 0;  ///< boundary loops before
+    std::size_t closed = 0; ///< of these, closed
+    /// within the limits, but impossible to close without folding or using an edge twice
+    std::size_t refused = 0;
     std::size_t facets = 0;   ///< added, at the end of the mesh
     std::size_t vertices = 0; ///< added, at the end of the mesh: middles of loops
 };
@@ -42,17 +43,17 @@ struct BoundaryLoops {
     }
 };
 
-/// The loops of facets of which no two run along an edge the same way. At a vertex with several fans each
-/// loop stays in the gap between two fans next to each other, so that closing the loops joins the fans; fans
-/// that face different ways keep their gaps to themselves. O(facets).
+/// The boundary loops of a mesh of which no two facets run along an edge the same way. At a vertex with
+/// several fans each loop stays in the gap between two fans that are next to each other, so that closing the
+/// loops joins the fans; fans that face different ways keep their gaps to themselves. O(facets).
 BoundaryLoops boundary_loops(const PolygonMesh& mesh);
 
-/// Closes boundary loops, without adding vertices unless it is to insist. Each loop is triangulated so that
-/// edges are short and bends small (exactly, by dynamic programming, up to 128 edges; longer ones lose their
+/// Closes boundary loops, without adding vertices unless `insist` is set. Each loop is triangulated so that
+/// edges are short and bends small (exactly, by dynamic programming, up to 128 edges; longer loops lose their
 /// best ears first), then triangles are joined to quads. No two facets of the mesh may run along an edge the
-/// same way, and none will: no edge that exists is used again, no facet lies over the vertices of another.
-/// Closing holes before make_manifold mends vertices with several fans; what it cannot mend make_manifold
-/// splits. O(facets + sum of loop length ^ 3, for lengths up to 128).
+/// same way, and none will: no existing edge is used again, no facet lies over the vertices of another. If
+/// called before make_manifold it mends vertices with several fans where it can; make_manifold splits the
+/// rest. O(facets + sum of loop length ^ 3, for lengths up to 128).
 FillHolesCounts fill_holes(PolygonMesh& mesh, const FillHolesOptions& options = {});
 
 } // namespace hsdm

@@ -98,7 +98,8 @@ int relative_orientation(std::span<const Index> a, std::span<const Index> b) {
     return same ? 1 : reversed ? -1 : 0;
 }
 
-/// One group of facets over the same vertices: pairs of opposite orientation cancel, one of the rest stays.
+/// Thins out a group of facets over the same vertices: pairs of opposite orientation cancel, one of the rest
+/// stays.
 void thin_out(const PolygonMesh& mesh, std::span<const CodeIndex> group, std::vector<std::uint8_t>& removed,
               ManifoldCounts& counts) {
     std::vector<Index> same, reversed;
@@ -136,7 +137,8 @@ void remove_duplicates(PolygonMesh& mesh, ManifoldCounts& counts) {
     std::vector<std::uint8_t> removed(keys.size(), 0);
     for (std::size_t begin = 0, end = 0; begin < keys.size(); begin = end) {
         while (end < keys.size() && keys[end].code == keys[begin].code) ++end;
-        // Different sets of the same hash are parted first; groups of more than one facet are rare.
+        // Different vertex sets with the same hash are separated first; groups of more than one facet are
+        // rare.
         for (std::size_t i = begin; end - i > 1;) {
             const auto first = keys.begin() + static_cast<std::ptrdiff_t>(i);
             const auto mid =
@@ -197,7 +199,7 @@ private:
 
     Index upper(Index h) const { return std::max(start(h), finish(h)); }
 
-    /// Twins of the edges that two opposite half-edges share; the others are gathered and paired by angles.
+    /// Pairs the two half-edges of simple edges; gathers complex edges and pairs their half-edges by angle.
     void pair_edges() {
         twin_.assign(mesh_.corners.size(), no_index);
         const EdgeTable edges(mesh_);
@@ -266,7 +268,7 @@ private:
         std::vector<Index> open;
         const std::size_t n = edge.end - edge.begin;
         std::vector<std::uint8_t> taken(n, 0);
-        for (std::size_t i = 0; i < 2 * n; ++i) { // twice round: the first opener may lie anywhere
+        for (std::size_t i = 0; i < 2 * n; ++i) { // twice round, because the first opener may lie anywhere
             const auto k = static_cast<Index>(i % n);
             if (taken[k]) continue;
             const bool opens = forward(by_edge_[edge.begin + k]) == outside;
@@ -345,7 +347,8 @@ private:
         return surplus;
     }
 
-    /// Two pairs of facets that still share both ends of an edge often part when paired the other way.
+    /// Pairs crowded edges the other way: two pairs of facets that still share both ends of an edge often
+    /// part then.
     bool flip_crowded_edges() {
         bool flipped = false;
         for (ComplexEdge& edge : complex_) {

@@ -1,5 +1,5 @@
 #pragma once
-// Facets taken out of a mesh, with what is known of their sides.
+// Removes facets from a mesh, together with the hints of their sides.
 
 #include "hsdm/core/discarded.hh"
 #include "hsdm/mesh/feature_hints.hh"

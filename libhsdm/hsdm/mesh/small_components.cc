@@ -32,7 +32,7 @@ public:
     }
 
     Index of(std::size_t facet) { return vertices_.find(mesh_.facet(facet)[0]); }
-    /// Per vertex, the facets of the component that is known by it; else 0.
+    /// Per vertex, the number of facets of the component that it identifies, else 0.
     const std::vector<std::size_t>& facets() const { return facets_; }
     std::vector<double> areas() {
         std::vector<double> areas(facets_.size(), 0);
@@ -40,7 +40,7 @@ public:
             areas[of(f)] += area_vector(mesh_, mesh_.facet(f)).norm();
         return areas;
     }
-    /// Of the components of no more facets than `most`: do they have a border?
+    /// Per component of at most `most` facets, does it have a border?
     std::vector<std::uint8_t> are_open(std::size_t most) {
         std::vector<std::uint8_t> open(facets_.size(), 0);
         const EdgeTable edges(mesh_.vertex_count(), [&](const auto& visit) {

@@ -9,11 +9,12 @@
 namespace hsdm {
 
 struct SplinterOptions {
-    /// ten quads round two grid points, cut in two; more are a part
+    /// most facets of a splinter: ten quads round two grid points, each cut in two; larger components are a
+    /// part
     std::size_t most_facets = splinters::most_facets;
-    /// of a component with a border; more are a piece of the surface
+    /// the same for a component with a border; larger ones are a piece of the surface
     std::size_t most_open = splinters::most_open;
-    /// of the facets of the largest component to those of a splinter
+    /// least ratio of the facets of the largest component to those of a splinter
     double least_ratio = splinters::least_ratio;
 };
 

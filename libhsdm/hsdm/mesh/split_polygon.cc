@@ -53,9 +53,9 @@ private:
         return !edges_.contains(vertices_[i], vertices_[j]);
     }
 
-    /// Least cost of the part of the loop from corner i to corner j, closed by the diagonal between them, and
-    /// the apex of the triangle on that diagonal. Bends are measured against the best triangle of either
-    /// part, which is why the optimum is one of the principle's, not of all triangulations.
+    /// Dynamic programming: least cost of the part of the loop from corner i to corner j, closed by the
+    /// diagonal between them, and the apex of the triangle on that diagonal. Bends are measured against the
+    /// best triangle of either part only, so the result is not always the optimum of all triangulations.
     struct Part {
         double cost = infinite;
         Index apex = 0;
@@ -273,7 +273,8 @@ std::size_t split_large_facets(PolygonMesh& mesh) {
         for (std::size_t i = begin; i != end; ++i) split(i);
     });
 
-    // Diagonals that two polygons share the ends of may coincide: the later polygon is split anew.
+    // Two polygons may both want a diagonal between vertices they share: the later one is split again
+    // without.
     PolygonMesh out;
     std::size_t next = 0, count = 0;
     for (Index f = 0; f < mesh.facet_count(); ++f) {

@@ -1,6 +1,6 @@
 #pragma once
-// Polygons into well-shaped triangles and quads over their own vertices: what closes a hole, and what becomes
-// of a minimal loop of five edges and more.
+// Splits polygons into well-shaped triangles and quads over their own vertices: to close holes, and for
+// minimal loops of five edges and more.
 
 #include "hsdm/mesh/constants.hh"
 #include "hsdm/mesh/edge_set.hh"

@@ -47,7 +47,8 @@ Index number_faces(const FacetLinks& links, std::vector<Index>& face) {
     return count;
 }
 
-/// Writes the connectivity through the kernel's setters: it is known whole, so nothing is searched for.
+/// Writes the connectivity through the kernel's setters: it is complete, so OpenMesh need not search for
+/// anything.
 void write_connectivity(const PolygonMesh& facets, const FacetLinks& links, PolyMesh& mesh) {
     std::vector<Index> half_edge, face;
     const Index edges = number_half_edges(links, half_edge);
@@ -83,7 +84,7 @@ void write_connectivity(const PolygonMesh& facets, const FacetLinks& links, Poly
 void write_geometry(const PolygonMesh& facets, const FacetLinks& links, PolyMesh& mesh) {
     for_each_index(links.source.size(), 1 << 13, [&](Index v) {
         mesh.set_point(vertex_handle(v), facets.positions[links.source[v]]);
-        // Always: what nobody sets is whatever the memory held.
+        // Always set: a normal that is never set is uninitialised memory.
         mesh.set_normal(vertex_handle(v),
                         facets.normals.empty() ? Vec3(0, 0, 0) : facets.normals[links.source[v]]);
     });
@@ -159,7 +160,7 @@ void write_properties(const PolygonMesh& facets, const FacetLinks& links, PolyMe
     write_vertex_normals(facets, links, mesh);
 }
 
-/// What of a mesh becomes polygons: everything that is neither deleted nor isolated.
+/// The part of a mesh that becomes polygons: all that is neither deleted nor isolated.
 struct Selection {
     std::vector<VertexHandle> vertices;
     std::vector<FaceHandle> faces;

@@ -28,7 +28,7 @@ struct ToMeshResult {
 /// split vertices come last. Vertex properties become named mesh properties (`hsdm_...`), facets get their
 /// normals. Nothing is printed. O(corners log valence), parallel.
 ToMeshResult to_mesh(const PolygonMesh& facets);
-/// The same in an empty mesh where it is to stay: meshes of OpenMesh cannot be moved, only copied.
+/// The same in place: fills an empty mesh, because OpenMesh meshes cannot be moved, only copied.
 ToMeshCounts to_mesh(const PolygonMesh& facets, PolyMesh& mesh);
 /// The same where the facets' links are known.
 ToMeshCounts to_mesh(const PolygonMesh& facets, const FacetLinks& links, PolyMesh& mesh);

@@ -1,5 +1,5 @@
 #pragma once
-// A polygon mesh as triangles, with all that phase 3 has written on it.
+// A polygon mesh cut into triangles, with all attributes that phase 3 has written on it.
 
 #include "hsdm/mesh_types.hh"
 

@@ -19,8 +19,9 @@ struct TriangleSides {
     bool crowded = false;             ///< has some edge more than two sides, or two that run the same way?
 };
 
-/// Sides that not just two triangles share, one running either way, have no twin; nor have those shared with
-/// `others`, facets of the same vertices. O(n), parallel in parts.
+/// Pairs the sides of edges that exactly two triangles share, running opposite ways. All other sides have no
+/// twin, nor have those of edges shared with `others`, facets over the same vertices. O(n), parallel in
+/// parts.
 TriangleSides link_triangles(std::span<const Index> corners, const PolygonMesh& others,
                              std::size_t vertex_count);
 

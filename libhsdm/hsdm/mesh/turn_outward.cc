@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t facets_per_chunk = 1 << 12;
 
-/// By the vertex that stands for the component.
+/// Properties of components, indexed by the vertex that represents each.
 struct Components {
     std::vector<Index> of_facet;
     std::vector<std::uint8_t> open; ///< has a border
@@ -43,7 +43,7 @@ Components find_components(const PolygonMesh& mesh, const FacetLinks& links) {
     return result;
 }
 
-/// About each component's own first vertex, so that small ones far away lose no digits.
+/// Sums volumes about each component's own first vertex, so that small components far away lose no digits.
 void measure_volumes(const PolygonMesh& mesh, const Triangulation& cut, Components& components) {
     std::vector<double> of_facet(mesh.facet_count());
     for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -63,9 +63,9 @@ void measure_volumes(const PolygonMesh& mesh, const Triangulation& cut, Componen
         components.volume[components.of_facet[f]] += of_facet[f];
 }
 
-/// How many closed components there are around points: the crossings of a ray along x from each, counted by
-/// the side they are seen from. Points are components by their first vertices; they stand in a grid over y
-/// and z.
+/// Counts the closed components that enclose given points: the crossings of a ray along x from each point,
+/// signed by the side they are seen from. The points are the first vertices of components, kept in a grid
+/// over y and z.
 class Surroundings {
 public:
     Surroundings(const PolygonMesh& mesh, std::span<const Index> points)
@@ -149,8 +149,8 @@ private:
     std::vector<int> count_;
 };
 
-/// The sum of the weights of the components around each of the points; of one that faces inward, less its
-/// weight.
+/// Per point, the sum of the weights of the components that enclose it; a component that faces inward counts
+/// negative.
 template <class Weight>
 std::vector<int> sum_around(const PolygonMesh& mesh, const Triangulation& cut, const Components& components,
                             std::span<const Index> points, const Weight& weight) {
@@ -163,9 +163,8 @@ std::vector<int> sum_around(const PolygonMesh& mesh, const Triangulation& cut, c
     return around.counts();
 }
 
-/// Marks, by component, what is to turn: closed components that face inward and do not lie in what others
-/// enclose; and inside of these whatever does not face against what is around it then, as the walls of
-/// cavities and what is in them do.
+/// Marks the components to turn: closed ones that face inward and are not enclosed by others; and inside of
+/// these all that then does not face against what encloses it, as walls of cavities and what is in them do.
 std::vector<std::uint8_t> find_turns(const PolygonMesh& mesh, const Triangulation& cut,
                                      const Components& components) {
     std::vector<std::uint8_t> turns(mesh.vertex_count(), 0);
@@ -194,7 +193,8 @@ void turn(PolygonMesh& mesh, std::size_t f, FeatureHints& hints) {
     const auto first = static_cast<std::ptrdiff_t>(mesh.first[f]);
     const auto last = static_cast<std::ptrdiff_t>(mesh.first[f + 1]);
     std::reverse(mesh.corners.begin() + first, mesh.corners.begin() + last);
-    if (hints.sides.empty()) return; // the last side stays the last: between the first and the last corner
+    // reversing the corners keeps the last side last: between the first and the last corner
+    if (hints.sides.empty()) return;
     std::reverse(hints.sides.begin() + first, hints.sides.begin() + last - 1);
 }
 
@@ -205,8 +205,8 @@ std::size_t turn_outward(PolygonMesh& mesh, FacetLinks& links, FeatureHints& hin
     const Triangulation cut = triangulate(mesh);
     measure_volumes(mesh, cut, components);
     std::vector<std::uint8_t> turns = find_turns(mesh, cut, components);
-    // Where components pass through each other none may lie in no other; the whole must face outward all the
-    // same.
+    // If components pass through each other, each may be enclosed by another; the whole must face outward all
+    // the same.
     double volume = 0;
     for (std::size_t c = 0; c < turns.size(); ++c) {
         if (components.open[c]) volume = std::numeric_limits<double>::infinity();

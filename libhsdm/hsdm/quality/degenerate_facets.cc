@@ -13,14 +13,15 @@ namespace {
 
 constexpr std::size_t facets_per_chunk = 1 << 12;
 
-/// The facets are over the same vertices. They share a side, or the test is not asked.
+/// Do the facets, which share a side, have the same vertices?
 bool are_over_the_same(std::span<const Index> a, std::span<const Index> b) {
     return a.size() == b.size() && std::all_of(a.begin(), a.end(), [&](Index v) {
                return std::find(b.begin(), b.end(), v) != b.end();
            });
 }
 
-/// Is there a facet beside this one over the same vertices? Two over four vertices or fewer share a side.
+/// Does a neighbouring facet have the same vertices? Two facets over the same four vertices or fewer always
+/// share a side.
 bool is_of_pillow(const PolygonMesh& mesh, const FacetLinks& links, std::size_t f) {
     for (Index side = mesh.first[f]; side < mesh.first[f + 1]; ++side) {
         const Index twin = links.twin[side];
@@ -29,7 +30,7 @@ bool is_of_pillow(const PolygonMesh& mesh, const FacetLinks& links, std::size_t 
     return false;
 }
 
-/// Is it one of fewer than four facets that make a closed surface? No space lies between them.
+/// Does the facet belong to a closed surface of fewer than four facets, which encloses no space?
 bool is_of_flat_component(const PolygonMesh& mesh, const FacetLinks& links, std::size_t f) {
     constexpr std::size_t fewest = 4;
     std::array<std::size_t, fewest> found{f};
@@ -45,7 +46,7 @@ bool is_of_flat_component(const PolygonMesh& mesh, const FacetLinks& links, std:
     return true;
 }
 
-/// Does the facet bridge space that was cut out?
+/// Does the facet span empty space that the frame has cut out?
 bool spans_cut(const PolygonMesh& mesh, const Vec3& origin, const CloudFrame& frame, std::size_t f) {
     const auto facet = mesh.facet(f);
     const auto stretch = frame.stretch_of(mesh.positions[facet[0]] + origin);

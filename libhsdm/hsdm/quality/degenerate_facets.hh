@@ -8,11 +8,12 @@
 
 namespace hsdm {
 
-/// Removes the facets that no sound mesh holds: those without area where the mesh will stand, at `origin` in
-/// the frame, for there coordinates are rounded; two facets over the same vertices, and closed surfaces of
-/// fewer than four, which enclose nothing; and those across space that the frame has cut out. Clouds of a few
+/// Removes the facets that no sound mesh holds: those without area at their final position, `origin` in the
+/// frame, where coordinates are rounded; two facets over the same vertices; closed surfaces of fewer than
+/// four facets, which enclose nothing; and those across space that the frame has cut out. Clouds of a few
 /// points or of extreme shape leave such. Hints go with their facets; `links` are the mesh's, and are linked
-/// anew if something goes. Returns how many went, and where relative to the origin. O(corners), parallel.
+/// anew if something is removed. Returns how many were removed, and where relative to the origin. O(corners),
+/// parallel.
 Discarded drop_degenerate_facets(PolygonMesh& mesh, const Vec3& origin, const CloudFrame& frame,
                                  FacetLinks& links, FeatureHints& hints);
 

@@ -13,17 +13,19 @@
 namespace hsdm {
 namespace {
 
-/// Points worked through in order, each beginning where its predecessor's nearest triangle was; also the
-/// unit of the sums, so that their rounding does not depend on the number of threads.
+/// Points per task, searched in order, each starting at the nearest triangle of the one before; also the unit
+/// of the sums, so that their rounding does not depend on the number of threads.
 constexpr std::size_t chunk = 1 << 11;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t packet = 32;  // points, if they lie close together:
-constexpr std::size_t fewest = 6;   // are worth the way down
-constexpr double packet_size = 0.8; // in mean sizes of the tree's blocks
-constexpr double near_enough = 0.1; // of a packet's radius: a foothold to reach out from
+constexpr std::size_t packet = 32;  // most points of a packet, which lie close together
+constexpr std::size_t fewest = 6;   // fewest points for which a packet is worth a descent of the tree
+constexpr double packet_size = 0.8; // largest diagonal of a packet, in mean sizes of the tree's blocks
+// in a packet's radii: a distance up to this is good enough as a bound for the packet
+constexpr double near_enough = 0.1;
 
-/// Distances of points that are neighbours in space if they are in the list. A packet of them goes down the
-/// tree once; their own searches are among the few blocks found there.
+/// Nearest triangles of points in list order, fast if neighbours in the list are neighbours in space: a
+/// packet of such points descends the tree once, and their own searches look only at the few blocks found
+/// there.
 class Packets {
 public:
     Packets(const TriangleTree& tree, std::span<const Vec3> points) : tree_(tree), points_(points) {}
@@ -51,7 +53,8 @@ private:
             has_part_ = false;
     }
 
-    /// No point's nearest triangle is farther from it than where its middle one has its own.
+    /// Finds the blocks for a packet. By the triangle inequality no point is farther from its nearest
+    /// triangle than from that of the packet's middle point.
     void go_down(std::span<const Vec3> points, const Box& box) {
         const Vec3 centre = 0.5 * (box.lo + box.hi);
         const Vec3& middle =
@@ -67,7 +70,7 @@ private:
 
     const TriangleTree& tree_;
     std::span<const Vec3> points_;
-    std::size_t end_ = 0; // of the packet
+    std::size_t end_ = 0; // end of the current packet
     Index hint_ = no_index;
     bool has_part_ = false;
     TriangleTree::Part part_;
@@ -78,7 +81,8 @@ struct Sums {
     std::size_t farthest = 0, beyond = 0, first_beyond = 0;
 };
 
-/// Of the distances whose squares squares() tells: a function of a point's index, made anew for each chunk.
+/// Sums up distances. squares() is called once per chunk and returns a function from a point's index to its
+/// squared distance.
 template <class Squares>
 Distance sum_up(std::size_t points, double beyond, Squares squares) {
     if (points == 0) return {};
@@ -132,7 +136,7 @@ Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh,
                              options);
 }
 
-/// What no cell beside a point's own tells is left to the tree, which is rarely built.
+/// Points with no facet in the cells around theirs are searched in the tree, which is rarely built.
 Distance points_to_mesh_by_cells(std::span<const Vec3> points, const PolygonMesh& mesh,
                                  const FacetCells& cells, double beyond) {
     if (!cells.usable()) return points_to_mesh(points, MeshDistance(mesh), beyond);

@@ -18,10 +18,11 @@ struct Distance {
     std::size_t first_beyond = 0; ///< index of the first of them, if there is one
 };
 
-/// What is to be known of the distances of many points.
+/// What has to be found out about the distances of many points.
 struct DistanceOptions {
-    double enough = 0; ///< distances up to it may come out larger, though never above it: whether a bound is
-                       ///< kept is known several times sooner than by how much
+    /// Distances up to this may come out larger, but not above it: to know that a bound is kept is several
+    /// times faster than to know by how much.
+    double enough = 0;
     double beyond = std::numeric_limits<double>::infinity(); ///< >= enough: farther points are counted
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Distances of many points to a surface that there is a tree, a walk or a grid of cells for already.
+// Distances of many points to a surface for which a tree, a walk or a grid of cells exists already.
 
 #include "hsdm/quality/distance.hh"
 
@@ -19,10 +19,10 @@ Distance points_to_mesh(std::span<const Vec3> points, const MeshDistance& mesh,
 Distance points_to_surface(std::span<const Vec3> points, const SurfaceWalk& surface,
                            const DistanceOptions& options = {});
 
-/// Every point against its nearest triangle by the cells of the mesh: in half the time where facets are about
-/// as large as cells and the points of a cell follow each other in the list, as in a mesh of a uniform octree
-/// level and its voxels; by the tree where cells are not usable. Distances may differ from those of the tree
-/// by rounding.
+/// Every point against its nearest triangle, by the cells of the mesh: in half the time if facets are about
+/// as large as cells and the points of a cell follow each other in the list, as for a mesh of a uniform
+/// octree level and its voxels; by the tree if the cells are not usable. Distances may differ from those of
+/// the tree by rounding.
 Distance points_to_mesh_by_cells(std::span<const Vec3> points, const PolygonMesh& mesh,
                                  const FacetCells& cells,
                                  double beyond = std::numeric_limits<double>::infinity());

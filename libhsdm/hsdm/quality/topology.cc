@@ -14,7 +14,8 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t chunk = 1 << 12; // of sums: fixed, so that rounding does not depend on threads
+// values per partial sum: fixed, so that rounding does not depend on the number of threads
+constexpr std::size_t chunk = 1 << 12;
 
 /// The facets as loops without immediate repeats of a vertex; a loop left with fewer than three corners has
 /// collapsed and is no part of the surface. Corner c is also the half-edge from its vertex to the next one.
@@ -105,7 +106,7 @@ std::vector<Index> measure_edges(const Loops& loops, std::size_t vertices, Fans&
     return joined(boundary);
 }
 
-/// The two boundary edges of one fan follow each other along a loop.
+/// Counts boundary loops: the two boundary edges of one fan follow each other along a loop.
 std::size_t count_boundary_loops(const Loops& loops, const std::vector<Index>& boundary, Fans& fans) {
     std::vector<Index> seen(loops.vertex.size(), no_index); // by fan: the boundary edge met first
     DisjointSets chains(boundary.size());
@@ -189,12 +190,12 @@ double chunked_sum(std::size_t n, Term term) {
 } // namespace
 
 bool has_no_area(std::span<const Vec3> ring) {
-    constexpr double negligible = 1e-12; // of the longest side squared
+    constexpr double negligible = 1e-12; // area over the longest side squared
     if (ring.size() < 3) return true;
     double size = 0;
     for (const Vec3& p : ring) size = std::max(size, (p - ring[0]).max_abs());
     if (!(size > 0) || !std::isfinite(size)) return true;
-    // In a unit near its size, by a power of two: neither products nor rounding depend on it.
+    // Scaled by a power of two to a size near 1, so that neither overflow nor rounding depends on the size.
     const int exponent = -std::ilogb(size);
     const auto from_first = [&](std::size_t i) {
         Vec3 d = ring[i % ring.size()] - ring[0];

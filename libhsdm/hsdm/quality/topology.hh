@@ -7,8 +7,8 @@
 
 namespace hsdm {
 
-/// Counts of a polygon mesh. What is said of edges, components, boundary, manifoldness and euler leaves out
-/// corners that repeat the one before them, and facets that have fewer than three others.
+/// Counts of a polygon mesh. Those of edges, components, boundary, manifoldness and euler leave out corners
+/// that repeat the one before them, and facets that have fewer than three corners without those.
 struct Topology {
     std::size_t vertices = 0;             ///< used by a facet
     std::size_t isolated_vertices = 0;    ///< used by none

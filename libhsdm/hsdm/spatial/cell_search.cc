@@ -10,9 +10,11 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double farthest =
-    1 - 2 * FacetCells::rounding;   // in cells: those beside one hold all that is nearer
-constexpr double least_sine = 1e-4; // of a triangle's corner: the normals of flatter ones are not relied on
-constexpr double sure = 1 + 1e-9;   // factor on squares; rounding beyond it is 1e-12 of a triangle's size
+    1 - 2 * FacetCells::rounding; // in cells: the 27 cells around a point hold all facets nearer than this
+// of a triangle's corner angle: normals of flatter triangles are not relied on
+constexpr double least_sine = 1e-4;
+// factor on squared distances that covers rounding, which is 1e-12 of a triangle's size
+constexpr double sure = 1 + 1e-9;
 
 Double2 root(Double2 x) {
     return Double2{std::sqrt(x[0]), std::sqrt(x[1])};
@@ -20,7 +22,7 @@ Double2 root(Double2 x) {
 
 } // namespace
 
-/// All facets that reach into a ball are listed in the cells that it reaches into.
+/// Correct because every facet that reaches into a ball is listed in a cell that the ball reaches into.
 double CellSearch::squared_distance(const Vec3& point) {
     const FacetCells::Place place = cells_.place(point);
     const VoxelCoord cell = FacetCells::cell_of(place);
@@ -52,8 +54,9 @@ void CellSearch::enter(const VoxelCoord& cell) {
     load(centre);
 }
 
-/// Of a slot's triangles and what is `squared` away already. A triangle is no nearer than its plane and the
-/// farthest of the lines of its sides that the point lies beyond, and beyond none it is as near as its plane.
+/// The smaller of `squared` and the squared distance to a slot's triangles. Lower bounds skip most: a
+/// triangle is no nearer than its plane and than the farthest of the lines of its sides that the point lies
+/// beyond; beyond none of them it is as near as its plane.
 double CellSearch::nearest_in(std::size_t slot, const VectorPair& point, double squared) {
     if (!around_[slot].loaded) load(slot);
     const Slice slice = around_[slot];
@@ -87,7 +90,7 @@ double CellSearch::exactly(const Bounds& bounds, const VectorPair& point) const 
     return std::min(squared[0], squared[1]);
 }
 
-/// A facet listed in the cell itself need not be looked at again.
+/// Loads the facets of a slot's cell, without those listed in the centre cell too.
 void CellSearch::load(std::size_t slot) {
     const auto s = static_cast<std::int32_t>(slot);
     const VoxelCoord c{cell_[0] + s % 3 - 1, cell_[1] + s / 3 % 3 - 1, cell_[2] + s / 9 - 1};
@@ -126,7 +129,7 @@ void CellSearch::prepare(Bounds& bounds) const {
     bounds.out[0] = unit(ab % bounds.normal, bb);
     bounds.out[1] = unit(bounds.normal % ac, cc);
     bounds.out[2] = unit(bc % bounds.normal, bc | bc);
-    // Any other is beyond its sides by nothing at all, wherever: no bound excludes it.
+    // For a degenerate triangle no bound applies: no point counts as beyond its sides.
     bounds.across = regular ? bounds.out[2] | ab : Double2{} - std::numeric_limits<double>::min();
 }
 

@@ -7,10 +7,10 @@
 
 namespace hsdm {
 
-/// Distances of points to the facets of a mesh, quickest for one point after the other in the same cell.
+/// Distances of points to the facets of a mesh; fastest if successive points lie in the same cell.
 class CellSearch {
 public:
-    /// Of usable cells; all three must outlive it.
+    /// `cells` must be usable(); all three must outlive this.
     CellSearch(const PolygonMesh& mesh, const Triangulation& cut, const FacetCells& cells)
         : mesh_(mesh), cut_(cut), cells_(cells) {}
 

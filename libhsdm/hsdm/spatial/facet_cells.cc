@@ -12,8 +12,9 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t facets_per_chunk = 4096, entries_per_chunk = 16384;
-constexpr double most_cells = 16; // per facet in the mean; four or so where facets span the voxels of a grid
-constexpr std::size_t most_facets = 64; // per cell, as well
+// mean number of cells per facet; about four if facets span the voxels of a grid
+constexpr double most_cells = 16;
+constexpr std::size_t most_facets = 64; // mean number of facets per cell
 
 CellRange range_of(const FacetCells& cells, const PolygonMesh& mesh, std::size_t facet) {
     const Box box = box_of(mesh, facet);
@@ -41,7 +42,7 @@ FacetCells::FacetCells(const PolygonMesh& mesh, double size) : size_(size), per_
     usable_ = facet_.size() <= most_facets * this->size();
 }
 
-/// Leaves an empty cell on every side, where whatever lies outside goes.
+/// Fits the grid to a box, with a layer of empty cells around it for whatever lies outside.
 bool FacetCells::fit(const Box& box) {
     if (!(size_ > 0)) return false;
     constexpr double most = (1 << morton_levels) - 1;
@@ -54,7 +55,7 @@ bool FacetCells::fit(const Box& box) {
     return true;
 }
 
-/// Where the entries of each chunk of facets begin, and where they end; nothing if they are too many.
+/// Where the entries of each chunk of facets begin and end; empty if there are too many.
 std::vector<std::size_t> FacetCells::count(const PolygonMesh& mesh) const {
     const std::size_t facets = mesh.facet_count(), chunks = chunk_count(facets, facets_per_chunk);
     std::vector<double> counts(chunks, 0.0);

@@ -1,6 +1,6 @@
 #pragma once
-// Facets by the cells of a uniform grid that they may reach, for meshes whose facets are about as large as
-// the cells.
+// A uniform grid whose cells list the facets that may reach into them; for meshes whose facets are about as
+// large as the cells.
 
 #include "hsdm/core/morton_index.hh"
 #include "hsdm/core/radix_sort.hh"
@@ -10,7 +10,7 @@
 
 namespace hsdm {
 
-/// The cells between two of them, both included.
+/// All cells between two corner cells, both included.
 struct CellRange {
     VoxelCoord lo, hi;
 
@@ -32,15 +32,15 @@ struct CellRange {
 /// voxels, nearly every list is the fan round one vertex.
 class FacetCells {
 public:
-    /// Cells of edge `size` > 0, in the mesh's units, one of them with a corner at the origin. O(entries),
-    /// parallel; the same for any number of threads. The mesh need not outlive it.
+    /// Builds cells of edge `size` > 0, in the mesh's units, aligned to the origin. O(entries), parallel; the
+    /// same for any number of threads. The mesh need not outlive it.
     FacetCells(const PolygonMesh& mesh, double size);
 
-    /// False if there are too many cells to a facet or facets to a cell for lists to be of use, or none at
-    /// all: the lists are then not to be asked.
+    /// False if there are too many cells per facet or facets per cell for the lists to be of use, or no facet
+    /// at all: then the lists must not be used.
     bool usable() const { return usable_; }
     std::size_t size() const { return first_.size() - 1; }
-    /// Ascending.
+    /// The facets listed in a cell, ascending.
     std::span<const Index> facets(Index cell) const {
         return {facet_.data() + first_[cell], facet_.data() + first_[cell + 1]};
     }

@@ -9,16 +9,19 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t facets_per_chunk = 2048;
-/// Of what a corner sees, over the square of its longest arm: far above rounding, far below shapes in use.
+/// Least area of a triangle seen from a corner, over the square of its longest arm: far above rounding, far
+/// below shapes in use.
 constexpr double least_area = 1e-6;
 
-/// What the facets round a vertex add up to, in any order.
+/// Sums over the facets round a vertex, in any order.
 struct Fan {
-    std::atomic<std::uint64_t> ends = 0;  // sides that lead away less those that come back, mixed
-    std::atomic<std::uint32_t> turns = 0; // times that the fan passes the side of its first facet
+    // hash of the sides that leave the vertex less that of those that come back: 0 for closed fans
+    std::atomic<std::uint64_t> ends = 0;
+    std::atomic<std::uint32_t> turns = 0; // how often the fan turns past the side of its first facet
 };
 
-/// From where a fan is seen: along the normal of its first facet's corner, whose side leads away from it.
+/// The direction from which a fan is seen: the normal of its first facet at the vertex; and that facet's
+/// side, which leaves the vertex.
 struct Sight {
     Vec3 side{0, 0, 0}, direction{0, 0, 0};
 };
@@ -58,8 +61,8 @@ std::vector<Sight> find_sights(const PolygonMesh& mesh, const std::vector<Index>
     return sights;
 }
 
-/// A facet as its corner k sees it: how often it passes the side of the sight, 2 if it does not keep to a
-/// sector, narrower than half a turn, in which its corners follow each other to the left.
+/// How often a facet, seen from its corner k, passes the sight's side; 2 if it does not keep to a sector,
+/// narrower than half a turn, in which its corners follow each other to the left.
 std::uint32_t turns_at(const PolygonMesh& mesh, std::span<const Index> facet, std::size_t k,
                        const Sight& sight) {
     const std::size_t n = facet.size();
@@ -75,12 +78,14 @@ std::uint32_t turns_at(const PolygonMesh& mesh, std::span<const Index> facet, st
         const Vec3 next = arm(i);
         const double part = area(last, next);
         sum += part;
-        least = std::min({least, part, area(first, next)}); // a sum of steps could come round
+        // each step is checked as well as the sum, which could come round
+        least = std::min({least, part, area(first, next)});
         longest = std::max(longest, next.sqrnorm());
         last = next;
     }
     if (n == 4)
-        least = std::min(least, sum - area(first, last)); // what a cut beside this corner leaves: not folded
+        // a cut beside this corner must not leave a folded rest
+        least = std::min(least, sum - area(first, last));
     const bool left =
         least > 0 && least * least > least_area * least_area * longest * longest * sight.direction.sqrnorm();
     return !left ? 2 : (first | sight.side) < 0 && (last | sight.side) >= 0;
@@ -88,9 +93,9 @@ std::uint32_t turns_at(const PolygonMesh& mesh, std::span<const Index> facet, st
 
 } // namespace
 
-/// Seen along the normal of one corner, a fan whose facets keep to their sectors and that comes round once
-/// covers nothing twice. It comes round where it passes from the right of that corner's side, across the line
-/// of sight, to its left.
+/// A fan whose facets, seen along the normal of one corner, keep to their sectors and that comes round once
+/// covers nothing twice. It comes round where it passes from the right of that corner's side, across it, to
+/// the left.
 std::vector<std::uint8_t> flat_fans(const PolygonMesh& mesh, const std::vector<Index>& vertex) {
     const std::vector<Sight> sights = find_sights(mesh, vertex);
     std::vector<Fan> fans(mesh.vertex_count());

@@ -1,5 +1,5 @@
 #pragma once
-// Vertices at which no facets intersect, told without comparing these pair by pair.
+// Vertices at which no facets intersect, found without comparing facets pair by pair.
 
 #include "hsdm/polygon_mesh.hh"
 

@@ -1,5 +1,5 @@
 #pragma once
-// How far a point is from a mesh, and what is nearest to it.
+// Distance of a point from a mesh, and the nearest triangle.
 
 #include "hsdm/spatial/triangle_tree.hh"
 
@@ -15,13 +15,13 @@ public:
                  TriangleTree::Order order = TriangleTree::Order::compact);
     /// Distance from a point to the nearest triangle; infinity if the mesh has no facet.
     double operator()(const Vec3& point) const;
-    /// `hint` is no_index or what a call for a point nearby left there: it changes the time alone.
+    /// The same; `hint` is no_index or what a call for a point nearby left there. It changes only the time.
     double operator()(const Vec3& point, Index& hint) const;
     /// The facet nearest to a point, or no_index if the mesh has none.
     Index nearest_facet(const Vec3& point) const;
-    /// A triangle of the cut mesh no farther than `bound`, or no_index if there is none; several times
-    /// quicker than distances. `hint` is no_index or what the call for a point nearby left there: which
-    /// triangle depends on it.
+    /// A triangle of the cut mesh no farther than `bound`, or no_index if there is none; several times faster
+    /// than distances. `hint` is no_index or what the call for a point nearby left there; which triangle is
+    /// found depends on it.
     Index triangle_within(const Vec3& point, double bound, Index& hint) const;
     /// The facet that a triangle of the cut mesh was cut from.
     Index facet_of(Index triangle) const { return facet_[triangle]; }

@@ -15,7 +15,7 @@ struct NearestOfTriangle {
     std::array<double, 3> weights; ///< barycentric coordinates of the point
 };
 
-/// A triangle made ready to be asked for many points.
+/// A triangle with precomputed terms, for the nearest points of many points.
 class PreparedTriangle {
 public:
     PreparedTriangle(const Vec3& a, const Vec3& b, const Vec3& c)

@@ -64,7 +64,7 @@ private:
         return placed;
     }
 
-    /// Triangles of two facets, or of one, round a vertex where nothing meets.
+    /// Do two facets (or one with itself) share a vertex round which no facets meet otherwise?
     bool share_flat_fan(Index f, Index g) const {
         if (f == g && mesh_.facet(f).size() > 4) return false;
         for (Index p : mesh_.facet(f))
@@ -91,7 +91,7 @@ private:
     std::vector<unsigned char> collinear_;
 };
 
-/// A vertex at which all these facets are known not to meet.
+/// Do all these facets share one vertex at which they are known not to meet otherwise?
 bool share_flat_vertex(const PolygonMesh& mesh, std::span<const Index> facets,
                        const std::vector<std::uint8_t>& flat) {
     for (Index v : mesh.facet(facets[0])) {
@@ -104,8 +104,8 @@ bool share_flat_vertex(const PolygonMesh& mesh, std::span<const Index> facets,
     return false;
 }
 
-/// The facets of all cells but those whose facets share such a vertex, ascending. What two facets have in
-/// common lies in a cell in which both are listed, so that all that intersect are among them.
+/// The facets, ascending, of all cells except those whose facets all share such a vertex. Two facets that
+/// intersect do so in a cell that lists both, so all that intersect are among them.
 std::vector<Index> facets_in_doubt(const PolygonMesh& mesh, const FacetCells& cells) {
     std::vector<Index> own(mesh.vertex_count());
     std::iota(own.begin(), own.end(), Index{0});

@@ -1,5 +1,5 @@
 #pragma once
-// Where a mesh passes through itself.
+// Self-intersections of a mesh.
 
 #include "hsdm/polygon_mesh.hh"
 #include "hsdm/spatial/facet_cells.hh"
@@ -15,12 +15,12 @@ struct SelfIntersections {
                                                    ///< each pair once; {f, f} for a facet folded onto itself
 };
 
-/// Every pair of triangles (facets cut as the STL writer cuts them) that have a point in common, touching
-/// included, beside shared vertices and edges; corners at exactly the same position count as shared. Exact
-/// predicates, so neither rounding nor the number of threads changes the answer. O(t log t + pairs of
-/// triangles with overlapping boxes), parallel.
+/// Finds every pair of triangles (facets cut as the STL writer cuts them) that have a point in common,
+/// touching included, other than the vertices and edges they share; corners at exactly the same position
+/// count as shared. Exact predicates, so neither rounding nor the number of threads changes the result. O(t
+/// log t + pairs of triangles with overlapping boxes), parallel.
 SelfIntersections find_self_intersections(const PolygonMesh& mesh);
-/// The same, several times quicker by the cells of a mesh whose facets are about as large as they are, such
+/// The same, several times faster, by the cells of a mesh whose facets are about as large as its cells, such
 /// as those of a uniform octree level and its voxels.
 SelfIntersections find_self_intersections(const PolygonMesh& mesh, const FacetCells& cells);
 

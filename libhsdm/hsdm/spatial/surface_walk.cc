@@ -13,10 +13,11 @@
 namespace hsdm {
 namespace {
 
-constexpr int most_steps = 12;              // by then a search is quicker
-constexpr double least_squared_sine = 1e-4; // of a triangle's corner: flatter ones are not walked over
+constexpr int most_steps = 12; // after more steps a search is faster
+// of a triangle's corner angle: the walk does not cross flatter triangles
+constexpr double least_squared_sine = 1e-4;
 constexpr std::size_t triangles_per_chunk = 4096;
-constexpr double farthest = 3; // cells: what is farther is left to the tree
+constexpr double farthest = 3; // in cells: farther triangles are searched for in the tree
 
 std::vector<Index> twins_of(const PolygonMesh& mesh, const Triangulation& cut) {
     const std::span corners(cut.triangles.empty() ? nullptr : cut.triangles.front().data(), 3 * cut.size());
@@ -25,8 +26,9 @@ std::vector<Index> twins_of(const PolygonMesh& mesh, const Triangulation& cut) {
 
 } // namespace
 
-/// A triangle as single floats, relative to the centre: the corner a, how the shares of the other two corners
-/// grow, the unit normal, and the sides beyond. Where there is no area to speak of the normal is infinite.
+/// A triangle in single precision, relative to the centre: corner a, the gradients of the barycentric
+/// coordinates of the other two corners, the unit normal, and the triangles beyond the sides. The normal is
+/// infinite if there is hardly any area.
 struct alignas(64) SurfaceWalk::Step {
     std::array<float, 3> a, to_b, to_c, normal;
     std::array<Index, 3> twin;
@@ -122,7 +124,7 @@ bool SurfaceWalk::leads_within(const Vec3& place, double bound, Index& hint) con
 }
 
 double SurfaceWalk::distance(const Vec3& place, Index& hint, double enough) const {
-    double most = cells_ ? farthest * cells_->cell_size() : 0; // is worth a search
+    double most = cells_ ? farthest * cells_->cell_size() : 0; // largest bound for a search in cells
     if (hint != no_index) {
         const auto [triangle, end] = walk(place, enough, hint);
         hint = triangle;
@@ -143,8 +145,8 @@ double SurfaceWalk::distance(const Vec3& place, Index& hint, double enough) cons
 void SurfaceWalk::make_steps(const std::vector<Index>& twin) {
     const Box box = bounds_of(positions_);
     centre_ = 0.5 * (box.lo + box.hi);
-    // Of a place and a corner, half the diagonal away at most, over the least sine: sideways at a sharp
-    // corner.
+    // Bounds the error of a place and a corner, at most half the diagonal away, divided by the least sine:
+    // the sideways error at a sharp corner.
     rounding_ = static_cast<float>(2 * std::numeric_limits<float>::epsilon() * box.diagonal()
                                    / std::sqrt(least_squared_sine));
     steps_ = std::make_unique_for_overwrite<Step[]>(triangles_.size());
@@ -170,14 +172,14 @@ void SurfaceWalk::make_steps(const std::vector<Index>& twin) {
     });
 }
 
-/// Over the side that the place is farthest beyond, by shares of the corner across, until it is beyond none,
-/// or back again beyond the last.
+/// Walks over the side that the place is farthest beyond (the most negative barycentric coordinate) until it
+/// is beyond none or would go back over the side just crossed.
 SurfaceWalk::Walked SurfaceWalk::walk(const Vec3& place, double bound, Index from) const {
     const Vec3 given = place - centre_;
     const std::array<float, 3> p{static_cast<float>(given[0]), static_cast<float>(given[1]),
                                  static_cast<float>(given[2])};
     const float surely = static_cast<float>(bound) - rounding_;
-    Index back = no_index; // the side of the triangle that leads where it was come from
+    Index back = no_index; // the side by which the walk entered the triangle
     for (int count = 0; count < most_steps; ++count) {
         const Step& step = steps_[from];
         const float x = p[0] - step.a[0], y = p[1] - step.a[1], z = p[2] - step.a[2];

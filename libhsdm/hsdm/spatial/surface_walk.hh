@@ -1,5 +1,5 @@
 #pragma once
-// Whether places lie within a bound of a surface, asked in an order that wanders over it.
+// Tests whether places lie within a bound of a surface, for places that follow each other along it.
 
 #include "hsdm/spatial/facet_cells.hh"
 #include "hsdm/spatial/mesh_distance.hh"
@@ -8,13 +8,13 @@
 
 namespace hsdm {
 
-/// Looks for a triangle that is near enough by going over sides from the one found for the place before, and
-/// only where that leads nowhere in the cells of the facets or, without such cells, through the tree. Several
-/// times quicker than the tree alone where places are a few triangles apart.
+/// Looks for a near enough triangle by walking over sides from the one found for the place before. Only where
+/// the walk fails it searches the cells of the facets or, without such cells, the tree. Several times faster
+/// than the tree alone if successive places are a few triangles apart.
 class SurfaceWalk {
 public:
     explicit SurfaceWalk(const PolygonMesh& mesh);
-    /// O(t log t), parallel. Nothing given need outlive it.
+    /// O(t log t), parallel. The arguments need not outlive it.
     SurfaceWalk(const PolygonMesh& mesh, const Triangulation& cut,
                 TriangleTree::Order order = TriangleTree::Order::compact);
     /// With cells of the mesh that are usable(). O(t), parallel; the tree is built when it is asked for. Mesh
@@ -24,25 +24,26 @@ public:
     SurfaceWalk(SurfaceWalk&&) noexcept;
 
     /// A triangle of the cut mesh no farther than `bound` >= 0, or no_index if there is none. `hint` is
-    /// no_index or what a call of this surface's, best for a place nearby, left there: which triangle depends
-    /// on it.
+    /// no_index or what a call of this surface left there, best for a place nearby; which triangle is found
+    /// depends on it.
     Index triangle_within(const Vec3& place, double bound, Index& hint) const;
     bool is_beyond(const Vec3& place, double bound, Index& hint) const {
         return triangle_within(place, bound, hint) == no_index;
     }
-    /// Is the part of the surface that a walk from `hint` leads to no farther than `bound`? Another may be:
-    /// not to look for one is quicker where many places are far. It is looked for where the walk is too long
-    /// or comes to a flat triangle.
+    /// Is the part of the surface that a walk from `hint` leads to within `bound`? Another part may be, but
+    /// is searched for only if the walk is too long or meets a flat triangle; that is faster where many
+    /// places are far.
     bool leads_within(const Vec3& place, double bound, Index& hint) const;
-    /// From the nearest triangle, or, where one is known soon, from any no farther than `enough`.
+    /// Distance to the nearest triangle; any distance of at most `enough` to some triangle may be returned
+    /// instead, which is faster.
     double distance(const Vec3& place, Index& hint, double enough = 0) const;
-    /// Vertices of the mesh.
+    /// The vertices of a triangle of the cut mesh.
     const Triangle& corners(Index triangle) const { return triangles_[triangle]; }
     Vec3 middle(Index triangle) const {
         const auto& [a, b, c] = triangles_[triangle];
         return (positions_[a] + positions_[b] + positions_[c]) / 3;
     }
-    /// Of the same triangles. From any thread.
+    /// The tree over the same triangles. From any thread.
     const MeshDistance& tree() const;
 
 private:

@@ -18,7 +18,7 @@ constexpr std::size_t grain = 1 << 10;
 constexpr std::size_t stack_size = 4 * 17;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// A triangle on its way to its place: the centre of its box, and its index.
+/// A triangle while they are sorted: the centre of its box, and its index.
 struct Item {
     std::array<double, 3> centre;
     Index triangle;
@@ -37,8 +37,8 @@ std::size_t widest_axis(const Item* begin, const Item* end) {
     return axis;
 }
 
-/// Orders items so that aligned runs of 4, 16, 64 ... lie close together: halves along the widest axis, cut
-/// at a multiple of the largest run that still leaves something on both sides.
+/// Orders items so that aligned runs of 4, 16, 64 ... lie close together: halves them along the widest axis,
+/// at a multiple of the largest run that leaves something on both sides.
 void split(Item* begin, Item* end) {
     const auto n = static_cast<std::size_t>(end - begin);
     if (n <= 4) return;
@@ -164,12 +164,13 @@ public:
     /// Squared distances to the boxes of four children.
     using FourSquares = std::array<Double2, 2>;
 
-    /// Of what is farther than `most` nothing need be found. A point that is not finite is near nothing.
+    /// Triangles farther than `most` need not be found. A point with a coordinate that is not finite is near
+    /// nothing.
     Search(const TriangleTree& tree, const Vec3& given, double most = infinity) : tree_(tree) {
         const Vec3 point = given - tree.centre_;
         for (unsigned k = 0; k < 3; ++k) point_[k] = Double2{} + point[k];
         rounding_ = 4 * std::numeric_limits<double>::epsilon() * (point.l1_norm() + tree.diagonal_);
-        // From so far away that all of the mesh is one distance, any triangle is the nearest.
+        // Seen from so far away that rounding exceeds the mesh, any triangle counts as nearest.
         if (!(rounding_ < tree.diagonal_)) rounding_ = 0;
         limit_ = std::isfinite(point.l1_norm()) ? limit(most) : -1;
     }
@@ -182,7 +183,7 @@ public:
         take(squared, block * static_cast<Index>(width) + lane);
     }
 
-    /// At two triangles, one of them at this place.
+    /// Tests two triangles, one of them at this place.
     void look_around(Index place) {
         const Double2 pair = to_pair(place / width, place / 2 % 2);
         const Index lane = pair[1] < pair[0];
@@ -198,7 +199,8 @@ public:
         return squared;
     }
 
-    /// Never an absent child: its box is infinitely far.
+    /// May a box at this squared distance hold a nearer triangle? Never true of an absent child, whose box is
+    /// infinitely far.
     bool reaches(double squared) const { return squared < limit_; }
     double squared() const { return squared_; }
 
@@ -218,7 +220,7 @@ private:
         limit_ = std::min(limit_, limit(std::sqrt(squared)));
     }
 
-    /// What a square must be below to be of interest beside a distance.
+    /// The squared distance below which a box is of interest, given the best distance.
     double limit(double distance) const {
         const double enough = distance + rounding_;
         return enough * enough + std::numeric_limits<double>::min();
@@ -232,14 +234,14 @@ private:
     Index place_ = no_index; // in the tree's order
 };
 
-/// Nodes or, below them, blocks.
+/// Number of nodes of a level, or of blocks for level -1.
 std::size_t TriangleTree::size_of(int level) const {
     if (level < 0) return block_count_;
     const auto next = static_cast<std::size_t>(level) + 1;
     return (next < level_first_.size() ? level_first_[next] : nodes_.size()) - level_first_[next - 1];
 }
 
-/// All that is below a node, but for what is known, until something is near enough.
+/// Searches all that is below a node except what is `known`, until a triangle is near enough.
 void TriangleTree::descend(Search& search, const Node& from, const Node& known, double enough) const {
     struct Entry {
         double squared;
@@ -312,7 +314,7 @@ bool TriangleTree::find_part(const Box& box, double reach, Part& part) const {
     part.count_ = 0;
     if (block_count_ == 0) return true;
     std::array<double, 3> lo, hi;
-    reach += 4 * rounding_; // a distance that came out as nothing need not be none
+    reach += 4 * rounding_; // a distance that rounds to 0 need not be 0
     for (unsigned k = 0; k < 3; ++k) {
         lo[k] = box.lo[k] - centre_[k] - reach;
         hi[k] = box.hi[k] - centre_[k] + reach;
@@ -352,7 +354,7 @@ bool TriangleTree::Part::add(const Boxes& boxes, std::size_t lane, Index block) 
     return true;
 }
 
-/// The last block stands in for those that the last node lacks.
+/// Repeats the last block where the last node lacks blocks.
 void TriangleTree::Part::fill_up() {
     if (count_ == 0) return;
     const std::size_t last = count_ - 1;

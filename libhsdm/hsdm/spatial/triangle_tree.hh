@@ -19,8 +19,8 @@ using TrianglePair = std::array<Index, 2>;
 /// itself.
 class TriangleTree {
 public:
-    /// Triangles that follow each other in the list are to lie close together, or compact: they are put in an
-    /// order in which they do, which takes most of the time, and queries a fraction.
+    /// given: triangles that follow each other in the list lie close together already. compact: they are
+    /// sorted so that they do, which takes most of the build time but makes queries much faster.
     enum class Order { compact, given };
 
     /// O(t log t), parallel; the same tree for any number of threads. Nothing given need outlive it.
@@ -35,12 +35,12 @@ public:
     /// Nearest triangle to a point in the mesh's own coordinates. `hint` is a triangle to begin at (the
     /// answer for a point nearby), or no_index: it changes the time, never the distance.
     Nearest nearest(const Vec3& point, Index hint = no_index) const;
-    /// A triangle whose distance, the root of `squared`, is no more than `bound` where there is one, else one
-    /// that is farther, or none. With a hint nearby several times quicker than the nearest one, as the search
-    /// goes up from there.
+    /// A triangle within `bound` (its squared distance in `squared`) if there is one, else a farther one or
+    /// none. With a hint nearby several times faster than nearest(), as the search goes up the tree from
+    /// there.
     Nearest within(const Vec3& point, double bound, Index hint = no_index) const;
 
-    /// Blocks in a part of space, to look through instead of the whole tree.
+    /// The blocks in a part of space, to search instead of the whole tree.
     class Part;
     /// Replaces `part` by all blocks that may have a point within `reach` of a box. False if there are too
     /// many: the part is then not to be used.

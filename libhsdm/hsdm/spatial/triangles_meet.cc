@@ -14,8 +14,8 @@ Vec2 project(const Vec3& p, unsigned dropped) {
     return {p[(dropped + 1) % 3], p[(dropped + 2) % 3]};
 }
 
-/// The coordinate along which a triangle is seen largest, so that dropping it keeps the triangle a triangle.
-/// The rounded area vector tells; where it rounds to nothing the projections are tried exactly.
+/// The axis along which the triangle's projection is largest, so that dropping this coordinate leaves a
+/// triangle. Decided by the rounded area vector; where that is 0 the projections are tried exactly.
 unsigned dominant_axis(const Corners& t) {
     const Vec3 n = (t[1] - t[0]) % (t[2] - t[0]);
     unsigned axis = 0;
@@ -99,8 +99,8 @@ bool separate_triangles_meet(const Corners& a, const Corners& b) {
     return false;
 }
 
-/// Corner i of a is corner j of b: they meet elsewhere only if the side of one opposite to it meets the
-/// other.
+/// The triangles share one vertex, corner i of a and j of b: they meet elsewhere only if the side of one
+/// opposite to it meets the other.
 bool meet_beside_vertex(const Corners& a, std::size_t i, const Corners& b, std::size_t j) {
     const Vec3 &a1 = a[(i + 1) % 3], &a2 = a[(i + 2) % 3], &b1 = b[(j + 1) % 3], &b2 = b[(j + 2) % 3];
     const int s1 = side(a, b1), s2 = side(a, b2);

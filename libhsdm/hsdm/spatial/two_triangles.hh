@@ -14,7 +14,7 @@ struct TwoTriangles {
     std::array<Double2, 3> a, ab, ac;
     Double2 per_ab, per_ac, per_bc, per_area;
 
-    /// Makes the triangle of corner `from` and two sides the first (0) or the second (1).
+    /// Sets the first (0) or the second (1) triangle, given a corner and the two sides from it.
     void put(std::size_t lane, const Vec3& from, const Vec3& to_b, const Vec3& to_c) {
         for (unsigned k = 0; k < 3; ++k) {
             a[k][lane] = from[k];
