@@ -45,8 +45,8 @@ public:
             ++counts_.seeds;
             spread(4);
         }
-        // What is still open then: candidates the hit test rejected, where nothing else is left, so that the
-        // facets of narrow grooves come back; after them longer and longer loops.
+        // For edges still open: first candidates that the hit test rejected, where nothing else is left, so
+        // that the facets of narrow grooves come back; then longer and longer loops.
         if (options_.hit_test) {
             enqueue_open_sides();
             hit_.assign(hit_.size(), 0);

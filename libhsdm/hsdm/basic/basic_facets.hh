@@ -13,8 +13,9 @@ struct BasicFacetOptions {
     int max_loop_edges = 8;
     bool hit_test = true;            ///< reject candidates whose normal runs into a neighbouring voxel
     bool distance_criterion = false; ///< of several candidates, drop those farther from the close points
-    bool angle_comparison = true;    ///< of several candidates, take the outer one; else the paper's first
-    bool split_large = true;         ///< split facets of five and more corners into quads and triangles
+    /// of several candidates, take the outer one; if false, the first, as in the paper
+    bool angle_comparison = true;
+    bool split_large = true; ///< split facets of five and more corners into quads and triangles
     /// Boundary loops of at most so many edges are closed (hole elimination), >= 3; 0: none.
     int max_hole_edges = 16;
 };

@@ -12,12 +12,13 @@ namespace {
 /// Within these powers of two even the twentieth power of a length stays far from the ends of a double.
 constexpr int plain_exponent = 30;
 constexpr int least_exponent = -1000, most_exponent = 1020;
-constexpr int limit_exponent = 1022; // whose reciprocal is a normal number still
+constexpr int limit_exponent = 1022; // largest whose reciprocal is still a normal number
 
 } // namespace
 
 CloudFrame::CloudFrame(const Box& cloud) {
-    constexpr double quarter = 0.25; // the difference of two finite numbers need not be one
+    // on quarters, because the difference of two finite numbers may overflow
+    constexpr double quarter = 0.25;
     double extent = 0;
     for (unsigned k = 0; k < 3; ++k) extent = std::max(extent, quarter * cloud.hi[k] - quarter * cloud.lo[k]);
     if (!(extent > 0)) return; // empty, or one point: for the octree to refuse
@@ -51,7 +52,7 @@ Index CloudFrame::stretch_of_uncut(double uncut, unsigned axis) const {
 
 Index CloudFrame::stretch_of(double work, unsigned axis) const {
     const auto& stretches = stretches_[axis];
-    const double x = work + widest_ / 2; // the middle of a gap parts its two sides
+    const double x = work + widest_ / 2; // the middle of a kept gap separates its two sides
     const auto after =
         std::upper_bound(stretches.begin(), stretches.end(), x,
                          [](double value, const Stretch& s) { return value < s.first - s.shift; });

@@ -1,5 +1,5 @@
 #pragma once
-// Between the cloud's coordinates and those that the stages work in.
+// Converts between the cloud's coordinates and those that the stages work in.
 
 #include "hsdm/types.hh"
 
@@ -15,8 +15,8 @@ namespace hsdm {
 class CloudFrame {
 public:
     CloudFrame() = default;
-    /// For a cloud in this box, whose corners are finite. The unit is a power of two, so that the same cloud
-    /// times a power of two is the same cloud to every stage.
+    /// The frame of a cloud with this box, whose corners are finite. The unit is a power of two, so that a
+    /// cloud scaled by a power of two is the same cloud to every stage.
     explicit CloudFrame(const Box& cloud);
     /// Throws Error if the box was less than 2^-1000 or more than 2^1020 across: there precision gives out.
     void check_reach() const;
@@ -26,10 +26,12 @@ public:
     CloudFrame without_cuts() const;
 
     Vec3 to_work(const Vec3& cloud) const;
-    /// Where cuts are, of a point within half a kept gap of the points.
+    /// The cloud's coordinates of a point; where cuts are, the point must lie within half a kept gap of the
+    /// cloud's points.
     Vec3 to_cloud(const Vec3& work) const;
-    /// The stretch between cuts that a point without cuts lies in, along each axis; the same of one with
-    /// cuts. Two points of different stretches are farther from each other than they seem.
+    /// Per axis, the stretch between cuts that a point lies in, given in coordinates without cuts; the next
+    /// function takes coordinates with cuts. Two points of different stretches are farther apart than their
+    /// coordinates say.
     std::array<Index, 3> stretch_of_uncut(const Vec3& uncut) const;
     std::array<Index, 3> stretch_of(const Vec3& work) const;
     Box to_cloud(const Box& work) const { return {to_cloud(work.lo), to_cloud(work.hi)}; }
@@ -43,7 +45,7 @@ public:
 private:
     Index stretch_of(double work, unsigned axis) const;
     Index stretch_of_uncut(double uncut, unsigned axis) const;
-    /// From `first` on, `shift` is cut out.
+    /// A stretch: from coordinate `first` on, `shift` has been cut out.
     struct Stretch {
         double first, shift;
     };

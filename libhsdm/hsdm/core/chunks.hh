@@ -38,7 +38,7 @@ void for_each_index(std::size_t n, std::size_t chunk_size, F&& f) {
     });
 }
 
-/// What the chunks produced, one after the other.
+/// Concatenates what the chunks produced.
 template <class T>
 std::vector<T> joined(const std::vector<std::vector<T>>& parts) {
     std::vector<std::size_t> offset(parts.size() + 1, 0);

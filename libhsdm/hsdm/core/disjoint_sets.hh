@@ -25,7 +25,7 @@ public:
             i = above;
         }
     }
-    /// Returns whether the two were apart.
+    /// Joins two sets; false if they were one already.
     bool join(Index a, Index b) {
         for (;;) {
             a = find(a);

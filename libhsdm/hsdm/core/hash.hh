@@ -1,5 +1,5 @@
 #pragma once
-// Sums that tell sets apart.
+// Hashes whose sums identify sets.
 
 #include <cstdint>
 

@@ -47,7 +47,7 @@ private:
         }
     }
     /// Fibonacci hashing of the parent's code: the high bits of the product are well mixed. Siblings lie side
-    /// by side, as who asks for one soon asks for others.
+    /// by side, because they are often looked up together.
     std::size_t slot_of(MortonCode code) const {
         return static_cast<std::size_t>((code / siblings * 0x9e3779b97f4a7c15ull) >> shift_) * siblings
                + code % siblings;

@@ -8,8 +8,8 @@
 
 namespace hsdm {
 
-/// Two vectors side by side, one in each lane: what is asked of one is asked of both at once. Operators are
-/// those of Vec3: `|` the scalar product, `%` the cross product.
+/// Two vectors side by side, one in each lane; every operation applies to both at once. Operators are those
+/// of Vec3: `|` the scalar product, `%` the cross product.
 class VectorPair {
 public:
     VectorPair() = default;

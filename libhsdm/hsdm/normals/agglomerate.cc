@@ -15,10 +15,10 @@ namespace {
 
 struct Joint {
     Index root, joined;
-    std::int8_t sign; ///< of the joined one's tree relative to the root's
+    std::int8_t sign; ///< sign of the joined tree relative to the other root
 };
 
-/// What was joined in a round, and the evidence, between the roots before it, that it was joined by.
+/// The joins of one round, and the evidence between the roots before it.
 struct Round {
     std::vector<SignedEdge> edges;
     std::vector<Joint> joints;
@@ -44,8 +44,8 @@ public:
         }
         return root;
     }
-    /// Joins the trees of two nodes, the larger root below the smaller; the joint's ends are the same if
-    /// they are one tree already.
+    /// Joins the trees of two nodes, the larger root below the smaller; returns equal ends if they are one
+    /// tree already.
     Joint join(Index a, Index b, int relation) {
         int sign_a = 1, sign_b = 1;
         Index root_a = find(a, sign_a), root_b = find(b, sign_b);
@@ -86,13 +86,13 @@ void sort_and_merge(std::vector<SignedEdge>& edges, std::size_t nodes) {
     edges.swap(sorted);
 }
 
-/// The evidence's strength, and below it the edge's place: the smaller, the stronger, ties by place.
+/// Sort key: strength of the evidence, then the edge's place; smaller is stronger.
 std::uint64_t rank_of(const SignedEdge& e, std::size_t place) {
     const float strength = e.total > 0 ? e.weight / e.total * e.weight : 0;
     return std::uint64_t{~std::bit_cast<std::uint32_t>(strength)} << 32 | place;
 }
 
-/// The edge that each node has the strongest evidence by, strongest first.
+/// Per node, the edge with its strongest evidence; the strongest edges first.
 std::vector<Index> picked_edges(const std::vector<SignedEdge>& edges, std::size_t nodes) {
     const std::uint64_t none = rank_of({}, 0);
     std::vector<std::uint64_t> best(nodes, none);
@@ -106,7 +106,8 @@ std::vector<Index> picked_edges(const std::vector<SignedEdge>& edges, std::size_
     return {best.begin(), best.end()};
 }
 
-/// The edges between the roots of their ends, the evidence turned with these; without what became internal.
+/// The edges between the roots of their ends, their evidence turned by the signs of these; without edges
+/// inside one tree.
 std::vector<SignedEdge> contracted(const std::vector<SignedEdge>& edges, SignedForest& forest) {
     std::vector<SignedEdge> result;
     result.reserve(edges.size());
@@ -139,8 +140,8 @@ std::vector<Round> join_all(SignedForest& forest, std::vector<SignedEdge> edges,
     return rounds;
 }
 
-/// Turns nodes that the sum of all their evidence contradicts, of two neighbours the more contradicted one,
-/// which may settle the other. The agreement summed over all edges only grows.
+/// Turns nodes that the sum of their evidence contradicts; of two neighbours the more contradicted one first,
+/// which may settle the other. Each turn raises the agreement summed over all edges.
 class Improvement {
 public:
     explicit Improvement(std::vector<std::int8_t>& sign)
@@ -165,7 +166,7 @@ private:
     double agreement_of(const SignedEdge& e) const {
         return static_cast<double>(e.weight) * sign_[e.a] * sign_[e.b];
     }
-    /// The edges of contradicted nodes: all that a turn concerns.
+    /// Collects the edges of contradicted nodes: no others matter to a turn.
     bool find_contradicted(const std::vector<SignedEdge>& edges) {
         contradicted_.clear();
         for (const SignedEdge& e : edges)

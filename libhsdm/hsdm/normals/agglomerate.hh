@@ -19,11 +19,11 @@ struct Signs {
     std::size_t components = 0;
 };
 
-/// Boruvka's algorithm with sums: in every round each component joins the one that it has the strongest
-/// evidence with, summed along their whole border; the strongest first. Then the rounds are undone, last one
-/// first, and in each what the sum of its evidence contradicts is turned, so that an early error does not
-/// stay. O(e log n) at worst, in at most log2 n rounds. The result does not depend on the order of the edges
-/// beyond the last bit of their sums.
+/// Boruvka's algorithm with sums: in each round every component joins the one with which it has the strongest
+/// evidence, summed along their whole border; the strongest first. Then the rounds are undone, last one
+/// first, and in each of them components that the sum of their evidence contradicts are turned, so that early
+/// errors do not stay. O(e log n) at worst, in at most log2 n rounds. The result does not depend on the order
+/// of the edges beyond the last bit of their sums.
 Signs agglomerate(std::size_t nodes, std::vector<SignedEdge> edges);
 
 } // namespace hsdm

@@ -16,10 +16,10 @@ namespace {
 
 constexpr std::size_t points_per_chunk = 1024, bent_per_chunk = 256;
 
-/// New normals from old ones, whatever the sides of these.
+/// Computes new normals from old ones, whose signs do not matter.
 class Renewal {
 public:
-    /// The estimate's own normals are not looked at.
+    /// The normals in `estimate` are not used.
     Renewal(const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate,
             const std::vector<Vec3>& normals)
         : octree_(octree), neighbors_(neighbors), estimate_(estimate), normals_(normals) {}
@@ -46,7 +46,7 @@ public:
         return sum.sqrnorm() > 0 ? sum.normalized() : own;
     }
 
-    /// Away from creases, where points are not too flat: what `curved` makes of them.
+    /// For points away from creases that are not too flat, the results of curved().
     std::vector<Vec3> all_curved() const {
         std::vector<Vec3> renewed(octree_.size());
         for_chunks(octree_.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -65,7 +65,7 @@ public:
         return renewed;
     }
 
-    /// Of all points, what `normal_of` makes of each.
+    /// normal_of(point) of all points.
     template <class NormalOf>
     std::vector<Vec3> all(const NormalOf& normal_of) const {
         std::vector<Vec3> renewed(octree_.size());
@@ -163,7 +163,7 @@ private:
         });
     }
 
-    /// Over two points and their neighbours.
+    /// Sums over each of two points and its neighbours.
     std::array<PlaneSums, 2> sums_of(const std::array<Index, 2>& points) const {
         const NeighborhoodPair around(octree_, neighbors_, points);
         std::array<Double2, 3> first{};
@@ -185,8 +185,8 @@ private:
         return sums;
     }
 
-    /// Not below the spread of the flattest neighbour: where the whole neighbourhood is rough, that is no
-    /// crease.
+    /// Chooses the tolerances; not below the spread of the flattest neighbour, because a neighbourhood that
+    /// is rough throughout is no crease.
     void choose_tolerance(const EstimateOptions& options) {
         const double relative = std::clamp(options.noise_tolerance * result_.noise, options.least_tolerance,
                                            estimation::most_tolerance);
@@ -222,7 +222,7 @@ private:
         for (std::size_t b = 0; b < bent.size(); ++b) result_.normals[bent[b]] = renewed[b];
     }
 
-    /// How many neighbours the planes with these normals hold that pass through the point.
+    /// For two normals, how many neighbours lie on the plane with that normal through the point.
     static Double2 support(const Neighborhood& around, const VectorPair& normal, double inverse) {
         Double2 sum{};
         for (std::size_t k = 0; k < around.size(); ++k) sum += closeness(normal | around.offset(k), inverse);

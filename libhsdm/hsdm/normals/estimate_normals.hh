@@ -7,34 +7,36 @@
 namespace hsdm {
 
 struct EstimateOptions {
-    /// How far from a plane a point may lie and still be of it: the larger of the two counts.
-    /// in radii of the neighbourhood, (0, 0.5): on clean data
+    /// Largest distance of a point from a plane that it belongs to: the larger of these two. In radii of the
+    /// neighbourhood, (0, 0.5): for clean data
     double least_tolerance = estimation::least_tolerance;
     /// in multiples of the noise, > 0
     double noise_tolerance = estimation::noise_tolerance;
-    /// >= 0: how many neighbourhoods far a crease is looked past; 0 is plain least squares
+    /// >= 0: rounds of taking over neighbours' planes, each reaching one neighbourhood farther from a crease;
+    /// 0 is plain least squares
     int rounds = estimation::rounds;
 };
 
 struct EstimatedNormals {
     std::vector<Vec3> normals;     ///< per point, unit; (0, 0, 0) where the neighbours span no plane
-    std::vector<double> tolerance; ///< per point: the distance from a plane that was allowed
+    std::vector<double> tolerance; ///< per point: the largest distance from a plane that was allowed
     std::vector<double> spread; ///< per point: root mean square distance of its neighbours from their plane
     std::vector<Index> bent;    ///< ascending: the points whose neighbours are not all of one plane
     double noise = 0; ///< typical distance of a point from the plane of its neighbours, over their reach
 };
 
-/// Normals of either sign. A least-squares plane smears the normals over a whole neighbourhood on both sides
-/// of a crease. So where neighbours disagree, every point looks among its neighbours' planes for the one
-/// that, moved to pass through it, holds clearly more of its neighbours than its own does, takes it over and
-/// fits it to those it holds; then points near a crease average over their neighbours of the same face. O(n),
-/// parallel. Throws OptionError.
+/// Estimates normals of either sign. A least-squares plane smears the normals over a whole neighbourhood on
+/// both sides of a crease. So where neighbours disagree, each point looks among its neighbours' planes for
+/// one that, moved to pass through it, holds clearly more of its neighbours than its own plane, takes that
+/// over and fits it to the neighbours it holds; then points near a crease average over their neighbours of
+/// the same face. O(n), parallel. Throws OptionError.
 EstimatedNormals estimate_normals(const Octree& octree, const Neighbors& neighbors,
                                   const EstimateOptions& options = {});
 
-/// Away from creases the plane gives way to a quadratic surface as far as that is the better of the two, and
-/// where points are rough all average over their neighbours of the same face. Every normal keeps its side,
-/// and does not depend on the sides of the others; to find these, planes serve better. O(n), parallel.
+/// Refines normals. Away from creases the plane's normal is replaced by a quadratic surface's as far as that
+/// is the more accurate; where points are rough all normals are averaged over neighbours of the same face.
+/// Every normal keeps its sign and does not depend on those of others. For finding signs the plain planes
+/// work better. O(n), parallel.
 std::vector<Vec3> refined_normals(const Octree& octree, const Neighbors& neighbors,
                                   const EstimatedNormals& estimate);
 

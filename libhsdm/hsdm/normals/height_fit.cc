@@ -23,8 +23,8 @@ HeightFit HeightSums::fit() const {
     std::array<Double2, terms> y{}, g{}, h{}, inverse{};
     HeightFit result;
     Double2 residual = squares_;
-    auto determined = residual == residual; // so far
-#pragma GCC unroll 6 // so that every place is a constant, which takes a third of the time
+    auto determined = residual == residual; // still solvable up to this term
+#pragma GCC unroll 6                        // makes all indices constants, which takes a third of the time
     for (std::size_t i = 0; i < terms; ++i) {
         y[i] = heights_[i], g[i] += i == 1, h[i] += i == 2;
         Double2 entry{};

@@ -7,16 +7,16 @@
 
 namespace hsdm {
 
-/// Of two sets of points at once, one in each lane.
+/// Results for two sets of points at once, one in each lane.
 struct HeightFit {
     /// Slope of the best quadratic at the origin less the slope of the best plane: how far the plane is off,
     /// and the error of that. 0 where the points do not determine six coefficients.
     std::array<Double2, 2> tilt{};
-    Double2 variance{}; ///< expected |tilt|^2 where there is nothing but noise, by the quadratic's residuals
+    Double2 variance{}; ///< expected |tilt|^2 if there were only noise, by the quadratic's residuals
 };
 
-/// Sums over points (x, y) with height z, best of about unit size, from which both fits follow: of two sets
-/// of as many points at once, for the price of one. What becomes of one does not depend on the other.
+/// Sums over points (x, y) with height z, best of about unit size, for both fits; for two sets of equally
+/// many points at once, in the time of one. The lanes do not affect each other.
 class HeightSums {
 public:
     void add(Double2 x, Double2 y, Double2 z);

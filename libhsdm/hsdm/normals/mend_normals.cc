@@ -37,7 +37,7 @@ Pair compare(const Octree& octree, std::size_t i, std::size_t j, double farthest
     return {};
 }
 
-/// Sums over the pairs of points with their two successors, in one order; of large clouds, a sample.
+/// Sums over pairs of each point with its two successors, in a fixed order; for large clouds over a sample.
 template <class Sum, class F>
 Sum sum_pairs(const Octree& octree, double farthest, const F& add) {
     std::vector<Sum> parts(chunk_count(octree.size(), points_per_chunk));

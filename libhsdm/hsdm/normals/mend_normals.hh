@@ -1,5 +1,5 @@
 #pragma once
-// Given normals whose signs contradict each other: found, and turned to one side.
+// Finds given normals whose signs contradict each other, and turns them to one side.
 
 #include "hsdm/octree/octree.hh"
 
@@ -7,7 +7,7 @@
 
 namespace hsdm {
 
-/// Pairs of points next to each other in octree order, as far as they say anything about the signs.
+/// Counts of pairs of points next to each other in octree order that say something about signs.
 struct NormalConsistency {
     std::size_t flat = 0, flat_opposed = 0; ///< on one plane; of these, with opposite normals
     std::size_t creased = 0,
@@ -28,10 +28,10 @@ struct NormalConsistency {
 /// Compares points, or 131,072 of them, with their two successors in octree order. O(n), parallel.
 NormalConsistency check_normals(const Octree& octree);
 
-/// Turns the octree's normals to one side, in place; their directions stay. Evidence is that of
-/// orient_normals; where the shape leaves the side open (a sheet, a thin part), it is the one that most
-/// normals have. Where that leaves more than half of the contradictions, these come from noise, and nothing
-/// is turned. Returns how many normals were turned.
+/// Turns the octree's normals to one side, in place; their axes stay. The evidence is that of orient_normals;
+/// where the shape leaves the side open (a sheet, a thin part), the side that most normals have is taken. If
+/// that leaves more than half of the contradictions, these come from noise, and nothing is turned. Returns
+/// how many normals were turned.
 std::size_t mend_normals(Octree& octree, const std::optional<Vec3>& sensor = std::nullopt);
 
 } // namespace hsdm

@@ -18,8 +18,8 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t leaves_per_chunk = 256;
-/// Of a voxel of the finest level so many points are looked at together: were it all of them, time would grow
-/// with their square where a cloud's parts lie so far apart that each is in few voxels.
+/// At most so many points of one voxel of the finest level are searched together. With all of them time would
+/// grow with their square for clouds whose parts lie so far apart that each is in few voxels.
 constexpr Index crowd = 256;
 
 /// Stands for voxels outside the cube; no code has this bit.
@@ -29,7 +29,7 @@ constexpr MortonCode beyond = MortonCode{1} << 63;
 struct Leaf {
     Index begin, end;
     int level;
-    Index slot; ///< where its first point's neighbours go
+    Index slot; ///< index of its first point in the result
 };
 
 /// The first level at which two codes lie in different voxels; morton_levels + 1 if equal.
@@ -55,8 +55,8 @@ std::vector<Leaf> find_leaves(const std::vector<MortonCode>& codes) {
     return leaves;
 }
 
-/// Where few leaves are on the deepest level, that is not worth making: they are sought in the voxels one
-/// level above, each of which holds eight of them at most.
+/// If few leaves are on the deepest level, that level is not worth building: they are searched one level
+/// above, where a voxel holds at most eight of them.
 void spare_deepest_level(std::vector<Leaf>& leaves) {
     constexpr std::size_t few = 64; // one in so many
     int deepest = 0;
@@ -77,7 +77,8 @@ Float4 lanes_at(const std::vector<float>& values, std::size_t place) {
 
 /// The points of the voxels around one, relative to that one's first: float suffices to rank distances.
 struct Candidates {
-    int level = -1; ///< of the voxel in the middle, and its code: leaves in it next to each other share them
+    /// level and code of the middle voxel; leaves next to each other share candidates if these are equal
+    int level = -1;
     MortonCode code = 0;
     Vec3 base{0, 0, 0};
     std::vector<float> x, y, z; ///< room for more than there are
@@ -98,13 +99,13 @@ struct Candidates {
     }
 };
 
-/// The candidates nearest to a point: a squared distance is sought that just as many do not exceed as are
-/// wanted, so that hardly a comparison decides where the processor goes on, and nothing is sorted.
+/// Selects the candidates nearest to a point: finds a squared distance within which there are exactly as many
+/// as wanted, by a search over distances, so that hardly any branch is unpredictable and nothing is sorted.
 class Selection {
 public:
-    /// Finds the `wanted` nearest, ties by place, where there are so many. Within the squared distance
-    /// `limit` there should be enough; it costs another look if there are not. Returns the squared distance
-    /// of the farthest.
+    /// Finds the `wanted` nearest, or all if there are fewer; ties by place. `limit` is a squared distance
+    /// that should hold enough; if it does not, another pass is made. Returns the squared distance of the
+    /// farthest.
     float find(const Candidates& candidates, const std::array<float, 3>& point, std::size_t wanted,
                float limit) {
         limit = std::min(limit, beyond_all);
@@ -118,7 +119,7 @@ public:
     std::span<const Index> places() const { return {near_.data(), count_}; }
 
 private:
-    /// Distances that overflow, and what is no number, count as this.
+    /// Distances that overflow, and NaN, count as this.
     static constexpr float beyond_all = std::numeric_limits<float>::max();
 
     void find_near(const Candidates& candidates, const std::array<float, 3>& point, float limit) {
@@ -160,17 +161,17 @@ private:
         }
         fill_up();
     }
-    /// Lanes behind the last are beyond any limit.
+    /// Fills the unused lanes with distances beyond any limit.
     void fill_up() {
         for (std::size_t k = count_; k < padded(count_); ++k)
             near_distance_[k] = std::numeric_limits<float>::infinity();
     }
     static std::size_t padded(std::size_t size) { return (size + lanes - 1) / lanes * lanes; }
 
-    /// Of those near, `below` lie within `low` and more than wanted, if not just as many, within `high`.
-    /// Where points are spread evenly over a surface, their number grows with the squared distance.
+    /// Narrows the interval of squared distances: of those near, `below` lie within `low` (too few), more
+    /// than wanted within `high`. On a surface sampled evenly their number grows with the squared distance.
     float take(std::size_t wanted, float high) {
-        constexpr int most_looks = 8; // more where distances are equal would be in vain
+        constexpr int most_looks = 8; // more would not help if distances are equal
         float low = -1;
         std::size_t below = 0, within = count_;
         for (int look = 0; look < most_looks && within > wanted; ++look) {
@@ -193,7 +194,7 @@ private:
         return ranked_[wanted - below - 1].first;
     }
 
-    /// Those near that are beyond one distance and within the other, nearest first.
+    /// Sorts those near that are beyond `low` and within `high`, nearest first.
     void rank(float low, float high) {
         ranked_.clear();
         for (std::size_t k = 0; k < count_; ++k)

@@ -1,5 +1,5 @@
 #pragma once
-// The nearest points of every point, read off the octree: no search structure of its own.
+// Nearest neighbours of every point, found by the octree: no search structure of its own.
 
 #include "hsdm/normals/constants.hh"
 #include "hsdm/octree/octree.hh"

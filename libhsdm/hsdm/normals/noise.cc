@@ -11,7 +11,7 @@
 namespace hsdm {
 namespace {
 
-/// How far points lie from a plane, and how far those farthest away are that it was fitted to.
+/// The points' distance from their plane, and the distance of the farthest of them.
 struct Roughness {
     double distance = 0, reach = 0;
 };
@@ -41,7 +41,7 @@ double lower_third(std::vector<double> values) {
     return *lower;
 }
 
-/// What measure(point) says of a sample of the points.
+/// measure(point) of a sample of the points.
 template <class Measure>
 auto sampled(const Octree& octree, const Measure& measure) {
     constexpr std::size_t samples = 1 << 14, samples_per_chunk = 1024;
@@ -53,7 +53,7 @@ auto sampled(const Octree& octree, const Measure& measure) {
     return values;
 }
 
-/// Every fourth point along the Morton curve: as even as all of them.
+/// Every fourth point along the Morton curve, which keeps the sampling as even as it was.
 Octree thinned(const Octree& octree) {
     Octree thin;
     thin.origin = octree.origin, thin.extent = octree.extent, thin.bounds = octree.bounds;
@@ -77,7 +77,9 @@ double estimate_noise(const Octree& octree, const Neighbors& neighbors) {
 double noise_deviation(const Octree& octree, const Neighbors& neighbors) {
     struct Scale {
         std::size_t few;
-        double small; ///< against the reach: about five deviations; where all is noise it is 0.23 and 0.30
+        /// most that counts as small against the reach: then that is about five deviations; where all is
+        /// noise it is 0.23 and 0.30
+        double small;
         double deviation; ///< of a normal distribution whose distances have this lower third
     };
     double deviation = 0;
@@ -92,7 +94,7 @@ double noise_deviation(const Octree& octree, const Neighbors& neighbors) {
         deviation = scale.deviation * lower_third(std::move(distances));
         if (lower_third(std::move(relative)) < scale.small) return deviation;
     }
-    if (octree.size() < 4 * noise::fewest) return deviation; // a quarter of them is looked at next
+    if (octree.size() < 4 * noise::fewest) return deviation; // the next round uses a quarter of them
     const Octree thin = thinned(octree);
     return noise_deviation(thin, find_neighbors(thin));
 }

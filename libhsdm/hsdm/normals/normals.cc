@@ -11,7 +11,7 @@ namespace hsdm {
 
 namespace {
 
-/// As many as asked for, or as the noise calls for.
+/// Neighbours in the number asked for, or that the noise calls for.
 Neighbors choose_neighbors(const Octree& octree, int count, Neighbors neighbors) {
     if (count != 0) return find_neighbors(octree, {.count = count});
     const int wanted = neighbors_for_noise(estimate_noise(octree, neighbors));
@@ -27,7 +27,7 @@ NormalsReport make_normals(Octree& octree, const NormalsOptions& options) {
     report.outliers = drop_outliers_by_distance(octree, nearest, options.outliers);
     OrientOptions orient = options.orient;
     if (const Vec3 origin = octree.origin; report.outliers.count > 0 && fit_to_points(octree)) {
-        nearest = find_neighbors(octree); // in another order, and in voxels that fit what is left
+        nearest = find_neighbors(octree); // the order and the voxels have changed
         if (orient.sensor) *orient.sensor += origin - octree.origin;
     }
     report.smoothed = smooth_noise(octree, nearest, options.smooth);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t points_per_chunk = 1 << 14;
 
-/// Signs of components that no view decided: by the signs that most normals came with if these count, else by
+/// Signs of the components that no view decided: those that most normals came with if these count, else by
 /// the sensor, else by the signed volume about their own centre.
 std::vector<std::int8_t> free_signs(const Patches& patches, const Signs& signs,
                                     const OrientOptions& options) {
@@ -39,8 +39,8 @@ std::vector<std::int8_t> free_signs(const Patches& patches, const Signs& signs,
     return sign;
 }
 
-/// Whether most of what patches see of the outside fits the signs that came out. The wall of a shell thinner
-/// than the space's voxels is overlooked here and there, from within as often as from without.
+/// Do most views of patches agree with the signs found? The wall of a shell thinner than the space's voxels
+/// is missed in places, from inside as often as from outside.
 bool views_agree(const Patches& patches, const OutsideView& view, const Signs& signs) {
     const auto outside = static_cast<Index>(patches.size());
     double sum = 0, total = 0;
@@ -83,7 +83,7 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
         }
     });
     report.patches = patches.size();
-    report.components = signs.components; // the outside, seen by nobody, is one
+    report.components = signs.components; // the outside's node is a component too if no patch sees it
     for (std::size_t p = 0; p < patches.size(); ++p)
         if (!seen || signs.component[p] != signs.component[outside]) report.by_volume += patches.counts[p];
     return result;

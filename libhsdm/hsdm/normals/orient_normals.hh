@@ -17,22 +17,22 @@ struct OrientOptions {
 /// What decided; all counts are of points but the first two.
 struct OrientReport {
     std::size_t patches = 0, components = 0;
-    std::size_t seen_from_outside = 0; ///< whose patch lies between inside and outside
+    std::size_t seen_from_outside = 0; ///< points whose patch lies between inside and outside
     std::size_t by_volume = 0; ///< whose component its signed volume had to orient (or the sensor, or the
                                ///< signs that came): none of it sees the outside, or its views contradict
                                ///< each other
 };
 
-/// Which normals have to turn, and why.
+/// The normals to turn, and what decided.
 struct Orientation {
     std::vector<std::uint8_t> turns; ///< per point
     OrientReport report;
 };
 
-/// Patches are joined by the evidence of neighbouring points (patch_evidence)
-/// and of the empty space around and in between (view_outside), the strongest first; a component without a
-/// view of the outside, or with views that contradict each other, is turned towards the sensor, or such that
-/// its signed volume is positive. O(n log n) at worst.
+/// Joins patches by the evidence of neighbouring points (patch_evidence) and of the empty space around and in
+/// between (view_outside), the strongest first. A component without a view of the outside, or with
+/// contradicting views, is turned towards the sensor, or so that its signed volume is positive. O(n log n) at
+/// worst.
 Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate,
                            const OrientOptions& options = {});
 

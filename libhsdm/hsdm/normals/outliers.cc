@@ -19,7 +19,7 @@ double median(std::vector<double>& values) {
     return *middle;
 }
 
-/// Do the neighbours, of which the point is none, fill a volume, or lie on a plane that the point is not of?
+/// Do the neighbours, without the point, fill a volume, or lie on a plane that the point is off?
 bool is_off_surface(const Octree& octree, const Neighbors& neighbors, std::size_t i,
                     const OutlierOptions& options) {
     PlaneSums sums;
@@ -40,7 +40,8 @@ std::vector<std::uint8_t> find_outliers(const Octree& octree, const Neighbors& n
         for (std::size_t i = begin; i < end; ++i) {
             const double reach = neighbors.reach[i], sparseness = reach / typical;
             const auto around = neighbors.of(i);
-            // Is the reach more times the neighbours' median? Then it is so for more than half of them.
+            // Is the reach more than `times` the neighbours' median reach, that is, more than that for over
+            // half of them?
             const auto is_stretched = [&](double times) {
                 std::size_t count = 0;
                 for (Index n : around) count += reach > times * neighbors.reach[n];
@@ -62,7 +63,7 @@ struct Density {
     double typical = 0;
 };
 
-/// The finest level on which a typical point shares its voxel with so many.
+/// The finest level on which a typical point shares its voxel with so many points.
 Density level_of_density(const Octree& octree, double points_per_voxel) {
     const auto counts = count_voxels(octree);
     int depth = morton_levels; // the typical count is above the mean, but not much
@@ -82,8 +83,8 @@ Density level_of_density(const Octree& octree, double points_per_voxel) {
     }
 }
 
-/// Of the neighbours, how many continue the point's plane with a normal like its own. A dense surface far
-/// away is in no plane that the point continues.
+/// How many neighbours continue the point's plane with a normal like its own. A dense surface far away does
+/// not.
 int support(const Octree& octree, Index i, std::span<const Index> neighbors,
             const std::vector<std::uint8_t>& is_sparse, double farthest,
             const NormalOutlierOptions& options) {
@@ -108,7 +109,7 @@ Discarded drop_outliers_by_distance(Octree& octree, Neighbors& neighbors, const 
         if (some.count == 0) break;
         total.add(some);
         neighbors = find_neighbors(octree, {.count = static_cast<int>(neighbors.count)});
-        if (some.count < octree.size() / 1000) break; // too few to have hidden others
+        if (some.count < octree.size() / 1000) break; // too few removed to have hidden others
     }
     return total;
 }

@@ -36,7 +36,7 @@ private:
         return (static_cast<std::size_t>(c[2] + 1) * side_ + static_cast<std::size_t>(c[1] + 1)) * side_
                + static_cast<std::size_t>(c[0] + 1);
     }
-    /// Floods from row to row: a row's run of empty cells is labelled at once.
+    /// Flood fill by rows: each row's run of empty cells is labelled at once.
     void flood(std::size_t start) {
         const auto region = static_cast<Index>(regions_++);
         stack_.assign(1, start);
@@ -68,10 +68,10 @@ private:
     std::size_t regions_ = 0;
 };
 
-/// What a patch sees along a direction.
+/// The first thing a patch sees along a direction.
 struct Sight {
     Index region = no_index; ///< empty space; no_index if there is none near or a sheet comes first
-    Index point = no_index;  ///< of that sheet
+    Index point = no_index;  ///< a point of that sheet
 };
 
 /// Looks from a patch along its normal, both ways.
@@ -82,7 +82,7 @@ public:
 
     /// Empty space counts if it is seen at two places: one voxel may be empty by chance.
     Sight look(const Vec3& from, const Vec3& along) const {
-        Index last = occupied, searched = no_index; // most voxels are met twice
+        Index last = occupied, searched = no_index; // most voxels are passed twice
         for (int step = 0; step <= views::steps; ++step) {
             const VoxelCoord c = voxel_at(from + along * (0.5 * step * level_.voxel_size));
             const Index region = space_.region(c);
@@ -141,9 +141,10 @@ Index patch_ahead(const Sight& sight, const Patches& patches) {
     return sight.point == no_index ? no_index : patches.of_point[sight.point];
 }
 
-/// Sheets in a row along a ray face alternately forward and back: surely if the ray meets the sheet head-on,
-/// as patch_evidence weighs a pair of points, while a sheet beside the ray, as the other face of an obtuse
-/// crease near by, says nothing. How much it says; negative if the patches' normals are alike.
+/// Sheets that follow each other along a ray face alternately forward and back; how strongly that relates two
+/// patches. It is strong if the ray meets the sheet head-on (weighed as patch_evidence weighs a pair of
+/// points); a sheet beside the ray, such as the other face of an obtuse crease near by, says nothing.
+/// Negative if the patches' normals are alike.
 double facing(const Patches& patches, Index p, Index q) {
     const Vec3 d = patches.centroids[q] - patches.centroids[p];
     const double cosine = patches.normals[p] | patches.normals[q];
@@ -157,9 +158,9 @@ const Sight& far_sight(const std::vector<Sights>& seen, const Patches& patches, 
     return seen[p][ahead ? 1 : 0];
 }
 
-/// Per region +1 outside, -1 inside, 0 unknown: regions that many patches lie between are of opposite kinds;
-/// those with two sheets between them are of one kind, though here and there one is seen from the other
-/// through both, where the gap is no wider than the voxels.
+/// Per region +1 outside, -1 inside, 0 unknown. Regions with many patches between them are of opposite kinds,
+/// those with two sheets between them of one kind; though if the gap is no wider than the voxels, one is in
+/// places seen from the other through both sheets.
 std::vector<std::int8_t> classify(std::size_t regions, const std::vector<Sights>& seen,
                                   const Patches& patches) {
     std::vector<SignedEdge> between;

@@ -1,5 +1,5 @@
 #pragma once
-// Which side of a patch is outside, seen from far away: the empty space around and inside an object.
+// Which side of a patch is outside, by the empty space around and inside an object.
 
 #include "hsdm/normals/constants.hh"
 #include "hsdm/normals/patches.hh"
@@ -21,9 +21,10 @@ struct OutsideView {
         facing; ///< patches that see each other across a wall or a gap, and so are of opposite sides
 };
 
-/// The empty voxels' connected regions. One that can be reached from the box's outside is outside; each sheet
-/// with patches that see two regions separates them, so what is one sheet further is inside, two further
-/// outside again. A patch that sees another sheet before any empty space faces that. O(n + 8^deepest).
+/// Finds the connected regions of empty voxels. One that can be reached from outside the box is outside; a
+/// sheet whose patches see two regions separates them, so the region one sheet further is inside, the one two
+/// sheets further outside again. A patch that sees another sheet before any empty space faces that sheet. O(n
+/// + 8^deepest).
 OutsideView view_outside(const Octree& octree, const Patches& patches, double spacing,
                          const OutsideOptions& options = {});
 

@@ -91,8 +91,7 @@ private:
     Patches result_;
 };
 
-/// Evidence added up edge by edge, but for edges that another one of their place came in between: these are
-/// there twice.
+/// Adds up evidence by edge. An edge may be listed twice if another edge of the same slot came in between.
 class EdgeList {
 public:
     void add(Index a, Index b, double weight) {
@@ -134,7 +133,7 @@ std::vector<SignedEdge> patch_evidence(const Octree& octree, const Neighbors& ne
             const double span = std::max(patches::near_pair * neighbors.reach[i],
                                          patches::near_tolerances * estimate.tolerance[i]);
             const auto around = neighbors.of(i);
-            for (std::size_t k = 0; k < around.size(); k += 2) { // half of the pairs say enough
+            for (std::size_t k = 0; k < around.size(); k += 2) { // every second pair is enough
                 const Index j = around[k], b = patches.of_point[j];
                 if (b == no_index || a == b) continue;
                 const Vec3 d = octree.positions[j] - octree.positions[i];

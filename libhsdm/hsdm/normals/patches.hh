@@ -1,6 +1,6 @@
 #pragma once
-// Small pieces of one sheet, whose normals are surely of one sign relative to each other: what is oriented
-// instead of points.
+// Small pieces of one sheet, within which the relative signs of normals are certain: patches instead of
+// points are oriented.
 
 #include "hsdm/normals/agglomerate.hh"
 #include "hsdm/normals/estimate_normals.hh"
@@ -17,7 +17,7 @@ struct Patches {
     std::size_t size() const { return counts.size(); }
 };
 
-/// The points of a leaf that lie flat beside each other are one patch. O(n), parallel.
+/// Joins the points of a leaf that lie flat beside each other to patches. O(n), parallel.
 Patches build_patches(const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate);
 
 /// Evidence between patches, from the pairs of neighbouring points: positive where the patches' normals

@@ -64,7 +64,7 @@ std::array<PlaneFit, 2> fit_planes(const std::array<PlaneSums, 2>& sums) {
                                         x_most   ? c[5]
                                         : y_most ? c[4]
                                                  : c[2]};
-    const Double2 gap = c[0] + c[1] + c[2]; // to the other eigenvalues, multiplied
+    const Double2 gap = c[0] + c[1] + c[2]; // product of the distances to the other two eigenvalues
     std::array<PlaneFit, 2> fits;
     for (std::size_t lane = 0; lane < 2; ++lane) {
         if (!(weight[lane] > 0)) continue;

@@ -30,7 +30,7 @@ struct PlaneFit {
 
 /// The plane with the least weighted sum of squared distances. O(1).
 PlaneFit fit_plane(const PlaneSums& sums);
-/// Of two sets of points, in little more time than one; what becomes of one does not depend on the other.
+/// The planes of two sets of points, in little more time than one; the two do not affect each other.
 std::array<PlaneFit, 2> fit_planes(const std::array<PlaneSums, 2>& sums);
 
 } // namespace hsdm

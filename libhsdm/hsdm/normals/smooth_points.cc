@@ -53,7 +53,7 @@ public:
     }
 
 private:
-    /// The same points in a cube whose voxels of some level have just the edge wanted.
+    /// The same points in a cube for which the voxels of some level have the edge wanted.
     Octree grid_of(const Octree& octree, double edge) {
         PointCloud cloud;
         cloud.positions = octree.positions;
@@ -90,7 +90,7 @@ private:
                         around.push_back(v);
     }
 
-    /// The plane around the point itself first, then around where it came to lie.
+    /// Projects onto the plane around the point itself, then onto that around the result.
     Vec3 project(const Vec3& point, const std::vector<Index>& around) const {
         const double inverse_radius = 1 / radius_, inverse_gap = 1 / (smoothing::another_sheet * noise_);
         Vec3 p = point, normal(0, 0, 0);

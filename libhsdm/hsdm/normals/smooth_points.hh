@@ -8,10 +8,10 @@
 namespace hsdm {
 
 struct SmoothOptions {
-    /// >= 0, in spacings: a cloud with less (standard deviation) stays as it is
+    /// >= 0, in spacings: a cloud with less noise (standard deviation) stays as it is
     double least_noise = smoothing::least_noise;
-    /// > 1: of a moved point's reach against the median reach of its neighbours; beyond, it was left between
-    /// two sheets
+    /// > 1: ratio of a moved point's reach to the median reach of its neighbours beyond which it was left
+    /// between two sheets and is removed
     double most_stretch = smoothing::most_stretch;
 };
 
@@ -20,23 +20,23 @@ struct SmoothReport {
     Discarded between; ///< points removed because they came to lie on no sheet
 };
 
-/// Makes a noisy cloud one of little noise, with its neighbours; leaves others alone. O(n), parallel. Throws
-/// OptionError.
+/// Takes the noise out of a noisy cloud and renews its neighbours; leaves other clouds alone. O(n), parallel.
+/// Throws OptionError.
 SmoothReport smooth_noise(Octree& octree, Neighbors& neighbors, const SmoothOptions& options = {});
 
-/// The same for a standard deviation of the noise that is known (> 0), however small. Points are moved with
-/// smooth_points, and those that came to lie between sheets, farther from the others than these from each
-/// other, are removed (twice, since some lie there in twos). Normals stay with their points. Returns the
-/// neighbours of those left in `neighbors`, whatever it held before. O(n), parallel. Throws OptionError.
+/// The same for a known standard deviation of the noise (> 0), however small. Points are moved with
+/// smooth_points; those that came to lie between sheets, farther from others than these from each other, are
+/// removed (twice, because some lie there in pairs). Normals stay with their points. `neighbors` becomes that
+/// of the points left, whatever it held before. O(n), parallel. Throws OptionError.
 SmoothReport smooth_known_noise(Octree& octree, double noise, Neighbors& neighbors,
                                 const SmoothOptions& options = {});
 
-/// Moves every point along the normal of the plane that its surroundings lie about, onto that plane. The
-/// surroundings reach four standard deviations of the noise (in the cloud's units, > 0), farther where that
-/// holds too few points for a steady plane; what lies four deviations off the plane is of another sheet. They
-/// are sums over voxels whose edge follows that reach, so the cost does not depend on how many points they
-/// hold. How far points moved says what the noise was: if it was clearly less, it is done again with that.
-/// The octree's points are sorted anew. Returns the noise. O(n), parallel.
+/// Moves every point onto the plane fitted to its surroundings, along the plane's normal. The surroundings
+/// reach four standard deviations of the noise (in the cloud's units, > 0), farther if that holds too few
+/// points for a steady plane; points more than four deviations off the plane belong to another sheet. Sums
+/// over voxels, whose edge follows that reach, stand for the points, so the cost does not depend on how many
+/// points they hold. The moves tell what the noise was: if clearly less, it is all done again with that. The
+/// octree's points are sorted anew. Returns the noise. O(n), parallel.
 double smooth_points(Octree& octree, double noise);
 
 } // namespace hsdm

@@ -35,8 +35,8 @@ Box box_of_most(const Octree& octree, const PointCloud& cloud) {
 /// A point's code in some grid, and its place in the octree.
 using Places = std::vector<std::pair<MortonCode, Index>>;
 
-/// In the grid of the cube twice as large whose least corner lies a third of a cube below: what lies across
-/// the planes of one grid on all levels lies between those of the other.
+/// Codes in the grid of a cube twice as large whose least corner lies a third of a cube below: points
+/// separated by the planes of one grid on all levels lie together in the other.
 Places shifted_places(const Octree& octree) {
     constexpr double last = (1 << morton_levels) - 1;
     Places places(octree.size());
@@ -54,11 +54,11 @@ Places shifted_places(const Octree& octree) {
     return places;
 }
 
-/// Takes the marks off what is a part: marked points of a voxel that have the space around for themselves.
-/// Outliers over a volume are 512 times as many in a voxel eight times as large.
+/// Unmarks parts: marked points of a voxel that have the space around for themselves. (Outliers spread over a
+/// volume are 512 times as many in a voxel eight times as large.)
 void spare_parts(const Places& places, std::vector<std::uint8_t>& far) {
     constexpr unsigned levels_around = 3;
-    std::vector<Index> marked(places.size() + 1, 0); // of the points before
+    std::vector<Index> marked(places.size() + 1, 0); // number of marked points before each
     for (std::size_t i = 0; i < places.size(); ++i) marked[i + 1] = marked[i] + far[places[i].second];
     for (unsigned level = morton_levels; level >= levels_around; --level) {
         const unsigned shift = 3 * (morton_levels - level), shift_around = shift + 3 * levels_around;
@@ -66,7 +66,7 @@ void spare_parts(const Places& places, std::vector<std::uint8_t>& far) {
             while (end < places.size() && places[end].first >> shift == places[begin].first >> shift) ++end;
             const Index count = marked[end] - marked[begin];
             if (count < far_points::fewest_of_part) continue;
-            const auto place = [&](MortonCode first) { // of the first point that is not before
+            const auto place = [&](MortonCode first) { // place of the first point whose code is not below
                 return std::partition_point(places.begin(), places.end(),
                                             [&](const auto& p) { return p.first >> shift_around < first; });
             };
@@ -85,15 +85,15 @@ void spare_parts(const Octree& octree, std::vector<std::uint8_t>& far) {
     spare_parts(shifted_places(octree), far);
 }
 
-/// A frame for the points that are left: those that went may have been all that made it large.
+/// A frame for the points left: the removed ones may alone have made it large.
 CloudFrame frame_of_rest(const Octree& octree, const PointCloud& cloud) {
     Box left;
     for (Index point : octree.source) left.add(cloud.positions[point]);
     return CloudFrame(left);
 }
 
-/// Positions as the frame has them, in a cube about their box. False, and nothing done, if that has no
-/// voxels, as that of parts 2^1000 times as far apart as they are large.
+/// Takes all positions again, in the frame, in a cube about their box. False, and nothing done, if that box
+/// has no voxels, as for parts 2^1000 times as far apart as they are large.
 bool take_anew(Octree& octree, const PointCloud& cloud, const CloudFrame& frame) {
     std::vector<Vec3> positions(octree.size());
     for_chunks(positions.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -126,7 +126,7 @@ double cut_gaps(const Octree& octree, const PointCloud& cloud, double widest, Cl
     return longest;
 }
 
-/// Marks the points of what lies between cuts and is too little to be a part. Returns how many.
+/// Marks the points of stretches between cuts that hold too few to be a part. Returns how many.
 std::size_t mark_scraps(const Octree& octree, const PointCloud& cloud, const CloudFrame& frame,
                         std::vector<std::uint8_t>& marks) {
     const CloudFrame uncut = frame.without_cuts();
@@ -148,13 +148,13 @@ std::size_t mark_scraps(const Octree& octree, const PointCloud& cloud, const Clo
     return count;
 }
 
-/// The frame with all gaps cut that are wide against parts; without cuts if there are none.
+/// The frame with all gaps cut that are wide compared with parts; without cuts if there are none.
 CloudFrame with_cuts(const Octree& octree, const PointCloud& cloud, CloudFrame frame, double least_gap) {
     double widest = std::max(octree.extent / far_points::gaps_per_extent, least_gap);
     for (;;) {
         const double longest = cut_gaps(octree, cloud, widest, frame);
-        if (!(longest > 0)) return frame.without_cuts();              // single places
-        if (widest <= std::max(2 * longest, least_gap)) return frame; // as wide as parts, at any depth apart
+        if (!(longest > 0)) return frame.without_cuts();              // each stretch is a single place
+        if (widest <= std::max(2 * longest, least_gap)) return frame; // kept gaps are as wide as parts
         widest = std::max(longest, least_gap);
     }
 }
@@ -162,7 +162,8 @@ CloudFrame with_cuts(const Octree& octree, const PointCloud& cloud, CloudFrame f
 } // namespace
 
 Discarded drop_far_outliers(Octree& octree, const PointCloud& cloud, CloudFrame& frame) {
-    const Box core = box_of_most(octree, cloud); // as the cloud has it: outliers may have made its unit huge
+    // in the cloud's own units: outliers may have made the frame's unit huge
+    const Box core = box_of_most(octree, cloud);
     const double extent = core.extent();
     if (!(extent > 0) || far_points::boxes_across * extent >= octree.extent * frame.unit()) return {};
     std::vector<std::uint8_t> far(octree.size(), 0);

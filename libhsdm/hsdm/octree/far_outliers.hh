@@ -1,18 +1,18 @@
 #pragma once
-// Points so far from the others that one grid over all of them would be for nothing else.
+// Points so far from the others that one grid over all would be wasted on the space between.
 
 #include "hsdm/cloud/cloud_frame.hh"
 #include "hsdm/octree/octree.hh"
 
 namespace hsdm {
 
-/// Removes outliers: one garbage coordinate, and the finest voxels hold crowds. All but the outer two percent
-/// along each axis (of a sample) lie in a box less than 2^-12 of the cube; what is more than 2^10 of such
-/// boxes from it goes, unless it is a part: 64 points or more in a voxel of some level, around which the
-/// voxel eight times as large holds hardly any others. The others' positions are taken anew from the cloud
-/// that the octree was built of, since near a far origin they were rounded, and fit their cube again, in a
-/// frame of their own. Returns how many went, and where in the cloud. O(1) if nothing is far, else O(n log
-/// n).
+/// Removes far outliers (with a single garbage coordinate, the finest voxels hold crowds of points). If all
+/// but the outer two percent along each axis (of a sample) lie in a box smaller than 2^-12 of the cube,
+/// points more than 2^10 of such boxes away are removed, unless they are a part: 64 points or more in a voxel
+/// of some level, around which the voxel eight times as large holds hardly any others. The positions of the
+/// other points are taken again from the cloud that the octree was built of, because near a far origin they
+/// were rounded, and fitted to a cube and frame of their own. Returns how many were removed, and where in the
+/// cloud. O(1) if nothing is far, else O(n log n).
 Discarded drop_far_outliers(Octree& octree, const PointCloud& cloud, CloudFrame& frame);
 
 /// Where the spacing of the points is finer than the finest depth can follow, shortens the empty space

@@ -25,9 +25,9 @@ namespace {
 
 constexpr std::size_t grain = 1 << 14;
 constexpr double cells = 1 << morton_levels; // along an edge of the cube
-constexpr std::size_t ahead = 16; // points asked for before they are needed: their order is not the cloud's
+constexpr std::size_t ahead = 16;            // points prefetched ahead: their order is not the cloud's
 
-const Vec3 zero(0, 0, 0); // added, it makes -0 to 0: which of two equal points comes first must not show
+const Vec3 zero(0, 0, 0); // adding it turns -0 into 0: which of two equal points comes first must not show
 
 /// A normal as it was given, or (0, 0, 0) if it has no direction.
 Vec3 directed_or_zero(const Vec3& n) {
@@ -35,14 +35,14 @@ Vec3 directed_or_zero(const Vec3& n) {
     return length > 0 && std::isfinite(length) ? n : zero;
 }
 
-/// As a unit vector, or (0, 0, 0), without a -0.
+/// The unit vector, or (0, 0, 0); -0 becomes 0.
 Vec3 unit_with_one_zero(const Vec3& n) {
     const Vec3 directed = directed_or_zero(n);
     const double length = directed.norm();
     return length > 0 ? directed / length + zero : zero;
 }
 
-/// What becomes of the values at these places.
+/// change(value) of the values at these places.
 template <class T, class Change>
 std::vector<T> gathered(const std::vector<T>& values, const std::vector<Index>& places,
                         const Change& change) {
@@ -62,7 +62,7 @@ MortonCode code_of(const Vec3& relative, double scale) {
     std::array<std::uint32_t, 3> c;
     for (unsigned k = 0; k < 3; ++k) {
         const double x = relative[k] * scale;
-        c[k] = x > 0 ? static_cast<std::uint32_t>(std::min(x, last)) : 0; // NaN is before all
+        c[k] = x > 0 ? static_cast<std::uint32_t>(std::min(x, last)) : 0; // NaN goes to the first voxel
     }
     return morton_encode(c[0], c[1], c[2]);
 }
@@ -94,7 +94,8 @@ void order_points(std::span<const Vec3> positions, std::span<const Vec3> normals
     const auto same_cell = [in_cell](const CodeIndex& a, const CodeIndex& b) {
         return a.code >> in_cell == b.code >> in_cell;
     };
-    std::vector<std::size_t> first(chunk_count(keys.size(), grain) + 1, keys.size()); // cells are not parted
+    // chunks end at cell boundaries
+    std::vector<std::size_t> first(chunk_count(keys.size(), grain) + 1, keys.size());
     for (std::size_t chunk = 0; chunk + 1 < first.size(); ++chunk) {
         std::size_t i = chunk * grain;
         if (chunk > 0) i = std::max(i, first[chunk - 1]);
@@ -139,7 +140,7 @@ std::size_t merge_equal(std::span<const Vec3> positions, std::span<const Vec3> n
     return merged;
 }
 
-/// Which point comes where, and its code; the keys go, as this is where large clouds need most memory.
+/// The points in sorted order, and their codes; frees the keys, because here large clouds need most memory.
 std::vector<Index> take_order(std::vector<CodeIndex>& keys, std::vector<MortonCode>& codes) {
     std::vector<Index> order(keys.size());
     codes.resize(keys.size());
@@ -183,7 +184,7 @@ void place_cube(const PointCloud& cloud, const OctreeOptions& options, Octree& o
         octree.origin = centred_origin(octree.bounds, octree.extent);
 }
 
-/// `ours`: the cloud's normals, if they are left to us, or null.
+/// `ours`: the cloud's normals if we may take them, or null.
 Octree build(const PointCloud& cloud, std::vector<Vec3>* ours, const OctreeOptions& options) {
     if (cloud.size() == 0) throw Error("the cloud holds no point; nothing can be reconstructed");
     Octree octree;
@@ -273,7 +274,7 @@ bool fit_to_points(Octree& octree) {
 
 namespace {
 
-/// Where codes begin to differ after a shift, and behind these places how many codes there are.
+/// The places where shifted codes change, followed by the number of codes.
 std::vector<Index> find_runs(const std::vector<MortonCode>& codes, int shift) {
     const std::size_t n = codes.size();
     const std::size_t chunks = (n + grain - 1) / grain;

@@ -1,5 +1,5 @@
 #pragma once
-// Phase 1, section 3.1: the Hierarchical Space PreparedCloud Model (HSDM), a linear octree.
+// Phase 1, section 3.1: the Hierarchical Space Decomposition Model (HSDM), a linear octree.
 
 #include "hsdm/core/discarded.hh"
 #include "hsdm/core/morton_index.hh"
@@ -15,7 +15,7 @@ enum class CubePlacement {
     centred,      ///< its centre is that of the cloud's box: gives the voxel counts that the paper reports
 };
 
-/// Of the levels that a surface is made on: voxels of 2^-16 of the cube.
+/// The deepest level on which a surface is made: voxels of 2^-16 of the cube.
 constexpr int deepest_level = 16;
 
 struct OctreeOptions {
@@ -39,8 +39,8 @@ struct Octree {
     std::vector<Vec3> normals;     ///< per point, unit or (0, 0, 0); empty if the cloud has none
     std::vector<Index> source;     ///< per point, its index in the cloud (the first of merged duplicates)
     std::size_t merged_duplicates = 0;
-    /// Each merged one and the first that stands for it, by the latter, as indices in the cloud; none if the
-    /// cloud has no colours and scalars, for which alone they matter.
+    /// A merged point and the first one equal to it, which represents it; sorted by the latter, as indices in
+    /// the cloud. None if the cloud has no colours and scalars, for which alone they matter.
     struct Duplicate {
         Index first, other;
     };
@@ -64,17 +64,18 @@ Octree build_octree(const PointCloud& cloud, const OctreeOptions& options = {});
 /// The same in less memory: the cloud loses its normals, used or not, and keeps all else.
 Octree build_octree_taking_normals(PointCloud& cloud, const OctreeOptions& options = {});
 
-/// Puts the octree's points at other positions (relative to its origin, in its order; its own, moved, where
-/// they stay), in the Morton order of a cube of the given extent: its own, or one about the middle of the
-/// cloud's box. Points outside the cube fall to its outermost voxels; none is merged, normals stay with their
-/// points, `source` and `bounds` refer to the cloud as before. O(n), parallel.
+/// Replaces the points' positions (relative to the octree's origin, in its order; its own array may be moved
+/// in) and sorts them in the Morton order of a cube of the given extent: the octree's own, or one about the
+/// middle of the cloud's box. Points outside the cube go to its outermost voxels; none is merged, normals
+/// stay with their points, `source` and `bounds` refer to the cloud as before. O(n), parallel.
 void rearrange(Octree& octree, std::vector<Vec3> positions, double extent);
 
 /// Removes the points that are marked, per point; the cube stays. Returns how many, and where in the
 /// coordinates of `bounds`. O(n), parallel.
 Discarded remove_points(Octree& octree, std::span<const std::uint8_t> marked);
 
-/// Whether a cube as large as this box has voxels: all coordinates are numbers, and edges numbers above zero.
+/// Can a cube as large as this box have voxels: are all coordinates finite and all edges of voxels positive
+/// numbers?
 bool has_voxels(const Box& bounds);
 
 /// After points were removed: `bounds` becomes the box of those left, and they are rearranged in the cube of
@@ -96,7 +97,7 @@ public:
     /// The voxel at a coordinate, or no_index where none is occupied or the coordinate lies outside. O(1).
     Index find(const VoxelCoord& c) const;
     Index find(MortonCode code) const { return index_.find(code); }
-    /// Said of several codes before the first is sought, their ways to memory are one.
+    /// Call it for several codes before the first find(), so that their cache misses overlap.
     void prefetch(MortonCode code) const { index_.prefetch(code); }
 
     /// To be called once codes are final; find() needs it.
@@ -108,9 +109,9 @@ private:
 
 /// The voxels of one level of the HSDM, depth in [0, 21]. O(n), parallel.
 OctreeLevel extract_level(const Octree& octree, int depth);
-/// The same from a deeper level, of which only the voxels are looked at. O(voxels), parallel.
+/// The same from a deeper level, whose voxels alone are read. O(voxels), parallel.
 OctreeLevel coarser_level(const OctreeLevel& finer, int depth);
-/// What is `first_point` of extract_level, without the rest of the level. O(n), parallel.
+/// `first_point` of extract_level, without the rest of the level. O(n), parallel.
 std::vector<Index> first_points(const Octree& octree, int depth);
 
 /// Offsets of the 6 face, 12 edge and 8 corner neighbours: 6-, 18- and 26-adjacency is the first 6, 18, 26.

@@ -15,7 +15,7 @@ namespace {
 
 using Counts = std::array<std::size_t, morton_levels + 1>;
 
-/// Faces a surface of one unit of area crosses per voxel face, averaged over all directions.
+/// Voxels that a surface crosses per area of a voxel face, averaged over all directions.
 constexpr double voxels_per_area = 1.5;
 
 /// The first level at which two codes lie in different voxels; morton_levels + 1 if equal.
@@ -25,7 +25,7 @@ unsigned split_level(MortonCode a, MortonCode b) {
     return static_cast<unsigned>(morton_levels - highest_bit / 3);
 }
 
-/// Points at one place, with other normals, sample the surface there once.
+/// Counts places: points at one place with different normals sample the surface there once.
 std::size_t count_places(const Octree& octree, std::size_t codes) {
     if (codes == octree.size()) return codes; // no two share one
     std::size_t count = octree.size();

@@ -1,5 +1,5 @@
 #pragma once
-// How densely a cloud samples its surface, read off the octree, and the depth that this density carries.
+// How densely a cloud samples its surface, found from the octree, and the depth that this density supports.
 
 #include "hsdm/octree/constants.hh"
 #include "hsdm/octree/octree.hh"

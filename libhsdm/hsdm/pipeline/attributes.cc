@@ -62,7 +62,8 @@ public:
     }
 
 private:
-    /// Of a place where the cloud has a point, or several equal ones: these agree on one value in any order.
+    /// The value at a place where the cloud has one point or several equal ones, which give one value in any
+    /// order.
     template <class ValueOf>
     double value_at(Index point, bool is_label, const ValueOf& value_of) const {
         if (octree_.duplicates.empty()) return value_of(point);

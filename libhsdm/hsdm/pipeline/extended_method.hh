@@ -8,7 +8,7 @@ namespace hsdm {
 
 /// Facets relative to the octree's origin, an oriented 2-manifold with the vertices' properties. The octree
 /// must have normals. Adds its seconds (graph, facets) and what each stage counted to the report. Fills in
-/// what of `known` it comes to know. Throws Cancelled.
+/// those parts of `known` that it finds out. Throws Cancelled.
 PolygonMesh extended_method(const MethodInput& input, Report& report, FacetKnowledge& known);
 
 } // namespace hsdm

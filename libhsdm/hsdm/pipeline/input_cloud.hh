@@ -5,7 +5,7 @@
 
 namespace hsdm {
 
-/// The caller's cloud, or one that is left to us, which gives its memory back as soon as nobody asks for it.
+/// The caller's cloud, or one that we own and whose memory is freed as soon as it is no longer needed.
 class InputCloud {
 public:
     explicit InputCloud(const PointCloud& kept) : cloud_(&kept) {}
@@ -13,13 +13,14 @@ public:
     InputCloud(const InputCloud&) = delete;
     InputCloud& operator=(const InputCloud&) = delete;
 
-    /// Throws Error for a cloud that would be read beyond its end.
+    /// Throws Error if the arrays of the cloud are of different lengths, so that one would be read beyond its
+    /// end.
     void check() const;
-    /// In a copy of our own, if it is the caller's and has such points.
+    /// Drops points with coordinates that are not finite; if the caller's cloud has such, in a copy.
     void drop_nonfinite_points();
     const PointCloud& operator*() const { return *cloud_; }
     const Dropped& dropped() const { return dropped_; }
-    /// The normals go with it, if they are ours.
+    /// Builds the octree; takes the normals along if we own the cloud.
     Octree take_octree(const OctreeOptions& options) {
         return ours_ ? build_octree_taking_normals(*ours_, options) : build_octree(*cloud_, options);
     }

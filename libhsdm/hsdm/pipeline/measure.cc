@@ -37,7 +37,7 @@ void measure_mesh(const PolygonMesh& facets, Report& report) {
     m.closed = t.closed();
 }
 
-/// Points on a uniform grid are looked up by their voxels: facets are as large as these.
+/// Distances of the points from the facets; on a uniform grid by voxels, because facets are about as large.
 Distance distance_of(std::span<const Vec3> points, const PolygonMesh& facets, FacetKnowledge& known,
                      const DistanceOptions& options, const Report& report) {
     if (report.grid.kind != "uniform") return points_to_mesh(points, facets, options);
@@ -45,8 +45,8 @@ Distance distance_of(std::span<const Vec3> points, const PolygonMesh& facets, Fa
     return points_to_mesh_by_cells(points, facets, *known.cells, options.beyond);
 }
 
-/// Returns the points that the mesh leaves out: they are farther from it than from one end of a voxel to the
-/// other, or than the bound, and not because of their noise.
+/// Measures the error. Returns the points that the mesh leaves out: those farther from it than a voxel's
+/// diagonal, or than the bound, and not because of their noise.
 Discarded measure_error(std::span<const Vec3> points, const MethodInput& in, const PolygonMesh& facets,
                         FacetKnowledge& known, double enough, Report& report) {
     DistanceOptions options{.enough = enough};
@@ -80,7 +80,7 @@ void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, Polyg
     const ReconstructOptions& options = in.options;
     const double enough = options.measure ? 0 : report.grid.max_error;
     bool measured = report.grid.max_error > 0 || (options.measure && options.min_component);
-    Discarded off; // of all components: those that are to go are told by themselves
+    Discarded off; // of all components; those to be dropped are reported separately
     if (measured) off = measure_error(points, in, facets, known, enough, report);
     check_error_kept(report, in.frame.unit());
     if (options.min_component) {

@@ -1,5 +1,5 @@
 #pragma once
-// What both methods take and leave.
+// The common input and output of both methods.
 
 #include "hsdm/cloud/cloud_frame.hh"
 #include "hsdm/core/discarded.hh"
@@ -13,7 +13,7 @@
 
 namespace hsdm {
 
-/// What a method works on: one level of a decomposed cloud.
+/// The input of a method: one level of a prepared cloud.
 struct MethodInput {
     const CloudFrame& frame; ///< of the octree's coordinates
     const PointCloud& cloud; ///< for its colours and scalars: the rest may have been freed
@@ -23,14 +23,14 @@ struct MethodInput {
     const Phases& phases;
 };
 
-/// What is known of facets beside themselves, as long as they stay as they are.
+/// What is known about facets beyond the mesh, valid as long as they do not change.
 struct FacetKnowledge {
     FeatureHints hints;
     std::optional<FacetLinks> links;
-    std::optional<FacetCells> cells; ///< the voxels
+    std::optional<FacetCells> cells; ///< the voxels as cells of the facets
 };
 
-/// Adds to the report's list, unless nothing was dropped. `discarded.first` lies in the frame.
+/// Adds an entry to the report's list, unless nothing was dropped. `discarded.first` lies in the frame.
 void note_dropped(const std::string& what, const Discarded& discarded, const CloudFrame& frame,
                   Report& report);
 

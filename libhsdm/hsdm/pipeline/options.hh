@@ -1,5 +1,5 @@
 #pragma once
-// What a caller's options come to.
+// What follows from the caller's options.
 
 #include "hsdm/point_cloud.hh"
 #include "hsdm/reconstruct.hh"
@@ -12,7 +12,7 @@ std::string text_of(double value);
 /// The extended method is the better one, with normals given or estimated.
 Method method_for(const ReconstructOptions& options);
 
-/// Whether the cloud needs normals and has none, or none that are wanted.
+/// Does the cloud need normals and has none, or none that the options want used?
 bool must_estimate(const PointCloud& cloud, const ReconstructOptions& options);
 bool wants_adaptive(const ReconstructOptions& options);
 

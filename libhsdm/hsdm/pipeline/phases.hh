@@ -1,5 +1,5 @@
 #pragma once
-// The clock and the door for cancelling between the phases of Figure 1; shared by the methods.
+// Times the phases of Figure 1 and lets the caller cancel between them; shared by the methods.
 
 #include "hsdm/errors.hh"
 #include "hsdm/reconstruct.hh"
@@ -42,7 +42,7 @@ private:
 
     const ReconstructOptions& options_;
     double begin_, end_;
-    mutable const char* current_ = "begin"; // told to callers, read by none of the phases
+    mutable const char* current_ = "begin"; // for the caller only
 };
 
 } // namespace hsdm

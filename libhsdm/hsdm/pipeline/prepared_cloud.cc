@@ -27,7 +27,7 @@ void check_spread(const Octree& octree) {
         throw Error("only " + std::to_string(octree.size())
                     + " different points; a surface needs 4, and a good one many more");
     const Vec3& first = octree.positions.front();
-    // Of the longest side of the box, one end at least is half its length away from any point.
+    // At least one end of the box's longest side is half its length away from any point.
     const double far = octree.bounds.extent() / 4;
     const auto other = std::find_if(octree.positions.begin(), octree.positions.end(),
                                     [&](const Vec3& p) { return (p - first).max_abs() > far; });
@@ -54,7 +54,7 @@ PreparedCloud::PreparedCloud(InputCloud& input, const ReconstructOptions& option
         phases.run("octree", 0, report.seconds.octree, [&] { return input.take_octree(octree_options); });
     Discarded far = drop_far_outliers(octree, cloud, frame);
     frame.check_reach();
-    constexpr double voxels_between_parts = 16; // farther than anything reaches from voxel to voxel
+    constexpr double voxels_between_parts = 16; // more than any stage reaches from voxel to voxel
     far.add(cut_empty_space(octree, cloud, frame, voxels_between_parts * options.voxel_size.value_or(0)));
     frame.check_reach();
     far_away_ = far.count;
@@ -143,7 +143,7 @@ void PreparedCloud::note_smoothing(const SmoothReport& smoothed) {
     moved_ = noise_ > 0;
     if (!moved_) return;
     report.rejected["points_moved"] = octree.size();
-    report.input.spacing = estimate_spacing(octree); // noise makes it look wider
+    report.input.spacing = estimate_spacing(octree); // measured again: noise had made it look wider
 }
 
 int PreparedCloud::fit_voxels(double voxel_size) {

@@ -1,5 +1,5 @@
 #pragma once
-// Phase 1 of a reconstruction: a cloud's frame, its octree and what is known of it.
+// Phase 1 of a reconstruction: a cloud's frame, its octree and what has been found out about it.
 
 #include "hsdm/cloud/cloud_frame.hh"
 #include "hsdm/normals/smooth_points.hh"
@@ -16,35 +16,36 @@ class PreparedCloud {
 public:
     PreparedCloud(InputCloud& input, const ReconstructOptions& options, const Phases& phases);
 
-    /// Normals, where the method needs some and the cloud has none or they are not wanted.
+    /// Estimates normals if the method needs them and the cloud has none or they are not wanted.
     void provide_normals(const PointCloud& cloud, const Phases& phases);
 
     /// Turns given normals to one side if their signs contradict each other, and measures the noise where
     /// there seems to be much.
     void check_given_normals(const PointCloud& cloud, const Phases& phases);
 
-    /// The depth the options ask for or spacing and noise suggest, in a cube that fits; notes it in the
-    /// report.
+    /// Chooses the depth that the options ask for or that spacing and noise suggest, with a cube that fits;
+    /// enters it in the report.
     int choose_resolution(const ReconstructOptions& options);
 
-    /// Moves the points onto their surface where noise is no longer small against voxels of this depth: there
-    /// it would decide topology. Less noisy ones stay where they are, which creases are crisper for. What was
-    /// moved for its normals has little noise left.
+    /// Moves the points onto their surface if the noise is not small compared with the voxels of this depth,
+    /// where it would decide topology. Less noisy clouds stay as they are, because that keeps creases
+    /// crisper. Points already moved for their normals have little noise left.
     void smooth_for_depth(int depth, const Phases& phases);
 
-    /// Have points been moved off the places where the cloud has them, and may they be?
+    /// Have points been moved from their positions in the cloud, or might smooth_for_depth() still move them?
     bool has_moved() const { return moved_; }
     bool may_move() const { return noise_ > 0; }
 
-    /// Once the last facets are made nobody asks for them.
+    /// Frees the normals; to be called when the last facets are made.
     void release_normals() { octree.normals = std::vector<Vec3>(); }
 
     CloudFrame frame;
     Octree octree;
-    Report report; // lengths and box as the octree has them, until they are told
+    Report report; // lengths and box in the octree's units until the end
 
 private:
-    /// Outliers make a cloud look sparser and larger than its surface is.
+    /// Enters outliers in the report, and measures spacing and size again, because outliers make a cloud look
+    /// sparser and larger.
     void note_outliers(const Discarded& outliers);
 
     std::optional<Vec3> sensor_of(const PointCloud& cloud) const;
@@ -55,9 +56,9 @@ private:
     /// returns N.
     int fit_voxels(double voxel_size);
 
-    std::size_t far_away_ = 0; // points removed before all else
-    double noise_ = 0;         // standard deviation, if it is large
-    bool moved_ = false;       // the points, because of it
+    std::size_t far_away_ = 0; // points removed first, by drop_far_outliers
+    double noise_ = 0;         // standard deviation of the noise, if it is large
+    bool moved_ = false;       // have points been moved because of it?
 };
 
 } // namespace hsdm

@@ -21,12 +21,12 @@
 namespace hsdm {
 namespace {
 
-/// Phase 3 on the mesh.
+/// Phase 3: features and normals of the mesh.
 void find_features(PolyMesh& mesh, const ReconstructOptions& options, const FeatureHints& hints,
                    Report& report) {
     FeatureOptions feature_options;
     feature_options.crease_angle = options.crease_angle;
-    feature_options.write_normals = false; // smooth_normals does
+    feature_options.write_normals = false; // smooth_normals writes them
     const FeatureCounts counts = classify_features(mesh, feature_options, hints);
     if (options.vertex_normals) {
         NormalSmoothingOptions smoothing;
@@ -39,7 +39,7 @@ void find_features(PolyMesh& mesh, const ReconstructOptions& options, const Feat
     report.features.corner_vertices = counts.corner_vertices;
 }
 
-/// What the stages made and measured goes back into the cloud's own coordinates and units.
+/// Converts mesh and report from the stages' coordinates and units back to the cloud's.
 void tell_in_cloud_units(const CloudFrame& frame, PolyMesh& mesh, Report& report) {
     if (frame.unit() == 1 && !frame.has_cuts()) return;
     for (const auto v : mesh.vertices()) mesh.set_point(v, frame.to_cloud(mesh.point(v)));
@@ -76,8 +76,8 @@ void leave_out_unsound(const MethodInput& in, PolygonMesh& facets, FacetKnowledg
     note_dropped("facets that enclose nothing or have no area", unsound, in.frame, report);
 }
 
-/// Far from the origin the cloud's own coordinates may have fewer digits than those without the empty space:
-/// how facets face is asked where they will stand. Returns how many were turned.
+/// Turns facets outward in the cloud's own coordinates: far from the origin these may have fewer digits than
+/// those without the empty space. Returns how many were turned.
 std::size_t face_outward(const CloudFrame& frame, PolygonMesh& facets, FacetKnowledge& known) {
     if (!frame.has_cuts()) return turn_outward(facets, *known.links, known.hints);
     std::vector<Vec3> positions = facets.positions;
@@ -87,11 +87,12 @@ std::size_t face_outward(const CloudFrame& frame, PolygonMesh& facets, FacetKnow
     return turned;
 }
 
-/// Phases 2 and 3 on one level of a decomposition; on the `last` one what is not needed any more is let go.
-void reconstruct_level(InputCloud& cloud, PreparedCloud& decomposition, int depth, bool last,
+/// Phases 2 and 3 on one level of a prepared cloud; on the `last` level memory is freed as soon as it is no
+/// longer needed.
+void reconstruct_level(InputCloud& cloud, PreparedCloud& prepared, int depth, bool last,
                        const ReconstructOptions& options, const Phases& phases, Reconstruction& result) {
-    const Octree& octree = decomposition.octree;
-    Report report = decomposition.report;
+    const Octree& octree = prepared.octree;
+    Report report = prepared.report;
     Report::Seconds& seconds = report.seconds;
     const OctreeLevel level =
         phases.run("voxels", 0.15, seconds.octree, [&] { return extract_level(octree, depth); });
@@ -101,25 +102,25 @@ void reconstruct_level(InputCloud& cloud, PreparedCloud& decomposition, int dept
     report.grid.leaves_per_level.assign(static_cast<std::size_t>(depth) + 1, 0);
     report.grid.leaves_per_level.back() = level.size();
 
-    const MethodInput input{decomposition.frame, *cloud, octree, level, options, phases};
+    const MethodInput input{prepared.frame, *cloud, octree, level, options, phases};
     FacetKnowledge known;
     PolygonMesh facets = method_for(options) == Method::extended ? extended_method(input, report, known)
                                                                  : basic_method(input, report);
     if (last) {
-        decomposition.release_normals();
+        prepared.release_normals();
         cloud.release_attributes();
     }
     check_facets(facets, level);
     std::vector<Vec3> as_read;
-    if (decomposition.has_moved() && (options.measure || wants_adaptive(options)))
-        as_read = points_as_read(*cloud, decomposition.frame, octree);
+    if (prepared.has_moved() && (options.measure || wants_adaptive(options)))
+        as_read = points_as_read(*cloud, prepared.frame, octree);
     if (last) cloud.release_positions();
-    const std::span<const Vec3> points = decomposition.has_moved() ? as_read : octree.positions;
+    const std::span<const Vec3> points = prepared.has_moved() ? as_read : octree.positions;
     if (wants_adaptive(options)) {
         facets = phases.run("adaptive", 0.5, seconds.facets, [&] {
             return adaptive_grid(input, points, facets, known.cells ? &*known.cells : nullptr, report);
         });
-        known = {}; // of the fine facets
+        known = {}; // what was known applies to the fine facets only
     }
     leave_out_unsound(input, facets, known, report);
     check_facets(facets, level);
@@ -128,25 +129,26 @@ void reconstruct_level(InputCloud& cloud, PreparedCloud& decomposition, int dept
     as_read = std::vector<Vec3>();
     phases.run("mesh", 0.85, seconds.mesh, [&] {
         if (!known.links) known.links = link_facets(facets);
-        for (Vec3& p : facets.positions) p += octree.origin; // rounded there; a side is what it is then
-        report.rejected["facets_turned"] = face_outward(decomposition.frame, facets, known);
+        // this rounds positions; only then can be told how facets face
+        for (Vec3& p : facets.positions) p += octree.origin;
+        report.rejected["facets_turned"] = face_outward(prepared.frame, facets, known);
         const std::size_t rejected = to_mesh(facets, *known.links, result.mesh).rejected;
         report.rejected["to_mesh"] = rejected;
-        if (rejected > 0) known.hints = {}; // they are counted by facets
+        if (rejected > 0) known.hints = {}; // hints are numbered by the sides of facets
     });
     if (options.classify)
         phases.run("features", 0.9, seconds.features,
                    [&] { find_features(result.mesh, options, known.hints, report); });
-    tell_in_cloud_units(decomposition.frame, result.mesh, report);
+    tell_in_cloud_units(prepared.frame, result.mesh, report);
     report.peak_memory_bytes = peak_memory();
     result.report = std::move(report);
 }
 
-Reconstruction failed_level(const PreparedCloud& decomposition, int depth, const std::exception& error,
+Reconstruction failed_level(const PreparedCloud& prepared, int depth, const std::exception& error,
                             const Phases& phases) {
     Reconstruction result;
-    result.report = decomposition.report;
-    tell_in_cloud_units(decomposition.frame, result.mesh, result.report);
+    result.report = prepared.report;
+    tell_in_cloud_units(prepared.frame, result.mesh, result.report);
     result.report.grid.depth = depth;
     result.report.failure = dynamic_cast<const std::bad_alloc*>(&error)
                                 ? std::string("out of memory in phase ") + phases.current()
@@ -163,22 +165,22 @@ void run(InputCloud& cloud, const ReconstructOptions& options, std::optional<std
     if (options.normals == NormalSource::given && !(*cloud).has_normals())
         throw Error("normals given were asked for, but the cloud has none");
     const bool estimate = must_estimate(*cloud, options); // before the octree takes the normals
-    PreparedCloud decomposition(cloud, options, Phases(options, 0, 1));
-    Report& report = decomposition.report;
+    PreparedCloud prepared(cloud, options, Phases(options, 0, 1));
+    Report& report = prepared.report;
     report.input.dropped_nonfinite = cloud.dropped().nonfinite;
     if (cloud.dropped().nonfinite > 0) report.input.first_nonfinite = cloud.dropped().first_nonfinite;
     report.threads = tbb::this_task_arena::max_concurrency();
     note_options(estimate, options, report);
     if (estimate)
-        decomposition.provide_normals(*cloud, Phases(options, 0, 1));
+        prepared.provide_normals(*cloud, Phases(options, 0, 1));
     else if (method_for(options) == Method::extended)
-        decomposition.check_given_normals(*cloud, Phases(options, 0, 1));
-    if (!decomposition.may_move()) cloud.release_positions();
+        prepared.check_given_normals(*cloud, Phases(options, 0, 1));
+    if (!prepared.may_move()) cloud.release_positions();
     if (range) {
         report.options["levels"] = std::to_string(range->first) + ":" + std::to_string(range->second);
         report.options["resolution"] = "as asked by levels";
     } else {
-        const int depth = decomposition.choose_resolution(options);
+        const int depth = prepared.choose_resolution(options);
         range = {depth, depth};
     }
     const auto count = static_cast<double>(results.size());
@@ -190,14 +192,14 @@ void run(InputCloud& cloud, const ReconstructOptions& options, std::optional<std
         const auto level_start = i == 0 ? start : std::chrono::steady_clock::now();
         const bool last = i + 1 == results.size();
         try {
-            decomposition.smooth_for_depth(depth, phases);
-            if (last && !decomposition.has_moved()) cloud.release_positions();
-            reconstruct_level(cloud, decomposition, depth, last, options, phases, results[i]);
+            prepared.smooth_for_depth(depth, phases);
+            if (last && !prepared.has_moved()) cloud.release_positions();
+            reconstruct_level(cloud, prepared, depth, last, options, phases, results[i]);
         } catch (const Cancelled&) {
             throw;
         } catch (const std::exception& error) {
             if (++failures == results.size()) throw;
-            results[i] = failed_level(decomposition, depth, error, phases);
+            results[i] = failed_level(prepared, depth, error, phases);
         }
         results[i].report.seconds.total =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - level_start).count();
