@@ -1,5 +1,5 @@
 #pragma once
-// Exceptions at the door. Inside the stages nothing throws: what goes wrong there is counted in a report.
+// Exceptions of the public functions. Stages do not throw: what goes wrong there is counted in a report.
 
 #include <cstddef>
 #include <stdexcept>

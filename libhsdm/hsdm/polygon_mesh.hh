@@ -1,5 +1,5 @@
 #pragma once
-// Facets before OpenMesh sees them: what the facet stage makes and what the writers write.
+// Polygons before they become an OpenMesh mesh: what the facet stages make and the writers write.
 
 #include "hsdm/types.hh"
 
@@ -30,8 +30,8 @@ struct PolygonMesh {
     std::vector<Index> corners;             ///< vertices of all facets, one facet after the other
     std::vector<Index> first{0};            ///< per facet, where its corners begin; at the end their number
     std::vector<VertexProperty> properties; ///< each with one value per vertex
-    /// Empty, or per vertex the number its maker gave it, which copies of it keep: what else is known of
-    /// vertices need not travel with them. Nothing writes it.
+    /// Empty, or per vertex a number given by the stage that made it, which copies of the vertex keep, so
+    /// that other data of vertices can be looked up by it. No writer writes it.
     std::vector<Index> origin;
 
     /// Number of vertices, isolated ones too.

@@ -25,7 +25,7 @@ struct Report {
         bool has_normals = false;                   ///< given, whether used or not
         Box bbox;                                   ///< of the points that were not dropped
         double spacing = 0;                         ///< mean distance between neighbouring points
-    } input;                                        ///< what went in
+    } input;                                        ///< the cloud that was given
 
     /// The octree's level that the surface was made on.
     struct Grid {
@@ -34,16 +34,16 @@ struct Report {
         double voxel_size = 0;                     ///< edge of a voxel at that depth
         std::size_t voxels = 0;                    ///< that hold a point, at that depth
         std::vector<std::size_t> leaves_per_level; ///< index = level
-        std::size_t sets = 0,   ///< normal sets of the extended method; of the basic one the voxels
-            balance_splits = 0, ///< leaves of an adaptive grid subdivided to balance the octree
-            merged = 0;         ///< vertices of an adaptive grid that others stand for, beyond their leaves
-        double max_error = 0;   ///< the bound an adaptive grid keeps; 0 for a uniform one
+        std::size_t sets = 0,          ///< normal sets of the extended method; of the basic one the voxels
+            balance_splits = 0,        ///< leaves of an adaptive grid subdivided to balance the octree
+            merged = 0;                ///< vertices of an adaptive grid's leaves that were merged into others
+        double max_error = 0;          ///< the bound an adaptive grid keeps; 0 for a uniform one
         std::size_t points_beyond = 0; ///< farther than that, from the finest surface already
-    } grid;                            ///< where it was made
+    } grid;                            ///< the level that was used
 
     /// Topology of the mesh; zero without ReconstructOptions::measure.
     struct Mesh {
-        std::size_t vertices = 0,   ///< of a facet
+        std::size_t vertices = 0,   ///< used by a facet
             edges = 0,              ///< each counted once
             faces = 0,              ///< facets, the sum of the next three
             triangles = 0,          ///< facets of three corners
@@ -55,7 +55,7 @@ struct Report {
         long euler = 0,             ///< V - E + F
             genus = 0;              ///< as Topology::genus()
         bool closed = false;        ///< no boundary edge
-    } mesh;                         ///< what came out
+    } mesh;                         ///< the resulting mesh
 
     /// Phase 3; zero without ReconstructOptions::classify.
     struct Features {
@@ -101,7 +101,7 @@ struct Report {
     } seconds;            ///< how long it took
 
     std::size_t peak_memory_bytes = 0; ///< of the whole process so far
-    int threads = 0;                   ///< at most so many worked
+    int threads = 0;                   ///< at most so many threads worked
     std::string failure;               ///< why there is no mesh (see reconstruct_levels); empty: there is one
 };
 

@@ -57,7 +57,7 @@ public:
 
     void gather(OpenMesh::VertexHandle v);
 
-    /// Of the vertex gathered last; an arc tangent for each.
+    /// The facets around the vertex gathered last; costs an arc tangent each.
     std::span<const FanFacet> facets();
     int sharp_edges() const { return sharp_edges_; }
     /// The angle by which the line turns here, if exactly two sharp edges meet; else 0.

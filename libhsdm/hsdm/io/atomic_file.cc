@@ -49,13 +49,13 @@ bool write_all(int descriptor, std::string_view bytes) {
     return true;
 }
 
-/// All of one file over what another holds, from its first byte; false with errno on failure.
+/// Copies all of one file over the content of another, from its first byte; false with errno on failure.
 bool overwrite(int from, int to, off_t size) {
     std::array<char, 1 << 16> buffer;
     for (off_t done = 0; done < size;) {
         const ssize_t count = ::pread(from, buffer.data(), buffer.size(), done);
         if (count < 0 && errno == EINTR) continue;
-        if (count == 0) errno = EIO; // somebody else made it shorter
+        if (count == 0) errno = EIO; // another process truncated it meanwhile
         if (count <= 0 || !write_all(to, {buffer.data(), static_cast<std::size_t>(count)})) return false;
         done += count;
     }
@@ -76,7 +76,7 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(find_targ
         } else {
             open_directly();
         }
-    } catch (...) { // the destructor is not called for what was not made
+    } catch (...) { // a constructor that throws gets no destructor call
         if (descriptor_ >= 0) ::close(descriptor_);
         forget_temporary(true);
         throw;
@@ -109,8 +109,9 @@ void AtomicFile::open_directly() {
     registry.begin_stream(spoken_name(path_));
 }
 
-/// Owner and mode of what will be replaced, before the first byte is there to be read. Only some users may
-/// give files away, and not every file system has modes: then the file is this user's alone, or as it may be.
+/// Sets owner and mode of the file to be replaced before the first byte is readable. Only some users may give
+/// files away, and not every file system has modes; then the temporary stays this user's alone, or with the
+/// modes it has.
 void AtomicFile::take_over_mode(const struct stat& old) const {
     struct stat made {};
     if (::fstat(descriptor_, &made) == 0 && (old.st_uid != made.st_uid || old.st_gid != made.st_gid)) {
@@ -149,9 +150,10 @@ void AtomicFile::commit() {
     struct stat old {};
     const bool has_links =
         ::stat(target_.path.c_str(), &old) == 0 && S_ISREG(old.st_mode) && old.st_nlink > 1;
-    const auto lock = registry.lock(); // from here on nobody takes the temporary away
+    // held so that abandon_files() does not remove the temporary from here on
+    const auto lock = registry.lock();
     registry.note_complete(path_);
-    // The descriptor stays open meanwhile: its lock is what keeps other processes from the temporary.
+    // The descriptor stays open meanwhile: its lock keeps other processes from removing the temporary.
     if (has_links) {
         copy_into_target();
     } else if (::rename(temporary_.c_str(), target_.path.c_str()) != 0) {

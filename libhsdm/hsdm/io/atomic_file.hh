@@ -1,5 +1,5 @@
 #pragma once
-// A file that is there completely or not at all.
+// A file that is written completely or not at all.
 
 #include "hsdm/io/output_target.hh"
 

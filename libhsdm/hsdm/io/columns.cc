@@ -70,7 +70,7 @@ void assign_colors(std::vector<Column>& columns, const Sample& sample, std::size
     columns[first + 2].role = Role::blue;
 }
 
-/// Vec3 leaves its memory untouched when it is made, so the first to write it are the threads that fill it.
+/// Vec3's constructor leaves memory untouched, so that the threads that fill it are the first to write it.
 void resize_for_writing(std::vector<Vec3>& vectors, std::size_t count) {
     vectors.resize(count);
     advise_huge_pages(vectors.data(), count * sizeof(Vec3));

@@ -10,7 +10,7 @@
 namespace hsdm {
 
 FileRegistry& FileRegistry::of_process() {
-    // Made without memory, for it may be asked for first where none is left, and never destroyed.
+    // Made without allocation, because the first use may be when memory has run out; never destroyed.
     alignas(FileRegistry) static std::byte place[sizeof(FileRegistry)];
     static FileRegistry* const registry = new (place) FileRegistry;
     return *registry;

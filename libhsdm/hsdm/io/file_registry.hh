@@ -1,6 +1,6 @@
 #pragma once
-// What the AtomicFiles of this process are doing: for a program that a signal ends, which must leave nothing
-// half done and say what stands.
+// The state of this process's AtomicFiles, for a program that is ended by a signal: it must leave nothing
+// half written and say what was finished.
 
 #include <cstddef>
 #include <mutex>
@@ -10,7 +10,7 @@
 namespace hsdm {
 
 struct FilesWritten {
-    static constexpr std::size_t most_names = 16; ///< a program may write files for ever
+    static constexpr std::size_t most_names = 16; ///< a limit, because a program may write files without end
     std::vector<std::string> complete; ///< the first of them, by the names they were given, in order
     std::size_t complete_count = 0;
     std::vector<std::string> in_part; ///< streams that were begun, not ended: what they took is gone
@@ -21,11 +21,10 @@ struct FilesWritten {
 /// nothing. A file with several hard links, which is being overwritten, is waited for.
 const FilesWritten& abandon_files() noexcept;
 
-/// The temporaries of killed runs that were removed (see AtomicFile), once each: what has been told is
-/// forgotten.
+/// The temporaries of killed runs that were removed (see AtomicFile); each is returned once.
 std::vector<std::string> take_removed_leftovers();
 
-/// The books, which AtomicFile keeps. All but lock() must be called with the lock held.
+/// The registry that AtomicFile keeps. All functions but lock() must be called with the lock held.
 class FileRegistry {
 public:
     /// Never destroyed: threads may outlive main().

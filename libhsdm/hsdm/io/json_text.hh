@@ -1,5 +1,5 @@
 #pragma once
-// JSON as it is written, key by key.
+// Writes JSON text key by key.
 
 #include <algorithm>
 #include <cmath>
@@ -70,8 +70,8 @@ private:
     void start_value();
     void break_line();
 
-    std::string text_, open_; ///< open_: the brackets not closed yet
-    bool empty_ = true;       ///< nothing stands in the innermost yet
+    std::string text_, open_; ///< open_: the brackets not yet closed
+    bool empty_ = true;       ///< is the innermost object or array still empty?
     bool after_key_ = false;
 };
 

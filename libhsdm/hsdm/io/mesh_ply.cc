@@ -176,7 +176,7 @@ private:
             p.values[v] = value;
     }
 
-    /// Faces, and what else there is: only the faces' list of corners is kept.
+    /// Reads the remaining elements; only the corner lists of faces are kept.
     void read_others(const PlyElement& element) {
         const bool faces = element.name == "face";
         for (std::uint64_t i = 0; i < element.count; ++i) {

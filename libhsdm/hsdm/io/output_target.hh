@@ -1,5 +1,5 @@
 #pragma once
-// Where bytes go that are written under a name.
+// What a name to write to stands for.
 
 #include <string>
 

@@ -114,7 +114,7 @@ private:
         return true;
     }
 
-    /// Takes back a row of one number, which is the count of a block.
+    /// Takes back a row of one number: it is the count of a block.
     void keep_count(std::vector<double>& values, std::size_t filled) {
         counts.push_back({error.at, values[filled], filled / layout_.cells.size()});
         values.resize(filled);
@@ -268,8 +268,8 @@ std::uint64_t count_rows(const Text& text, bool comments) {
     return std::accumulate(counts.begin(), counts.end(), std::uint64_t(0));
 }
 
-/// Few rows are walked over, of more, pieces are counted in parallel, twice as much each time: the cost
-/// follows the rows that are passed and not the rest of the file, for a header may name very many elements.
+/// Walks over few rows; counts more of them in parallel pieces, twice as many each time. So the cost follows
+/// the rows to be skipped and not the rest of the file; a header may name very many.
 const char* after_rows(const Text& text, std::uint64_t count, bool comments, const std::string& what) {
     const char* at = text.begin;
     std::uint64_t left = walk_rows(text, comments, std::min(count, few_rows), at);

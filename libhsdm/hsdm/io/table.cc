@@ -8,7 +8,7 @@
 namespace hsdm::io {
 namespace {
 
-/// What stands before the first row, and how many columns that has.
+/// The lines before the first row, and the row's number of columns.
 struct Prelude {
     const char* first_row = nullptr;
     std::size_t columns = 0;
@@ -170,8 +170,8 @@ RowLayout layout_of(const Text& text, const Prelude& prelude, const std::vector<
     return layout;
 }
 
-/// Roles in the order of what can be trusted: the caller, a header line, the values. `told` is set in the
-/// last case, where more than positions had to be told.
+/// Finds the columns' roles, by the most reliable source there is: the caller, a header line, the values.
+/// `told` is set in the last case, if more than positions had to be guessed.
 std::vector<Column> find_columns(const Text& text, const Prelude& prelude, const Rows& rows, TableKind kind,
                                  const std::vector<Column>& asked, std::string& told) {
     if (!asked.empty()) return asked;

@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view suffix = ".tmp";
 
-/// What of a target's name a temporary's has: its suffix must fit into the 255 bytes of a name.
+/// The part of a target's name that its temporary's name contains: with the suffix it must fit into the 255
+/// bytes of a name.
 std::string name_part(const fs::path& target) {
     constexpr std::size_t longest = 200;
     return target.filename().string().substr(0, longest);
@@ -101,12 +102,12 @@ TemporaryFile make_temporary(const fs::path& target, unsigned mode) {
     for (;;) {
         TemporaryFile made{temporary_name(target), -1};
         const auto lock = registry.lock();
-        registry.add_temporary(made.path); // first: whatever comes, it will be removed
+        registry.add_temporary(made.path); // registered first, so that it will be removed whatever happens
         made.descriptor = ::open(made.path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, mode);
         const int error = errno;
         if (made.descriptor >= 0) {
             while (::flock(made.descriptor, LOCK_EX) != 0 && errno == EINTR) {
-            } // without locks: as it is
+            } // a file system without locks: use it unlocked
             if (!is_removed(made.descriptor)) return made;
             ::close(made.descriptor);
         }

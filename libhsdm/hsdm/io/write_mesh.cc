@@ -9,7 +9,7 @@
 namespace hsdm {
 namespace {
 
-/// What every writer below takes for granted.
+/// Checks what all writers below rely on.
 void check(const std::string& path, const PolygonMesh& mesh) {
     const std::size_t n = mesh.vertex_count();
     for (Index v : mesh.corners)

@@ -22,7 +22,7 @@ struct WriteOptions {
     bool ascii = false; ///< PLY and STL: text instead of binary (OFF and OBJ are always text)
 };
 
-/// What became of the options.
+/// What was written differently from the options.
 struct WrittenMesh {
     bool text_for_precision = false; ///< STL as text though binary was asked for: floats are too coarse
 };

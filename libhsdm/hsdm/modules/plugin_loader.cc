@@ -33,7 +33,8 @@ void check_interface(const std::string& path, std::uint32_t abi) {
                               + std::to_string(plugin_abi) + "; build it against this hsdm");
 }
 
-/// All that can be asked without running any of the module's code: loading it would run its constructors.
+/// Checks all that can be checked without running any code of the module: loading it would run its
+/// constructors.
 PluginRecord inspect(const std::string& path) {
     std::error_code error;
     if (!fs::exists(path, error)) throw Error(path, "no such file; check the name of the module");

@@ -1,5 +1,5 @@
 #pragma once
-// What a processing module tells of itself in its file, read without running any of it.
+// The record in a processing module's file that describes it, read without running any of its code.
 
 #include <cstdint>
 #include <optional>
