@@ -41,7 +41,7 @@ int status_of(const Run& run, StandardOutput& output) {
     }
 }
 
-/// What a run that was killed left, and this one found in its way, is not removed in silence.
+/// Runs a subcommand and reports the temporaries of killed runs that it has removed.
 int guarded(const Run& run) {
     try {
         StandardOutput output;

@@ -17,7 +17,7 @@
 namespace hsdm::command {
 namespace {
 
-/// By lengths whose squares are numbers.
+/// Scaled so that squares of lengths do not overflow.
 double diagonal(const Box& box) {
     const double unit = CloudFrame(box).unit();
     return (box.hi / unit - box.lo / unit).norm() * unit;

@@ -83,7 +83,7 @@ void say_what_stands(LastWords& words, const FilesWritten& files) {
     _exit(128 + signal);
 }
 
-/// Where an exception meets code that lets none through.
+/// The terminate handler: an exception has met code that lets none through.
 [[noreturn]] void end_by_exception() noexcept {
     const FilesWritten& files = abandon_files();
     LastWords words;

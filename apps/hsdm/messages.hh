@@ -12,8 +12,8 @@ namespace hsdm::command {
 /// bytes that are not UTF-8. File names may hold them. O(bytes).
 std::string printable(std::string_view text);
 
-/// What an exception says, as the command says it: options by their names on the command line, what the
-/// standard library throws in words of our own.
+/// The command's message for an exception: options by their names on the command line, exceptions of the
+/// standard library in our own words.
 std::string words_of(const std::exception& error);
 
 /// "; did you mean NAME?" for the known name that is nearest, or nothing if none is near.

@@ -45,15 +45,15 @@ struct ReconstructArguments {
     std::optional<std::pair<int, int>> level_range() const;
 };
 
-/// What says how a cloud is reconstructed: shared by `reconstruct` and `regress`.
+/// Adds the options on how a cloud is reconstructed, shared by `reconstruct` and `regress`.
 void add_method_options(CLI::App& app, ReconstructArguments& arguments);
 /// How text files are read: shared too.
 void add_text_options(CLI::App& app, ReconstructArguments& arguments);
 /// Inputs, outputs and messages.
 void add_file_options(CLI::App& app, ReconstructArguments& arguments);
 
-/// What the `args` of a suite's case ask of the library and the reader, through the same parser. Throws Error
-/// that begins with the case's name.
+/// The options of library and reader that the `args` of a suite's case stand for, through the same parser.
+/// Throws Error that begins with the case's name.
 ReconstructOptions case_options(const std::string& name, const std::vector<std::string>& words,
                                 ReadOptions& read);
 

@@ -37,7 +37,7 @@ ReconstructOptions checked_options(const ReconstructArguments& arguments,
     return options;
 }
 
-/// What make() returns; its errors begin with a name.
+/// Returns make(); puts a name before the messages of its errors.
 template <class Make>
 auto named(const std::string& name, const Make& make) {
     try {
@@ -187,8 +187,8 @@ private:
                             levels_ ? std::optional<int>(report.grid.depth) : std::nullopt);
     }
 
-    /// Of several levels one that cannot be written does not stop the others. Returns whether the mesh became
-    /// text for its precision.
+    /// Writes one level; a failure does not stop the others. Returns whether the mesh became text for its
+    /// precision.
     bool write_one(Reconstruction& result) const {
         Report& report = result.report;
         if (!report.failure.empty()) return false;

@@ -85,7 +85,7 @@ void check_claims(const std::string& path, const std::vector<Case>& cases, const
     if (!json_path.empty()) check_writable(json_path);
 }
 
-/// What is told of a bad end keeps pointers: to the suite's path once the cases are gone.
+/// Resets the activity, which keeps pointers, to the suite's path before the cases are freed.
 struct SuiteAgain {
     const std::string& path;
     ~SuiteAgain() { set_activity(path.c_str(), current_phase()); }

@@ -41,7 +41,7 @@ std::string small_component_words(const Report& report) {
     return "; " + plural(dropped->second, "small component", "small components") + " dropped";
 }
 
-/// What became of the bound that an adaptive grid was to keep.
+/// Whether the bound of an adaptive grid was kept, in words.
 std::string bound_words(const Report& report) {
     if (report.grid.max_error == 0) return {};
     const std::string bound = "\nbound     " + number(report.grid.max_error, 3) + ": ";

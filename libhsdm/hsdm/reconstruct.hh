@@ -74,7 +74,8 @@ struct ReconstructOptions {
     int normal_smoothing = 3; ///< rounds of anisotropic normal smoothing, >= 0 (section 3.3)
     int threads = 0; ///< at most this many, and no more than TBB may use: as many as there are cores, or
                      ///< as tbb::global_control says; 0: all of these. The result does not depend on it
-    /// What will not be read need not be computed: a third of the time. The facets are the same.
+    /// Results that are not needed can be left out; together these take a third of the time. The facets are
+    /// the same.
     bool classify = true;       ///< phase 3: sharp edges and classes of vertices; else the mesh has none
     bool vertex_normals = true; ///< phase 3, where there are classes: smoothed normals of vertices
     bool measure = true;   ///< the report's error and mesh; else zero, but a bound is checked all the same

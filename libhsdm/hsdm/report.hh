@@ -71,14 +71,15 @@ struct Report {
             points_to_mesh_mean = 0,   ///< mean distance
             points_to_mesh_rms = 0;    ///< root of the mean square
         double normalised_max = 0;     ///< max over the diagonal of the bounding box
-        /// Of an adaptive grid: the mesh from the surface on the finest grid; 0 for a uniform one.
+        /// For an adaptive grid, distances of the mesh from the surface on the finest grid; 0 for a uniform
+        /// grid.
         double mesh_to_surface_max = 0,
                mesh_to_surface_mean = 0; ///< the mean of the same
     } error;                             ///< how far the points are from it
 
     std::map<std::string, std::size_t> rejected; ///< by stage: what it refused, mended or split
 
-    /// Of the input or the surface: what was there and is not in the mesh, and where the first of it was.
+    /// Parts of the input or the surface that are not in the mesh, and where the first of them was.
     struct Dropped {
         std::string what;      ///< e.g. "points far from all others"
         std::size_t count = 0; ///< > 0

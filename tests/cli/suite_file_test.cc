@@ -6,7 +6,7 @@ using namespace hsdm::test;
 
 namespace {
 
-/// What the command says of a suite with this text; it must refuse it.
+/// The command's message for a suite with this text, which it must refuse.
 std::string refusal(const std::string& text) {
     const Folder folder;
     folder.write("suite.json", text);

@@ -30,7 +30,7 @@ int depth_for(double extent, double voxel_size) {
     return depth;
 }
 
-/// In a cube of voxels of just that size.
+/// An octree with a cube that has voxels of exactly that size.
 Octree octree_of(const PointCloud& cloud, double voxel_size) {
     return build_octree(cloud,
                         {.cube_extent = voxel_size * (1 << depth_for(cloud.bounds().extent(), voxel_size))});

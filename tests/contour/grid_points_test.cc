@@ -25,7 +25,7 @@ VoxelCoord shifted(VoxelCoord c, unsigned axis, int by) {
     return c;
 }
 
-/// By looking for each neighbour of each grid point.
+/// Checks `next` by looking up each neighbour of each grid point.
 void check_next(const GridPoints& grid) {
     std::map<VoxelCoord, Index> number;
     for (Index c = 0; c < grid.size(); ++c) number[grid.coord(c)] = c;

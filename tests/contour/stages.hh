@@ -6,7 +6,7 @@
 
 namespace hsdm::support {
 
-/// What dual_contour makes of a cloud on the way to its facets, nothing trimmed.
+/// The intermediate results of dual_contour for a cloud, with nothing trimmed.
 struct Stages {
     Octree octree;
     OctreeLevel level;

@@ -21,7 +21,7 @@ std::vector<CodeIndex> random_keys(std::size_t count, int bits, std::uint64_t se
     return keys;
 }
 
-/// What a stable sort makes of them, by the bits from `low` on.
+/// The keys as a stable sort orders them, by the bits from `low` on.
 std::vector<CodeIndex> expected(std::vector<CodeIndex> keys, int low = 0) {
     std::stable_sort(keys.begin(), keys.end(),
                      [low](const CodeIndex& a, const CodeIndex& b) { return a.code >> low < b.code >> low; });

@@ -48,7 +48,7 @@ void remove_measurements(Json& json) {
         for (Json& part : json) remove_measurements(part);
 }
 
-/// What must be the same in each run: everything but seconds and bytes that a report holds.
+/// The part of a file that must be the same in each run: all but the seconds and bytes in a report.
 std::string lasting_content(const std::string& name, const std::string& content) {
     if (!name.ends_with(".json")) return content;
     Json json = Json::parse(content, nullptr, false);

@@ -90,7 +90,7 @@ void put(const std::string& path, const std::string& text) {
     std::ofstream(path, std::ios::binary) << text;
 }
 
-/// What reading the text as a file of that name says.
+/// The message of the error when the text is read as a file of that name.
 std::string complaint(const std::string& name, const std::string& text) {
     const Folder folder;
     put(folder / name, text);

@@ -1,5 +1,5 @@
-// What a scan is called by must not change its part: which axis is which, where each points, which side
-// normals are on.
+// The reconstructed part must not depend on how a scan is described: which axis is which, where each points,
+// which side normals are on.
 
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/reconstruct.hh"

@@ -18,7 +18,7 @@ void JsonText::break_line() {
     text_.append(2 * open_.size(), ' ');
 }
 
-/// What stands before a value or a key.
+/// Writes the separator, line end and indentation before a value or a key.
 void JsonText::start_value() {
     if (after_key_) {
         after_key_ = false;

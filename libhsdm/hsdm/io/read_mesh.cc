@@ -31,7 +31,7 @@ PolygonMesh read_as(const SourceBytes& bytes, std::string_view format) {
 
 } // namespace
 
-/// By the content, else by the name, which must then hold what it promises.
+/// Chooses the reader by the content, else by the name; then the file must be what its name says.
 PolygonMesh read_mesh(const SourceBytes& bytes) {
     if (bytes.size() == 0) throw Error(bytes.name(), "is empty; expected a mesh");
     std::string_view format = mesh_format_of(bytes);

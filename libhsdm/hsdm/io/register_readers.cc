@@ -16,7 +16,8 @@ using OpenMesh::IO::Options;
 class PointReader : public OpenMesh::IO::BaseReader {
 public:
     std::string get_description() const override { return "Point clouds as text"; }
-    /// Nothing that OpenMesh reads itself: modules are asked in the order of their addresses.
+    /// No extension that OpenMesh reads itself, because its modules are asked in the order of their
+    /// addresses.
     std::string get_extensions() const override { return "xyz xyzn xyzrgb asc txt csv pcd pts ptx pwn"; }
 
     bool read(const std::string& path, BaseImporter& mesh, Options& options) override {

@@ -12,7 +12,7 @@
 namespace hsdm::io {
 namespace {
 
-/// What one piece of the text holds.
+/// The contents of one piece of the text.
 struct Chunk {
     std::vector<Vec3> positions, normals, colors;
     std::size_t faces = 0, ends = 0;

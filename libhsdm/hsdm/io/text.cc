@@ -17,7 +17,7 @@ Text::Text(const SourceBytes& bytes, std::string_view content)
 
 std::size_t Text::line_of(const char* at) const {
     const auto ends = static_cast<std::size_t>(std::count(origin, at, newline));
-    // What goes wrong at the end of the file is the fault of its last line, not of the one that is not there.
+    // An error at the end of the file is blamed on the last line, not on the empty one after it.
     const bool behind_last = at == end && ends > 0 && at[-1] == newline;
     return behind_last ? ends : ends + 1;
 }

@@ -43,7 +43,7 @@ private:
         return n.norm() > 1e-6 * longest ? unit(n) : Vec3(0, 0, 0);
     }
 
-    /// What a bend costs beside the length of its edge; infinite beyond the limit.
+    /// Cost of a bend, to be added to the length of its edge; infinite beyond the limit.
     double bend_cost(const Vec3& a, const Vec3& b, double squared_length) const {
         const double cosine = a | b;
         return cosine < least_cosine_ ? infinite : quad_splitting::bend_cost * squared_length * (1 - cosine);

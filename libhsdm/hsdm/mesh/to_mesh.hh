@@ -7,7 +7,7 @@
 
 namespace hsdm {
 
-/// What to_mesh() did besides copying.
+/// Changes that to_mesh() had to make.
 struct ToMeshCounts {
     std::size_t rejected =
         0; ///< facets that would have broken the 2-manifold; 0 for what our own facet stages make

@@ -110,7 +110,7 @@ public:
             }
     }
 
-    /// Per point.
+    /// Per point, the weighted count of components around it.
     const std::vector<int>& counts() const { return count_; }
 
 private:

@@ -22,9 +22,9 @@ public:
     /// be loaded.
     explicit Plugin(const std::string& path);
 
-    /// Of the shared library, as it was given.
+    /// Path of the shared library, as given.
     const std::string& path() const { return path_; }
-    /// By which it is asked for.
+    /// The name by which modules are requested.
     const std::string& name() const { return record_.name; }
     const std::string& description() const { return record_.description; } ///< one line
     const std::string& options() const { return record_.options; } ///< one line: keys, units, defaults

@@ -59,7 +59,8 @@ private:
         return reason;
     }
 
-    /// What stands here; of a file that is the last also the folder that it is in.
+    /// Why others could change the entry reached; for a file at the end of the path also the folder that
+    /// holds it.
     std::string look(bool above) const {
         struct stat status {};
         if (::stat(at_.c_str(), &status) != 0) return "";

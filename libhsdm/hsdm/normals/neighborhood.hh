@@ -1,5 +1,5 @@
 #pragma once
-// What the fits at one point share: its neighbours' positions relative to it, and how well a plane explains
+// Shared by the fits at one point: its neighbours' positions relative to it, and how well a plane explains
 // them.
 
 #include "hsdm/core/vector_pair.hh"
@@ -20,7 +20,7 @@ inline Double2 closeness(Double2 residual, double inverse_tolerance) {
     return square(u > 0 ? u : Double2{});
 }
 
-/// Of two normals by their cosine: 1 for the same direction, 0 from 33 degrees on.
+/// Agreement of two normals, by their cosine: 1 for the same direction, 0 from 33 degrees on.
 inline double agreement(double cosine) {
     return std::max(0.0, cosine * cosine - neighborhoods::least_agreement)
            / (1 - neighborhoods::least_agreement);

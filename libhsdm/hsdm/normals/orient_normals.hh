@@ -14,7 +14,7 @@ struct OrientOptions {
         false; ///< what the shape leaves open is decided by the signs that most of the normals have
 };
 
-/// What decided; all counts are of points but the first two.
+/// How signs were decided; all counts are of points, except the first two.
 struct OrientReport {
     std::size_t patches = 0, components = 0;
     std::size_t seen_from_outside = 0; ///< points whose patch lies between inside and outside

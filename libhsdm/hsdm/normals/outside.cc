@@ -152,7 +152,7 @@ double facing(const Patches& patches, Index p, Index q) {
     return mirrored * cosine < 0 ? mirrored : 0;
 }
 
-/// What a patch sees on its side away from another.
+/// The sight of a patch on its side away from another patch.
 const Sight& far_sight(const std::vector<Sights>& seen, const Patches& patches, Index p, Index other) {
     const bool ahead = (patches.normals[p] | (patches.centroids[other] - patches.centroids[p])) > 0;
     return seen[p][ahead ? 1 : 0];

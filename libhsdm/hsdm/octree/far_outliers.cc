@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t points_per_chunk = 1 << 14;
 
-/// All but the outer two percent along each axis, of a sample.
+/// The box of all but the outer two percent of a sample along each axis.
 Box box_of_most(const Octree& octree, const PointCloud& cloud) {
     constexpr std::size_t samples = 1 << 12;
     const std::size_t stride = octree.size() / samples + 1;

@@ -17,7 +17,8 @@ double error_bound(const MethodInput& in) {
     return asked.of_diagonal ? asked.value * in.octree.bounds.diagonal() : asked.value / in.frame.unit();
 }
 
-/// Of the fine vertices that the coarse ones stand for; levels are their own.
+/// Properties of the coarse vertices, merged from those of the fine vertices that they stand for; levels are
+/// their own.
 std::vector<VertexProperty> properties_of(const PolygonMesh& fine, const AdaptiveMesh& coarse) {
     std::vector<VertexProperty> result =
         merge_attributes(fine.properties, coarse.vertex, coarse.mesh.vertex_count());

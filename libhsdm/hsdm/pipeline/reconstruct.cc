@@ -210,7 +210,7 @@ void run(InputCloud& cloud, const ReconstructOptions& options, std::optional<std
 void run_in_arena(InputCloud& cloud, const ReconstructOptions& options,
                   std::optional<std::pair<int, int>> range, std::span<Reconstruction> results) {
     if (options.threads == 0) return run(cloud, options, range, results);
-    // More than may run would be a warning that TBB prints.
+    // TBB prints a warning if more threads are asked for than are allowed.
     const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     tbb::task_arena arena(static_cast<int>(std::min(static_cast<std::size_t>(options.threads), allowed)));
     arena.execute([&] { run(cloud, options, range, results); });

@@ -1,5 +1,5 @@
 #pragma once
-// Where an open surface ends.
+// Vertices on the border of an open surface.
 
 #include "hsdm/polygon_mesh.hh"
 

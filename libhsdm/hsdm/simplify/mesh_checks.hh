@@ -32,7 +32,7 @@ public:
     MeshChecks(const MeshChecks&) = delete;
 
     Findings look_at(const PolygonMesh& mesh);
-    /// Of the checks only that of the points.
+    /// Runs only the check of the points.
     FarPoints far_points(const PolygonMesh& mesh);
 
     /// The distance check, as of the mesh last looked at.
