@@ -94,16 +94,16 @@ public:
           below_(grid_points_below(grid)) {}
 
     Crossings run() {
-        believe();
+        set_beliefs();
         vote(true);
         for (int ring = 0; ring < signs::vote_rounds; ++ring) vote(false, ring + 1 < signs::vote_rounds);
-        settle();
+        flip_doubtful();
         return chosen();
     }
 
 private:
     template <class F>
-    void for_corners(F&& f) const {
+    void for_grid_points(F&& f) const {
         for_chunks(grid_.size(), grid_points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t c = begin; c < end; ++c) f(static_cast<Index>(c));
         });
@@ -139,8 +139,8 @@ private:
     /// belief_: the vote of the sheets around a grid point, without crossings: the sum of its distances to
     /// them, weighted by nearness, over the sum of their absolute values; in units of most_belief, 1 if it is
     /// outside all, -1 inside all. 0 if a sheet passes nearer than its error.
-    void believe() {
-        for_corners([&](Index c) {
+    void set_beliefs() {
+        for_grid_points([&](Index c) {
             double sum = 0, size = 0;
             for (const LocalSheet& sheet : sheets_.sheets_at(c)) {
                 if (std::abs(sheet.distance) < sheets::surface_error * h_ * sheet.weight) return;
@@ -156,7 +156,7 @@ private:
     /// continued. Ties stay unknown if `undecided`, else count as outside.
     void vote(bool carried_only, bool undecided = true) {
         std::vector<Side> next = side_;
-        for_corners([&](Index c) {
+        for_grid_points([&](Index c) {
             if (side_[c] != unknown) return;
             double sum = belief_[c];
             for (unsigned a = 0; a < 3; ++a) {
@@ -184,7 +184,7 @@ private:
         return choice_.cost(edge, low, high) + (low != high && leaks(edge) ? signs::cost_of_leak : 0);
     }
 
-    double corner_cost(Index c, Side side) const {
+    double grid_point_cost(Index c, Side side) const {
         double sum = 0;
         for (unsigned a = 0; a < 3; ++a) {
             const Index up = grid_.next[c][a], down = below_[c][a];
@@ -197,8 +197,8 @@ private:
     /// The grid points with an edge whose crossings contradict the sides of its ends, and their neighbours.
     std::vector<Index> doubtful() const {
         std::vector<std::vector<Index>> parts(chunk_count(grid_.size(), grid_points_per_chunk));
-        for_corners([&](Index c) {
-            if (side_[c] == unknown || corner_cost(c, side_[c]) == 0) return;
+        for_grid_points([&](Index c) {
+            if (side_[c] == unknown || grid_point_cost(c, side_[c]) == 0) return;
             auto& part = parts[c / grid_points_per_chunk];
             part.push_back(c);
             for_neighbors(c, [&](Index n) {
@@ -213,7 +213,7 @@ private:
 
     /// Doubtful grid points change sides while that lowers the cost of their edges. Grid points of one colour
     /// of a chessboard share no edge, so they can change in any order.
-    void settle() {
+    void flip_doubtful() {
         const std::vector<Index> grid_points = doubtful();
         std::vector<std::uint8_t> changed(grid_points.size());
         for (int round = 0; round < signs::settle_rounds; ++round) {
@@ -226,7 +226,7 @@ private:
                         if (((v[0] + v[1] + v[2]) & 1) != colour) continue;
                         const Side other = 1 - side_[c];
                         const double gain = (other == outside ? 1 : -1) * belief_[c];
-                        if (corner_cost(c, other) + 1e-9 >= corner_cost(c, side_[c]) + gain) continue;
+                        if (grid_point_cost(c, other) + 1e-9 >= grid_point_cost(c, side_[c]) + gain) continue;
                         side_[c] = other;
                         changed[k] = 1;
                     }

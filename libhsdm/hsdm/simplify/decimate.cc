@@ -28,7 +28,7 @@ struct Faults {
     std::vector<std::array<Index, 3>> leaves;
 
     bool no_worse_than(const FaultCounts& other) const {
-        return manifold && counts.crossing <= other.crossing && counts.distant <= other.distant
+        return manifold && counts.intersecting <= other.intersecting && counts.distant <= other.distant
                && counts.points <= other.points;
     }
 };
@@ -115,7 +115,7 @@ private:
         for (Index v : found.far.vertices) add_leaves(mesh.positions[v], faults.leaves);
         for (const Vec3& place : found.far.on_facets) add_leaves(place, faults.leaves);
         for (Index p : found.far_points.points) add_leaves(checks_.bound().point(p), faults.leaves);
-        for (const auto& [f, g] : found.crossing)
+        for (const auto& [f, g] : found.intersecting)
             for (Index v : mesh.facet(diagonal(g) < diagonal(f) ? g : f))
                 add_leaves(mesh.positions[v], faults.leaves);
         result_.far_points = std::move(found.far_points);

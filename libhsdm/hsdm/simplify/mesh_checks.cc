@@ -12,7 +12,7 @@ MeshChecks::MeshChecks(const PolygonMesh& fine, const FacetCells* cells, std::sp
 /// The two in parallel, because each has steps that run on one thread.
 Findings MeshChecks::look_at(const PolygonMesh& mesh) {
     Findings found;
-    tbb::parallel_invoke([&] { found.crossing = crossing_.find(mesh); },
+    tbb::parallel_invoke([&] { found.intersecting = intersections_.find(mesh); },
                          [&] {
                              found.far = bound_.find_far(mesh);
                              found.far_points = bound_.find_far_points();

@@ -8,18 +8,18 @@
 namespace hsdm {
 
 struct FaultCounts {
-    std::size_t crossing = 0; ///< pairs of facets that intersect
+    std::size_t intersecting = 0; ///< pairs of facets that intersect
     /// places on the mesh beyond the bound, and fine vertices beyond twice the bound
     std::size_t distant = 0;
     std::size_t points = 0; ///< points beyond the bound
 };
 
 struct Findings {
-    std::vector<std::array<Index, 2>> crossing; ///< pairs of facets that intersect
+    std::vector<std::array<Index, 2>> intersecting; ///< pairs of facets that intersect
     FarPlaces far;
     FarPoints far_points;
 
-    FaultCounts count() const { return {crossing.size(), far.size(), far_points.points.size()}; }
+    FaultCounts count() const { return {intersecting.size(), far.size(), far_points.points.size()}; }
 };
 
 /// All checks, with what each remembers of one mesh for the next.
@@ -41,7 +41,7 @@ public:
 
 private:
     DistanceCheck bound_;
-    IntersectionCheck crossing_;
+    IntersectionCheck intersections_;
     ToleranceEnvelope envelope_;
 };
 

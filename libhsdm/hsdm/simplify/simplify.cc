@@ -82,10 +82,10 @@ private:
         const Findings found = checks_->look_at(result_.mesh);
         faults_ = found.count();
         set_beyond(found.far_points);
-        const std::size_t crossing = split_intersecting(found), distant = split_distant(found);
-        result_.intersection_splits += crossing;
+        const std::size_t intersecting = split_intersecting(found), distant = split_distant(found);
+        result_.intersection_splits += intersecting;
         result_.error_splits += distant;
-        return crossing + distant;
+        return intersecting + distant;
     }
 
     /// Merges vertices of leaves (decimate).
@@ -261,7 +261,7 @@ private:
 
     std::size_t split_intersecting(const Findings& found) {
         std::size_t splits = 0;
-        for (const auto& pair : found.crossing)
+        for (const auto& pair : found.intersecting)
             for (Index f : pair) splits += split_facet(f);
         return splits;
     }
