@@ -36,7 +36,7 @@ void* operator new(std::size_t size) {
     void* const memory = std::malloc(size > 0 ? size : 1);
     if (!memory) throw std::bad_alloc();
     if (size >= large) {
-        hsdm::io::advise_huge_pages(memory, size);
+        hsdm::advise_huge_pages(memory, size);
         if (size <= largest) touch(static_cast<unsigned char*>(memory), size);
     }
     return memory;

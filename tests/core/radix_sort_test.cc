@@ -58,6 +58,19 @@ TEST_CASE("bits below the lowest that is asked for do not count", "[radix_sort]"
     }
 }
 
+TEST_CASE("bits above the highest that is asked for do not count", "[radix_sort]") {
+    for (const int high : {1, 12, 30}) {
+        INFO("to bit " << high);
+        std::vector<CodeIndex> keys = random_keys(5000, high + 3, 5), sorted = keys;
+        radix_sort(sorted, high);
+        std::stable_sort(keys.begin(), keys.end(), [high](const CodeIndex& a, const CodeIndex& b) {
+            const MortonCode mask = (MortonCode{1} << high) - 1;
+            return (a.code & mask) < (b.code & mask);
+        });
+        CHECK(same(sorted, keys));
+    }
+}
+
 TEST_CASE("digits that all keys share move none", "[radix_sort]") {
     std::vector<CodeIndex> keys = random_keys(3000, 11, 4);
     for (CodeIndex& key : keys) key.code = key.code << 22 | 0x155u; // one digit of six differs

@@ -26,7 +26,7 @@ struct Seen {
     OutsideView view;
 };
 
-Votes votes(const PointCloud& cloud) {
+Votes votes_of(const PointCloud& cloud) {
     Votes result;
     for (std::int8_t vote : Seen(cloud).view.votes)
         ++(vote > 0 ? result.right : vote < 0 ? result.wrong : result.none);
@@ -43,19 +43,19 @@ Votes facing(const PointCloud& cloud) {
 } // namespace
 
 TEST_CASE("nearly all of a sphere is seen from outside", "[normals]") {
-    const Votes v = votes(support::sample(support::sphere(1), {.points = 5000}));
+    const Votes v = votes_of(support::sample(support::sphere(1), {.points = 5000}));
     CHECK(v.wrong == 0);
     CHECK(v.right > 9 * v.none);
 }
 
 TEST_CASE("the cavity of a thick shell is outside again", "[normals]") {
-    const Votes v = votes(support::sample(support::nested_spheres(1, 0.5), {.points = 10000}));
+    const Votes v = votes_of(support::sample(support::nested_spheres(1, 0.5), {.points = 10000}));
     CHECK(v.wrong == 0);
     CHECK(v.right > v.none);
 }
 
 TEST_CASE("nothing is seen of a plate thinner than the voxels, nor of an open sheet", "[normals]") {
-    const Votes plate = votes(support::sample(support::box(Vec3(1, 1, 0.01)), {.points = 5000}));
+    const Votes plate = votes_of(support::sample(support::box(Vec3(1, 1, 0.01)), {.points = 5000}));
     CHECK(plate.wrong == 0);
     PointCloud sheet = support::sample(support::sphere(1), {.points = 5000});
     PointCloud cap;
@@ -64,7 +64,7 @@ TEST_CASE("nothing is seen of a plate thinner than the voxels, nor of an open sh
             cap.positions.push_back(sheet.positions[i]);
             cap.normals.push_back(sheet.normals[i]);
         }
-    const Votes open = votes(cap);
+    const Votes open = votes_of(cap);
     CHECK(open.right == 0);
     CHECK(open.wrong == 0);
 }

@@ -70,7 +70,7 @@ void check_kept(const Decimated& d) {
     CHECK(measure_topology(mesh).euler == 2);
     CHECK(points_to_mesh(d.fine.positions, mesh).max <= bound);
     CHECK(points_to_mesh(sample_surface(mesh, 2000), d.fine).max <= 1.2 * bound);
-    CHECK(d.result.faults.crossing + d.result.faults.distant + d.result.faults.points == 0);
+    CHECK(d.result.faults.intersecting + d.result.faults.distant + d.result.faults.points == 0);
     CHECK(d.result.far_points.points.empty());
     REQUIRE(d.result.vertex.size() == d.fine.vertex_count());
     std::vector<std::uint8_t> used(mesh.vertex_count(), 0);

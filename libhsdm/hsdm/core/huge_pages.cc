@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace hsdm::io {
+namespace hsdm {
 
 void advise_huge_pages(void* memory, std::size_t bytes) {
 #ifdef MADV_HUGEPAGE
@@ -19,4 +19,4 @@ void advise_huge_pages(void* memory, std::size_t bytes) {
 #endif
 }
 
-} // namespace hsdm::io
+} // namespace hsdm

@@ -3,10 +3,10 @@
 
 #include <cstddef>
 
-namespace hsdm::io {
+namespace hsdm {
 
 /// Asks for huge pages under memory that is about to be written for the first time: reading many points is
 /// bound by page faults otherwise. Only advice; does nothing for small blocks or where it is not known.
 void advise_huge_pages(void* memory, std::size_t bytes);
 
-} // namespace hsdm::io
+} // namespace hsdm

@@ -7,6 +7,7 @@
 // code of the deepest level are sorted for every level above it.
 
 #include <array>
+#include <bit>
 #include <cstdint>
 
 namespace hsdm {
@@ -53,6 +54,11 @@ constexpr VoxelCoord morton_decode(MortonCode code) {
     return {static_cast<std::int32_t>(detail::gather_bits(code)),
             static_cast<std::int32_t>(detail::gather_bits(code >> 1)),
             static_cast<std::int32_t>(detail::gather_bits(code >> 2))};
+}
+
+/// The first level at which two codes of level 21 lie in different voxels; morton_levels + 1 if equal.
+inline int split_level(MortonCode a, MortonCode b) {
+    return a == b ? morton_levels + 1 : morton_levels - (63 - std::countl_zero(a ^ b)) / 3;
 }
 
 } // namespace hsdm

@@ -15,9 +15,19 @@ constexpr std::size_t chunk_size = std::size_t{1}
 
 using Histogram = std::array<std::size_t, buckets>;
 
-std::size_t digit(const CodeIndex& key, int shift) {
-    return static_cast<std::size_t>(key.code >> shift) & (buckets - 1);
-}
+/// The bits from `shift` on, but none from `high` on: 11, or what is left of them.
+class Digit {
+public:
+    Digit(int shift, int high)
+        : shift_(shift), mask_((std::size_t{1} << std::min(digit_bits, high - shift)) - 1) {}
+    std::size_t operator()(const CodeIndex& key) const {
+        return static_cast<std::size_t>(key.code >> shift_) & mask_;
+    }
+
+private:
+    int shift_;
+    std::size_t mask_;
+};
 
 /// Turns counts per chunk and bucket into the position of each chunk's first key of each bucket.
 /// Returns false if all keys share one bucket.
@@ -43,17 +53,18 @@ void radix_sort(std::vector<CodeIndex>& keys, int high, int low) {
     std::vector<CodeIndex> buffer(n);
     std::vector<Histogram> histograms(chunks);
     for (int shift = low; shift < high; shift += digit_bits) {
+        const Digit digit(shift, high);
         for_each_task(chunks, [&](std::size_t chunk) {
             Histogram& histogram = histograms[chunk];
             histogram.fill(0);
             for (std::size_t i = chunk * chunk_size; i < std::min(n, (chunk + 1) * chunk_size); ++i)
-                ++histogram[digit(keys[i], shift)];
+                ++histogram[digit(keys[i])];
         });
         if (!counts_to_offsets(histograms, n)) continue;
         for_each_task(chunks, [&](std::size_t chunk) {
             Histogram& histogram = histograms[chunk];
             for (std::size_t i = chunk * chunk_size; i < std::min(n, (chunk + 1) * chunk_size); ++i)
-                buffer[histogram[digit(keys[i], shift)]++] = keys[i];
+                buffer[histogram[digit(keys[i])]++] = keys[i];
         });
         keys.swap(buffer);
     }

@@ -32,12 +32,6 @@ struct Leaf {
     Index slot; ///< index of its first point in the result
 };
 
-/// The first level at which two codes lie in different voxels; morton_levels + 1 if equal.
-int split_level(MortonCode a, MortonCode b) {
-    if (a == b) return morton_levels + 1;
-    return morton_levels - (63 - std::countl_zero(a ^ b)) / 3;
-}
-
 /// The largest voxels that hold at most leaf_points points (or are as small as voxels get: at most a crowd).
 std::vector<Leaf> find_leaves(const std::vector<MortonCode>& codes) {
     std::vector<Leaf> leaves;
@@ -377,7 +371,7 @@ Neighbors search(const Octree& octree, const std::vector<Index>* points, const N
     result.count = std::min(static_cast<std::size_t>(options.count), octree.size() - 1);
     const std::size_t size = points ? points->size() : octree.size();
     result.index.reserve(size * result.count);
-    io::advise_huge_pages(result.index.data(), size * result.count * sizeof(Index));
+    advise_huge_pages(result.index.data(), size * result.count * sizeof(Index));
     result.index.resize(size * result.count);
     result.reach.resize(size);
     const Search done(octree, points, result);

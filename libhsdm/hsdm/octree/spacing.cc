@@ -6,7 +6,6 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdio>
 
@@ -17,13 +16,6 @@ using Counts = std::array<std::size_t, morton_levels + 1>;
 
 /// Voxels that a surface crosses per area of a voxel face, averaged over all directions.
 constexpr double voxels_per_area = 1.5;
-
-/// The first level at which two codes lie in different voxels; morton_levels + 1 if equal.
-unsigned split_level(MortonCode a, MortonCode b) {
-    if (a == b) return morton_levels + 1;
-    const int highest_bit = 63 - std::countl_zero(a ^ b);
-    return static_cast<unsigned>(morton_levels - highest_bit / 3);
-}
 
 /// Counts places: points at one place with different normals sample the surface there once.
 std::size_t count_places(const Octree& octree, std::size_t codes) {
@@ -43,7 +35,7 @@ std::array<std::size_t, morton_levels + 1> count_voxels(const Octree& octree) {
         tbb::blocked_range<std::size_t>(1, std::max<std::size_t>(octree.size(), 1), 1 << 14), Begins{},
         [&](const tbb::blocked_range<std::size_t>& range, Begins sum) {
             for (std::size_t i = range.begin(); i != range.end(); ++i)
-                ++sum[split_level(octree.codes[i - 1], octree.codes[i])];
+                ++sum[static_cast<std::size_t>(split_level(octree.codes[i - 1], octree.codes[i]))];
             return sum;
         },
         [](Begins a, const Begins& b) {

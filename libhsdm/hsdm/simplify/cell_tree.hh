@@ -11,7 +11,7 @@ namespace hsdm {
 
 /// One level's occupied cells, by ascending code.
 struct CellLevel {
-    std::vector<MortonCode> codes;
+    std::vector<MortonCode> codes;   ///< counted from one cube before the least corner, in every direction
     std::vector<Index> parent;       ///< on the level above (coarser); empty on level 0
     std::vector<std::uint8_t> whole; ///< is neither the cell nor any cell below it to be subdivided?
 };

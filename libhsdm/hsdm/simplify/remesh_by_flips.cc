@@ -2,6 +2,7 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/disjoint_sets.hh"
+#include "hsdm/core/groups.hh"
 #include "hsdm/core/hash.hh"
 #include "hsdm/mesh/straight_corners.hh"
 #include "hsdm/mesh/triangle_sides.hh"
@@ -371,10 +372,11 @@ private:
 
     /// Writes the remaining triangles and the quads, group by group.
     void add_groups(const std::vector<Index>& partner) {
-        const auto [first, members] = groups();
+        const auto [number, count] = number_groups();
+        const Groups groups(number, count);
         std::vector<Key> facets;
-        for (std::size_t g = 0; g + 1 < first.size(); ++g) {
-            const auto group = std::span(members).subspan(first[g], first[g + 1] - first[g]);
+        for (std::size_t g = 0; g < count; ++g) {
+            const auto group = groups.of(g);
             facets.clear();
             for (Index t : group)
                 if (t == 0 || facet_[t - 1] != facet_[t]) facets.push_back(facet_keys_[facet_[t]]);
@@ -395,12 +397,9 @@ private:
         now_.add_ring(ring, vertex_keys_);
     }
 
-    /// Triangles connected by flips or joins, and halves of one quad, as compressed rows.
-    struct Groups {
-        std::vector<Index> first, members;
-    };
-    Groups groups() {
-        Groups result;
+    /// Per triangle the group of those connected by flips or joins, halves of one quad among them; and how
+    /// many there are.
+    std::pair<std::vector<Index>, Index> number_groups() {
         std::vector<Index> number(half_.size());
         Index count = 0;
         for (Index t = 1; t < number.size(); ++t)
@@ -409,15 +408,7 @@ private:
             const Index least = united_->find(t);
             number[t] = least == t ? count++ : number[least];
         }
-        // Counts are stored two to the right, so that filling in the triangles moves the starts to their
-        // places.
-        result.first.assign(count + 2, 0);
-        result.members.resize(number.size());
-        for (Index n : number) ++result.first[n + 2];
-        counts_to_first(result.first);
-        for (Index t = 0; t < number.size(); ++t) result.members[result.first[number[t] + 1]++] = t;
-        result.first.pop_back();
-        return result;
+        return {std::move(number), count};
     }
 
     PolygonMesh& mesh_;

@@ -57,7 +57,7 @@ public:
         if (round == options_.rounds || result_.points_beyond > result_.unreachable)
             settle_for_fine();
         else
-            merge();
+            decimate_leaves();
         count_leaves();
         if (options_.measure) {
             const std::size_t samples =
@@ -73,7 +73,7 @@ private:
     /// Builds and checks the mesh over the current leaves, and subdivides those at faults; returns how many.
     std::size_t split_what_is_wrong() {
         result_.balance_splits += balance(tree_);
-        collapse();
+        mesh_over_leaves();
         drop_doublets();
         const std::size_t troubled = split_troubled();
         result_.topology_splits += troubled;
@@ -89,7 +89,7 @@ private:
     }
 
     /// Merges vertices of leaves (decimate).
-    void merge() {
+    void decimate_leaves() {
         LeafMesh leaves{std::move(result_.mesh), std::move(vertex_)};
         std::vector<Quadric> leaf_planes(leaves.mesh.vertex_count());
         for (std::size_t v = 0; v < planes_.size(); ++v) leaf_planes[leaves.vertex[v]] += planes_[v];
@@ -131,7 +131,7 @@ private:
     void settle_for_fine() {
         for (CellLevel& level : tree_.levels)
             if (&level != &tree_.levels.back()) level.whole.assign(level.whole.size(), 0);
-        collapse();
+        mesh_over_leaves();
         set_beyond(checks_->far_points(result_.mesh));
     }
 
@@ -155,7 +155,7 @@ private:
     }
 
     /// Builds the mesh over the leaves: a facet remains if it has three different vertices.
-    void collapse() {
+    void mesh_over_leaves() {
         locate();
         std::vector<std::vector<Index>> number(clusters_.size());
         for (std::size_t level = 0; level < clusters_.size(); ++level)
