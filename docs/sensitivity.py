@@ -12,11 +12,11 @@
 finds in build/sensitivity/trials.json: a run that was stopped goes on. For each value, at half and at double, it
 reconstructs some small clouds of both suites (SUBSET below, or those whose names match --cases), compares hashes of the
 meshes, and has the cases whose mesh has changed judged from outside, by suite.py and meshjudge with a tenth of its samples.
-Values of simplify/ are tried on adaptive grids, all others on uniform ones. A case is sound if its mesh is a 2-manifold of
-the topology that the suite expects, within limits if it keeps all of the suite's limits.
+Values of simplify/ are tried on adaptive grids, those of pipeline/ on all, all others on uniform ones. A case is sound if
+its mesh is a 2-manifold of the topology that the suite expects, within limits if it keeps all of the suite's limits.
 
 Half and double: of cosines and sines, the angle; of factors, what they exceed 1 by; of counts, at least one less and one
-more. The angle is never more than 180 degrees, that of a sine 90.
+more. Angles are never more than 180 degrees, that of a sine 90.
 
 Needs python3 and what the build needs; HSDM_SHARED_DIR, or ../shared, must hold the suites and their tools.
 """
@@ -82,6 +82,8 @@ def half_and_double(value):
         return [math.cos(angle / 2) ** 2, math.cos(min(math.pi / 2, 2 * angle)) ** 2]
     if unit == "sine":
         return [math.sin(math.asin(x) / 2), math.sin(max(-math.pi / 2, min(math.pi / 2, 2 * math.asin(x))))]
+    if unit == "radians":
+        return [x / 2, min(math.pi, 2 * x)]
     if unit == "factor" and x > 1:
         return [1 + (x - 1) / 2, 1 + (x - 1) * 2]
     return [x / 2, x * 2]
@@ -164,7 +166,7 @@ def is_adaptive(case):
 
 
 def hashes(cases, setting, seconds):
-    """Per case its mesh's hash; None if the program crashed or did not end in time."""
+    """Per case its mesh's hash; a word if the program refused the setting, crashed or did not end in time."""
     names, out = os.path.join(TREE, "cases.txt"), os.path.join(TREE, "hashes.txt")
     with open(names, "w") as file:
         file.writelines(name + "\n" for name in cases)
@@ -173,11 +175,13 @@ def hashes(cases, setting, seconds):
     environment = dict(os.environ, HSDM_TUNED=setting, HSDM_HASHES_OF=names, HSDM_WRITE_HASHES=out)
     program = os.path.join(TREE, "tests", "hashes", "hsdm_hashes")
     try:
-        subprocess.run([program, "the measurement suites' meshes have the bits that are kept"], env=environment,
-                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=seconds)
-        lines = [line.split(" ", 2) for line in open(out).read().splitlines() if line[0] != "#"]
-    except (subprocess.TimeoutExpired, FileNotFoundError):
-        return None
+        ended = subprocess.run([program, "the measurement suites' meshes have the bits that are kept"], env=environment,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=seconds)
+    except subprocess.TimeoutExpired:
+        return "does not end"
+    if not os.path.exists(out):
+        return "is refused" if ended.returncode > 0 else "crashes"
+    lines = [line.split(" ", 2) for line in open(out).read().splitlines() if line[0] != "#"]
     return {name: geometry + features for geometry, features, name in lines}
 
 
@@ -220,10 +224,11 @@ def trial(value, to, cases, known, limit):
     """What a setting changes."""
     setting = "%s=%r" % (value["name"], to)
     base = known["base"]
-    tried = {n: c for n, c in cases.items() if is_adaptive(c) == (value["folder"] == "simplify")}
+    tried = {n: c for n, c in cases.items()
+             if value["folder"] == "pipeline" or is_adaptive(c) == (value["folder"] == "simplify")}
     found = hashes(tried, setting, limit)
-    if found is None:
-        return {"crash": True}
+    if isinstance(found, str):
+        return {"failure": found}
     changed = {n: c for n, c in tried.items() if found.get(n) != base["hashes"][n]}
     result = {"changed": len(changed), "differences": {}}
     for name, now in judged(changed, setting).items():
@@ -239,8 +244,8 @@ def run(options):
     begin = time.time()
     found = hashes(cases, "", 3600)
     seconds = time.time() - begin
-    if found is None:
-        sys.exit("sensitivity.py: the cases cannot be reconstructed")
+    if isinstance(found, str):
+        sys.exit("sensitivity.py: hsdm_hashes " + found)
     if known.get("base", {}).get("hashes") != found:
         known = {"trials": {}, "base": {"hashes": found, "judged": judged(cases, "")}}
         save(known)
@@ -261,10 +266,8 @@ def run(options):
 
 
 def cell(result):
-    if result is None:
-        return "not tried"
-    if result.get("crash"):
-        return "crashes or does not end"
+    if result is None or "changed" not in result:
+        return (result or {}).get("failure", "not tried")
     if not result["changed"]:
         return "no case changed"
     text = "%d" % result["changed"]
@@ -296,7 +299,8 @@ def table():
     """Cells of what is not known here stay, if the value is the same."""
     trials, before, lines = load()["trials"], cells_before(), []
     for folder in FOLDERS:
-        lines += ["", "## %s/" % folder, "", "| name | value | unit | what, and *why this value* | half: cases | double: cases |",
+        lines += ["", "## %s/" % folder, "",
+                  "| name | value | unit | what, and *why this value* | half: cases | double: cases |",
                   "|---|---|---|---|---|---|"]
         for v in values():
             if v["folder"] != folder:

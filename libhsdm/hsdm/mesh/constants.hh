@@ -13,7 +13,7 @@ namespace hsdm::quad_splitting {
 /// left open.
 HSDM_TUNED double most_bend = 2.6;
 
-/// factor: on what a bend of a right angle costs against the square of its edge.
+/// weight: of a bend of a right angle against the square of its edge.
 /// Why: by trial; flat ways round are taken if they are less than twice as long.
 HSDM_TUNED double bend_cost = 4;
 
@@ -85,7 +85,7 @@ HSDM_TUNED std::size_t most_facets = 20;
 /// Why: by trial; more are a piece of the surface.
 HSDM_TUNED std::size_t most_open = 32;
 
-/// factor: of the largest component's facets on a splinter's.
+/// ratio: of the largest component's facets to a splinter's.
 /// Why: by trial; beside a small part a small one is no splinter.
 HSDM_TUNED double least_ratio = 32;
 

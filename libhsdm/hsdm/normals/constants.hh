@@ -38,7 +38,7 @@ namespace hsdm::distance_outliers {
 /// Why: by trial; density that falls to a twentieth from point to point is none of a scan.
 HSDM_TUNED double most_stretch = 4;
 
-/// factor: of a point's reach on the median of the cloud.
+/// ratio: of a point's reach to the median of the cloud.
 /// Why: by trial; a hundredth of the density.
 HSDM_TUNED double most_sparseness = 10;
 
@@ -319,7 +319,7 @@ HSDM_TUNED int sweeps = 8;
 } // namespace hsdm::turning
 
 // vote_on_normals.hh
-namespace hsdm::votes {
+namespace hsdm::normal_votes {
 
 /// cosine: neighbours within this angle of the point's own normal leave it as it is.
 /// Why: 37 degrees, about the angle of a sharp edge.
@@ -337,7 +337,7 @@ HSDM_TUNED double least_support = 0.1;
 /// Why: by trial; the second carries what the first one found to its neighbours.
 HSDM_TUNED int rounds = 2;
 
-} // namespace hsdm::votes
+} // namespace hsdm::normal_votes
 
 // mend_normals.hh
 namespace hsdm::contradictions {

@@ -22,7 +22,8 @@ public:
 
     Vec3 settled(const Vec3& own) const {
         Vec3 best = own;
-        double most = votes::clear_gain * support(VectorPair(own, own))[0] + votes::least_support;
+        double most =
+            normal_votes::clear_gain * support(VectorPair(own, own))[0] + normal_votes::least_support;
         for (std::size_t k = 0; k < around_.size(); k += 2) {
             const std::array<std::size_t, 2> places{k, around_.after(k)};
             const Double2 found = support(VectorPair(normal(places[0]), normal(places[1])));
@@ -58,13 +59,14 @@ private:
 void vote_on_normals(const Octree& octree, const Neighbors& neighbors, EstimatedNormals& estimate) {
     const std::vector<Index>& bent = estimate.bent;
     std::vector<Vec3> settled(bent.size());
-    for (int round = 0; round < votes::rounds; ++round) {
+    for (int round = 0; round < normal_votes::rounds; ++round) {
         for_chunks(bent.size(), bent_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t b = begin; b < end; ++b) {
                 const Vec3& own = settled[b] = estimate.normals[bent[b]];
                 const auto around = neighbors.of(bent[b]);
-                if (std::any_of(around.begin(), around.end(),
-                                [&](Index j) { return (own | estimate.normals[j]) < votes::settled_cosine; }))
+                if (std::any_of(around.begin(), around.end(), [&](Index j) {
+                        return (own | estimate.normals[j]) < normal_votes::settled_cosine;
+                    }))
                     settled[b] = Agreement(octree, neighbors, estimate, bent[b]).settled(own);
             }
         });
