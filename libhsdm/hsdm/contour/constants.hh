@@ -124,8 +124,8 @@ HSDM_TUNED double fair_share = 0.25;
 HSDM_TUNED double plane_error = 0.1;
 
 /// points: a voxel beside a crossed edge that holds none of the sheet is a sliver that the sampling missed
-/// while fewer are expected in it. Why: with six expected by chance none is there once in four hundred
-/// (exp(-6)).
+/// while fewer are expected in it.
+/// Why: with six expected by chance none is there once in four hundred (exp(-6)).
 HSDM_TUNED double sliver_points = 6;
 
 } // namespace hsdm::crossing
@@ -171,11 +171,13 @@ HSDM_TUNED double end_gap = 0.01;
 namespace hsdm::pairing {
 
 /// cosine: of the normals of two crossings that face opposite ways, as the two sides of a thin part or of a
-/// wedge. Why: 107 degrees: creases at a right angle are not opposite, noise of 15 degrees included.
+/// wedge.
+/// Why: 107 degrees: creases at a right angle are not opposite, noise of 15 degrees included.
 HSDM_TUNED double opposed_cosine = -0.3;
 
 /// cost: of pairing two crossings across a crease, beside the angle and the distance from each other's
-/// planes. Why: by trial; one sheet is to be preferred at any angle of less than 90 degrees, whose cost is 1.
+/// planes.
+/// Why: by trial; one sheet is to be preferred at any angle of less than 90 degrees, whose cost is 1.
 HSDM_TUNED double cost_of_crease = 1;
 
 /// cost: of pairing two that have nothing to do with each other.
@@ -200,8 +202,8 @@ HSDM_TUNED int trim_rounds = 3;
 namespace hsdm::cuts {
 
 /// voxels: from a voxel's middle to the tip of a wedge that it can serve; farther off, two opposite sides are
-/// a thin part. Why: the corner of a voxel is 0.87 from its middle; a vertex may lie outside its voxel by
-/// some more.
+/// a thin part.
+/// Why: the corner of a voxel is 0.87 from its middle; a vertex may lie outside its voxel by some more.
 HSDM_TUNED double tip_reach = 1.0;
 
 /// voxels: a narrower face between two sides is none; one vertex serves both its creases.
@@ -298,7 +300,8 @@ HSDM_TUNED std::size_t points_per_voxel = 8;
 HSDM_TUNED double doubt = 2;
 
 /// cosine: of the way from the facets to a point with the vertex's direction; less upright, and it lies
-/// beside them. Why: 40 degrees, as of normals of one sheet.
+/// beside them.
+/// Why: 40 degrees, as of normals of one sheet.
 HSDM_TUNED double upright_cosine = 0.77;
 
 } // namespace hsdm::relaxation
@@ -379,7 +382,8 @@ namespace hsdm::edge_hints {
 HSDM_TUNED double least_cosine = 0.5;
 
 /// per voxel: of distance from a set's centroid, in what is minimised beside angle and height to find a
-/// facet's set. Why: a twentieth tells sets of one sheet apart and sways nothing else.
+/// facet's set.
+/// Why: a twentieth tells sets of one sheet apart and sways nothing else.
 HSDM_TUNED double arm_weight = 0.05;
 
 /// share: of the crease angle; flatter edges are not looked at.

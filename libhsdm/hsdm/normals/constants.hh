@@ -167,7 +167,8 @@ HSDM_TUNED int most_rounds = 4;
 HSDM_TUNED double clearly_less = 0.95;
 
 /// factor: of a moved point's reach on the median reach of its neighbours; beyond, it was left between two
-/// sheets. Why: as what is doubtful (distance_outliers.doubtful_stretch): smoothed sheets have no others.
+/// sheets.
+/// Why: as what is doubtful (distance_outliers.doubtful_stretch): smoothed sheets have no others.
 HSDM_TUNED double most_stretch = 1.25;
 
 /// rounds: of removing those.
@@ -265,7 +266,8 @@ HSDM_TUNED double most_rise = 0.5;
 HSDM_TUNED Index compared = 12;
 
 /// reaches: nearer points are compared by how far they lie off each other's planes, not by the angle of their
-/// chord. Why: by trial; two sides of a plate oppose each other even where the chord is slanted.
+/// chord.
+/// Why: by trial; two sides of a plate oppose each other even where the chord is slanted.
 HSDM_TUNED double near_pair = 0.45;
 
 /// tolerances: the same.

@@ -106,15 +106,15 @@ namespace hsdm::developable {
 /// Why: by trial; round ground that bends both ways has one near 1.
 HSDM_TUNED double most_ratio = 0.35;
 
-/// cosine: of a mean normal with the axis, off the region's, while it grows: near 90 degrees a difference of
-/// angles. Why: 5 degrees: the axis is not yet known well.
+/// cosines: how far a mean normal's with the axis may be off the region's, while it grows.
+/// Why: 5 degrees: the axis is not yet known well.
 HSDM_TUNED double most_off = 0.08;
 
-/// cosine: the same when margins are trimmed.
+/// cosines: the same when margins are trimmed.
 /// Why: 2 degrees: the axis is known by then, noise in gathered normals is below that.
 HSDM_TUNED double most_off_trimmed = 0.03;
 
-/// cosine: the same, root mean square over the region.
+/// cosines: the same, root mean square over the region.
 /// Why: 0.6 degrees: what bends two ways within the error has more.
 HSDM_TUNED double most_deviation = 0.01;
 
@@ -234,7 +234,8 @@ HSDM_TUNED double settled_share = 1e-3;
 HSDM_TUNED double straight_share = 0.1;
 
 /// share: of the tolerance, by which a neighbour may miss the planes more than the vertex itself and stand
-/// for it. Why: by trial; a tenth is "about as well".
+/// for it.
+/// Why: by trial; a tenth is "about as well".
 HSDM_TUNED double free_share = 0.1;
 
 } // namespace hsdm::collapses
