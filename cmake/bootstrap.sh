@@ -24,7 +24,8 @@ packages="g++ cmake ninja-build libopenmesh-dev libeigen3-dev libflann-dev libtb
     nlohmann-json3-dev libcli11-dev catch2"
 case $goal in
 demo) packages="$packages f3d xvfb xauth" ;;
-tools) packages="$packages clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 llvm-14 doxygen git" ;;
+tools) packages="$packages clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 llvm-14 doxygen git
+    python3" ;;
 esac
 
 is_installed() {
