@@ -208,7 +208,8 @@ private:
     std::size_t count_within(float limit) const {
         Int4 sum{};
         for (std::size_t k = 0; k < count_; k += lanes) sum -= lanes_at(near_distance_, k) <= limit;
-        return static_cast<std::size_t>(sum[0] + sum[1] + sum[2] + sum[3]);
+        const int count = sum[0] + sum[1] + sum[2] + sum[3];
+        return static_cast<std::size_t>(count);
     }
     float farthest_within(float limit) const {
         Float4 most{};
@@ -277,9 +278,9 @@ private:
         const std::int32_t side = std::int32_t{1} << level;
         std::array<std::array<MortonCode, 3>, 3> part; // per axis and step, its bits of the code
         for (unsigned axis = 0; axis < 3; ++axis)
-            for (std::int32_t step = -1; step <= 1; ++step) {
-                const std::int32_t c = centre[axis] + step;
-                part[axis][static_cast<std::size_t>(step + 1)] =
+            for (std::size_t step = 0; step < 3; ++step) { // to the voxel before, none, to that after
+                const std::int32_t c = centre[axis] + static_cast<std::int32_t>(step) - 1;
+                part[axis][step] =
                     c < 0 || c >= side ? beyond : detail::spread_bits(static_cast<std::uint64_t>(c)) << axis;
             }
         std::array<MortonCode, 27> codes;
