@@ -50,9 +50,6 @@ function(hsdm_sanitize library)
   endif()
   target_compile_options(${library} PUBLIC
     -fsanitize=${HSDM_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
-  if(HSDM_SANITIZE MATCHES "address.*undefined") # the address sanitizer sees what these are for; a fifth of compiling
-    target_compile_options(${library} PUBLIC -fno-sanitize=null,object-size,pointer-overflow,vptr)
-  endif()
   target_link_options(${library} PUBLIC -fsanitize=${HSDM_SANITIZE})
   if(HSDM_SANITIZE STREQUAL "thread")
     # The installed TBB is not built for the thread sanitizer: see tests/tsan/tbb/stand_in.h.
