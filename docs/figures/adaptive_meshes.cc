@@ -56,7 +56,7 @@ private:
     }
     static void remesh(PolygonMesh& mesh, MeshChecks& checks, Diagonals diagonals) {
         const std::vector<std::uint8_t> settled(mesh.vertex_count(), 0);
-        remesh_by_flips(mesh, checks.band(), settled, diagonals);
+        remesh_by_flips(mesh, checks.envelope(), settled, diagonals);
     }
 };
 

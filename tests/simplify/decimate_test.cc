@@ -58,6 +58,7 @@ struct Decimated {
         : fine(std::move(mesh)) {
         LeafMesh leaves{fine, std::vector<Index>(fine.vertex_count())};
         std::iota(leaves.vertex.begin(), leaves.vertex.end(), Index{0});
+        leaves.mesh.origin = leaves.vertex;
         MeshChecks checks(fine, nullptr, fine.positions, bound, 0.05, band * bound);
         result = decimate(leaves, std::move(planes), checks, options);
     }

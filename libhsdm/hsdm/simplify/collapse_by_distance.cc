@@ -17,11 +17,11 @@ constexpr std::size_t vertices_per_chunk = 256, collapses_per_chunk = 32;
 // beside the middle, which is tested first
 constexpr double along_edge[] = {0.125, 0.25, 0.375, 0.625, 0.75, 0.875};
 
-/// Key of the neighbours of a side's start, the side's end first; they are left in `ring`.
-Key ring_key(const CollapsingMesh& mesh, Index side, std::vector<Index>& ring) {
-    Key key = mesh.ring_of(side, ring);
-    for (Index v : ring) key = hash_index(key ^ v);
-    return key;
+/// Hash of the neighbours of a side's start, the side's end first; they are left in `ring`.
+std::uint64_t hash_of_ring(const CollapsingMesh& mesh, Index side, std::vector<Index>& ring) {
+    std::uint64_t hash = mesh.ring_of(side, ring);
+    for (Index v : ring) hash = hash_index(hash ^ v);
+    return hash;
 }
 
 class DistanceCollapsing {
@@ -80,7 +80,7 @@ private:
         for (const Collapse& c : collapses) {
             if (too_far_[c.side]) continue;
             const DistanceCollapse drop{c.side, mesh_.start(c.side), mesh_.end(c.side),
-                                        ring_key(mesh_, c.side, ring_)};
+                                        hash_of_ring(mesh_, c.side, ring_)};
             if (mesh_.collapse(drop.side, mesh_.at(drop.onto)))
                 drops_.push_back(drop);
             else
@@ -230,7 +230,7 @@ CollapsedMesh collapse_by_distance(CollapsingMesh mesh, std::span<const Distance
     std::vector<Index> ring;
     for (const DistanceCollapse& drop : drops)
         if (may_go[drop.vertex] && may_go[drop.onto] && mesh.start(drop.side) == drop.vertex
-            && ring_key(mesh, drop.side, ring) == drop.ring)
+            && hash_of_ring(mesh, drop.side, ring) == drop.ring)
             mesh.collapse(drop.side, mesh.at(drop.onto));
     return mesh.write();
 }

@@ -2,7 +2,6 @@
 // Removes vertices by edge collapses under a bound on the measured distance.
 
 #include "hsdm/simplify/collapsing_mesh.hh"
-#include "hsdm/simplify/content_keys.hh"
 #include "hsdm/spatial/surface_walk.hh"
 
 #include <span>
@@ -13,7 +12,7 @@ namespace hsdm {
 struct DistanceCollapse {
     Index side; ///< half-edge of the triangles that the mesh is cut into
     Index vertex, onto;
-    Key ring; ///< key of its neighbours at the time
+    std::uint64_t ring; ///< hash of its neighbours at the time
 };
 
 /// Finds the inner vertices that can be removed where the surface is smooth, each by its shortest edge that

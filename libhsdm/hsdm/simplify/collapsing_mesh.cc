@@ -1,6 +1,5 @@
 #include "hsdm/simplify/collapsing_mesh.hh"
 
-#include "hsdm/mesh/triangulate.hh"
 #include "hsdm/simplify/constants.hh"
 #include "hsdm/simplify/triangle_shape.hh"
 
@@ -25,36 +24,38 @@ bool turns(const Vec3& before, const Vec3& after, std::span<const Vec3> faces) {
     return !is_along(before, after) || (faces_along(-after, faces) && after.sqrnorm() > before.sqrnorm());
 }
 
+std::vector<Index> corners_of(const Triangulation& cut) {
+    std::vector<Index> corners;
+    corners.reserve(3 * cut.size());
+    for (const Triangle& t : cut.triangles) corners.insert(corners.end(), t.begin(), t.end());
+    return corners;
+}
+
 } // namespace
 
-CollapsingMesh::CollapsingMesh(const PolygonMesh& mesh)
-    : mesh_(mesh),
+CollapsingMesh::CollapsingMesh(const PolygonMesh& mesh) : CollapsingMesh(mesh, triangulate(mesh)) {}
+
+CollapsingMesh::CollapsingMesh(const PolygonMesh& mesh, const Triangulation& cut)
+    : EditableTriangles(corners_of(cut), {}, mesh.vertex_count()),
+      mesh_(mesh),
       positions_(mesh.positions),
       stands_for_(mesh.vertex_count()),
-      facets_(mesh.vertex_count(), 0),
+      facet_(facet_of_triangle(cut)),
       locked_(mesh.vertex_count(), 0),
       changed_(mesh.vertex_count(), 1),
       touched_(mesh.facet_count(), 0),
       flipped_(mesh.vertex_count(), 0) {
     std::iota(stands_for_.begin(), stands_for_.end(), Index{0});
-    const Triangulation cut = triangulate(mesh);
-    facet_ = facet_of_triangle(cut);
-    corners_.reserve(3 * cut.size());
-    for (const Triangle& t : cut.triangles) corners_.insert(corners_.end(), t.begin(), t.end());
-    TriangleSides sides = link_triangles(corners_, {}, mesh.vertex_count());
-    twin_ = std::move(sides.twin);
-    border_ = std::move(sides.border);
-    for (Index v : corners_) ++facets_[v];
     lock_facets();
 }
 
 /// Locks facets with a diagonal that is already an edge of other facets.
 void CollapsingMesh::lock_facets() {
-    for (Index s = 0; s < corners_.size(); ++s) {
+    for (Index s = 0; s < side_count(); ++s) {
         const auto ring = mesh_.facet(facet_[s / 3]);
-        if (ring.size() == 3 || (twin_[s] != no_index && facet_[twin_[s] / 3] == facet_[s / 3])) continue;
-        const auto start = std::find(ring.begin(), ring.end(), corners_[s]);
-        if (end(s) == (start + 1 == ring.end() ? ring.front() : start[1])) continue;
+        if (ring.size() == 3 || (twin(s) != no_index && facet_[twin(s) / 3] == facet_[s / 3])) continue;
+        const auto at = std::find(ring.begin(), ring.end(), start(s));
+        if (end(s) == (at + 1 == ring.end() ? ring.front() : at[1])) continue;
         for (Index v : ring) locked_[v] = 1;
     }
 }
@@ -64,16 +65,6 @@ std::vector<Index> CollapsingMesh::sides_out() const {
     for (Index s = 0; s < side_count(); ++s)
         if (!is_gone(s)) out[start(s)] = s;
     return out;
-}
-
-bool CollapsingMesh::ring_of(Index side, std::vector<Index>& ring) const {
-    ring.clear();
-    Index s = side;
-    do {
-        ring.push_back(end(s));
-        s = twin_[previous_side(s)];
-    } while (s != no_index && s != side);
-    return s == side && ring.size() == facets_[corners_[side]];
 }
 
 bool CollapsingMesh::may_collapse(const std::vector<Index>& ring, const std::vector<Index>& ring_to,
@@ -118,20 +109,17 @@ bool CollapsingMesh::suits_ring(const Vec3& place, const std::vector<Index>& rin
 
 bool CollapsingMesh::collapse(Index side, const Vec3& place, std::span<const Vec3> faces) {
     const Index from = start(side), to = end(side);
-    if (!ring_of(side, ring_) || !ring_of(twin_[side], ring_to_)) return false;
+    if (!ring_of(side, ring_) || !ring_of(twin(side), ring_to_)) return false;
     if (!may_collapse(ring_, ring_to_, place, faces)) return false;
     if (place != at(to)) {
-        touch(twin_[side]);
+        touch(twin(side));
         for (Index v : ring_to_) changed_[v] = 1;
     }
     touch(side);
     positions_[to] = place;
     for (Index v : ring_) changed_[v] = 1;
     stands_for_[from] = to;
-    facets_[to] = facets_[to] + facets_[from] - 4;
-    --facets_[ring_[1]];
-    --facets_[ring_.back()];
-    remove(side);
+    collapse_edge(side);
     return true;
 }
 
@@ -157,43 +145,29 @@ bool CollapsingMesh::move(Index side, const Vec3& place, std::span<const Vec3> f
 }
 
 bool CollapsingMesh::flip(Index side) {
-    const Index other = twin_[side];
-    if (other == no_index) return false;
-    const Index ca = previous_side(side);
-    const Index a = start(side), b = start(other), c = start(ca), d = start(previous_side(other));
+    if (twin(side) == no_index) return false;
+    const Index a = start(side), b = end(side), c = opposite(side), d = opposite(twin(side));
     if ((locked_[a] && locked_[b]) || (locked_[c] && locked_[d])) return false;
-    if (!spares(a) || !spares(b) || std::max(facets_[c], facets_[d]) >= collapses::most_flipped) return false;
-    if (!ring_of(ca, ring_) || std::find(ring_.begin(), ring_.end(), d) != ring_.end()) return false;
-    turn_edge(side);
+    if (!spares(a) || !spares(b)) return false;
+    if (std::max(facet_count(c), facet_count(d)) >= collapses::most_flipped) return false;
+    if (!ring_of(previous_side(side), ring_)) return false;
+    if (std::find(ring_.begin(), ring_.end(), d) != ring_.end()) return false;
+    lay(side);
     return true;
 }
 
-/// Triangles a b c and b a d become c a d and d b c, each in the place of one.
-void CollapsingMesh::turn_edge(Index side) {
-    const Index other = twin_[side], ca = previous_side(side), db = previous_side(other);
-    const Index a = start(side), b = start(other), c = start(ca), d = start(db);
-    const Index beyond_ca = twin_[ca], beyond_db = twin_[db];
-    const auto pair_up = [&](Index s, Index t) {
-        twin_[s] = t;
-        if (t != no_index) twin_[t] = s;
-    };
-    corners_[side] = d;
-    corners_[other] = c;
-    pair_up(side, beyond_db);
-    pair_up(other, beyond_ca);
-    pair_up(ca, db);
+void CollapsingMesh::lay(Index side) {
+    const Index other = twin(side);
     touched_[facet_[side / 3]] = touched_[facet_[other / 3]] = 1;
-    --facets_[a];
-    --facets_[b];
-    ++facets_[c];
-    ++facets_[d];
-    for (Index v : {a, b, c, d}) changed_[v] = flipped_[v] = 1;
+    for (Index v : {start(side), start(other), opposite(side), opposite(other)})
+        changed_[v] = flipped_[v] = 1;
+    flip_edge(side);
 }
 
 bool CollapsingMesh::unfold(Index side, std::span<const Vec3> faces) {
-    if (twin_[side] == no_index) return false;
+    if (twin(side) == no_index) return false;
     const Vec3 &a = at(start(side)), &b = at(end(side));
-    const Vec3 &c = at(start(previous_side(side))), &d = at(start(previous_side(twin_[side])));
+    const Vec3 &c = at(opposite(side)), &d = at(opposite(twin(side)));
     const auto faces_away = [&](const Vec3& n) { return faces_along(-n, faces) && !faces_along(n, faces); };
     if (!faces_away(triangle_normal(a, b, c)) && !faces_away(triangle_normal(b, a, d))) return false;
     return faces_along(triangle_normal(c, a, d), faces) && faces_along(triangle_normal(d, b, c), faces)
@@ -202,40 +176,25 @@ bool CollapsingMesh::unfold(Index side, std::span<const Vec3> faces) {
 
 /// Marks the facets round the start of a side as changed.
 void CollapsingMesh::touch(Index side) {
-    sides_.clear();
     Index s = side;
     do {
-        sides_.push_back(s);
         touched_[facet_[s / 3]] = 1;
-        s = twin_[previous_side(s)];
+        s = twin(previous_side(s));
     } while (s != side);
-}
-
-/// Removes the two triangles at a side and moves the other corners of its start to its end; touch() must have
-/// listed the start's fan last.
-void CollapsingMesh::remove(Index side) {
-    const Index other = twin_[side], to = end(side);
-    for (Index out : sides_) corners_[out] = to;
-    for (const Index gone : {side, other}) {
-        const Index p = twin_[next_side(gone)], q = twin_[previous_side(gone)];
-        twin_[p] = q;
-        twin_[q] = p;
-    }
-    for (const Index gone : {side, other})
-        for (const Index corner : {gone, next_side(gone), previous_side(gone)}) corners_[corner] = no_index;
 }
 
 CollapsedMesh CollapsingMesh::write() {
     PolygonMesh kept;
-    kept.corners.reserve(corners_.size());
+    kept.corners.reserve(side_count());
     kept.first.reserve(facet_.size() + 1);
     Index t = 0;
     for (std::size_t f = 0; f < mesh_.facet_count(); ++f) {
         if (!touched_[f]) kept.add_facet(mesh_.facet(f));
         for (; t < facet_.size() && facet_[t] == f; ++t)
-            if (touched_[f] && !is_gone(3 * t)) kept.add_facet({&corners_[3 * t], 3});
+            if (touched_[f] && !is_gone(3 * t)) kept.add_facet(triangle(t));
     }
     kept.positions = std::move(positions_);
+    kept.origin = mesh_.origin;
     for (Index& v : stands_for_)
         while (stands_for_[v] != v) v = stands_for_[v];
     return {std::move(kept), std::move(stands_for_), std::move(flipped_)};

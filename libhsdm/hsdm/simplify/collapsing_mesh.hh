@@ -1,9 +1,8 @@
 #pragma once
 // The triangles of a 2-manifold while edges collapse.
 
-#include "hsdm/mesh/triangle_sides.hh"
-
-#include <span>
+#include "hsdm/mesh/editable_triangles.hh"
+#include "hsdm/mesh/triangulate.hh"
 
 namespace hsdm {
 
@@ -14,28 +13,27 @@ struct CollapsedMesh {
     std::vector<std::uint8_t> flipped; ///< per vertex, was an edge of its triangles laid the other way?
 };
 
-/// A mesh, cut into triangles, whose inner vertices merge into neighbours by edge collapses. Side (half-edge)
-/// s runs from start(s) to end(s). Facets with a diagonal that is also an edge of other facets stay whole:
-/// their vertices are locked. To start over, copy the mesh first.
-class CollapsingMesh {
+/// A mesh, cut into triangles, whose inner vertices merge into neighbours by edge collapses. Facets with a
+/// diagonal that is also an edge of other facets stay whole: their vertices are locked. To start over, copy
+/// the mesh first.
+class CollapsingMesh : private EditableTriangles {
 public:
     /// The mesh must outlive this; it is not changed.
     explicit CollapsingMesh(const PolygonMesh& mesh);
 
+    using EditableTriangles::end;
+    using EditableTriangles::is_gone;
+    using EditableTriangles::opposite;
+    using EditableTriangles::ring_of;
+    using EditableTriangles::side_count;
+    using EditableTriangles::start;
+    using EditableTriangles::twin;
+    using EditableTriangles::vertex_count;
     const Vec3& at(Index v) const { return positions_[v]; }
-    std::size_t vertex_count() const { return positions_.size(); }
-    std::size_t side_count() const { return corners_.size(); }
-    bool is_gone(Index side) const { return corners_[side] == no_index; }
-    Index start(Index side) const { return corners_[side]; }
-    Index end(Index side) const { return corners_[next_side(side)]; }
-    Index twin(Index side) const { return twin_[side]; }
     bool is_locked(Index v) const { return locked_[v]; }
 
     /// Per vertex, one of the sides that start there, or no_index.
     std::vector<Index> sides_out() const;
-    /// Lists the neighbours of a side's start in order, the side's end first; false if its facets do not form
-    /// one closed fan.
-    bool ring_of(Index side, std::vector<Index>& ring) const;
 
     /// May the start of a side collapse onto its end, which moves to a place? A 2-manifold must stay one
     /// (link condition), no facet may turn by 40 degrees or get thinner than the thinnest there. The rings
@@ -58,7 +56,7 @@ public:
     /// caller's concern. The new edge is that of previous_side(side).
     bool flip(Index side);
     /// Undoes the last flip not undone yet; `laid`: a side of the flipped edge.
-    void take_back_flip(Index laid) { turn_edge(laid); }
+    void take_back_flip(Index laid) { lay(laid); }
 
     /// Flips the edge of a side if one of its two triangles faces away from one of `faces` and both new
     /// triangles face along one, however thin they are. Such folds, flat on themselves, come from vertices of
@@ -74,25 +72,22 @@ public:
     CollapsedMesh write();
 
 private:
+    CollapsingMesh(const PolygonMesh& mesh, const Triangulation& cut);
     void lock_facets();
     bool is_link(const std::vector<Index>& from, const std::vector<Index>& to) const;
-    bool spares(Index v) const { return facets_[v] > (border_[v] ? 1u : 3u); }
     bool suits_ring(const Vec3& place, const std::vector<Index>& ring, Index centre,
                     std::span<const Vec3> faces, double& thinnest, double& thinnest_new) const;
     void touch(Index side);
-    void remove(Index side);
-    void turn_edge(Index side);
+    void lay(Index side);
 
     const PolygonMesh& mesh_; // the mesh given
     std::vector<Vec3> positions_;
     std::vector<Index> stands_for_;
-    std::vector<Index> corners_, twin_;           // per side of a triangle; no_index: it is gone
     std::vector<Index> facet_;                    // per triangle, the facet it was cut from
-    std::vector<Index> facets_;                   // per vertex, the number of its triangles
-    std::vector<std::uint8_t> border_, locked_;   // per vertex
+    std::vector<std::uint8_t> locked_;            // per vertex
     std::vector<std::uint8_t> changed_, touched_; // per vertex; per facet
     std::vector<std::uint8_t> flipped_;           // per vertex
-    std::vector<Index> ring_, ring_to_, sides_;   // scratch of one collapse
+    std::vector<Index> ring_, ring_to_;           // scratch of one collapse
 };
 
 } // namespace hsdm

@@ -49,7 +49,7 @@ public:
         : leaves_(leaves),
           checks_(checks),
           options_(options),
-          tolerance_(leaves.mesh.vertex_count(), checks.envelope().tolerance()) {}
+          tolerance_(leaves.mesh.vertex_count(), checks.envelope().tolerance) {}
 
     DecimatedLeaves run(const DecimationStep& step) {
         for (int round = 0; round < options_.rounds; ++round) {
@@ -132,7 +132,7 @@ private:
     void add_leaves(const Vec3& place, std::vector<std::array<Index, 3>>& leaves) const {
         const SurfaceWalk& fine = checks_.bound().to_fine();
         Index triangle = no_index, hint = no_index;
-        double reach = checks_.envelope().tolerance();
+        double reach = checks_.envelope().tolerance;
         for (int k = 0; k < most_doublings && triangle == no_index; ++k, reach *= 2)
             triangle = fine.triangle_within(place, reach, hint);
         if (triangle == no_index) return;
@@ -192,7 +192,7 @@ private:
                          < decimation::few_leaves * static_cast<double>(tolerance_.size());
         for (Index leaf : concerned) {
             double& tolerance = tolerance_[leaf];
-            tolerance = few || tolerance < decimation::least_share * checks_.envelope().tolerance()
+            tolerance = few || tolerance < decimation::least_share * checks_.envelope().tolerance
                             ? 0
                             : 0.5 * tolerance;
         }
@@ -232,11 +232,11 @@ DecimatedLeaves decimate(const LeafMesh& leaves, std::vector<Quadric> planes, Me
     drop_options.faults = merged.faults;
     const CollapsingMesh undropped(base.mesh);
     const std::vector<DistanceCollapse> drops = find_distance_collapses(
-        undropped, checks.bound().to_fine(), bounds::drop_share * checks.envelope().tolerance());
+        undropped, checks.bound().to_fine(), bounds::drop_share * checks.envelope().tolerance);
     const auto by_distance = [&](const std::vector<double>& tolerance) {
         std::vector<std::uint8_t> may_go(tolerance.size()); // a vertex with a fault in a round before stays
         for (std::size_t v = 0; v < may_go.size(); ++v)
-            may_go[v] = tolerance[v] >= checks.envelope().tolerance();
+            may_go[v] = tolerance[v] >= checks.envelope().tolerance;
         return collapse_by_distance(undropped, drops, may_go);
     };
     DecimatedLeaves dropped =

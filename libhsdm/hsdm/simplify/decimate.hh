@@ -10,7 +10,7 @@ namespace hsdm {
 
 /// A mesh over the leaves of an octree, as clusters of the vertices of a finer one.
 struct LeafMesh {
-    PolygonMesh mesh;
+    PolygonMesh mesh;          ///< `origin`: per vertex one of the fine vertices that it stands for
     std::vector<Index> vertex; ///< per fine vertex, the vertex that stands for it
 };
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -18,17 +19,25 @@ namespace {
 constexpr double rounding = 1e-9;
 constexpr std::size_t places_per_chunk = 2048;
 constexpr std::size_t far_per_chunk = 64; // distances of far places take long to measure
-constexpr std::size_t keys_per_chunk = 512, triangles_per_chunk = 1024;
+constexpr std::size_t items_per_chunk = 512, facets_per_chunk = 1024;
 
 std::array<Vec3, 3> corners_of(const PolygonMesh& mesh, const Triangle& t) {
     return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
 }
 
-/// The sides of a triangle whose places are sampled with it, not with the triangle beyond; by keys (`names`),
-/// so that vertex numbers do not matter. Sides between border vertices are sampled with both.
-std::array<bool, 3> sides_of(const Triangle& t, const std::vector<std::uint8_t>& border,
-                             std::span<const Key> names) {
-    const auto takes = [&](Index v, Index w) { return names[v] < names[w] || (border[v] && border[w]); };
+std::uint64_t hash_of(const Vec3& place) {
+    std::uint64_t hash = 1;
+    for (unsigned k = 0; k < 3; ++k) hash = hash_index(hash ^ std::bit_cast<std::uint64_t>(place[k]));
+    return hash;
+}
+
+/// The sides of a triangle whose places are sampled with it, not with the triangle beyond, whatever the
+/// vertices' numbers. Sides between border vertices are sampled with both.
+std::array<bool, 3> sides_of(const Triangle& t, const PolygonMesh& mesh,
+                             const std::vector<std::uint8_t>& border) {
+    const auto takes = [&](Index v, Index w) {
+        return hash_of(mesh.positions[v]) < hash_of(mesh.positions[w]) || (border[v] && border[w]);
+    };
     return {takes(t[0], t[1]), takes(t[1], t[2]), takes(t[2], t[0])};
 }
 
@@ -66,20 +75,22 @@ void add_places(const std::array<Vec3, 3>& corners, const std::array<bool, 3>& t
     }
 }
 
-/// The items for which is_far() is true, not testing those with keys in `near`; then sets `near` to the keys
-/// of all the other items. The index of an item is its position in `keys`.
-template <class IsFar>
-std::vector<Index> far_of(std::vector<Key> keys, KeySet& near, const IsFar& is_far) {
-    std::vector<std::vector<Index>> parts(chunk_count(keys.size(), keys_per_chunk));
-    for_chunks(keys.size(), keys_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+/// Calls is_near(i, hint, scratch) for each index i that is not known to be near; then `near` says which are.
+template <class IsNear>
+void find_near(std::vector<std::uint8_t>& near, const IsNear& is_near) {
+    for_chunks(near.size(), items_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         Index hint = no_index;
         std::vector<Vec3> scratch;
         for (auto i = static_cast<Index>(begin); i < end; ++i)
-            if (!near.contains(keys[i]) && is_far(i, hint, scratch)) parts[c].push_back(i);
+            if (!near[i]) near[i] = is_near(i, hint, scratch);
     });
-    const std::vector<Index> far = joined(parts);
-    for (Index i : far) keys[i] = no_key;
-    near = KeySet(keys);
+}
+
+/// Indices of what is not near.
+std::vector<Index> far_of(const std::vector<std::uint8_t>& near) {
+    std::vector<Index> far;
+    for (Index i = 0; i < near.size(); ++i)
+        if (!near[i]) far.push_back(i);
     return far;
 }
 
@@ -92,39 +103,36 @@ DistanceCheck::DistanceCheck(const PolygonMesh& fine, const FacetCells* cells, s
       bound_((1 - rounding) * bound),
       spacing_(spacing),
       cut_(triangulate(fine)),
-      to_fine_(cells && cells->usable() ? SurfaceWalk(fine, cut_, *cells) : SurfaceWalk(fine, cut_)) {
-    const std::vector<Key> names = place_keys(fine.positions);
-    fine_vertex_keys_ = KeySet(names);
-    fine_triangle_keys_ = KeySet(triangle_keys(cut_, names));
-}
+      to_fine_(cells && cells->usable() ? SurfaceWalk(fine, cut_, *cells) : SurfaceWalk(fine, cut_)) {}
 
-FarPlaces DistanceCheck::find_far(const PolygonMesh& mesh) {
-    cut_ = triangulate(mesh);
-    vertex_keys_ = place_keys(mesh.positions);
-    const std::vector<Key> keys_before = std::exchange(triangle_keys_, triangle_keys(cut_, vertex_keys_));
+FarPlaces DistanceCheck::find_far(const PolygonMesh& mesh, const Unchanged& same) {
+    const Triangulation cut_before = std::exchange(cut_, triangulate(mesh));
     const std::optional<SurfaceWalk> before = std::move(to_mesh_);
     to_mesh_.emplace(mesh, cut_, TriangleTree::Order::given);
-    if (before) follow_triangles(*before, keys_before);
-    FarPlaces far{
-        far_from(fine_.positions, bounds::vertex_share * bound_, near_vertex_), far_vertices(mesh), {}, {}};
-    find_far_facets(mesh, far);
+    if (before) follow_triangles(*before, cut_before, same);
+    FarPlaces far{far_from(fine_.positions, bounds::vertex_share * bound_, near_vertex_),
+                  far_vertices(mesh, same),
+                  {},
+                  {}};
+    find_far_facets(mesh, same, far);
     return far;
 }
 
-void DistanceCheck::follow_triangles(const SurfaceWalk& before, std::span<const Key> keys_before) {
-    const KeyIndex present(triangle_keys_);
-    followed_.resize(keys_before.size());
-    for_chunks(followed_.size(), triangles_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+void DistanceCheck::follow_triangles(const SurfaceWalk& before, const Triangulation& cut_before,
+                                     const Unchanged& same) {
+    followed_.resize(cut_before.size());
+    for_chunks(same.facet_now.size(), facets_per_chunk, [&](std::size_t f, std::size_t end, std::size_t) {
         Index hint = no_index;
-        for (std::size_t t = begin; t < end; ++t) {
-            Followed& now = followed_[t];
-            now.same = present.find(keys_before[t]);
-            if (now.same == no_index)
-                to_mesh_->triangle_within(before.middle(static_cast<Index>(t)), bound_, hint);
-            else
-                hint = now.same;
-            now.near = hint;
-        }
+        for (; f < end; ++f)
+            for (Index t = cut_before.first[f]; t < cut_before.first[f + 1]; ++t) {
+                Followed& now = followed_[t];
+                now.same = no_index;
+                if (const Index facet = same.facet_now[f]; facet != no_index)
+                    now.same = hint = cut_.first[facet] + t - cut_before.first[f];
+                else
+                    to_mesh_->triangle_within(before.middle(t), bound_, hint);
+                now.near = hint;
+            }
     });
 }
 
@@ -152,42 +160,45 @@ std::vector<Index> DistanceCheck::far_from(std::span<const Vec3> places, double 
 
 /// Vertices of the mesh farther than the bound from the fine mesh; its own vertices are on it and need no
 /// test.
-std::vector<Index> DistanceCheck::far_vertices(const PolygonMesh& mesh) {
-    return far_of(vertex_keys_, near_vertex_keys_, [&](Index v, Index& hint, std::vector<Vec3>&) {
-        return !fine_vertex_keys_.contains(vertex_keys_[v])
-               && to_fine_.is_beyond(mesh.positions[v], bound_, hint);
+std::vector<Index> DistanceCheck::far_vertices(const PolygonMesh& mesh, const Unchanged& same) {
+    const auto is_own = [&](Index v) {
+        return !mesh.origin.empty() && mesh.positions[v] == fine_.positions[mesh.origin[v]];
+    };
+    std::vector<std::uint8_t> near(mesh.vertex_count(), 0);
+    for (Index v = 0; v < near.size(); ++v)
+        near[v] = is_own(v) || (same.vertex[v] != no_index && vertex_is_near_[same.vertex[v]]);
+    find_near(near, [&](Index v, Index& hint, std::vector<Vec3>&) {
+        return !to_fine_.is_beyond(mesh.positions[v], bound_, hint);
     });
+    vertex_is_near_ = std::move(near);
+    return far_of(vertex_is_near_);
 }
 
-void DistanceCheck::find_far_facets(const PolygonMesh& mesh, FarPlaces& far) {
-    const std::vector<std::uint8_t> border = border_vertices(mesh);
-    std::vector<Key> keys = triangle_keys_; // which sides are sampled depends on borders too
-    for (std::size_t t = 0; t < keys.size(); ++t) {
-        Key at_border = 0;
-        for (Index v : cut_.triangles[t]) at_border = 2 * at_border + border[v];
-        if (at_border != 0) keys[t] = hash_index(keys[t] ^ at_border);
-    }
-    const auto far_place = [&](Index t, Index& hint, std::vector<Vec3>& places) {
-        places.clear();
-        add_places(corners_of(mesh, cut_.triangles[t]), sides_of(cut_.triangles[t], border, vertex_keys_),
-                   spacing_, places);
-        const auto far_one = std::find_if(places.begin(), places.end(), [&](const Vec3& place) {
-            return to_fine_.is_beyond(place, bound_, hint);
-        });
-        return far_one == places.end() ? nullptr : &*far_one;
+void DistanceCheck::find_far_facets(const PolygonMesh& mesh, const Unchanged& same, FarPlaces& far) {
+    const std::vector<std::uint8_t> border_before = std::exchange(border_, border_vertices(mesh));
+    std::vector<std::uint8_t> near(mesh.facet_count(), 0);
+    for (Index f = 0; f < near.size(); ++f) // which sides are sampled depends on borders too
+        near[f] = same.facet[f] != no_index && facet_is_near_[same.facet[f]]
+                  && std::ranges::all_of(
+                      mesh.facet(f), [&](Index v) { return border_[v] == border_before[same.vertex[v]]; });
+    const auto far_place = [&](Index f, Index& hint, std::vector<Vec3>& places) -> const Vec3* {
+        for (Index t = cut_.first[f]; t < cut_.first[f + 1]; ++t) {
+            const Triangle& triangle = cut_.triangles[t];
+            places.clear();
+            add_places(corners_of(mesh, triangle), sides_of(triangle, mesh, border_), spacing_, places);
+            for (const Vec3& place : places)
+                if (to_fine_.is_beyond(place, bound_, hint)) return &place;
+        }
+        return nullptr;
     };
-    const std::vector<Index> triangles =
-        far_of(std::move(keys), near_triangle_keys_, [&](Index t, Index& hint, std::vector<Vec3>& places) {
-            return !fine_triangle_keys_.contains(triangle_keys_[t]) && far_place(t, hint, places);
-        });
+    find_near(near,
+              [&](Index f, Index& hint, std::vector<Vec3>& places) { return !far_place(f, hint, places); });
+    facet_is_near_ = std::move(near);
+    far.facets = far_of(facet_is_near_);
     std::vector<Vec3> places;
-    for (Index t : triangles) {
-        const Index facet = to_mesh_->tree().facet_of(t);
-        if (!far.facets.empty() && far.facets.back() == facet) continue;
+    for (Index f : far.facets) {
         Index hint = no_index;
-        const Vec3* place = far_place(t, hint, places);
-        far.facets.push_back(facet);
-        far.on_facets.push_back(place ? *place : to_mesh_->middle(t));
+        far.on_facets.push_back(*far_place(f, hint, places));
     }
 }
 

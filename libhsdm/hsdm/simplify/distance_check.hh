@@ -1,7 +1,7 @@
 #pragma once
 // Where a coarse mesh is farther from a fine one, or from points, than a bound.
 
-#include "hsdm/simplify/content_keys.hh"
+#include "hsdm/simplify/unchanged.hh"
 #include "hsdm/spatial/surface_walk.hh"
 
 #include <optional>
@@ -26,8 +26,8 @@ struct FarPoints {
     std::size_t unreachable = 0; ///< number of those that are so far from the fine mesh too
 };
 
-/// Compares one mesh after the other with the same fine mesh and points, and measures again only what may
-/// have changed: triangles of two meshes are the same if their corners lie at the same places.
+/// Compares one mesh after the other with the same fine mesh and points, and measures again only what has
+/// changed.
 class DistanceCheck {
 public:
     /// `fine` and `points` must outlive this; bound > 0. `spacing` > 0: largest distance between sample
@@ -35,7 +35,8 @@ public:
     DistanceCheck(const PolygonMesh& fine, const FacetCells* cells, std::span<const Vec3> points,
                   double bound, double spacing);
 
-    FarPlaces find_far(const PolygonMesh& mesh);
+    /// `same`: what the mesh has of the one last compared.
+    FarPlaces find_far(const PolygonMesh& mesh, const Unchanged& same);
 
     /// Compares the points with the mesh last given to find_far(). To be called once after each.
     FarPoints find_far_points();
@@ -50,10 +51,10 @@ private:
         Index near = no_index; ///< else one near its middle, or at least on the way there
     };
 
-    void follow_triangles(const SurfaceWalk& before, std::span<const Key> keys_before);
+    void follow_triangles(const SurfaceWalk& before, const Triangulation& cut_before, const Unchanged& same);
     std::vector<Index> far_from(std::span<const Vec3> places, double bound, std::vector<Index>& near) const;
-    std::vector<Index> far_vertices(const PolygonMesh& mesh);
-    void find_far_facets(const PolygonMesh& mesh, FarPlaces& far);
+    std::vector<Index> far_vertices(const PolygonMesh& mesh, const Unchanged& same);
+    void find_far_facets(const PolygonMesh& mesh, const Unchanged& same, FarPlaces& far);
     void measure_to_fine(const std::vector<Index>& far);
 
     const PolygonMesh& fine_;
@@ -62,11 +63,9 @@ private:
     Triangulation cut_; // of the mesh; of the fine mesh until the first find_far()
     SurfaceWalk to_fine_;
     std::optional<SurfaceWalk> to_mesh_;
-    KeySet fine_vertex_keys_, fine_triangle_keys_; // of the fine mesh
-    std::vector<Key> vertex_keys_, triangle_keys_; // of the mesh last compared
-    std::vector<Followed> followed_;               // per triangle of the mesh before
-    KeySet near_vertex_keys_,
-        near_triangle_keys_; // of those found near the fine mesh
+    std::vector<Followed> followed_; // per triangle of the mesh before
+    // of the mesh last compared: per vertex and facet, is it near the fine mesh? per vertex, is it at a border?
+    std::vector<std::uint8_t> vertex_is_near_, facet_is_near_, border_;
     // per fine vertex, per point: a triangle of the mesh near it, or no_index
     std::vector<Index> near_vertex_, near_point_;
     std::vector<double> off_fine_; // per point, its distance from the fine mesh; -1: not measured yet

@@ -95,27 +95,19 @@ std::vector<Index> with_touching(const PolygonMesh& mesh, const std::vector<std:
 
 } // namespace
 
-std::vector<std::array<Index, 2>> IntersectionCheck::find(const PolygonMesh& mesh) {
-    std::vector<Key> keys = facet_keys(mesh, place_keys(mesh.positions));
-    const std::vector<Index> due = with_touching(mesh, changed(keys));
+std::vector<std::array<Index, 2>> IntersectionCheck::find(const PolygonMesh& mesh, const Unchanged& same) {
+    std::vector<std::uint8_t> changed(mesh.facet_count());
+    for (std::size_t f = 0; f < changed.size(); ++f)
+        changed[f] = same.facet[f] == no_index || !is_clear_[same.facet[f]];
+    const std::vector<Index> due = with_touching(mesh, changed);
     auto pairs = find_self_intersections(part_of(mesh, due)).facet_pairs;
+    is_clear_.assign(mesh.facet_count(), 1);
     for (auto& pair : pairs)
         for (Index& f : pair) {
             f = due[f];
-            keys[f] = no_key;
+            is_clear_[f] = 0;
         }
-    clear_ = KeySet(keys);
     return pairs;
-}
-
-/// Per facet, has it changed or is it not known to be free of intersections? Of facets at the same place all
-/// but one count as changed.
-std::vector<std::uint8_t> IntersectionCheck::changed(std::span<const Key> keys) const {
-    KeySet seen(keys.size());
-    std::vector<std::uint8_t> result(keys.size());
-    for (std::size_t f = 0; f < keys.size(); ++f)
-        result[f] = !seen.insert(keys[f]) || !clear_.contains(keys[f]);
-    return result;
 }
 
 } // namespace hsdm

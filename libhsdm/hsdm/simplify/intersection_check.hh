@@ -1,9 +1,10 @@
 #pragma once
 // Self-intersections of one coarse mesh after the other.
 
-#include "hsdm/simplify/content_keys.hh"
+#include "hsdm/simplify/unchanged.hh"
 
 #include <array>
+#include <cstdint>
 
 namespace hsdm {
 
@@ -11,13 +12,12 @@ namespace hsdm {
 /// them: two facets that were in the mesh before and did not intersect do not now.
 class IntersectionCheck {
 public:
-    /// The facet_pairs of find_self_intersections. O(n), but for the facets looked at; parallel.
-    std::vector<std::array<Index, 2>> find(const PolygonMesh& mesh);
+    /// The facet_pairs of find_self_intersections. `same`: what the mesh has of the one before. O(n), but for
+    /// the facets looked at; parallel.
+    std::vector<std::array<Index, 2>> find(const PolygonMesh& mesh, const Unchanged& same);
 
 private:
-    std::vector<std::uint8_t> changed(std::span<const Key> keys) const;
-
-    KeySet clear_; // keys of the facets of the mesh before that intersected no other
+    std::vector<std::uint8_t> is_clear_; // per facet of the mesh before, did it intersect no other?
 };
 
 } // namespace hsdm

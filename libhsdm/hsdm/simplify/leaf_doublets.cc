@@ -46,6 +46,7 @@ std::vector<Index> drop_replaced(PolygonMesh& mesh, std::vector<Index>& stands_f
         kept.push_back(v);
     }
     mesh.positions.resize(kept.size());
+    if (!mesh.origin.empty()) mesh.origin = picked(mesh.origin, kept);
     for (Index& v : mesh.corners) v = number[v];
     for (Index& v : stands_for) v = number[v];
     return kept;

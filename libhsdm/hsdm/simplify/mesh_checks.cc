@@ -7,21 +7,28 @@ namespace hsdm {
 MeshChecks::MeshChecks(const PolygonMesh& fine, const FacetCells* cells, std::span<const Vec3> points,
                        double bound, double spacing, double tolerance)
     : bound_(fine, cells, points, bound, spacing),
-      envelope_(bound_.to_fine(), tolerance, 2 * fine.vertex_count()) {}
+      envelope_{bound_.to_fine(), tolerance} {}
+
+Unchanged MeshChecks::compare_with_last(const PolygonMesh& mesh) {
+    Unchanged same = find_unchanged(last_, mesh);
+    last_ = mesh;
+    return same;
+}
 
 /// The two in parallel, because each has steps that run on one thread.
 Findings MeshChecks::look_at(const PolygonMesh& mesh) {
+    const Unchanged same = compare_with_last(mesh);
     Findings found;
-    tbb::parallel_invoke([&] { found.intersecting = intersections_.find(mesh); },
+    tbb::parallel_invoke([&] { found.intersecting = intersections_.find(mesh, same); },
                          [&] {
-                             found.far = bound_.find_far(mesh);
+                             found.far = bound_.find_far(mesh, same);
                              found.far_points = bound_.find_far_points();
                          });
     return found;
 }
 
 FarPoints MeshChecks::far_points(const PolygonMesh& mesh) {
-    bound_.find_far(mesh);
+    bound_.find_far(mesh, compare_with_last(mesh));
     return bound_.find_far_points();
 }
 

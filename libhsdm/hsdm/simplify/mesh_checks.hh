@@ -26,20 +26,23 @@ struct Findings {
 class MeshChecks {
 public:
     /// Arguments as for DistanceCheck; `tolerance`, the mesh's units, > 0: that of the envelope round the
-    /// fine mesh.
+    /// fine mesh. The `origin` of meshes looked at is a vertex of the fine mesh (find_unchanged).
     MeshChecks(const PolygonMesh& fine, const FacetCells* cells, std::span<const Vec3> points, double bound,
                double spacing, double tolerance);
     MeshChecks(const MeshChecks&) = delete;
 
     Findings look_at(const PolygonMesh& mesh);
-    /// Runs only the check of the points.
+    /// Runs only the check of the points, as the last of all checks.
     FarPoints far_points(const PolygonMesh& mesh);
 
     /// The distance check, as of the mesh last looked at.
     const DistanceCheck& bound() const { return bound_; }
-    ToleranceEnvelope& envelope() { return envelope_; }
+    const ToleranceEnvelope& envelope() const { return envelope_; }
 
 private:
+    Unchanged compare_with_last(const PolygonMesh& mesh);
+
+    PolygonMesh last_; // the mesh last looked at
     DistanceCheck bound_;
     IntersectionCheck intersections_;
     ToleranceEnvelope envelope_;

@@ -3,9 +3,8 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/disjoint_sets.hh"
 #include "hsdm/core/groups.hh"
-#include "hsdm/core/hash.hh"
+#include "hsdm/mesh/editable_triangles.hh"
 #include "hsdm/mesh/straight_corners.hh"
-#include "hsdm/mesh/triangle_sides.hh"
 #include "hsdm/simplify/constants.hh"
 #include "hsdm/simplify/triangle_shape.hh"
 
@@ -15,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace hsdm {
 namespace {
@@ -23,22 +23,20 @@ constexpr std::size_t triangles_per_chunk = 1024, sides_per_chunk = 3 * triangle
 
 class FlipRemeshing {
 public:
-    FlipRemeshing(PolygonMesh& mesh, ToleranceEnvelope& fine, std::span<const std::uint8_t> fixed,
+    FlipRemeshing(PolygonMesh& mesh, const ToleranceEnvelope& fine, std::span<const std::uint8_t> fixed,
                   RemeshedGroups& before)
         : mesh_(mesh),
           fine_(fine),
           before_(before),
-          tolerance_(fine.tolerance()),
-          vertex_keys_(place_keys(mesh.positions)),
-          vertices_(vertex_keys_),
-          facet_keys_(facet_keys(mesh, vertex_keys_)) {
+          tolerance_(fine.tolerance),
+          same_(find_unchanged(before.mesh, mesh)) {
         std::vector<std::uint8_t> whole(mesh.facet_count());
         for (std::size_t f = 0; f < whole.size(); ++f) {
             const auto ring = mesh.facet(f);
             whole[f] =
                 ring.size() > 4 || std::all_of(ring.begin(), ring.end(), [&](Index v) { return fixed[v]; });
         }
-        group_ = before_.find(mesh, facet_keys_, vertices_, vertex_keys_, whole);
+        group_ = before_.find(mesh, same_, whole);
         cut_what_is_new(whole);
         if (is_sound() || kept_.facet_count() == 0) return;
         group_.assign(group_.size(), no_index);
@@ -48,14 +46,14 @@ public:
     RemeshCounts run(Diagonals diagonals) {
         RemeshCounts counts;
         const int sweeps = diagonals == Diagonals::may_flip ? flips::most_sweeps : 0;
-        look_.assign(corners_.size(), Look::none);
+        look_.assign(side_count(), Look::none);
         united_.emplace(half_.size());
         std::vector<std::uint8_t> turned(half_.size(), 1);
         for (int sweep = 0; sweep < sweeps; ++sweep) {
             turned_.assign(half_.size(), 0);
             judge_all(turned);
             std::size_t flipped = 0;
-            for (Index s = 0; s < corners_.size(); ++s)
+            for (Index s = 0; s < side_count(); ++s)
                 if (waits_[s / 3] && is_due(s, turned)) flipped += flip(s);
             counts.flipped += flipped;
             turned.swap(turned_);
@@ -63,16 +61,21 @@ public:
         }
         counts.joined = join();
         before_ = std::move(now_);
-        mesh_.corners = std::move(kept_.corners);
-        mesh_.first = std::move(kept_.first);
+        before_.mesh.positions = mesh_.positions;
+        before_.mesh.origin = mesh_.origin;
+        before_.mesh.corners = std::exchange(mesh_.corners, std::move(kept_.corners));
+        before_.mesh.first = std::exchange(mesh_.first, std::move(kept_.first));
         return counts;
     }
 
 private:
     const Vec3& at(Index v) const { return mesh_.positions[v]; }
 
-    /// Can the vertex lose a facet?
-    bool spares(Index v) const { return facets_[v] > least_facets_[v]; }
+    Index start(Index side) const { return edges_->start(side); }
+    Index end(Index side) const { return edges_->end(side); }
+    Index opposite(Index side) const { return edges_->opposite(side); }
+    Index twin(Index side) const { return edges_->twin(side); }
+    Index side_count() const { return static_cast<Index>(3 * half_.size()); }
 
     Vec3 middle(Index a, Index b) const { return 0.5 * (at(a) + at(b)); }
 
@@ -93,17 +96,15 @@ private:
         // A quad whose diagonal is an edge of other facets already must stay whole; try again without.
         do cut_all(whole);
         while (keep_whole(whole));
-        facets_.assign(mesh_.vertex_count(), 0);
-        for (Index v : corners_) ++facets_[v];
-        for (Index v : kept_.corners) ++facets_[v];
     }
 
     /// Do the results of groups taken over fit together? One made beside other facets may rely on an edge
     /// that another group has since flipped away, or on a facet that another gave to a vertex.
     bool is_sound() const {
-        if (crowded_) return false;
-        for (std::size_t v = 0; v < facets_.size(); ++v)
-            if (facets_[v] > 0 && facets_[v] < least_facets_[v]) return false;
+        if (edges_->is_crowded()) return false;
+        for (Index v = 0; v < mesh_.vertex_count(); ++v)
+            if (const Index count = edges_->facet_count(v); count > 0 && count < edges_->least_facets(v))
+                return false;
         return true;
     }
 
@@ -122,26 +123,26 @@ private:
             if (const Index group = group_[f]; group != no_index) {
                 if (seen[group]) continue;
                 seen[group] = 1;
-                before_.append(group, vertices_, kept_);
-                now_.copy(before_, group);
+                now_.copy(before_, group, same_);
+                now_.append_last(kept_);
                 continue;
             }
             facet_.resize(facet_.size() + ring.size() - 2, static_cast<Index>(f));
             half_.resize(facet_.size(), ring.size() == 4);
         }
-        corners_.resize(3 * facet_.size());
+        std::vector<Index> corners(3 * facet_.size());
         for_chunks(facet_.size(), triangles_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t t = begin; t < end; ++t)
-                if (t == 0 || facet_[t - 1] != facet_[t]) cut(mesh_.facet(facet_[t]), &corners_[3 * t]);
+                if (t == 0 || facet_[t - 1] != facet_[t]) cut(mesh_.facet(facet_[t]), &corners[3 * t]);
         });
-        link();
+        edges_.emplace(std::move(corners), kept_, mesh_.vertex_count());
     }
 
     /// Marks quads whose diagonal is also an edge of other facets; false if there is none.
     bool keep_whole(std::vector<std::uint8_t>& whole) const {
         bool any = false;
-        for (Index s = 0; s < corners_.size(); s += 3) {
-            if (!half_[s / 3] || (twin_[s] != no_index && facet_[twin_[s] / 3] == facet_[s / 3])) continue;
+        for (Index s = 0; s < side_count(); s += 3) {
+            if (!half_[s / 3] || (twin(s) != no_index && facet_[twin(s) / 3] == facet_[s / 3])) continue;
             whole[facet_[s / 3]] = 1;
             any = true;
         }
@@ -165,21 +166,13 @@ private:
         std::copy(halves.begin(), halves.end(), out);
     }
 
-    void link() {
-        TriangleSides sides = link_triangles(corners_, kept_, mesh_.vertex_count());
-        twin_ = std::move(sides.twin);
-        crowded_ = sides.crowded;
-        least_facets_.resize(mesh_.vertex_count());
-        for (std::size_t v = 0; v < least_facets_.size(); ++v) least_facets_[v] = sides.border[v] ? 1 : 3;
-    }
-
     /// Is it certain that two vertices share no edge? Looks at the fan of the first, at this corner, which
     /// must be closed.
     bool apart(Index corner, Index other) const {
         Index s = corner;
         do {
-            if (corners_[next_side(s)] == other || corners_[previous_side(s)] == other) return false;
-            s = twin_[s] == no_index ? no_index : next_side(twin_[s]);
+            if (end(s) == other || opposite(s) == other) return false;
+            s = twin(s) == no_index ? no_index : next_side(twin(s));
         } while (s != no_index && s != corner);
         return s == corner;
     }
@@ -193,26 +186,25 @@ private:
 
     /// Is this the half-edge by which its edge is judged, and has one of its triangles changed?
     bool is_due(Index s, const std::vector<std::uint8_t>& turned) const {
-        return twin_[s] != no_index && s < twin_[s] && (turned[s / 3] || turned[twin_[s] / 3]);
+        return twin(s) != no_index && s < twin(s) && (turned[s / 3] || turned[twin(s) / 3]);
     }
 
     void judge_all(const std::vector<std::uint8_t>& turned) {
-        verdicts_.resize(corners_.size());
+        verdicts_.resize(side_count());
         waits_.assign(half_.size(), 0);
-        for_chunks(corners_.size(), sides_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for_chunks(side_count(), sides_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
             Index hint = no_index;
             for (auto s = static_cast<Index>(begin); s < end; ++s) {
                 if (!is_due(s, turned)) continue;
                 verdicts_[s] = judge(s, hint);
-                look_[s] = look_[twin_[s]] = verdicts_[s].before;
+                look_[s] = look_[twin(s)] = verdicts_[s].before;
                 waits_[s / 3] |= verdicts_[s].flips;
             }
         });
     }
 
     Verdict judge(Index s, Index& hint) const {
-        const Index t = twin_[s], a = corners_[s], b = corners_[t], c = corners_[previous_side(s)],
-                    d = corners_[previous_side(t)];
+        const Index t = twin(s), a = start(s), b = start(t), c = opposite(s), d = opposite(t);
         const Look before = look_[s];
         const Vec3 ab = at(b) - at(a), bc = at(c) - at(b), ca = at(a) - at(c), ad = at(d) - at(a),
                    db = at(b) - at(d), cd = at(d) - at(c);
@@ -233,17 +225,7 @@ private:
                            && (old_shape <= collapses::least_shape
                                || (old1 | old2) >= flips::flip_cosine * old1_norm * old2_norm);
         if (warp(a, b, c, d) <= tolerance_) return {gains, before, before};
-        if (before != Look::none) return judge_bent({a, b, c, d}, before, gains, hint);
-        // The answer depends only on the four places (and the surface), so it can be remembered by their
-        // keys.
-        Key key = 1;
-        for (Index v : {a, b, c, d}) key = hash_index(key ^ vertex_keys_[v]);
-        const unsigned known = fine_.remembered(key, [&] {
-            const Verdict verdict = judge_bent({a, b, c, d}, Look::none, gains, hint);
-            return unsigned{verdict.flips} + 2 * static_cast<unsigned>(verdict.before)
-                   + 8 * unsigned{verdict.after == Look::on};
-        });
-        return {known % 2 == 1, static_cast<Look>(known / 2 % 4), known / 8 == 1 ? Look::on : Look::none};
+        return judge_bent({a, b, c, d}, before, gains, hint);
     }
 
     /// The verdict on edge a-b where the corners a, b and the opposite ones, c and d, are not in a plane.
@@ -252,9 +234,9 @@ private:
         const auto [a, b, c, d] = corners;
         if (before == Look::none) before = look(a, b, hint);
         if (before == Look::off) {
-            const double was = fine_.surface().distance(middle(a, b), hint);
+            const double was = fine_.surface.distance(middle(a, b), hint);
             const auto is_beyond = [&](const Vec3& place, double share) {
-                return fine_.surface().is_beyond(place, share * was, hint);
+                return fine_.surface.is_beyond(place, share * was, hint);
             };
             return {!is_beyond(middle(c, d), flips::nearer_share)
                         && !is_beyond((at(a) + at(c) + at(d)) / 3, 1)
@@ -269,8 +251,8 @@ private:
     /// Flips the diagonal at side s if the verdict, judged again if a triangle has changed, says so and the
     /// topology allows it.
     bool flip(Index s) {
-        const Index t = twin_[s], c = corners_[previous_side(s)], d = corners_[previous_side(t)];
-        if (c == d || !spares(corners_[s]) || !spares(corners_[t])) return false;
+        const Index t = twin(s), c = opposite(s), d = opposite(t);
+        if (c == d || !edges_->spares(start(s)) || !edges_->spares(start(t))) return false;
         const bool stale = turned_[s / 3] || turned_[t / 3];
         const Verdict verdict = stale ? judge(s, hint_) : verdicts_[s];
         look_[s] = look_[t] = verdict.before;
@@ -280,34 +262,19 @@ private:
     }
 
     void turn(Index s, Index t, Look now) {
-        const Index a = corners_[s], b = corners_[t], c = corners_[previous_side(s)],
-                    d = corners_[previous_side(t)];
-        const Index ca = twin_[previous_side(s)], bc = twin_[next_side(s)], ad = twin_[next_side(t)],
-                    db = twin_[previous_side(t)];
+        turned_[s / 3] = turned_[t / 3] = 1;
+        half_[s / 3] = half_[t / 3] = 0;
+        united_->join(s / 3, t / 3);
         const Look look_ca = look_[previous_side(s)], look_bc = look_[next_side(s)],
                    look_ad = look_[next_side(t)], look_db = look_[previous_side(t)];
+        edges_->flip_to_first_side(s);
         const Index one = s - s % 3, two = t - t % 3;
-        turned_[one / 3] = turned_[two / 3] = 1;
-        united_->join(one / 3, two / 3);
-        for (const Index side : {one, two, ca, bc, ad, db})
-            if (side != no_index) waits_[side / 3] = 1;
-        const auto place = [&](Index from, std::array<Index, 3> corners) {
-            for (Index k = 0; k < 3; ++k) corners_[from + k] = corners[k];
-        };
-        place(one, {d, c, a}); // the new diagonal is side 0 of both
-        place(two, {c, d, b});
-        half_[one / 3] = half_[two / 3] = 0;
-        const auto tie = [&](Index x, Index y, Look look) {
-            twin_[x] = y;
-            look_[x] = look;
-            if (y != no_index) twin_[y] = x, look_[y] = look;
-        };
-        tie(one, two, now);
-        tie(one + 1, ca, look_ca);
-        tie(one + 2, ad, look_ad);
-        tie(two + 1, db, look_db);
-        tie(two + 2, bc, look_bc);
-        --facets_[a], --facets_[b], ++facets_[c], ++facets_[d];
+        look_[one] = look_[two] = now;
+        look_[one + 1] = look_ca, look_[one + 2] = look_ad;
+        look_[two + 1] = look_db, look_[two + 2] = look_bc;
+        waits_[s / 3] = waits_[t / 3] = 1;
+        for (const Index side : {one + 1, one + 2, two + 1, two + 2})
+            if (twin(side) != no_index) waits_[twin(side) / 3] = 1;
     }
 
     struct Quad {
@@ -316,8 +283,7 @@ private:
     };
 
     std::optional<Quad> quad_across(Index s) const {
-        const Index t = twin_[s], a = corners_[s], b = corners_[t], c = corners_[previous_side(s)],
-                    d = corners_[previous_side(t)];
+        const Index t = twin(s), a = start(s), b = start(t), c = opposite(s), d = opposite(t);
         const Vec3 one = triangle_normal(at(a), at(b), at(c)), two = triangle_normal(at(b), at(a), at(d));
         if (c == d || (one | two) < flips::join_cosine * one.norm() * two.norm()) return std::nullopt;
         const std::array<Vec3, 4> along{at(d) - at(a), at(b) - at(d), at(c) - at(b), at(a) - at(c)};
@@ -339,10 +305,10 @@ private:
     }
 
     std::vector<Quad> possible_quads() const {
-        std::vector<std::vector<Quad>> parts(chunk_count(corners_.size(), sides_per_chunk));
-        for_chunks(corners_.size(), sides_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+        std::vector<std::vector<Quad>> parts(chunk_count(side_count(), sides_per_chunk));
+        for_chunks(side_count(), sides_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
             for (auto s = static_cast<Index>(begin); s < end; ++s)
-                if (twin_[s] != no_index && s < twin_[s])
+                if (twin(s) != no_index && s < twin(s))
                     if (const auto quad = quad_across(s)) parts[c].push_back(*quad);
         });
         return joined(parts);
@@ -357,10 +323,10 @@ private:
         std::vector<Index> partner(half_.size(), no_index);
         std::size_t joined = 0;
         for (const Quad& quad : quads) {
-            const Index s = quad.side, t = twin_[s], a = corners_[s], b = corners_[t];
+            const Index s = quad.side, t = twin(s);
             if (partner[s / 3] != no_index || partner[t / 3] != no_index) continue;
-            if (!spares(a) || !spares(b)) continue;
-            --facets_[a], --facets_[b];
+            if (!edges_->spares(start(s)) || !edges_->spares(start(t))) continue;
+            edges_->count_as_one(s);
             partner[s / 3] = s;
             partner[t / 3] = t;
             united_->join(s / 3, t / 3);
@@ -374,27 +340,22 @@ private:
     void add_groups(const std::vector<Index>& partner) {
         const auto [number, count] = number_groups();
         const Groups groups(number, count);
-        std::vector<Key> facets;
+        std::vector<Index> facets;
         for (std::size_t g = 0; g < count; ++g) {
             const auto group = groups.of(g);
             facets.clear();
             for (Index t : group)
-                if (t == 0 || facet_[t - 1] != facet_[t]) facets.push_back(facet_keys_[facet_[t]]);
+                if (t == 0 || facet_[t - 1] != facet_[t]) facets.push_back(facet_[t]);
             now_.begin(facets);
             for (Index t : group) {
                 const Index s = partner[t];
                 if (s == no_index)
-                    add_to_group(std::array{corners_[3 * t], corners_[3 * t + 1], corners_[3 * t + 2]});
-                else if (s < twin_[s])
-                    add_to_group(std::array{corners_[s], corners_[previous_side(twin_[s])],
-                                            corners_[next_side(s)], corners_[previous_side(s)]});
+                    now_.add_ring(edges_->triangle(t));
+                else if (s < twin(s))
+                    now_.add_ring(std::array{start(s), opposite(twin(s)), end(s), opposite(s)});
             }
+            now_.append_last(kept_);
         }
-    }
-
-    void add_to_group(std::span<const Index> ring) {
-        kept_.add_facet(ring);
-        now_.add_ring(ring, vertex_keys_);
     }
 
     /// Per triangle the group of those connected by flips or joins, halves of one quad among them; and how
@@ -412,40 +373,35 @@ private:
     }
 
     PolygonMesh& mesh_;
-    ToleranceEnvelope& fine_;
+    const ToleranceEnvelope& fine_;
     RemeshedGroups& before_;
     RemeshedGroups now_;
     double tolerance_;
-    std::vector<Key> vertex_keys_; // key of each vertex's place
-    KeyIndex vertices_;            // vertices by those keys
-    std::vector<Key> facet_keys_;  // key of each facet
+    Unchanged same_;           // of the mesh of `before`
     std::vector<Index> group_; // per facet, its group in `before`, whose result it takes over, or no_index
     std::optional<DisjointSets> united_; // triangles connected by flips or joins
     PolygonMesh kept_;                   // facets of the result
-    std::vector<Index> corners_;         // three per triangle
+    std::optional<EditableTriangles> edges_;
     std::vector<std::uint8_t> half_;   // per triangle, is it half of a former quad, the diagonal its side 0?
     std::vector<Index> facet_;         // per triangle, the facet it was cut from
-    std::vector<Index> twin_;          // per side of a triangle
-    bool crowded_ = false;             // does some edge have more than two facets?
     std::vector<Look> look_;           // per side
     std::vector<Verdict> verdicts_;    // per side, as of the start of the sweep
     std::vector<std::uint8_t> turned_; // per triangle, was it flipped in this sweep?
     std::vector<std::uint8_t> waits_;  // per triangle, has it sides to flip or to judge again?
     Index hint_ = no_index;
-    // per vertex, how many facets it has and how many it must keep: three, or one at a border
-    std::vector<Index> facets_, least_facets_;
 };
 
 } // namespace
 
-RemeshCounts remesh_by_flips(PolygonMesh& mesh, ToleranceEnvelope& fine, std::span<const std::uint8_t> fixed,
-                             Diagonals diagonals) {
+RemeshCounts remesh_by_flips(PolygonMesh& mesh, const ToleranceEnvelope& fine,
+                             std::span<const std::uint8_t> fixed, Diagonals diagonals) {
     RemeshedGroups none;
     return remesh_by_flips(mesh, fine, fixed, diagonals, none);
 }
 
-RemeshCounts remesh_by_flips(PolygonMesh& mesh, ToleranceEnvelope& fine, std::span<const std::uint8_t> fixed,
-                             Diagonals diagonals, RemeshedGroups& before) {
+RemeshCounts remesh_by_flips(PolygonMesh& mesh, const ToleranceEnvelope& fine,
+                             std::span<const std::uint8_t> fixed, Diagonals diagonals,
+                             RemeshedGroups& before) {
     const RemeshCounts counts = FlipRemeshing(mesh, fine, fixed, before).run(diagonals);
     cut_straight_corners(mesh, flips::reflex);
     return counts;

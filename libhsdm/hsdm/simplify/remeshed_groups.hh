@@ -2,38 +2,43 @@
 // The results of remeshing, group by group, to be reused for the next mesh, which has most of the same
 // facets.
 
-#include "hsdm/simplify/content_keys.hh"
+#include "hsdm/simplify/unchanged.hh"
+
+#include <cstdint>
+#include <span>
 
 namespace hsdm {
 
-/// Groups of facets and the facets that each group was remeshed to, over the same vertices and with the same
-/// border. Vertices and facets are known by keys of their places.
+/// Groups of a mesh's facets and the facets that each group was remeshed to, over the same vertices and with
+/// the same border.
 class RemeshedGroups {
 public:
     std::size_t size() const { return first_facet_.size() - 1; }
 
-    /// Begins a new group of the facets with these keys.
-    void begin(std::span<const Key> facets);
-    /// Adds a resulting facet to the last group. `places`: keys of the mesh's vertices.
-    void add_ring(std::span<const Index> ring, std::span<const Key> places);
-    /// Appends a group of another collection.
-    void copy(const RemeshedGroups& other, Index group);
+    /// Begins a new group of these facets.
+    void begin(std::span<const Index> facets);
+    /// Adds a resulting facet to the last group.
+    void add_ring(std::span<const Index> ring);
+    /// Appends a group of the mesh before, by the numbers that its facets and vertices have now.
+    void copy(const RemeshedGroups& before, Index group, const Unchanged& same);
 
-    /// Per facet of a mesh, its group here, or no_index. A group applies if all of its facets are in the
-    /// mesh, no vertex of theirs coincides with another, and none is shared with a facet that has no group or
-    /// one of a group that is not there completely. Facets marked `whole` are in no group and do not affect
-    /// those beside them. The results of groups that were remeshed beside other facets may not fit together;
-    /// the caller has to check that. O(facets).
-    std::vector<Index> find(const PolygonMesh& mesh, std::span<const Key> facets, const KeyIndex& vertices,
-                            std::span<const Key> places, const std::vector<std::uint8_t>& whole) const;
-    /// Adds the resulting facets of a group to a mesh with such vertices.
-    void append(Index group, const KeyIndex& vertices, PolygonMesh& mesh) const;
+    /// Per facet of the next mesh, its group here, or no_index. A group applies if all of its facets are in
+    /// that mesh, and no vertex of theirs is shared with a facet that has no group or one of a group that is
+    /// not there completely. Facets marked `whole` are in no group and do not affect those beside them. The
+    /// results of groups that were remeshed beside other facets may not fit together; the caller has to check
+    /// that. O(facets).
+    std::vector<Index> find(const PolygonMesh& mesh, const Unchanged& same,
+                            const std::vector<std::uint8_t>& whole) const;
+    /// Adds the resulting facets of the last group to a mesh with the same vertices.
+    void append_last(PolygonMesh& mesh) const;
+
+    PolygonMesh mesh; ///< the mesh that was remeshed, as it was before
 
 private:
-    std::vector<Key> facets_;                           // by group
+    std::vector<Index> facets_;                         // by group
     std::vector<Index> first_facet_{0}, first_ring_{0}; // per group, and the end
     std::vector<Index> first_corner_{0};                // per ring, and the end
-    std::vector<Key> corners_;
+    std::vector<Index> corners_;
 };
 
 } // namespace hsdm

@@ -66,6 +66,7 @@ public:
                 points_to_surface(sample_surface(result_.mesh, samples), checks_->bound().to_fine());
         }
         result_.vertex = std::move(vertex_);
+        result_.mesh.origin.clear();
         return std::move(result_);
     }
 
@@ -169,6 +170,7 @@ private:
             if (n == no_index) {
                 n = static_cast<Index>(coarse_.size());
                 coarse_.push_back(place);
+                mesh.origin.push_back(static_cast<Index>(v));
                 mesh.positions.push_back(
                     clusters_[static_cast<std::size_t>(place.level)].positions[place.cluster]);
             }

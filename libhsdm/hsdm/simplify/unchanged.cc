@@ -1,0 +1,86 @@
+#include "hsdm/simplify/unchanged.hh"
+
+#include "hsdm/core/groups.hh"
+
+#include <algorithm>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t facets_per_chunk = 2048;
+
+Index origin_of(const PolygonMesh& mesh, Index v) {
+    return mesh.origin.empty() ? v : mesh.origin[v];
+}
+
+void find_vertices(const PolygonMesh& before, const PolygonMesh& now, Unchanged& same) {
+    const std::size_t origins = before.origin.empty()
+                                    ? before.vertex_count()
+                                    : std::size_t{*std::ranges::max_element(before.origin)} + 1;
+    std::vector<Index> vertex_of(origins, no_index);
+    for (Index v = 0; v < before.vertex_count(); ++v) vertex_of[origin_of(before, v)] = v;
+    for (Index v = 0; v < now.vertex_count(); ++v) {
+        const Index origin = origin_of(now, v);
+        const Index was = origin < origins ? vertex_of[origin] : no_index;
+        if (was == no_index || before.positions[was] != now.positions[v]) continue;
+        same.vertex[v] = was;
+        same.vertex_now[was] = v;
+    }
+}
+
+/// Turns a triangle to begin at its least vertex. How a larger polygon is cut depends on where it begins.
+void normalise(std::vector<Index>& ring) {
+    if (ring.size() == 3) std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end()), ring.end());
+}
+
+/// Per facet, the first vertex of its normalised ring.
+std::vector<Index> first_vertices(const PolygonMesh& mesh) {
+    std::vector<Index> first(mesh.facet_count());
+    for (std::size_t f = 0; f < first.size(); ++f) {
+        const auto ring = mesh.facet(f);
+        first[f] = ring.size() == 3 ? *std::min_element(ring.begin(), ring.end()) : ring[0];
+    }
+    return first;
+}
+
+void find_facets(const PolygonMesh& before, const PolygonMesh& now, Unchanged& same) {
+    const Groups facets_from(first_vertices(before), before.vertex_count());
+    for_chunks(now.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        std::vector<Index> ring, other;
+        for (std::size_t f = begin; f < end; ++f) {
+            ring.clear();
+            for (Index v : now.facet(f)) ring.push_back(same.vertex[v]);
+            if (std::ranges::find(ring, no_index) != ring.end()) continue;
+            normalise(ring);
+            for (Index g : facets_from.of(ring[0])) {
+                other.assign(before.facet(g).begin(), before.facet(g).end());
+                normalise(other);
+                if (ring != other) continue;
+                same.facet[f] = g;
+                break;
+            }
+        }
+    });
+    for (Index f = 0; f < now.facet_count(); ++f) {
+        if (same.facet[f] == no_index) continue;
+        Index& twice = same.facet_now[same.facet[f]];
+        if (twice == no_index)
+            twice = f;
+        else
+            same.facet[f] = no_index;
+    }
+}
+
+} // namespace
+
+Unchanged find_unchanged(const PolygonMesh& before, const PolygonMesh& now) {
+    Unchanged same{std::vector<Index>(now.vertex_count(), no_index),
+                   std::vector<Index>(now.facet_count(), no_index),
+                   std::vector<Index>(before.vertex_count(), no_index),
+                   std::vector<Index>(before.facet_count(), no_index)};
+    find_vertices(before, now, same);
+    find_facets(before, now, same);
+    return same;
+}
+
+} // namespace hsdm
