@@ -38,21 +38,6 @@ void EditableTriangles::flip_edge(Index side) {
     ++facets_[d];
 }
 
-void EditableTriangles::flip_to_first_side(Index s) {
-    const Index t = twin_[s], a = start(s), b = start(t), c = opposite(s), d = opposite(t);
-    const Index ca = twin_[previous_side(s)], bc = twin_[next_side(s)], ad = twin_[next_side(t)],
-                db = twin_[previous_side(t)];
-    const Index one = s - s % 3, two = t - t % 3;
-    corners_[one] = d, corners_[one + 1] = c, corners_[one + 2] = a;
-    corners_[two] = c, corners_[two + 1] = d, corners_[two + 2] = b;
-    pair_up(one, two);
-    pair_up(one + 1, ca);
-    pair_up(one + 2, ad);
-    pair_up(two + 1, db);
-    pair_up(two + 2, bc);
-    --facets_[a], --facets_[b], ++facets_[c], ++facets_[d];
-}
-
 void EditableTriangles::collapse_edge(Index side) {
     const Index other = twin_[side], from = start(side), to = end(side);
     facets_[to] += facets_[from] - 4;

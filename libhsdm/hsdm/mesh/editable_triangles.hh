@@ -44,9 +44,6 @@ public:
     /// place of one. The new edge is that of previous_side(side); the side that ran b d is now `side`, the
     /// one that ran c a its former twin, and those that ran b c and a d are where they were.
     void flip_edge(Index side);
-    /// The same, but the new edge becomes side 0 of both triangles, and each keeps the other end of the old
-    /// one.
-    void flip_to_first_side(Index side);
     /// Counts the two triangles at a side as one facet from now on.
     void count_as_one(Index side) { --facets_[start(side)], --facets_[end(side)]; }
     /// Removes the two triangles at a side, of which neither end is at a border, and puts its end in place of

@@ -265,15 +265,12 @@ private:
         turned_[s / 3] = turned_[t / 3] = 1;
         half_[s / 3] = half_[t / 3] = 0;
         united_->join(s / 3, t / 3);
-        const Look look_ca = look_[previous_side(s)], look_bc = look_[next_side(s)],
-                   look_ad = look_[next_side(t)], look_db = look_[previous_side(t)];
-        edges_->flip_to_first_side(s);
-        const Index one = s - s % 3, two = t - t % 3;
-        look_[one] = look_[two] = now;
-        look_[one + 1] = look_ca, look_[one + 2] = look_ad;
-        look_[two + 1] = look_db, look_[two + 2] = look_bc;
+        edges_->flip_edge(s);
+        look_[s] = look_[previous_side(t)];
+        look_[t] = look_[previous_side(s)];
+        look_[previous_side(s)] = look_[previous_side(t)] = now;
         waits_[s / 3] = waits_[t / 3] = 1;
-        for (const Index side : {one + 1, one + 2, two + 1, two + 2})
+        for (const Index side : {s, t, next_side(s), next_side(t)})
             if (twin(side) != no_index) waits_[twin(side) / 3] = 1;
     }
 
