@@ -3,6 +3,7 @@
 
 #include "hsdm/features/feature_options.hh"
 #include "hsdm/mesh/vertex_normals.hh"
+#include "hsdm/types.hh"
 
 #include <vector>
 

@@ -6,6 +6,10 @@
 #include "hsdm/features/sectors.hh"
 #include "hsdm/mesh/facet_normal.hh"
 
+#include <OpenMesh/Core/Utils/vector_traits.hh>
+
+#include <array>
+#include <span>
 #include <vector>
 
 namespace hsdm {
