@@ -39,6 +39,10 @@ struct PointCloud {
     Box bounds() const { return bounds_of(positions); }
 };
 
+/// Throws Error if an array of the cloud has neither an entry for each point nor, where it may be missing,
+/// none: it would be read beyond its end. Every public function that takes a cloud begins with it.
+void check_arrays(const PointCloud& cloud);
+
 /// What `drop_nonfinite` removed.
 struct Dropped {
     std::size_t nonfinite = 0;       ///< points with NaN or Inf in a coordinate
@@ -47,7 +51,8 @@ struct Dropped {
 };
 
 /// Removes the points with a NaN or Inf coordinate, in place and in order; normals that are not finite or
-/// zero become (0, 0, 0), which every stage reads as "no normal here". O(n).
+/// zero become (0, 0, 0), which every stage reads as "no normal here". O(n). Throws as check_arrays(), with
+/// the cloud as it was.
 Dropped drop_nonfinite(PointCloud& cloud);
 
 } // namespace hsdm

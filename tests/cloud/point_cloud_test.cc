@@ -1,3 +1,4 @@
+#include "hsdm/errors.hh"
 #include "hsdm/point_cloud.hh"
 
 #include <catch2/catch.hpp>
@@ -79,4 +80,29 @@ TEST_CASE("normals that are zero or not finite become none, and their points sta
     CHECK(dropped.nonfinite == 1);
     CHECK(dropped.bad_normals == 3);
     CHECK(cloud.normals == std::vector<Vec3>{Vec3(0, 0, 0), Vec3(0, 0, 0), Vec3(0, 0, 0), Vec3(0, 0, -2)});
+}
+
+TEST_CASE("a cloud whose arrays do not fit together is refused, and left as it was", "[point_cloud]") {
+    PointCloud cloud;
+    cloud.positions = {Vec3(not_a_number, 0, 0), Vec3(0, 0, 0), Vec3(1, 0, 0)};
+    CHECK_NOTHROW(check_arrays(cloud));
+    const auto refusal = [](PointCloud wrong) {
+        try {
+            drop_nonfinite(wrong);
+        } catch (const Error& error) {
+            CHECK(wrong.size() == 3);
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    const std::string rest = " for 3 points; give one for each, or leave them out";
+    PointCloud wrong = cloud;
+    wrong.normals.assign(2, Vec3(0, 0, 1));
+    CHECK(refusal(wrong) == "the cloud holds 2 normals" + rest);
+    wrong = cloud;
+    wrong.colors.assign(1, {1, 2, 3, 4});
+    CHECK(refusal(wrong) == "the cloud holds 1 colours" + rest);
+    wrong = cloud;
+    wrong.scalars.push_back({"intensity", {1, 2, 3, 4}, false});
+    CHECK(refusal(wrong) == "the cloud holds 4 values of intensity" + rest);
 }

@@ -220,3 +220,13 @@ TEST_CASE("deleted elements do not come back as polygons") {
     CHECK(polygons.vertex_count() == 8);
     CHECK(to_mesh(polygons).rejected == 0);
 }
+
+TEST_CASE("normals and properties that do not fit the vertices are never read beyond their end") {
+    PolygonMesh polygons = cube();
+    polygons.properties.push_back({"hsdm_normals_0_x", VertexProperty::Type::float32, {1}});
+    polygons.properties.push_back({"short", VertexProperty::Type::float64, {1}});
+    CHECK(to_mesh(polygons).rejected == 0);
+    polygons.normals.assign(3, Vec3(0, 0, 1));
+    CHECK_THROWS_WITH(to_mesh(polygons),
+                      "the mesh holds 3 normals for 8 vertices; give one for each, or leave them out");
+}

@@ -1,6 +1,7 @@
 #include "hsdm/point_cloud.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/errors.hh"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
@@ -50,7 +51,19 @@ Box bounds_of(std::span<const Vec3> positions) {
         });
 }
 
+void check_arrays(const PointCloud& cloud) {
+    const auto check = [&](const std::string& what, std::size_t count, bool may_lack) {
+        if (count != cloud.size() && !(may_lack && count == 0))
+            throw Error("the cloud holds " + std::to_string(count) + " " + what + " for "
+                        + std::to_string(cloud.size()) + " points; give one for each, or leave them out");
+    };
+    check("normals", cloud.normals.size(), true);
+    check("colours", cloud.colors.size(), true);
+    for (const Scalar& scalar : cloud.scalars) check("values of " + scalar.name, scalar.values.size(), false);
+}
+
 Dropped drop_nonfinite(PointCloud& cloud) {
+    check_arrays(cloud);
     Dropped dropped;
     std::atomic<std::size_t> bad_points = 0, bad_normals = 0;
     for_chunks(cloud.size(), 1 << 14, [&](std::size_t begin, std::size_t end, std::size_t) {

@@ -1,6 +1,7 @@
 #include "hsdm/mesh/to_mesh.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/errors.hh"
 #include "hsdm/mesh/facet_normal.hh"
 #include "hsdm/mesh/vertex_normals.hh"
 
@@ -131,7 +132,9 @@ bool is_normal_component(const VertexProperty& property) {
 void write_vertex_normals(const PolygonMesh& facets, const FacetLinks& links, PolyMesh& mesh) {
     for (std::size_t i = 0; i < 9; ++i)
         for (const VertexProperty& component : facets.properties) {
-            if (component.name != normal_component_name(i)) continue;
+            if (component.name != normal_component_name(i)
+                || component.values.size() != facets.vertex_count())
+                continue;
             auto property = kept_vertex_property<NormalTriple<Vec3>>(mesh, vertex_normals_property);
             auto& values = mesh.property(property.getRawProperty()).data_vector();
             for_each_index(links.source.size(), 1 << 13,
@@ -249,6 +252,10 @@ ToMeshCounts to_mesh(const PolygonMesh& facets, PolyMesh& mesh) {
 }
 
 ToMeshCounts to_mesh(const PolygonMesh& facets, const FacetLinks& links, PolyMesh& mesh) {
+    if (!facets.normals.empty() && facets.normals.size() != facets.vertex_count())
+        throw Error("the mesh holds " + std::to_string(facets.normals.size()) + " normals for "
+                    + std::to_string(facets.vertex_count())
+                    + " vertices; give one for each, or leave them out");
     write_connectivity(facets, links, mesh);
     write_geometry(facets, links, mesh);
     write_properties(facets, links, mesh);

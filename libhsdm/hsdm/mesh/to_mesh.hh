@@ -26,7 +26,8 @@ struct ToMeshResult {
 /// edge in the direction an earlier facet already does (so a third facet at an edge, or one turned the wrong
 /// way). A facet's vertices keep their order, vertices keep theirs; isolated vertices are left out, copies of
 /// split vertices come last. Vertex properties become named mesh properties (`hsdm_...`), facets get their
-/// normals. Nothing is printed. O(corners log valence), parallel.
+/// normals. Nothing is printed. O(corners log valence), parallel. Throws Error for normals that are not one
+/// for each vertex.
 ToMeshResult to_mesh(const PolygonMesh& facets);
 /// The same in place: fills an empty mesh, because OpenMesh meshes cannot be moved, only copied.
 ToMeshCounts to_mesh(const PolygonMesh& facets, PolyMesh& mesh);

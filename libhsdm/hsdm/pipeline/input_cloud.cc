@@ -9,14 +9,7 @@ void InputCloud::check() const {
     if (cloud.size() >= no_index)
         throw Error("the cloud holds " + std::to_string(cloud.size())
                     + " points; fewer than 2^32 - 1 can be told apart");
-    const auto check = [&](const std::string& what, std::size_t count, bool may_lack) {
-        if (count != cloud.size() && !(may_lack && count == 0))
-            throw Error("the cloud holds " + std::to_string(count) + " " + what + " for "
-                        + std::to_string(cloud.size()) + " points; give one for each, or leave them out");
-    };
-    check("normals", cloud.normals.size(), true);
-    check("colours", cloud.colors.size(), true);
-    for (const Scalar& scalar : cloud.scalars) check("values of " + scalar.name, scalar.values.size(), false);
+    check_arrays(cloud);
 }
 
 void InputCloud::drop_nonfinite_points() {
