@@ -10,8 +10,8 @@
 set -u
 cd "$(dirname "$0")/.." || exit 1
 
-all="cloud points_ply points_pcd points_table points_ptx points_off points_obj points_stl points_hoppe"
-all="$all mesh_ply mesh_off mesh_obj mesh_stl suite module_options"
+all="cloud points_ply points_pcd points_table points_ptx points_off points_obj points_stl points_om points_hoppe"
+all="$all mesh_ply mesh_off mesh_obj mesh_stl mesh_om suite module_options"
 
 if [ "${1:-}" = --one ]; then # SECONDS NAME: how this script calls itself
     seconds=$2 name=$3 place=$HSDM_FUZZ_TREE/fuzz/$3

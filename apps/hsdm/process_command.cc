@@ -151,12 +151,17 @@ int run_process(const ProcessArguments& a) {
         if (!a.quiet) text << printable(plugin.name() + ": " + summary) << std::endl;
     }
     set_phase("write");
-    WriteOptions options;
-    options.ascii = a.ascii;
-    PolygonMesh result = to_polygons(built.mesh);
     if (unit != 1)
-        for (Vec3& p : result.positions) p *= unit;
-    const WrittenMesh written = write_mesh(output, result, format, options);
+        for (const auto v : built.mesh.vertices()) built.mesh.set_point(v, built.mesh.point(v) * unit);
+    if (format == MeshFormat::om) { // the one writer that would write what is deleted
+        built.mesh.delete_isolated_vertices();
+        built.mesh.garbage_collection();
+    }
+    MeshTarget target;
+    target.mesh = output;
+    target.format = format;
+    target.ascii = a.ascii;
+    const WrittenMesh written = write_outputs(target, built.mesh);
     if (written.text_for_precision && !a.quiet) text << text_for_precision;
     return done;
 }
@@ -167,7 +172,7 @@ void add_process(CLI::App& app, Run& run) {
     CLI::App* const sub =
         app.add_subcommand("process", "a mesh through processing modules loaded at run time");
     const auto a = std::make_shared<ProcessArguments>();
-    sub->add_option("mesh", a->input, "OFF, STL, PLY or OBJ");
+    sub->add_option("mesh", a->input, "OFF, STL, PLY, OBJ or .om");
     sub->add_option("-o,--output", a->output, "the mesh to write; - is standard output")->type_name("FILE");
     sub->add_flag("--in-place", a->in_place, "write the mesh's own file instead");
     sub->add_option("--format", a->format, "its format, where no extension names it")

@@ -164,13 +164,14 @@ WrittenMesh write_outputs(const MeshTarget& target, const PolyMesh& mesh) {
     WrittenMesh written;
     WriteOptions options;
     options.ascii = target.ascii;
-    if (target.format == MeshFormat::om && target.mesh != "-" && !target.plain) {
+    if (target.format == MeshFormat::om && !target.plain) {
         write_om(target.mesh, mesh); // with status bits and every property
     } else {
         PolygonMesh polygons = to_polygons(mesh);
         if (target.plain) {
             polygons.normals.clear();
             polygons.properties.clear();
+            polygons.sharp_edges.clear();
         }
         written = write_mesh(target.mesh, polygons, target.format, options);
     }

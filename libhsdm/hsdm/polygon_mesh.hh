@@ -3,6 +3,7 @@
 
 #include "hsdm/types.hh"
 
+#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,6 +31,9 @@ struct PolygonMesh {
     std::vector<Index> corners;             ///< vertices of all facets, one facet after the other
     std::vector<Index> first{0};            ///< per facet, where its corners begin; at the end their number
     std::vector<VertexProperty> properties; ///< each with one value per vertex
+    /// The sharp edges that are known, each by its two vertices, the lower first: what the status bit
+    /// `feature` says of the edges of an OpenMesh mesh. Of the writers only that of .om writes them.
+    std::vector<std::array<Index, 2>> sharp_edges;
     /// Empty, or per vertex a number given by the stage that made it, which copies of the vertex keep, so
     /// that other data of vertices can be looked up by it. No writer writes it.
     std::vector<Index> origin;

@@ -1,9 +1,11 @@
 #include "cli/run.hh"
 #include "cli/scan.hh"
+#include "hsdm/io/read_mesh.hh"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iomanip>
@@ -176,4 +178,31 @@ TEST_CASE("regress passes within tolerance, fails outside it, and names what mis
     folder.write("broken.json", "{");
     CHECK(run(folder, "regress broken.json").status == 1);
     CHECK(run(folder, "regress missing.json").status == 1);
+}
+
+TEST_CASE("what is written as .om is read by every command, with its sharp edges", "[cli]") {
+    const Folder folder;
+    const std::string modules = with_modules(folder);
+    support::SampleOptions scan;
+    scan.points = 8000;
+    support::write_ply(folder / "scan.ply", support::sample(support::box({2, 1, 1}), scan));
+    REQUIRE(run(folder, "reconstruct scan.ply --depth 4 -o part.om --features lines.txt").status == 0);
+    const PolygonMesh part = read_mesh(folder / "part.om");
+    REQUIRE(part.sharp_edges.size() > 100);
+    const std::string lines = read_file(folder / "lines.txt");
+    CHECK(static_cast<std::size_t>(std::count(lines.begin(), lines.end(), '\n'))
+          == part.sharp_edges.size() + 8);
+
+    CHECK(Json::parse(run(folder, "info part.om --json").out)["mesh"]["closed"] == true);
+    CHECK(Json::parse(run(folder, "compare part.om part.om --json").out)["hausdorff"] < 1e-9);
+    CHECK(run(folder, "process part.om --module smooth-normals -o smoothed.om", modules).status == 0);
+    const PolygonMesh smoothed = read_mesh(folder / "smoothed.om");
+    CHECK(smoothed.sharp_edges == part.sharp_edges);
+    CHECK(smoothed.corners == part.corners);
+    CHECK(run(folder, "process part.om --module smooth-normals -o - --format om > piped.om", modules).status
+          == 0);
+    CHECK(read_file(folder / "piped.om") == read_file(folder / "smoothed.om"));
+    folder.write("suite.json", R"({"cases": [{"name": "again", "input": "part.om", "args": ["--depth", "3"],
+                                   "expect": {"mesh.closed": true}}]})");
+    CHECK(run(folder, "regress suite.json").status == 0);
 }

@@ -231,7 +231,7 @@ TEST_CASE("every format that is read by its name can be given as --input-format"
               == 0);
     }
     CHECK_THAT(run(folder, "help reconstruct").out,
-               Contains("ply|pcd|xyz|csv|txt|asc|pts|pwn|ptx|off|obj|stl|hoppe"));
+               Contains("ply|pcd|xyz|csv|txt|asc|pts|pwn|ptx|off|obj|stl|om|hoppe"));
 }
 
 TEST_CASE("what columns were taken for is said, and when normals are not of unit length", "[cli]") {

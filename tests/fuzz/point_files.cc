@@ -68,6 +68,24 @@ std::string binary_stl() {
     return text;
 }
 
+/// A triangle as OpenMesh 9 writes it, with half-edges, marks and a property.
+std::string half_edge_om() {
+    const auto chunk = [](int entity, int type, int rest) {
+        return bytes_of(static_cast<std::uint16_t>(entity << 2 | type << 5 | rest));
+    };
+    constexpr int floats = 1 << 10, three = 2 << 11;
+    std::string text = "OMP\x42";
+    for (const std::uint32_t count : {3u, 1u, 3u}) text += bytes_of(count);
+    text += chunk(0, 0, floats | three);
+    for (const float x : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) text += bytes_of(x);
+    text += chunk(6, 7, floats | three); // of each half-edge the next, its end and its face
+    text += std::string("\2\1\0\5\0\xff\4\2\0\1\1\xff\0\0\0\3\2\xff", 18);
+    text += chunk(0, 7, floats) + std::string("\1\3\5", 3) + chunk(2, 7, floats) + '\0';
+    text += chunk(4, 3, 0) + bytes_of(std::uint32_t(16)) + std::string(8, '\0');
+    text += chunk(0, 6, 2) + "\5label" + "\7int32_t" + bytes_of(std::uint32_t(12)) + std::string(12, '\1');
+    return text + chunk(7, 0, 0);
+}
+
 std::string check(const PointCloud& cloud) {
     const std::size_t n = cloud.size();
     if (n == 0) return "a cloud without points";
@@ -96,6 +114,7 @@ std::vector<NamedContent> valid_point_files() {
         {"a.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
                   "0\nendloop\nendfacet\nendsolid\n"},
         {"b.stl", binary_stl()},
+        {"a.om", half_edge_om()},
         {"a.ply", "ply\nformat ascii 1.0\ncomment c\nelement vertex 2\nproperty float x\nproperty float "
                   "y\nproperty float z\n"
                   "property list uchar int t\nproperty uchar red\nproperty uchar green\nproperty uchar "
@@ -180,8 +199,8 @@ std::string fuzz_reading(std::uint64_t seed, int rounds) {
     const auto files = valid_point_files();
     support::Random random(seed);
     const std::string columns[] = {"", "", "", "x,y,z", "_,z,y,x,label", "x,y,z,nx,ny,nz,r,g,b"};
-    const std::string formats[] = {"",    "",    "",    "ply", "pcd", "xyz",  "off",
-                                   "obj", "stl", "pts", "ptx", "pwn", "hoppe"};
+    const std::string formats[] = {"",    "",    "",   "ply", "pcd", "xyz", "off",
+                                   "obj", "stl", "om", "pts", "ptx", "pwn", "hoppe"};
     for (int round = 0; round < rounds; ++round)
         for (const NamedContent& file : files) {
             std::istringstream stream(damaged(file.content, random));

@@ -1,4 +1,9 @@
+#include "features/meshes.hh"
+#include "hsdm/features/features.hh"
 #include "hsdm/io/register_readers.hh"
+#include "hsdm/io/write_om.hh"
+#include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/mesh_types.hh"
 #include "io/temp_file.hh"
 
@@ -61,4 +66,25 @@ TEST_CASE("registering point readers leaves OpenMesh's own formats alone", "[io]
     REQUIRE(OpenMesh::IO::read_mesh(mesh, file.path()));
     CHECK(mesh.n_vertices() == 3);
     CHECK(mesh.n_faces() == 1);
+}
+
+TEST_CASE("OpenMesh reads every property of an .om file without a word", "[io]") {
+    register_readers();
+    PolyMesh mesh = to_mesh(test::cube(2)).mesh;
+    classify_features(mesh);
+    const TempFile file("a.om", "");
+    write_om(file.path(), mesh);
+    std::ostringstream said;
+    omerr().connect(said);
+    PolyMesh back;
+    const bool read = OpenMesh::IO::read_mesh(back, file.path());
+    omerr().disconnect(said);
+    REQUIRE(read);
+    CHECK(said.str().empty());
+    for (const char* name : {vertex_class_property, normal_count_property})
+        CHECK(OpenMesh::hasProperty<OpenMesh::VertexHandle, std::uint8_t>(back, name));
+    REQUIRE(OpenMesh::hasProperty<OpenMesh::VertexHandle, VertexNormalsT<PolyMesh>>(back, "hsdm_normals"));
+    const OpenMesh::VProp<VertexNormalsT<PolyMesh>> normals(back, "hsdm_normals"),
+        before(mesh, "hsdm_normals");
+    for (const auto v : mesh.vertices()) CHECK(normals[v] == before[v]);
 }

@@ -23,6 +23,10 @@ PointFile read_ptx(const SourceBytes& bytes);
 /// Whether the text begins with the ten header lines of a PTX scan.
 bool is_ptx(const Text& text);
 PointFile read_off(const SourceBytes& bytes);
+/// The vertices and their normals, if one of them is not zero.
+PointFile read_om(const SourceBytes& bytes);
+/// Whether the bytes begin as those of an .om file.
+bool is_om(const SourceBytes& bytes);
 PointFile read_obj(const SourceBytes& bytes);
 /// Hoppe's point files: lines `p x y z`, others skipped.
 PointFile read_hoppe(const SourceBytes& bytes);
@@ -36,7 +40,8 @@ bool is_text_stl(const SourceBytes& bytes);
 /// Whether the line is the first of an OFF file: the keyword, perhaps with its letters.
 bool is_off_keyword(std::string_view line);
 
-/// "ply", "off", "obj" or "stl" if read_points would read the source as that; else empty: it holds no faces.
+/// "ply", "off", "obj", "stl" or "om" if read_points would read the source as that; else empty: it holds no
+/// faces.
 std::string_view mesh_format_of(const SourceBytes& bytes);
 
 /// Finds the reader by `options.format`, the name's extension and the content, and runs it.

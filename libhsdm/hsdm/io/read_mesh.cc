@@ -26,6 +26,7 @@ namespace {
 PolygonMesh read_as(const SourceBytes& bytes, std::string_view format) {
     if (format == "ply") return read_mesh_ply(bytes);
     if (format == "stl") return read_mesh_stl(bytes);
+    if (format == "om") return read_mesh_om(bytes);
     return format == "off" ? read_mesh_off(bytes) : read_mesh_obj(bytes);
 }
 
@@ -41,7 +42,8 @@ PolygonMesh read_mesh(const SourceBytes& bytes) {
         if (format.empty() && extension == std::string(".").append(known)) format = known;
     if (format.empty() && extension == ".ply")
         throw Error(bytes.name(), 1, "a PLY file begins with \"ply\"; this one does not, check it");
-    if (format.empty()) throw Error(bytes.name(), "no mesh format that is known; use OFF, STL, PLY or OBJ");
+    if (format.empty())
+        throw Error(bytes.name(), "no mesh format that is known; use OFF, STL, PLY, OBJ or .om");
     PolygonMesh mesh = read_as(bytes, format);
     if (mesh.facet_count() == 0) return mesh;
     for (std::size_t v = 0; v < mesh.vertex_count(); ++v)

@@ -1,6 +1,6 @@
 #pragma once
-// OFF, STL, PLY, OBJ -> PolygonMesh, polygons and doubles kept: what `info`, `compare` and the tests read
-// back.
+// OFF, STL, PLY, OBJ, .om -> PolygonMesh, polygons and doubles kept: what `info`, `compare`, `process` and
+// the tests read back.
 
 #include "hsdm/io/read_points.hh"
 #include "hsdm/polygon_mesh.hh"
@@ -10,7 +10,7 @@
 namespace hsdm {
 
 /// Reads a polygon mesh; STL corners at the same position become one vertex. A file without faces gives a
-/// mesh without facets. Throws Error `FILE:LINE: what, and what to do`.
+/// mesh without facets. Of .om also the sharp edges are read. Throws Error `FILE:LINE: what, and what to do`.
 /// The vertices of a mesh with facets are finite.
 PolygonMesh read_mesh(const std::string& path);
 

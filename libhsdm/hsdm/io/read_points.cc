@@ -11,7 +11,7 @@ namespace hsdm {
 namespace io {
 namespace {
 
-enum class Format { unknown, table, ply, pcd, ptx, off, obj, hoppe, stl };
+enum class Format { unknown, table, ply, pcd, ptx, off, obj, hoppe, stl, om };
 
 struct KnownName {
     std::string_view name;
@@ -33,6 +33,7 @@ constexpr KnownName known_names[] = {
     {"off", Format::off},
     {"obj", Format::obj},
     {"stl", Format::stl},
+    {"om", Format::om},
     {"hoppe", Format::hoppe},
 };
 
@@ -110,6 +111,7 @@ Format recognise(const SourceBytes& bytes) {
     if (view.starts_with("ply") && view.size() > 3 && (is_blank(view[3]) || view[3] == '\n'))
         return Format::ply;
     if (is_pcd(text)) return Format::pcd;
+    if (is_om(bytes)) return Format::om;
     if (is_binary_stl(bytes) || is_text_stl(bytes)) return Format::stl;
     if (is_binary(text)) return Format::unknown;
     return is_ptx(text) ? Format::ptx : recognise_lines(text);
@@ -166,6 +168,8 @@ PointFile read_as(const SourceBytes& bytes, Format format, TableKind kind, const
         return read_hoppe(bytes);
     case Format::stl:
         return read_stl(bytes);
+    case Format::om:
+        return read_om(bytes);
     default:
         return read_table(bytes, kind, columns);
     }
@@ -180,7 +184,7 @@ std::string_view mesh_format_of(const SourceBytes& bytes) {
         const bool binary = is_binary(Text::head_of(bytes));
         if (named->format == (binary ? Format::stl : Format::off)) format = named->format;
     }
-    for (const Format known : {Format::ply, Format::off, Format::obj, Format::stl})
+    for (const Format known : {Format::ply, Format::off, Format::obj, Format::stl, Format::om})
         if (format == known)
             return std::find_if(std::begin(known_names), std::end(known_names),
                                 [=](const KnownName& k) { return k.format == known; })

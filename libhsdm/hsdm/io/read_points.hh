@@ -1,6 +1,6 @@
 #pragma once
 // Point files -> PointCloud. PLY, PCD, XYZ / TXT / ASC / CSV, PTS, PTX, PWN, Hoppe's `p x y z`, vertices of
-// OFF, OBJ, STL.
+// OFF, OBJ, STL, .om.
 
 #include "hsdm/point_cloud.hh"
 
@@ -20,7 +20,8 @@ struct ReadOptions {
 };
 
 /// The values of ReadOptions::format, which are also the extensions known: "ply", "pcd", "xyz" and "csv",
-/// "txt", "asc" (the same), "pts", "pwn", "ptx", "off", "obj", "stl", "hoppe".
+/// "txt", "asc" (the same), "pts", "pwn", "ptx", "off", "obj", "stl", "om",
+/// "hoppe".
 std::span<const std::string_view> point_formats();
 
 /// What was read, beside the cloud.

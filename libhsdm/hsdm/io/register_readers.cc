@@ -2,8 +2,10 @@
 
 #include "hsdm/errors.hh"
 #include "hsdm/io/formats.hh"
+#include "hsdm/mesh/vertex_normals.hh"
 
 #include <OpenMesh/Core/IO/IOManager.hh>
+#include <OpenMesh/Core/Utils/PropertyCreator.hh>
 
 #include <exception>
 
@@ -52,9 +54,22 @@ private:
     }
 };
 
+/// Makes the property `hsdm_normals` of an .om file where the mesh that is read does not have it. OpenMesh
+/// keeps a pointer to it.
+template <class Scalar>
+class NormalsCreator : public OpenMesh::PropertyCreatorImpl<NormalsCreator<Scalar>> {
+public:
+    using type = NormalTriple<OpenMesh::VectorT<Scalar, 3>>;
+
+    NormalsCreator() { OpenMesh::PropertyCreationManager::instance().register_property_creator(this); }
+    std::string type_string() override { return OpenMesh::IO::binary<type>::type_identifier(); }
+};
+
 } // namespace
 
 void register_readers() {
+    static NormalsCreator<double> doubles;
+    static NormalsCreator<float> floats;
     static PointReader reader;
     static const bool registered = OpenMesh::IO::IOManager().register_module(&reader);
     static_cast<void>(registered);

@@ -14,7 +14,7 @@ enum class MeshFormat {
     stl, ///< triangles, binary or text
     ply, ///< binary or text, with normals and vertex properties
     obj, ///< text, with normals
-    om,  ///< OpenMesh's own, with normals and vertex properties
+    om,  ///< OpenMesh's own, with normals, vertex properties and sharp edges
 };
 
 /// How it is written.

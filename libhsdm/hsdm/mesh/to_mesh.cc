@@ -6,6 +6,7 @@
 #include "hsdm/mesh/vertex_normals.hh"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <string>
 #include <type_traits>
@@ -119,20 +120,16 @@ void write_property(const VertexProperty& from, const FacetLinks& links, PolyMes
                    [&](Index v) { values[v] = saturated<T>(from.values[links.source[v]]); });
 }
 
-std::string normal_component_name(std::size_t i) {
-    return std::string(vertex_normals_property) + "_" + std::to_string(i / 3) + "_" + "xyz"[i % 3];
-}
-
 bool is_normal_component(const VertexProperty& property) {
     for (std::size_t i = 0; i < 9; ++i)
-        if (property.name == normal_component_name(i)) return true;
+        if (property.name == vertex_normal_component(i)) return true;
     return false;
 }
 
 void write_vertex_normals(const PolygonMesh& facets, const FacetLinks& links, PolyMesh& mesh) {
     for (std::size_t i = 0; i < 9; ++i)
         for (const VertexProperty& component : facets.properties) {
-            if (component.name != normal_component_name(i)
+            if (component.name != vertex_normal_component(i)
                 || component.values.size() != facets.vertex_count())
                 continue;
             auto property = kept_vertex_property<NormalTriple<Vec3>>(mesh, vertex_normals_property);
@@ -161,6 +158,29 @@ void write_properties(const PolygonMesh& facets, const FacetLinks& links, PolyMe
         }
     }
     write_vertex_normals(facets, links, mesh);
+}
+
+/// Sets the feature bits; see to_mesh().
+void write_marks(const PolygonMesh& facets, const FacetLinks& links, PolyMesh& mesh) {
+    for (const VertexProperty& classes : facets.properties) {
+        if (classes.name != vertex_class_property || classes.values.size() != facets.vertex_count()) continue;
+        for_each_index(links.source.size(), 1 << 13, [&](Index v) {
+            mesh.status(vertex_handle(v)).set_feature(classes.values[links.source[v]] > 0);
+        });
+    }
+    if (facets.sharp_edges.empty()) return;
+    std::vector<std::array<Index, 2>> sharp = facets.sharp_edges;
+    std::sort(sharp.begin(), sharp.end());
+    for (const auto e : mesh.edges()) {
+        const Index from = links.source[static_cast<std::size_t>(e.v0().idx())];
+        const Index to = links.source[static_cast<std::size_t>(e.v1().idx())];
+        if (!std::binary_search(sharp.begin(), sharp.end(),
+                                std::array{std::min(from, to), std::max(from, to)}))
+            continue;
+        mesh.status(e).set_feature(true);
+        mesh.status(e.v0()).set_feature(true);
+        mesh.status(e.v1()).set_feature(true);
+    }
 }
 
 /// The part of a mesh that becomes polygons: all that is neither deleted nor isolated.
@@ -226,7 +246,7 @@ void read_vertex_normals(const OpenMesh::BaseProperty& base, const Selection& se
     if (typed == nullptr || base.name() != vertex_normals_property) return;
     const auto& values = typed->data_vector();
     for (std::size_t i = 0; i < 9; ++i)
-        polygons.properties.push_back(read_property(normal_component_name(i), VertexProperty::Type::float32,
+        polygons.properties.push_back(read_property(vertex_normal_component(i), VertexProperty::Type::float32,
                                                     selection,
                                                     [&](std::size_t v) { return values[v][i / 3][i % 3]; }));
 }
@@ -245,6 +265,16 @@ void read_properties(const PolyMesh& mesh, const Selection& selection, PolygonMe
     }
 }
 
+void read_marks(const PolyMesh& mesh, const Selection& selection, PolygonMesh& polygons) {
+    if (!mesh.has_edge_status()) return;
+    for (const auto e : mesh.edges()) {
+        if (!mesh.status(e).feature()) continue;
+        const Index from = selection.number[static_cast<std::size_t>(e.v0().idx())];
+        const Index to = selection.number[static_cast<std::size_t>(e.v1().idx())];
+        polygons.sharp_edges.push_back({std::min(from, to), std::max(from, to)});
+    }
+}
+
 } // namespace
 
 ToMeshCounts to_mesh(const PolygonMesh& facets, PolyMesh& mesh) {
@@ -259,6 +289,7 @@ ToMeshCounts to_mesh(const PolygonMesh& facets, const FacetLinks& links, PolyMes
     write_connectivity(facets, links, mesh);
     write_geometry(facets, links, mesh);
     write_properties(facets, links, mesh);
+    write_marks(facets, links, mesh);
     return {links.rejected, links.split_vertices};
 }
 
@@ -281,6 +312,7 @@ PolygonMesh to_polygons(const PolyMesh& mesh) {
     });
     read_facets(mesh, selection, polygons);
     read_properties(mesh, selection, polygons);
+    read_marks(mesh, selection, polygons);
     return polygons;
 }
 

@@ -26,8 +26,9 @@ struct ToMeshResult {
 /// edge in the direction an earlier facet already does (so a third facet at an edge, or one turned the wrong
 /// way). A facet's vertices keep their order, vertices keep theirs; isolated vertices are left out, copies of
 /// split vertices come last. Vertex properties become named mesh properties (`hsdm_...`), facets get their
-/// normals. Nothing is printed. O(corners log valence), parallel. Throws Error for normals that are not one
-/// for each vertex.
+/// normals. The status bit `feature` is set on the sharp edges and their ends, and on the vertices whose
+/// `hsdm_vertex_class` is edge or corner. Nothing is printed. O(corners log valence), parallel. Throws Error
+/// for normals that are not one for each vertex.
 ToMeshResult to_mesh(const PolygonMesh& facets);
 /// The same in place: fills an empty mesh, because OpenMesh meshes cannot be moved, only copied.
 ToMeshCounts to_mesh(const PolygonMesh& facets, PolyMesh& mesh);
@@ -35,8 +36,9 @@ ToMeshCounts to_mesh(const PolygonMesh& facets, PolyMesh& mesh);
 ToMeshCounts to_mesh(const PolygonMesh& facets, const FacetLinks& links, PolyMesh& mesh);
 
 /// The mesh's polygons without deleted elements and isolated vertices; its vertex normals if it has them; its
-/// named vertex properties of type uint8, int32, float and double. `hsdm_normals` comes as nine of type
-/// float, `hsdm_normals_0_x` to `hsdm_normals_2_z`; to_mesh puts them together again. Parallel, O(corners).
+/// named vertex properties of type uint8, int32, float and double; the edges with the status bit `feature`.
+/// `hsdm_normals` comes as nine of type float, `hsdm_normals_0_x` to `hsdm_normals_2_z`; to_mesh puts them
+/// together again. Parallel, O(corners).
 PolygonMesh to_polygons(const PolyMesh& mesh);
 
 } // namespace hsdm

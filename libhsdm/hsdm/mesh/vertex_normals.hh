@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <iostream>
+#include <string>
 
 namespace hsdm {
 
@@ -17,6 +18,12 @@ inline constexpr const char* vertex_class_property = "hsdm_vertex_class"; ///< s
 inline constexpr const char* normal_count_property = "hsdm_normal_count"; ///< std::uint8_t, 0 (isolated) to 3
 inline constexpr const char* vertex_normals_property = "hsdm_normals";    ///< VertexNormalsT<Mesh>
 inline constexpr const char* level_property = "hsdm_level"; ///< octree level of the vertex's voxel
+
+/// The name of one of the nine numbers of `hsdm_normals`, where each is a property of its own: i / 3 is the
+/// normal, i % 3 the coordinate.
+inline std::string vertex_normal_component(std::size_t i) {
+    return std::string(vertex_normals_property) + "_" + std::to_string(i / 3) + "_" + "xyz"[i % 3];
+}
 
 /// A vertex's unit normals, the most significant first; those beyond its count are zero.
 template <class Normal>

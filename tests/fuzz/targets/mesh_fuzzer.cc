@@ -27,6 +27,8 @@ void check(const PolygonMesh& mesh) {
     promise(!mesh.first.empty() && mesh.first.back() == mesh.corners.size(),
             "facets that end with the corners");
     for (Index v : mesh.corners) promise(v < n, "corners that are vertices");
+    for (const auto& edge : mesh.sharp_edges)
+        promise(edge[0] <= edge[1] && edge[1] < n, "sharp edges between vertices, the lower first");
 
     const Topology topology = measure_topology(mesh);
     promise(topology.faces == mesh.facet_count(), "as many faces as facets");
@@ -44,7 +46,7 @@ void check(const PolygonMesh& mesh) {
 extern "C" int LLVMFuzzerInitialize(int*, char*** arguments) {
     static const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
     const std::string_view program = **arguments;
-    for (const char* extension : {"ply", "off", "obj", "stl"})
+    for (const char* extension : {"ply", "off", "obj", "stl", "om"})
         if (program.ends_with(extension)) name = std::string("a.") + extension;
     promise(!name.empty(), "the program's name ends with that of a reader");
     return 0;

@@ -27,7 +27,7 @@ struct Reader {
     std::vector<Way> ways;
 };
 
-const std::array<Reader, 8> readers{{
+const std::array<Reader, 9> readers{{
     {"ply", {{"a.ply", {}}, {"a", {"ply", ""}}}},
     {"pcd", {{"a.pcd", {}}, {"a", {"pcd", ""}}}},
     {"table",
@@ -45,6 +45,7 @@ const std::array<Reader, 8> readers{{
     {"off", {{"a.off", {}}, {"a", {"off", ""}}}},
     {"obj", {{"a.obj", {}}, {"a", {"obj", ""}}}},
     {"stl", {{"a.stl", {}}, {"a", {"stl", ""}}}},
+    {"om", {{"a.om", {}}, {"a", {"om", ""}}}},
     {"hoppe", {{"a", {}}, {"a", {"hoppe", ""}}}},
 }};
 

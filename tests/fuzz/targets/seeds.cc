@@ -48,7 +48,7 @@ void add_points(Seeds& seeds) {
 void add_meshes(Seeds& seeds) {
     for (const NamedContent& file : valid_point_files()) {
         const std::string reader = reader_of(file.name);
-        if (reader == "ply" || reader == "off" || reader == "obj" || reader == "stl")
+        if (reader == "ply" || reader == "off" || reader == "obj" || reader == "stl" || reader == "om")
             seeds.add("mesh_" + reader, file.content);
     }
     const std::string corners = "0 0 0\n1 0 0\n1 1 0\n0 1 0.5\n";
