@@ -10,6 +10,7 @@
 
 #include "hsdm/cloud/cloud_frame.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/features/features.hh"
 #include "hsdm/io/output_target.hh"
 #include "hsdm/io/read_mesh.hh"
 #include "hsdm/io/write_mesh.hh"
@@ -112,6 +113,7 @@ ToMeshResult build(const std::string& input, const PolygonMesh& facets) {
     if (built.rejected > 0)
         complain(input + ": " + std::to_string(built.rejected)
                  + " facets were left out, which no 2-manifold can hold");
+    mark_edges_by_normals(built.mesh);
     return built;
 }
 

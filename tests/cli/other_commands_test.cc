@@ -206,3 +206,34 @@ TEST_CASE("what is written as .om is read by every command, with its sharp edges
                                    "expect": {"mesh.closed": true}}]})");
     CHECK(run(folder, "regress suite.json").status == 0);
 }
+
+TEST_CASE("process keeps the normals of creases of a mesh that has classes but no marks", "[cli]") {
+    const Folder folder;
+    const std::string modules = with_modules(folder);
+    support::SampleOptions scan;
+    scan.points = 20000;
+    support::write_ply(folder / "scan.ply", support::sample(support::mechanical_part(), scan));
+    REQUIRE(run(folder, "reconstruct scan.ply --depth 5 -o part.ply --features lines.txt").status == 0);
+    REQUIRE(run(folder, "process part.ply --module smooth-normals:rounds=0 -o new.ply", modules).status == 0);
+    REQUIRE(run(folder, "process part.ply --module smooth-normals:rounds=0 -o new.om", modules).status == 0);
+    const auto count_of_normals = [&](const char* name) {
+        for (const VertexProperty& property : read_mesh(folder / name).properties)
+            if (property.name == "hsdm_normal_count") return property.values;
+        return std::vector<double>();
+    };
+    const std::vector<double> before = count_of_normals("part.ply"), after = count_of_normals("new.ply");
+    REQUIRE(before.size() == after.size());
+    std::size_t several = 0, lost = 0;
+    for (std::size_t v = 0; v < before.size(); ++v) {
+        several += before[v] > 1;
+        lost += before[v] > after[v];
+    }
+    CHECK(several > 200);
+    CHECK(lost == 0);
+    const std::string lines = read_file(folder / "lines.txt");
+    const auto sharp =
+        static_cast<double>(std::count_if(lines.begin(), lines.end(), [](char c) { return c == '\n'; })
+                            - std::count(lines.begin(), lines.end(), 'c'));
+    CHECK(static_cast<double>(read_mesh(folder / "new.om").sharp_edges.size())
+          == Approx(sharp).epsilon(0.01));
+}

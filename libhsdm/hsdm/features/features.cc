@@ -4,6 +4,7 @@
 #include "hsdm/features/AnisotropicNormalSmootherT.hh"
 #include "hsdm/features/FeatureClassifierT.hh"
 
+#include <algorithm>
 #include <charconv>
 
 namespace hsdm {
@@ -54,6 +55,53 @@ std::size_t smooth_normals(PolyMesh& mesh, const NormalSmoothingOptions& options
     AnisotropicNormalSmootherT<PolyMesh> smoother(mesh);
     smoother.initialize(options);
     return smoother.smooth(options.rounds);
+}
+
+namespace {
+
+/// What phase 3 has left on a mesh's vertices.
+struct VertexMarks {
+    OpenMesh::VPropHandleT<std::uint8_t> classes, counts;
+    OpenMesh::VPropHandleT<VertexNormalsT<PolyMesh>> normals;
+
+    bool find(const PolyMesh& mesh) {
+        return mesh.get_property_handle(classes, vertex_class_property)
+               && mesh.get_property_handle(counts, normal_count_property)
+               && mesh.get_property_handle(normals, vertex_normals_property);
+    }
+};
+
+/// Which of a vertex's normals a facet's is nearest to.
+std::size_t nearest_normal(const PolyMesh& mesh, const VertexMarks& marks, OpenMesh::VertexHandle v,
+                           OpenMesh::FaceHandle f) {
+    const auto& normals = mesh.property(marks.normals, v);
+    const std::size_t count = std::min<std::size_t>(mesh.property(marks.counts, v), normals.size());
+    std::size_t nearest = 0;
+    for (std::size_t k = 1; k < count; ++k)
+        if ((normals[k] | mesh.normal(f)) > (normals[nearest] | mesh.normal(f))) nearest = k;
+    return nearest;
+}
+
+} // namespace
+
+std::size_t mark_edges_by_normals(PolyMesh& mesh) {
+    VertexMarks marks;
+    const auto is_marked = [&](const auto& e) { return mesh.status(e).feature(); };
+    if (!marks.find(mesh) || std::any_of(mesh.edges_begin(), mesh.edges_end(), is_marked)) return 0;
+    std::size_t count = 0;
+    for (const auto e : mesh.edges()) {
+        const auto ends = {e.v0(), e.v1()};
+        const auto is_smooth = [&](const auto& v) { return mesh.property(marks.classes, v) == 0; };
+        if (e.is_boundary() || std::any_of(ends.begin(), ends.end(), is_smooth)) continue;
+        const auto a = e.h0().face(), b = e.h1().face();
+        const auto parts = [&](const auto& v) {
+            return nearest_normal(mesh, marks, v, a) != nearest_normal(mesh, marks, v, b);
+        };
+        if (!std::any_of(ends.begin(), ends.end(), parts)) continue;
+        mesh.status(e).set_feature(true);
+        ++count;
+    }
+    return count;
 }
 
 namespace {
