@@ -13,10 +13,11 @@ namespace hsdm {
 ///     hsdm::Report report = reconstructor.reconstruct();
 ///
 /// Faces the mesh had are not looked at. Vertex normals count as the scanner's if the mesh has them and one
-/// of them is not zero. The mesh's properties stay, with default values; the results' (`hsdm_vertex_class`,
-/// `hsdm_normal_count`, `hsdm_normals` ...) are added, and normals and status bits are set where the mesh has
-/// these attributes: request them to get them. Float traits hold seven digits: shift coordinates far from the
-/// origin before.
+/// of them is not zero; vertex colours count as the scanner's if the mesh has them, and come out as means.
+/// The mesh's properties stay, with the values that OpenMesh gives new elements; the results'
+/// (`hsdm_vertex_class`, `hsdm_normal_count`, `hsdm_normals` ...) are added, and normals, colours and status
+/// bits are set where the mesh has these attributes: request them to get them. Other standard attributes that
+/// it has are zero. Float traits hold seven digits: shift coordinates far from the origin before.
 template <class Mesh>
 class ReconstructorT {
 public:

@@ -4,7 +4,10 @@
 #include "hsdm/mesh/triangle_mesh.hh"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 namespace hsdm {
@@ -39,6 +42,86 @@ void copy_attributes(const PolyMesh& from, Mesh& to) {
     for (const auto e : from.edges()) to.status(e) = from.status(e);
 }
 
+/// The value with which every coordinate, colour or texture coordinate begins.
+template <class Value>
+Value zero() {
+    if constexpr (std::is_arithmetic_v<Value>) {
+        return Value(0);
+    } else {
+        Value value;
+        for (std::size_t i = 0; i < OpenMesh::vector_traits<Value>::size(); ++i) value[i] = 0;
+        return value;
+    }
+}
+
+/// A colour of any OpenMesh type as bytes red, green, blue, alpha: fractions of 1 if its numbers are
+/// floating, opaque if it has no fourth.
+template <class Color>
+std::array<std::uint8_t, 4> color_bytes(const Color& color) {
+    using Number = typename OpenMesh::vector_traits<Color>::value_type;
+    constexpr double full = std::is_floating_point_v<Number> ? 255 : 1;
+    std::array<std::uint8_t, 4> bytes{0, 0, 0, 255};
+    for (std::size_t k = 0; k < std::min<std::size_t>(4, OpenMesh::vector_traits<Color>::size()); ++k)
+        bytes[k] = static_cast<std::uint8_t>(
+            std::clamp(std::round(full * static_cast<double>(color[k])), 0.0, 255.0));
+    return bytes;
+}
+
+/// The other way.
+template <class Color>
+Color color_of(const std::array<std::uint8_t, 4>& bytes) {
+    using Number = typename OpenMesh::vector_traits<Color>::value_type;
+    auto color = zero<Color>();
+    for (std::size_t k = 0; k < std::min<std::size_t>(4, OpenMesh::vector_traits<Color>::size()); ++k) {
+        const auto byte = static_cast<Number>(bytes[k]);
+        color[k] = std::is_floating_point_v<Number> ? byte / Number(255) : byte;
+    }
+    return color;
+}
+
+/// Vertex colours from the properties that averaged colours are in; black, transparent where there are none.
+template <class Mesh>
+void copy_colors(const PolyMesh& from, Mesh& to) {
+    if (!to.has_vertex_colors()) return;
+    std::array<OpenMesh::VPropHandleT<std::uint8_t>, 4> channels;
+    constexpr std::array<const char*, 4> names{"red", "green", "blue", "alpha"};
+    std::array<bool, 4> there{};
+    for (std::size_t k = 0; k < 4; ++k) there[k] = from.get_property_handle(channels[k], names[k]);
+    for (const auto v : from.vertices()) {
+        std::array<std::uint8_t, 4> bytes{};
+        for (std::size_t k = 0; k < 4; ++k)
+            if (there[k]) bytes[k] = from.property(channels[k], v);
+        to.set_color(v, color_of<typename Mesh::Color>(bytes));
+    }
+}
+
+/// What a reconstruction says nothing of is zero: OpenMesh leaves it uninitialised.
+template <class Mesh>
+void clear_other_attributes(Mesh& to) {
+    const auto color = zero<typename Mesh::Color>();
+    const auto place_1d = zero<typename Mesh::TexCoord1D>();
+    const auto place_2d = zero<typename Mesh::TexCoord2D>();
+    const auto place_3d = zero<typename Mesh::TexCoord3D>();
+    for (const auto v : to.vertices()) {
+        if (to.has_vertex_texcoords1D()) to.set_texcoord1D(v, place_1d);
+        if (to.has_vertex_texcoords2D()) to.set_texcoord2D(v, place_2d);
+        if (to.has_vertex_texcoords3D()) to.set_texcoord3D(v, place_3d);
+    }
+    for (const auto h : to.halfedges()) {
+        if (to.has_halfedge_texcoords1D()) to.set_texcoord1D(h, place_1d);
+        if (to.has_halfedge_texcoords2D()) to.set_texcoord2D(h, place_2d);
+        if (to.has_halfedge_texcoords3D()) to.set_texcoord3D(h, place_3d);
+        if (to.has_halfedge_normals()) to.set_normal(h, zero<typename Mesh::Normal>());
+        if (to.has_halfedge_colors()) to.set_color(h, color);
+    }
+    for (const auto e : to.edges())
+        if (to.has_edge_colors()) to.set_color(e, color);
+    for (const auto f : to.faces()) {
+        if (to.has_face_colors()) to.set_color(f, color);
+        if (to.has_face_texture_index()) to.set_texture_index(f, 0);
+    }
+}
+
 /// Copies the property if its values are of this type.
 template <class T, class Mesh>
 void copy_property(const OpenMesh::BaseProperty& base, Mesh& to) {
@@ -71,6 +154,8 @@ template <class Mesh>
 void copy_mesh(const PolyMesh& from, Mesh& to) {
     detail::copy_connectivity(from, to);
     detail::copy_attributes(from, to);
+    detail::copy_colors(from, to);
+    detail::clear_other_attributes(to);
     detail::copy_properties(from, to);
 }
 
@@ -85,6 +170,8 @@ PointCloud ReconstructorT<Mesh>::read_cloud() const {
     PointCloud cloud;
     cloud.positions.reserve(mesh_.n_vertices());
     for (const auto v : mesh_.vertices()) cloud.positions.push_back(to_vec3(mesh_.point(v)));
+    if (mesh_.has_vertex_colors())
+        for (const auto v : mesh_.vertices()) cloud.colors.push_back(detail::color_bytes(mesh_.color(v)));
     if (!mesh_.has_vertex_normals()) return cloud;
     for (const auto v : mesh_.vertices()) cloud.normals.push_back(to_vec3(mesh_.normal(v)));
     const bool given = std::any_of(cloud.normals.begin(), cloud.normals.end(),

@@ -56,6 +56,55 @@ TEMPLATE_TEST_CASE("a mesh's vertices become a surface in the same mesh", "", EV
     CHECK(OpenMesh::hasProperty<VertexHandle, VertexNormalsT<TestType>>(mesh, "hsdm_normals"));
 }
 
+TEMPLATE_TEST_CASE("colours come out as means, and no attribute is left uninitialised", "", PolyMeshD,
+                   TriMeshF) {
+    using Color = typename TestType::Color;
+    TestType mesh;
+    mesh.request_vertex_colors();
+    mesh.request_vertex_texcoords2D();
+    mesh.request_halfedge_normals();
+    mesh.request_halfedge_texcoords3D();
+    mesh.request_edge_colors();
+    mesh.request_face_colors();
+    mesh.request_face_texture_index();
+    add_points(mesh, sphere(40));
+    for (const auto v : mesh.vertices()) {
+        const bool upper = mesh.point(v)[2] > 0;
+        mesh.set_color(v, detail::color_of<Color>({200, 10, std::uint8_t(upper ? 255 : 0), 255}));
+        mesh.set_texcoord2D(v, {7, 7});
+    }
+    ReconstructorT<TestType> reconstructor(mesh);
+    ReconstructOptions options;
+    options.depth = 3;
+    reconstructor.initialize(options);
+    reconstructor.reconstruct();
+    REQUIRE(mesh.n_faces() > 50);
+    for (const auto v : mesh.vertices()) {
+        const auto color = detail::color_bytes(mesh.color(v));
+        CHECK(color[0] == 200);
+        CHECK(color[1] == 10);
+        if (mesh.point(v)[2] > 0.3) CHECK(color[2] == 255);
+        if (mesh.point(v)[2] < -0.3) CHECK(color[2] == 0);
+        CHECK(mesh.texcoord2D(v) == typename TestType::TexCoord2D(0, 0));
+    }
+    for (const auto h : mesh.halfedges()) {
+        CHECK(mesh.normal(h) == typename TestType::Normal(0, 0, 0));
+        CHECK(mesh.texcoord3D(h) == typename TestType::TexCoord3D(0, 0, 0));
+    }
+    for (const auto e : mesh.edges()) CHECK(mesh.color(e) == detail::zero<Color>());
+    for (const auto f : mesh.faces()) CHECK(mesh.color(f) == detail::zero<Color>());
+    for (const auto f : mesh.faces()) CHECK(mesh.texture_index(f) == 0);
+}
+
+TEST_CASE("colours of any kind are read and set", "") {
+    using detail::color_bytes, detail::color_of;
+    CHECK(color_bytes(OpenMesh::Vec3f(0, 0.5f, 1)) == std::array<std::uint8_t, 4>{0, 128, 255, 255});
+    CHECK(color_bytes(OpenMesh::Vec4d(2, -1, 0.2, 0)) == std::array<std::uint8_t, 4>{255, 0, 51, 0});
+    CHECK(color_bytes(OpenMesh::Vec4uc(1, 2, 3, 4)) == std::array<std::uint8_t, 4>{1, 2, 3, 4});
+    CHECK(color_of<OpenMesh::Vec3f>({0, 51, 255, 7}) == OpenMesh::Vec3f(0, 0.2f, 1));
+    CHECK(color_of<OpenMesh::Vec4uc>({1, 2, 3, 4}) == OpenMesh::Vec4uc(1, 2, 3, 4));
+}
+
 TEST_CASE("reconstructing before initialize throws, and a failure leaves the mesh as it was") {
     TriMeshF mesh = build<TriMeshF>(cube(1));
     ReconstructorT<TriMeshF> reconstructor(mesh);
