@@ -13,9 +13,7 @@
 ///     HSDM_PLUGIN("scale", "multiplies all coordinates", "factor (1)", scale)
 
 #include "hsdm/mesh_types.hh"
-#include "hsdm/version.hh"
-
-#include <OpenMesh/Core/System/config.h>
+#include "hsdm/plugin_build.hh"
 
 #include <cstddef>
 #include <cstdint>
@@ -24,20 +22,11 @@
 
 namespace hsdm {
 
-/// For HSDM_STRINGIFY alone.
-#define HSDM_STRINGIFY_(x) #x
-/// What a macro stands for, as a string literal.
-#define HSDM_STRINGIFY(x) HSDM_STRINGIFY_(x)
-
 /// Version of this interface. The record's first two texts and PluginInfo's first two members stay what they
 /// are in every version.
 #define HSDM_PLUGIN_ABI 2
 /// The same as a number.
 inline constexpr std::uint32_t plugin_abi = HSDM_PLUGIN_ABI;
-
-/// What module and loader must have in common to share a mesh: hsdm, compiler, OpenMesh.
-#define HSDM_PLUGIN_BUILD                                                                                    \
-    "hsdm " HSDM_VERSION ", compiler " __VERSION__ ", OpenMesh " HSDM_STRINGIFY(OM_VERSION)
 
 /// How the record begins.
 #define HSDM_PLUGIN_MARK "hsdm module " HSDM_STRINGIFY(HSDM_PLUGIN_ABI)

@@ -73,10 +73,11 @@ int PluginOptions::count(const char* key, int fallback) const {
 
 double PluginOptions::angle(const char* key, double fallback) const {
     if (!has(key)) return fallback;
-    const double degrees = number(key, 0);
-    if (!(degrees > 0 && degrees < 180))
-        throw OptionError(std::string(key) + " " + find(key) + ": must lie between 0 and 180");
-    return degrees * std::numbers::pi / 180;
+    // What is checked is what is returned: the least angles are none in radians.
+    const double radians = number(key, 0) * std::numbers::pi / 180;
+    if (!(radians > 0 && radians < std::numbers::pi))
+        throw OptionError(std::string(key) + " " + find(key) + ": must lie between 0 and 180 degrees");
+    return radians;
 }
 
 std::string PluginOptions::text(const char* key, const char* fallback) const {

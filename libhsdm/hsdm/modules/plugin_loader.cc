@@ -33,6 +33,18 @@ void check_interface(const std::string& path, std::uint32_t abi) {
                               + std::to_string(plugin_abi) + "; build it against this hsdm");
 }
 
+/// The parts of a build's text, which commas part, that another build's does not have.
+std::string other_parts(std::string_view build, std::string_view other) {
+    const std::string there = ", " + std::string(other) + ", ";
+    std::string parts;
+    while (!build.empty()) {
+        const std::string part(build.substr(0, build.find(", ")));
+        build.remove_prefix(std::min(part.size() + 2, build.size()));
+        if (there.find(", " + part + ", ") == std::string::npos) parts += (parts.empty() ? "" : ", ") + part;
+    }
+    return parts;
+}
+
 /// Checks all that can be checked without running any code of the module: loading it would run its
 /// constructors.
 PluginRecord inspect(const std::string& path) {
@@ -48,8 +60,9 @@ PluginRecord inspect(const std::string& path) {
                           "see hsdm/plugin.hh, and build it against this hsdm");
     check_interface(path, record->abi);
     if (record->build != HSDM_PLUGIN_BUILD)
-        throw Error(path, "is built with " + record->build
-                              + ", this is " HSDM_PLUGIN_BUILD "; build it the same way");
+        throw Error(path, "is built with " + other_parts(record->build, HSDM_PLUGIN_BUILD)
+                              + ", this hsdm with " + other_parts(HSDM_PLUGIN_BUILD, record->build)
+                              + "; build it the same way");
     return *record;
 }
 
