@@ -4,6 +4,7 @@
 #include "command.hh"
 #include "file_claims.hh"
 #include "messages.hh"
+#include "module_watch.hh"
 #include "reconstruct_output.hh"
 #include "summary.hh"
 #include "usage.hh"
@@ -121,6 +122,7 @@ ToMeshResult build(const std::string& input, const PolygonMesh& facets) {
 std::string process(const std::string& input, const Plugin& plugin, PolyMesh& mesh,
                     const PluginRequest& request) {
     try {
+        const ModuleWatch watch(input + ": module " + plugin.name());
         return plugin.process(mesh, request.options);
     } catch (const Error& error) {
         throw Error(input, error.what());

@@ -1,6 +1,7 @@
 #include "features/meshes.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/features/features.hh"
+#include "hsdm/mesh/check_links.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/modules/plugin_loader.hh"
@@ -201,6 +202,50 @@ TEST_CASE("a module that throws becomes an error of the program, its message cut
     } catch (const Error& error) {
         CHECK(std::string(error.what()).size() < 1100);
     }
+}
+
+TEST_CASE("a mesh that a module leaves unsound is an error that names the module and what is wrong") {
+    const Plugin ill = load_plugin("ill", OwnModules(HSDM_ODD_MODULE_DIR));
+    const auto left = [&](const char* how) {
+        PolyMesh mesh = to_mesh(test::cube(3)).mesh;
+        try {
+            ill.process(mesh, {{"how", how}});
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    CHECK(left("nothing").empty());
+    CHECK(left("delete").empty());
+    for (const char* how : {"next", "far-vertex", "far-face", "other-face", "no-side", "other-side",
+                            "half-deleted", "released", "nan", "empty", "clear"}) {
+        INFO(how);
+        CHECK_THAT(left(how), Catch::Matchers::StartsWith("ill: left "));
+    }
+    CHECK_THAT(left("nan"), Contains("vertex 5 at no finite position"));
+    CHECK_THAT(left("empty"), Contains("without faces"));
+    PolyMesh mesh = to_mesh(test::cube(3)).mesh;
+    ill.process(mesh, {{"how", "nan-normal"}});
+    CHECK(mesh.normal(OpenMesh::VertexHandle(5)) == Vec3(0, 0, 0));
+}
+
+TEST_CASE("meshes that OpenMesh's own operations leave are sound") {
+    PolyMesh mesh = to_mesh(test::sphere(6)).mesh;
+    CHECK(fault_of(mesh) == "");
+    CHECK(fault_of(PolyMesh()) == "");
+    for (int f : {3, 4, 50, 51, 100}) mesh.delete_face(OpenMesh::FaceHandle(f), f % 2 == 0);
+    CHECK(fault_of(mesh) == "");
+    mesh.garbage_collection();
+    mesh.add_vertex({5, 5, 5});
+    mesh.triangulate();
+    CHECK(fault_of(mesh) == "");
+    for (int e = 0; e < 200; e += 7) {
+        const auto h = mesh.halfedge_handle(OpenMesh::EdgeHandle(e), 0);
+        if (!mesh.status(mesh.edge_handle(h)).deleted() && mesh.is_collapse_ok(h)) mesh.collapse(h);
+    }
+    CHECK(fault_of(mesh) == "");
+    mesh.garbage_collection();
+    CHECK(fault_of(mesh) == "");
 }
 
 TEST_CASE("the listing names usable modules and tells why others are not") {

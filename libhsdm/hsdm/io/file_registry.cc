@@ -48,6 +48,12 @@ const FilesWritten& abandon_files() noexcept {
     return registry.written_;
 }
 
+void remove_temporaries_unless_locked() noexcept {
+    FileRegistry& registry = FileRegistry::of_process();
+    if (!registry.mutex_.try_lock()) return;
+    for (const std::string& path : registry.temporaries_) ::unlink(path.c_str());
+}
+
 std::vector<std::string> take_removed_leftovers() {
     FileRegistry& registry = FileRegistry::of_process();
     const auto lock = registry.lock();

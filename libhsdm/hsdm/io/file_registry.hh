@@ -21,6 +21,10 @@ struct FilesWritten {
 /// nothing. A file with several hard links, which is being overwritten, is waited for.
 const FilesWritten& abandon_files() noexcept;
 
+/// Removes every temporary of this process unless one is being made or put in place. For a handler of
+/// crashes: it neither waits nor allocates. The caller must end the process at once.
+void remove_temporaries_unless_locked() noexcept;
+
 /// The temporaries of killed runs that were removed (see AtomicFile); each is returned once.
 std::vector<std::string> take_removed_leftovers();
 
@@ -42,6 +46,7 @@ public:
 
 private:
     friend const FilesWritten& abandon_files() noexcept;
+    friend void remove_temporaries_unless_locked() noexcept;
     friend std::vector<std::string> take_removed_leftovers();
 
     std::mutex mutex_;

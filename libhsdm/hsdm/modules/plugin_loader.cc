@@ -2,6 +2,7 @@
 
 #include "hsdm/errors.hh"
 #include "hsdm/io/source_bytes.hh"
+#include "hsdm/mesh/check_links.hh"
 #include "hsdm/modules/trusted_path.hh"
 #include "hsdm/plugin.hh"
 
@@ -140,6 +141,7 @@ Plugin::Plugin(const std::string& path) : path_(path), record_(inspect(path)), i
 
 std::string Plugin::process(PolyMesh& mesh,
                             const std::vector<std::pair<std::string, std::string>>& options) const {
+    const bool had_faces = mesh.faces_sbegin() != mesh.faces_end();
     std::vector<PluginOption> plain;
     plain.reserve(options.size());
     for (const auto& [key, value] : options) plain.push_back({key.c_str(), value.c_str()});
@@ -148,6 +150,11 @@ std::string Plugin::process(PolyMesh& mesh,
     message.back() = '\0';
     if (result == 2) throw OptionError(name() + ": " + message.data());
     if (result != 0) throw Error(name() + ": " + message.data());
+    if (const std::string fault = fault_of(mesh); !fault.empty())
+        throw Error(name() + ": left " + fault + "; the module is at fault, leave it out or mend it");
+    if (had_faces && mesh.faces_sbegin() == mesh.faces_end())
+        throw Error(name() + ": left a mesh without faces; check its options, or leave it out");
+    drop_nonfinite_normals(mesh);
     return message.data();
 }
 

@@ -30,7 +30,10 @@ public:
     const std::string& options() const { return record_.options; } ///< one line: keys, units, defaults
 
     /// Runs the module on the mesh; returns its one-line summary. Throws OptionError for an option the module
-    /// refuses, Error if it fails otherwise; the mesh may then be changed in part.
+    /// refuses, Error if it fails otherwise or leaves a mesh that is not sound: links that lead nowhere, a
+    /// position that is not finite, no face where there were some. The mesh may then be changed in part and
+    /// must not be walked over. Normals it leaves that are not finite become zero. O(half-edges) beside the
+    /// module's work.
     std::string process(PolyMesh& mesh,
                         const std::vector<std::pair<std::string, std::string>>& options = {}) const;
 
