@@ -39,9 +39,10 @@ void draw_joins(Canvas& canvas, const Panel& panel, const Steps& steps, const La
     const auto& crossings = steps.crossings.crossings;
     for (Index x = 0; x < crossings.size(); ++x)
         for (const Link& link : steps.links.of_crossing[x]) {
-            if (link.crossing == no_index || link.crossing < x) continue;
-            if (!layer.has_crossing(crossings[x]) || !layer.has_crossing(crossings[link.crossing])) continue;
-            canvas.line(panel(layer.crossing(crossings[x])), panel(layer.crossing(crossings[link.crossing])),
+            if (link.open() || link.twin.crossing() < x) continue;
+            const Crossing& other = steps.crossings.of(link.twin);
+            if (!layer.has_crossing(crossings[x]) || !layer.has_crossing(other)) continue;
+            canvas.line(panel(layer.crossing(crossings[x])), panel(layer.crossing(other)),
                         {.stroke = colour::blue, .width = 2});
         }
 }
@@ -51,11 +52,10 @@ void draw_facets(Canvas& canvas, const Panel& panel, const Steps& steps, const L
     for (Index x = 0; x < steps.crossings.crossings.size(); ++x) {
         if (!layer.has_crossing(steps.crossings.crossings[x])) continue;
         const unsigned axis = steps.crossings.crossings[x].edge % 3;
-        for (unsigned j = 0; j < 4; ++j) {
-            const unsigned k = (j + 1) % 4;
-            if ((Ring::octant(axis, j) & 4) == 0 || (Ring::octant(axis, k) & 4) == 0) continue;
-            canvas.line(panel(layer.flat(steps.placed.positions[steps.duals.at(x, j, j)])),
-                        panel(layer.flat(steps.placed.positions[steps.duals.at(x, k, j)])),
+        for (const FacetSide side : corners_of_facet(x)) {
+            if ((side.octant(axis) & 4) == 0 || (side.next().octant(axis) & 4) == 0) continue;
+            canvas.line(panel(layer.flat(steps.placed.positions[steps.duals.from(side)])),
+                        panel(layer.flat(steps.placed.positions[steps.duals.to(side)])),
                         {.stroke = colour::orange, .width = 3});
         }
     }

@@ -23,7 +23,7 @@ support::Solid thin_plate() {
 
 /// By the side that the normal of the vertex's first corner shows.
 Style side_style(const Steps& steps, Index v) {
-    const Crossing& x = steps.crossings.crossings[steps.duals.corners_of(v).front() / 4];
+    const Crossing& x = steps.crossings.of(steps.duals.corners_of(v).front());
     return {.stroke = colour::black, .width = 1.2, .fill = x.normal[1] > 0 ? colour::blue : colour::red};
 }
 
@@ -47,7 +47,7 @@ Vec3 mean_crossing(const Steps& steps, Index v) {
     Vec3 sum(0, 0, 0);
     const auto corners = steps.duals.corners_of(v);
     for (FacetCorner corner : corners)
-        sum += crossing_position(steps.grid, steps.crossings.crossings[corner / 4], steps.h());
+        sum += crossing_position(steps.grid, steps.crossings.of(corner), steps.h());
     return sum / static_cast<double>(corners.size());
 }
 
@@ -57,7 +57,7 @@ void draw_crease_vertices(Canvas& canvas, const Panel& panel, const Steps& steps
         if (!layer.has_voxel(steps.placed.voxel[v])) continue;
         const bool is_edge = steps.placed.classes[v] != VertexClass::smooth;
         for (FacetCorner corner : steps.duals.corners_of(v)) {
-            const Crossing& x = steps.crossings.crossings[corner / 4];
+            const Crossing& x = steps.crossings.of(corner);
             if (!is_edge || !layer.has_crossing(x)) continue;
             draw_plane(canvas, panel, layer.crossing(x), Vec2(x.normal[0], x.normal[1]).normalized(), 0.75);
         }

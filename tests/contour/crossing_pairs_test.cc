@@ -12,10 +12,10 @@ using support::Stages;
 
 namespace {
 
-/// Twice the middle of the grid face that face k of a crossing's ring is.
-VoxelCoord middle_of_face(const Stages& stages, Index crossing, unsigned k) {
-    const Index edge = stages.crossings.crossings[crossing].edge;
-    const unsigned axis = edge % 3;
+/// Twice the middle of the grid face that a side passes through.
+VoxelCoord middle_of_face(const Stages& stages, FacetSide side) {
+    const Index edge = stages.crossings.of(side).edge;
+    const unsigned axis = edge % 3, k = side.j();
     VoxelCoord at = stages.grid.coord(edge / 3);
     for (auto& c : at) c *= 2;
     ++at[axis];
@@ -25,8 +25,8 @@ VoxelCoord middle_of_face(const Stages& stages, Index crossing, unsigned k) {
 
 /// Does the way round the face leave the solid at the crossing? Ways along a and b lead round it one after
 /// the other, so those of faces 0 and 1 run up their edges, those of 2 and 3 down.
-bool exits(const Crossing& crossing, unsigned k) {
-    return crossing.leaving == (k < 2);
+bool exits(const Stages& stages, FacetSide side) {
+    return stages.crossings.of(side).leaving == (side.j() < 2);
 }
 
 void check_links(const Stages& stages) {
@@ -34,16 +34,16 @@ void check_links(const Stages& stages) {
     REQUIRE(stages.links.of_crossing.size() == list.size());
     std::size_t wrong = 0, open = 0, rims = 0;
     for (Index x = 0; x < list.size(); ++x)
-        for (std::uint8_t k = 0; k < 4; ++k) {
-            const Link& link = stages.links.of_crossing[x][k];
-            open += link.crossing == no_index;
+        for (const FacetSide side : corners_of_facet(x)) {
+            const Link& link = stages.links.of(side);
+            open += link.open();
             rims += link.rim;
-            if (link.crossing == no_index) continue;
-            const Link& back = stages.links.of_crossing[link.crossing][link.face];
-            wrong += back.crossing != x || back.face != k || back.rim != link.rim;
-            wrong += middle_of_face(stages, x, k) != middle_of_face(stages, link.crossing, link.face);
-            wrong += exits(list[x], k) == exits(list[link.crossing], link.face);
-            wrong += link.rim != opposed(list[x], list[link.crossing]);
+            if (link.open()) continue;
+            const Link& back = stages.links.of(link.twin);
+            wrong += back.twin != side || back.rim != link.rim;
+            wrong += middle_of_face(stages, side) != middle_of_face(stages, link.twin);
+            wrong += exits(stages, side) == exits(stages, link.twin);
+            wrong += link.rim != opposed(list[x], stages.crossings.of(link.twin));
         }
     CHECK(wrong == 0);
     CHECK(stages.links.open == open);
@@ -54,10 +54,9 @@ void check_links(const Stages& stages) {
 std::map<VoxelCoord, int> crowded_faces(const Stages& stages) {
     std::map<VoxelCoord, int> count;
     for (Index x = 0; x < stages.crossings.crossings.size(); ++x)
-        for (std::uint8_t k = 0; k < 4; ++k) {
-            const bool open = stages.links.of_crossing[x][k].crossing == no_index;
-            count[middle_of_face(stages, x, k)] += open ? 2 : 1; // a link has two ends
-        }
+        for (const FacetSide side : corners_of_facet(x))
+            count[middle_of_face(stages, side)] +=
+                stages.links.of(side).open() ? 2 : 1; // a link has two ends
     std::erase_if(count, [](const auto& face) { return face.second <= 2; });
     return count;
 }
@@ -98,7 +97,7 @@ TEST_CASE("away from the rim each side of a plate is linked with itself", "[cont
         doubled += stages.crossings.on_edge(list[x].edge).size() == 2;
         for (const Link& link : stages.links.of_crossing[x]) {
             ++sides;
-            across += link.crossing == no_index || (list[link.crossing].normal | list[x].normal) < 0.9;
+            across += link.open() || (stages.crossings.of(link.twin).normal | list[x].normal) < 0.9;
         }
     }
     CHECK(sides > 200);
@@ -119,8 +118,8 @@ TEST_CASE("without one of its crossings a closed surface is open on that one's f
     CHECK(stages.links.open == 4);
     check_links(stages);
     for (const Link& link : before.of_crossing[lost]) {
-        const Index x = link.crossing - (link.crossing > lost);
-        CHECK(stages.links.of_crossing[x][link.face].crossing == no_index);
+        const Index x = link.twin.crossing() - (link.twin.crossing() > lost);
+        CHECK(stages.links.of({x, link.twin.j()}).open());
     }
 }
 
@@ -130,14 +129,14 @@ TEST_CASE("faces with two links or more are listed, one end of each", "[contour]
         std::map<VoxelCoord, int> listed;
         std::set<VoxelCoord> done;
         std::optional<VoxelCoord> face;
-        for (const Link& end : stages.links.crowded) {
-            if (end.crossing == no_index) { // after each face's
+        for (const FacetSide side : stages.links.crowded) {
+            if (side == no_side) { // after each face's
                 REQUIRE(face);
                 CHECK(done.insert(*face).second);
                 face.reset();
                 continue;
             }
-            const VoxelCoord at = middle_of_face(stages, end.crossing, end.face);
+            const VoxelCoord at = middle_of_face(stages, side);
             CHECK(face.value_or(at) == at);
             face = at;
             listed[at] += 2;
@@ -155,10 +154,10 @@ TEST_CASE("links do not depend on the number of threads", "[contour]") {
     const Links single = pair_crossings(many.grid, many.crossings, many.sets, many.related);
     std::size_t differ = 0;
     for (Index x = 0; x < single.of_crossing.size(); ++x)
-        for (std::uint8_t k = 0; k < 4; ++k) {
-            const Link &a = many.links.of_crossing[x][k], &b = single.of_crossing[x][k];
-            differ += a.crossing != b.crossing || a.face != b.face || a.rim != b.rim;
+        for (const FacetSide side : corners_of_facet(x)) {
+            const Link &a = many.links.of(side), &b = single.of(side);
+            differ += a.twin != b.twin || a.rim != b.rim;
         }
     CHECK(differ == 0);
-    CHECK(many.links.crowded.size() == single.crowded.size());
+    CHECK(many.links.crowded == single.crowded);
 }

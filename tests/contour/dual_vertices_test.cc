@@ -13,15 +13,15 @@ namespace {
 /// How often each facet corner stands in a vertex.
 std::vector<int> uses(const Stages& stages) {
     std::vector<int> count(4 * stages.crossings.crossings.size(), 0);
-    for (FacetCorner corner : stages.duals.corners) ++count[corner];
+    for (FacetCorner corner : stages.duals.corners) ++count[corner.number()];
     return count;
 }
 
 /// The crossing that a vertex's facets lead to from one of its corners, or from which they come there.
 Index beside(const Stages& stages, FacetCorner corner, bool onwards) {
-    const bool leaving = stages.crossings.crossings[corner / 4].leaving;
-    const unsigned j = corner % 4, face = leaving == onwards ? j : (j + 3) % 4;
-    return stages.links.of_crossing[corner / 4][face].crossing;
+    const Link& link =
+        stages.links.of(stages.crossings.of(corner).leaving == onwards ? corner : corner.previous());
+    return link.open() ? no_index : link.twin.crossing();
 }
 
 /// The corners of a vertex lie in one voxel, each linked with the next, round it or from end to end; every
@@ -36,15 +36,15 @@ void check_vertices(const Stages& stages) {
         REQUIRE(!corners.empty());
         std::set<Index> crossings;
         for (std::size_t i = 0; i < corners.size(); ++i) {
-            wrong += !crossings.insert(corners[i] / 4).second;
+            wrong += !crossings.insert(corners[i].crossing()).second;
             wrong += stages.voxel_of(corners[i]).lo != stages.voxel_of(corners[0]).lo;
-            if (i > 0) wrong += beside(stages, corners[i - 1], true) != corners[i] / 4;
+            if (i > 0) wrong += beside(stages, corners[i - 1], true) != corners[i].crossing();
         }
         if (cut[v]) continue;
         const Index before = beside(stages, corners.front(), false),
                     after = beside(stages, corners.back(), true);
-        wrong += before != (duals.open[v] ? no_index : corners.back() / 4);
-        wrong += after != (duals.open[v] ? no_index : corners.front() / 4);
+        wrong += before != (duals.open[v] ? no_index : corners.back().crossing());
+        wrong += after != (duals.open[v] ? no_index : corners.front().crossing());
     }
     REQUIRE(duals.of_side.size() == 8 * stages.crossings.crossings.size());
     for (Index v : duals.of_side) wrong += v >= duals.size();
@@ -106,7 +106,7 @@ TEST_CASE("no vertex has both sides of a plate, and what is cut apart stays in i
     for (Index v = 0; v < duals.size(); ++v) {
         double least = 0, most = 0;
         for (FacetCorner corner : duals.corners_of(v)) {
-            const double cosine = stages.crossings.crossings[corner / 4].normal | up;
+            const double cosine = stages.crossings.of(corner).normal | up;
             least = std::min(least, cosine);
             most = std::max(most, cosine);
         }
@@ -126,12 +126,12 @@ TEST_CASE("a corner that two vertices share has one of them beside either face",
     const std::vector<int> count = uses(stages);
     std::size_t wrong = 0;
     for (Index x = 0; x < stages.crossings.crossings.size(); ++x)
-        for (unsigned j = 0; j < 4; ++j) {
-            const Index before = duals.at(x, j, (j + 3) % 4), after = duals.at(x, j, j);
-            wrong += (before != after) != (count[4 * x + j] == 2);
+        for (const FacetCorner corner : corners_of_facet(x)) {
+            const Index before = duals.to(corner.previous()), after = duals.from(corner);
+            wrong += (before != after) != (count[corner.number()] == 2);
             for (Index v : {before, after}) {
                 const auto corners = duals.corners_of(v);
-                wrong += std::find(corners.begin(), corners.end(), 4 * x + j) == corners.end();
+                wrong += std::ranges::find(corners, corner) == corners.end();
             }
         }
     CHECK(wrong == 0);

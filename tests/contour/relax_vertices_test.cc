@@ -35,8 +35,8 @@ bool is_inside(const Box& box, const Vec3& p, double slack) {
 double unevenness(const Stages& stages, const std::vector<Vec3>& positions) {
     double sum = 0, squares = 0, count = 0;
     for (Index x = 0; x < stages.crossings.crossings.size(); ++x)
-        for (unsigned j = 0; j < 4; ++j) {
-            const Index a = stages.duals.at(x, j, j), b = stages.duals.at(x, (j + 1) % 4, j);
+        for (const FacetSide side : corners_of_facet(x)) {
+            const Index a = stages.duals.from(side), b = stages.duals.to(side);
             const double length = (positions[a] - positions[b]).norm();
             sum += length, squares += length * length, ++count;
         }

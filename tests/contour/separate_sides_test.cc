@@ -14,8 +14,7 @@ Stages plate() {
 
 Vec3 outward(const Stages& stages, Index v) {
     Vec3 sum(0, 0, 0);
-    for (FacetCorner corner : stages.duals.corners_of(v))
-        sum += stages.crossings.crossings[corner / 4].normal;
+    for (FacetCorner corner : stages.duals.corners_of(v)) sum += stages.crossings.of(corner).normal;
     return sum.normalized();
 }
 

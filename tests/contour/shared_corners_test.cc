@@ -46,7 +46,7 @@ struct Found {
     /// Does a chain pass the box's top or bottom?
     bool sees_side(Index dual, bool top) const {
         return std::ranges::any_of(duals.corners_of(dual), [&](FacetCorner corner) {
-            const double up = pose.unrotate(crossings.crossings[corner / 4].normal)[2];
+            const double up = pose.unrotate(crossings.of(corner).normal)[2];
             return (top ? up : -up) > 0.9;
         });
     }

@@ -36,8 +36,8 @@ void Stages::trim() {
 }
 
 Box Stages::voxel_of(FacetCorner corner) const {
-    const Index edge = crossings.crossings[corner / 4].edge;
-    const unsigned octant = Ring::octant(edge % 3, corner % 4);
+    const Index edge = crossings.of(corner).edge;
+    const unsigned octant = corner.octant(edge % 3);
     const VoxelCoord at = grid.coord(edge / 3);
     Box box;
     for (unsigned k = 0; k < 3; ++k) {

@@ -65,9 +65,9 @@ struct Pair {
         crossings.crossings = {{0.4, a.normal, 1, 0, false, true}, {0.6, b.normal, 1, 1, true, true}};
         crossings.first = {0, 0, 2, 2};
         links.of_crossing.resize(2);
-        for (std::uint8_t k = 0; k < joined; ++k) {
-            links.of_crossing[0][k] = {1, k, false};
-            links.of_crossing[1][k] = {0, k, false};
+        for (unsigned j = 0; j < static_cast<unsigned>(joined); ++j) {
+            links.of({0, j}).twin = {1, j};
+            links.of({1, j}).twin = {0, j};
         }
     }
     std::size_t drop() { return drop_tips(sets, RelationTest({}, 1), links, crossings); }
@@ -136,7 +136,7 @@ TEST_CASE("a loop of up to 16 sides is a defect, a longer one a border", "[conto
         stages.crossings = support::without(whole.crossings, ring_about(whole, 400, 0, hole));
         stages.pair();
         Index beside = 0; // by one side
-        while (std::ranges::count(stages.links.of_crossing[beside], no_index, &Link::crossing) != 1) ++beside;
+        while (std::ranges::count_if(stages.links.of_crossing[beside], &Link::open) != 1) ++beside;
         support_others(stages.crossings, ring_about(stages, beside, 0, 1e-9));
         const std::size_t sides = stages.links.open;
         if (trim_unsupported(stages.crossings, stages.links) > 0)
@@ -160,7 +160,7 @@ TEST_CASE("a crossing that hangs by one side goes, whether carried or not", "[co
     Stages stages = sphere();
     const Index hanging = 400;
     std::vector<std::uint8_t> marked(stages.crossings.crossings.size(), 0);
-    for (std::size_t k = 0; k < 3; ++k) marked[stages.links.of_crossing[hanging][k].crossing] = 1;
+    for (unsigned j = 0; j < 3; ++j) marked[stages.links.of({hanging, j}).twin.crossing()] = 1;
     REQUIRE(count(marked) == 3);
     const Vec3 place = place_of(stages, hanging);
     support_others(stages.crossings, std::vector<std::uint8_t>(marked.size(), 0));

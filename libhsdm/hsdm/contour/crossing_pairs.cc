@@ -12,9 +12,8 @@ constexpr std::size_t grid_points_per_chunk = 2048;
 
 /// A crossing on the perimeter of a face.
 struct Stop {
-    Index crossing;
-    std::uint8_t ring_face;
-    Vec3 position; // voxels, relative to the face's lower corner
+    FacetSide side; // of its facet, through the face
+    Vec3 position;  // voxels, relative to the face's lower corner
 };
 
 /// The crossings of one face, sorted by whether the perimeter leaves or enters the solid there.
@@ -50,7 +49,7 @@ private:
         if (pv != no_index) add(pv, u, 3, false, 1, v);
     }
 
-    void add(Index grid_point, unsigned axis, std::uint8_t ring_face, bool forward, double across,
+    void add(Index grid_point, unsigned axis, unsigned side, bool forward, double across,
              unsigned across_axis) {
         const Index edge = 3 * grid_point + axis;
         for (Index x = crossings_.first[edge]; x < crossings_.first[edge + 1]; ++x) {
@@ -58,11 +57,11 @@ private:
             Vec3 position(0, 0, 0);
             position[axis] = crossing.t;
             position[across_axis] = across;
-            (crossing.leaving == forward ? exits_ : enters_).push_back({x, ring_face, position});
+            (crossing.leaving == forward ? exits_ : enters_).push_back({{x, side}, position});
         }
     }
 
-    const Crossing& of(const Stop& s) const { return crossings_.crossings[s.crossing]; }
+    const Crossing& of(const Stop& s) const { return crossings_.of(s.side); }
 
     Relation relation(const Stop& a, const Stop& b) const {
         if (of(a).set == of(b).set) return Relation::smooth;
@@ -118,25 +117,25 @@ Links pair_crossings(const GridPoints& grid, const Crossings& crossings, const N
     links.of_crossing.resize(crossings.crossings.size());
     const std::size_t n = grid.size();
     std::vector<std::size_t> rims(chunk_count(n, grid_points_per_chunk), 0), joined_faces(rims);
-    std::vector<std::vector<Link>> crowded(rims.size());
+    std::vector<std::vector<FacetSide>> crowded(rims.size());
     for_chunks(n, grid_points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         FacePairing face(grid, crossings, sets, related);
-        std::vector<Link> in_face;
+        std::vector<FacetSide> in_face;
         auto join = [&](const Stop& a, const Stop& b, bool rim) {
-            links.of_crossing[a.crossing][a.ring_face] = {b.crossing, b.ring_face, rim};
-            links.of_crossing[b.crossing][b.ring_face] = {a.crossing, a.ring_face, rim};
+            links.of(a.side) = {b.side, rim};
+            links.of(b.side) = {a.side, rim};
             rims[chunk] += rim;
             ++joined_faces[chunk];
-            in_face.push_back({a.crossing, a.ring_face, rim});
+            in_face.push_back(a.side);
         };
-        auto left_open = [&](const Stop& s) { in_face.push_back({s.crossing, s.ring_face, false}); };
+        auto left_open = [&](const Stop& s) { in_face.push_back(s.side); };
         for (std::size_t c = begin; c < end; ++c)
             for (unsigned axis = 0; axis < 3; ++axis) {
                 in_face.clear();
                 face.pair(static_cast<Index>(c), axis, join, left_open);
                 if (in_face.size() < 2) continue;
                 crowded[chunk].insert(crowded[chunk].end(), in_face.begin(), in_face.end());
-                crowded[chunk].push_back({});
+                crowded[chunk].push_back(no_side);
             }
     });
     links.crowded = joined(crowded);

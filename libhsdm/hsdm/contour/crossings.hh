@@ -2,6 +2,7 @@
 // Section 3.4.2: where the sheets cross the grid edges. A crossing is what a facet is dual to. See
 // docs/sheets.md.
 
+#include "hsdm/contour/facet_corner.hh"
 #include "hsdm/contour/local_sheets.hh"
 
 namespace hsdm {
@@ -34,6 +35,8 @@ struct Crossings {
     /// pairs of crossings dropped because only the tip of a corner made them (drop_tips)
     std::size_t tips = 0;
 
+    /// The crossing that a facet is dual to.
+    const Crossing& of(FacetCorner corner) const { return crossings[corner.crossing()]; }
     std::span<const Crossing> on_edge(Index e) const {
         return {crossings.data() + first[e], crossings.data() + first[e + 1]};
     }

@@ -23,58 +23,46 @@ public:
     Midpoints(const GridPoints& grid, const NormalSets& sets, const Crossings& crossings, const Links& links,
               const DualVertices& duals, double h, PlacedVertices& vertices)
         : of_side_(crossings.crossings.size() * (links.crowded.empty() ? 0 : 4), no_index), count_(0) {
-        std::vector<std::pair<Index, Index>> seen;
-        for (const Link& end : links.crowded) {
-            if (end.crossing == no_index) {
+        const auto position = [&](FacetSide side) { return crossing_position(grid, crossings.of(side), h); };
+        const auto halve = [&](FacetSide side, const Vec3& middle) {
+            of_side_[side.number()] = static_cast<Index>(vertices.positions.size());
+            vertices.positions.push_back(middle);
+            vertices.classes.push_back(VertexClass::smooth);
+            vertices.voxel.push_back(sets.sets[crossings.of(side).set].voxel);
+            ++count_;
+        };
+        std::vector<std::array<Index, 2>> seen;
+        // Does an earlier edge join the same two vertices as this side? If not, the side joins the edges
+        // seen.
+        const auto repeated = [&](FacetSide side) {
+            const std::array<Index, 2> ends = duals.ends(side);
+            if (std::ranges::find(seen, ends) != seen.end()) return true;
+            seen.push_back(ends);
+            return false;
+        };
+        for (FacetSide side : links.crowded) {
+            if (side == no_side) {
                 seen.clear();
                 continue;
             }
-            const Link& other = links.of_crossing[end.crossing][end.face];
-            const bool open = other.crossing == no_index;
-            const bool strip = end.rim && !open && !same_ends(duals, end, other);
-            const auto halve = [&](const Link& side, const Vec3& position) {
-                of_side_[4 * side.crossing + side.face] = static_cast<Index>(vertices.positions.size());
-                vertices.positions.push_back(position);
-                vertices.classes.push_back(VertexClass::smooth);
-                vertices.voxel.push_back(sets.sets[crossings.crossings[side.crossing].set].voxel);
-                ++count_;
-            };
-            const Vec3 a = crossing_position(grid, crossings.crossings[end.crossing], h);
-            const bool halved = repeated(duals, end, seen);
-            if (open || strip) {
-                if (halved) halve(end, a);
-                if (strip && repeated(duals, other, seen))
-                    halve(other, crossing_position(grid, crossings.crossings[other.crossing], h));
+            const auto& [twin, rim] = links.of(side);
+            const bool strip = rim && duals.ends(side) != duals.ends(twin);
+            const bool halved = repeated(side);
+            if (twin == no_side || strip) {
+                if (halved) halve(side, position(side));
+                if (strip && repeated(twin)) halve(twin, position(twin));
             } else if (halved) {
-                halve(end, 0.5 * (a + crossing_position(grid, crossings.crossings[other.crossing], h)));
-                of_side_[4 * other.crossing + other.face] = mid(end);
+                halve(side, 0.5 * (position(side) + position(twin)));
+                of_side_[twin.number()] = mid(side);
             }
         }
     }
 
-    Index mid(const Link& side) const {
-        return of_side_.empty() ? no_index : of_side_[4 * side.crossing + side.face];
-    }
+    Index mid(FacetSide side) const { return of_side_.empty() ? no_index : of_side_[side.number()]; }
     std::size_t count() const { return count_; }
 
 private:
-    /// Does an earlier edge join the same two vertices as this side? If not, the side joins the edges seen.
-    static bool repeated(const DualVertices& duals, const Link& side,
-                         std::vector<std::pair<Index, Index>>& seen) {
-        const std::pair<Index, Index> pair{duals.at(side.crossing, Ring::low[side.face], side.face),
-                                           duals.at(side.crossing, Ring::high[side.face], side.face)};
-        if (std::find(seen.begin(), seen.end(), pair) != seen.end()) return true;
-        seen.push_back(pair);
-        return false;
-    }
-
-    static bool same_ends(const DualVertices& duals, const Link& a, const Link& b) {
-        return duals.at(a.crossing, Ring::low[a.face], a.face)
-                   == duals.at(b.crossing, Ring::low[b.face], b.face)
-               && duals.at(a.crossing, Ring::high[a.face], a.face)
-                      == duals.at(b.crossing, Ring::high[b.face], b.face);
-    }
-    std::vector<Index> of_side_; // per crossing and face of its ring
+    std::vector<Index> of_side_; // or empty
     std::size_t count_;
 };
 
@@ -107,25 +95,24 @@ public:
 
     /// The strip of facets along a thin part's rim, between the vertices of its two sides; once per rim link.
     void add_strips(Index x) {
-        for (std::uint8_t k = 0; k < 4; ++k) {
-            const Link& link = links_.of_crossing[x][k];
-            if (!link.rim || 4 * x + k > 4 * link.crossing + link.face) continue;
-            // The half-edge of x's facet runs from ring position k to k + 1 if x leaves; the strip runs the
-            // other way.
-            unsigned from = (k + 1u) % 4, to = k;
-            if (!crossings_.crossings[x].leaving) std::swap(from, to);
-            const Index y = link.crossing;
-            const std::array<Index, 4> ring{duals_.at(x, from, k), duals_.at(x, to, k),
-                                            duals_.at(y, Ring::across(to, k, link.face), link.face),
-                                            duals_.at(y, Ring::across(from, k, link.face), link.face)};
-            if (ring[0] == ring[3] && ring[1] == ring[2]) continue; // not cut: an ordinary edge
+        for (const FacetSide side : corners_of_facet(x)) {
+            const auto& [twin, rim] = links_.of(side);
+            if (!rim || side > twin) continue;
+            auto [from, to] = duals_.ends(side);
+            auto [twin_from, twin_to] = duals_.ends(twin);
+            if (from == twin_from && to == twin_to) continue; // not cut: an ordinary edge
+            // The half-edge of x's facet runs along the side if x leaves; the strip runs the other way.
+            if (crossings_.crossings[x].leaving == side.ascends()) {
+                std::swap(from, to);
+                std::swap(twin_from, twin_to);
+            }
             polygon_.clear();
-            add(ring[0]);
-            add(midpoints_.mid({x, k}));
-            add(ring[1]);
-            if (ring[2] != ring[1]) add(ring[2]);
-            add(midpoints_.mid(link));
-            if (ring[3] != ring[0]) add(ring[3]);
+            add(from);
+            add(midpoints_.mid(side));
+            add(to);
+            if (twin_to != to) add(twin_to);
+            add(midpoints_.mid(twin));
+            if (twin_from != from) add(twin_from);
             mesh_.add_facet(polygon_);
         }
     }
@@ -147,11 +134,11 @@ private:
 
     void gather(Index x) {
         polygon_.clear();
-        for (std::uint8_t j = 0; j < 4; ++j) {
-            const Index before = duals_.at(x, j, (j + 3u) % 4), after = duals_.at(x, j, j);
+        for (const FacetCorner corner : corners_of_facet(x)) {
+            const Index before = duals_.to(corner.previous()), after = duals_.from(corner);
             add(before);
             if (after != before) add(after);
-            add(midpoints_.mid({x, j}));
+            add(midpoints_.mid(corner));
         }
         if (!crossings_.crossings[x].leaving) std::reverse(polygon_.begin(), polygon_.end());
     }

@@ -11,6 +11,11 @@ namespace {
 
 constexpr std::size_t crossings_per_chunk = 4096;
 
+/// The side of a corner that its chain leaves it by.
+FacetSide side_after(const Crossings& crossings, FacetCorner corner) {
+    return crossings.of(corner).leaving ? corner : corner.previous();
+}
+
 /// The chain of corners through one corner, inside one voxel.
 class Chain {
 public:
@@ -24,34 +29,29 @@ public:
     void walk(FacetCorner start) {
         corners.clear();
         closed = false;
-        const bool leaving = crossings_.crossings[start / 4].leaving;
-        forward(start, leaving ? start % 4 : (start + 3) % 4);
+        const FacetSide exit = side_after(crossings_, start);
+        forward(start, exit);
         if (closed) return;
         // Open: walk the other half too, then put both in order from end to end.
         std::vector<FacetCorner> tail = std::move(corners);
         corners.clear();
-        forward(start, leaving ? (start + 3) % 4 : start % 4);
+        forward(start, start.other_side(exit));
         std::reverse(corners.begin(), corners.end());
         corners.insert(corners.end(), tail.begin() + 1, tail.end());
     }
 
 private:
-    /// Leaves `start` through face k of its ring and goes on until the chain closes or ends.
-    void forward(FacetCorner start, unsigned k) {
+    /// Leaves `start` by one of its sides and goes on until the chain closes or ends.
+    void forward(FacetCorner start, FacetSide exit) {
         FacetCorner corner = start;
-        corners.push_back(corner);
-        for (;;) {
-            const Link& link = links_.of_crossing[corner / 4][k];
-            if (link.crossing == no_index) return;
-            const unsigned j = Ring::across(corner % 4, k, link.face);
-            corner = 4 * link.crossing + j;
-            if (corner == start) {
-                closed = true;
-                return;
-            }
+        do {
             corners.push_back(corner);
-            k = link.face == j ? (j + 3) % 4 : j; // leave by the other face of this ring position
-        }
+            const Link& link = links_.of(exit);
+            if (link.open()) return;
+            corner = across(corner, exit, link.twin);
+            exit = corner.other_side(link.twin);
+        } while (corner != start);
+        closed = true;
     }
 
     const Crossings& crossings_;
@@ -140,8 +140,8 @@ private:
         const std::size_t n = chain.corners.size();
         const FacetCorner a = chain.corners[i], b = chain.corners[(i + steps) % n];
         if (steps == 1) {
-            const unsigned exit = of(a).leaving ? a % 4 : (a + 3) % 4;
-            return links_.of_crossing[a / 4][exit].rim && !meet_nearby(a, b) ? 2 * i + 1 : none;
+            const bool rim = links_.of(side_after(crossings_, a)).rim;
+            return rim && !meet_nearby(a, b) ? 2 * i + 1 : none;
         }
         if (!opposed(of(a), of(b)) || meet_nearby(a, b)) return none;
         // The corner nearest to the middle of the way among those that lie on neither side.
@@ -186,7 +186,7 @@ private:
         return false;
     }
 
-    const Crossing& of(FacetCorner corner) const { return crossings_.crossings[corner / 4]; }
+    const Crossing& of(FacetCorner corner) const { return crossings_.of(corner); }
 
     const GridPoints& grid_;
     const Crossings& crossings_;
@@ -241,8 +241,7 @@ void number_sides(const Crossings& crossings, std::span<const std::uint8_t> shar
         for (std::size_t v = begin; v < end; ++v) {
             const auto corners = duals.corners_of(static_cast<Index>(v));
             for (std::size_t i = 0; i < corners.size(); ++i) {
-                const std::size_t leaves_by = crossings.crossings[corners[i] / 4].leaving;
-                const std::size_t corner = corners[i];
+                const std::size_t leaves_by = crossings.of(corners[i]).leaving, corner = corners[i].number();
                 if (i > 0 || !(shared[v] & 1u))
                     duals.of_side[2 * corner + 1 - leaves_by] = static_cast<Index>(v);
                 if (i + 1 < corners.size() || !(shared[v] & 2u))
@@ -255,8 +254,8 @@ void number_sides(const Crossings& crossings, std::span<const std::uint8_t> shar
 } // namespace
 
 CornerVoxel::CornerVoxel(const GridPoints& grid, const Crossings& crossings, FacetCorner corner) {
-    const Index edge = crossings.crossings[corner / 4].edge;
-    const unsigned octant = Ring::octant(edge % 3, corner % 4);
+    const Index edge = crossings.of(corner).edge;
+    const unsigned octant = corner.octant(edge % 3);
     const VoxelCoord lower = grid.coord(edge / 3);
     for (unsigned k = 0; k < 3; ++k) coord[k] = lower[k] + static_cast<int>(octant >> k & 1u) - 1;
     voxel = grid.voxels[edge / 3][octant];
@@ -269,13 +268,13 @@ DualVertices build_dual_vertices(const GridPoints& grid, const Crossings& crossi
         Chain chain(crossings, links);
         ChainCutter cutter(grid, crossings, links);
         Cut cut;
-        for (std::size_t corner = 4 * begin; corner < 4 * end; ++corner) {
-            chain.walk(static_cast<FacetCorner>(corner));
-            if (*std::min_element(chain.corners.begin(), chain.corners.end()) != corner)
-                continue; // another corner's chain
-            cutter.cut(chain, cut);
-            chunks[c].add(cut, chain.closed);
-        }
+        for (auto x = static_cast<Index>(begin); x < end; ++x)
+            for (const FacetCorner corner : corners_of_facet(x)) {
+                chain.walk(corner);
+                if (std::ranges::min(chain.corners) != corner) continue; // another corner's chain
+                cutter.cut(chain, cut);
+                chunks[c].add(cut, chain.closed);
+            }
     });
     DualVertices duals;
     std::vector<std::uint8_t> shared;

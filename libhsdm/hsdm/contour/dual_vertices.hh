@@ -6,18 +6,14 @@
 
 namespace hsdm {
 
-/// A crossing seen from one of its four voxels: 4 * crossing + ring position. This is one corner of one
-/// facet.
-using FacetCorner = std::uint32_t;
-
 /// The vertices: dual vertex v has corners[first[v]] .. corners[first[v + 1]], in order around the vertex.
 /// Where a chain is cut at a corner, that corner is the last of one dual vertex and the first of the next:
 /// the facet gets two corners there, with an edge between.
 struct DualVertices {
     std::vector<FacetCorner> corners;
     std::vector<Index> first{0};
-    std::vector<Index>
-        of_side; ///< per corner two: its dual vertex beside face j - 1 and beside face j of the ring
+    /// Per corner two: its dual vertex as the end of the previous corner's side and as the start of its own.
+    std::vector<Index> of_side;
     /// Polygons between the three or more dual vertices of a closed chain that was cut at that many places
     /// (the sides of a thin part and its rims); against the facets beside.
     std::vector<std::vector<Index>> caps;
@@ -26,9 +22,13 @@ struct DualVertices {
         after_cut;       ///< dual vertices v that come from the same cut chain, and so voxel, as v - 1
     std::size_t cut = 0; ///< chains cut into two or more vertices
 
-    /// The vertex of a crossing at position j of its ring, beside face k (k = j or j - 1).
-    Index at(Index crossing, unsigned j, unsigned k) const {
-        return of_side[8 * std::size_t{crossing} + 2 * j + (k == j)];
+    /// The vertices that a side leads from and to.
+    Index from(FacetSide side) const { return of_side[2 * std::size_t{side.number()} + 1]; }
+    Index to(FacetSide side) const { return of_side[2 * std::size_t{side.next().number()}]; }
+    /// ... in the lower and in the upper voxel.
+    std::array<Index, 2> ends(FacetSide side) const {
+        const std::array<Index, 2> ends{from(side), to(side)};
+        return side.ascends() ? ends : std::array{ends[1], ends[0]};
     }
 
     std::size_t size() const { return first.size() - 1; }

@@ -165,7 +165,7 @@ public:
 
     void place(Index dual, PlacedVertices& result) {
         gather(dual);
-        const Index nearest = sets_.sets[crossings_.crossings[duals_.corners_of(dual)[0] / 4].set].voxel;
+        const Index nearest = sets_.sets[crossings_.of(duals_.corners_of(dual)[0]).set].voxel;
         result.voxel[dual] = voxel_ != no_index ? voxel_ : nearest;
         int sheets = SheetNormals(problem_.planes).count;
         Solution solution = least_squares(problem_, sheets);
@@ -202,7 +202,7 @@ private:
         for (unsigned k = 0; k < 3; ++k) problem_.lo[k] = at.coord[k] * level_.voxel_size;
         problem_.mean = Vec3(0, 0, 0);
         for (FacetCorner corner : corners) {
-            const Crossing& crossing = crossings_.crossings[corner / 4];
+            const Crossing& crossing = crossings_.of(corner);
             const Vec3 p = crossing_position(grid_, crossing, level_.voxel_size);
             problem_.planes.push_back({crossing.normal, p, 1});
             problem_.mean += p;
@@ -215,7 +215,7 @@ private:
     /// edge of the voxel (a narrow rim).
     void add_own_sets(std::span<const FacetCorner> corners) {
         near_.clear();
-        for (FacetCorner corner : corners) near_.push_back(crossings_.crossings[corner / 4].set);
+        for (FacetCorner corner : corners) near_.push_back(crossings_.of(corner).set);
         std::sort(near_.begin(), near_.end());
         near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
         const std::size_t crossing_sets = near_.size();
@@ -247,7 +247,7 @@ private:
         double nearest = std::numeric_limits<double>::infinity();
         const std::size_t planes = problem_.planes.size();
         for (FacetCorner corner : corners)
-            for (Index voxel : grid_.voxels[crossings_.crossings[corner / 4].edge / 3]) {
+            for (Index voxel : grid_.voxels[crossings_.of(corner).edge / 3]) {
                 if (voxel == no_index || voxel == voxel_) continue;
                 for (Index s = sets_.first[voxel]; s < sets_.first[voxel + 1]; ++s) {
                     if (s == best || !creases_with_all(s, corners)) continue;
@@ -266,7 +266,7 @@ private:
 
     bool creases_with_all(Index s, std::span<const FacetCorner> corners) const {
         return std::all_of(corners.begin(), corners.end(), [&](FacetCorner corner) {
-            const Relation r = related_(sets_.sets[s], sets_.sets[crossings_.crossings[corner / 4].set]);
+            const Relation r = related_(sets_.sets[s], sets_.sets[crossings_.of(corner).set]);
             return r == Relation::convex || r == Relation::concave;
         });
     }
@@ -388,7 +388,7 @@ std::vector<std::uint8_t> sets_that_cross(const GridPoints& grid, const NormalSe
     for_chunks(duals.size(), duals_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         for (std::size_t v = begin; v < end; ++v)
             for (FacetCorner corner : duals.corners_of(static_cast<Index>(v))) {
-                const Crossing& x = crossings.crossings[corner / 4];
+                const Crossing& x = crossings.of(corner);
                 const Index voxel = CornerVoxel(grid, crossings, corner).voxel;
                 if (voxel == no_index) continue;
                 for (Index s = sets.first[voxel]; s < sets.first[voxel + 1]; ++s)
@@ -407,8 +407,7 @@ void separate_sides(const Crossings& crossings, const DualVertices& duals, doubl
                     std::vector<Vec3>& positions) {
     const auto outward = [&](std::size_t v) {
         Vec3 sum(0, 0, 0);
-        for (FacetCorner corner : duals.corners_of(static_cast<Index>(v)))
-            sum += crossings.crossings[corner / 4].normal;
+        for (FacetCorner corner : duals.corners_of(static_cast<Index>(v))) sum += crossings.of(corner).normal;
         const double length = sum.norm();
         return length > 0 ? sum / length : Vec3(0, 0, 1);
     };

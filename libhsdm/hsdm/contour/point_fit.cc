@@ -29,11 +29,9 @@ struct Foot {
 void list_triangles(Index dual, const DualVertices& duals, const std::vector<Vec3>& at,
                     std::vector<Around>& around) {
     for (FacetCorner corner : duals.corners_of(dual)) {
-        const Index x = corner / 4;
-        const unsigned j = corner % 4, next = (j + 1) % 4, across = (j + 2) % 4, before = (j + 3) % 4;
-        const Index opposite = duals.at(x, across, across);
-        around.emplace_back(at, dual, duals.at(x, next, j), opposite);
-        around.emplace_back(at, dual, opposite, duals.at(x, before, before));
+        const Index opposite = duals.from(corner.opposite());
+        around.emplace_back(at, dual, duals.to(corner), opposite);
+        around.emplace_back(at, dual, opposite, duals.from(corner.previous()));
     }
 }
 
@@ -147,8 +145,8 @@ std::vector<double> PointFit::rises(const std::vector<Heights>& heights) const {
         for (std::size_t v = begin; v < end; ++v) {
             Moments sum{0, 0};
             for (FacetCorner corner : duals_.corners_of(static_cast<Index>(v)))
-                for (unsigned j = 0; j < 4; ++j) {
-                    const Moments& other = of_mean[duals_.at(corner / 4, j, j)];
+                for (const FacetCorner beside : corners_of_facet(corner.crossing())) {
+                    const Moments& other = of_mean[duals_.from(beside)];
                     sum.square += other.square;
                     sum.variance += other.variance;
                 }

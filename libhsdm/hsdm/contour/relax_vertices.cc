@@ -104,10 +104,8 @@ private:
                     ++known->sides;
                 };
                 for (FacetCorner corner : duals_.corners_of(static_cast<Index>(v))) {
-                    const Index x = corner / 4;
-                    const unsigned j = corner % 4;
-                    add(duals_.at(x, (j + 1) % 4, j));
-                    add(duals_.at(x, (j + 3) % 4, (j + 3) % 4));
+                    add(duals_.to(corner));
+                    add(duals_.from(corner.previous()));
                 }
                 neighbour_count_[v] = static_cast<Index>(last - first);
             }
@@ -213,15 +211,12 @@ void extend_borders(const OctreeLevel& level, const GridPoints& grid, const Norm
             // the neighbour before to the one after.
             const auto corners = duals.corners_of(dual);
             const auto beside = [&](FacetCorner corner, bool enters) {
-                const unsigned j = corner % 4;
-                const bool lower = crossings.crossings[corner / 4].leaving == enters;
-                return placed[duals.at(corner / 4, lower ? (j + 3) % 4 : (j + 1) % 4,
-                                       lower ? (j + 3) % 4 : j)];
+                return placed[crossings.of(corner).leaving == enters ? duals.from(corner.previous())
+                                                                     : duals.to(corner)];
             };
             const Vec3 first = beside(corners.front(), true), last = beside(corners.back(), false);
             Vec3 inner(0, 0, 0);
-            for (FacetCorner corner : corners)
-                inner += placed[duals.at(corner / 4, (corner + 2) % 4, (corner + 2) % 4)];
+            for (FacetCorner corner : corners) inner += placed[duals.from(corner.opposite())];
             const Vec3 along = unit(last - first);
             Vec3 outward = placed[v] - inner / static_cast<double>(corners.size());
             outward -= along * (along | outward);

@@ -19,9 +19,7 @@ public:
         if (duals_.open[beyond.dual]) return;
         holders_.clear();
         for (FacetCorner corner : duals_.corners_of(beyond.dual)) {
-            const Index x = corner / 4;
-            const unsigned j = corner % 4;
-            for (Index next : {duals_.at(x, (j + 1) % 4, j), duals_.at(x, (j + 3) % 4, (j + 3) % 4)})
+            for (Index next : {duals_.to(corner), duals_.from(corner.previous())})
                 if (can_hold(next, beyond))
                     holders_.push_back({!is_corner(next), outside(next, beyond.position), next});
         }
@@ -43,7 +41,7 @@ private:
         if (is_corner(dual)) return (vertices_.positions[dual] - beyond.position).norm() < near;
         const auto corners = duals_.corners_of(dual);
         return std::all_of(corners.begin(), corners.end(), [&](FacetCorner corner) {
-            const Crossing& x = crossings_.crossings[corner / 4];
+            const Crossing& x = crossings_.of(corner);
             return std::abs(x.normal | (beyond.position - crossing_position(grid_, x, h_))) < near
                    && has_sheet(beyond, x.normal);
         });

@@ -6,43 +6,36 @@
 namespace hsdm {
 namespace {
 
-bool is_open(const Link& link) {
-    return link.crossing == no_index;
-}
-
 /// The boundary loops that the mesh will have.
 struct OpenLoops {
-    std::vector<Index> of_side;        ///< per side (4 * crossing + face), its loop; no_index: joined
+    std::vector<Index> of_side;        ///< per side, its loop; no_index: it has a twin
     std::vector<std::ptrdiff_t> sides; ///< per loop, how many sides it has
 };
 
 OpenLoops find_open_loops(const Crossings& crossings, const Links& links) {
-    const auto open = [&](std::size_t side) { return is_open(links.of_crossing[side / 4][side % 4]); };
     // The next open side of the loop: rotates round the vertex at this side's end, face by face.
-    const auto next = [&](std::size_t side) {
-        auto k = static_cast<unsigned>(side % 4);
-        auto x = static_cast<Index>(side / 4);
-        unsigned j = crossings.crossings[x].leaving ? (k + 1) % 4 : k; // where the side ends
+    const auto next = [&](FacetSide side) {
+        FacetCorner end = crossings.of(side).leaving ? side.next() : side;
         for (;;) {
-            k = k == j ? (j + 3) % 4 : j;
-            const Link& link = links.of_crossing[x][k];
-            if (link.crossing == no_index) return 4 * std::size_t{x} + k;
-            j = Ring::across(j, k, link.face);
-            x = link.crossing;
-            k = link.face;
+            side = end.other_side(side);
+            const FacetSide twin = links.of(side).twin;
+            if (twin == no_side) return side;
+            end = across(end, side, twin);
+            side = twin;
         }
     };
     OpenLoops loops;
     loops.of_side.assign(4 * links.of_crossing.size(), no_index);
-    for (std::size_t start = 0; start < loops.of_side.size(); ++start) {
-        if (!open(start) || loops.of_side[start] != no_index) continue;
-        const auto number = static_cast<Index>(loops.sides.size());
-        loops.sides.push_back(0);
-        for (std::size_t side = start; loops.of_side[side] == no_index; side = next(side)) {
-            loops.of_side[side] = number;
-            ++loops.sides[number];
+    for (Index x = 0; x < links.of_crossing.size(); ++x)
+        for (const FacetSide start : corners_of_facet(x)) {
+            if (!links.of(start).open() || loops.of_side[start.number()] != no_index) continue;
+            const auto number = static_cast<Index>(loops.sides.size());
+            loops.sides.push_back(0);
+            for (FacetSide side = start; loops.of_side[side.number()] == no_index; side = next(side)) {
+                loops.of_side[side.number()] = number;
+                ++loops.sides[number];
+            }
         }
-    }
     return loops;
 }
 
@@ -60,20 +53,18 @@ std::vector<Patch> find_patches(const Crossings& crossings, const Links& links, 
     std::vector<std::uint8_t> seen(list.size(), 0);
     for (Index start = 0; start < list.size(); ++start) {
         const auto& around = links.of_crossing[start];
-        if (list[start].supported || seen[start] || std::none_of(around.begin(), around.end(), is_open))
-            continue;
+        if (list[start].supported || seen[start] || std::ranges::none_of(around, &Link::open)) continue;
         Patch patch{{start}, {}};
         seen[start] = 1;
         for (std::size_t i = 0; i < patch.crossings.size(); ++i)
-            for (std::size_t k = 0; k < 4; ++k) {
-                const std::size_t side = 4 * std::size_t{patch.crossings[i]} + k;
-                const Index other = links.of_crossing[side / 4][k].crossing;
-                if (other == no_index)
-                    patch.open.push_back(loops.of_side[side]);
-                else if (list[other].supported)
+            for (const FacetSide side : corners_of_facet(patch.crossings[i])) {
+                const FacetSide twin = links.of(side).twin;
+                if (twin == no_side)
+                    patch.open.push_back(loops.of_side[side.number()]);
+                else if (crossings.of(twin).supported)
                     ++patch.bordering;
-                else if (!std::exchange(seen[other], std::uint8_t{1}))
-                    patch.crossings.push_back(other);
+                else if (!std::exchange(seen[twin.crossing()], std::uint8_t{1}))
+                    patch.crossings.push_back(twin.crossing());
             }
         std::sort(patch.open.begin(), patch.open.end());
         patches.push_back(std::move(patch));
@@ -126,9 +117,8 @@ std::size_t remove_crossings(std::span<const std::uint8_t> removed, Crossings& c
 std::size_t trim_unsupported(Crossings& crossings, const Links& links) {
     auto& list = crossings.crossings;
     for (Index x = 0; x < list.size(); ++x) {
-        const auto& around = links.of_crossing[x];
         // Such a crossing is attached by one side at most.
-        if (std::count_if(around.begin(), around.end(), is_open) >= 3) list[x].supported = false;
+        if (std::ranges::count_if(links.of_crossing[x], &Link::open) >= 3) list[x].supported = false;
     }
     const OpenLoops loops = find_open_loops(crossings, links);
     const std::vector<Patch> patches = find_patches(crossings, links, loops);
@@ -151,9 +141,8 @@ std::size_t drop_tips(const NormalSets& sets, const RelationTest& related, const
     std::vector<std::uint8_t> removed(list.size(), 0);
     for (Index x = 0; x + 1 < list.size(); ++x) {
         if (list[x].edge != list[x + 1].edge) continue;
-        const auto& around = links.of_crossing[x];
-        const auto joined = std::count_if(around.begin(), around.end(),
-                                          [&](const Link& link) { return link.crossing == x + 1; });
+        const auto joined = std::ranges::count_if(
+            links.of_crossing[x], [&](const Link& link) { return link.twin.crossing() == x + 1; });
         if (joined >= 3 && !are_sides(list[x], list[x + 1])) removed[x] = removed[x + 1] = 1;
     }
     const std::size_t count = remove_crossings(removed, crossings);
