@@ -47,13 +47,13 @@ TEST_CASE("options that do not fit one input fail that input alone", "[cli]") {
     }
     CHECK(run(folder, "reconstruct large.xyz --voxel-size 0.3 -o a.off").status == 2);
     // What fits no input is refused before any work.
-    const std::string before = folder.list();
+    const std::string before = list(folder);
     for (const char* options :
          {"--columns x,y", "--voxel-size -1", "--levels 3:17", "--crease-degrees 190"}) {
         INFO(options);
         CHECK(run(folder, std::string("reconstruct a.xyz b.ply --out-dir none ") + options).status == 2);
     }
-    CHECK(folder.list() == before);
+    CHECK(list(folder) == before);
 }
 
 TEST_CASE("a single input that fails has a report too", "[cli]") {
@@ -104,7 +104,7 @@ TEST_CASE("the end of memory is told with file and phase, and the other inputs g
         INFO(megabytes << ": " << result.err);
         CHECK(result.status == 1);
         CHECK(result.err.starts_with("hsdm: large.xyz: out of memory in phase "));
-        CHECK(folder.list() == "large.xyz\nout\nr.json\nsmall.xyz\n");
+        CHECK(list(folder) == "large.xyz\nout\nr.json\nsmall.xyz\n");
         CHECK(read_file(folder / "out/small.om").starts_with("OM"));
         CHECK_FALSE(exists(folder / "out/large.om"));
         const Json reports = Json::parse(read_file(folder / "r.json"));

@@ -18,13 +18,13 @@ namespace {
 /// Refused at once, with both names in the message and every file as it was.
 void check_refused(const Folder& folder, const std::string& arguments,
                    const std::vector<std::string>& words) {
-    const std::string scan = read_file(folder / "scan.xyz"), before = folder.list();
+    const std::string scan = read_file(folder / "scan.xyz"), before = list(folder);
     const CommandResult result = run(folder, arguments);
     INFO("hsdm " << arguments << '\n' << result.err);
     CHECK(result.status == 2);
     for (const std::string& word : words) CHECK(result.err.find(word) != std::string::npos);
     CHECK((read_file(folder / "scan.xyz") == scan));
-    CHECK(folder.list() == before);
+    CHECK(list(folder) == before);
 }
 
 } // namespace

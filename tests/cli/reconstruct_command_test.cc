@@ -20,7 +20,7 @@ TEST_CASE("a scan becomes a mesh, a report and features with one command", "[cli
     for (const char* word : {"cloud", "voxels", "mesh", "topology", "error", "written"})
         CHECK(result.out.find(word) != std::string::npos);
     CHECK(std::count(result.out.begin(), result.out.end(), '\n') == 6);
-    CHECK(folder.list() == "part.json\npart.off\npart.txt\nscan.xyz\n");
+    CHECK(list(folder) == "part.json\npart.off\npart.txt\nscan.xyz\n");
     const Json report = Json::parse(read_file(folder / "part.json"));
     CHECK(report["input"]["file"] == "scan.xyz");
     CHECK(report["input"]["points"] == 4000);
@@ -119,7 +119,7 @@ TEST_CASE("levels give one mesh per depth from one octree, the same as each dept
     const Folder folder;
     folder.write("scan.xyz", xyz(sphere_scan()));
     CHECK(run(folder, "reconstruct scan.xyz --levels 3:4 -o part.off --report levels.json").status == 0);
-    CHECK(folder.list() == "levels.json\npart.d3.off\npart.d4.off\nscan.xyz\n");
+    CHECK(list(folder) == "levels.json\npart.d3.off\npart.d4.off\nscan.xyz\n");
     CHECK(Json::parse(read_file(folder / "levels.json")).size() == 2);
     CHECK(run(folder, "reconstruct scan.xyz --depth 3 -o alone.off").status == 0);
     CHECK(read_file(folder / "alone.off") == read_file(folder / "part.d3.off"));
@@ -160,7 +160,7 @@ TEST_CASE("wrong usage has status 2, a message, and leaves no file", "[cli]") {
         CHECK(result.err != "");
         CHECK(result.out == "");
     }
-    CHECK(folder.list() == "scan.xyz\n");
+    CHECK(list(folder) == "scan.xyz\n");
 }
 
 TEST_CASE("options that are not available yet say so instead of being ignored", "[cli]") {
@@ -172,7 +172,7 @@ TEST_CASE("options that are not available yet say so instead of being ignored", 
         CHECK(result.status == 2);
         CHECK(result.err.find("not available yet") != std::string::npos);
     }
-    CHECK(folder.list() == "scan.xyz\n");
+    CHECK(list(folder) == "scan.xyz\n");
 }
 
 TEST_CASE("an error is kept with fewer facets, as a length or as a share of the diagonal", "[cli]") {
@@ -219,7 +219,7 @@ TEST_CASE("bad input has status 1, names the file, and leaves no output", "[cli]
     folder.write("equal.xyz", "1 2 3\n1 2 3\n1 2 3\n1 2 3\n1 2 3\n");
     folder.write("line.xyz", "0 0 0\n1 1 1\n2 2 2\n3 3 3\n4 4 4\n5 5 5\n");
     folder.write("nan.xyz", "nan 0 0\nnan 1 0\nnan 1 1\n0 0 0\n1 0 0\n");
-    const std::string before = folder.list();
+    const std::string before = list(folder);
     for (const char* name :
          {"empty.xyz", "three.xyz", "equal.xyz", "line.xyz", "nan.xyz", "missing.xyz", "."}) {
         const CommandResult result = run(folder, std::string("reconstruct ") + name + " -o a.off");
@@ -228,7 +228,7 @@ TEST_CASE("bad input has status 1, names the file, and leaves no output", "[cli]
         CHECK(result.err.find(name) != std::string::npos);
         CHECK(result.err.starts_with("hsdm: "));
     }
-    CHECK(folder.list() == before);
+    CHECK(list(folder) == before);
 }
 
 TEST_CASE("an output that cannot be written has status 1 and leaves what was there", "[cli]") {

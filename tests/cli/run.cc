@@ -2,39 +2,11 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <set>
-#include <sstream>
-#include <stdexcept>
 #include <sys/wait.h>
 
 namespace hsdm::test {
 
 namespace fs = std::filesystem;
-
-Folder::Folder() {
-    std::string name = (fs::temp_directory_path() / "hsdm-test-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no scratch folder can be made");
-    path_ = name;
-}
-
-Folder::~Folder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-}
-
-std::string Folder::write(const std::string& name, const std::string& content) const {
-    std::ofstream(*this / name, std::ios::binary) << content;
-    return *this / name;
-}
-
-std::string Folder::list() const {
-    std::set<std::string> names;
-    for (const auto& entry : fs::directory_iterator(path_)) names.insert(entry.path().filename().string());
-    std::string text;
-    for (const std::string& name : names) text += name + "\n";
-    return text;
-}
 
 CommandResult run(const Folder& folder, const std::string& arguments, const std::string& before) {
     const Folder capture;
@@ -49,7 +21,6 @@ CommandResult run(const Folder& folder, const std::string& arguments, const std:
 }
 
 std::string with_modules(const Folder& folder) {
-    namespace fs = std::filesystem;
     fs::create_directories(folder / "modules");
     fs::permissions(folder / "modules", fs::perms::owner_all);
     for (const auto& file : fs::directory_iterator(HSDM_MODULE_DIR)) {
@@ -60,11 +31,10 @@ std::string with_modules(const Folder& folder) {
     return "HSDM_PLUGIN_PATH=modules";
 }
 
-std::string read_file(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
+std::string list(const Folder& folder) {
+    std::string text;
+    for (const std::string& name : folder.names()) text += name + "\n";
+    return text;
 }
 
 bool exists(const std::string& path) {

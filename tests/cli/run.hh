@@ -1,7 +1,7 @@
 #pragma once
 // Runs the built command as a user would, in a folder of its own.
 
-#include <string>
+#include "support/folder.hh"
 
 namespace hsdm::test {
 
@@ -10,23 +10,8 @@ struct CommandResult {
     std::string out, err;
 };
 
-/// A scratch folder, removed with its content.
-class Folder {
-public:
-    Folder();
-    ~Folder();
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-
-    const std::string& path() const { return path_; }
-    std::string operator/(const std::string& name) const { return path_ + "/" + name; }
-    std::string write(const std::string& name, const std::string& content) const;
-    /// Names in the folder, sorted, one per line.
-    std::string list() const;
-
-private:
-    std::string path_;
-};
+using support::Folder;
+using support::read_file;
 
 /// Through the shell, in `folder`; `arguments` may hold pipes and redirections: they follow the command's
 /// name. `before` stands in front of it, e.g. `cat scan.xyz |`.
@@ -36,7 +21,8 @@ CommandResult run(const Folder& folder, const std::string& arguments, const std:
 /// them known, to stand before the command.
 std::string with_modules(const Folder& folder);
 
-std::string read_file(const std::string& path);
+/// Names in the folder, sorted, one per line.
+std::string list(const Folder& folder);
 bool exists(const std::string& path);
 
 } // namespace hsdm::test

@@ -48,7 +48,7 @@ TEST_CASE("every signal that ends a program ends this one with 128 + its number 
             end_by(folder, signal, "reconstruct - --input-format xyz -o a.off <>wait", catching);
         CHECK(result.status == status);
         CHECK(result.err == "hsdm: cancelled; nothing was written\n");
-        CHECK(folder.list() == "err\nout\nscan.xyz\n");
+        CHECK(list(folder) == "err\nout\nscan.xyz\n");
     }
 }
 
@@ -93,7 +93,7 @@ TEST_CASE("after a signal the message says what stands and what is there in part
                     "head -c 3 wait >/dev/null");
     CHECK(result.status == 130);
     CHECK(result.err == "hsdm: cancelled; in part: /dev/fd/3\n");
-    CHECK(folder.list() == "a.off\nerr\nout\nscan.xyz\n");
+    CHECK(list(folder) == "a.off\nerr\nout\nscan.xyz\n");
 }
 
 TEST_CASE("a signal that was ignored stays so where shells do not do it for every job", "[cli]") {
@@ -118,7 +118,7 @@ TEST_CASE("a limit on the size of files is an error of writing, and leaves nothi
         run(folder, "reconstruct scan.xyz --depth 5 --quiet -o a.off", "ulimit -f 64;");
     CHECK(result.status == 1);
     CHECK(result.err.starts_with("hsdm: a.off: cannot write: File too large"));
-    CHECK(folder.list() == "scan.xyz\n");
+    CHECK(list(folder) == "scan.xyz\n");
 }
 
 TEST_CASE("a run that was killed leaves a temporary file, which the next one removes and names", "[cli]") {
@@ -128,5 +128,5 @@ TEST_CASE("a run that was killed leaves a temporary file, which the next one rem
     const CommandResult result = run(folder, "reconstruct scan.xyz --depth 3 --quiet -o a.off");
     CHECK(result.status == 0);
     CHECK(result.err == "hsdm: removed .a.off.4711-0.tmp, left by a run that was killed\n");
-    CHECK(folder.list() == "a.off\nscan.xyz\n");
+    CHECK(list(folder) == "a.off\nscan.xyz\n");
 }

@@ -16,12 +16,12 @@ namespace {
 
 /// The first line on standard error; the status must be 2 and nothing written.
 std::string refusal(const Folder& folder, const std::string& arguments) {
-    const std::string before = folder.list();
+    const std::string before = list(folder);
     const CommandResult result = run(folder, arguments);
     INFO(arguments << '\n' << result.err);
     CHECK(result.status == 2);
     CHECK(result.out.empty());
-    CHECK(folder.list() == before);
+    CHECK(list(folder) == before);
     return result.err.substr(0, result.err.find('\n'));
 }
 

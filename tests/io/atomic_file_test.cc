@@ -2,14 +2,11 @@
 
 #include "hsdm/errors.hh"
 #include "hsdm/io/file_registry.hh"
+#include "support/folder.hh"
 
 #include <catch2/catch.hpp>
 
 #include <filesystem>
-#include <fstream>
-#include <set>
-#include <sstream>
-#include <string>
 #include <thread>
 
 #include <fcntl.h>
@@ -18,46 +15,11 @@
 #include <unistd.h>
 
 using namespace hsdm;
+using support::Folder;
+using support::read_file;
 namespace fs = std::filesystem;
 
 namespace {
-
-/// A folder of its own: what a folder holds is looked up once per process.
-class Scratch {
-public:
-    Scratch() {
-        std::string name = (fs::temp_directory_path() / "hsdm-atomic-XXXXXX").string();
-        REQUIRE(mkdtemp(name.data()) != nullptr);
-        folder_ = name;
-    }
-    ~Scratch() {
-        std::error_code ignored;
-        fs::remove_all(folder_, ignored);
-    }
-    Scratch(const Scratch&) = delete;
-    Scratch& operator=(const Scratch&) = delete;
-
-    std::string operator/(const std::string& name) const { return (folder_ / name).string(); }
-    std::set<std::string> names() const {
-        std::set<std::string> names;
-        for (const auto& entry : fs::directory_iterator(folder_))
-            names.insert(entry.path().filename().string());
-        return names;
-    }
-
-private:
-    fs::path folder_;
-};
-
-void put(const std::string& path, const std::string& text) {
-    std::ofstream(path) << text;
-}
-
-std::string get(const std::string& path) {
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
-}
 
 void replace(const std::string& path, const std::string& text) {
     AtomicFile file(path);
@@ -74,24 +36,24 @@ struct stat status(const std::string& path) {
 } // namespace
 
 TEST_CASE("a file that is not committed leaves what was there and nothing else", "[io]") {
-    const Scratch folder;
-    put(folder / "a", "old");
+    const Folder folder; // its own: what a folder holds is looked up once per process
+    folder.write("a", "old");
     {
         AtomicFile file(folder / "a");
         file.write("new");
         CHECK(folder.names().size() == 2);
-        CHECK(get(folder / "a") == "old");
+        CHECK(read_file(folder / "a") == "old");
     }
-    CHECK(get(folder / "a") == "old");
+    CHECK(read_file(folder / "a") == "old");
     CHECK(folder.names() == std::set<std::string>{"a"});
     replace(folder / "a", "new");
-    CHECK(get(folder / "a") == "new");
+    CHECK(read_file(folder / "a") == "new");
     CHECK(folder.names() == std::set<std::string>{"a"});
 }
 
 TEST_CASE("a file that is replaced keeps its mode, a new one has the usual one", "[io]") {
-    const Scratch folder;
-    put(folder / "secret", "old");
+    const Folder folder;
+    folder.write("secret", "old");
     REQUIRE(::chmod((folder / "secret").c_str(), 0640) == 0);
     {
         AtomicFile file(folder / "secret");
@@ -113,13 +75,13 @@ TEST_CASE("a file that is replaced keeps its mode, a new one has the usual one",
 }
 
 TEST_CASE("a file with two names keeps both, shorter and longer than before", "[io]") {
-    const Scratch folder;
-    put(folder / "a", "what was there before");
+    const Folder folder;
+    folder.write("a", "what was there before");
     fs::create_hard_link(folder / "a", folder / "b");
     const auto inode = status(folder / "a").st_ino;
     for (const std::string& text : {std::string("short"), std::string(200000, 'x'), std::string()}) {
         replace(folder / "b", text);
-        CHECK(get(folder / "a") == text);
+        CHECK(read_file(folder / "a") == text);
         CHECK(status(folder / "a").st_ino == inode);
         CHECK(status(folder / "b").st_ino == inode);
         CHECK(folder.names() == std::set<std::string>{"a", "b"});
@@ -127,31 +89,31 @@ TEST_CASE("a file with two names keeps both, shorter and longer than before", "[
 }
 
 TEST_CASE("symbolic links are followed, also to what is not there yet", "[io]") {
-    const Scratch folder;
+    const Folder folder;
     fs::create_directory(folder / "sub");
-    put(folder / "a", "old");
+    folder.write("a", "old");
     fs::create_symlink("a", folder / "link");
     fs::create_symlink("sub/new", folder / "dangling");
     fs::create_symlink("dangling", folder / "twice");
     fs::create_symlink("loop", folder / "loop");
     replace(folder / "link", "one");
-    CHECK(get(folder / "a") == "one");
+    CHECK(read_file(folder / "a") == "one");
     replace(folder / "twice", "two");
-    CHECK(get(folder / "sub/new") == "two");
+    CHECK(read_file(folder / "sub/new") == "two");
     CHECK(fs::is_symlink(folder / "link"));
     CHECK(fs::is_symlink(folder / "dangling"));
     CHECK_THROWS_AS(AtomicFile(folder / "loop"), Error);
 }
 
 TEST_CASE("a descriptor is written on from where it stands, whatever is open there", "[io]") {
-    const Scratch folder;
+    const Folder folder;
     const int file = ::open((folder / "log").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
     REQUIRE(file >= 0);
     REQUIRE(::write(file, "before ", 7) == 7);
     replace("/dev/fd/" + std::to_string(file), "here");
     REQUIRE(::write(file, " after", 6) == 6);
     ::close(file);
-    CHECK(get(folder / "log") == "before here after");
+    CHECK(read_file(folder / "log") == "before here after");
     int ends[2];
     REQUIRE(::pipe(ends) == 0);
     replace("/proc/self/fd/" + std::to_string(ends[1]), "through");
@@ -165,10 +127,10 @@ TEST_CASE("a descriptor is written on from where it stands, whatever is open the
 }
 
 TEST_CASE("a named pipe is written to its reader", "[io]") {
-    const Scratch folder;
+    const Folder folder;
     REQUIRE(::mkfifo((folder / "pipe").c_str(), 0600) == 0);
     std::string read;
-    std::thread reader([&] { read = get(folder / "pipe"); });
+    std::thread reader([&] { read = read_file(folder / "pipe"); });
     replace(folder / "pipe", "through");
     reader.join();
     CHECK(read == "through");
@@ -176,11 +138,11 @@ TEST_CASE("a named pipe is written to its reader", "[io]") {
 }
 
 TEST_CASE("temporaries of killed runs are removed and named, those of living ones are not", "[io]") {
-    const Scratch folder;
-    put(folder / ".a.123-4.tmp", "left");
-    put(folder / ".a.5-6.tmp", "alive");
+    const Folder folder;
+    folder.write(".a.123-4.tmp", "left");
+    folder.write(".a.5-6.tmp", "alive");
     for (const char* other : {".ab.1-2.tmp", ".a.1-x.tmp", ".a.tmp", "a.1-2.tmp", ".a.1-2.tmp.bak"})
-        put(folder / other, "of others");
+        folder.write(other, "of others");
     const int alive = ::open((folder / ".a.5-6.tmp").c_str(), O_RDWR | O_CLOEXEC);
     REQUIRE(::flock(alive, LOCK_EX) == 0);
     take_removed_leftovers();
@@ -195,27 +157,27 @@ TEST_CASE("temporaries of killed runs are removed and named, those of living one
 }
 
 TEST_CASE("two files of one target at a time do not take each other's temporary away", "[io]") {
-    const Scratch folder;
+    const Folder folder;
     AtomicFile first(folder / "a"), second(folder / "a");
     first.write("first");
     second.write("second");
     CHECK(folder.names().size() == 2);
     first.commit();
-    CHECK(get(folder / "a") == "first");
+    CHECK(read_file(folder / "a") == "first");
     second.commit();
-    CHECK(get(folder / "a") == "second");
+    CHECK(read_file(folder / "a") == "second");
     CHECK(folder.names() == std::set<std::string>{"a"});
 }
 
 TEST_CASE("what cannot be written is refused before anything is made", "[io]") {
-    const Scratch folder;
+    const Folder folder;
     CHECK_THROWS_AS(AtomicFile(""), Error);
     CHECK_THROWS_AS(AtomicFile(folder / "."), Error);
     CHECK_THROWS_AS(AtomicFile(folder / "missing/a"), Error);
     CHECK(folder.names().empty());
     if (::geteuid() == 0) return; // to whom nothing is protected
-    put(folder / "fixed", "old");
+    folder.write("fixed", "old");
     REQUIRE(::chmod((folder / "fixed").c_str(), 0400) == 0);
     CHECK_THROWS_AS(AtomicFile(folder / "fixed"), Error);
-    CHECK(get(folder / "fixed") == "old");
+    CHECK(read_file(folder / "fixed") == "old");
 }

@@ -2,13 +2,13 @@
 #include "hsdm/io/read_mesh.hh"
 #include "hsdm/io/write_mesh.hh"
 #include "hsdm/quality/topology.hh"
+#include "support/folder.hh"
 
 #include <catch2/catch.hpp>
 
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <random>
 #include <set>
 
@@ -16,36 +16,11 @@
 #include <unistd.h>
 
 using namespace hsdm;
+using support::Folder;
+using support::read_file;
 namespace fs = std::filesystem;
 
 namespace {
-
-/// An empty folder that goes when the test ends.
-class Folder {
-public:
-    Folder() {
-        static int counter = 0;
-        path_ = fs::temp_directory_path()
-                / ("hsdm-mesh-" + std::to_string(::getpid()) + "-" + std::to_string(counter++));
-        fs::remove_all(path_);
-        fs::create_directory(path_);
-    }
-    ~Folder() {
-        fs::permissions(path_, fs::perms::owner_all);
-        fs::remove_all(path_);
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-    std::size_t size() const {
-        return static_cast<std::size_t>(
-            std::distance(fs::directory_iterator(path_), fs::directory_iterator()));
-    }
-    const fs::path& path() const { return path_; }
-
-private:
-    fs::path path_;
-};
 
 /// Triangles, quads and a pentagon over vertices whose doubles need every digit they have.
 PolygonMesh sample(const Vec3& shift = {0, 0, 0}) {
@@ -81,24 +56,15 @@ PolygonMesh square() {
     return mesh;
 }
 
-std::string content(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
-void put(const std::string& path, const std::string& text) {
-    std::ofstream(path, std::ios::binary) << text;
-}
-
 /// The message of the error when the text is read as a file of that name.
 std::string complaint(const std::string& name, const std::string& text) {
     const Folder folder;
-    put(folder / name, text);
+    folder.write(name, text);
     try {
         read_mesh(folder / name);
     } catch (const Error& error) {
         const std::string what = error.what();
-        const std::string prefix = folder.path().string() + "/";
+        const std::string prefix = folder.path() + "/";
         return what.starts_with(prefix) ? what.substr(prefix.size()) : what;
     }
     return "";
@@ -133,7 +99,7 @@ TEST_CASE("OFF, OBJ and PLY give back the same bits and the same polygons", "[me
             CHECK((back.properties[i].values == mesh.properties[i].values));
         }
     }
-    CHECK(folder.size() == 4); // no temporary file is left
+    CHECK(folder.names().size() == 4); // no temporary file is left
 }
 
 TEST_CASE("STL keeps every polygon as triangles, welded again on reading", "[mesh_io]") {
@@ -141,7 +107,7 @@ TEST_CASE("STL keeps every polygon as triangles, welded again on reading", "[mes
     const PolygonMesh mesh = square();
     for (const bool ascii : {false, true}) {
         write_mesh(folder / "s.stl", mesh, MeshFormat::stl, {ascii});
-        CHECK(content(folder / "s.stl").starts_with("solid") == ascii);
+        CHECK(read_file(folder / "s.stl").starts_with("solid") == ascii);
         const Topology t = measure_topology(read_mesh(folder / "s.stl"));
         CHECK(t.triangles == 2);
         CHECK(t.vertices == 4);
@@ -157,7 +123,7 @@ TEST_CASE("STL becomes text where floats would move vertices", "[mesh_io]") {
     for (Vec3& p : mesh.positions) p = p * 0.1 + Vec3(1e6, 0, 0);
     CHECK(write_mesh(folder / "far.stl", mesh, MeshFormat::stl).text_for_precision);
     CHECK_FALSE(write_mesh(folder / "far.stl", mesh, MeshFormat::stl, {true}).text_for_precision);
-    CHECK(content(folder / "far.stl").starts_with("solid"));
+    CHECK(read_file(folder / "far.stl").starts_with("solid"));
     CHECK(read_mesh(folder / "far.stl").positions[1] == mesh.positions[1]);
 }
 
@@ -174,7 +140,7 @@ TEST_CASE("STL keeps meshes of any size, and the directions of their normals", "
           == std::set(mesh.positions.begin(), mesh.positions.end()));
     CHECK(back.facet_count() == 4);
     write_mesh(folder / "text.stl", mesh, MeshFormat::stl, {true});
-    CHECK(content(folder / "text.stl").find("facet normal 0 0 -1\n") != std::string::npos);
+    CHECK(read_file(folder / "text.stl").find("facet normal 0 0 -1\n") != std::string::npos);
 }
 
 TEST_CASE("an empty mesh is a valid file in every format", "[mesh_io]") {
@@ -205,14 +171,14 @@ TEST_CASE("a write that fails leaves the old file, and no other", "[mesh_io]") {
     PolygonMesh wrong = square();
     wrong.corners[2] = 99;
     for (const char* name : {"old.off", "old.stl", "old.ply", "old.obj"}) {
-        put(folder / name, "old");
+        folder.write(name, "old");
         CHECK_THROWS_AS(write_mesh(folder / name, wrong, mesh_format(name)), Error);
-        CHECK(content(folder / name) == "old");
+        CHECK(read_file(folder / name) == "old");
     }
-    CHECK(folder.size() == 4);
+    CHECK(folder.names().size() == 4);
     fs::create_directory(folder / "dir.off");
     CHECK_THROWS_WITH(write_mesh(folder / "dir.off", square(), MeshFormat::off), Catch::Contains("folder"));
-    CHECK(folder.size() == 5);
+    CHECK(folder.names().size() == 5);
     CHECK_THROWS_WITH(write_mesh(folder / "none/m.off", square(), MeshFormat::off),
                       Catch::Contains("No such file") && Catch::Contains("none/m.off: "));
 }
@@ -238,11 +204,11 @@ TEST_CASE("a full disk is an error", "[mesh_io]") {
 
 TEST_CASE("a link is followed, and its target replaced", "[mesh_io]") {
     const Folder folder;
-    put(folder / "target.txt", "old");
+    folder.write("target.txt", "old");
     fs::create_symlink(folder / "target.txt", folder / "link.txt");
     write_text(folder / "link.txt", "new");
     CHECK(fs::is_symlink(folder / "link.txt"));
-    CHECK(content(folder / "target.txt") == "new");
+    CHECK(read_file(folder / "target.txt") == "new");
 }
 
 TEST_CASE("files have the permissions that the umask leaves", "[mesh_io]") {
@@ -257,7 +223,7 @@ TEST_CASE("a name of 255 bytes can be written", "[mesh_io]") {
     const Folder folder;
     const std::string name = std::string(251, 'n') + ".txt";
     write_text(folder / name, "x");
-    CHECK(content(folder / name) == "x");
+    CHECK(read_file(folder / name) == "x");
 }
 
 TEST_CASE("the extension names the format", "[mesh_io]") {
@@ -269,9 +235,9 @@ TEST_CASE("the extension names the format", "[mesh_io]") {
 
 TEST_CASE("OBJ faces may count back, name textures and normals, and go over lines", "[mesh_io]") {
     const Folder folder;
-    put(folder / "m.obj",
-        "# a comment\r\nmtllib x.mtl\r\nv 0 0 0\r\nv 1 0 0 0.5\r\nv 1 1 0\r\nvt 0 0\r\nvn 0 0 1\r\n"
-        "f 1/1/1 2/1/1 3/1/1\r\nf -3 \\\r\n -2 -1 # same\r\nl 1 2\r\nf 1//1 2//1 3//1\r\n");
+    folder.write("m.obj",
+                 "# a comment\r\nmtllib x.mtl\r\nv 0 0 0\r\nv 1 0 0 0.5\r\nv 1 1 0\r\nvt 0 0\r\nvn 0 0 1\r\n"
+                 "f 1/1/1 2/1/1 3/1/1\r\nf -3 \\\r\n -2 -1 # same\r\nl 1 2\r\nf 1//1 2//1 3//1\r\n");
     const PolygonMesh mesh = read_mesh(folder / "m.obj");
     CHECK(mesh.corners == std::vector<Index>{0, 1, 2, 0, 1, 2, 0, 1, 2});
     CHECK(mesh.normals.empty());
@@ -279,7 +245,8 @@ TEST_CASE("OBJ faces may count back, name textures and normals, and go over line
 
 TEST_CASE("OFF files with counts beside the keyword, comments and colours are read", "[mesh_io]") {
     const Folder folder;
-    put(folder / "m.off",
+    folder.write(
+        "m.off",
         "# made by hand\nCOFF 3 1 0 # counts\n\n0 0 0 255 0 0 255\n1 0 0 1 2 3 4\n# half way\n0 1 0 1 2 3 4\n"
         "3 0 1 2 0.5 0.5 0.5\n");
     const PolygonMesh mesh = read_mesh(folder / "m.off");
@@ -302,7 +269,7 @@ TEST_CASE("PLY faces of any list types, among other elements, in either byte ord
         for (int k = 0; k < 3; ++k)
             bytes({v == k ? 0x3f : 0, v == k ? 0x80 : 0, 0, 0}); // 1.0 on the diagonal
     bytes({7, 0, 3, 0, 2, 0, 1, 0, 0, 1, 0, 0, 0, 0});
-    put(folder / "b.ply", big);
+    folder.write("b.ply", big);
     const PolygonMesh mesh = read_mesh(folder / "b.ply");
     CHECK(mesh.positions == std::vector<Vec3>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
     CHECK(mesh.corners == std::vector<Index>{2, 1, 0});
@@ -311,7 +278,7 @@ TEST_CASE("PLY faces of any list types, among other elements, in either byte ord
 
 TEST_CASE("a file of points is a mesh without facets", "[mesh_io]") {
     const Folder folder;
-    put(folder / "p.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nproperty double y\n"
+    folder.write("p.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nproperty double y\n"
                           "property double z\nend_header\n1 2 3\n");
     CHECK(read_mesh(folder / "p.ply").vertex_count() == 1);
     CHECK(read_mesh(folder / "p.ply").facet_count() == 0);
@@ -358,10 +325,10 @@ TEST_CASE("a mesh file cut anywhere gives an error or a mesh, never a crash", "[
                                       {"m.stl", false},
                                       {"a.stl", true}}) {
         write_mesh(folder / name, mesh, mesh_format(name), {ascii});
-        const std::string whole = content(folder / name);
+        const std::string whole = read_file(folder / name);
         std::size_t meshes = 0;
         for (std::size_t size = 0; size < whole.size(); ++size) {
-            put(folder / ("cut-" + name), whole.substr(0, size));
+            folder.write("cut-" + name, whole.substr(0, size));
             try {
                 meshes += read_mesh(folder / ("cut-" + name)).facet_count() > 2;
             } catch (const Error&) {

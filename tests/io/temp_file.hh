@@ -2,14 +2,10 @@
 // A file that lives as long as its test needs it, and how its bytes are put together.
 
 #include "hsdm/io/read_points.hh"
+#include "support/folder.hh"
 
-#include <unistd.h>
-
-#include <atomic>
 #include <bit>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <string>
 
 namespace hsdm::test {
@@ -17,24 +13,11 @@ namespace hsdm::test {
 /// A file of the given name (it decides the format) in a folder of its own, removed at the end.
 class TempFile {
 public:
-    TempFile(const std::string& name, const std::string& content) {
-        static std::atomic<int> counter = 0;
-        folder_ = std::filesystem::temp_directory_path()
-                  / ("hsdm_io_" + std::to_string(::getpid()) + "_" + std::to_string(counter++));
-        std::filesystem::create_directories(folder_);
-        path_ = (folder_ / name).string();
-        std::ofstream(path_, std::ios::binary) << content;
-    }
-    TempFile(const TempFile&) = delete;
-    TempFile& operator=(const TempFile&) = delete;
-    ~TempFile() {
-        std::error_code ignored;
-        std::filesystem::remove_all(folder_, ignored);
-    }
+    TempFile(const std::string& name, const std::string& content) : path_(folder_.write(name, content)) {}
     const std::string& path() const { return path_; }
 
 private:
-    std::filesystem::path folder_;
+    support::Folder folder_;
     std::string path_;
 };
 

@@ -2,6 +2,7 @@
 #include "hsdm/io/write_om.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/mesh/vertex_normals.hh"
+#include "support/folder.hh"
 
 #include <catch2/catch.hpp>
 
@@ -43,8 +44,8 @@ TEST_CASE(".om keeps doubles, polygons, the hsdm properties and the status bits"
     mesh.status(OpenMesh::VertexHandle(1)).set_feature(true);
     mesh.status(OpenMesh::EdgeHandle(2)).set_feature(true);
 
-    const std::string path =
-        (std::filesystem::temp_directory_path() / ("hsdm-" + std::to_string(::getpid()) + ".om")).string();
+    const support::Folder folder;
+    const std::string path = folder / "m.om";
     write_om(path, mesh);
     PolyMesh back;
     for (const char* name : {vertex_class_property, normal_count_property, level_property})
@@ -53,7 +54,6 @@ TEST_CASE(".om keeps doubles, polygons, the hsdm properties and the status bits"
     OpenMesh::IO::Options options = OpenMesh::IO::Options::VertexNormal;
     options += OpenMesh::IO::Options::Status;
     REQUIRE(OpenMesh::IO::read_mesh(back, path, options));
-    std::filesystem::remove(path);
 
     REQUIRE(back.n_vertices() == mesh.n_vertices());
     REQUIRE(back.n_edges() == mesh.n_edges());
@@ -77,12 +77,11 @@ TEST_CASE("write_mesh writes .om through a half-edge mesh", "[mesh_io]") {
     PolygonMesh polygons;
     polygons.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     polygons.add_facet(std::array<Index, 3>{0, 1, 2});
-    const std::string path =
-        (std::filesystem::temp_directory_path() / ("hsdm-p-" + std::to_string(::getpid()) + ".om")).string();
+    const support::Folder folder;
+    const std::string path = folder / "m.om";
     write_mesh(path, polygons, MeshFormat::om);
     PolyMesh back;
     CHECK(OpenMesh::IO::read_mesh(back, path));
-    std::filesystem::remove(path);
     CHECK(back.n_faces() == 1);
     CHECK_THROWS(write_mesh("/nonexistent-folder/m.om", polygons, MeshFormat::om));
 }
@@ -98,8 +97,8 @@ TEST_CASE(".om is written where no memory is left for the whole of it", "[mesh_i
     }
     PolyMesh mesh = to_mesh(polygons).mesh;
     kept_vertex_property<VertexNormalsT<PolyMesh>>(mesh, vertex_normals_property);
-    const std::string path =
-        (std::filesystem::temp_directory_path() / ("hsdm-m" + std::to_string(::getpid()) + ".om")).string();
+    const support::Folder folder;
+    const std::string path = folder / "m.om";
     const pid_t child = ::fork();
     if (child == 0) {
         std::size_t pages = 0;
@@ -120,6 +119,5 @@ TEST_CASE(".om is written where no memory is left for the whole of it", "[mesh_i
     CHECK(WEXITSTATUS(status) == 0);
     std::error_code ignored;
     CHECK(std::filesystem::file_size(path, ignored) > 9000000);
-    std::filesystem::remove(path, ignored);
 }
 #endif

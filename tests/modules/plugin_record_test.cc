@@ -1,11 +1,11 @@
 #include "hsdm/io/source_bytes.hh"
 #include "hsdm/modules/plugin_record.hh"
 #include "hsdm/plugin.hh"
+#include "support/folder.hh"
 
 #include <catch2/catch.hpp>
 
 #include <cstring>
-#include <fstream>
 #include <sstream>
 
 #include <link.h>
@@ -13,13 +13,6 @@
 using namespace hsdm;
 
 namespace {
-
-std::string bytes_of_file(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream bytes;
-    bytes << file.rdbuf();
-    return bytes.str();
-}
 
 std::optional<PluginRecord> record_of(const std::string& bytes) {
     std::istringstream stream(bytes);
@@ -29,7 +22,7 @@ std::optional<PluginRecord> record_of(const std::string& bytes) {
 } // namespace
 
 TEST_CASE("what a module says of itself is read from its bytes") {
-    const auto record = record_of(bytes_of_file(HSDM_EXAMPLE_DIR "/scale.so"));
+    const auto record = record_of(support::read_file(HSDM_EXAMPLE_DIR "/scale.so"));
     REQUIRE(record);
     CHECK(record->abi == plugin_abi);
     CHECK(record->build == HSDM_PLUGIN_BUILD);
@@ -39,7 +32,7 @@ TEST_CASE("what a module says of itself is read from its bytes") {
 }
 
 TEST_CASE("a damaged module has a record or none, and is never read outside its bytes") {
-    const std::string whole = bytes_of_file(HSDM_ODD_MODULE_DIR "/wrong_interface.so"); // a small one
+    const std::string whole = support::read_file(HSDM_ODD_MODULE_DIR "/wrong_interface.so"); // a small one
     REQUIRE(whole.size() > 64);
     REQUIRE(record_of(whole)->abi == 4711);
     for (const std::size_t size : {0u, 3u, 16u, 63u, 64u, 1000u})

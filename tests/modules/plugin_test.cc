@@ -5,6 +5,7 @@
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/modules/plugin_loader.hh"
+#include "support/folder.hh"
 
 #include <catch2/catch.hpp>
 
@@ -25,30 +26,17 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The modules of a folder, copied into one of this user's alone: where the build tree lies others may write.
-class OwnModules {
+class OwnModules : public support::Folder {
 public:
     explicit OwnModules(const std::string& from) {
-        std::string name = (fs::temp_directory_path() / "hsdm-modules-XXXXXX").string();
-        if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no scratch folder can be made");
-        path_ = name;
         for (const auto& file : fs::directory_iterator(from)) {
             if (file.path().extension() != ".so") continue;
-            fs::copy_file(file.path(), path_ / file.path().filename());
-            fs::permissions(path_ / file.path().filename(), fs::perms::owner_all);
+            const std::string copy = *this / file.path().filename().string();
+            fs::copy_file(file.path(), copy);
+            fs::permissions(copy, fs::perms::owner_all);
         }
     }
-    ~OwnModules() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    OwnModules(const OwnModules&) = delete;
-    OwnModules& operator=(const OwnModules&) = delete;
-
-    std::string operator/(const std::string& name) const { return path_ / name; }
-    operator std::vector<std::string>() const { return {path_}; }
-
-private:
-    fs::path path_;
+    operator std::vector<std::string>() const { return {path()}; }
 };
 
 std::string refusal(const std::string& name, const std::vector<std::string>& folders) {

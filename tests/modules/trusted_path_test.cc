@@ -1,5 +1,7 @@
 #include "hsdm/modules/trusted_path.hh"
 
+#include "support/folder.hh"
+
 #include <catch2/catch.hpp>
 
 #include <filesystem>
@@ -40,9 +42,8 @@ TEST_CASE("the sticky bit helps a folder farther up, not the one that modules ar
 }
 
 TEST_CASE("a file is distrusted for any folder above it, and for where its links lead through") {
-    std::string name = (fs::temp_directory_path() / "hsdm-trust-XXXXXX").string();
-    REQUIRE(mkdtemp(name.data()) != nullptr);
-    const fs::path root = name;
+    const hsdm::support::Folder folder;
+    const fs::path root = folder.path();
     fs::create_directories(root / "open/inner");
     fs::create_directories(root / "safe");
     for (const char* file : {"open/inner/a", "safe/a"}) std::ofstream(root / file) << "x";
@@ -61,5 +62,4 @@ TEST_CASE("a file is distrusted for any folder above it, and for where its links
     CHECK(distrust((root / "safe/a").string()).empty());
     CHECK(distrust((root / "missing/a").string()).empty());
     CHECK_THAT(distrust((root / "circle").string()), Contains("circle"));
-    fs::remove_all(root);
 }

@@ -1,5 +1,6 @@
 #include "hsdm/pipeline/phase_geometry.hh"
 #include "hsdm/quality/topology.hh"
+#include "support/folder.hh"
 
 #include <catch2/catch.hpp>
 
@@ -57,9 +58,8 @@ TEST_CASE("the graph is drawn as one line per edge", "[pipeline]") {
 TEST_CASE("the phases are written into a folder", "[pipeline]") {
     const Octree octree = build_octree(random_cloud());
     const OctreeLevel level = extract_level(octree, 3);
-    const auto folder = std::filesystem::temp_directory_path() / "hsdm_phases_test" / "deep";
-    write_phases(folder.string(), octree, level, extract_graph(octree, level), voxel_cubes(octree, level));
+    const support::Folder folder;
+    write_phases(folder / "deep", octree, level, extract_graph(octree, level), voxel_cubes(octree, level));
     for (const char* name : {"voxels.obj", "graph.obj", "facets.off"})
-        CHECK(std::filesystem::file_size(folder / "d3" / name) > 0);
-    std::filesystem::remove_all(folder.parent_path());
+        CHECK(std::filesystem::file_size(folder / ("deep/d3/" + std::string(name))) > 0);
 }
