@@ -1,8 +1,8 @@
 #include "hsdm/basic/basic_facets.hh"
 
 #include "hsdm/basic/false_facets.hh"
+#include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
-#include "hsdm/errors.hh"
 #include "hsdm/mesh/split_polygon.hh"
 
 #include <algorithm>
@@ -82,7 +82,7 @@ private:
             ++first_candidate_[h + 1];
             ++first_candidate_[graph_.twin[h] + 1];
         }
-        std::partial_sum(first_candidate_.begin(), first_candidate_.end(), first_candidate_.begin());
+        counts_to_first(first_candidate_);
         candidates_.resize(first_candidate_.back());
         std::vector<Index> next(first_candidate_.begin(), first_candidate_.end() - 1);
         for (Index i = 0; i < loops_.size(); ++i)
@@ -262,9 +262,8 @@ private:
 
 BasicFacets reconstruct_facets(const Octree& octree, const OctreeLevel& level, const ConnectivityGraph& graph,
                                const BasicFacetOptions& options, std::vector<VertexProperty> properties) {
-    if (options.max_loop_edges < 3 || options.max_loop_edges > max_loop_edges)
-        throw OptionError("max_loop_edges " + std::to_string(options.max_loop_edges) + ": must lie in [3, "
-                          + std::to_string(max_loop_edges) + "]");
+    check_option(options.max_loop_edges >= 3 && options.max_loop_edges <= max_loop_edges, "max_loop_edges",
+                 options.max_loop_edges, "lie in [3, " + std::to_string(max_loop_edges) + "]");
     BasicFacets result;
     Propagation(octree, level, graph, options, result).run();
     result.mesh.properties = std::move(properties);

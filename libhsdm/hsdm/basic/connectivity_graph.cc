@@ -1,8 +1,8 @@
 #include "hsdm/basic/connectivity_graph.hh"
 
 #include "hsdm/basic/voxel_centroid.hh"
+#include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
-#include "hsdm/errors.hh"
 
 #include <atomic>
 #include <bit>
@@ -24,11 +24,10 @@ struct Choices {
 };
 
 void check(const NeighborChoiceOptions& options) {
-    if (options.wanted < 1 || options.wanted > neighbor_count)
-        throw OptionError("wanted " + std::to_string(options.wanted) + ": must lie in [1, 18]");
-    if (options.max_face_neighbors < std::min(options.wanted, 6) || options.max_face_neighbors > 6)
-        throw OptionError("max_face_neighbors " + std::to_string(options.max_face_neighbors)
-                          + ": must lie in [wanted, 6]");
+    check_option(options.wanted >= 1 && options.wanted <= neighbor_count, "wanted", options.wanted,
+                 "lie in [1, 18]");
+    check_option(options.max_face_neighbors >= std::min(options.wanted, 6) && options.max_face_neighbors <= 6,
+                 "max_face_neighbors", options.max_face_neighbors, "lie in [wanted, 6]");
 }
 
 /// The neighbours of one voxel, appended to `out`. Edge neighbours are looked up only if they can matter.
@@ -58,21 +57,15 @@ Index choose(const OctreeLevel& level, const std::vector<Vec3>& positions, Index
 /// Chunks are fixed, so the lists come out alike for any number of threads.
 Choices choose_all(const OctreeLevel& level, const std::vector<Vec3>& positions,
                    const NeighborChoiceOptions& options) {
-    const std::size_t n = level.size(), chunks = (n + grain - 1) / grain;
     Choices choices;
-    choices.first.assign(n + 1, 0);
-    std::vector<std::vector<Index>> targets(chunks);
-    for_each_task(chunks, [&](std::size_t chunk) {
-        targets[chunk].reserve(5 * grain);
-        for (std::size_t v = chunk * grain; v < std::min(n, (chunk + 1) * grain); ++v)
-            choices.first[v + 1] = choose(level, positions, static_cast<Index>(v), options, targets[chunk]);
-    });
-    std::partial_sum(choices.first.begin(), choices.first.end(), choices.first.begin());
-    choices.target.resize(choices.first.back());
-    for_each_task(chunks, [&](std::size_t chunk) {
-        std::copy(targets[chunk].begin(), targets[chunk].end(),
-                  choices.target.begin() + choices.first[chunk * grain]);
-    });
+    choices.first.assign(level.size() + 1, 0);
+    const auto choose_some = [&](std::size_t begin, std::size_t end, std::vector<Index>& targets) {
+        targets.reserve(5 * grain);
+        for (auto v = static_cast<Index>(begin); v < end; ++v)
+            choices.first[v + 1] = choose(level, positions, v, options, targets);
+    };
+    choices.target = collected<Index>(level.size(), grain, choose_some);
+    counts_to_first(choices.first);
     return choices;
 }
 
@@ -80,7 +73,6 @@ Choices choose_all(const OctreeLevel& level, const std::vector<Vec3>& positions,
 /// the order in which threads do so is wiped out by the sort.
 void make_half_edges(const Choices& choices, bool mutual, ConnectivityGraph& graph) {
     const std::size_t n = graph.vertex_count();
-    std::vector<Index> degree(n, 0);
     auto for_each_edge = [&](auto&& enter) {
         for_each_index(n, grain, [&](Index v) {
             for (Index i = choices.first[v]; i < choices.first[v + 1]; ++i) {
@@ -91,10 +83,11 @@ void make_half_edges(const Choices& choices, bool mutual, ConnectivityGraph& gra
             }
         });
     };
-    for_each_edge(
-        [&](Index from, Index) { std::atomic_ref(degree[from]).fetch_add(1, std::memory_order_relaxed); });
     graph.first_edge.assign(n + 1, 0);
-    std::partial_sum(degree.begin(), degree.end(), graph.first_edge.begin() + 1);
+    for_each_edge([&](Index from, Index) {
+        std::atomic_ref(graph.first_edge[from + 1]).fetch_add(1, std::memory_order_relaxed);
+    });
+    counts_to_first(graph.first_edge);
     graph.end.resize(graph.first_edge.back());
     std::vector<Index> next(graph.first_edge.begin(), graph.first_edge.end() - 1);
     for_each_edge([&](Index from, Index to) {

@@ -1,5 +1,7 @@
 #include "hsdm/basic/false_facets.hh"
 
+#include "hsdm/spatial/point_triangle.hh"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -26,28 +28,6 @@ VoxelCoord cell_of(const Vec3& p, double voxel_size) {
 struct Triangle3 {
     Vec3 a, b, c;
 };
-
-/// Squared distance by the regions of the plane around the triangle.
-double squared_distance(const Vec3& p, const Triangle3& t) {
-    const Vec3 ab = t.b - t.a, ac = t.c - t.a, ap = p - t.a;
-    const double d1 = ab | ap, d2 = ac | ap;
-    if (d1 <= 0 && d2 <= 0) return ap.sqrnorm();
-    const Vec3 bp = p - t.b;
-    const double d3 = ab | bp, d4 = ac | bp;
-    if (d3 >= 0 && d4 <= d3) return bp.sqrnorm();
-    const double vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) return (ap - ab * (d1 / (d1 - d3))).sqrnorm();
-    const Vec3 cp = p - t.c;
-    const double d5 = ab | cp, d6 = ac | cp;
-    if (d6 >= 0 && d5 <= d6) return cp.sqrnorm();
-    const double vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return (ap - ac * (d2 / (d2 - d6))).sqrnorm();
-    const double va = d3 * d6 - d5 * d4;
-    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-        return (bp - (t.c - t.b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)))).sqrnorm();
-    const double sum = va + vb + vc;
-    return (ap - ab * (vb / sum) - ac * (vc / sum)).sqrnorm();
-}
 
 /// Separating axes: the box's faces, the triangle's plane, and the products of their edges.
 bool intersects_box(const Triangle3& t, const Vec3& center, double half) {
@@ -125,6 +105,8 @@ bool hits_neighbor_voxel(const OctreeLevel& level, const ConnectivityGraph& grap
 double deviation_from_close_points(const Octree& octree, const OctreeLevel& level,
                                    const ConnectivityGraph& graph, std::span<const Index> vertices) {
     const std::vector<Triangle3> triangles = fan(graph, vertices);
+    std::vector<PreparedTriangle> prepared;
+    for (const Triangle3& t : triangles) prepared.emplace_back(t.a, t.b, t.c);
     const double h = level.voxel_size;
     Box box;
     for (Index v : vertices) box.add(graph.positions[v]);
@@ -141,8 +123,8 @@ double deviation_from_close_points(const Octree& octree, const OctreeLevel& leve
                     continue;
                 for (Index p = level.first_point[voxel]; p < level.first_point[voxel + 1]; ++p) {
                     double nearest = Box::inf;
-                    for (const Triangle3& t : triangles)
-                        nearest = std::min(nearest, squared_distance(octree.positions[p], t));
+                    for (const PreparedTriangle& t : prepared)
+                        nearest = std::min(nearest, t.nearest(octree.positions[p]).squared_distance);
                     deviation = std::max(deviation, nearest);
                 }
             }

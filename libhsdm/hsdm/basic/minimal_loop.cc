@@ -137,28 +137,16 @@ std::vector<Loop> minimal_loops_through(const ConnectivityGraph& graph, Index fi
 }
 
 LoopList find_short_loops(const ConnectivityGraph& graph) {
-    const std::size_t n = graph.vertex_count(), chunks = (n + grain - 1) / grain;
-    std::vector<std::vector<Index>> half_edges(chunks), sizes(chunks);
-    for_each_task(chunks, [&](std::size_t chunk) {
+    std::vector<std::vector<Index>> half_edges(chunk_count(graph.vertex_count(), grain)),
+        sizes(half_edges.size());
+    for_chunks(graph.vertex_count(), grain, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         half_edges[chunk].reserve(5 * grain);
-        for (std::size_t v = chunk * grain; v < std::min(n, (chunk + 1) * grain); ++v)
-            loops_from(graph, static_cast<Index>(v), half_edges[chunk], sizes[chunk]);
+        for (auto v = static_cast<Index>(begin); v < end; ++v)
+            loops_from(graph, v, half_edges[chunk], sizes[chunk]);
     });
-    std::vector<std::size_t> loop_at(chunks + 1, 0), edge_at(chunks + 1, 0);
-    for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
-        loop_at[chunk + 1] = loop_at[chunk] + sizes[chunk].size();
-        edge_at[chunk + 1] = edge_at[chunk] + half_edges[chunk].size();
-    }
-    LoopList list;
-    list.half_edges.resize(edge_at.back());
-    list.begin.resize(loop_at.back() + 1);
-    for_each_task(chunks, [&](std::size_t chunk) {
-        std::copy(half_edges[chunk].begin(), half_edges[chunk].end(),
-                  list.half_edges.begin() + static_cast<std::ptrdiff_t>(edge_at[chunk]));
-        auto at = static_cast<Index>(edge_at[chunk]);
-        for (std::size_t i = 0; i < sizes[chunk].size(); ++i)
-            list.begin[loop_at[chunk] + i + 1] = at += sizes[chunk][i];
-    });
+    sizes.insert(sizes.begin(), std::vector<Index>{0});
+    LoopList list{joined(half_edges), joined(sizes)};
+    counts_to_first(list.begin);
     return list;
 }
 

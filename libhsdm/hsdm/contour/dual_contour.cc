@@ -243,9 +243,7 @@ PolygonMesh facets_of(const Crossings& crossings, const Links& links, const Dual
 template <class T>
 std::vector<T> of_origins(const std::vector<T>& values, const std::vector<Index>& origin) {
     std::vector<T> result(origin.size());
-    for_chunks(result.size(), values_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i) result[i] = values[origin[i]];
-    });
+    for_each_index(result.size(), values_per_chunk, [&](Index i) { result[i] = values[origin[i]]; });
     return result;
 }
 

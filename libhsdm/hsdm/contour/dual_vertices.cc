@@ -123,8 +123,7 @@ private:
             }
         for (std::size_t i = 0; i < n; ++i)
             if (place_[i] != none && !holds_shorter(i, chain)) cuts_.push_back(place_[i]);
-        std::sort(cuts_.begin(), cuts_.end());
-        cuts_.erase(std::unique(cuts_.begin(), cuts_.end()), cuts_.end());
+        sort_unique(cuts_);
         if (chain.closed && cuts_.size() < 2) cuts_.clear();
     }
 
@@ -237,16 +236,12 @@ void append(const ChunkDualVertices& chunk, DualVertices& duals) {
 /// one side to each.
 void number_sides(const Crossings& crossings, std::span<const std::uint8_t> shared, DualVertices& duals) {
     duals.of_side.assign(8 * crossings.crossings.size(), no_index);
-    for_chunks(duals.size(), crossings_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t v = begin; v < end; ++v) {
-            const auto corners = duals.corners_of(static_cast<Index>(v));
-            for (std::size_t i = 0; i < corners.size(); ++i) {
-                const std::size_t leaves_by = crossings.of(corners[i]).leaving, corner = corners[i].number();
-                if (i > 0 || !(shared[v] & 1u))
-                    duals.of_side[2 * corner + 1 - leaves_by] = static_cast<Index>(v);
-                if (i + 1 < corners.size() || !(shared[v] & 2u))
-                    duals.of_side[2 * corner + leaves_by] = static_cast<Index>(v);
-            }
+    for_each_index(duals.size(), crossings_per_chunk, [&](Index v) {
+        const auto corners = duals.corners_of(v);
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const std::size_t leaves_by = crossings.of(corners[i]).leaving, corner = corners[i].number();
+            if (i > 0 || !(shared[v] & 1u)) duals.of_side[2 * corner + 1 - leaves_by] = v;
+            if (i + 1 < corners.size() || !(shared[v] & 2u)) duals.of_side[2 * corner + leaves_by] = v;
         }
     });
 }

@@ -104,11 +104,9 @@ void connect_grid_point(GridPoints& grid, std::size_t i) {
 
 std::vector<std::array<Index, 3>> grid_points_below(const GridPoints& grid) {
     std::vector<std::array<Index, 3>> below(grid.size(), {no_index, no_index, no_index});
-    for_chunks(grid.size(), grid_points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t c = begin; c < end; ++c)
-            for (unsigned axis = 0; axis < 3; ++axis)
-                if (const Index next = grid.next[c][axis]; next != no_index)
-                    below[next][axis] = static_cast<Index>(c);
+    for_each_index(grid.size(), grid_points_per_chunk, [&](Index c) {
+        for (unsigned axis = 0; axis < 3; ++axis)
+            if (const Index next = grid.next[c][axis]; next != no_index) below[next][axis] = c;
     });
     return below;
 }
@@ -119,9 +117,7 @@ GridPoints build_grid_points(const OctreeLevel& level) {
     grid.index.build(grid.codes);
     connect_voxels(level, grid);
     grid.next.resize(grid.size());
-    for_chunks(grid.size(), grid_points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i) connect_grid_point(grid, i);
-    });
+    for_each_index(grid.size(), grid_points_per_chunk, [&](Index i) { connect_grid_point(grid, i); });
     return grid;
 }
 

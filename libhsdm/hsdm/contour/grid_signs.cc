@@ -104,9 +104,7 @@ public:
 private:
     template <class F>
     void for_grid_points(F&& f) const {
-        for_chunks(grid_.size(), grid_points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t c = begin; c < end; ++c) f(static_cast<Index>(c));
-        });
+        for_each_index(grid_.size(), grid_points_per_chunk, [&](Index c) { f(c); });
     }
 
     /// Calls f(neighbour) for the up to six grid points that share an edge with this one.
@@ -206,8 +204,7 @@ private:
             });
         });
         std::vector<Index> grid_points = joined(parts);
-        std::sort(grid_points.begin(), grid_points.end());
-        grid_points.erase(std::unique(grid_points.begin(), grid_points.end()), grid_points.end());
+        sort_unique(grid_points);
         return grid_points;
     }
 
@@ -219,17 +216,15 @@ private:
         for (int round = 0; round < signs::settle_rounds; ++round) {
             std::fill(changed.begin(), changed.end(), 0);
             for (int colour : {0, 1})
-                for_chunks(grid_points.size(), 512, [&](std::size_t begin, std::size_t end, std::size_t) {
-                    for (std::size_t k = begin; k < end; ++k) {
-                        const Index c = grid_points[k];
-                        const VoxelCoord v = grid_.coord(c);
-                        if (((v[0] + v[1] + v[2]) & 1) != colour) continue;
-                        const Side other = 1 - side_[c];
-                        const double gain = (other == outside ? 1 : -1) * belief_[c];
-                        if (grid_point_cost(c, other) + 1e-9 >= grid_point_cost(c, side_[c]) + gain) continue;
-                        side_[c] = other;
-                        changed[k] = 1;
-                    }
+                for_each_index(grid_points.size(), 512, [&](Index k) {
+                    const Index c = grid_points[k];
+                    const VoxelCoord v = grid_.coord(c);
+                    if (((v[0] + v[1] + v[2]) & 1) != colour) return;
+                    const Side other = 1 - side_[c];
+                    const double gain = (other == outside ? 1 : -1) * belief_[c];
+                    if (grid_point_cost(c, other) + 1e-9 >= grid_point_cost(c, side_[c]) + gain) return;
+                    side_[c] = other;
+                    changed[k] = 1;
                 });
             if (std::find(changed.begin(), changed.end(), 1) == changed.end()) break;
         }

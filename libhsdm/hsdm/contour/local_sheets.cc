@@ -113,19 +113,18 @@ LocalSheets connect_members(const GridPoints& grid, const NormalSets& sets, cons
     LocalSheets result;
     const std::size_t n = grid.size();
     result.first_member.assign(n + 1, 0);
-    std::vector<std::vector<SheetMember>> members(chunk_count(n, grid_points_per_chunk));
-    for_chunks(n, grid_points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+    const auto connect = [&](std::size_t i, std::size_t end, std::vector<SheetMember>& members) {
         SheetsAtPoint grid_point;
-        for (std::size_t i = begin; i < end; ++i) {
+        for (; i < end; ++i) {
             grid_point.gather(grid.voxels[i], sets);
             grid_point.connect(sets, related);
             const auto last =
                 grid_point.members.begin() + static_cast<std::ptrdiff_t>(grid_point.member_count);
-            members[chunk].insert(members[chunk].end(), grid_point.members.begin(), last);
+            members.insert(members.end(), grid_point.members.begin(), last);
             result.first_member[i + 1] = static_cast<Index>(grid_point.member_count);
         }
-    });
-    result.members = joined(members);
+    };
+    result.members = collected<SheetMember>(n, grid_points_per_chunk, connect);
     counts_to_first(result.first_member);
     return result;
 }
@@ -146,16 +145,9 @@ bool joined_nearby(const GridPoints& grid, const LocalSheets& sheets, const Voxe
 }
 
 std::vector<Index> grid_points_with_several(const LocalSheets& sheets) {
-    const std::size_t n = sheets.first_member.size() - 1;
-    std::vector<std::vector<Index>> parts(chunk_count(n, grid_points_per_chunk));
-    for_chunks(n, grid_points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const auto members = sheets.members_at(static_cast<Index>(i));
-            if (std::any_of(members.begin(), members.end(), [](const SheetMember& m) { return m.sheet > 0; }))
-                parts[chunk].push_back(static_cast<Index>(i));
-        }
+    return indices_where(sheets.first_member.size() - 1, grid_points_per_chunk, [&](Index i) {
+        return std::ranges::any_of(sheets.members_at(i), [](const SheetMember& m) { return m.sheet > 0; });
     });
-    return joined(parts);
 }
 
 /// Closure: two sets of one sheet at one grid point are one sheet at every grid point they share, unless
@@ -269,21 +261,19 @@ LocalSheets group_local_sheets(const GridPoints& grid, const NormalSets& sets, c
 }
 
 std::size_t extend_grid_points(GridPoints& grid, LocalSheets& sheets, const OctreeLevel& level) {
-    const std::size_t n = grid.size();
     const MissingGridPoints grid_points(grid, 1 << level.depth);
-    std::vector<std::vector<MortonCode>> parts(chunk_count(n, grid_points_per_chunk));
-    for_chunks(n, grid_points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        for (std::size_t i = begin; i < end; ++i)
-            for (const LocalSheet& sheet : sheets.sheets_at(static_cast<Index>(i)))
+    const auto add_missing = [&](std::size_t begin, std::size_t end, std::vector<MortonCode>& missing) {
+        for (auto i = static_cast<Index>(begin); i < end; ++i)
+            for (const LocalSheet& sheet : sheets.sheets_at(i))
                 for (unsigned axis = 0; axis < 3; ++axis) {
                     const double rise = sheet.normal[axis] * level.voxel_size;
                     const bool inside = sheet.distance < 0;
                     for (bool up : {true, false})
                         if (inside != (sheet.distance + (up ? rise : -rise) < 0))
-                            grid_points.add(static_cast<Index>(i), axis, up, parts[chunk]);
+                            grid_points.add(i, axis, up, missing);
                 }
-    });
-    std::vector<MortonCode> missing = joined(parts);
+    };
+    std::vector<MortonCode> missing = collected<MortonCode>(grid.size(), grid_points_per_chunk, add_missing);
     if (missing.empty()) return 0;
     tbb::parallel_sort(missing.begin(), missing.end());
     missing.erase(std::unique(missing.begin(), missing.end()), missing.end());

@@ -1,6 +1,7 @@
 #include "hsdm/contour/move_to_creases.hh"
 
 #include "hsdm/contour/constants.hh"
+#include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/part_of.hh"
 #include "hsdm/spatial/self_intersections.hh"
@@ -32,8 +33,7 @@ public:
     std::vector<Index> facets() const {
         std::vector<Index> result;
         for (const auto& [vertex, facet] : pairs_) result.push_back(facet);
-        std::sort(result.begin(), result.end());
-        result.erase(std::unique(result.begin(), result.end()), result.end());
+        sort_unique(result);
         return result;
     }
 

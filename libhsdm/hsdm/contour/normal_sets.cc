@@ -1,8 +1,8 @@
 #include "hsdm/contour/normal_sets.hh"
 
 #include "hsdm/contour/constants.hh"
+#include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
-#include "hsdm/errors.hh"
 
 #include <tbb/enumerable_thread_specific.h>
 
@@ -254,13 +254,11 @@ private:
 };
 
 void validate(const NormalSetOptions& options) {
-    if (!(options.cluster_angle > 0 && options.cluster_angle < 1.5707963))
-        throw OptionError("cluster_angle " + std::to_string(options.cluster_angle)
-                          + ": must lie in (0, pi/2)");
-    if (!(options.sheet_gap > 0))
-        throw OptionError("sheet_gap " + std::to_string(options.sheet_gap) + ": must be positive");
-    if (options.max_sets < 1 || options.max_sets > 8)
-        throw OptionError("max_sets " + std::to_string(options.max_sets) + ": must lie in [1, 8]");
+    check_option(options.cluster_angle > 0 && options.cluster_angle < 1.5707963, "cluster_angle",
+                 options.cluster_angle, "lie in (0, pi/2)");
+    check_option(options.sheet_gap > 0, "sheet_gap", options.sheet_gap, "be positive");
+    check_option(options.max_sets >= 1 && options.max_sets <= 8, "max_sets", options.max_sets,
+                 "lie in [1, 8]");
 }
 
 } // namespace
@@ -273,14 +271,9 @@ NormalSets build_normal_sets(const Octree& octree, const OctreeLevel& level,
     result.of_point.assign(octree.size(), no_index);
     if (!octree.has_normals()) return result;
 
-    const std::size_t chunks = (level.size() + voxels_per_chunk - 1) / voxels_per_chunk;
-    std::vector<std::vector<NormalSet>> sets_of_chunk(chunks);
     tbb::enumerable_thread_specific<Scratch> scratch;
-    for_each_task(chunks, [&](std::size_t chunk) {
-        std::vector<NormalSet>& sets = sets_of_chunk[chunk];
-        for (std::size_t v = chunk * voxels_per_chunk;
-             v < std::min(level.size(), (chunk + 1) * voxels_per_chunk); ++v) {
-            const auto voxel = static_cast<Index>(v);
+    const auto cluster = [&](std::size_t first, std::size_t last, std::vector<NormalSet>& sets) {
+        for (auto v = static_cast<Index>(first); v < last; ++v) {
             const Index begin = level.first_point[v], end = level.first_point[v + 1];
             VoxelClusters clusters(octree, begin, end, level.voxel_size, options, scratch.local());
             clusters.run();
@@ -288,7 +281,7 @@ NormalSets build_normal_sets(const Octree& octree, const OctreeLevel& level,
             std::array<std::uint8_t, 8> order{};
             std::size_t n = 0;
             for (std::size_t k = 0; k < clusters.count(); ++k) {
-                found[k] = clusters.set(k, voxel);
+                found[k] = clusters.set(k, v);
                 if (found[k].count > 0) order[n++] = static_cast<std::uint8_t>(k);
             }
             std::stable_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n),
@@ -304,14 +297,12 @@ NormalSets build_normal_sets(const Octree& octree, const OctreeLevel& level,
                     result.of_point[i] = rank[clusters.label(i - begin)];
             result.first[v + 1] = static_cast<Index>(n);
         }
-    });
-    std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
-    result.sets.reserve(result.first.back());
-    for (const auto& sets : sets_of_chunk) result.sets.insert(result.sets.end(), sets.begin(), sets.end());
-    for_chunks(level.size(), voxels_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t v = begin; v != end; ++v)
-            for (Index i = level.first_point[v]; i < level.first_point[v + 1]; ++i)
-                if (result.of_point[i] != no_index) result.of_point[i] += result.first[v];
+    };
+    result.sets = collected<NormalSet>(level.size(), voxels_per_chunk, cluster);
+    counts_to_first(result.first);
+    for_each_index(level.size(), voxels_per_chunk, [&](Index v) {
+        for (Index i = level.first_point[v]; i < level.first_point[v + 1]; ++i)
+            if (result.of_point[i] != no_index) result.of_point[i] += result.first[v];
     });
     return result;
 }

@@ -11,21 +11,11 @@ constexpr std::size_t sets_per_chunk = 1024;
 
 /// Points in a set, the mean over points rather than sets, so that full voxels count more than clipped ones.
 double typical_count(const NormalSets& sets) {
-    struct Sum {
-        std::uint64_t points = 0, squares = 0;
-    };
-    std::vector<Sum> sums(chunk_count(sets.sets.size(), sets_per_chunk));
-    for_chunks(sets.sets.size(), sets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        for (std::size_t s = begin; s < end; ++s) {
-            const std::uint64_t count = sets.sets[s].count;
-            sums[chunk].points += count;
-            sums[chunk].squares += count * count;
-        }
-    });
-    double points = 0, squares = 0;
-    for (const Sum& sum : sums) {
-        points += static_cast<double>(sum.points);
-        squares += static_cast<double>(sum.squares);
+    double points = 0, squares = 0; // integers: in any order the same
+    for (const NormalSet& set : sets.sets) {
+        const double count = set.count;
+        points += count;
+        squares += count * count;
     }
     return points > 0 ? squares / points : 0;
 }

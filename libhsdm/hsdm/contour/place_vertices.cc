@@ -216,8 +216,7 @@ private:
     void add_own_sets(std::span<const FacetCorner> corners) {
         near_.clear();
         for (FacetCorner corner : corners) near_.push_back(crossings_.of(corner).set);
-        std::sort(near_.begin(), near_.end());
-        near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
+        sort_unique(near_);
         const std::size_t crossing_sets = near_.size();
         for (Index s = sets_.first[voxel_]; s < sets_.first[voxel_ + 1]; ++s) {
             const bool same = std::any_of(
@@ -383,21 +382,19 @@ private:
 std::vector<std::uint8_t> sets_that_cross(const GridPoints& grid, const NormalSets& sets,
                                           const RelationTest& related, const Crossings& crossings,
                                           const DualVertices& duals) {
-    std::vector<std::uint8_t> crosses(sets.sets.size(), 0);
-    std::vector<std::vector<Index>> found(chunk_count(duals.size(), duals_per_chunk));
-    for_chunks(duals.size(), duals_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        for (std::size_t v = begin; v < end; ++v)
-            for (FacetCorner corner : duals.corners_of(static_cast<Index>(v))) {
+    const auto find = [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
+        for (auto v = static_cast<Index>(begin); v < end; ++v)
+            for (FacetCorner corner : duals.corners_of(v)) {
                 const Crossing& x = crossings.of(corner);
                 const Index voxel = CornerVoxel(grid, crossings, corner).voxel;
                 if (voxel == no_index) continue;
                 for (Index s = sets.first[voxel]; s < sets.first[voxel + 1]; ++s)
                     if (s == x.set || related(sets.sets[s], sets.sets[x.set]) == Relation::smooth)
-                        found[chunk].push_back(s);
+                        found.push_back(s);
             }
-    });
-    for (const auto& list : found)
-        for (Index s : list) crosses[s] = 1;
+    };
+    std::vector<std::uint8_t> crosses(sets.sets.size(), 0);
+    for (Index s : collected<Index>(duals.size(), duals_per_chunk, find)) crosses[s] = 1;
     return crosses;
 }
 

@@ -136,23 +136,20 @@ std::vector<double> PointFit::rises(const std::vector<Heights>& heights) const {
         double square, variance; // of the mean
     };
     std::vector<Moments> of_mean(duals_.size());
-    for_chunks(duals_.size(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t v = begin; v < end; ++v)
-            of_mean[v] = {heights[v].mean() * heights[v].mean(), heights[v].variance()};
+    for_each_index(duals_.size(), per_chunk, [&](Index v) {
+        of_mean[v] = {heights[v].mean() * heights[v].mean(), heights[v].variance()};
     });
     std::vector<double> rises(duals_.size(), 0);
-    for_chunks(duals_.size(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t v = begin; v < end; ++v) {
-            Moments sum{0, 0};
-            for (FacetCorner corner : duals_.corners_of(static_cast<Index>(v)))
-                for (const FacetCorner beside : corners_of_facet(corner.crossing())) {
-                    const Moments& other = of_mean[duals_.from(beside)];
-                    sum.square += other.square;
-                    sum.variance += other.variance;
-                }
-            if (sum.square > relaxation::doubt * sum.variance)
-                rises[v] = heights[v].mean() * (1 - relaxation::doubt * sum.variance / sum.square);
-        }
+    for_each_index(duals_.size(), per_chunk, [&](Index v) {
+        Moments sum{0, 0};
+        for (FacetCorner corner : duals_.corners_of(v))
+            for (const FacetCorner beside : corners_of_facet(corner.crossing())) {
+                const Moments& other = of_mean[duals_.from(beside)];
+                sum.square += other.square;
+                sum.variance += other.variance;
+            }
+        if (sum.square > relaxation::doubt * sum.variance)
+            rises[v] = heights[v].mean() * (1 - relaxation::doubt * sum.variance / sum.square);
     });
     return rises;
 }

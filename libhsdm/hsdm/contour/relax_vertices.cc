@@ -2,8 +2,8 @@
 
 #include "hsdm/contour/constants.hh"
 #include "hsdm/contour/point_fit.hh"
+#include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
-#include "hsdm/errors.hh"
 #include "hsdm/mesh/area_vector.hh"
 
 #include <algorithm>
@@ -49,15 +49,12 @@ public:
 
     void round(double step) {
         next_ = vertices_.positions;
-        for_chunks(duals_.size(), duals_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t v = begin; v < end; ++v) {
-                const auto dual = static_cast<Index>(v);
-                if (duals_.open[v]) continue;
-                if (vertices_.classes[v] == VertexClass::smooth)
-                    next_[v] = kept_in(dual, on_sheet(dual, moved_on_sheet(dual, step)));
-                else if (vertices_.classes[v] == VertexClass::edge)
-                    next_[v] = kept_in(dual, moved_along_crease(dual, step));
-            }
+        for_each_index(duals_.size(), duals_per_chunk, [&](Index v) {
+            if (duals_.open[v]) return;
+            if (vertices_.classes[v] == VertexClass::smooth)
+                next_[v] = kept_in(v, on_sheet(v, moved_on_sheet(v, step)));
+            else if (vertices_.classes[v] == VertexClass::edge)
+                next_[v] = kept_in(v, moved_along_crease(v, step));
         });
         vertices_.positions.swap(next_);
     }
@@ -93,22 +90,20 @@ private:
     void list_neighbours() {
         neighbours_.resize(2 * duals_.corners.size());
         neighbour_count_.resize(duals_.size());
-        for_chunks(duals_.size(), duals_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t v = begin; v < end; ++v) {
-                Neighbour* const first = neighbours_.data() + 2 * std::size_t{duals_.first[v]};
-                Neighbour* last = first;
-                const auto add = [&](Index n) {
-                    Neighbour* const known =
-                        std::find_if(first, last, [n](const Neighbour& other) { return other.vertex == n; });
-                    if (known == last) *last++ = {n, 0};
-                    ++known->sides;
-                };
-                for (FacetCorner corner : duals_.corners_of(static_cast<Index>(v))) {
-                    add(duals_.to(corner));
-                    add(duals_.from(corner.previous()));
-                }
-                neighbour_count_[v] = static_cast<Index>(last - first);
+        for_each_index(duals_.size(), duals_per_chunk, [&](Index v) {
+            Neighbour* const first = neighbours_.data() + 2 * std::size_t{duals_.first[v]};
+            Neighbour* last = first;
+            const auto add = [&](Index n) {
+                Neighbour* const known =
+                    std::find_if(first, last, [n](const Neighbour& other) { return other.vertex == n; });
+                if (known == last) *last++ = {n, 0};
+                ++known->sides;
+            };
+            for (FacetCorner corner : duals_.corners_of(v)) {
+                add(duals_.to(corner));
+                add(duals_.from(corner.previous()));
             }
+            neighbour_count_[v] = static_cast<Index>(last - first);
         });
     }
 
@@ -162,12 +157,11 @@ private:
 
     /// Moves vertices along their directions.
     void rise(const std::vector<double>& heights) {
-        for_chunks(duals_.size(), duals_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t v = begin; v < end; ++v)
-                if (heights[v] != 0) {
-                    const Vec3 to = vertices_.positions[v] + vertices_.directions[v] * heights[v];
-                    vertices_.positions[v] = kept_in(static_cast<Index>(v), to);
-                }
+        for_each_index(duals_.size(), duals_per_chunk, [&](Index v) {
+            if (heights[v] != 0) {
+                const Vec3 to = vertices_.positions[v] + vertices_.directions[v] * heights[v];
+                vertices_.positions[v] = kept_in(v, to);
+            }
         });
     }
 
@@ -201,42 +195,37 @@ void extend_borders(const OctreeLevel& level, const GridPoints& grid, const Norm
                     const Crossings& crossings, const DualVertices& duals, PlacedVertices& vertices) {
     const std::vector<Vec3> placed = vertices.positions;
     const double h = level.voxel_size;
-    for_chunks(duals.size(), duals_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t v = begin; v < end; ++v) {
-            if (!duals.open[v] || vertices.classes[v] != VertexClass::smooth) continue;
-            const auto dual = static_cast<Index>(v);
-            const NormalSet* set = own_set(sets, vertices.voxel[v], vertices.directions[v]);
-            if (!set) continue;
-            // `outward` points away from the facets' far corners, across the border, whose direction is from
-            // the neighbour before to the one after.
-            const auto corners = duals.corners_of(dual);
-            const auto beside = [&](FacetCorner corner, bool enters) {
-                return placed[crossings.of(corner).leaving == enters ? duals.from(corner.previous())
-                                                                     : duals.to(corner)];
-            };
-            const Vec3 first = beside(corners.front(), true), last = beside(corners.back(), false);
-            Vec3 inner(0, 0, 0);
-            for (FacetCorner corner : corners) inner += placed[duals.from(corner.opposite())];
-            const Vec3 along = unit(last - first);
-            Vec3 outward = placed[v] - inner / static_cast<double>(corners.size());
-            outward -= along * (along | outward);
-            outward = unit(outward - set->normal * (set->normal | outward));
-            const double reach = (outward | (set->centroid - placed[v]))
-                                 + std::sqrt(3 * std::max(0.0, set->spread.along(outward)));
-            if (!(reach > 0)) continue;
-            const Vec3 to = placed[v] + outward * reach;
-            vertices.positions[v] = within_voxel(grid, crossings, duals, dual, h, placed[v], to);
-        }
+    for_each_index(duals.size(), duals_per_chunk, [&](Index v) {
+        if (!duals.open[v] || vertices.classes[v] != VertexClass::smooth) return;
+        const NormalSet* set = own_set(sets, vertices.voxel[v], vertices.directions[v]);
+        if (!set) return;
+        // `outward` points away from the facets' far corners, across the border, whose direction is from
+        // the neighbour before to the one after.
+        const auto corners = duals.corners_of(v);
+        const auto beside = [&](FacetCorner corner, bool enters) {
+            return placed[crossings.of(corner).leaving == enters ? duals.from(corner.previous())
+                                                                 : duals.to(corner)];
+        };
+        const Vec3 first = beside(corners.front(), true), last = beside(corners.back(), false);
+        Vec3 inner(0, 0, 0);
+        for (FacetCorner corner : corners) inner += placed[duals.from(corner.opposite())];
+        const Vec3 along = unit(last - first);
+        Vec3 outward = placed[v] - inner / static_cast<double>(corners.size());
+        outward -= along * (along | outward);
+        outward = unit(outward - set->normal * (set->normal | outward));
+        const double reach = (outward | (set->centroid - placed[v]))
+                             + std::sqrt(3 * std::max(0.0, set->spread.along(outward)));
+        if (!(reach > 0)) return;
+        const Vec3 to = placed[v] + outward * reach;
+        vertices.positions[v] = within_voxel(grid, crossings, duals, v, h, placed[v], to);
     });
 }
 
 void relax_vertices(const Octree& octree, const OctreeLevel& level, const GridPoints& grid,
                     const Crossings& crossings, const DualVertices& duals, const RelaxOptions& options,
                     PlacedVertices& vertices) {
-    if (options.rounds < 0)
-        throw OptionError("relaxation rounds " + std::to_string(options.rounds) + ": must be 0 or more");
-    if (!(options.step > 0 && options.step <= 1))
-        throw OptionError("relaxation step " + std::to_string(options.step) + ": must lie in (0, 1]");
+    check_option(options.rounds >= 0, "relaxation rounds", options.rounds, "be 0 or more");
+    check_option(options.step > 0 && options.step <= 1, "relaxation step", options.step, "lie in (0, 1]");
     if (options.rounds == 0 && !options.fit) return;
     Relaxation relaxation(level.voxel_size, grid, crossings, duals, vertices);
     for (int round = 0; round < options.rounds; ++round) relaxation.round(options.step);

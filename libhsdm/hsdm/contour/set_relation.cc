@@ -1,7 +1,7 @@
 #include "hsdm/contour/set_relation.hh"
 
 #include "hsdm/contour/constants.hh"
-#include "hsdm/errors.hh"
+#include "hsdm/core/check_option.hh"
 
 #include <cmath>
 
@@ -11,8 +11,8 @@ RelationTest::RelationTest(const RelationOptions& options, double voxel_size)
       gap_(options.smooth_gap * voxel_size),
       crease_gap_(options.crease_gap * voxel_size),
       voxel_size_(voxel_size) {
-    if (!(options.smooth_angle > 0 && options.smooth_angle < 1.5707963))
-        throw OptionError("smooth_angle " + std::to_string(options.smooth_angle) + ": must lie in (0, pi/2)");
+    check_option(options.smooth_angle > 0 && options.smooth_angle < 1.5707963, "smooth_angle",
+                 options.smooth_angle, "lie in (0, pi/2)");
     if (!(options.smooth_gap > 0 && options.crease_gap > 0))
         throw OptionError("smooth_gap and crease_gap must be positive");
 }

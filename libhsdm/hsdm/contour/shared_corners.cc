@@ -1,6 +1,7 @@
 #include "hsdm/contour/shared_corners.hh"
 
 #include "hsdm/contour/constants.hh"
+#include "hsdm/core/chunks.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +24,7 @@ public:
                 if (can_hold(next, beyond))
                     holders_.push_back({!is_corner(next), outside(next, beyond.position), next});
         }
-        std::sort(holders_.begin(), holders_.end());
-        holders_.erase(std::unique(holders_.begin(), holders_.end()), holders_.end());
+        sort_unique(holders_);
         for (const auto& [has_none, distance, holder] : holders_)
             edges.push_back({beyond.dual, holder, has_none ? beyond.position : vertices_.positions[holder]});
     }

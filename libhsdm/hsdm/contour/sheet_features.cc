@@ -117,9 +117,8 @@ public:
     SheetFacets(const OctreeLevel& level, const NormalSets& sets, const PolygonMesh& mesh,
                 std::span<const Index> voxel, bool turned)
         : level_(level), sets_(sets), mesh_(mesh), voxel_(voxel), normals_(mesh.facet_count()) {
-        for_chunks(normals_.size(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t f = begin; f < end; ++f)
-                normals_[f] = unit(area_vector(mesh, mesh.facet(f))) * (turned ? -1 : 1);
+        for_each_index(normals_.size(), facets_per_chunk, [&](Index f) {
+            normals_[f] = unit(area_vector(mesh, mesh.facet(f))) * (turned ? -1 : 1);
         });
     }
 
@@ -135,8 +134,7 @@ public:
         voxels.clear();
         for (Index facet : {f, g})
             for (Index v : mesh_.facet(facet)) voxels.push_back(voxel_[v]);
-        std::sort(voxels.begin(), voxels.end());
-        voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
+        sort_unique(voxels);
     }
 
 private:
@@ -149,9 +147,7 @@ private:
 
 Index SheetFacets::set(Index f) const {
     const auto facet = mesh_.facet(f);
-    Vec3 centre(0, 0, 0);
-    for (Index v : facet) centre += mesh_.positions[v];
-    centre /= static_cast<double>(facet.size());
+    const Vec3 centre = centroid(mesh_, facet);
     Index best = no_index;
     double least = std::numeric_limits<double>::infinity();
     for (Index v : facet)

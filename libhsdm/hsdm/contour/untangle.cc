@@ -1,6 +1,6 @@
 #include "hsdm/contour/untangle.hh"
 
-#include "hsdm/errors.hh"
+#include "hsdm/core/check_option.hh"
 #include "hsdm/mesh/part_of.hh"
 #include "hsdm/spatial/self_intersections.hh"
 
@@ -87,14 +87,10 @@ std::vector<Vec3> neighbour_means(const PolygonMesh& mesh) {
 }
 
 void validate(const UntangleOptions& options) {
-    if (options.rounds < 0)
-        throw OptionError("rounds " + std::to_string(options.rounds) + ": must be 0 or more");
-    if (!(options.step > 0 && options.step <= 1))
-        throw OptionError("step " + std::to_string(options.step) + ": must lie in (0, 1]");
-    if (!(options.nearby > 0))
-        throw OptionError("nearby " + std::to_string(options.nearby) + ": must be positive");
-    if (options.reach < 0)
-        throw OptionError("reach " + std::to_string(options.reach) + ": must be 0 or more");
+    check_option(options.rounds >= 0, "rounds", options.rounds, "be 0 or more");
+    check_option(options.step > 0 && options.step <= 1, "step", options.step, "lie in (0, 1]");
+    check_option(options.nearby > 0, "nearby", options.nearby, "be positive");
+    check_option(!(options.reach < 0), "reach", options.reach, "be 0 or more");
 }
 
 } // namespace

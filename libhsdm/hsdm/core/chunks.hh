@@ -50,6 +50,32 @@ std::vector<T> joined(const std::vector<std::vector<T>>& parts) {
     return whole;
 }
 
+/// What f(begin, end, part) appends to `part` for consecutive ranges of [0, n), one after the other; in
+/// parallel.
+template <class T, class F>
+std::vector<T> collected(std::size_t n, std::size_t chunk_size, F&& f) {
+    std::vector<std::vector<T>> parts(chunk_count(n, chunk_size));
+    for_chunks(n, chunk_size,
+               [&](std::size_t begin, std::size_t end, std::size_t chunk) { f(begin, end, parts[chunk]); });
+    return joined(parts);
+}
+
+/// The indices below n that pass a test, ascending; tested in parallel by chunks.
+template <class Test>
+std::vector<Index> indices_where(std::size_t n, std::size_t chunk_size, Test&& test) {
+    return collected<Index>(n, chunk_size, [&](std::size_t begin, std::size_t end, std::vector<Index>& part) {
+        for (auto i = static_cast<Index>(begin); i < end; ++i)
+            if (test(i)) part.push_back(i);
+    });
+}
+
+/// Sorts values and leaves each once.
+template <class T>
+void sort_unique(std::vector<T>& values) {
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
 /// Turns counts stored one place to the right, {0, n0, n1, ...}, into first positions {0, n0, n0 + n1, ...}.
 inline void counts_to_first(std::vector<Index>& first) {
     std::partial_sum(first.begin(), first.end(), first.begin());

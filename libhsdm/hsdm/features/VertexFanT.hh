@@ -28,9 +28,7 @@ Normal to_normal(const Vec3& v) {
 /// Calls body(handle) for handles 0 .. count - 1, in parallel; the body tells deleted elements itself.
 template <class Handle, class Body>
 void for_each_handle(std::size_t count, const Body& body) {
-    for_chunks(count, 1 << 12, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i != end; ++i) body(Handle(static_cast<int>(i)));
-    });
+    for_each_index(count, 1 << 12, [&](Index i) { body(Handle(static_cast<int>(i))); });
 }
 
 template <class Handle>

@@ -1,22 +1,18 @@
 #include "hsdm/features/feature_options.hh"
 
-#include "hsdm/errors.hh"
+#include "hsdm/core/check_option.hh"
 
 #include <numbers>
-#include <string>
 
 namespace hsdm {
 namespace {
 
 void check_angle(const char* name, double angle) {
-    if (!(angle > 0 && angle < std::numbers::pi))
-        throw OptionError(std::string(name) + " " + std::to_string(angle)
-                          + ": must lie in (0, pi), in radians");
+    check_option(angle > 0 && angle < std::numbers::pi, name, angle, "lie in (0, pi), in radians");
 }
 
 void check_rounds(const char* name, int rounds) {
-    if (rounds < 0)
-        throw OptionError(std::string(name) + " " + std::to_string(rounds) + ": must not be negative");
+    check_option(rounds >= 0, name, rounds, "not be negative");
 }
 
 } // namespace

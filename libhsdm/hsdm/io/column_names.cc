@@ -3,6 +3,7 @@
 #include "hsdm/io/text.hh"
 
 #include <algorithm>
+#include <array>
 #include <bitset>
 
 namespace hsdm::io {
@@ -10,64 +11,30 @@ namespace {
 
 constexpr std::size_t role_count = 12;
 
+/// The three names of a vector or colour.
 struct Alias {
-    std::string_view name;
-    Role role;
+    std::array<std::string_view, 3> names;
+    Role first; ///< of the first name; those of the others follow
 };
 
 /// Beside the plain letters: PLY files in the wild, CSV headers of point-cloud tools (`points:0` and the like
 /// are how a vector's components are numbered there).
 constexpr Alias aliases[] = {
-    {"x", Role::x},
-    {"y", Role::y},
-    {"z", Role::z},
-    {"pos_x", Role::x},
-    {"pos_y", Role::y},
-    {"pos_z", Role::z},
-    {"position_x", Role::x},
-    {"position_y", Role::y},
-    {"position_z", Role::z},
-    {"points:0", Role::x},
-    {"points:1", Role::y},
-    {"points:2", Role::z},
-    {"points_0", Role::x},
-    {"points_1", Role::y},
-    {"points_2", Role::z},
-    {"nx", Role::nx},
-    {"ny", Role::ny},
-    {"nz", Role::nz},
-    {"n_x", Role::nx},
-    {"n_y", Role::ny},
-    {"n_z", Role::nz},
-    {"normal_x", Role::nx},
-    {"normal_y", Role::ny},
-    {"normal_z", Role::nz},
-    {"normalx", Role::nx},
-    {"normaly", Role::ny},
-    {"normalz", Role::nz},
-    {"normals:0", Role::nx},
-    {"normals:1", Role::ny},
-    {"normals:2", Role::nz},
-    {"normals_0", Role::nx},
-    {"normals_1", Role::ny},
-    {"normals_2", Role::nz},
-    {"r", Role::red},
-    {"g", Role::green},
-    {"b", Role::blue},
-    {"red", Role::red},
-    {"green", Role::green},
-    {"blue", Role::blue},
-    {"rf", Role::red},
-    {"gf", Role::green},
-    {"bf", Role::blue},
-    {"diffuse_red", Role::red},
-    {"diffuse_green", Role::green},
-    {"diffuse_blue", Role::blue},
-    {"a", Role::alpha},
-    {"alpha", Role::alpha},
-    {"diffuse_alpha", Role::alpha},
-    {"_", Role::skip},
-    {"", Role::skip},
+    {{"x", "y", "z"}, Role::x},
+    {{"pos_x", "pos_y", "pos_z"}, Role::x},
+    {{"position_x", "position_y", "position_z"}, Role::x},
+    {{"points:0", "points:1", "points:2"}, Role::x},
+    {{"points_0", "points_1", "points_2"}, Role::x},
+    {{"nx", "ny", "nz"}, Role::nx},
+    {{"n_x", "n_y", "n_z"}, Role::nx},
+    {{"normal_x", "normal_y", "normal_z"}, Role::nx},
+    {{"normalx", "normaly", "normalz"}, Role::nx},
+    {{"normals:0", "normals:1", "normals:2"}, Role::nx},
+    {{"normals_0", "normals_1", "normals_2"}, Role::nx},
+    {{"r", "g", "b"}, Role::red},
+    {{"red", "green", "blue"}, Role::red},
+    {{"rf", "gf", "bf"}, Role::red},
+    {{"diffuse_red", "diffuse_green", "diffuse_blue"}, Role::red},
 };
 
 constexpr std::string_view label_names[] = {"label",          "labels",    "label_id", "class",
@@ -117,8 +84,11 @@ bool is_label_name(std::string_view name) {
 
 Role role_of(std::string_view name) {
     const std::string plain = lower(name);
-    for (const Alias& alias : aliases)
-        if (alias.name == plain) return alias.role;
+    if (plain.empty() || plain == "_") return Role::skip;
+    if (plain == "a" || plain == "alpha" || plain == "diffuse_alpha") return Role::alpha;
+    for (const auto& [names, first] : aliases)
+        if (const auto at = std::ranges::find(names, plain) - names.begin(); at < 3)
+            return static_cast<Role>(static_cast<int>(first) + static_cast<int>(at));
     return Role::scalar;
 }
 

@@ -22,6 +22,13 @@ inline Vec3 area_vector(std::span<const Vec3> corners) {
     return sum;
 }
 
+/// Mean of a facet's corners.
+inline Vec3 centroid(const PolygonMesh& mesh, std::span<const Index> facet) {
+    Vec3 sum(0, 0, 0);
+    for (Index v : facet) sum += mesh.positions[v];
+    return sum / static_cast<double>(facet.size());
+}
+
 /// The direction of a vector; zero stays zero.
 inline Vec3 unit(const Vec3& v) {
     const double length = v.norm();

@@ -1,5 +1,6 @@
 #include "hsdm/mesh/collapse_edges.hh"
 
+#include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/constants.hh"
 
@@ -116,8 +117,7 @@ private:
             neighbours.push_back(ring[(at + 1) % ring.size()]);
             neighbours.push_back(ring[(at + ring.size() - 1) % ring.size()]);
         }
-        std::sort(neighbours.begin(), neighbours.end());
-        neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
+        sort_unique(neighbours);
         return neighbours;
     }
 
@@ -146,8 +146,7 @@ private:
     void gather(Index from, Index to) {
         std::vector<Index> around = rings_at(from);
         around.insert(around.end(), rings_at(to).begin(), rings_at(to).end());
-        std::sort(around.begin(), around.end());
-        around.erase(std::unique(around.begin(), around.end()), around.end());
+        sort_unique(around);
         changes_.clear();
         for (Index r : around) {
             RingVertices after = rings_[r];

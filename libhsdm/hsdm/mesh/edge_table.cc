@@ -4,22 +4,19 @@ namespace hsdm {
 
 EdgeTable::EdgeTable(const PolygonMesh& mesh)
     : EdgeTable(mesh.vertex_count(), [&](const auto& visit) {
-          for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t f, std::size_t end, std::size_t) {
-              for (; f < end; ++f) {
-                  Index side = mesh.first[f + 1] - 1;
-                  for (Index next = mesh.first[f]; next < mesh.first[f + 1]; side = next++)
-                      visit(mesh.corners[side], mesh.corners[next], side);
-              }
+          for_each_index(mesh.facet_count(), facets_per_chunk, [&](Index f) {
+              Index side = mesh.first[f + 1] - 1;
+              for (Index next = mesh.first[f]; next < mesh.first[f + 1]; side = next++)
+                  visit(mesh.corners[side], mesh.corners[next], side);
           });
       }) {}
 
 std::vector<Index> next_sides(const PolygonMesh& mesh) {
     constexpr std::size_t facets = 8192;
     std::vector<Index> next(mesh.corners.size());
-    for_chunks(mesh.facet_count(), facets, [&](std::size_t f, std::size_t end, std::size_t) {
-        for (; f < end; ++f)
-            for (Index side = mesh.first[f]; side < mesh.first[f + 1]; ++side)
-                next[side] = side + 1 < mesh.first[f + 1] ? side + 1 : mesh.first[f];
+    for_each_index(mesh.facet_count(), facets, [&](Index f) {
+        for (Index side = mesh.first[f]; side < mesh.first[f + 1]; ++side)
+            next[side] = side + 1 < mesh.first[f + 1] ? side + 1 : mesh.first[f];
     });
     return next;
 }

@@ -56,9 +56,8 @@ EdgeTable::EdgeTable(std::size_t vertex_count, const ForEachSide& for_each_side)
         sides_[std::atomic_ref(next[std::min(from, to)]).fetch_add(1, std::memory_order_relaxed)] = {
             std::max(from, to), side};
     });
-    for_chunks(vertex_count, vertices_per_chunk, [&](std::size_t v, std::size_t end, std::size_t) {
-        for (; v < end; ++v) std::sort(sides_.begin() + first_[v], sides_.begin() + first_[v + 1]);
-    });
+    for_each_index(vertex_count, vertices_per_chunk,
+                   [&](Index v) { std::sort(sides_.begin() + first_[v], sides_.begin() + first_[v + 1]); });
 }
 
 template <class Visit>

@@ -24,20 +24,17 @@ VertexFacets facets_at_vertices(const PolygonMesh& mesh) {
     const std::size_t n = mesh.vertex_count();
     VertexFacets at{std::vector<std::array<Index, 2>>(n), std::vector<std::uint8_t>(n)};
     std::vector<Index> counts(n, 0);
-    for_chunks(mesh.facet_count(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t f = begin; f < end; ++f)
-            for (Index v : mesh.facet(f)) {
-                const Index place = std::atomic_ref(counts[v]).fetch_add(1, std::memory_order_relaxed);
-                if (place < 2) at.facets[v][place] = static_cast<Index>(f);
-            }
-    });
-    for_chunks(n, per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t v = begin; v < end; ++v) {
-            at.count[v] = static_cast<std::uint8_t>(std::min<Index>(counts[v], 3));
-            // in ascending order, whichever thread came first
-            if (counts[v] == 2) std::ranges::sort(at.facets[v]);
-            if (counts[v] > 2) at.facets[v] = {};
+    for_each_index(mesh.facet_count(), per_chunk, [&](Index f) {
+        for (Index v : mesh.facet(f)) {
+            const Index place = std::atomic_ref(counts[v]).fetch_add(1, std::memory_order_relaxed);
+            if (place < 2) at.facets[v][place] = f;
         }
+    });
+    for_each_index(n, per_chunk, [&](Index v) {
+        at.count[v] = static_cast<std::uint8_t>(std::min<Index>(counts[v], 3));
+        // in ascending order, whichever thread came first
+        if (counts[v] == 2) std::ranges::sort(at.facets[v]);
+        if (counts[v] > 2) at.facets[v] = {};
     });
     return at;
 }

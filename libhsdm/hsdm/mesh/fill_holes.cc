@@ -65,14 +65,9 @@ private:
     };
 
     std::vector<Index> sides_without_twin() const {
-        std::vector<std::vector<Index>> parts(chunk_count(mesh_.corners.size(), sides_per_chunk));
-        for_chunks(mesh_.corners.size(), sides_per_chunk,
-                   [&](std::size_t begin, std::size_t end, auto chunk) {
-                       for (std::size_t c = begin; c < end; ++c)
-                           if (links_.twin[c] == no_index && links_.accepted[links_.facet[c]])
-                               parts[chunk].push_back(static_cast<Index>(c));
-                   });
-        return joined(parts);
+        return indices_where(mesh_.corners.size(), sides_per_chunk, [&](Index side) {
+            return links_.twin[side] == no_index && links_.accepted[links_.facet[side]];
+        });
     }
 
     Index end(Index side) const { return mesh_.corners[next_side(mesh_, links_.facet[side], side)]; }
@@ -146,10 +141,9 @@ private:
 
 /// A new vertex at the mean of a loop's, with their mean normal and origin and properties of the first.
 Index add_middle(PolygonMesh& mesh, std::span<const Index> loop) {
-    Vec3 position(0, 0, 0), normal(0, 0, 0);
-    for (Index v : loop) position += mesh.positions[v];
-    mesh.positions.push_back(position / static_cast<double>(loop.size()));
+    mesh.positions.push_back(centroid(mesh, loop));
     if (!mesh.normals.empty()) {
+        Vec3 normal(0, 0, 0);
         for (Index v : loop) normal += mesh.normals[v];
         mesh.normals.push_back(unit(normal));
     }

@@ -2,8 +2,10 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/radix_sort.hh"
+#include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/constants.hh"
 #include "hsdm/mesh/edge_table.hh"
+#include "hsdm/mesh/remove_facets.hh"
 
 #include <algorithm>
 #include <array>
@@ -116,18 +118,6 @@ void thin_out(const PolygonMesh& mesh, std::span<const CodeIndex> group, std::ve
     counts.duplicates += rest.size() - pairs - 1;
 }
 
-void remove_facets(PolygonMesh& mesh, const std::vector<std::uint8_t>& removed) {
-    std::size_t corner = 0, facet = 0;
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-        const Index begin = mesh.first[f], end = mesh.first[f + 1];
-        if (removed[f]) continue;
-        for (Index c = begin; c < end; ++c) mesh.corners[corner++] = mesh.corners[c];
-        mesh.first[++facet] = static_cast<Index>(corner);
-    }
-    mesh.corners.resize(corner);
-    mesh.first.resize(facet + 1);
-}
-
 void remove_duplicates(PolygonMesh& mesh, ManifoldCounts& counts) {
     std::vector<CodeIndex> keys(mesh.facet_count());
     for_each_index(keys.size(), grain, [&](std::size_t f) {
@@ -150,7 +140,8 @@ void remove_duplicates(PolygonMesh& mesh, ManifoldCounts& counts) {
             i += static_cast<std::size_t>(mid - first);
         }
     }
-    if (counts.cancelled + counts.duplicates > 0) remove_facets(mesh, removed);
+    if (counts.cancelled + counts.duplicates > 0)
+        remove_facets(mesh, [&](std::size_t f) { return removed[f] != 0; });
 }
 
 // ---- steps 2 and 3 ---------------------------------------------------------------------------------------
@@ -229,12 +220,6 @@ private:
         }
     }
 
-    Vec3 centroid(Index f) const {
-        Vec3 sum(0, 0, 0);
-        for (Index v : mesh_.facet(f)) sum += mesh_.positions[v];
-        return sum / static_cast<double>(mesh_.facet(f).size());
-    }
-
     /// Sorts an edge's half-edges counterclockwise around the direction from its lower to its upper vertex.
     void order_by_angle(const ComplexEdge& edge) {
         const Index h0 = by_edge_[edge.begin];
@@ -242,7 +227,7 @@ private:
         const Vec3 axis = mesh_.positions[upper(h0)] - origin;
         const double length2 = std::max(axis.sqrnorm(), std::numeric_limits<double>::min());
         auto across = [&](Index h) {
-            const Vec3 d = centroid(facet_[h]) - origin;
+            const Vec3 d = centroid(mesh_, mesh_.facet(facet_[h])) - origin;
             return d - axis * ((d | axis) / length2);
         };
         const Vec3 x = across(h0), y = (axis % x) / std::sqrt(length2);
@@ -424,13 +409,13 @@ void FanSplitter::cut_halved_facets() {
             if (next < end && vertex_at[next].first == h) ring.push_back(vertex_at[next++].second);
         }
         const Index center = copy_vertex(mesh_, ring[0]);
-        mesh_.positions[center] = centroid(f);
+        mesh_.positions[center] = centroid(mesh_, mesh_.facet(f));
         for (std::size_t i = 0; i < ring.size(); ++i)
             mesh_.add_facet(std::array{ring[i], ring[(i + 1) % ring.size()], center});
         cut[f] = 1;
     }
     cut.resize(mesh_.facet_count(), 0);
-    remove_facets(mesh_, cut);
+    remove_facets(mesh_, [&](std::size_t f) { return cut[f] != 0; });
 }
 
 } // namespace

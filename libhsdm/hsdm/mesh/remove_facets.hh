@@ -29,4 +29,11 @@ Discarded remove_facets(PolygonMesh& mesh, std::vector<EdgeHint>& hints, IsOut i
     return removed;
 }
 
+/// The same of a mesh without hints.
+template <class IsOut>
+Discarded remove_facets(PolygonMesh& mesh, IsOut is_out) {
+    std::vector<EdgeHint> none;
+    return remove_facets(mesh, none, is_out);
+}
+
 } // namespace hsdm

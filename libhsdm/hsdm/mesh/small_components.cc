@@ -17,13 +17,11 @@ class Components {
 public:
     explicit Components(const PolygonMesh& mesh)
         : mesh_(mesh), vertices_(mesh.vertex_count()), facets_(mesh.vertex_count(), 0) {
-        for_facets([&](std::size_t begin, std::size_t end) {
-            for (std::size_t f = begin; f < end; ++f)
-                for (Index v : mesh.facet(f)) vertices_.join(mesh.facet(f)[0], v);
+        for_each_index(mesh.facet_count(), facets_per_chunk, [&](Index f) {
+            for (Index v : mesh.facet(f)) vertices_.join(mesh.facet(f)[0], v);
         });
-        for_facets([&](std::size_t begin, std::size_t end) {
-            for (std::size_t first = begin, f = begin; f < end;
-                 first = f) { // facets of one come in long runs
+        for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t f, std::size_t end, std::size_t) {
+            for (std::size_t first = f; f < end; first = f) { // facets of one come in long runs
                 const Index component = of(f);
                 while (++f < end && of(f) == component) continue;
                 std::atomic_ref(facets_[component]).fetch_add(f - first, std::memory_order_relaxed);
@@ -61,12 +59,6 @@ public:
     }
 
 private:
-    template <class Act>
-    void for_facets(const Act& act) const {
-        for_chunks(mesh_.facet_count(), facets_per_chunk,
-                   [&](std::size_t begin, std::size_t end, std::size_t) { act(begin, end); });
-    }
-
     const PolygonMesh& mesh_;
     DisjointSets vertices_;
     std::vector<std::size_t> facets_;

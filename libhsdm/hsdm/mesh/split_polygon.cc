@@ -269,9 +269,7 @@ std::size_t split_large_facets(PolygonMesh& mesh) {
     const auto split = [&](std::size_t i) {
         pieces[i] = split_polygon(mesh, mesh.facet(large[i]), normals_around(mesh, links, large[i]), edges);
     };
-    for_chunks(large.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i != end; ++i) split(i);
-    });
+    for_each_index(large.size(), 256, [&](Index i) { split(i); });
 
     // Two polygons may both want a diagonal between vertices they share: the later one is split again
     // without.

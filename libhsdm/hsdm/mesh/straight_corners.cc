@@ -39,17 +39,16 @@ struct Cut {
 };
 
 std::vector<Cut> possible_cuts(const PolygonMesh& mesh, double least_sine) {
-    std::vector<std::vector<Cut>> parts(chunk_count(mesh.facet_count(), facets_per_chunk));
-    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t f, std::size_t end, std::size_t c) {
-        for (; f < end; ++f) {
-            const auto quad = mesh.facet(f);
-            if (quad.size() != 4) continue;
-            const auto [corner, sine] = straightest(mesh, quad);
-            if (sine < least_sine)
-                parts[c].push_back({edge(quad[corner], quad[(corner + 2) % 4]), f, corner});
-        }
-    });
-    return joined(parts);
+    return collected<Cut>(mesh.facet_count(), facets_per_chunk,
+                          [&](std::size_t f, std::size_t end, auto& cuts) {
+                              for (; f < end; ++f) {
+                                  const auto quad = mesh.facet(f);
+                                  if (quad.size() != 4) continue;
+                                  const auto [corner, sine] = straightest(mesh, quad);
+                                  if (sine < least_sine)
+                                      cuts.push_back({edge(quad[corner], quad[(corner + 2) % 4]), f, corner});
+                              }
+                          });
 }
 
 /// Removes the cuts whose diagonal is an edge already or that of a facet before; leaves them by facet.

@@ -98,19 +98,16 @@ Triangulation triangulate(const PolygonMesh& mesh) {
         result.first[f + 1] = result.first[f] + (corners < 3 ? 0 : corners - 2);
     }
     result.triangles.resize(result.first.back());
-    for_chunks(facets, grain, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t f = begin; f != end; ++f)
-            cut(mesh.positions, mesh.facet(f), result.triangles.data() + result.first[f]);
+    for_each_index(facets, grain, [&](Index f) {
+        cut(mesh.positions, mesh.facet(f), result.triangles.data() + result.first[f]);
     });
     return result;
 }
 
 std::vector<Index> facet_of_triangle(const Triangulation& triangulation) {
     std::vector<Index> facet(triangulation.size());
-    for_chunks(triangulation.first.size() - 1, grain, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t f = begin; f != end; ++f)
-            std::fill(facet.begin() + triangulation.first[f], facet.begin() + triangulation.first[f + 1],
-                      static_cast<Index>(f));
+    for_each_index(triangulation.first.size() - 1, grain, [&](Index f) {
+        std::fill(facet.begin() + triangulation.first[f], facet.begin() + triangulation.first[f + 1], f);
     });
     return facet;
 }

@@ -25,20 +25,17 @@ struct Components {
 
 Components find_components(const PolygonMesh& mesh, const FacetLinks& links) {
     DisjointSets sets(mesh.vertex_count());
-    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t f = begin; f < end; ++f)
-            for (Index v : mesh.facet(f)) sets.join(mesh.facet(f)[0], v);
+    for_each_index(mesh.facet_count(), facets_per_chunk, [&](Index f) {
+        for (Index v : mesh.facet(f)) sets.join(mesh.facet(f)[0], v);
     });
     Components result;
     result.of_facet.resize(mesh.facet_count());
     result.open.assign(mesh.vertex_count(), 0);
-    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t f = begin; f < end; ++f) {
-            const Index c = result.of_facet[f] = sets.find(mesh.facet(f)[0]);
-            for (Index side = mesh.first[f]; side < mesh.first[f + 1]; ++side)
-                if (links.twin[side] == no_index)
-                    std::atomic_ref(result.open[c]).store(1, std::memory_order_relaxed);
-        }
+    for_each_index(mesh.facet_count(), facets_per_chunk, [&](Index f) {
+        const Index c = result.of_facet[f] = sets.find(mesh.facet(f)[0]);
+        for (Index side = mesh.first[f]; side < mesh.first[f + 1]; ++side)
+            if (links.twin[side] == no_index)
+                std::atomic_ref(result.open[c]).store(1, std::memory_order_relaxed);
     });
     return result;
 }
@@ -46,17 +43,15 @@ Components find_components(const PolygonMesh& mesh, const FacetLinks& links) {
 /// Sums volumes about each component's own first vertex, so that small components far away lose no digits.
 void measure_volumes(const PolygonMesh& mesh, const Triangulation& cut, Components& components) {
     std::vector<double> of_facet(mesh.facet_count());
-    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t f = begin; f < end; ++f) {
-            const Vec3& centre = mesh.positions[components.of_facet[f]];
-            double sum = 0;
-            for (Index t = cut.first[f]; t < cut.first[f + 1]; ++t) {
-                const auto& [a, b, c] = cut.triangles[t];
-                sum += (mesh.positions[a] - centre)
-                       | ((mesh.positions[b] - centre) % (mesh.positions[c] - centre));
-            }
-            of_facet[f] = sum;
+    for_each_index(mesh.facet_count(), facets_per_chunk, [&](Index f) {
+        const Vec3& centre = mesh.positions[components.of_facet[f]];
+        double sum = 0;
+        for (Index t = cut.first[f]; t < cut.first[f + 1]; ++t) {
+            const auto& [a, b, c] = cut.triangles[t];
+            sum +=
+                (mesh.positions[a] - centre) | ((mesh.positions[b] - centre) % (mesh.positions[c] - centre));
         }
+        of_facet[f] = sum;
     });
     components.volume.assign(mesh.vertex_count(), 0);
     for (std::size_t f = 0; f < mesh.facet_count(); ++f)
@@ -155,10 +150,9 @@ template <class Weight>
 std::vector<int> sum_around(const PolygonMesh& mesh, const Triangulation& cut, const Components& components,
                             std::span<const Index> points, const Weight& weight) {
     Surroundings around(mesh, points);
-    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t f = begin; f < end; ++f)
-            if (const Index c = components.of_facet[f]; const int w = weight(c))
-                for (Index t = cut.first[f]; t < cut.first[f + 1]; ++t) around.add(cut.triangles[t], c, w);
+    for_each_index(mesh.facet_count(), facets_per_chunk, [&](Index f) {
+        if (const Index c = components.of_facet[f]; const int w = weight(c))
+            for (Index t = cut.first[f]; t < cut.first[f + 1]; ++t) around.add(cut.triangles[t], c, w);
     });
     return around.counts();
 }

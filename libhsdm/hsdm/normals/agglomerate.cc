@@ -68,10 +68,9 @@ void sort_and_merge(std::vector<SignedEdge>& edges, std::size_t nodes) {
     counts_to_first(end);
     std::vector<SignedEdge> sorted(edges.size());
     for (const SignedEdge& e : edges) sorted[end[e.a]++] = e;
-    for_chunks(nodes, nodes_per_chunk, [&](std::size_t begin, std::size_t last, std::size_t) {
-        for (std::size_t v = begin; v < last; ++v)
-            std::sort(sorted.begin() + (v == 0 ? 0 : end[v - 1]), sorted.begin() + end[v],
-                      [](const SignedEdge& e, const SignedEdge& f) { return e.b < f.b; });
+    for_each_index(nodes, nodes_per_chunk, [&](Index v) {
+        std::sort(sorted.begin() + (v == 0 ? 0 : end[v - 1]), sorted.begin() + end[v],
+                  [](const SignedEdge& e, const SignedEdge& f) { return e.b < f.b; });
     });
     std::size_t kept = 0;
     for (const SignedEdge& e : sorted) {

@@ -1,7 +1,7 @@
 #include "hsdm/normals/estimate_normals.hh"
 
+#include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
-#include "hsdm/errors.hh"
 #include "hsdm/normals/constants.hh"
 #include "hsdm/normals/height_fit.hh"
 #include "hsdm/normals/neighborhood.hh"
@@ -69,9 +69,7 @@ public:
     template <class NormalOf>
     std::vector<Vec3> all(const NormalOf& normal_of) const {
         std::vector<Vec3> renewed(octree_.size());
-        for_chunks(octree_.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t i = begin; i < end; ++i) renewed[i] = normal_of(static_cast<Index>(i));
-        });
+        for_each_index(octree_.size(), points_per_chunk, [&](Index i) { renewed[i] = normal_of(i); });
         return renewed;
     }
 
@@ -190,25 +188,18 @@ private:
     void choose_tolerance(const EstimateOptions& options) {
         const double relative = std::clamp(options.noise_tolerance * result_.noise, options.least_tolerance,
                                            estimation::most_tolerance);
-        for_chunks(octree_.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t i = begin; i < end; ++i) {
-                double least = result_.spread[i];
-                for (Index j : neighbors_.of(i)) least = std::min(least, result_.spread[j]);
-                const double base = relative * neighbors_.reach[i];
-                result_.tolerance[i] = std::clamp(least, base, estimation::most_widening * base);
-            }
+        for_each_index(octree_.size(), points_per_chunk, [&](Index i) {
+            double least = result_.spread[i];
+            for (Index j : neighbors_.of(i)) least = std::min(least, result_.spread[j]);
+            const double base = relative * neighbors_.reach[i];
+            result_.tolerance[i] = std::clamp(least, base, estimation::most_widening * base);
         });
     }
 
     void find_bent() {
-        std::vector<std::vector<Index>> found(chunk_count(octree_.size(), points_per_chunk));
-        for_chunks(octree_.size(), points_per_chunk,
-                   [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-                       for (std::size_t i = begin; i < end; ++i)
-                           if (result_.spread[i] > estimation::bent_spread * result_.tolerance[i])
-                               found[chunk].push_back(static_cast<Index>(i));
-                   });
-        result_.bent = joined(found);
+        result_.bent = indices_where(octree_.size(), points_per_chunk, [&](Index i) {
+            return result_.spread[i] > estimation::bent_spread * result_.tolerance[i];
+        });
     }
 
     /// New normals for the bent points, all from the old ones.
@@ -216,9 +207,7 @@ private:
     void renew(const NormalOf& normal_of) {
         const std::vector<Index>& bent = result_.bent;
         std::vector<Vec3> renewed(bent.size());
-        for_chunks(bent.size(), bent_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t b = begin; b < end; ++b) renewed[b] = normal_of(bent[b]);
-        });
+        for_each_index(bent.size(), bent_per_chunk, [&](Index b) { renewed[b] = normal_of(bent[b]); });
         for (std::size_t b = 0; b < bent.size(); ++b) result_.normals[bent[b]] = renewed[b];
     }
 
@@ -281,13 +270,10 @@ private:
 };
 
 void validate(const EstimateOptions& options) {
-    if (!(options.least_tolerance > 0 && options.least_tolerance < 0.5))
-        throw OptionError("least_tolerance " + std::to_string(options.least_tolerance)
-                          + ": must lie in (0, 0.5)");
-    if (!(options.noise_tolerance > 0))
-        throw OptionError("noise_tolerance " + std::to_string(options.noise_tolerance) + ": must be above 0");
-    if (options.rounds < 0)
-        throw OptionError("rounds " + std::to_string(options.rounds) + ": must be 0 or more");
+    check_option(options.least_tolerance > 0 && options.least_tolerance < 0.5, "least_tolerance",
+                 options.least_tolerance, "lie in (0, 0.5)");
+    check_option(options.noise_tolerance > 0, "noise_tolerance", options.noise_tolerance, "be above 0");
+    check_option(options.rounds >= 0, "rounds", options.rounds, "be 0 or more");
 }
 
 } // namespace

@@ -1,9 +1,9 @@
 #include "hsdm/normals/neighbors.hh"
 
+#include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/huge_pages.hh"
 #include "hsdm/core/lanes.hh"
-#include "hsdm/errors.hh"
 #include "hsdm/normals/constants.hh"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -366,8 +366,7 @@ private:
 };
 
 Neighbors search(const Octree& octree, const std::vector<Index>* points, const NeighborOptions& options) {
-    if (options.count < 3 || options.count > 64)
-        throw OptionError("neighbours " + std::to_string(options.count) + ": must lie in [3, 64]");
+    check_option(options.count >= 3 && options.count <= 64, "neighbours", options.count, "lie in [3, 64]");
     Neighbors result;
     result.count = std::min(static_cast<std::size_t>(options.count), octree.size() - 1);
     const std::size_t size = points ? points->size() : octree.size();

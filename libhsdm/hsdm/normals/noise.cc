@@ -47,9 +47,7 @@ auto sampled(const Octree& octree, const Measure& measure) {
     constexpr std::size_t samples = 1 << 14, samples_per_chunk = 1024;
     const std::size_t stride = octree.size() / samples + 1;
     std::vector<decltype(measure(0))> values((octree.size() + stride - 1) / stride);
-    for_chunks(values.size(), samples_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t r = begin; r < end; ++r) values[r] = measure(r * stride);
-    });
+    for_each_index(values.size(), samples_per_chunk, [&](Index r) { values[r] = measure(r * stride); });
     return values;
 }
 

@@ -76,11 +76,9 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
     const bool seen = views_agree(patches, view, signs);
     if (seen) turn[signs.component[outside]] = signs.sign[outside];
     result.turns.resize(octree.size());
-    for_chunks(octree.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const Index p = patches.of_point[i];
-            result.turns[i] = p != no_index && patches.sign[i] * signs.sign[p] * turn[signs.component[p]] < 0;
-        }
+    for_each_index(octree.size(), points_per_chunk, [&](Index i) {
+        const Index p = patches.of_point[i];
+        result.turns[i] = p != no_index && patches.sign[i] * signs.sign[p] * turn[signs.component[p]] < 0;
     });
     report.patches = patches.size();
     report.components = signs.components; // the outside's node is a component too if no patch sees it
@@ -90,9 +88,8 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
 }
 
 void turn_normals(const Orientation& orientation, std::vector<Vec3>& normals) {
-    for_chunks(normals.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i)
-            if (orientation.turns[i]) normals[i] = -normals[i];
+    for_each_index(normals.size(), points_per_chunk, [&](Index i) {
+        if (orientation.turns[i]) normals[i] = -normals[i];
     });
 }
 

@@ -36,22 +36,20 @@ std::vector<std::uint8_t> find_outliers(const Octree& octree, const Neighbors& n
     std::vector<double> all = neighbors.reach;
     const double typical = median(all);
     std::vector<std::uint8_t> found(octree.size(), 0);
-    for_chunks(octree.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const double reach = neighbors.reach[i], sparseness = reach / typical;
-            const auto around = neighbors.of(i);
-            // Is the reach more than `times` the neighbours' median reach, that is, more than that for over
-            // half of them?
-            const auto is_stretched = [&](double times) {
-                std::size_t count = 0;
-                for (Index n : around) count += reach > times * neighbors.reach[n];
-                return count > around.size() / 2;
-            };
-            if (sparseness > options.most_sparseness || is_stretched(options.most_stretch))
-                found[i] = 1;
-            else if (sparseness > options.doubtful_sparseness || is_stretched(options.doubtful_stretch))
-                found[i] = is_off_surface(octree, neighbors, i, options);
-        }
+    for_each_index(octree.size(), points_per_chunk, [&](Index i) {
+        const double reach = neighbors.reach[i], sparseness = reach / typical;
+        const auto around = neighbors.of(i);
+        // Is the reach more than `times` the neighbours' median reach, that is, more than that for over
+        // half of them?
+        const auto is_stretched = [&](double times) {
+            std::size_t count = 0;
+            for (Index n : around) count += reach > times * neighbors.reach[n];
+            return count > around.size() / 2;
+        };
+        if (sparseness > options.most_sparseness || is_stretched(options.most_stretch))
+            found[i] = 1;
+        else if (sparseness > options.doubtful_sparseness || is_stretched(options.doubtful_stretch))
+            found[i] = is_off_surface(octree, neighbors, i, options);
     });
     return found;
 }
@@ -126,10 +124,9 @@ Discarded drop_outliers_by_normals(Octree& octree, const NormalOutlierOptions& o
     const Neighbors neighbors = find_neighbors_of(octree, sparse, {.count = options.neighbors});
     const double farthest = options.most_distance * octree.voxel_size(density.depth);
     std::vector<std::uint8_t> stray(octree.size(), 0);
-    for_chunks(sparse.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t k = begin; k < end; ++k)
-            stray[sparse[k]] = support(octree, sparse[k], neighbors.of(k), is_sparse, farthest, options)
-                               < options.least_support;
+    for_each_index(sparse.size(), points_per_chunk, [&](Index k) {
+        stray[sparse[k]] =
+            support(octree, sparse[k], neighbors.of(k), is_sparse, farthest, options) < options.least_support;
     });
     return remove_points(octree, stray);
 }

@@ -209,10 +209,9 @@ OutsideView view_outside(const Octree& octree, const Patches& patches, double sp
     const EmptySpace space(level);
     const View view(octree, level, space, spacing);
     std::vector<Sights> seen(patches.size());
-    for_chunks(patches.size(), patches_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t p = begin; p < end; ++p)
-            seen[p] = {view.look(patches.centroids[p], patches.normals[p]),
-                       view.look(patches.centroids[p], -patches.normals[p])};
+    for_each_index(patches.size(), patches_per_chunk, [&](Index p) {
+        seen[p] = {view.look(patches.centroids[p], patches.normals[p]),
+                   view.look(patches.centroids[p], -patches.normals[p])};
     });
     const std::vector<std::int8_t> kind = classify(space.regions(), seen, patches);
     OutsideView result;

@@ -1,7 +1,7 @@
 #include "hsdm/normals/smooth_points.hh"
 
+#include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
-#include "hsdm/errors.hh"
 #include "hsdm/normals/constants.hh"
 #include "hsdm/normals/neighborhood.hh"
 #include "hsdm/normals/noise.hh"
@@ -66,17 +66,15 @@ private:
     void sum_voxels() {
         level_ = extract_level(grid_, depth_);
         sums_.resize(level_.size());
-        for_chunks(level_.size(), voxels_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t v = begin; v < end; ++v) {
-                const Index first = level_.first_point[v], last = level_.first_point[v + 1];
-                VoxelSums& sum = sums_[v];
-                sum.count = last - first;
-                for (Index i = first; i < last; ++i) sum.mean += grid_.positions[i];
-                sum.mean /= sum.count;
-                PlaneSums spread;
-                for (Index i = first; i < last; ++i) spread.add(grid_.positions[i] - sum.mean, 1);
-                sum.spread = spread.second;
-            }
+        for_each_index(level_.size(), voxels_per_chunk, [&](Index v) {
+            const Index first = level_.first_point[v], last = level_.first_point[v + 1];
+            VoxelSums& sum = sums_[v];
+            sum.count = last - first;
+            for (Index i = first; i < last; ++i) sum.mean += grid_.positions[i];
+            sum.mean /= sum.count;
+            PlaneSums spread;
+            for (Index i = first; i < last; ++i) spread.add(grid_.positions[i] - sum.mean, 1);
+            sum.spread = spread.second;
         });
     }
 
@@ -129,10 +127,8 @@ double noise_of_moves(const std::vector<Vec3>& from, const std::vector<Vec3>& to
 }
 
 void validate(const SmoothOptions& options) {
-    if (!(options.least_noise >= 0))
-        throw OptionError("least_noise " + std::to_string(options.least_noise) + ": must be 0 or more");
-    if (!(options.most_stretch > 1))
-        throw OptionError("most_stretch " + std::to_string(options.most_stretch) + ": must be above 1");
+    check_option(options.least_noise >= 0, "least_noise", options.least_noise, "be 0 or more");
+    check_option(options.most_stretch > 1, "most_stretch", options.most_stretch, "be above 1");
 }
 
 } // namespace

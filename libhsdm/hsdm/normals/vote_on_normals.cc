@@ -60,15 +60,13 @@ void vote_on_normals(const Octree& octree, const Neighbors& neighbors, Estimated
     const std::vector<Index>& bent = estimate.bent;
     std::vector<Vec3> settled(bent.size());
     for (int round = 0; round < normal_votes::rounds; ++round) {
-        for_chunks(bent.size(), bent_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t b = begin; b < end; ++b) {
-                const Vec3& own = settled[b] = estimate.normals[bent[b]];
-                const auto around = neighbors.of(bent[b]);
-                if (std::any_of(around.begin(), around.end(), [&](Index j) {
-                        return (own | estimate.normals[j]) < normal_votes::settled_cosine;
-                    }))
-                    settled[b] = Agreement(octree, neighbors, estimate, bent[b]).settled(own);
-            }
+        for_each_index(bent.size(), bent_per_chunk, [&](Index b) {
+            const Vec3& own = settled[b] = estimate.normals[bent[b]];
+            const auto around = neighbors.of(bent[b]);
+            if (std::any_of(around.begin(), around.end(), [&](Index j) {
+                    return (own | estimate.normals[j]) < normal_votes::settled_cosine;
+                }))
+                settled[b] = Agreement(octree, neighbors, estimate, bent[b]).settled(own);
         });
         for (std::size_t b = 0; b < bent.size(); ++b) estimate.normals[bent[b]] = settled[b];
     }

@@ -40,15 +40,13 @@ using Places = std::vector<std::pair<MortonCode, Index>>;
 Places shifted_places(const Octree& octree) {
     constexpr double last = (1 << morton_levels) - 1;
     Places places(octree.size());
-    for_chunks(places.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i) {
-            std::array<std::uint32_t, 3> c;
-            for (unsigned k = 0; k < 3; ++k) {
-                const double x = (octree.positions[i][k] / octree.extent + 1.0 / 3) / 2;
-                c[k] = static_cast<std::uint32_t>(std::clamp(x * (last + 1), 0.0, last));
-            }
-            places[i] = {morton_encode(c[0], c[1], c[2]), static_cast<Index>(i)};
+    for_each_index(places.size(), points_per_chunk, [&](Index i) {
+        std::array<std::uint32_t, 3> c;
+        for (unsigned k = 0; k < 3; ++k) {
+            const double x = (octree.positions[i][k] / octree.extent + 1.0 / 3) / 2;
+            c[k] = static_cast<std::uint32_t>(std::clamp(x * (last + 1), 0.0, last));
         }
+        places[i] = {morton_encode(c[0], c[1], c[2]), i};
     });
     tbb::parallel_sort(places.begin(), places.end());
     return places;
@@ -96,10 +94,8 @@ CloudFrame frame_of_rest(const Octree& octree, const PointCloud& cloud) {
 /// has no voxels, as for parts 2^1000 times as far apart as they are large.
 bool take_anew(Octree& octree, const PointCloud& cloud, const CloudFrame& frame) {
     std::vector<Vec3> positions(octree.size());
-    for_chunks(positions.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i)
-            positions[i] = frame.to_work(cloud.positions[octree.source[i]]);
-    });
+    for_each_index(positions.size(), points_per_chunk,
+                   [&](Index i) { positions[i] = frame.to_work(cloud.positions[octree.source[i]]); });
     const Box bounds = bounds_of(positions);
     if (!has_voxels(bounds)) return false;
     octree.bounds = bounds;
@@ -116,11 +112,9 @@ double cut_gaps(const Octree& octree, const PointCloud& cloud, double widest, Cl
     std::vector<double> coordinates(octree.size());
     double longest = 0;
     for (unsigned axis = 0; axis < 3; ++axis) {
-        for_chunks(coordinates.size(), points_per_chunk,
-                   [&](std::size_t begin, std::size_t end, std::size_t) {
-                       for (std::size_t i = begin; i < end; ++i)
-                           coordinates[i] = uncut.to_work(cloud.positions[octree.source[i]])[axis];
-                   });
+        for_each_index(coordinates.size(), points_per_chunk, [&](Index i) {
+            coordinates[i] = uncut.to_work(cloud.positions[octree.source[i]])[axis];
+        });
         longest = std::max(longest, frame.cut_gaps(axis, coordinates, widest));
     }
     return longest;
@@ -131,10 +125,8 @@ std::size_t mark_scraps(const Octree& octree, const PointCloud& cloud, const Clo
                         std::vector<std::uint8_t>& marks) {
     const CloudFrame uncut = frame.without_cuts();
     std::vector<std::pair<std::array<Index, 3>, Index>> points(octree.size());
-    for_chunks(points.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i)
-            points[i] = {frame.stretch_of_uncut(uncut.to_work(cloud.positions[octree.source[i]])),
-                         static_cast<Index>(i)};
+    for_each_index(points.size(), points_per_chunk, [&](Index i) {
+        points[i] = {frame.stretch_of_uncut(uncut.to_work(cloud.positions[octree.source[i]])), i};
     });
     tbb::parallel_sort(points.begin(), points.end());
     std::size_t count = 0;

@@ -1,5 +1,6 @@
 #include "hsdm/octree/octree.hh"
 
+#include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/radix_sort.hh"
 #include "hsdm/errors.hh"
@@ -47,11 +48,9 @@ template <class T, class Change>
 std::vector<T> gathered(const std::vector<T>& values, const std::vector<Index>& places,
                         const Change& change) {
     std::vector<T> result(places.size());
-    for_chunks(places.size(), grain, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i != end; ++i) {
-            if (i + ahead < end) __builtin_prefetch(&values[places[i + ahead]]);
-            result[i] = change(values[places[i]]);
-        }
+    for_each_index(places.size(), grain, [&](Index i) {
+        if (i + ahead < places.size()) __builtin_prefetch(&values[places[i + ahead]]);
+        result[i] = change(values[places[i]]);
     });
     return result;
 }
@@ -144,11 +143,9 @@ std::size_t merge_equal(std::span<const Vec3> positions, std::span<const Vec3> n
 std::vector<Index> take_order(std::vector<CodeIndex>& keys, std::vector<MortonCode>& codes) {
     std::vector<Index> order(keys.size());
     codes.resize(keys.size());
-    for_chunks(keys.size(), grain, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i != end; ++i) {
-            codes[i] = keys[i].code;
-            order[i] = keys[i].index;
-        }
+    for_each_index(keys.size(), grain, [&](Index i) {
+        codes[i] = keys[i].code;
+        order[i] = keys[i].index;
     });
     keys = std::vector<CodeIndex>();
     return order;
@@ -175,9 +172,8 @@ void place_cube(const PointCloud& cloud, const OctreeOptions& options, Octree& o
     if (!has_voxels(octree.bounds))
         throw Error("the cloud is too large or too small for double precision; scale it, or give a unit");
     if (options.cube_extent != 0) {
-        if (!(options.cube_extent >= octree.extent))
-            throw OptionError("cube_extent " + std::to_string(options.cube_extent)
-                              + ": must be 0 or at least " + std::to_string(octree.extent));
+        check_option(options.cube_extent >= octree.extent, "cube_extent", options.cube_extent,
+                     "be 0 or at least " + std::to_string(octree.extent));
         octree.extent = options.cube_extent;
     }
     if (options.placement == CubePlacement::centred)
@@ -194,9 +190,8 @@ Octree build(const PointCloud& cloud, std::vector<Vec3>* ours, const OctreeOptio
     const bool with_values = !cloud.colors.empty() || !cloud.scalars.empty();
     const double scale = cells / octree.extent, per_unit = 1 / options.unit;
     std::vector<CodeIndex> keys(n);
-    for_chunks(n, grain, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i != end; ++i)
-            keys[i] = {code_of(cloud.positions[i] * per_unit - octree.origin, scale), static_cast<Index>(i)};
+    for_each_index(n, grain, [&](Index i) {
+        keys[i] = {code_of(cloud.positions[i] * per_unit - octree.origin, scale), i};
     });
     const std::span<const Vec3> normals = with_normals ? cloud.normals : std::span<const Vec3>();
     order_points(cloud.positions, normals, keys);
@@ -229,11 +224,9 @@ void rearrange(Octree& octree, std::vector<Vec3> positions, double extent) {
     const Vec3 shift = before - octree.origin;
     const double scale = cells / extent;
     std::vector<CodeIndex> keys(positions.size());
-    for_chunks(keys.size(), grain, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i != end; ++i) {
-            positions[i] += shift;
-            keys[i] = {code_of(positions[i], scale), static_cast<Index>(i)};
-        }
+    for_each_index(keys.size(), grain, [&](Index i) {
+        positions[i] += shift;
+        keys[i] = {code_of(positions[i], scale), i};
     });
     order_points(positions, octree.normals, keys);
     const std::vector<Index> order = take_order(keys, octree.codes);
@@ -276,25 +269,9 @@ namespace {
 
 /// The places where shifted codes change, followed by the number of codes.
 std::vector<Index> find_runs(const std::vector<MortonCode>& codes, int shift) {
-    const std::size_t n = codes.size();
-    const std::size_t chunks = (n + grain - 1) / grain;
-
-    // Two passes over fixed chunks: count the runs that begin in each, then write them at their offset.
-    auto begins = [&](std::size_t i) { return i == 0 || codes[i] >> shift != codes[i - 1] >> shift; };
-    std::vector<std::size_t> offset(chunks + 1, 0);
-    for_each_task(chunks, [&](std::size_t chunk) {
-        std::size_t count = 0;
-        for (std::size_t i = chunk * grain; i < std::min(n, (chunk + 1) * grain); ++i) count += begins(i);
-        offset[chunk + 1] = count;
-    });
-    std::partial_sum(offset.begin(), offset.end(), offset.begin());
-    std::vector<Index> runs(offset.back() + 1);
-    for_each_task(chunks, [&](std::size_t chunk) {
-        std::size_t run = offset[chunk];
-        for (std::size_t i = chunk * grain; i < std::min(n, (chunk + 1) * grain); ++i)
-            if (begins(i)) runs[run++] = static_cast<Index>(i);
-    });
-    runs.back() = static_cast<Index>(n);
+    std::vector<Index> runs = indices_where(
+        codes.size(), grain, [&](Index i) { return i == 0 || codes[i] >> shift != codes[i - 1] >> shift; });
+    runs.push_back(static_cast<Index>(codes.size()));
     return runs;
 }
 
@@ -302,9 +279,7 @@ std::vector<Index> find_runs(const std::vector<MortonCode>& codes, int shift) {
 void fill_level(const std::vector<MortonCode>& codes, int shift, const std::vector<Index>& runs,
                 OctreeLevel& level) {
     level.codes.resize(runs.size() - 1);
-    for_chunks(level.codes.size(), grain, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t v = begin; v != end; ++v) level.codes[v] = codes[runs[v]] >> shift;
-    });
+    for_each_index(level.codes.size(), grain, [&](Index v) { level.codes[v] = codes[runs[v]] >> shift; });
     level.build_index();
 }
 
@@ -330,10 +305,8 @@ OctreeLevel coarser_level(const OctreeLevel& finer, int depth) {
     const int shift = 3 * (finer.depth - depth);
     level.first_point = find_runs(finer.codes, shift);
     fill_level(finer.codes, shift, level.first_point, level);
-    for_chunks(level.first_point.size(), grain, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t v = begin; v != end; ++v)
-            level.first_point[v] = finer.first_point[level.first_point[v]];
-    });
+    for_each_index(level.first_point.size(), grain,
+                   [&](Index v) { level.first_point[v] = finer.first_point[level.first_point[v]]; });
     return level;
 }
 

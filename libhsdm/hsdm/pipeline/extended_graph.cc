@@ -1,6 +1,6 @@
 #include "hsdm/pipeline/extended_graph.hh"
 
-#include <algorithm>
+#include "hsdm/core/chunks.hh"
 
 namespace hsdm {
 
@@ -15,8 +15,7 @@ ConnectivityGraph extended_graph(const PolygonMesh& facets, const std::vector<In
             half_edges.emplace_back(b, a);
         }
     }
-    std::sort(half_edges.begin(), half_edges.end());
-    half_edges.erase(std::unique(half_edges.begin(), half_edges.end()), half_edges.end());
+    sort_unique(half_edges);
 
     ConnectivityGraph graph;
     graph.positions = facets.positions;
@@ -27,7 +26,7 @@ ConnectivityGraph extended_graph(const PolygonMesh& facets, const std::vector<In
         ++graph.first_edge[from + 1];
         graph.end.push_back(to);
     }
-    for (std::size_t v = 0; v < facets.vertex_count(); ++v) graph.first_edge[v + 1] += graph.first_edge[v];
+    counts_to_first(graph.first_edge);
     graph.twin.resize(half_edges.size());
     for (std::size_t h = 0; h < half_edges.size(); ++h)
         graph.twin[h] = graph.find(half_edges[h].second, half_edges[h].first);

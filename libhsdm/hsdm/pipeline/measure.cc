@@ -67,9 +67,8 @@ Discarded measure_error(std::span<const Vec3> points, const MethodInput& in, con
 
 std::vector<Vec3> points_as_read(const PointCloud& cloud, const CloudFrame& frame, const Octree& octree) {
     std::vector<Vec3> points(octree.size());
-    for_chunks(points.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i)
-            points[i] = frame.to_work(cloud.positions[octree.source[i]]) - octree.origin;
+    for_each_index(points.size(), points_per_chunk, [&](Index i) {
+        points[i] = frame.to_work(cloud.positions[octree.source[i]]) - octree.origin;
     });
     return points;
 }

@@ -1,5 +1,6 @@
 #include "hsdm/pipeline/options.hh"
 
+#include "hsdm/core/check_option.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/octree/octree.hh"
 
@@ -11,9 +12,8 @@ namespace hsdm {
 namespace {
 
 void check_depth(const std::string& name, int depth) {
-    if (depth < 1 || depth > deepest_level)
-        throw OptionError(name + " " + std::to_string(depth) + ": must lie in [1, "
-                          + std::to_string(deepest_level) + "]");
+    check_option(depth >= 1 && depth <= deepest_level, name, depth,
+                 "lie in [1, " + std::to_string(deepest_level) + "]");
 }
 
 std::string name_of(Holes holes) {
@@ -78,10 +78,8 @@ void check_options(const ReconstructOptions& o) {
     if (!(o.crease_angle > 0 && o.crease_angle < std::numbers::pi))
         throw OptionError("crease_angle " + text_of(o.crease_angle)
                           + " rad: must lie between 0 and pi (180 degrees)");
-    if (o.normal_smoothing < 0)
-        throw OptionError("normal_smoothing " + std::to_string(o.normal_smoothing) + ": must be 0 or more");
-    if (o.threads < 0)
-        throw OptionError("threads " + std::to_string(o.threads) + ": must be 0 (all) or more");
+    check_option(o.normal_smoothing >= 0, "normal_smoothing", o.normal_smoothing, "be 0 or more");
+    check_option(o.threads >= 0, "threads", o.threads, "be 0 (all) or more");
     if (o.normals == NormalSource::estimate && o.method == Method::basic)
         throw OptionError("normals estimate: the basic method uses no normals; use the extended one");
 }

@@ -142,15 +142,12 @@ Distance points_to_mesh_by_cells(std::span<const Vec3> points, const PolygonMesh
     if (!cells.usable()) return points_to_mesh(points, MeshDistance(mesh), beyond);
     const Triangulation cut = triangulate(mesh);
     std::vector<double> squared(points.size());
-    std::vector<std::vector<Index>> left(chunk_count(points.size(), chunk));
-    for_chunks(points.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+    for_chunks(points.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         CellSearch search(mesh, cut, cells);
-        for (std::size_t i = begin; i < end; ++i) {
-            squared[i] = search.squared_distance(points[i]);
-            if (squared[i] == infinity) left[c].push_back(static_cast<Index>(i));
-        }
+        for (std::size_t i = begin; i < end; ++i) squared[i] = search.squared_distance(points[i]);
     });
-    const std::vector<Index> far = joined(left);
+    const std::vector<Index> far =
+        indices_where(points.size(), chunk, [&](Index i) { return squared[i] == infinity; });
     if (!far.empty()) {
         const MeshDistance by_tree(mesh, cut);
         for_chunks(far.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -176,8 +173,8 @@ std::vector<Vec3> sample_surface(const PolygonMesh& mesh, std::size_t count) {
     if (!(area.back() > 0)) return samples;
     samples.resize(count);
     constexpr std::size_t grain = 1 << 12;
-    for_each_task((count + grain - 1) / grain, [&](std::size_t c) {
-        for (std::size_t i = c * grain; i < std::min(count, (c + 1) * grain); ++i) {
+    for_chunks(count, grain, [&](std::size_t i, std::size_t end, std::size_t) {
+        for (; i < end; ++i) {
             // Evenly spaced along the running area; inside the triangle the additive recurrence of the two
             // generalised golden ratios of the plane, folded into the triangle.
             const auto n = static_cast<double>(i);

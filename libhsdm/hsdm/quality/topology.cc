@@ -59,9 +59,8 @@ struct Fans {
 
 EdgeTable edges_of(const Loops& loops, std::size_t vertices) {
     return EdgeTable(vertices, [&](const auto& visit) {
-        for_chunks(loops.vertex.size(), chunk, [&](std::size_t c, std::size_t end, std::size_t) {
-            for (; c < end; ++c) visit(loops.vertex[c], loops.vertex[loops.next[c]], static_cast<Index>(c));
-        });
+        for_each_index(loops.vertex.size(), chunk,
+                       [&](Index c) { visit(loops.vertex[c], loops.vertex[loops.next[c]], c); });
     });
 }
 
@@ -159,11 +158,9 @@ std::size_t count_duplicates(const PolygonMesh& mesh) {
         auto operator<=>(const Key&) const = default;
     };
     std::vector<Key> keys(mesh.facet_count());
-    for_chunks(keys.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t f = begin; f != end; ++f) {
-            keys[f] = {mesh.facet(f).size(), static_cast<Index>(f)};
-            for (Index v : mesh.facet(f)) keys[f].set += hash_index(v);
-        }
+    for_each_index(keys.size(), chunk, [&](Index f) {
+        keys[f] = {mesh.facet(f).size(), f};
+        for (Index v : mesh.facet(f)) keys[f].set += hash_index(v);
     });
     tbb::parallel_sort(keys.begin(), keys.end());
     std::size_t count = 0;
@@ -178,10 +175,10 @@ std::size_t count_duplicates(const PolygonMesh& mesh) {
 /// Sum of term(i) over 0 .. n - 1, the same bits for any number of threads.
 template <class Term>
 double chunked_sum(std::size_t n, Term term) {
-    std::vector<double> sums((n + chunk - 1) / chunk, 0.0);
-    for_each_task(sums.size(), [&](std::size_t c) {
+    std::vector<double> sums(chunk_count(n, chunk), 0.0);
+    for_chunks(n, chunk, [&](std::size_t i, std::size_t end, std::size_t c) {
         double sum = 0;
-        for (std::size_t i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) sum += term(i);
+        for (; i < end; ++i) sum += term(i);
         sums[c] = sum;
     });
     return std::accumulate(sums.begin(), sums.end(), 0.0);

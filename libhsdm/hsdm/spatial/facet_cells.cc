@@ -71,15 +71,10 @@ std::vector<std::size_t> FacetCells::count(const PolygonMesh& mesh) const {
 
 void FacetCells::group(const std::vector<CodeIndex>& entries) {
     facet_.resize(entries.size());
-    std::vector<std::vector<Index>> firsts(chunk_count(entries.size(), entries_per_chunk));
-    for_chunks(entries.size(), entries_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        for (std::size_t i = begin; i < end; ++i) {
-            facet_[i] = entries[i].index;
-            if (i == 0 || entries[i].code != entries[i - 1].code)
-                firsts[chunk].push_back(static_cast<Index>(i));
-        }
+    first_ = indices_where(entries.size(), entries_per_chunk, [&](Index i) {
+        facet_[i] = entries[i].index;
+        return i == 0 || entries[i].code != entries[i - 1].code;
     });
-    first_ = joined(firsts);
     std::vector<MortonCode> codes(first_.size());
     for (std::size_t c = 0; c < codes.size(); ++c) codes[c] = entries[first_[c]].code;
     index_.build(codes);

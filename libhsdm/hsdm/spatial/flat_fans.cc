@@ -29,16 +29,13 @@ struct Sight {
 /// Per vertex its first facet, no_index if it has none.
 std::vector<Index> first_facets(const PolygonMesh& mesh, const std::vector<Index>& vertex) {
     std::vector<Index> first(mesh.vertex_count(), no_index);
-    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t f = begin; f < end; ++f)
-            for (Index v : mesh.facet(f)) {
-                const std::atomic_ref least(first[vertex[v]]);
-                Index seen = least.load(std::memory_order_relaxed);
-                while (
-                    f < seen
-                    && !least.compare_exchange_weak(seen, static_cast<Index>(f), std::memory_order_relaxed)) {
-                }
+    for_each_index(mesh.facet_count(), facets_per_chunk, [&](Index f) {
+        for (Index v : mesh.facet(f)) {
+            const std::atomic_ref least(first[vertex[v]]);
+            Index seen = least.load(std::memory_order_relaxed);
+            while (f < seen && !least.compare_exchange_weak(seen, f, std::memory_order_relaxed)) {
             }
+        }
     });
     return first;
 }
@@ -46,17 +43,15 @@ std::vector<Index> first_facets(const PolygonMesh& mesh, const std::vector<Index
 std::vector<Sight> find_sights(const PolygonMesh& mesh, const std::vector<Index>& vertex) {
     const std::vector<Index> first = first_facets(mesh, vertex);
     std::vector<Sight> sights(first.size());
-    for_chunks(first.size(), 2 * facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t v = begin; v < end; ++v) {
-            if (first[v] == no_index) continue;
-            const auto facet = mesh.facet(first[v]);
-            std::size_t k = 0;
-            while (vertex[facet[k]] != v) ++k;
-            const Vec3& at = mesh.positions[facet[k]];
-            sights[v].side = mesh.positions[facet[(k + 1) % facet.size()]] - at;
-            sights[v].direction =
-                sights[v].side % (mesh.positions[facet[(k + facet.size() - 1) % facet.size()]] - at);
-        }
+    for_each_index(first.size(), 2 * facets_per_chunk, [&](Index v) {
+        if (first[v] == no_index) return;
+        const auto facet = mesh.facet(first[v]);
+        std::size_t k = 0;
+        while (vertex[facet[k]] != v) ++k;
+        const Vec3& at = mesh.positions[facet[k]];
+        sights[v].side = mesh.positions[facet[(k + 1) % facet.size()]] - at;
+        sights[v].direction =
+            sights[v].side % (mesh.positions[facet[(k + facet.size() - 1) % facet.size()]] - at);
     });
     return sights;
 }
@@ -99,18 +94,16 @@ std::uint32_t turns_at(const PolygonMesh& mesh, std::span<const Index> facet, st
 std::vector<std::uint8_t> flat_fans(const PolygonMesh& mesh, const std::vector<Index>& vertex) {
     const std::vector<Sight> sights = find_sights(mesh, vertex);
     std::vector<Fan> fans(mesh.vertex_count());
-    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t f = begin; f < end; ++f) {
-            const auto facet = mesh.facet(f);
-            const std::size_t n = facet.size();
-            for (std::size_t k = 0; k < n; ++k) {
-                const Index v = vertex[facet[k]];
-                const std::uint64_t next = hash_index(vertex[facet[(k + 1) % n]]),
-                                    last = hash_index(vertex[facet[(k + n - 1) % n]]);
-                fans[v].ends.fetch_add(next - last, std::memory_order_relaxed);
-                const std::uint32_t turns = turns_at(mesh, facet, k, sights[v]);
-                if (turns > 0) fans[v].turns.fetch_add(turns, std::memory_order_relaxed);
-            }
+    for_each_index(mesh.facet_count(), facets_per_chunk, [&](Index f) {
+        const auto facet = mesh.facet(f);
+        const std::size_t n = facet.size();
+        for (std::size_t k = 0; k < n; ++k) {
+            const Index v = vertex[facet[k]];
+            const std::uint64_t next = hash_index(vertex[facet[(k + 1) % n]]),
+                                last = hash_index(vertex[facet[(k + n - 1) % n]]);
+            fans[v].ends.fetch_add(next - last, std::memory_order_relaxed);
+            const std::uint32_t turns = turns_at(mesh, facet, k, sights[v]);
+            if (turns > 0) fans[v].turns.fetch_add(turns, std::memory_order_relaxed);
         }
     });
     std::vector<std::uint8_t> flat(fans.size());

@@ -33,20 +33,16 @@ public:
     }
 
     SelfIntersections run() const {
-        const std::size_t chunks = (tree_.block_count() + blocks_per_chunk - 1) / blocks_per_chunk;
-        std::vector<std::vector<FacetPair>> found(chunks);
-        for_each_task(chunks, [&](std::size_t chunk) {
-            const std::size_t end = std::min(tree_.block_count(), (chunk + 1) * blocks_per_chunk);
-            std::vector<TrianglePair> candidates;
-            for (std::size_t block = chunk * blocks_per_chunk; block < end; ++block) {
-                tree_.overlapping(static_cast<Index>(block), candidates);
-                test(candidates, found[chunk]);
-            }
-        });
         SelfIntersections result;
+        const auto test_blocks = [&](std::size_t block, std::size_t end, std::vector<FacetPair>& found) {
+            std::vector<TrianglePair> candidates;
+            for (; block < end; ++block) {
+                tree_.overlapping(static_cast<Index>(block), candidates);
+                test(candidates, found);
+            }
+        };
+        result.facet_pairs = collected<FacetPair>(tree_.block_count(), blocks_per_chunk, test_blocks);
         result.skipped = static_cast<std::size_t>(std::count(collinear_.begin(), collinear_.end(), 1));
-        for (const auto& pairs : found)
-            result.facet_pairs.insert(result.facet_pairs.end(), pairs.begin(), pairs.end());
         result.triangle_pairs = result.facet_pairs.size();
         tbb::parallel_sort(result.facet_pairs.begin(), result.facet_pairs.end());
         result.facet_pairs.erase(std::unique(result.facet_pairs.begin(), result.facet_pairs.end()),
@@ -110,15 +106,14 @@ std::vector<Index> facets_in_doubt(const PolygonMesh& mesh, const FacetCells& ce
     std::vector<Index> own(mesh.vertex_count());
     std::iota(own.begin(), own.end(), Index{0});
     const std::vector<std::uint8_t> flat = flat_fans(mesh, own);
-    std::vector<std::vector<Index>> parts(chunk_count(cells.size(), cells_per_chunk));
-    for_chunks(cells.size(), cells_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        for (std::size_t c = begin; c < end; ++c) {
+    const auto add_doubtful = [&](std::size_t c, std::size_t end, std::vector<Index>& doubtful) {
+        for (; c < end; ++c) {
             const auto facets = cells.facets(static_cast<Index>(c));
             if (!share_flat_vertex(mesh, facets, flat))
-                parts[chunk].insert(parts[chunk].end(), facets.begin(), facets.end());
+                doubtful.insert(doubtful.end(), facets.begin(), facets.end());
         }
-    });
-    std::vector<Index> doubtful = joined(parts);
+    };
+    std::vector<Index> doubtful = collected<Index>(cells.size(), cells_per_chunk, add_doubtful);
     tbb::parallel_sort(doubtful.begin(), doubtful.end());
     doubtful.erase(std::unique(doubtful.begin(), doubtful.end()), doubtful.end());
     return doubtful;

@@ -150,24 +150,22 @@ void SurfaceWalk::make_steps(const std::vector<Index>& twin) {
     rounding_ = static_cast<float>(2 * std::numeric_limits<float>::epsilon() * box.diagonal()
                                    / std::sqrt(least_squared_sine));
     steps_ = std::make_unique_for_overwrite<Step[]>(triangles_.size());
-    for_chunks(triangles_.size(), triangles_per_chunk, [&](std::size_t t, std::size_t end, std::size_t) {
-        for (; t < end; ++t) {
-            const auto& [ia, ib, ic] = triangles_[t];
-            const Vec3 &a = positions_[ia], ab = positions_[ib] - a, ac = positions_[ic] - a;
-            const Vec3 normal = ab % ac;
-            const double area = normal.sqrnorm();
-            const bool flat = !(area > least_squared_sine * ab.sqrnorm() * ac.sqrnorm());
-            const Vec3 to_b = flat ? Vec3(0, 0, 0) : (ac % normal) / area;
-            const Vec3 to_c = flat ? Vec3(0, 0, 0) : (normal % ab) / area;
-            const Vec3 up = flat ? Vec3(Box::inf, Box::inf, Box::inf) : normal / std::sqrt(area);
-            Step& step = steps_[t];
-            for (unsigned k = 0; k < 3; ++k) {
-                step.a[k] = static_cast<float>(a[k] - centre_[k]);
-                step.to_b[k] = static_cast<float>(to_b[k]);
-                step.to_c[k] = static_cast<float>(to_c[k]);
-                step.normal[k] = static_cast<float>(up[k]);
-                step.twin[k] = twin[3 * t + k];
-            }
+    for_each_index(triangles_.size(), triangles_per_chunk, [&](Index t) {
+        const auto& [ia, ib, ic] = triangles_[t];
+        const Vec3 &a = positions_[ia], ab = positions_[ib] - a, ac = positions_[ic] - a;
+        const Vec3 normal = ab % ac;
+        const double area = normal.sqrnorm();
+        const bool flat = !(area > least_squared_sine * ab.sqrnorm() * ac.sqrnorm());
+        const Vec3 to_b = flat ? Vec3(0, 0, 0) : (ac % normal) / area;
+        const Vec3 to_c = flat ? Vec3(0, 0, 0) : (normal % ab) / area;
+        const Vec3 up = flat ? Vec3(Box::inf, Box::inf, Box::inf) : normal / std::sqrt(area);
+        Step& step = steps_[t];
+        for (unsigned k = 0; k < 3; ++k) {
+            step.a[k] = static_cast<float>(a[k] - centre_[k]);
+            step.to_b[k] = static_cast<float>(to_b[k]);
+            step.to_c[k] = static_cast<float>(to_c[k]);
+            step.normal[k] = static_cast<float>(up[k]);
+            step.twin[k] = twin[3 * t + k];
         }
     });
 }

@@ -82,23 +82,19 @@ TriangleTree::TriangleTree(const std::vector<Vec3>& positions, const std::vector
 void TriangleTree::set_order(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                              Order order) {
     std::vector<Item> items(triangles.size());
-    for_chunks(items.size(), grain, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t t = begin; t != end; ++t) {
-            Box box;
-            for (Index v : triangles[t]) box.add(positions[v] - centre_);
-            const Vec3 middle = (box.lo + box.hi) / 2;
-            for (unsigned k = 0; k < 3; ++k) items[t].centre[k] = middle[k];
-            items[t].triangle = static_cast<Index>(t);
-        }
+    for_each_index(items.size(), grain, [&](Index t) {
+        Box box;
+        for (Index v : triangles[t]) box.add(positions[v] - centre_);
+        const Vec3 middle = (box.lo + box.hi) / 2;
+        for (unsigned k = 0; k < 3; ++k) items[t].centre[k] = middle[k];
+        items[t].triangle = t;
     });
     if (order == Order::compact) split(items.data(), items.data() + items.size());
     triangle_of_.resize(items.size());
     place_of_.resize(items.size());
-    for_chunks(items.size(), grain, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i != end; ++i) {
-            triangle_of_[i] = items[i].triangle;
-            place_of_[items[i].triangle] = static_cast<Index>(i);
-        }
+    for_each_index(items.size(), grain, [&](Index i) {
+        triangle_of_[i] = items[i].triangle;
+        place_of_[items[i].triangle] = i;
     });
 }
 
@@ -107,21 +103,19 @@ void TriangleTree::fill_blocks(const std::vector<Vec3>& positions, const std::ve
     const std::size_t parents = (blocks + width - 1) / width;
     blocks_ = std::make_unique_for_overwrite<Block[]>(blocks);
     std::vector<Boxes> boxes(parents);
-    for_chunks(parents * width, grain, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t b = begin; b != end; ++b) {
-            Box box;
-            for (std::size_t lane = 0; b < blocks && lane < width; ++lane) {
-                const std::size_t place = std::min(b * width + lane, triangle_of_.size() - 1);
-                const Triangle& t = triangles[triangle_of_[place]];
-                const Vec3 p0 = positions[t[0]] - centre_, p1 = positions[t[1]] - centre_,
-                           p2 = positions[t[2]] - centre_;
-                blocks_[b][lane / 2].put(lane % 2, p0, p1 - p0, p2 - p0);
-                for (const Vec3& p : {p0, p1, p2}) box.add(p);
-            }
-            for (unsigned k = 0; k < 3; ++k) {
-                boxes[b / width].lo[k][b % width / 2][b % 2] = box.lo[k];
-                boxes[b / width].hi[k][b % width / 2][b % 2] = box.hi[k];
-            }
+    for_each_index(parents * width, grain, [&](Index b) {
+        Box box;
+        for (std::size_t lane = 0; b < blocks && lane < width; ++lane) {
+            const std::size_t place = std::min(b * width + lane, triangle_of_.size() - 1);
+            const Triangle& t = triangles[triangle_of_[place]];
+            const Vec3 p0 = positions[t[0]] - centre_, p1 = positions[t[1]] - centre_,
+                       p2 = positions[t[2]] - centre_;
+            blocks_[b][lane / 2].put(lane % 2, p0, p1 - p0, p2 - p0);
+            for (const Vec3& p : {p0, p1, p2}) box.add(p);
+        }
+        for (unsigned k = 0; k < 3; ++k) {
+            boxes[b / width].lo[k][b % width / 2][b % 2] = box.lo[k];
+            boxes[b / width].hi[k][b % width / 2][b % 2] = box.hi[k];
         }
     });
     for (std::size_t b = 0; b < blocks; ++b) {
