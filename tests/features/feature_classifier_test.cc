@@ -42,7 +42,7 @@ auto normals_of(Mesh& mesh) {
 
 TEMPLATE_TEST_CASE("a cube has twelve sharp edges, eight corners and flat sides", "", EVERY_KIND_OF_MESH) {
     constexpr Index n = 4;
-    TestType mesh = build<TestType>(cube(n));
+    TestType mesh = build<TestType>(support::divided_cube(n));
     const FeatureCounts counts = classify(mesh);
     CHECK(counts.sharp_edges == 12 * n);
     CHECK(counts.corner_vertices == 8);
@@ -115,7 +115,7 @@ TEST_CASE("the crease angle is the limit: edges just below are smooth, just abov
 TEST_CASE("a scan's noise is not taken for creases unless the plain dihedral test is asked for") {
     constexpr Index n = 24;
     constexpr double edge = 2.0 / n;
-    const PolygonMesh rough = noisy(cube(n), 0.15 * edge);
+    const PolygonMesh rough = noisy(support::divided_cube(n), 0.15 * edge);
     PolyMesh confirmed = to_mesh(rough).mesh, plain = confirmed;
     const std::size_t found = classify_features(confirmed).sharp_edges;
     CHECK(found >= 12 * n);
@@ -193,7 +193,7 @@ TEST_CASE("two sharp edges that turn strongly make a corner, a gentle turn makes
 }
 
 TEST_CASE("locked edges and vertices keep their feature bits") {
-    PolyMeshD mesh = build<PolyMeshD>(cube(2));
+    PolyMeshD mesh = build<PolyMeshD>(support::divided_cube(2));
     OpenMesh::EdgeHandle sharp;
     for (const auto e : mesh.edges())
         if (mesh.calc_edge_midpoint(e) == Vec3(1, 1, 0.5)) sharp = e;
@@ -233,14 +233,14 @@ TEST_CASE("facets without area neither are sharp nor lend a normal") {
 }
 
 TEST_CASE("a cube far from the origin keeps its features") {
-    PolygonMesh far = cube(3);
+    PolygonMesh far = support::divided_cube(3);
     for (Vec3& p : far.positions) p = 1e-3 * p + Vec3(1e7, -1e7, 1e7);
     PolyMeshD mesh = build<PolyMeshD>(far);
     CHECK(classify(mesh).sharp_edges == 36);
 }
 
 TEST_CASE("a run before initialize throws, and so does an angle out of range") {
-    PolyMeshD mesh = build<PolyMeshD>(cube(1));
+    PolyMeshD mesh = build<PolyMeshD>(support::divided_cube(1));
     FeatureClassifierT<PolyMeshD> classifier(mesh);
     CHECK_THROWS_AS(classifier.classify(), std::logic_error);
     CHECK_THROWS_AS(classifier.initialize({.crease_angle = 0}), OptionError);
@@ -277,7 +277,7 @@ TEST_CASE("attributes the mesh does not have are requested and released") {
 }
 
 TEST_CASE("deleted elements and isolated vertices are not counted") {
-    PolyMeshD mesh = build<PolyMeshD>(cube(1));
+    PolyMeshD mesh = build<PolyMeshD>(support::divided_cube(1));
     mesh.add_vertex({5, 5, 5});
     mesh.delete_face(OpenMesh::FaceHandle(0), false);
     const FeatureCounts counts = classify(mesh);
@@ -286,7 +286,7 @@ TEST_CASE("deleted elements and isolated vertices are not counted") {
 }
 
 TEST_CASE("the classes do not depend on the number of threads") {
-    PolyMesh one = to_mesh(noisy(cube(40), 0.004)).mesh, two = one;
+    PolyMesh one = to_mesh(noisy(support::divided_cube(40), 0.004)).mesh, two = one;
     FeatureCounts first;
     {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
@@ -297,7 +297,7 @@ TEST_CASE("the classes do not depend on the number of threads") {
 }
 
 TEST_CASE("feature lines name every sharp edge and corner and read back to the same bits") {
-    PolygonMesh polygons = cube(1);
+    PolygonMesh polygons = support::divided_cube(1);
     for (Vec3& p : polygons.positions) p = Vec3(p[0] / 3, p[1] * 0.1, p[2] * 1e-9);
     PolyMesh mesh = to_mesh(polygons).mesh;
     CHECK(feature_lines(mesh).empty());
@@ -322,7 +322,7 @@ TEST_CASE("feature lines name every sharp edge and corner and read back to the s
 }
 
 TEST_CASE("classes, normals and feature bits are kept in .om files") {
-    PolyMesh mesh = to_mesh(cube(2)).mesh;
+    PolyMesh mesh = to_mesh(support::divided_cube(2)).mesh;
     classify_features(mesh);
     std::stringstream file;
     OpenMesh::IO::Options options = OpenMesh::IO::Options::Binary;
@@ -342,7 +342,7 @@ TEST_CASE("classes, normals and feature bits are kept in .om files") {
 }
 
 TEST_CASE("hints overrule the dihedral test, except at locked edges, and leave no locks") {
-    const PolygonMesh shape = cube(2);
+    const PolygonMesh shape = support::divided_cube(2);
     const auto hinted = [&](EdgeHint hint) { return FeatureHints{{shape.corners.size(), hint}}; };
     PolyMesh mesh = to_mesh(shape).mesh;
     const std::size_t by_angle = classify_features(mesh).sharp_edges;
@@ -360,7 +360,7 @@ TEST_CASE("hints overrule the dihedral test, except at locked edges, and leave n
 }
 
 TEST_CASE("a hint is for the side of the facet it is listed at, and hints of another mesh are refused") {
-    const PolygonMesh shape = cube(3);
+    const PolygonMesh shape = support::divided_cube(3);
     PolyMesh mesh = to_mesh(shape).mesh;
     for (const std::size_t side : {std::size_t{0}, std::size_t{17}, shape.corners.size() - 1}) {
         FeatureHints hints{{shape.corners.size(), EdgeHint::smooth}};

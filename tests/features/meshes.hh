@@ -2,6 +2,7 @@
 // The four kinds of OpenMesh mesh the modules promise to work on, and solids as any of them.
 
 #include "hsdm/polygon_mesh.hh"
+#include "support/meshes.hh"
 #include "support/random.hh"
 
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
@@ -37,8 +38,6 @@ Mesh build(const PolygonMesh& polygons) {
     return mesh;
 }
 
-/// The cube [-1, 1]^3, n x n quads on each side, vertices shared along its edges.
-PolygonMesh cube(Index n);
 /// A cylinder of radius 1 and height 2 with m quads around, n up, and caps of m triangles each.
 PolygonMesh capped_cylinder(Index m, Index n);
 /// The cube blown up to the unit sphere.
@@ -46,15 +45,7 @@ PolygonMesh sphere(Index n);
 /// n x n unit quads over z = height(x).
 template <class Height>
 PolygonMesh sheet(Index n, const Height& height) {
-    PolygonMesh mesh;
-    for (Index y = 0; y <= n; ++y)
-        for (Index x = 0; x <= n; ++x) mesh.positions.emplace_back(x, y, height(x, y));
-    for (Index y = 0; y < n; ++y)
-        for (Index x = 0; x < n; ++x) {
-            const Index v = y * (n + 1) + x;
-            mesh.add_facet(std::vector<Index>{v, v + 1, v + n + 2, v + n + 1});
-        }
-    return mesh;
+    return support::quad_sheet(n, n, [&](Index x, Index y) { return Vec3(x, y, height(x, y)); });
 }
 
 /// Every vertex moved by a Gauss-distributed vector.

@@ -73,7 +73,7 @@ double worst_error_on_cube(Mesh& mesh) {
 #define EVERY_KIND_OF_MESH PolyMeshF, PolyMeshD, TriMeshF, TriMeshD
 
 TEMPLATE_TEST_CASE("a cube keeps its normals and is settled at once", "", EVERY_KIND_OF_MESH) {
-    TestType mesh = build<TestType>(cube(4));
+    TestType mesh = build<TestType>(support::divided_cube(4));
     classify(mesh);
     CHECK(smooth(mesh, 10) == 0);
     CHECK(worst_error_on_cube(mesh) < 1e-6);
@@ -111,7 +111,7 @@ TEMPLATE_TEST_CASE("smoothing brings a noisy sphere's normals nearer to the trut
 
 TEMPLATE_TEST_CASE("a noisy box's normals converge to its six sides, none averaged across an edge", "",
                    EVERY_KIND_OF_MESH) {
-    const PolygonMesh exact = cube(16);
+    const PolygonMesh exact = support::divided_cube(16);
     TestType mesh = build<TestType>(noisy(exact, 0.004));
     mark_cube_edges(mesh, exact);
     smooth(mesh, 0);
@@ -133,7 +133,7 @@ TEST_CASE("without marked edges a blunt fold is smoothed, a similarity angle bel
 }
 
 TEST_CASE("the result does not depend on the order of facets and vertices") {
-    const PolygonMesh there = noisy(cube(6), 0.02);
+    const PolygonMesh there = noisy(support::divided_cube(6), 0.02);
     const auto count = static_cast<Index>(there.vertex_count());
     PolygonMesh back;
     back.positions.assign(there.positions.rbegin(), there.positions.rend());
@@ -180,7 +180,7 @@ TEST_CASE("locked facets keep their normals and lend them, locked vertices keep 
 }
 
 TEST_CASE("smoothing before initialize throws, and so do options out of range") {
-    PolyMeshD mesh = build<PolyMeshD>(cube(1));
+    PolyMeshD mesh = build<PolyMeshD>(support::divided_cube(1));
     AnisotropicNormalSmootherT<PolyMeshD> smoother(mesh);
     CHECK_THROWS_AS(smoother.smooth(1), std::logic_error);
     CHECK_THROWS_AS(smoother.initialize({.similarity_angle = -1}), OptionError);

@@ -106,7 +106,7 @@ TEST_CASE("colours of any kind are read and set", "") {
 }
 
 TEST_CASE("reconstructing before initialize throws, and a failure leaves the mesh as it was") {
-    TriMeshF mesh = build<TriMeshF>(cube(1));
+    TriMeshF mesh = build<TriMeshF>(support::divided_cube(1));
     ReconstructorT<TriMeshF> reconstructor(mesh);
     CHECK_THROWS_AS(reconstructor.reconstruct(), std::logic_error);
     ReconstructOptions options;

@@ -13,7 +13,7 @@ using namespace hsdm::test;
 using OpenMesh::VertexHandle;
 
 TEST_CASE("cut into triangles, a mesh keeps its features and properties") {
-    PolyMesh quads = to_mesh(cube(3)).mesh;
+    PolyMesh quads = to_mesh(support::divided_cube(3)).mesh;
     quads.add_vertex({9, 9, 9}); // isolated: left out
     classify_features(quads);
     const PolyMesh triangles = triangle_mesh(quads);
@@ -46,7 +46,7 @@ TEST_CASE("two facets cut by the same diagonal stay a 2-manifold") {
 
 TEMPLATE_TEST_CASE("a mesh is copied into the caller's traits with status, normals and properties", "",
                    PolyMeshF, PolyMeshD, TriMeshF, TriMeshD) {
-    PolyMesh from = to_mesh(cube(2)).mesh;
+    PolyMesh from = to_mesh(support::divided_cube(2)).mesh;
     classify_features(from);
     smooth_normals(from);
     if (TestType::is_trimesh()) from = triangle_mesh(from);

@@ -1,6 +1,7 @@
 #include "hsdm/mesh/collapse_edges.hh"
 #include "hsdm/mesh/manifold.hh"
 #include "hsdm/quality/topology.hh"
+#include "support/meshes.hh"
 
 #include <catch2/catch.hpp>
 
@@ -76,10 +77,7 @@ TEST_CASE("an edge of a closed surface becomes a vertex", "[mesh]") {
 }
 
 TEST_CASE("an edge whose collapse would fold facets onto each other stays where it is", "[mesh]") {
-    PolygonMesh tetrahedron;
-    tetrahedron.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    for (const std::array<Index, 3>& t : {std::array<Index, 3>{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}})
-        tetrahedron.add_facet(t);
+    PolygonMesh tetrahedron = support::tetrahedron();
     PolygonMesh mesh = grid_cube(3);
     const EdgeCollapse side = first_side(mesh, 13);
     const EdgeCollapse diagonal{side.from, mesh.facet(13)[2], side.position};

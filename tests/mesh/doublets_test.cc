@@ -1,6 +1,7 @@
 #include "hsdm/mesh/doublets.hh"
 #include "hsdm/mesh/manifold.hh"
 #include "hsdm/quality/topology.hh"
+#include "support/meshes.hh"
 
 #include <catch2/catch.hpp>
 
@@ -12,14 +13,10 @@ namespace {
 
 /// A cube whose top is two facets round a vertex 8 that no other has, `height` above it.
 PolygonMesh cube_with_doublet(double height) {
-    PolygonMesh mesh;
-    for (unsigned k = 0; k < 8; ++k) mesh.positions.emplace_back(k & 1, k >> 1 & 1, k >> 2);
+    PolygonMesh mesh = support::mesh_of(
+        support::cube_corners(),
+        {{0, 2, 3, 1}, {0, 1, 5, 4}, {1, 3, 7, 5}, {3, 2, 6, 7}, {2, 0, 4, 6}, {4, 5, 7, 8}, {8, 7, 6, 4}});
     mesh.positions.emplace_back(0.5, 0.5, 1 + height);
-    for (const std::array<Index, 4>& q :
-         {std::array<Index, 4>{0, 2, 3, 1}, {0, 1, 5, 4}, {1, 3, 7, 5}, {3, 2, 6, 7}, {2, 0, 4, 6}})
-        mesh.add_facet(q);
-    mesh.add_facet(std::array<Index, 4>{4, 5, 7, 8});
-    mesh.add_facet(std::array<Index, 4>{8, 7, 6, 4});
     return mesh;
 }
 

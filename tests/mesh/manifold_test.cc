@@ -1,4 +1,5 @@
 #include "hsdm/mesh/manifold.hh"
+#include "support/meshes.hh"
 
 #include <catch2/catch.hpp>
 
@@ -8,17 +9,11 @@
 #include <set>
 
 using namespace hsdm;
+using support::mesh_of;
 
 namespace {
 
 using Facets = std::vector<std::vector<Index>>;
-
-PolygonMesh make_mesh(std::vector<Vec3> positions, const Facets& facets) {
-    PolygonMesh mesh;
-    mesh.positions = std::move(positions);
-    for (const auto& facet : facets) mesh.add_facet(facet);
-    return mesh;
-}
 
 /// Checks from the definition, by maps: nothing here is shared with the code under test.
 std::string manifold_fault(const PolygonMesh& mesh) {
@@ -126,12 +121,12 @@ TEST_CASE("a manifold mesh is left as it is", "[manifold]") {
 
 TEST_CASE("opposite facets over the same vertices cancel and equal ones stay once", "[manifold]") {
     const std::vector<Vec3> corners{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-    PolygonMesh pillow = make_mesh(corners, {{0, 1, 2, 3}, {2, 1, 0, 3}});
+    PolygonMesh pillow = mesh_of(corners, {{0, 1, 2, 3}, {2, 1, 0, 3}});
     CHECK(make_manifold(pillow).cancelled == 2);
     CHECK(pillow.facet_count() == 0);
     CHECK(pillow.vertex_count() == 0);
 
-    PolygonMesh pile = make_mesh(corners, {{0, 1, 2, 3}, {1, 2, 3, 0}, {3, 2, 1, 0}, {2, 3, 0, 1}});
+    PolygonMesh pile = mesh_of(corners, {{0, 1, 2, 3}, {1, 2, 3, 0}, {3, 2, 1, 0}, {2, 3, 0, 1}});
     const ManifoldCounts counts = make_manifold(pile);
     CHECK(counts.cancelled == 2);
     CHECK(counts.duplicates == 1);
@@ -141,7 +136,7 @@ TEST_CASE("opposite facets over the same vertices cancel and equal ones stay onc
 
 TEST_CASE("facets that touch themselves are cut there", "[manifold]") {
     const std::vector<Vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
-    PolygonMesh eight = make_mesh(corners, {{0, 1, 2, 0, 3, 4}, {1, 1, 2}, {3, 4, 3}});
+    PolygonMesh eight = mesh_of(corners, {{0, 1, 2, 0, 3, 4}, {1, 1, 2}, {3, 4, 3}});
     const ManifoldCounts counts = make_manifold(eight);
     CHECK(counts.degenerate == 2);
     CHECK(eight.facet_count() == 2);
@@ -206,7 +201,7 @@ TEST_CASE("random unions of cells become closed manifolds of the same volume", "
 TEST_CASE("three sheets on one edge become a surface and a sheet of its own", "[manifold]") {
     const std::vector<Vec3> corners{{0, 0, 0},  {0, 0, 1},  {1, 0, 0}, {1, 0, 1},
                                     {-1, 0, 0}, {-1, 0, 1}, {0, 1, 0}, {0, 1, 1}};
-    PolygonMesh fin = make_mesh(corners, {{0, 1, 3, 2}, {1, 0, 4, 5}, {0, 1, 7, 6}});
+    PolygonMesh fin = mesh_of(corners, {{0, 1, 3, 2}, {1, 0, 4, 5}, {0, 1, 7, 6}});
     const ManifoldCounts counts = make_manifold(fin);
     CHECK(counts.complex_edges == 1);
     CHECK(counts.opened_edges == 1);
@@ -215,7 +210,7 @@ TEST_CASE("three sheets on one edge become a surface and a sheet of its own", "[
 }
 
 TEST_CASE("facets that run along an edge the same way are left open", "[manifold]") {
-    PolygonMesh clash = make_mesh({{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {-1, 0, 0}}, {{0, 1, 2}, {0, 1, 3}});
+    PolygonMesh clash = mesh_of({{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {-1, 0, 0}}, {{0, 1, 2}, {0, 1, 3}});
     const ManifoldCounts counts = make_manifold(clash);
     CHECK(counts.opened_edges == 2);
     CHECK(manifold_fault(clash) == "");

@@ -1,5 +1,6 @@
 #include "hsdm/mesh/small_components.hh"
 #include "hsdm/quality/topology.hh"
+#include "support/meshes.hh"
 
 #include <catch2/catch.hpp>
 
@@ -23,14 +24,12 @@ void add_strip(PolygonMesh& mesh, Index n, double width = 1) {
 /// A closed box of six quads beside the mesh.
 void add_box(PolygonMesh& mesh) {
     const auto base = static_cast<Index>(mesh.vertex_count());
-    for (unsigned k = 0; k < 8; ++k) mesh.positions.emplace_back(k & 1, k >> 1 & 1, base + (k >> 2));
-    for (const std::array<Index, 4>& q : {std::array<Index, 4>{0, 2, 3, 1},
-                                          {0, 1, 5, 4},
-                                          {1, 3, 7, 5},
-                                          {3, 2, 6, 7},
-                                          {2, 0, 4, 6},
-                                          {4, 5, 7, 6}})
+    const PolygonMesh box = support::unit_cube();
+    for (const Vec3& p : box.positions) mesh.positions.push_back(p + Vec3(0, 0, base));
+    for (std::size_t f = 0; f < box.facet_count(); ++f) {
+        const auto q = box.facet(f);
         mesh.add_facet(std::array{base + q[0], base + q[1], base + q[2], base + q[3]});
+    }
 }
 
 /// Strips of 2, 100, 40 and 10 quads; the third has the largest area.

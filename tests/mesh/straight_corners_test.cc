@@ -1,21 +1,16 @@
 #include "hsdm/mesh/straight_corners.hh"
+#include "support/meshes.hh"
 
 #include <catch2/catch.hpp>
 
 #include <array>
 
 using namespace hsdm;
+using support::mesh_of;
 
 namespace {
 
 constexpr double least_sine = 0.1;
-
-PolygonMesh mesh_of(const std::vector<Vec3>& positions, const std::vector<std::vector<Index>>& facets) {
-    PolygonMesh mesh;
-    mesh.positions = positions;
-    for (const auto& facet : facets) mesh.add_facet(facet);
-    return mesh;
-}
 
 } // namespace
 

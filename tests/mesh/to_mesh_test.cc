@@ -1,5 +1,6 @@
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/mesh/vertex_normals.hh"
+#include "support/meshes.hh"
 
 #include <OpenMesh/Tools/Utils/MeshCheckerT.hh>
 #include <catch2/catch.hpp>
@@ -8,22 +9,10 @@
 #include <sstream>
 
 using namespace hsdm;
+using support::mesh_of;
+using support::unit_cube;
 
 namespace {
-
-PolygonMesh make(std::vector<Vec3> positions, const std::vector<std::vector<Index>>& facets) {
-    PolygonMesh mesh;
-    mesh.positions = std::move(positions);
-    for (const auto& facet : facets) mesh.add_facet(facet);
-    return mesh;
-}
-
-PolygonMesh cube() {
-    std::vector<Vec3> positions;
-    for (int i = 0; i < 8; ++i) positions.emplace_back(i & 1, i >> 1 & 1, i >> 2);
-    return make(positions,
-                {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}});
-}
 
 bool is_sound(PolyMesh& mesh) {
     std::ostringstream report;
@@ -56,7 +45,7 @@ private:
 } // namespace
 
 TEST_CASE("a cube becomes a closed half-edge mesh with outward facet normals") {
-    auto [mesh, rejected, split] = to_mesh(cube());
+    auto [mesh, rejected, split] = to_mesh(unit_cube());
     CHECK(rejected == 0);
     CHECK(split == 0);
     CHECK(mesh.n_vertices() == 8);
@@ -69,7 +58,7 @@ TEST_CASE("a cube becomes a closed half-edge mesh with outward facet normals") {
 }
 
 TEST_CASE("polygons come back from the mesh as they went in") {
-    PolygonMesh in = cube();
+    PolygonMesh in = unit_cube();
     in.normals.assign(8, Vec3(0, 0, 1));
     in.properties.push_back({"hsdm_vertex_class", VertexProperty::Type::uint8, {2, 1, 0, 2, 2, 1, 2, 0}});
     in.properties.push_back({"hsdm_level", VertexProperty::Type::int32, std::vector<double>(8, -5)});
@@ -88,7 +77,7 @@ TEST_CASE("polygons come back from the mesh as they went in") {
 
 TEST_CASE("vertex normals of a mesh that was given none are zero") {
     // Memory that was used before: a mesh of as many vertices with normals, which is gone.
-    PolygonMesh in = cube();
+    PolygonMesh in = unit_cube();
     in.normals.assign(8, Vec3(7, 8, 9));
     { const PolyMesh before = to_mesh(in).mesh; }
     in.normals.clear();
@@ -97,7 +86,7 @@ TEST_CASE("vertex normals of a mesh that was given none are zero") {
 }
 
 TEST_CASE("a property without a name is one like any other") {
-    PolygonMesh in = cube();
+    PolygonMesh in = unit_cube();
     in.properties.push_back({"", VertexProperty::Type::float64, std::vector<double>(8, 0.5)});
     const PolygonMesh out = to_polygons(to_mesh(in).mesh);
     REQUIRE(out.properties.size() == 1);
@@ -106,7 +95,7 @@ TEST_CASE("a property without a name is one like any other") {
 }
 
 TEST_CASE("a vertex's three normals survive the way to polygons and back") {
-    PolyMesh mesh = to_mesh(cube()).mesh;
+    PolyMesh mesh = to_mesh(unit_cube()).mesh;
     {
         auto normals = kept_vertex_property<VertexNormalsT<PolyMesh>>(mesh, vertex_normals_property);
         for (const auto v : mesh.vertices()) normals[v] = {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, -1)};
@@ -122,7 +111,7 @@ TEST_CASE("a vertex's three normals survive the way to polygons and back") {
 }
 
 TEST_CASE("property values beyond their type's range become its limits") {
-    PolygonMesh in = make({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
+    PolygonMesh in = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
     in.properties.push_back({"a", VertexProperty::Type::uint8, {300, -4, std::nan("")}});
     in.properties.push_back({"b", VertexProperty::Type::int32, {1e12, -1e12, 7}});
     const PolygonMesh out = to_polygons(to_mesh(in).mesh);
@@ -131,7 +120,7 @@ TEST_CASE("property values beyond their type's range become its limits") {
 }
 
 TEST_CASE("isolated vertices are left out and the others keep their order") {
-    PolygonMesh facets = make({{9, 9, 9}, {0, 0, 0}, {8, 8, 8}, {1, 0, 0}, {0, 1, 0}}, {{1, 3, 4}});
+    PolygonMesh facets = mesh_of({{9, 9, 9}, {0, 0, 0}, {8, 8, 8}, {1, 0, 0}, {0, 1, 0}}, {{1, 3, 4}});
     const auto result = to_mesh(facets);
     REQUIRE(result.mesh.n_vertices() == 3);
     CHECK(to_polygons(result.mesh).positions == std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
@@ -139,7 +128,7 @@ TEST_CASE("isolated vertices are left out and the others keep their order") {
 
 TEST_CASE("facets that would break the 2-manifold are counted and OpenMesh prints nothing") {
     const Captured captured;
-    PolygonMesh facets = cube();
+    PolygonMesh facets = unit_cube();
     facets.add_facet(std::vector<Index>{0, 2, 3});                      // a third facet at an edge
     facets.add_facet(std::vector<Index>{0, 2, 3, 1});                   // one twice
     facets.add_facet(std::vector<Index>{0, 0, 3});                      // a vertex twice
@@ -155,14 +144,14 @@ TEST_CASE("facets that would break the 2-manifold are counted and OpenMesh print
 
 TEST_CASE("a rejected facet does not keep later ones from its other edges") {
     const auto result = to_mesh(
-        make({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}, {{0, 1, 2}, {0, 1, 3}, {1, 3, 4}}));
+        mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}, {{0, 1, 2}, {0, 1, 3}, {1, 3, 4}}));
     CHECK(result.rejected == 1);
     CHECK(result.mesh.n_faces() == 2);
 }
 
 TEST_CASE("fans that meet in a vertex only get a vertex each") {
     PolygonMesh facets =
-        make({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}}, {{0, 1, 2}, {0, 3, 4}});
+        mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}}, {{0, 1, 2}, {0, 3, 4}});
     auto open = to_mesh(facets);
     CHECK(open.split_vertices == 1);
     CHECK(open.mesh.n_vertices() == 6);
@@ -171,8 +160,8 @@ TEST_CASE("fans that meet in a vertex only get a vertex each") {
 
     // Two tetrahedra with a common tip.
     auto closed = to_mesh(
-        make({{0, 0, 0}, {1, 0, 1}, {-1, 1, 1}, {-1, -1, 1}, {1, 0, -1}, {-1, 1, -1}, {-1, -1, -1}},
-             {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}, {0, 5, 4}, {0, 6, 5}, {0, 4, 6}, {4, 5, 6}}));
+        mesh_of({{0, 0, 0}, {1, 0, 1}, {-1, 1, 1}, {-1, -1, 1}, {1, 0, -1}, {-1, 1, -1}, {-1, -1, -1}},
+                {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}, {0, 5, 4}, {0, 6, 5}, {0, 4, 6}, {4, 5, 6}}));
     CHECK(closed.rejected == 0);
     CHECK(closed.split_vertices == 1);
     CHECK(is_sound(closed.mesh));
@@ -181,14 +170,7 @@ TEST_CASE("fans that meet in a vertex only get a vertex each") {
 
 TEST_CASE("boundary loops are linked: an open grid has one, as long as its rim") {
     constexpr Index n = 5;
-    PolygonMesh facets;
-    for (Index y = 0; y <= n; ++y)
-        for (Index x = 0; x <= n; ++x) facets.positions.emplace_back(x, y, 0);
-    for (Index y = 0; y < n; ++y)
-        for (Index x = 0; x < n; ++x) {
-            const Index v = y * (n + 1) + x;
-            facets.add_facet(std::vector<Index>{v, v + 1, v + n + 2, v + n + 1});
-        }
+    const PolygonMesh facets = support::quad_sheet(n, n, [](Index x, Index y) { return Vec3(x, y, 0); });
     auto [mesh, rejected, split] = to_mesh(facets);
     CHECK(rejected + split == 0);
     CHECK(is_sound(mesh));
@@ -213,7 +195,7 @@ TEST_CASE("nothing becomes an empty mesh") {
 }
 
 TEST_CASE("deleted elements do not come back as polygons") {
-    PolyMesh mesh = to_mesh(cube()).mesh;
+    PolyMesh mesh = to_mesh(unit_cube()).mesh;
     mesh.delete_face(OpenMesh::FaceHandle(2), true);
     const PolygonMesh polygons = to_polygons(mesh);
     CHECK(polygons.facet_count() == 5);

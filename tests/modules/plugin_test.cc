@@ -66,7 +66,7 @@ TEST_CASE("a module is found in its folder and tells what it is") {
 
 TEST_CASE("classify-features does what the library does") {
     const OwnModules folders(HSDM_MODULE_DIR);
-    PolyMesh by_module = to_mesh(test::cube(4)).mesh, by_library = by_module;
+    PolyMesh by_module = to_mesh(support::divided_cube(4)).mesh, by_library = by_module;
     const std::string summary = load_plugin("classify-features", folders).process(by_module);
     CHECK(summary == "48 sharp edges; vertices: 54 smooth, 36 edge, 8 corner");
     classify_features(by_library);
@@ -78,7 +78,7 @@ TEST_CASE("classify-features does what the library does") {
 
 TEST_CASE("smooth-normals after classify-features leaves a cube's normals alone") {
     const OwnModules folders(HSDM_MODULE_DIR);
-    PolyMesh mesh = to_mesh(test::cube(4)).mesh;
+    PolyMesh mesh = to_mesh(support::divided_cube(4)).mesh;
     load_plugin("classify-features", folders).process(mesh, {{"crease-degrees", "80"}});
     const std::string summary = load_plugin("smooth-normals", folders).process(mesh, {{"rounds", "5"}});
     CHECK(summary == "5 rounds; normals of 0 of 96 facets still turn");
@@ -88,7 +88,7 @@ TEST_CASE("smooth-normals after classify-features leaves a cube's normals alone"
 }
 
 TEST_CASE("the module that the documentation shows works") {
-    PolyMesh mesh = to_mesh(test::cube(1)).mesh;
+    PolyMesh mesh = to_mesh(support::divided_cube(1)).mesh;
     const Plugin scale = load_plugin("scale", OwnModules(HSDM_EXAMPLE_DIR));
     CHECK(scale.process(mesh, {{"factor", "25.4"}}) == "scaled by 25.4");
     for (const auto v : mesh.vertices()) CHECK(mesh.point(v).max_abs() == 25.4);
@@ -96,7 +96,7 @@ TEST_CASE("the module that the documentation shows works") {
 
 TEST_CASE("a module's options are checked: unknown, twice, no number, out of range") {
     const OwnModules folders(HSDM_MODULE_DIR);
-    PolyMesh mesh = to_mesh(test::cube(1)).mesh;
+    PolyMesh mesh = to_mesh(support::divided_cube(1)).mesh;
     const Plugin plugin = load_plugin("classify-features", folders);
     const auto process = [&](const Options& options) { plugin.process(mesh, options); };
     CHECK_THROWS_WITH(process({{"crease", "80"}}), Contains("unknown option") && Contains("crease-degrees"));

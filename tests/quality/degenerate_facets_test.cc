@@ -1,5 +1,6 @@
 #include "hsdm/quality/degenerate_facets.hh"
 #include "hsdm/quality/topology.hh"
+#include "support/meshes.hh"
 
 #include <catch2/catch.hpp>
 
@@ -49,10 +50,7 @@ TEST_CASE("a closed surface of three facets goes, one of four stays", "[quality]
     flat.add_facet(std::array<Index, 3>{3, 2, 0});
     REQUIRE(measure_connectivity(flat).closed());
     CHECK(dropped(flat).count == 3);
-    PolygonMesh tetrahedron;
-    tetrahedron.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
-    for (const auto& f : {std::array<Index, 3>{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}})
-        tetrahedron.add_facet(f);
+    PolygonMesh tetrahedron = support::tetrahedron();
     CHECK(dropped(tetrahedron).count == 0);
 }
 

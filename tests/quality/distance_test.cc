@@ -2,6 +2,7 @@
 #include "hsdm/spatial/facet_cells.hh"
 #include "hsdm/spatial/mesh_distance.hh"
 #include "hsdm/spatial/self_intersections.hh"
+#include "support/meshes.hh"
 
 #include <catch2/catch.hpp>
 #include <tbb/global_control.h>
@@ -285,19 +286,12 @@ TEST_CASE("surface samples lie on the mesh, in proportion to its area", "[distan
 namespace {
 
 /// Quads over a grid of unit steps, their corners off by up to `rough` in every direction.
-PolygonMesh crumpled_sheet(int side, double rough, unsigned seed, const Vec3& at) {
+PolygonMesh crumpled_sheet(Index side, double rough, unsigned seed, const Vec3& at) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> off(-rough, rough);
-    PolygonMesh mesh;
-    for (int i = 0; i <= side; ++i)
-        for (int k = 0; k <= side; ++k)
-            mesh.positions.push_back(at + Vec3(i + off(random), k + off(random), off(random)));
-    const auto vertex = [&](int i, int k) { return static_cast<Index>(i * (side + 1) + k); };
-    for (int i = 0; i < side; ++i)
-        for (int k = 0; k < side; ++k)
-            mesh.add_facet(
-                std::array{vertex(i, k), vertex(i + 1, k), vertex(i + 1, k + 1), vertex(i, k + 1)});
-    return mesh;
+    return support::quad_sheet(side, side, [&](Index k, Index i) {
+        return at + Vec3(i + off(random), k + off(random), off(random));
+    });
 }
 
 } // namespace

@@ -1,31 +1,14 @@
 #include "hsdm/quality/topology.hh"
+#include "support/meshes.hh"
 
 #include <catch2/catch.hpp>
 
-#include <initializer_list>
-
 using namespace hsdm;
+using support::cube_corners;
+using support::mesh_of;
+using support::unit_cube;
 
 namespace {
-
-PolygonMesh soup(std::vector<Vec3> positions, std::initializer_list<std::vector<Index>> facets) {
-    PolygonMesh mesh;
-    mesh.positions = std::move(positions);
-    for (const auto& facet : facets) mesh.add_facet(facet);
-    return mesh;
-}
-
-/// Corners of the unit cube: vertex index = x + 2 y + 4 z.
-std::vector<Vec3> cube_corners() {
-    std::vector<Vec3> p;
-    for (int i = 0; i < 8; ++i) p.emplace_back(i & 1, i >> 1 & 1, i >> 2 & 1);
-    return p;
-}
-
-PolygonMesh cube() {
-    return soup(cube_corners(),
-                {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}});
-}
 
 /// n x m quads; `wrap` glues the sides of the first, the second or both directions; `twist` glues the first
 /// one the other way up.
@@ -47,7 +30,7 @@ PolygonMesh grid(Index n, Index m, bool wrap_n, bool wrap_m, bool twist = false)
 } // namespace
 
 TEST_CASE("a cube is one closed outward sphere", "[topology]") {
-    const Topology t = measure_topology(cube());
+    const Topology t = measure_topology(unit_cube());
     CHECK(t.vertices == 8);
     CHECK(t.edges == 12);
     CHECK(t.faces == 6);
@@ -62,13 +45,13 @@ TEST_CASE("a cube is one closed outward sphere", "[topology]") {
 }
 
 TEST_CASE("the volume of a mesh far from the origin keeps its digits", "[topology]") {
-    PolygonMesh mesh = cube();
+    PolygonMesh mesh = unit_cube();
     for (Vec3& p : mesh.positions) p = p * 0.001 + Vec3(1e6, 2e6, 3e6);
     CHECK(measure_topology(mesh).signed_volume == Approx(1e-9).epsilon(1e-5));
 }
 
 TEST_CASE("a cube turned inside out has a negative volume", "[topology]") {
-    PolygonMesh mesh = cube();
+    PolygonMesh mesh = unit_cube();
     for (std::size_t f = 0; f < 6; ++f)
         std::reverse(mesh.corners.begin() + mesh.first[f], mesh.corners.begin() + mesh.first[f + 1]);
     const Topology t = measure_topology(mesh);
@@ -77,7 +60,7 @@ TEST_CASE("a cube turned inside out has a negative volume", "[topology]") {
 }
 
 TEST_CASE("one facet turned over shows at its four edges", "[topology]") {
-    PolygonMesh mesh = cube();
+    PolygonMesh mesh = unit_cube();
     std::reverse(mesh.corners.begin(), mesh.corners.begin() + 4);
     CHECK(measure_topology(mesh).misoriented_edges == 4);
     CHECK(measure_topology(mesh).manifold());
@@ -106,7 +89,7 @@ TEST_CASE("grids glued along their sides have the genus and loops of plane, tube
 
 TEST_CASE("two triangles that share a corner make a bow tie", "[topology]") {
     const Topology t = measure_topology(
-        soup({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}}, {{0, 1, 2}, {0, 3, 4}}));
+        mesh_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}}, {{0, 1, 2}, {0, 3, 4}}));
     CHECK(t.nonmanifold_vertices == 1);
     CHECK(t.nonmanifold_edges == 0);
     CHECK(t.components == 2);
@@ -115,8 +98,8 @@ TEST_CASE("two triangles that share a corner make a bow tie", "[topology]") {
 }
 
 TEST_CASE("three facets at an edge make the edge and both its ends non-manifold", "[topology]") {
-    const Topology t = measure_topology(
-        soup({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, -1, 0}}, {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}}));
+    const Topology t = measure_topology(mesh_of({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, -1, 0}},
+                                                {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}}));
     CHECK(t.nonmanifold_edges == 1);
     CHECK(t.nonmanifold_vertices == 2);
     CHECK(t.components == 1);
@@ -125,13 +108,13 @@ TEST_CASE("three facets at an edge make the edge and both its ends non-manifold"
 
 TEST_CASE("a facet twice, in any rotation or direction, counts as one duplicate", "[topology]") {
     const std::vector<Vec3> p{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-    CHECK(measure_topology(soup(p, {{0, 1, 2, 3}, {2, 3, 0, 1}})).duplicate_facets == 1);
-    CHECK(measure_topology(soup(p, {{0, 1, 2, 3}, {3, 2, 1, 0}, {1, 0, 2, 3}})).duplicate_facets == 2);
-    CHECK(measure_topology(soup(p, {{0, 1, 2}, {0, 1, 3}})).duplicate_facets == 0);
+    CHECK(measure_topology(mesh_of(p, {{0, 1, 2, 3}, {2, 3, 0, 1}})).duplicate_facets == 1);
+    CHECK(measure_topology(mesh_of(p, {{0, 1, 2, 3}, {3, 2, 1, 0}, {1, 0, 2, 3}})).duplicate_facets == 2);
+    CHECK(measure_topology(mesh_of(p, {{0, 1, 2}, {0, 1, 3}})).duplicate_facets == 0);
 }
 
 TEST_CASE("collapsed facets are counted and are no part of the surface", "[topology]") {
-    PolygonMesh mesh = cube();
+    PolygonMesh mesh = unit_cube();
     mesh.add_facet(std::array<Index, 3>{0, 0, 1});
     mesh.add_facet(std::array<Index, 4>{2, 3, 3, 2});
     mesh.add_facet(std::array<Index, 2>{4, 5});
@@ -146,12 +129,12 @@ TEST_CASE("collapsed facets are counted and are no part of the surface", "[topol
 
 TEST_CASE("a facet without area is degenerate", "[topology]") {
     const Topology t =
-        measure_topology(soup({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 1, 3}}));
+        measure_topology(mesh_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 1, 3}}));
     CHECK(t.degenerate_facets == 1);
 }
 
 TEST_CASE("isolated vertices are counted apart", "[topology]") {
-    PolygonMesh mesh = cube();
+    PolygonMesh mesh = unit_cube();
     mesh.positions.emplace_back(9, 9, 9);
     const Topology t = measure_topology(mesh);
     CHECK(t.vertices == 8);
@@ -179,15 +162,15 @@ TEST_CASE("an empty mesh has nothing of anything", "[topology]") {
 }
 
 TEST_CASE("facet shape is 1 for squares and less for leaning and folded quads", "[topology]") {
-    const FacetShape square = measure_shape(cube());
+    const FacetShape square = measure_shape(unit_cube());
     CHECK(square.quad_share == 1);
     CHECK(square.scaled_jacobian_min == Approx(1));
     CHECK(square.edge_length_mean == Approx(1));
     const FacetShape leaning = measure_shape(
-        soup({{0, 0, 0}, {1, 0, 0}, {2, 1, 0}, {1, 1, 0}, {5, 5, 5}}, {{0, 1, 2, 3}, {0, 1, 4}}));
+        mesh_of({{0, 0, 0}, {1, 0, 0}, {2, 1, 0}, {1, 1, 0}, {5, 5, 5}}, {{0, 1, 2, 3}, {0, 1, 4}}));
     CHECK(leaning.scaled_jacobian_median == Approx(std::sqrt(0.5)));
     CHECK(leaning.quad_share == 0.5);
     const FacetShape dart =
-        measure_shape(soup({{0, 0, 0}, {4, -1, 0}, {1, 0, 0}, {4, 1, 0}}, {{0, 1, 2, 3}}));
+        measure_shape(mesh_of({{0, 0, 0}, {4, -1, 0}, {1, 0, 0}, {4, 1, 0}}, {{0, 1, 2, 3}}));
     CHECK(dart.scaled_jacobian_min < 0);
 }

@@ -1,4 +1,5 @@
 #include "hsdm/spatial/surface_walk.hh"
+#include "support/meshes.hh"
 #include "support/random.hh"
 
 #include <catch2/catch.hpp>
@@ -15,18 +16,10 @@ constexpr double pi = std::numbers::pi;
 
 /// Quads over a cylinder without ends: a border, sides that turn, and a far side within reach.
 PolygonMesh tube(Index around, Index along, double radius) {
-    PolygonMesh mesh;
-    for (Index z = 0; z < along; ++z)
-        for (Index i = 0; i < around; ++i) {
-            const double angle = 2 * pi * i / around;
-            mesh.positions.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
-        }
-    for (Index z = 0; z + 1 < along; ++z)
-        for (Index i = 0; i < around; ++i) {
-            const Index v = z * around + i, w = z * around + (i + 1) % around;
-            mesh.add_facet(std::array{v, w, w + around, v + around});
-        }
-    return mesh;
+    return support::quad_tube(around, along - 1, [=](Index i, Index z) {
+        const double angle = 2 * pi * i / around;
+        return Vec3(radius * std::cos(angle), radius * std::sin(angle), z);
+    });
 }
 
 /// Facets that share no vertex, and slivers among them: nothing to walk over.
