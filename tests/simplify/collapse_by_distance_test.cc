@@ -3,6 +3,7 @@
 #include "hsdm/simplify/collapse_by_distance.hh"
 #include "hsdm/simplify/leaf_doublets.hh"
 #include "hsdm/spatial/self_intersections.hh"
+#include "support/meshes.hh"
 
 #include <catch2/catch.hpp>
 #include <tbb/global_control.h>
@@ -16,17 +17,10 @@ namespace {
 
 /// A tube of radius 1 round the z axis with flat ends, its rings turned against each other.
 PolygonMesh tube(Index around, Index rings) {
-    PolygonMesh mesh;
-    for (Index r = 0; r < rings; ++r)
-        for (Index i = 0; i < around; ++i) {
-            const double angle = 2 * std::numbers::pi * (i + 0.3 * (r % 3)) / around;
-            mesh.positions.emplace_back(std::cos(angle), std::sin(angle), 0.2 * r);
-        }
-    for (Index r = 0; r + 1 < rings; ++r)
-        for (Index i = 0; i < around; ++i) {
-            const Index a = r * around + i, b = r * around + (i + 1) % around;
-            mesh.add_facet(std::array{a, b, b + around, a + around});
-        }
+    PolygonMesh mesh = support::quad_tube(around, rings - 1, [=](Index i, Index r) {
+        const double angle = 2 * std::numbers::pi * (i + 0.3 * (r % 3)) / around;
+        return Vec3(std::cos(angle), std::sin(angle), 0.2 * r);
+    });
     std::vector<Index> low, high;
     for (Index i = 0; i < around; ++i) {
         low.push_back(around - 1 - i);

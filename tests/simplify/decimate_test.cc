@@ -3,11 +3,11 @@
 #include "hsdm/simplify/decimate.hh"
 #include "hsdm/simplify/planar_patches.hh"
 #include "support/check.hh"
+#include "support/meshes.hh"
 
 #include <catch2/catch.hpp>
 #include <tbb/global_control.h>
 
-#include <map>
 #include <numeric>
 
 using namespace hsdm;
@@ -16,34 +16,8 @@ namespace {
 
 constexpr double bound = 0.05;
 
-/// The surface of a cube of edge 2 about the origin, n * n quads to a face.
-PolygonMesh cube(int n) {
-    PolygonMesh mesh;
-    std::map<std::array<int, 3>, Index> number;
-    const auto vertex = [&](const std::array<int, 3>& at) {
-        const auto [found, added] = number.emplace(at, static_cast<Index>(mesh.positions.size()));
-        if (added) mesh.positions.push_back(Vec3(at[0], at[1], at[2]) * (2.0 / n) - Vec3(1, 1, 1));
-        return found->second;
-    };
-    for (unsigned axis = 0; axis < 3; ++axis)
-        for (int upper = 0; upper < 2; ++upper)
-            for (int i = 0; i < n; ++i)
-                for (int k = 0; k < n; ++k) {
-                    std::array<Index, 4> ring{};
-                    for (unsigned c = 0; c < 4; ++c) {
-                        std::array<int, 3> at{};
-                        at[axis] = upper * n;
-                        at[(axis + 1) % 3] = i + (c == 1 || c == 2);
-                        at[(axis + 2) % 3] = k + (c >= 2);
-                        ring[upper ? c : 3 - c] = vertex(at);
-                    }
-                    mesh.add_facet(ring);
-                }
-    return mesh;
-}
-
-PolygonMesh ball(int n) {
-    PolygonMesh mesh = cube(n);
+PolygonMesh ball(Index n) {
+    PolygonMesh mesh = support::divided_cube(n);
     for (Vec3& p : mesh.positions) p.normalize();
     return mesh;
 }
@@ -85,7 +59,7 @@ void check_kept(const Decimated& d) {
 } // namespace
 
 TEST_CASE("of a cube its six faces are left, each vertex in one of the corners", "[simplify]") {
-    const Decimated d(cube(8));
+    const Decimated d(support::divided_cube(8));
     check_kept(d);
     CHECK(d.result.mesh.vertex_count() == 8);
     CHECK(d.result.mesh.facet_count() == 6);
@@ -116,7 +90,8 @@ TEST_CASE("if rounds do not suffice the mesh stays as it was", "[simplify]") {
     for (std::size_t v = 0; v < none.size(); ++v) none[v].add_point(fine.positions[v]);
     const Decimated d(fine, none, {.faults = {}, .rounds = 1});
     check_kept(d);
-    const Decimated enough(cube(6), vertex_planes(cube(6)), {.faults = {}, .rounds = 1});
+    const Decimated enough(support::divided_cube(6), vertex_planes(support::divided_cube(6)),
+                           {.faults = {}, .rounds = 1});
     CHECK(enough.result.mesh.facet_count() == 6);
 }
 

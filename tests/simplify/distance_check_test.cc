@@ -1,4 +1,5 @@
 #include "hsdm/simplify/distance_check.hh"
+#include "support/meshes.hh"
 
 #include <catch2/catch.hpp>
 
@@ -13,15 +14,8 @@ constexpr Index side = 9; // vertices
 
 /// A roof of quads over a square, 1 high along its middle.
 PolygonMesh roof() {
-    PolygonMesh mesh;
-    for (Index y = 0; y < side; ++y)
-        for (Index x = 0; x < side; ++x) mesh.positions.emplace_back(x, y, 1 - std::abs(double(x) - 4) / 4);
-    for (Index y = 0; y + 1 < side; ++y)
-        for (Index x = 0; x + 1 < side; ++x) {
-            const Index v = y * side + x;
-            mesh.add_facet(std::array{v, v + 1, v + side + 1, v + side});
-        }
-    return mesh;
+    return support::quad_sheet(side - 1, side - 1,
+                               [](Index x, Index y) { return Vec3(x, y, 1 - std::abs(double(x) - 4) / 4); });
 }
 
 /// Vertices of the roof's own, and one quad over four of them.

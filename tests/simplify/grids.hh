@@ -1,7 +1,7 @@
 #pragma once
 // Bent sheets of quads.
 
-#include "hsdm/polygon_mesh.hh"
+#include "support/meshes.hh"
 
 #include <algorithm>
 #include <array>
@@ -13,19 +13,11 @@ namespace hsdm::support {
 /// on a ruling.
 template <class At>
 PolygonMesh grid(Index columns, Index rows, const At& at) {
-    PolygonMesh mesh;
-    for (Index r = 0; r <= rows; ++r)
-        for (Index c = 0; c <= columns; ++c) {
-            const double shear =
-                c == 0 || c == columns || r == 0 || r == rows ? 0 : 0.4 * std::sin(7.0 * c + 5.0 * r);
-            mesh.positions.push_back(at((c + shear) / columns, static_cast<double>(r) / rows));
-        }
-    for (Index r = 0; r < rows; ++r)
-        for (Index c = 0; c < columns; ++c) {
-            const Index v = r * (columns + 1) + c;
-            mesh.add_facet(std::array{v, v + 1, v + columns + 2, v + columns + 1});
-        }
-    return mesh;
+    return quad_sheet(columns, rows, [&](Index c, Index r) {
+        const double shear =
+            c == 0 || c == columns || r == 0 || r == rows ? 0 : 0.4 * std::sin(7.0 * c + 5.0 * r);
+        return at((c + shear) / columns, static_cast<double>(r) / rows);
+    });
 }
 
 /// Angle 0 to `angle` round the y axis at `radius`, then along y; outward.

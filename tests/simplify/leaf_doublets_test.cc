@@ -1,6 +1,7 @@
 #include "hsdm/mesh/manifold.hh"
 #include "hsdm/quality/topology.hh"
 #include "hsdm/simplify/leaf_doublets.hh"
+#include "support/meshes.hh"
 
 #include <catch2/catch.hpp>
 
@@ -11,12 +12,8 @@ using namespace hsdm;
 namespace {
 
 PolygonMesh cube_without_top() {
-    PolygonMesh mesh;
-    for (unsigned k = 0; k < 8; ++k) mesh.positions.emplace_back(k & 1, k >> 1 & 1, k >> 2);
-    for (const std::array<Index, 4>& q :
-         {std::array<Index, 4>{0, 2, 3, 1}, {0, 1, 5, 4}, {1, 3, 7, 5}, {3, 2, 6, 7}, {2, 0, 4, 6}})
-        mesh.add_facet(q);
-    return mesh;
+    return support::mesh_of(support::cube_corners(),
+                            {{0, 2, 3, 1}, {0, 1, 5, 4}, {1, 3, 7, 5}, {3, 2, 6, 7}, {2, 0, 4, 6}});
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/simplify/planar_patches.hh"
 #include "simplify/grids.hh"
+#include "support/meshes.hh"
 
 #include <catch2/catch.hpp>
 #include <tbb/global_control.h>
@@ -86,19 +87,10 @@ TEST_CASE("flat ground reaches into what bends beside it as far as the tolerance
 TEST_CASE("strips go all round a shaft, but not one that is thinner than the tolerance", "[simplify]") {
     const auto shaft = [](double radius) {
         constexpr Index around = 120, along = 60;
-        PolygonMesh mesh;
-        for (Index r = 0; r <= along; ++r)
-            for (Index c = 0; c < around; ++c) {
-                const double turn = 2 * std::numbers::pi * c / around;
-                mesh.positions.emplace_back(radius * std::cos(turn), radius * std::sin(turn),
-                                            radius * r * 0.05);
-            }
-        for (Index r = 0; r < along; ++r)
-            for (Index c = 0; c < around; ++c) {
-                const Index next = (c + 1) % around, row = r * around;
-                mesh.add_facet(std::array{row + c, row + next, row + around + next, row + around + c});
-            }
-        return mesh;
+        return support::quad_tube(around, along, [=](Index c, Index r) {
+            const double turn = 2 * std::numbers::pi * c / around;
+            return Vec3(radius * std::cos(turn), radius * std::sin(turn), radius * r * 0.05);
+        });
     };
     const double tolerance = 0.01;
     const PlanarPatches patches = find_planar_patches(shaft(1), tolerance);

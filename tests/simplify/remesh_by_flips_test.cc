@@ -3,6 +3,7 @@
 #include "hsdm/quality/topology.hh"
 #include "hsdm/simplify/nonmanifold_vertices.hh"
 #include "hsdm/simplify/remesh_by_flips.hh"
+#include "support/meshes.hh"
 
 #include <catch2/catch.hpp>
 
@@ -18,15 +19,8 @@ constexpr Index side = 7; // vertices
 /// A sheet of quads over a square, `height` at (x, y) up; the vertices by rows.
 template <class Height>
 PolygonMesh sheet(const Height& height) {
-    PolygonMesh mesh;
-    for (Index y = 0; y < side; ++y)
-        for (Index x = 0; x < side; ++x) mesh.positions.emplace_back(x, y, height(double(x), double(y)));
-    for (Index y = 0; y + 1 < side; ++y)
-        for (Index x = 0; x + 1 < side; ++x) {
-            const Index v = y * side + x;
-            mesh.add_facet(std::array{v, v + 1, v + side + 1, v + side});
-        }
-    return mesh;
+    return support::quad_sheet(side - 1, side - 1,
+                               [&](Index x, Index y) { return Vec3(x, y, height(double(x), double(y))); });
 }
 
 RemeshCounts remeshed(PolygonMesh& mesh, const PolygonMesh& fine, bool fixed = false) {

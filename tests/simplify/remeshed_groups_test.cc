@@ -1,6 +1,7 @@
 #include "hsdm/quality/topology.hh"
 #include "hsdm/simplify/nonmanifold_vertices.hh"
 #include "hsdm/simplify/remesh_by_flips.hh"
+#include "support/meshes.hh"
 #include "support/random.hh"
 
 #include <catch2/catch.hpp>
@@ -138,14 +139,8 @@ TEST_CASE("vertices in the same place are not taken for each other", "[simplify]
 
 TEST_CASE("a group of hundreds of facets comes once", "[simplify]") {
     constexpr Index across = 600, rows = 6;
-    PolygonMesh mesh;
-    for (Index y = 0; y < rows; ++y)
-        for (Index x = 0; x < across; ++x) mesh.positions.emplace_back(x + 2.0 * y, y, 0);
-    for (Index y = 0; y + 1 < rows; ++y)
-        for (Index x = 0; x + 1 < across; ++x) {
-            const Index v = y * across + x;
-            mesh.add_facet(std::array{v, v + 1, v + across + 1, v + across});
-        }
+    const PolygonMesh mesh =
+        support::quad_sheet(across - 1, rows - 1, [](Index x, Index y) { return Vec3(x + 2.0 * y, y, 0); });
     RemeshedGroups groups;
     PolygonMesh first = mesh, second = mesh;
     tidy(first, groups);

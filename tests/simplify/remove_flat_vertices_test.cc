@@ -4,6 +4,7 @@
 #include "hsdm/quality/topology.hh"
 #include "hsdm/spatial/self_intersections.hh"
 #include "support/check.hh"
+#include "support/meshes.hh"
 
 #include <catch2/catch.hpp>
 
@@ -124,10 +125,7 @@ TEST_CASE("an edge is laid between the vertices opposite if there is none yet", 
     CHECK(back == flips);
     check_sound(flipped.write().mesh, signed_volume(mesh));
 
-    PolygonMesh tetrahedron;
-    tetrahedron.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    for (const std::array<Index, 3>& facet : {std::array<Index, 3>{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}})
-        tetrahedron.add_facet(facet);
+    const PolygonMesh tetrahedron = support::tetrahedron();
     CollapsingMesh whole(tetrahedron);
     for (Index s = 0; s < whole.side_count(); ++s) CHECK_FALSE(whole.flip(s));
 }

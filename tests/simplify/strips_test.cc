@@ -1,6 +1,7 @@
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/simplify/strips.hh"
 #include "simplify/grids.hh"
+#include "support/meshes.hh"
 
 #include <catch2/catch.hpp>
 
@@ -39,18 +40,10 @@ double needed(double all, double tolerance) {
 
 /// All the way round.
 PolygonMesh shaft(Index around, Index along) {
-    PolygonMesh mesh;
-    for (Index r = 0; r <= along; ++r)
-        for (Index c = 0; c < around; ++c) {
-            const double turn = 2 * std::numbers::pi * c / around;
-            mesh.positions.emplace_back(std::cos(turn), std::sin(turn), 0.05 * r);
-        }
-    for (Index r = 0; r < along; ++r)
-        for (Index c = 0; c < around; ++c) {
-            const Index next = (c + 1) % around, row = r * around;
-            mesh.add_facet(std::array{row + c, row + next, row + around + next, row + around + c});
-        }
-    return mesh;
+    return support::quad_tube(around, along, [=](Index c, Index r) {
+        const double turn = 2 * std::numbers::pi * c / around;
+        return Vec3(std::cos(turn), std::sin(turn), 0.05 * r);
+    });
 }
 
 } // namespace
