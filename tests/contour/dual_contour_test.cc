@@ -18,10 +18,7 @@ using support::faults;
 namespace {
 
 PointCloud scan(const support::Solid& solid, std::size_t points, std::uint64_t seed = 1) {
-    support::SampleOptions options;
-    options.points = points;
-    options.seed = seed;
-    return support::sample(solid, options);
+    return support::sample(solid, {.points = points, .seed = seed});
 }
 
 int depth_for(double extent, double voxel_size) {
@@ -44,11 +41,6 @@ DualContour facets_of(const PointCloud& cloud, double voxel_size, const DualCont
     DualContour facets = dual_contour(octree, level, sets, options);
     for (Vec3& p : facets.mesh.positions) p += octree.origin;
     return facets;
-}
-
-support::Pose pose(std::uint64_t seed) {
-    support::Random random(seed);
-    return support::random_pose(random);
 }
 
 /// A random solid's scan; some of its normals are flipped or, for each third seed, all point anywhere.
@@ -98,7 +90,7 @@ TEST_CASE("smooth and sharp solids in general pose come out closed, of the right
     for (const Example& e : examples)
         for (std::uint64_t seed : {1u, 2u, 3u}) {
             INFO(e.name << ", pose " << seed);
-            const support::Solid solid = e.solid.placed(pose(seed));
+            const support::Solid solid = e.solid.placed(support::random_pose(seed));
             const DualContour facets = facets_of(scan(solid, e.points, seed), e.voxel);
             const Topology t = measure_topology(facets.mesh);
             CHECK(faults(facets.mesh) == "");
@@ -114,7 +106,7 @@ TEST_CASE("the two sides of a plate in one voxel stay two, and the rim closes th
     for (double voxel : {0.04, 0.08})
         for (std::uint64_t seed = 1; seed <= 20; ++seed) {
             INFO("plate of 0.02, voxel " << voxel << ", pose " << seed);
-            const support::Solid plate = support::box({1, 0.7, 0.02}).placed(pose(seed));
+            const support::Solid plate = support::box({1, 0.7, 0.02}).placed(support::random_pose(seed));
             const DualContour facets = facets_of(scan(plate, 60000, seed), voxel);
             const Topology t = measure_topology(facets.mesh);
             CHECK(faults(facets.mesh) == "");
@@ -127,7 +119,7 @@ TEST_CASE("the two sides of a plate in one voxel stay two, and the rim closes th
 TEST_CASE("nested spheres half a voxel apart stay two closed surfaces", "[contour][slow]") {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         INFO("pose " << seed);
-        const support::Solid shell = support::nested_spheres(1, 0.95).placed(pose(seed));
+        const support::Solid shell = support::nested_spheres(1, 0.95).placed(support::random_pose(seed));
         const DualContour facets = facets_of(scan(shell, 100000, seed), 0.1);
         const Topology t = measure_topology(facets.mesh);
         CHECK(faults(facets.mesh) == "");
@@ -160,7 +152,7 @@ TEST_CASE("strays all around a sphere leave it one closed surface", "[contour]")
 }
 
 TEST_CASE("every corner of a box gets a vertex of its own", "[contour]") {
-    const support::Pose placed = pose(5);
+    const support::Pose placed = support::random_pose(5);
     const DualContour facets = facets_of(scan(support::box({1, 1, 1}).placed(placed), 30000), 0.12);
     for (unsigned k = 0; k < 8; ++k) {
         const Vec3 corner = placed.to_world(Vec3(k & 1 ? 0.5 : -0.5, k & 2 ? 0.5 : -0.5, k & 4 ? 0.5 : -0.5));
@@ -228,7 +220,7 @@ TEST_CASE("relaxed facets lie no farther from the points, and nearer where the s
         support::SampleOptions sampling;
         sampling.points = 20000;
         sampling.position_noise = example.noise * voxel;
-        const support::Solid solid = example.solid.placed(pose(5));
+        const support::Solid solid = example.solid.placed(support::random_pose(5));
         const PointCloud cloud = support::sample(solid, sampling);
         const PolygonMesh before = facets_of(cloud, voxel, as_placed).mesh,
                           after = facets_of(cloud, voxel).mesh;
@@ -297,7 +289,7 @@ TEST_CASE("a round part a few voxels thick is mostly quads", "[contour]") {
     std::size_t triangles = 0, facets = 0;
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         const PolygonMesh mesh =
-            facets_of(scan(support::torus(4, 1.2).placed(pose(seed)), 8000, seed), 1).mesh;
+            facets_of(scan(support::torus(4, 1.2).placed(support::random_pose(seed)), 8000, seed), 1).mesh;
         for (std::size_t f = 0; f < mesh.facet_count(); ++f) triangles += mesh.facet(f).size() == 3;
         facets += mesh.facet_count();
     }
@@ -314,7 +306,7 @@ TEST_CASE("whatever the normals of a small cloud, an oriented 2-manifold comes o
 }
 
 TEST_CASE("the extended facets do not depend on the number of threads", "[contour]") {
-    const PointCloud cloud = scan(support::mechanical_part(pose(1)), 60000);
+    const PointCloud cloud = scan(support::mechanical_part(support::random_pose(1)), 60000);
     const DualContour many = facets_of(cloud, 0.1);
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     const DualContour single = facets_of(cloud, 0.1);

@@ -27,10 +27,7 @@ Built build(const PointCloud& cloud, int depth, const NormalSetOptions& options 
 }
 
 PointCloud scan(const support::Solid& solid, std::size_t points, double normal_noise = 0) {
-    support::SampleOptions options;
-    options.points = points;
-    options.normal_noise = normal_noise;
-    return support::sample(solid, options);
+    return support::sample(solid, {.points = points, .normal_noise = normal_noise});
 }
 
 } // namespace

@@ -37,8 +37,7 @@ Accuracy accuracy(const Solid& solid, std::size_t points, const EstimateOptions&
 }
 
 Solid in_general_pose(const Solid& solid) {
-    support::Random random(2);
-    return solid.placed(support::random_pose(random));
+    return solid.placed(support::random_pose(2));
 }
 
 } // namespace

@@ -9,8 +9,7 @@ using support::Solid;
 namespace {
 
 Solid in_general_pose(const Solid& solid) {
-    support::Random random(6);
-    return solid.placed(support::random_pose(random));
+    return solid.placed(support::random_pose(6));
 }
 
 PointCloud with_flips(const Solid& solid, std::size_t points, double share) {

@@ -28,8 +28,7 @@ double share_flipped(const PointCloud& cloud) {
 }
 
 Solid in_general_pose(const Solid& solid, std::uint64_t seed = 4) {
-    support::Random random(seed);
-    return solid.placed(support::random_pose(random));
+    return solid.placed(support::random_pose(seed));
 }
 
 } // namespace

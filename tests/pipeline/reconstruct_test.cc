@@ -16,11 +16,7 @@ using support::faults;
 namespace {
 
 PointCloud scan(const support::Solid& solid, std::size_t points, std::uint64_t seed = 1) {
-    support::SampleOptions options;
-    options.points = points;
-    options.seed = seed;
-    options.normals = false;
-    return support::sample(solid, options);
+    return support::sample(solid, {.points = points, .seed = seed, .normals = false});
 }
 
 ReconstructOptions at_depth(int depth) {

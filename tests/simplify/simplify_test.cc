@@ -39,11 +39,6 @@ AdaptiveMesh coarse(const Fine& fine, double max_error) {
                     {.max_error = max_error});
 }
 
-support::Pose pose(std::uint64_t seed) {
-    support::Random random(seed);
-    return support::random_pose(random);
-}
-
 } // namespace
 
 TEST_CASE("coarse meshes are closed 2-manifolds of the fine one's topology within the error",
@@ -57,9 +52,9 @@ TEST_CASE("coarse meshes are closed 2-manifolds of the fine one's topology withi
     const std::vector<Example> examples = {
         {"sphere", support::sphere(1), 5, 0.3},
         {"torus", support::torus(1, 0.35), 5, 0.6},
-        {"box", support::box({1, 1.3, 0.8}).placed(pose(3)), 5, 0.3},
-        {"plate", support::box({1, 0.7, 0.03}).placed(pose(4)), 5, 0.7},
-        {"mechanical part", support::mechanical_part(pose(5)), 5, 0.5},
+        {"box", support::box({1, 1.3, 0.8}).placed(support::random_pose(3)), 5, 0.3},
+        {"plate", support::box({1, 0.7, 0.03}).placed(support::random_pose(4)), 5, 0.7},
+        {"mechanical part", support::mechanical_part(support::random_pose(5)), 5, 0.5},
     };
     for (const Example& e : examples) {
         const Fine fine = fine_mesh(e.solid, 40000, e.depth);
@@ -117,7 +112,7 @@ TEST_CASE("sparse boxes in general pose have sharp corners and take few facets",
     std::size_t facets = 0, blunt = 0;
     for (std::uint64_t seed = 1; seed <= poses; ++seed) {
         INFO("seed " << seed);
-        const Fine fine = fine_mesh(support::box({1, 1, 1}).placed(pose(seed)), 5000, 4);
+        const Fine fine = fine_mesh(support::box({1, 1, 1}).placed(support::random_pose(seed)), 5000, 4);
         const double voxel = fine.octree.voxel_size(4);
         const double farthest = points_to_mesh(fine.octree.positions, fine.mesh).max;
         CHECK(farthest < 0.3 * voxel);
@@ -139,10 +134,10 @@ TEST_CASE("plates and wedges and rods in general pose and a shaft take few facet
         std::size_t most_faces;
     };
     const std::vector<Example> examples = {
-        {"plate of a twentieth", support::box({1, 1, 0.05}).placed(pose(6)), 20},
-        {"plate of a fiftieth", support::box({1, 1, 0.02}).placed(pose(7)), 50},
-        {"rod", support::box({1, 0.06, 0.06}).placed(pose(8)), 25},
-        {"wedge", support::wedge(0.5, 1, 1).placed(pose(9)), 80},
+        {"plate of a twentieth", support::box({1, 1, 0.05}).placed(support::random_pose(6)), 20},
+        {"plate of a fiftieth", support::box({1, 1, 0.02}).placed(support::random_pose(7)), 50},
+        {"rod", support::box({1, 0.06, 0.06}).placed(support::random_pose(8)), 25},
+        {"wedge", support::wedge(0.5, 1, 1).placed(support::random_pose(9)), 80},
         {"shaft", support::cylinder(0.5, 2), 150},
     };
     for (const Example& e : examples) {
@@ -214,7 +209,7 @@ TEST_CASE("points that the fine mesh does not miss are never missed", "[simplify
 }
 
 TEST_CASE("if the rounds do not suffice the fine mesh comes out", "[simplify]") {
-    const Fine fine = fine_mesh(support::mechanical_part(pose(2)), 40000, 5);
+    const Fine fine = fine_mesh(support::mechanical_part(support::random_pose(2)), 40000, 5);
     const AdaptiveMesh result = simplify(fine.mesh, fine.octree.positions, fine.octree.extent, fine.depth,
                                          {.max_error = 0.002 * fine.octree.extent, .rounds = 1});
     CHECK(result.mesh.facet_count() == fine.mesh.facet_count());
@@ -223,7 +218,7 @@ TEST_CASE("if the rounds do not suffice the fine mesh comes out", "[simplify]") 
 }
 
 TEST_CASE("coarsening does not depend on the number of threads", "[simplify]") {
-    const Fine fine = fine_mesh(support::mechanical_part(pose(2)), 40000, 5);
+    const Fine fine = fine_mesh(support::mechanical_part(support::random_pose(2)), 40000, 5);
     const AdaptiveMesh many = coarse(fine, 0.003 * fine.octree.extent);
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     const AdaptiveMesh single = coarse(fine, 0.003 * fine.octree.extent);

@@ -28,5 +28,9 @@ Pose turned(const Vec3& axis, double angle, const Vec3& shift = Vec3(0, 0, 0));
 
 /// Even over all rotations; every coordinate of the shift in [-reach, reach].
 Pose random_pose(Random& random, double reach = 0);
+inline Pose random_pose(std::uint64_t seed) {
+    Random random(seed);
+    return random_pose(random);
+}
 
 } // namespace hsdm::support
