@@ -4,7 +4,7 @@
 
 #include "hsdm/errors.hh"
 
-#include <charconv>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -61,14 +61,10 @@ struct Amount {
 
 /// Nothing if the text is none, or not finite.
 std::optional<Amount> amount_of(const std::string& text) {
-    Amount amount;
-    const char* const end = text.data() + text.size();
-    const auto read = std::from_chars(text.data(), end, amount.value);
-    amount.is_share = read.ptr != end && *read.ptr == '%';
-    if (amount.is_share) amount.value /= 100;
-    if (read.ec != std::errc() || read.ptr + amount.is_share != end || !std::isfinite(amount.value))
-        return std::nullopt;
-    return amount;
+    const bool is_share = text.ends_with('%');
+    const auto value = number_of<double>(std::string_view(text).substr(0, text.size() - is_share));
+    if (!value || !std::isfinite(*value)) return std::nullopt;
+    return Amount{is_share ? *value / 100 : *value, is_share};
 }
 
 /// A number of facets, or with % a share of the largest component.
@@ -245,19 +241,15 @@ ReconstructOptions ReconstructArguments::options() const {
 
 std::optional<std::pair<int, int>> ReconstructArguments::level_range() const {
     if (levels.empty()) return std::nullopt;
-    std::pair<int, int> range;
-    const char* const end = levels.data() + levels.size();
-    const auto first = std::from_chars(levels.data(), end, range.first);
-    if (first.ec == std::errc() && first.ptr != end && *first.ptr == ':') {
-        const auto last = std::from_chars(first.ptr + 1, end, range.second);
-        if (last.ec == std::errc() && last.ptr == end) {
-            if (range.first < 1 || range.second > deepest || range.first > range.second)
-                throw UsageError("--levels " + levels
-                                 + ": must be two depths from 1 to 16, the lesser one first");
-            return range;
-        }
-    }
-    throw UsageError("--levels " + levels + ": two depths with a colon between them are wanted, e.g. 4:7");
+    const std::string_view text = levels;
+    const std::size_t colon = std::min(text.find(':'), text.size() - 1);
+    const auto first = number_of<int>(text.substr(0, colon)), last = number_of<int>(text.substr(colon + 1));
+    if (!first || !last)
+        throw UsageError("--levels " + levels
+                         + ": two depths with a colon between them are wanted, e.g. 4:7");
+    if (*first < 1 || *last > deepest || *first > *last)
+        throw UsageError("--levels " + levels + ": must be two depths from 1 to 16, the lesser one first");
+    return std::pair(*first, *last);
 }
 
 ReconstructOptions case_options(const std::string& name, const std::vector<std::string>& words,

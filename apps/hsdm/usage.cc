@@ -3,7 +3,6 @@
 #include "messages.hh"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <iostream>
 
@@ -103,11 +102,8 @@ std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv) {
 CLI::Validator whole_number(int least, int most, const std::string& wanted) {
     return CLI::Validator(
         [=](std::string& text) {
-            int value = 0;
-            const char* const end = text.data() + text.size();
-            const auto read = std::from_chars(text.data(), end, value);
-            const bool right = read.ec == std::errc() && read.ptr == end && value >= least && value <= most;
-            return right ? std::string() : text + ": must be " + wanted;
+            const auto value = number_of<int>(text);
+            return value && *value >= least && *value <= most ? std::string() : text + ": must be " + wanted;
         },
         "");
 }
@@ -115,11 +111,8 @@ CLI::Validator whole_number(int least, int most, const std::string& wanted) {
 CLI::Validator number_between(double least, double most, const std::string& wanted) {
     return CLI::Validator(
         [=](std::string& text) {
-            double value = 0;
-            const char* const end = text.data() + text.size();
-            const auto read = std::from_chars(text.data(), end, value);
-            const bool right = read.ec == std::errc() && read.ptr == end && std::isfinite(value)
-                               && value > least && value < most;
+            const auto value = number_of<double>(text);
+            const bool right = value && std::isfinite(*value) && *value > least && *value < most;
             return right ? std::string() : text + ": must " + wanted;
         },
         "");
