@@ -307,14 +307,10 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     result.classes = std::move(vertices.classes);
     result.voxel = std::move(vertices.voxel);
     result.midpoints = midpoints.count();
-    result.crossings = crossings.crossings.size();
     result.beyond_crease = crossings.dropped_beyond_crease;
     result.settled = crossings.settled;
     result.trimmed = crossings.trimmed;
     result.tips = crossings.tips;
-    result.open = links.open;
-    result.rims = links.rims;
-    result.cut = duals.cut;
     result.clamped = vertices.clamped;
     return to_corners;
 }

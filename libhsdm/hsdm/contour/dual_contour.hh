@@ -26,8 +26,7 @@ struct DualContour {
     PolygonMesh mesh;                 ///< relative to the octree's origin; an oriented 2-manifold
     std::vector<VertexClass> classes; ///< per vertex
     std::vector<Index> voxel;         ///< per vertex, the occupied voxel it stands for
-    std::size_t crossings = 0, beyond_crease = 0, settled = 0, trimmed = 0, tips = 0, open = 0, rims = 0,
-                cut = 0, clamped = 0;
+    std::size_t beyond_crease = 0, settled = 0, trimmed = 0, tips = 0, clamped = 0;
     /// vertices merged into the vertex of the next voxel, which holds their corner (shared_corners)
     std::size_t corners_merged = 0;
     std::size_t midpoints = 0; ///< vertices added so that no two mesh edges join the same two vertices

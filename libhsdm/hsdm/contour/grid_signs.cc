@@ -102,19 +102,6 @@ public:
     }
 
 private:
-    template <class F>
-    void for_grid_points(F&& f) const {
-        for_each_index(grid_.size(), grid_points_per_chunk, [&](Index c) { f(c); });
-    }
-
-    /// Calls f(neighbour) for the up to six grid points that share an edge with this one.
-    template <class F>
-    void for_neighbors(Index c, F&& f) const {
-        for (unsigned a = 0; a < 3; ++a)
-            for (Index n : {grid_.next[c][a], below_[c][a]})
-                if (n != no_index) f(n);
-    }
-
     /// The standing crossing of an edge nearest to one of its ends, or no_index.
     Index nearest_standing(Index edge, bool upper) const {
         const Index n = list_.first[edge + 1] - list_.first[edge];
@@ -138,7 +125,7 @@ private:
     /// them, weighted by nearness, over the sum of their absolute values; in units of most_belief, 1 if it is
     /// outside all, -1 inside all. 0 if a sheet passes nearer than its error.
     void set_beliefs() {
-        for_grid_points([&](Index c) {
+        for_each_index(grid_.size(), grid_points_per_chunk, [&](Index c) {
             double sum = 0, size = 0;
             for (const LocalSheet& sheet : sheets_.sheets_at(c)) {
                 if (std::abs(sheet.distance) < sheets::surface_error * h_ * sheet.weight) return;
@@ -154,7 +141,7 @@ private:
     /// continued. Ties stay unknown if `undecided`, else count as outside.
     void vote(bool carried_only, bool undecided = true) {
         std::vector<Side> next = side_;
-        for_grid_points([&](Index c) {
+        for_each_index(grid_.size(), grid_points_per_chunk, [&](Index c) {
             if (side_[c] != unknown) return;
             double sum = belief_[c];
             for (unsigned a = 0; a < 3; ++a) {
@@ -194,16 +181,16 @@ private:
 
     /// The grid points with an edge whose crossings contradict the sides of its ends, and their neighbours.
     std::vector<Index> doubtful() const {
-        std::vector<std::vector<Index>> parts(chunk_count(grid_.size(), grid_points_per_chunk));
-        for_grid_points([&](Index c) {
-            if (side_[c] == unknown || grid_point_cost(c, side_[c]) == 0) return;
-            auto& part = parts[c / grid_points_per_chunk];
-            part.push_back(c);
-            for_neighbors(c, [&](Index n) {
-                if (side_[n] != unknown) part.push_back(n);
-            });
-        });
-        std::vector<Index> grid_points = joined(parts);
+        const auto add_doubtful = [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
+            for (auto c = static_cast<Index>(begin); c < end; ++c) {
+                if (side_[c] == unknown || grid_point_cost(c, side_[c]) == 0) continue;
+                found.push_back(c);
+                for (unsigned a = 0; a < 3; ++a)
+                    for (Index n : {grid_.next[c][a], below_[c][a]})
+                        if (n != no_index && side_[n] != unknown) found.push_back(n);
+            }
+        };
+        std::vector<Index> grid_points = collected<Index>(grid_.size(), grid_points_per_chunk, add_doubtful);
         sort_unique(grid_points);
         return grid_points;
     }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t duals_per_chunk = 1024;
 
-struct Plane {
+struct WeightedPlane {
     Vec3 normal;
     Vec3 point;
     double weight;
@@ -21,7 +21,7 @@ struct Plane {
 
 /// The QEF of one vertex, and the box it must stay in.
 struct Problem {
-    std::vector<Plane> planes;
+    std::vector<WeightedPlane> planes;
     Vec3 mean; // mean of the crossings, which lie on the box's surface: inside the box
     Vec3 lo;   // of the voxel
     double size = 0;
@@ -32,8 +32,8 @@ struct SheetNormals {
     std::array<Vec3, 3> normals;
     int count = 0;
 
-    explicit SheetNormals(const std::vector<Plane>& planes) {
-        for (const Plane& plane : planes) {
+    explicit SheetNormals(const std::vector<WeightedPlane>& planes) {
+        for (const WeightedPlane& plane : planes) {
             const auto end = normals.begin() + count;
             if (std::any_of(normals.begin(), end,
                             [&](const Vec3& n) { return (n | plane.normal) > relations::same_sheet_cosine; }))
@@ -60,7 +60,7 @@ struct Solution {
 Solution least_squares(const Problem& problem, int most_rank) {
     Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
-    for (const Plane& plane : problem.planes) {
+    for (const WeightedPlane& plane : problem.planes) {
         const Eigen::Vector3d n(plane.normal[0], plane.normal[1], plane.normal[2]);
         a += plane.weight * n * n.transpose();
         b += plane.weight * (plane.normal | (plane.point - problem.mean)) * n;
@@ -91,7 +91,7 @@ Solution least_squares(const Problem& problem, int most_rank) {
 /// Root mean square distance of a point from the planes.
 double misfit(const Vec3& p, const Problem& problem) {
     double sum = 0, weight = 0;
-    for (const Plane& plane : problem.planes) {
+    for (const WeightedPlane& plane : problem.planes) {
         const double d = plane.normal | (p - plane.point);
         sum += plane.weight * d * d;
         weight += plane.weight;
@@ -347,7 +347,7 @@ private:
     }
 
     bool has_sheet(const Vec3& normal) const {
-        return std::any_of(problem_.planes.begin(), problem_.planes.end(), [&](const Plane& plane) {
+        return std::any_of(problem_.planes.begin(), problem_.planes.end(), [&](const WeightedPlane& plane) {
             return (plane.normal | normal) > relations::same_sheet_cosine;
         });
     }

@@ -39,16 +39,15 @@ struct Cut {
 };
 
 std::vector<Cut> possible_cuts(const PolygonMesh& mesh, double least_sine) {
-    return collected<Cut>(mesh.facet_count(), facets_per_chunk,
-                          [&](std::size_t f, std::size_t end, auto& cuts) {
-                              for (; f < end; ++f) {
-                                  const auto quad = mesh.facet(f);
-                                  if (quad.size() != 4) continue;
-                                  const auto [corner, sine] = straightest(mesh, quad);
-                                  if (sine < least_sine)
-                                      cuts.push_back({edge(quad[corner], quad[(corner + 2) % 4]), f, corner});
-                              }
-                          });
+    const auto find = [&](std::size_t f, std::size_t end, std::vector<Cut>& cuts) {
+        for (; f < end; ++f) {
+            const auto quad = mesh.facet(f);
+            if (quad.size() != 4) continue;
+            const auto [corner, sine] = straightest(mesh, quad);
+            if (sine < least_sine) cuts.push_back({edge(quad[corner], quad[(corner + 2) % 4]), f, corner});
+        }
+    };
+    return collected<Cut>(mesh.facet_count(), facets_per_chunk, find);
 }
 
 /// Removes the cuts whose diagonal is an edge already or that of a facet before; leaves them by facet.

@@ -122,29 +122,27 @@ Patches build_patches(const Octree& octree, const Neighbors& neighbors, const Es
 
 std::vector<SignedEdge> patch_evidence(const Octree& octree, const Neighbors& neighbors,
                                        const EstimatedNormals& estimate, const Patches& patches) {
-    const std::size_t leaves = neighbors.leaf_first.size() - 1;
-    return collected<SignedEdge>(
-        leaves, leaves_per_chunk, [&](std::size_t begin, std::size_t end, auto& found) {
-            EdgeList list;
-            for (Index i = neighbors.leaf_first[begin]; i < neighbors.leaf_first[end]; ++i) {
-                const Index a = patches.of_point[i];
-                if (a == no_index) continue;
-                const Vec3& n = estimate.normals[i];
-                const double span = std::max(patches::near_pair * neighbors.reach[i],
-                                             patches::near_tolerances * estimate.tolerance[i]);
-                const auto around = neighbors.of(i);
-                for (std::size_t k = 0; k < around.size(); k += 2) { // every second pair is enough
-                    const Index j = around[k], b = patches.of_point[j];
-                    if (b == no_index || a == b) continue;
-                    const Vec3 d = octree.positions[j] - octree.positions[i];
-                    const Vec3& m = estimate.normals[j];
-                    const double mirrored =
-                        (n | m) - 2 * (n | d) * (m | d) / std::min(d.sqrnorm(), span * span);
-                    list.add(a, b, std::clamp(mirrored, -1.0, 1.0) * patches.sign[i] * patches.sign[j]);
-                }
+    const auto gather = [&](std::size_t begin, std::size_t end, std::vector<SignedEdge>& found) {
+        EdgeList list;
+        for (Index i = neighbors.leaf_first[begin]; i < neighbors.leaf_first[end]; ++i) {
+            const Index a = patches.of_point[i];
+            if (a == no_index) continue;
+            const Vec3& n = estimate.normals[i];
+            const double span = std::max(patches::near_pair * neighbors.reach[i],
+                                         patches::near_tolerances * estimate.tolerance[i]);
+            const auto around = neighbors.of(i);
+            for (std::size_t k = 0; k < around.size(); k += 2) { // every second pair is enough
+                const Index j = around[k], b = patches.of_point[j];
+                if (b == no_index || a == b) continue;
+                const Vec3 d = octree.positions[j] - octree.positions[i];
+                const Vec3& m = estimate.normals[j];
+                const double mirrored = (n | m) - 2 * (n | d) * (m | d) / std::min(d.sqrnorm(), span * span);
+                list.add(a, b, std::clamp(mirrored, -1.0, 1.0) * patches.sign[i] * patches.sign[j]);
             }
-            found = std::move(list.edges);
-        });
+        }
+        found = std::move(list.edges);
+    };
+    return collected<SignedEdge>(neighbors.leaf_first.size() - 1, leaves_per_chunk, gather);
 }
 
 } // namespace hsdm
