@@ -49,10 +49,8 @@ int main(int argc, char** argv) {
                 "facets", "error", "mesh", "features", "total", "ns / point", "MB");
     for (std::size_t points : sizes) {
         const PointCloud cloud = support::sample(solid, {.points = points, .normals = false});
-        ReconstructOptions options;
-        options.voxel_size = voxel_for(cloud, points_per_voxel);
-        options.threads = threads;
-        options.method = Method::basic;
+        const ReconstructOptions options{
+            .voxel_size = voxel_for(cloud, points_per_voxel), .method = Method::basic, .threads = threads};
         const Report r = best_of(cloud, options, repeats);
         const Report::Seconds& s = r.seconds;
         std::printf("%10zu %10zu %8.3f %8.3f %8.3f %8.3f %8.3f %8.3f %8.3f %12.1f %8zu\n", points,

@@ -124,8 +124,7 @@ void print_random_solids(std::uint64_t first_seed, std::uint64_t last_seed, Norm
     const std::vector<double> noises = {0, 0.25, 0.5};
     std::vector<int> right(noises.size(), 0);
     int solids = 0;
-    support::TrialOptions how;
-    how.voxel = voxel;
+    const support::TrialOptions how{.voxel = voxel};
     for (std::uint64_t seed = first_seed; seed < last_seed; ++seed) {
         const support::Trial trial = support::make_trial(seed, how);
         if (trial.size != support::FeatureSize::large) continue;

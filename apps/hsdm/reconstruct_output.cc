@@ -162,8 +162,7 @@ bool OutputPlan::uses_standard_output() const {
 
 WrittenMesh write_outputs(const MeshTarget& target, const PolyMesh& mesh) {
     WrittenMesh written;
-    WriteOptions options;
-    options.ascii = target.ascii;
+    const WriteOptions options{.ascii = target.ascii};
     if (target.format == MeshFormat::om && !target.plain) {
         write_om(target.mesh, mesh); // with status bits and every property
     } else {

@@ -53,13 +53,13 @@ struct MinComponent {
 struct ReconstructOptions {
     /// Resolution: at most one of the three; by default the voxel follows from the points' spacing and
     /// noise (choose_voxel).
-    std::optional<int> depth;         ///< octree depth over the bounding cube, [1, 16]
-    std::optional<double> voxel_size; ///< edge of a voxel in the cloud's units, > 0: kept exactly, the
-                                      ///< bounding cube grows to the next power of two of it
+    std::optional<int> depth{};         ///< octree depth over the bounding cube, [1, 16]
+    std::optional<double> voxel_size{}; ///< edge of a voxel in the cloud's units, > 0: kept exactly, the
+                                        ///< bounding cube grows to the next power of two of it
     /// Adaptive: the octree goes as deep as the points' spacing carries and is subdivided only where the
     /// surface would be farther than this from the points. Without it an adaptive grid keeps a tenth of a
     /// voxel.
-    std::optional<MaxError> max_error;
+    std::optional<MaxError> max_error{};
     Grid grid = Grid::automatic;                    ///< uniform or adaptive
     Method method = Method::automatic;              ///< basic or extended
     NormalSource normals = NormalSource::automatic; ///< given or estimated; the basic method uses none
@@ -68,7 +68,7 @@ struct ReconstructOptions {
     /// scans leave them (extended method; see NormalSetOptions).
     bool merge_layers = false;
     /// Components smaller than this are dropped; by default none is, however small.
-    std::optional<MinComponent> min_component;
+    std::optional<MinComponent> min_component{};
     double crease_angle =
         0.61;                 ///< radians, (0, pi): dihedral angle above which an edge is sharp (35 degrees)
     int normal_smoothing = 3; ///< rounds of anisotropic normal smoothing, >= 0 (section 3.3)
@@ -78,10 +78,11 @@ struct ReconstructOptions {
     /// the same.
     bool classify = true;       ///< phase 3: sharp edges and classes of vertices; else the mesh has none
     bool vertex_normals = true; ///< phase 3, where there are classes: smoothed normals of vertices
-    bool measure = true;   ///< the report's error and mesh; else zero, but a bound is checked all the same
-    std::string debug_dir; ///< if set, the phases of Fig. 3 (voxels, graph, facets) are written to dN in it,
-                           ///< N the depth
-    std::function<bool(const char* phase, double done)> progress; ///< done in [0, 1]; return false to cancel
+    bool measure = true;     ///< the report's error and mesh; else zero, but a bound is checked all the same
+    std::string debug_dir{}; ///< if set, the phases of Fig. 3 (voxels, graph, facets) are written to dN in
+                             ///< it, N the depth
+    std::function<bool(const char* phase, double done)>
+        progress{}; ///< done in [0, 1]; return false to cancel
 };
 
 /// A surface and how it came about.

@@ -67,10 +67,9 @@ TEST_CASE("a densely sampled sphere becomes a closed sphere", "[basic]") {
 TEST_CASE("every selection of the tests gives an oriented 2-manifold", "[basic]") {
     const PointCloud cloud = sphere_cloud(3000, 2); // sparse: holes are bound to be there
     for (int tests = 0; tests < 8; ++tests) {
-        BasicFacetOptions options;
-        options.hit_test = (tests & 1) != 0;
-        options.distance_criterion = (tests & 2) != 0;
-        options.angle_comparison = (tests & 4) != 0;
+        const BasicFacetOptions options{.hit_test = (tests & 1) != 0,
+                                        .distance_criterion = (tests & 2) != 0,
+                                        .angle_comparison = (tests & 4) != 0};
         const Topology topology = measure_topology(reconstruct(cloud, 5, options).mesh);
         CHECK(topology.faces > 0);
         CHECK(topology.manifold());
@@ -106,7 +105,5 @@ TEST_CASE("a graph without loops has no facets", "[basic]") {
 }
 
 TEST_CASE("a loop length out of range is refused", "[basic]") {
-    BasicFacetOptions options;
-    options.max_loop_edges = 2;
-    CHECK_THROWS_AS(reconstruct(sphere_cloud(100, 7), 2, options), OptionError);
+    CHECK_THROWS_AS(reconstruct(sphere_cloud(100, 7), 2, {.max_loop_edges = 2}), OptionError);
 }

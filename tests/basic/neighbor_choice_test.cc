@@ -70,9 +70,7 @@ TEST_CASE("a voxel without face neighbours takes its four nearest edge neighbour
     const NeighborMask present = mask({{1, 1, 0}, {-1, 1, 0}, {1, -1, 0}, {-1, -1, 0}, {1, 0, 1}});
     CHECK(choose_neighbors(present, with({1, 1, 0}, 2)) == (present & ~mask({{1, 1, 0}})));
     CHECK(choose_neighbors(present, even()) == (present & ~mask({{1, 0, 1}}))); // ties: the lower bit
-    NeighborChoiceOptions more;
-    more.wanted = 5;
-    CHECK(choose_neighbors(present, even(), more) == present);
+    CHECK(choose_neighbors(present, even(), {.wanted = 5}) == present);
 }
 
 TEST_CASE("of five and six face neighbours all are kept, or the four nearest if so asked", "[basic]") {

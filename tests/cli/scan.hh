@@ -20,10 +20,7 @@ inline std::string xyz(const PointCloud& cloud) {
 }
 
 inline PointCloud sphere_scan(std::size_t points = 4000) {
-    support::SampleOptions options;
-    options.points = points;
-    options.normals = false;
-    return support::sample(support::sphere(1), options);
+    return support::sample(support::sphere(1), {.points = points, .normals = false});
 }
 
 } // namespace hsdm::test

@@ -217,11 +217,9 @@ TEST_CASE("relaxed facets lie no farther from the points, and nearer where the s
     as_placed.relax = {.rounds = 0, .fit = false};
     for (const Example& example : examples) {
         INFO(example.name);
-        support::SampleOptions sampling;
-        sampling.points = 20000;
-        sampling.position_noise = example.noise * voxel;
         const support::Solid solid = example.solid.placed(support::random_pose(5));
-        const PointCloud cloud = support::sample(solid, sampling);
+        const PointCloud cloud =
+            support::sample(solid, {.points = 20000, .position_noise = example.noise * voxel});
         const PolygonMesh before = facets_of(cloud, voxel, as_placed).mesh,
                           after = facets_of(cloud, voxel).mesh;
         CHECK(points_to_mesh(cloud.positions, after).mean

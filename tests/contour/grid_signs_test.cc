@@ -32,9 +32,7 @@ struct Found {
     }
 
     static PointCloud scan(const support::Solid& solid, std::size_t points) {
-        support::SampleOptions options;
-        options.points = points;
-        return support::sample(solid, options);
+        return support::sample(solid, {.points = points});
     }
 
     Crossings settled() const { return label_grid_signs(grid, local, sets, candidates, level.voxel_size); }

@@ -26,9 +26,7 @@ struct Found {
     Found(const Vec3& box_size, std::uint64_t seed) : size(box_size) {
         support::Random random(seed);
         pose = support::random_pose(random);
-        support::SampleOptions options;
-        options.points = 5000;
-        octree = build_octree(support::sample(support::box(size).placed(pose), options));
+        octree = build_octree(support::sample(support::box(size).placed(pose), {.points = 5000}));
         level = extract_level(octree, 4);
         const double h = level.voxel_size;
         const NormalSets sets = build_normal_sets(octree, level);

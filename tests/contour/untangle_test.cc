@@ -20,8 +20,7 @@ void add_sheet(PolygonMesh& mesh, int side, double z) {
 }
 
 UntangleOptions options() {
-    UntangleOptions result;
-    result.nearby = 1;
+    const UntangleOptions result{.nearby = 1};
     return result;
 }
 

@@ -16,9 +16,7 @@ using test::Folder;
 using test::read_file;
 
 PointCloud cube_scan(std::size_t points) {
-    support::SampleOptions options;
-    options.points = points;
-    return support::sample(support::box({1, 1, 1}), options);
+    return support::sample(support::box({1, 1, 1}), {.points = points});
 }
 
 std::string ply_scan(std::size_t points) {
@@ -29,12 +27,8 @@ std::string ply_scan(std::size_t points) {
 
 std::string mesh_file(MeshFormat format, bool ascii, std::size_t points = 300) {
     const Folder folder;
-    ReconstructOptions options;
-    options.depth = 3;
-    WriteOptions write;
-    write.ascii = ascii;
-    const Reconstruction result = reconstruct(test::sphere_scan(points), options);
-    write_mesh(folder / "mesh", to_polygons(result.mesh), format, write);
+    const Reconstruction result = reconstruct(test::sphere_scan(points), {.depth = 3});
+    write_mesh(folder / "mesh", to_polygons(result.mesh), format, {.ascii = ascii});
     return read_file(folder / "mesh");
 }
 

@@ -37,9 +37,7 @@ TEMPLATE_TEST_CASE("a mesh's vertices become a surface in the same mesh", "", EV
     }
 
     ReconstructorT<TestType> reconstructor(mesh);
-    ReconstructOptions options;
-    options.depth = 3;
-    reconstructor.initialize(options);
+    reconstructor.initialize({.depth = 3});
     const Report report = reconstructor.reconstruct();
 
     REQUIRE(mesh.n_faces() > 50);
@@ -109,9 +107,7 @@ TEST_CASE("reconstructing before initialize throws, and a failure leaves the mes
     TriMeshF mesh = build<TriMeshF>(support::divided_cube(1));
     ReconstructorT<TriMeshF> reconstructor(mesh);
     CHECK_THROWS_AS(reconstructor.reconstruct(), std::logic_error);
-    ReconstructOptions options;
-    options.depth = 40;
-    reconstructor.initialize(options);
+    reconstructor.initialize({.depth = 40});
     CHECK_THROWS_AS(reconstructor.reconstruct(), OptionError);
     CHECK(mesh.n_vertices() == 8);
     CHECK(mesh.n_faces() == 12);

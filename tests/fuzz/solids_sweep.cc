@@ -56,12 +56,11 @@ PointCloud scan(std::uint64_t seed, const Way& way) {
     for (int i = 0; i < candidates; ++i) kept += solid.sample(random, point);
     const double area = solid.primitive_area() * kept / candidates;
     if (area < voxel * voxel) return {};
-    support::SampleOptions options;
-    options.seed = seed;
-    options.points = static_cast<std::size_t>(8 * area / (voxel * voxel));
-    options.normals = way.normals;
-    options.position_noise = way.noise * voxel;
-    options.normal_noise = way.normal_noise;
+    const support::SampleOptions options{.points = static_cast<std::size_t>(8 * area / (voxel * voxel)),
+                                         .seed = seed,
+                                         .normals = way.normals,
+                                         .position_noise = way.noise * voxel,
+                                         .normal_noise = way.normal_noise};
     return support::sample(solid, options);
 }
 

@@ -221,8 +221,7 @@ TEST_CASE("columns can be named by the caller", "[io]") {
 
 TEST_CASE("columns that cannot be are refused by name", "[io]") {
     const auto refused = [](const char* columns) {
-        ReadOptions options;
-        options.columns = columns;
+        const ReadOptions options{.columns = columns};
         const TempFile file("a.xyz", "1 2 3 4\n");
         CHECK_THROWS_AS(read_points(file.path(), options), OptionError);
         return error_of("a.xyz", "1 2 3 4\n", options);

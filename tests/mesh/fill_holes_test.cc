@@ -86,9 +86,7 @@ TEST_CASE("random holes are closed and the surface stays what it was", "[holes]"
     const double whole = measure_topology(torus(40, 20)).signed_volume;
     for (int round = 0; round < 20; ++round) {
         PolygonMesh mesh = keep_facets(torus(40, 20), [&](std::size_t) { return random() % 10 != 0; });
-        FillHolesOptions options;
-        options.max_edges = FillHolesOptions::no_limit;
-        CHECK(fill_holes(mesh, options).refused == 0);
+        CHECK(fill_holes(mesh, {.max_edges = FillHolesOptions::no_limit}).refused == 0);
         check_manifold(mesh); // although vertices had several fans before
         CHECK(measure_topology(mesh).closed());
         CHECK(measure_topology(mesh).euler == 0);
@@ -115,9 +113,7 @@ TEST_CASE("loops longer or wider than asked for stay open", "[holes]") {
 
 TEST_CASE("long loops are closed too", "[holes]") {
     PolygonMesh mesh = cone(700, 1);
-    FillHolesOptions options;
-    options.max_edges = FillHolesOptions::no_limit;
-    CHECK(fill_holes(mesh, options).closed == 1);
+    CHECK(fill_holes(mesh, {.max_edges = FillHolesOptions::no_limit}).closed == 1);
     CHECK(measure_topology(mesh).closed());
     check_manifold(mesh);
 }
@@ -153,9 +149,7 @@ TEST_CASE("insisting closes what is refused otherwise", "[holes]") {
     mesh.properties.push_back({"number", VertexProperty::Type::float64, {0, 1, 2, 3, 4, 5}});
     mesh.add_facet(std::array<Index, 4>{0, 1, 4, 3});
     mesh.add_facet(std::array<Index, 4>{1, 2, 5, 4});
-    FillHolesOptions options;
-    options.insist = true;
-    const FillHolesCounts counts = fill_holes(mesh, options);
+    const FillHolesCounts counts = fill_holes(mesh, {.insist = true});
     CHECK(counts.refused == 0);
     CHECK(counts.vertices == 1);
     CHECK(mesh.vertex_count() == 7);
@@ -176,10 +170,7 @@ TEST_CASE("an edge that exists is not used a second time", "[holes]") {
     mesh.add_facet(std::array<Index, 3>{0, 3, 5});
     mesh.add_facet(std::array<Index, 3>{2, 5, 3});
     check_manifold(mesh);
-    FillHolesOptions options;
-    options.max_bend = std::numbers::pi;
-    options.quads = false;
-    const FillHolesCounts counts = fill_holes(mesh, options);
+    const FillHolesCounts counts = fill_holes(mesh, {.max_bend = std::numbers::pi, .quads = false});
     CHECK(counts.loops == 1);
     CHECK(counts.closed == 1); // by the other diagonal
     CHECK(counts.facets == 2);
@@ -202,10 +193,8 @@ TEST_CASE("holes of random soups leave a manifold", "[holes]") {
             soup.add_facet(facet);
         }
         make_manifold(soup);
-        FillHolesOptions options;
-        options.max_edges = FillHolesOptions::no_limit;
-        options.max_bend = std::numbers::pi;
-        options.insist = round % 2 == 1;
+        const FillHolesOptions options{
+            .max_edges = FillHolesOptions::no_limit, .max_bend = std::numbers::pi, .insist = round % 2 == 1};
         filled += fill_holes(soup, options).closed;
         const Topology topology = measure_topology(soup);
         CHECK(topology.manifold());

@@ -12,10 +12,7 @@ namespace {
 
 /// Points of a sphere, the denser the lower, and strays that are the last `strays` of the cloud.
 PointCloud scan(int strays) {
-    support::SampleOptions options;
-    options.points = 20000;
-    options.normals = false;
-    PointCloud all = support::sample(support::sphere(1), options), cloud;
+    PointCloud all = support::sample(support::sphere(1), {.points = 20000, .normals = false}), cloud;
     support::Random random(5);
     for (const Vec3& p : all.positions)
         if (random.uniform(0, 1) < 1 / (1 + 4 * (p[2] + 1))) cloud.positions.push_back(p);
@@ -58,10 +55,7 @@ namespace {
 
 /// A unit sphere of 20,000 points, a share of them anywhere in its box.
 PointCloud spoilt_sphere(double outliers) {
-    support::SampleOptions options;
-    options.points = 20000;
-    options.outliers = outliers;
-    return support::sample(support::sphere(1), options);
+    return support::sample(support::sphere(1), {.points = 20000, .outliers = outliers});
 }
 
 struct Left {

@@ -11,9 +11,7 @@ using namespace hsdm;
 namespace {
 
 PointCloud sphere_cloud(std::size_t points, const Vec3& at = {0, 0, 0}, double scale = 1) {
-    support::SampleOptions options;
-    options.points = points;
-    PointCloud cloud = support::sample(support::sphere(1), options);
+    PointCloud cloud = support::sample(support::sphere(1), {.points = points});
     for (Vec3& p : cloud.positions) p = p * scale + at;
     return cloud;
 }

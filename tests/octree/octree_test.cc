@@ -106,9 +106,7 @@ TEST_CASE("merged duplicates differ in position or normal, never in neither", "[
     const Octree octree = build_octree(cloud);
     CHECK(octree.size() == 3);
     CHECK(octree.merged_duplicates == 1);
-    OctreeOptions keep;
-    keep.merge_duplicates = false;
-    CHECK(build_octree(cloud, keep).size() == 4);
+    CHECK(build_octree(cloud, {.merge_duplicates = false}).size() == 4);
 }
 
 TEST_CASE("clouds without extent are refused", "[octree]") {
@@ -143,9 +141,7 @@ TEST_CASE("neighbour offsets are 6 faces, 12 edges, 8 corners, each once", "[oct
 
 TEST_CASE("a centred cube has the cloud's box in its middle and holds every point", "[octree]") {
     const PointCloud cloud = random_cloud(5000, 12);
-    OctreeOptions options;
-    options.placement = CubePlacement::centred;
-    const Octree octree = build_octree(cloud, options);
+    const Octree octree = build_octree(cloud, {.placement = CubePlacement::centred});
     const Vec3 middle = (octree.bounds.lo + octree.bounds.hi) / 2;
     CHECK((octree.origin + Vec3(1, 1, 1) * (octree.extent / 2) - middle).norm() < 1e-14);
     bool inside = true;

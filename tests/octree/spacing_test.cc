@@ -9,9 +9,7 @@ using namespace hsdm;
 
 namespace {
 Octree sphere_octree(std::size_t points) {
-    support::SampleOptions options;
-    options.points = points;
-    return build_octree(support::sample(support::sphere(1), options));
+    return build_octree(support::sample(support::sphere(1), {.points = points}));
 }
 } // namespace
 

@@ -69,9 +69,7 @@ TEST_CASE("on an adaptive grid the bound is one for noisy points as they were re
     constexpr double noise = 0.02; // 0.8 spacings: the points are moved
     const PointCloud cloud =
         support::sample(support::sphere(1), {.points = 20000, .normals = false, .position_noise = noise});
-    ReconstructOptions options;
-    options.max_error = MaxError{2 * noise};
-    const Reconstruction result = reconstruct(cloud, options);
+    const Reconstruction result = reconstruct(cloud, {.max_error = MaxError{2 * noise}});
     const Report& report = result.report;
     CHECK(report.mesh.closed);
     CHECK(report.mesh.euler == 2);

@@ -20,9 +20,7 @@ namespace {
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 PointCloud step_cloud(std::size_t points) {
-    support::SampleOptions options;
-    options.points = points;
-    return support::sample(support::hollow_step(0.4, 0.5), options);
+    return support::sample(support::hollow_step(0.4, 0.5), {.points = points});
 }
 
 PointCloud scaled(PointCloud cloud, double factor) {
@@ -249,10 +247,8 @@ TEST_CASE("points of a part too small for its voxels are told", "[pipeline]") {
         cloud.positions.push_back(0.01 * part.positions[i] + place);
         cloud.normals.push_back(part.normals[i]);
     }
-    ReconstructOptions options;
-    options.depth = 5;
-    options.method = GENERATE(Method::basic, Method::extended);
-    const Report report = reconstruct(cloud, options).report;
+    const Report report =
+        reconstruct(cloud, {.depth = 5, .method = GENERATE(Method::basic, Method::extended)}).report;
     const auto told = std::find_if(report.dropped.begin(), report.dropped.end(), [](const auto& dropped) {
         return dropped.what == "points more than a voxel's diagonal off the mesh";
     });
@@ -303,9 +299,7 @@ TEST_CASE("a cloud whose arrays do not fit together is refused", "[pipeline]") {
 }
 
 TEST_CASE("more threads than may run are no more than may run", "[pipeline]") {
-    ReconstructOptions options;
-    options.threads = 100000;
-    options.depth = 3;
     const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-    CHECK(reconstruct(step_cloud(500), options).report.threads == static_cast<int>(allowed));
+    CHECK(reconstruct(step_cloud(500), {.depth = 3, .threads = 100000}).report.threads
+          == static_cast<int>(allowed));
 }

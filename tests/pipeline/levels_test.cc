@@ -65,8 +65,7 @@ TEST_CASE("the stage for OpenMesh's meshes gives the mesh of the free function",
     for (const Example& e : examples()) {
         INFO(e.name);
         const PointCloud cloud = scan(e.solid, 4000);
-        ReconstructOptions options;
-        options.max_error = MaxError{0.01, true};
+        const ReconstructOptions options{.max_error = MaxError{0.01, true}};
         const PolygonMesh expected = to_polygons(reconstruct(cloud, options).mesh);
         PolyMesh mesh;
         mesh.request_vertex_normals();

@@ -56,8 +56,7 @@ std::string topology_of(const Reconstruction& result) {
 
 TEST_CASE("which axis is which, and on which side normals are, does not change the part", "[pipeline]") {
     const support::TrialOptions options{.voxel = 1.0 / 12, .points_per_voxel = 12};
-    ReconstructOptions how;
-    how.voxel_size = options.voxel;
+    const ReconstructOptions how{.voxel_size = options.voxel};
     std::size_t of_other_topology = 0; // one in six hundred has a hole where the other has none
     constexpr double few = 0.01;       // of all: facets at creases and corners, worked on in Morton order
     for (const PointCloud& cloud : large_solids(5, options)) {

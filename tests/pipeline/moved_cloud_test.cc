@@ -141,9 +141,7 @@ TEST_CASE("a cloud that is moved gives its memory back as soon as nobody asks fo
 
 TEST_CASE("an option out of any cloud's range leaves one that is moved as it was", "[pipeline]") {
     PointCloud cloud = scan();
-    ReconstructOptions options;
-    options.depth = 0;
-    CHECK_THROWS_AS(reconstruct(std::move(cloud), options), OptionError);
+    CHECK_THROWS_AS(reconstruct(std::move(cloud), {.depth = 0}), OptionError);
     CHECK_THROWS_AS(reconstruct_levels(std::move(cloud), 4, 3), OptionError);
     CHECK(cloud.positions == scan().positions);
     CHECK(cloud.normals == scan().normals);

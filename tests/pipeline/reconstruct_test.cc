@@ -20,9 +20,7 @@ PointCloud scan(const support::Solid& solid, std::size_t points, std::uint64_t s
 }
 
 ReconstructOptions at_depth(int depth) {
-    ReconstructOptions options;
-    options.method = Method::basic;
-    options.depth = depth;
+    const ReconstructOptions options{.depth = depth, .method = Method::basic};
     return options;
 }
 
@@ -193,9 +191,7 @@ TEST_CASE("options out of range are refused at the door, by name", "[pipeline]")
 }
 
 TEST_CASE("a larger voxel than the cloud still has a cube to lie in", "[pipeline]") {
-    ReconstructOptions options;
-    options.voxel_size = 0.7;
-    const Reconstruction result = reconstruct(scan(support::sphere(1), 5000), options);
+    const Reconstruction result = reconstruct(scan(support::sphere(1), 5000), {.voxel_size = 0.7});
     CHECK(result.report.grid.voxel_size == Approx(0.7));
     CHECK(faults(to_polygons(result.mesh)) == "");
 }
@@ -361,8 +357,7 @@ TEST_CASE("voxels are three spacings wide, or twice the noise if that is more", 
 
 TEST_CASE("given normals of mixed signs give the mesh of consistent ones, and are counted", "[pipeline]") {
     PointCloud cloud = support::sample(support::torus(1, 0.4), {.points = 8000});
-    ReconstructOptions options;
-    options.depth = 4;
+    const ReconstructOptions options{.depth = 4};
     const Reconstruction consistent = reconstruct(cloud, options);
     CHECK(consistent.report.rejected.at("normals_mended") == 0);
     for (std::size_t i = 0; i < cloud.size(); i += 20) cloud.normals[i] = -cloud.normals[i];
@@ -386,13 +381,9 @@ TEST_CASE("given normals that are not there are refused", "[pipeline]") {
 }
 
 TEST_CASE("normals that all point inward give the same solid, facing outward", "[pipeline]") {
-    support::SampleOptions sampling;
-    sampling.points = 20000;
-    PointCloud cloud = support::sample(support::torus(1, 0.4), sampling);
+    PointCloud cloud = support::sample(support::torus(1, 0.4), {.points = 20000});
     for (Vec3& n : cloud.normals) n = -n;
-    ReconstructOptions options;
-    options.depth = 5;
-    const Reconstruction result = reconstruct(cloud, options);
+    const Reconstruction result = reconstruct(cloud, {.depth = 5});
     CHECK(result.report.mesh.closed);
     CHECK(result.report.mesh.genus == 1);
     CHECK(result.report.rejected.at("normals_turned") == cloud.size());
@@ -405,8 +396,7 @@ TEST_CASE("a tenth of stray points changes neither the topology nor the resoluti
         support::SampleOptions sampling;
         sampling.points = 12600;
         sampling.seed = 7;
-        ReconstructOptions options;
-        options.normals = normals;
+        const ReconstructOptions options{.normals = normals};
         const support::Solid torus = support::torus(1, 0.4);
         const Report clean = reconstruct(support::sample(torus, sampling), options).report;
         sampling.outliers = 0.1;
@@ -487,9 +477,7 @@ void check_stray(const ReconstructOptions& options, double away) {
 TEST_CASE("a far stray changes neither cube nor resolution", "[pipeline]") {
     for (const NormalSource normals : {NormalSource::given, NormalSource::estimate}) {
         INFO((normals == NormalSource::given ? "given" : "estimated"));
-        ReconstructOptions options;
-        options.normals = normals;
-        check_stray(options, 1e9);
+        check_stray({.normals = normals}, 1e9);
     }
 }
 
@@ -497,9 +485,7 @@ TEST_CASE("a stray however far changes neither cube nor resolution", "[pipeline]
     for (const NormalSource normals : {NormalSource::given, NormalSource::estimate})
         for (const double away : {30.0, 1e3, 3e3, 1e5, 1e9, 1e15, 1e200}) {
             INFO((normals == NormalSource::given ? "given" : "estimated") << ", " << away << " extents");
-            ReconstructOptions options;
-            options.normals = normals;
-            check_stray(options, away);
+            check_stray({.normals = normals}, away);
         }
 }
 

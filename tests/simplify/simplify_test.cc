@@ -26,9 +26,7 @@ struct Fine {
 };
 
 Fine fine_mesh(const support::Solid& solid, std::size_t points, int depth) {
-    support::SampleOptions options;
-    options.points = points;
-    Fine fine{build_octree(support::sample(solid, options)), {}, depth};
+    Fine fine{build_octree(support::sample(solid, {.points = points})), {}, depth};
     const OctreeLevel level = extract_level(fine.octree, depth);
     fine.mesh = dual_contour(fine.octree, level, build_normal_sets(fine.octree, level)).mesh;
     return fine;

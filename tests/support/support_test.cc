@@ -15,9 +15,7 @@ TEST_CASE("sampled points lie on the solid and their normals point out of it", "
                                        mechanical_part(), random_solid(3)};
     for (const Solid& solid : solids) {
         const Solid placed = solid.placed(pose);
-        SampleOptions options;
-        options.points = 2000;
-        const PointCloud cloud = sample(placed, options);
+        const PointCloud cloud = sample(placed, {.points = 2000});
         double off = 0;
         int wrong_side = 0;
         for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -33,9 +31,7 @@ TEST_CASE("sampled points lie on the solid and their normals point out of it", "
 
 TEST_CASE("a primitive's distance is the distance to its nearest surface point", "[support]") {
     for (const Solid& solid : {torus(1, 0.3), box(Vec3(1, 2, 0.5)), cylinder(0.5, 2), wedge(0.5, 1, 1)}) {
-        SampleOptions options;
-        options.points = 40000;
-        const PointCloud surface = sample(solid, options);
+        const PointCloud surface = sample(solid, {.points = 40000});
         Random random(5);
         for (int i = 0; i < 20; ++i) {
             const Vec3 p(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2));
@@ -47,9 +43,7 @@ TEST_CASE("a primitive's distance is the distance to its nearest surface point",
 }
 
 TEST_CASE("sampling is even over the area: shares follow the faces of a box", "[support]") {
-    SampleOptions options;
-    options.points = 30000;
-    const PointCloud cloud = sample(box(Vec3(1, 2, 3)), options);
+    const PointCloud cloud = sample(box(Vec3(1, 2, 3)), {.points = 30000});
     double on_face[3] = {0, 0, 0};
     for (const Vec3& n : cloud.normals)
         for (unsigned k = 0; k < 3; ++k) on_face[k] += std::abs(n[k]) > 0.5;

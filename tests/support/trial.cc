@@ -44,9 +44,8 @@ Trial make_trial(std::uint64_t seed, const TrialOptions& options) {
     Trial trial{seed, FeatureSize::ill_posed, 0, {}};
     const double area = boundary_area(solid, seed);
     if (area < h * h) return trial; // nothing, or nearly nothing, is left of it
-    SampleOptions sampling;
-    sampling.seed = seed;
-    sampling.points = static_cast<std::size_t>(options.points_per_voxel * area / (h * h));
+    const SampleOptions sampling{
+        .points = static_cast<std::size_t>(options.points_per_voxel * area / (h * h)), .seed = seed};
     trial.cloud = sample(solid, sampling);
     classify(solid, h, trial);
     return trial;

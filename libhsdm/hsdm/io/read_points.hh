@@ -13,7 +13,7 @@ namespace hsdm {
 /// How a file is to be read, where it does not say so itself.
 struct ReadOptions {
     /// One of point_formats(); empty: by the content where that is a sure sign, else by the file's extension.
-    std::string format;
+    std::string format{};
     /// Tables only: what each column is, e.g. "x,y,z,nx,ny,nz,r,g,b,_" (`_` is skipped); empty: told by a
     /// header line, else from the values. Throws OptionError if it cannot be.
     std::string columns{};

@@ -158,10 +158,8 @@ SmoothReport smooth_known_noise(Octree& octree, double noise, Neighbors& neighbo
     SmoothReport report;
     report.noise = smooth_points(octree, noise);
     neighbors = find_neighbors(octree);
-    OutlierOptions removal;
-    removal.most_stretch = options.most_stretch;
-    removal.rounds = smoothing::removal_rounds;
-    report.between = drop_outliers_by_distance(octree, neighbors, removal);
+    report.between = drop_outliers_by_distance(
+        octree, neighbors, {.most_stretch = options.most_stretch, .rounds = smoothing::removal_rounds});
     return report;
 }
 

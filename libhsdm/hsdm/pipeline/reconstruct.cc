@@ -29,9 +29,7 @@ void find_features(PolyMesh& mesh, const ReconstructOptions& options, const Feat
     feature_options.write_normals = false; // smooth_normals writes them
     const FeatureCounts counts = classify_features(mesh, feature_options, hints);
     if (options.vertex_normals) {
-        NormalSmoothingOptions smoothing;
-        smoothing.rounds = options.normal_smoothing;
-        smooth_normals(mesh, smoothing);
+        smooth_normals(mesh, {.rounds = options.normal_smoothing});
     }
     report.features.sharp_edges = counts.sharp_edges;
     report.features.smooth_vertices = counts.smooth_vertices;
