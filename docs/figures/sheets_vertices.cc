@@ -46,8 +46,7 @@ Style class_style(VertexClass of) {
 Vec3 mean_crossing(const Steps& steps, Index v) {
     Vec3 sum(0, 0, 0);
     const auto corners = steps.duals.corners_of(v);
-    for (FacetCorner corner : corners)
-        sum += crossing_position(steps.grid, steps.crossings.of(corner), steps.h());
+    for (FacetCorner corner : corners) sum += steps.crossing_of(corner);
     return sum / static_cast<double>(corners.size());
 }
 

@@ -18,9 +18,10 @@ Steps::Steps(const PointCloud& cloud, int depth)
     : octree(build_octree(cloud)),
       level(extract_level(octree, depth)),
       sets(build_normal_sets(octree, level)),
-      related({}, level.voxel_size),
-      grid(build_grid_points(level)),
-      local(group_local_sheets(grid, sets, related, level.voxel_size)) {
+      related({}, level.voxel_size) {
+    voxel_size = level.voxel_size;
+    grid = build_grid_points(level);
+    local = group_local_sheets(grid, sets, related, h());
     extend_grid_points(grid, local, level);
     candidates = find_crossings(grid, local, sets, related, h());
     labelled = label_grid_signs(grid, local, sets, candidates, h());
@@ -31,7 +32,7 @@ Steps::Steps(const PointCloud& cloud, int depth)
     for (int round = 0; round < 3 && drop_tips(sets, related, links, crossings) > 0; ++round)
         links = pair_crossings(grid, crossings, sets, related);
     duals = build_dual_vertices(grid, crossings, links);
-    placed = place_vertices(level, grid, sets, related, crossings, duals);
+    placed = place_vertices(*this, sets, related);
     DualContour result = dual_contour(octree, level, sets);
     mesh = std::move(result.mesh);
     classes = std::move(result.classes);

@@ -14,24 +14,20 @@ PointCloud scan(const support::Solid& solid, std::size_t points);
 
 /// All steps from a cloud to the mesh. Lengths and positions as the steps have them: relative to the octree's
 /// origin, not divided by the voxel.
-struct Steps {
+struct Steps : DualMesh { // its crossings without those beyond the data and those of tips
     Octree octree;
     OctreeLevel level;
     NormalSets sets;
     RelationTest related;
-    GridPoints grid;
     LocalSheets local;
     CrossingCandidates candidates;
-    Crossings labelled;  ///< as label_grid_signs returns them
-    Crossings crossings; ///< without those beyond the data and those of tips
-    Links links;
-    DualVertices duals;
+    Crossings labelled; ///< as label_grid_signs returns them
     PlacedVertices placed;
     PolygonMesh mesh;                 ///< after all other steps too
     std::vector<VertexClass> classes; ///< per vertex of that
 
     Steps(const PointCloud& cloud, int depth);
-    double h() const { return level.voxel_size; }
+    double h() const { return voxel_size; }
 };
 
 /// The finest mesh, as the adaptive grid takes it.

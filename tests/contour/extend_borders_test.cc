@@ -17,7 +17,7 @@ Stages sheet(double width) {
 
 std::vector<Vec3> extended(const Stages& stages) {
     PlacedVertices vertices = stages.vertices;
-    extend_borders(stages.level, stages.grid, stages.sets, stages.crossings, stages.duals, vertices);
+    extend_borders(stages, stages.sets, vertices);
     return vertices.positions;
 }
 

@@ -20,8 +20,7 @@ Stages part() {
 
 PlacedVertices relaxed(const Stages& stages, const RelaxOptions& options = {}) {
     PlacedVertices vertices = stages.vertices;
-    relax_vertices(stages.octree, stages.level, stages.grid, stages.crossings, stages.duals, options,
-                   vertices);
+    relax_vertices(stages.octree, stages.level, stages, options, vertices);
     return vertices;
 }
 
@@ -87,7 +86,7 @@ TEST_CASE("corners and borders stay, vertices of creases move along these", "[co
     CHECK(aside < 1e-12);
     Stages sheet(support::flat_sheet(60, 0.8, 0.3), 3, 1);
     sheet.trim();
-    extend_borders(sheet.level, sheet.grid, sheet.sets, sheet.crossings, sheet.duals, sheet.vertices);
+    extend_borders(sheet, sheet.sets, sheet.vertices);
     const PlacedVertices on_sheet = relaxed(sheet, {.fit = false}); // which might put them back
     CHECK(moved(sheet, on_sheet, [&](Index v) { return sheet.duals.open[v] == 0; }) > 0);
     CHECK(moved(sheet, on_sheet, [&](Index v) { return sheet.duals.open[v] != 0; }) == 0);

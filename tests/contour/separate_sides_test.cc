@@ -27,7 +27,7 @@ TEST_CASE("sides that end on one point move apart, each along its own normal", "
     std::vector<Vec3> positions = stages.vertices.positions;
     for (Index v : after_cut) positions[v] = positions[v - 1];
     const std::vector<Vec3> before = positions;
-    separate_sides(stages.crossings, stages.duals, stages.h(), positions);
+    separate_sides(stages, positions);
     std::vector<std::uint8_t> beside_cut(positions.size(), 0);
     for (Index v : after_cut) beside_cut[v - 1] = beside_cut[v] = 1;
     for (Index v = 0; v < positions.size(); ++v) {
@@ -46,13 +46,13 @@ TEST_CASE("sides that lie apart stay where they are", "[contour]") {
     for (Index v : stages.duals.after_cut)
         positions[v] = positions[v - 1] + outward(stages, v) * (0.2 * stages.h());
     const std::vector<Vec3> before = positions;
-    separate_sides(stages.crossings, stages.duals, stages.h(), positions);
+    separate_sides(stages, positions);
     CHECK(positions == before);
 }
 
 TEST_CASE("where nothing is cut nothing moves", "[contour]") {
     const Stages stages(support::sphere(1), 5000, 3);
     std::vector<Vec3> positions(stages.duals.size(), Vec3(0, 0, 0));
-    separate_sides(stages.crossings, stages.duals, stages.h(), positions);
+    separate_sides(stages, positions);
     for (const Vec3& p : positions) CHECK(p == Vec3(0, 0, 0));
 }

@@ -13,14 +13,11 @@ using namespace hsdm;
 namespace {
 
 /// A box and all that comes before shared_corners.
-struct Found {
+struct Found : DualMesh {
     Vec3 size;
     support::Pose pose;
     Octree octree;
     OctreeLevel level;
-    GridPoints grid;
-    Crossings crossings;
-    DualVertices duals;
     std::vector<EdgeCollapse> edges;
 
     Found(const Vec3& box_size, std::uint64_t seed) : size(box_size) {
@@ -28,7 +25,7 @@ struct Found {
         pose = support::random_pose(random);
         octree = build_octree(support::sample(support::box(size).placed(pose), {.points = 5000}));
         level = extract_level(octree, 4);
-        const double h = level.voxel_size;
+        const double h = voxel_size = level.voxel_size;
         const NormalSets sets = build_normal_sets(octree, level);
         const RelationTest related({}, h);
         grid = build_grid_points(level);
@@ -36,8 +33,7 @@ struct Found {
         extend_grid_points(grid, local, level);
         crossings = label_grid_signs(grid, local, sets, find_crossings(grid, local, sets, related, h), h);
         duals = build_dual_vertices(grid, crossings, pair_crossings(grid, crossings, sets, related));
-        edges = shared_corners(grid, crossings, duals, h,
-                               place_vertices(level, grid, sets, related, crossings, duals));
+        edges = shared_corners(*this, place_vertices(*this, sets, related));
     }
 
     Vec3 to_local(const Vec3& p) const { return pose.to_local(p + octree.origin); }

@@ -9,8 +9,9 @@ Stages::Stages(const PointCloud& cloud, int depth, double cube_extent)
     : octree(build_octree(cloud, {.cube_extent = cube_extent})),
       level(extract_level(octree, depth)),
       sets(build_normal_sets(octree, level)),
-      related({}, level.voxel_size),
-      grid(build_grid_points(level)) {
+      related({}, level.voxel_size) {
+    voxel_size = level.voxel_size;
+    grid = build_grid_points(level);
     LocalSheets local = group_local_sheets(grid, sets, related, h());
     extend_grid_points(grid, local, level);
     crossings = label_grid_signs(grid, local, sets, find_crossings(grid, local, sets, related, h()), h());
@@ -27,7 +28,7 @@ void Stages::pair() {
 
 void Stages::place() {
     duals = build_dual_vertices(grid, crossings, links);
-    vertices = place_vertices(level, grid, sets, related, crossings, duals);
+    vertices = place_vertices(*this, sets, related);
 }
 
 void Stages::trim() {

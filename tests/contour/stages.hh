@@ -7,15 +7,11 @@
 namespace hsdm::support {
 
 /// The intermediate results of dual_contour for a cloud, with nothing trimmed.
-struct Stages {
+struct Stages : DualMesh {
     Octree octree;
     OctreeLevel level;
     NormalSets sets;
     RelationTest related;
-    GridPoints grid;
-    Crossings crossings;
-    Links links;
-    DualVertices duals;
     PlacedVertices vertices;
 
     Stages(const PointCloud& cloud, int depth, double cube_extent = 0);
@@ -28,7 +24,7 @@ struct Stages {
     /// Ends the surface where the data end, and places its vertices anew.
     void trim();
 
-    double h() const { return level.voxel_size; }
+    double h() const { return voxel_size; }
     /// Box of the voxel that a corner of a facet lies in, relative to the octree's origin.
     Box voxel_of(FacetCorner corner) const;
 };

@@ -20,39 +20,38 @@ constexpr std::size_t values_per_chunk = 1 << 14;
 /// would make one edge with four facets; a midpoint on all but the first keeps the edges apart.
 class Midpoints {
 public:
-    Midpoints(const GridPoints& grid, const NormalSets& sets, const Crossings& crossings, const Links& links,
-              const DualVertices& duals, double h, PlacedVertices& vertices)
-        : of_side_(crossings.crossings.size() * (links.crowded.empty() ? 0 : 4), no_index), count_(0) {
-        const auto position = [&](FacetSide side) { return crossing_position(grid, crossings.of(side), h); };
+    Midpoints(const DualMesh& dual, const NormalSets& sets, PlacedVertices& vertices)
+        : of_side_(dual.crossings.crossings.size() * (dual.links.crowded.empty() ? 0 : 4), no_index),
+          count_(0) {
         const auto halve = [&](FacetSide side, const Vec3& middle) {
             of_side_[side.number()] = static_cast<Index>(vertices.positions.size());
             vertices.positions.push_back(middle);
             vertices.classes.push_back(VertexClass::smooth);
-            vertices.voxel.push_back(sets.sets[crossings.of(side).set].voxel);
+            vertices.voxel.push_back(sets.sets[dual.crossings.of(side).set].voxel);
             ++count_;
         };
         std::vector<std::array<Index, 2>> seen;
         // Does an earlier edge join the same two vertices as this side? If not, the side joins the edges
         // seen.
         const auto repeated = [&](FacetSide side) {
-            const std::array<Index, 2> ends = duals.ends(side);
+            const std::array<Index, 2> ends = dual.duals.ends(side);
             if (std::ranges::find(seen, ends) != seen.end()) return true;
             seen.push_back(ends);
             return false;
         };
-        for (FacetSide side : links.crowded) {
+        for (FacetSide side : dual.links.crowded) {
             if (side == no_side) {
                 seen.clear();
                 continue;
             }
-            const auto& [twin, rim] = links.of(side);
-            const bool strip = rim && duals.ends(side) != duals.ends(twin);
+            const auto& [twin, rim] = dual.links.of(side);
+            const bool strip = rim && dual.duals.ends(side) != dual.duals.ends(twin);
             const bool halved = repeated(side);
             if (twin == no_side || strip) {
-                if (halved) halve(side, position(side));
-                if (strip && repeated(twin)) halve(twin, position(twin));
+                if (halved) halve(side, dual.crossing_of(side));
+                if (strip && repeated(twin)) halve(twin, dual.crossing_of(twin));
             } else if (halved) {
-                halve(side, 0.5 * (position(side) + position(twin)));
+                halve(side, 0.5 * (dual.crossing_of(side) + dual.crossing_of(twin)));
                 of_side_[twin.number()] = mid(side);
             }
         }
@@ -69,14 +68,9 @@ private:
 /// Appends facets to a mesh from crossings, links and dual vertices.
 class FacetBuilder {
 public:
-    FacetBuilder(const Crossings& crossings, const Links& links, const DualVertices& duals,
-                 const Midpoints& midpoints, const PlacedVertices& vertices, PolygonMesh& mesh)
-        : crossings_(crossings),
-          links_(links),
-          duals_(duals),
-          midpoints_(midpoints),
-          vertices_(vertices),
-          mesh_(mesh) {}
+    FacetBuilder(const DualMesh& dual, const Midpoints& midpoints, const PlacedVertices& vertices,
+                 PolygonMesh& mesh)
+        : dual_(dual), midpoints_(midpoints), vertices_(vertices), mesh_(mesh) {}
 
     /// The facets round one grid edge: crossings first to end.
     void add_facets(Index first, Index end) {
@@ -96,13 +90,13 @@ public:
     /// The strip of facets along a thin part's rim, between the vertices of its two sides; once per rim link.
     void add_strips(Index x) {
         for (const FacetSide side : corners_of_facet(x)) {
-            const auto& [twin, rim] = links_.of(side);
+            const auto& [twin, rim] = dual_.links.of(side);
             if (!rim || side > twin) continue;
-            auto [from, to] = duals_.ends(side);
-            auto [twin_from, twin_to] = duals_.ends(twin);
+            auto [from, to] = dual_.duals.ends(side);
+            auto [twin_from, twin_to] = dual_.duals.ends(twin);
             if (from == twin_from && to == twin_to) continue; // not cut: an ordinary edge
             // The half-edge of x's facet runs along the side if x leaves; the strip runs the other way.
-            if (crossings_.crossings[x].leaving == side.ascends()) {
+            if (dual_.crossings.crossings[x].leaving == side.ascends()) {
                 std::swap(from, to);
                 std::swap(twin_from, twin_to);
             }
@@ -135,12 +129,12 @@ private:
     void gather(Index x) {
         polygon_.clear();
         for (const FacetCorner corner : corners_of_facet(x)) {
-            const Index before = duals_.to(corner.previous()), after = duals_.from(corner);
+            const Index before = dual_.duals.to(corner.previous()), after = dual_.duals.from(corner);
             add(before);
             if (after != before) add(after);
             add(midpoints_.mid(corner));
         }
-        if (!crossings_.crossings[x].leaving) std::reverse(polygon_.begin(), polygon_.end());
+        if (!dual_.crossings.crossings[x].leaving) std::reverse(polygon_.begin(), polygon_.end());
     }
 
     /// Where a crease runs along a quad's diagonal, the quad is cut there: the paper's refinement triangles.
@@ -193,9 +187,7 @@ private:
         mesh_.add_facet(t1);
     }
 
-    const Crossings& crossings_;
-    const Links& links_;
-    const DualVertices& duals_;
+    const DualMesh& dual_;
     const Midpoints& midpoints_;
     const PlacedVertices& vertices_;
     PolygonMesh& mesh_;
@@ -222,20 +214,20 @@ PolygonMesh joined_facets(const std::vector<PolygonMesh>& parts) {
 }
 
 /// The facets round all crossed grid edges, then the strips at rims and the caps of dual vertices.
-PolygonMesh facets_of(const Crossings& crossings, const Links& links, const DualVertices& duals,
-                      const Midpoints& midpoints, const PlacedVertices& vertices) {
+PolygonMesh facets_of(const DualMesh& dual, const Midpoints& midpoints, const PlacedVertices& vertices) {
+    const Crossings& crossings = dual.crossings;
     const std::size_t edges = crossings.first.size() - 1;
     const std::size_t chunks = chunk_count(edges, edges_per_chunk);
     std::vector<PolygonMesh> parts(2 * chunks); // facets, then strips
     for_chunks(edges, edges_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        FacetBuilder builder(crossings, links, duals, midpoints, vertices, parts[chunk]);
+        FacetBuilder builder(dual, midpoints, vertices, parts[chunk]);
         for (std::size_t e = begin; e < end; ++e)
             builder.add_facets(crossings.first[e], crossings.first[e + 1]);
-        FacetBuilder strip_builder(crossings, links, duals, midpoints, vertices, parts[chunks + chunk]);
+        FacetBuilder strip_builder(dual, midpoints, vertices, parts[chunks + chunk]);
         for (Index x = crossings.first[begin]; x < crossings.first[end]; ++x) strip_builder.add_strips(x);
     });
     PolygonMesh mesh = joined_facets(parts);
-    for (const std::vector<Index>& cap : duals.caps) mesh.add_facet(cap);
+    for (const std::vector<Index>& cap : dual.duals.caps) mesh.add_facet(cap);
     return mesh;
 }
 
@@ -272,34 +264,38 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
                                        const DualContourOptions& options, DualContour& result) {
     const double h = level.voxel_size;
     const RelationTest related(options.relation, h);
-    GridPoints grid = build_grid_points(level);
-    Crossings crossings = [&] {
-        LocalSheets local = group_local_sheets(grid, sets, related, h);
-        extend_grid_points(grid, local, level);
-        return label_grid_signs(grid, local, sets,
-                                find_crossings(grid, local, sets, related, h, options.crossing), h);
+    DualMesh dual;
+    dual.voxel_size = h;
+    dual.grid = build_grid_points(level);
+    dual.crossings = [&] {
+        LocalSheets local = group_local_sheets(dual.grid, sets, related, h);
+        extend_grid_points(dual.grid, local, level);
+        return label_grid_signs(dual.grid, local, sets,
+                                find_crossings(dual.grid, local, sets, related, h, options.crossing), h);
     }();
-    Links links = pair_crossings(grid, crossings, sets, related);
-    for (int round = 0; round < pairing::trim_rounds && trim_unsupported(crossings, links) > 0; ++round)
-        links = pair_crossings(grid, crossings, sets, related);
-    for (int round = 0; round < pairing::trim_rounds && drop_tips(sets, related, links, crossings) > 0;
+    const auto pair = [&] { dual.links = pair_crossings(dual.grid, dual.crossings, sets, related); };
+    pair();
+    for (int round = 0; round < pairing::trim_rounds && trim_unsupported(dual.crossings, dual.links) > 0;
          ++round)
-        links = pair_crossings(grid, crossings, sets, related);
-    const DualVertices duals = build_dual_vertices(grid, crossings, links);
-    PlacedVertices vertices = place_vertices(level, grid, sets, related, crossings, duals);
-    grid.index = {}; // place_vertices was the last to look for grid points
-    extend_borders(level, grid, sets, crossings, duals, vertices);
-    relax_vertices(octree, level, grid, crossings, duals, options.relax, vertices);
-    separate_sides(crossings, duals, h, vertices.positions);
-    std::vector<EdgeCollapse> to_corners = shared_corners(grid, crossings, duals, h, vertices);
+        pair();
+    for (int round = 0;
+         round < pairing::trim_rounds && drop_tips(sets, related, dual.links, dual.crossings) > 0; ++round)
+        pair();
+    dual.duals = build_dual_vertices(dual.grid, dual.crossings, dual.links);
+    PlacedVertices vertices = place_vertices(dual, sets, related);
+    dual.grid.index = {}; // place_vertices was the last to look for grid points
+    extend_borders(dual, sets, vertices);
+    relax_vertices(octree, level, dual, options.relax, vertices);
+    separate_sides(dual, vertices.positions);
+    std::vector<EdgeCollapse> to_corners = shared_corners(dual, vertices);
 
-    const Midpoints midpoints(grid, sets, crossings, links, duals, h, vertices);
-    result.mesh = facets_of(crossings, links, duals, midpoints, vertices);
+    const Midpoints midpoints(dual, sets, vertices);
+    result.mesh = facets_of(dual, midpoints, vertices);
     result.mesh.positions = std::move(vertices.positions);
     if (move_to_creases(result.mesh, h, vertices) > 0) { // quads may fold elsewhere
         vertices.positions = std::move(result.mesh.positions);
         result.mesh = PolygonMesh(); // frees it before the second one is built
-        result.mesh = facets_of(crossings, links, duals, midpoints, vertices);
+        result.mesh = facets_of(dual, midpoints, vertices);
         result.mesh.positions = std::move(vertices.positions);
     }
     result.mesh.origin.resize(result.mesh.vertex_count());
@@ -307,10 +303,10 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     result.classes = std::move(vertices.classes);
     result.voxel = std::move(vertices.voxel);
     result.midpoints = midpoints.count();
-    result.beyond_crease = crossings.dropped_beyond_crease;
-    result.settled = crossings.settled;
-    result.trimmed = crossings.trimmed;
-    result.tips = crossings.tips;
+    result.beyond_crease = dual.crossings.dropped_beyond_crease;
+    result.settled = dual.crossings.settled;
+    result.trimmed = dual.crossings.trimmed;
+    result.tips = dual.crossings.tips;
     result.clamped = vertices.clamped;
     return to_corners;
 }

@@ -149,23 +149,16 @@ Vec3 least_in_box(const Solution& solution, const Problem& problem) {
 
 class Placer {
 public:
-    Placer(const OctreeLevel& level, const GridPoints& grid, const NormalSets& sets,
-           const RelationTest& related, const Crossings& crossings, const DualVertices& duals,
+    Placer(const DualMesh& mesh, const NormalSets& sets, const RelationTest& related,
            const std::vector<std::uint8_t>& crosses)
-        : level_(level),
-          grid_(grid),
-          sets_(sets),
-          related_(related),
-          crossings_(crossings),
-          duals_(duals),
-          crosses_(crosses) {}
+        : mesh_(mesh), sets_(sets), related_(related), crosses_(crosses) {}
 
     std::vector<PlacedVertices::Beyond> beyond;
     std::vector<PlacedVertices::OnCrease> on_creases;
 
     void place(Index dual, PlacedVertices& result) {
         gather(dual);
-        const Index nearest = sets_.sets[crossings_.of(duals_.corners_of(dual)[0]).set].voxel;
+        const Index nearest = sets_.sets[mesh_.crossings.of(mesh_.duals.corners_of(dual)[0]).set].voxel;
         result.voxel[dual] = voxel_ != no_index ? voxel_ : nearest;
         int sheets = SheetNormals(problem_.planes).count;
         Solution solution = least_squares(problem_, sheets);
@@ -195,16 +188,15 @@ public:
 private:
     void gather(Index dual) {
         problem_.planes.clear();
-        problem_.size = level_.voxel_size;
-        const auto corners = duals_.corners_of(dual);
-        const CornerVoxel at(grid_, crossings_, corners[0]);
+        problem_.size = mesh_.voxel_size;
+        const auto corners = mesh_.duals.corners_of(dual);
+        const CornerVoxel at(mesh_.grid, mesh_.crossings, corners[0]);
         voxel_ = at.voxel;
-        for (unsigned k = 0; k < 3; ++k) problem_.lo[k] = at.coord[k] * level_.voxel_size;
+        for (unsigned k = 0; k < 3; ++k) problem_.lo[k] = at.coord[k] * mesh_.voxel_size;
         problem_.mean = Vec3(0, 0, 0);
         for (FacetCorner corner : corners) {
-            const Crossing& crossing = crossings_.of(corner);
-            const Vec3 p = crossing_position(grid_, crossing, level_.voxel_size);
-            problem_.planes.push_back({crossing.normal, p, 1});
+            const Vec3 p = mesh_.crossing_of(corner);
+            problem_.planes.push_back({mesh_.crossings.of(corner).normal, p, 1});
             problem_.mean += p;
         }
         problem_.mean /= static_cast<double>(corners.size());
@@ -215,7 +207,7 @@ private:
     /// edge of the voxel (a narrow rim).
     void add_own_sets(std::span<const FacetCorner> corners) {
         near_.clear();
-        for (FacetCorner corner : corners) near_.push_back(crossings_.of(corner).set);
+        for (FacetCorner corner : corners) near_.push_back(mesh_.crossings.of(corner).set);
         sort_unique(near_);
         const std::size_t crossing_sets = near_.size();
         for (Index s = sets_.first[voxel_]; s < sets_.first[voxel_ + 1]; ++s) {
@@ -241,12 +233,12 @@ private:
     /// set from the voxels around that makes a crease with both of the dual vertex's sheets and cuts their
     /// crease in this voxel; of several, the one whose centroid is nearest to that point.
     bool add_corner_plane(Index dual) {
-        const auto corners = duals_.corners_of(dual);
+        const auto corners = mesh_.duals.corners_of(dual);
         Index best = no_index;
         double nearest = std::numeric_limits<double>::infinity();
         const std::size_t planes = problem_.planes.size();
         for (FacetCorner corner : corners)
-            for (Index voxel : grid_.voxels[crossings_.of(corner).edge / 3]) {
+            for (Index voxel : mesh_.grid.voxels[mesh_.crossings.of(corner).edge / 3]) {
                 if (voxel == no_index || voxel == voxel_) continue;
                 for (Index s = sets_.first[voxel]; s < sets_.first[voxel + 1]; ++s) {
                     if (s == best || !creases_with_all(s, corners)) continue;
@@ -265,7 +257,7 @@ private:
 
     bool creases_with_all(Index s, std::span<const FacetCorner> corners) const {
         return std::all_of(corners.begin(), corners.end(), [&](FacetCorner corner) {
-            const Relation r = related_(sets_.sets[s], sets_.sets[crossings_.of(corner).set]);
+            const Relation r = related_(sets_.sets[s], sets_.sets[mesh_.crossings.of(corner).set]);
             return r == Relation::convex || r == Relation::concave;
         });
     }
@@ -335,11 +327,11 @@ private:
         for (unsigned corner = 0; corner < 8; ++corner) {
             VoxelCoord c = voxel;
             for (unsigned k = 0; k < 3; ++k) c[k] += static_cast<int>(corner >> k & 1u);
-            const Index lower = grid_.index.find(GridPoints::code(c));
+            const Index lower = mesh_.grid.index.find(GridPoints::code(c));
             if (lower == no_index) continue;
             for (unsigned axis = 0; axis < 3; ++axis) {
                 if (corner >> axis & 1u) continue;
-                for (const Crossing& x : crossings_.on_edge(3 * lower + axis))
+                for (const Crossing& x : mesh_.crossings.on_edge(3 * lower + axis))
                     if (has_sheet(x.normal)) return true;
             }
         }
@@ -366,12 +358,9 @@ private:
         return true;
     }
 
-    const OctreeLevel& level_;
-    const GridPoints& grid_;
+    const DualMesh& mesh_;
     const NormalSets& sets_;
     const RelationTest& related_;
-    const Crossings& crossings_;
-    const DualVertices& duals_;
     const std::vector<std::uint8_t>& crosses_;
     Problem problem_;
     std::vector<Index> near_;
@@ -379,14 +368,13 @@ private:
 };
 
 /// Per set, does its sheet cross an edge of the set's own voxel?
-std::vector<std::uint8_t> sets_that_cross(const GridPoints& grid, const NormalSets& sets,
-                                          const RelationTest& related, const Crossings& crossings,
-                                          const DualVertices& duals) {
+std::vector<std::uint8_t> sets_that_cross(const DualMesh& mesh, const NormalSets& sets,
+                                          const RelationTest& related) {
     const auto find = [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
         for (auto v = static_cast<Index>(begin); v < end; ++v)
-            for (FacetCorner corner : duals.corners_of(v)) {
-                const Crossing& x = crossings.of(corner);
-                const Index voxel = CornerVoxel(grid, crossings, corner).voxel;
+            for (FacetCorner corner : mesh.duals.corners_of(v)) {
+                const Crossing& x = mesh.crossings.of(corner);
+                const Index voxel = CornerVoxel(mesh.grid, mesh.crossings, corner).voxel;
                 if (voxel == no_index) continue;
                 for (Index s = sets.first[voxel]; s < sets.first[voxel + 1]; ++s)
                     if (s == x.set || related(sets.sets[s], sets.sets[x.set]) == Relation::smooth)
@@ -394,42 +382,42 @@ std::vector<std::uint8_t> sets_that_cross(const GridPoints& grid, const NormalSe
             }
     };
     std::vector<std::uint8_t> crosses(sets.sets.size(), 0);
-    for (Index s : collected<Index>(duals.size(), duals_per_chunk, find)) crosses[s] = 1;
+    for (Index s : collected<Index>(mesh.duals.size(), duals_per_chunk, find)) crosses[s] = 1;
     return crosses;
 }
 
 } // namespace
 
-void separate_sides(const Crossings& crossings, const DualVertices& duals, double voxel_size,
-                    std::vector<Vec3>& positions) {
-    const auto outward = [&](std::size_t v) {
+void separate_sides(const DualMesh& mesh, std::vector<Vec3>& positions) {
+    const double gap = placement::side_gap * mesh.voxel_size;
+    const auto outward = [&](Index v) {
         Vec3 sum(0, 0, 0);
-        for (FacetCorner corner : duals.corners_of(static_cast<Index>(v))) sum += crossings.of(corner).normal;
+        for (FacetCorner corner : mesh.duals.corners_of(v)) sum += mesh.crossings.of(corner).normal;
         const double length = sum.norm();
         return length > 0 ? sum / length : Vec3(0, 0, 1);
     };
-    for (std::size_t v : duals.after_cut) {
+    for (Index v : mesh.duals.after_cut) {
         const Vec3 d = positions[v] - positions[v - 1], one = outward(v - 1), other = outward(v);
-        if (std::max(std::abs(d | one), std::abs(d | other)) > 2 * placement::side_gap * voxel_size) continue;
-        positions[v - 1] += one * (placement::side_gap * voxel_size);
-        positions[v] += other * (placement::side_gap * voxel_size);
+        if (std::max(std::abs(d | one), std::abs(d | other)) > 2 * placement::side_gap * mesh.voxel_size)
+            continue;
+        positions[v - 1] += one * gap;
+        positions[v] += other * gap;
     }
 }
 
-PlacedVertices place_vertices(const OctreeLevel& level, const GridPoints& grid, const NormalSets& sets,
-                              const RelationTest& related, const Crossings& crossings,
-                              const DualVertices& duals) {
+PlacedVertices place_vertices(const DualMesh& mesh, const NormalSets& sets, const RelationTest& related) {
     PlacedVertices result;
-    result.positions.resize(duals.size());
-    result.classes.resize(duals.size());
-    result.directions.resize(duals.size());
-    result.voxel.resize(duals.size());
-    result.is_clamped.resize(duals.size());
-    const auto crosses = sets_that_cross(grid, sets, related, crossings, duals);
-    std::vector<std::vector<PlacedVertices::Beyond>> beyond(chunk_count(duals.size(), duals_per_chunk));
+    const std::size_t count = mesh.duals.size();
+    result.positions.resize(count);
+    result.classes.resize(count);
+    result.directions.resize(count);
+    result.voxel.resize(count);
+    result.is_clamped.resize(count);
+    const auto crosses = sets_that_cross(mesh, sets, related);
+    std::vector<std::vector<PlacedVertices::Beyond>> beyond(chunk_count(count, duals_per_chunk));
     std::vector<std::vector<PlacedVertices::OnCrease>> on_creases(beyond.size());
-    for_chunks(duals.size(), duals_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        Placer placer(level, grid, sets, related, crossings, duals, crosses);
+    for_chunks(count, duals_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        Placer placer(mesh, sets, related, crosses);
         for (std::size_t v = begin; v < end; ++v) placer.place(static_cast<Index>(v), result);
         beyond[chunk] = std::move(placer.beyond);
         on_creases[chunk] = std::move(placer.on_creases);

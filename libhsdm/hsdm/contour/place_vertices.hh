@@ -1,7 +1,7 @@
 #pragma once
 // Section 3.4.2, where a vertex lies: on its sheet, or where the sheets of a crease or a corner meet.
 
-#include "hsdm/contour/dual_vertices.hh"
+#include "hsdm/contour/dual_mesh.hh"
 #include "hsdm/mesh/vertex_class.hh"
 
 namespace hsdm {
@@ -40,14 +40,11 @@ struct PlacedVertices {
 /// many directions as sheets meet (one, two, three); in the others the vertex stays at the mean of the
 /// crossings. The minimiser may lie up to half a voxel outside the voxel where no other vertex of the same
 /// sheets can be; otherwise the vertex is kept inside. O(crossings), parallel.
-PlacedVertices place_vertices(const OctreeLevel& level, const GridPoints& grid, const NormalSets& sets,
-                              const RelationTest& related, const Crossings& crossings,
-                              const DualVertices& duals);
+PlacedVertices place_vertices(const DualMesh& mesh, const NormalSets& sets, const RelationTest& related);
 
 /// The two sides of a thin part that were cut apart in one voxel may come to lie at the same point; facets
 /// between them would have no area. Moves such pairs apart, each vertex along the normal of its own sheet.
 /// O(chains cut).
-void separate_sides(const Crossings& crossings, const DualVertices& duals, double voxel_size,
-                    std::vector<Vec3>& positions);
+void separate_sides(const DualMesh& mesh, std::vector<Vec3>& positions);
 
 } // namespace hsdm

@@ -16,9 +16,9 @@ namespace {
 constexpr std::size_t duals_per_chunk = 1024;
 
 /// The point on the way from `from` to `to` where it leaves the dual vertex's voxel, or `to`.
-Vec3 within_voxel(const GridPoints& grid, const Crossings& crossings, const DualVertices& duals, Index dual,
-                  double h, const Vec3& from, const Vec3& to) {
-    const VoxelCoord voxel = CornerVoxel(grid, crossings, duals.corners_of(dual)[0]).coord;
+Vec3 within_voxel(const DualMesh& mesh, Index dual, const Vec3& from, const Vec3& to) {
+    const VoxelCoord voxel = mesh.voxel_of(dual);
+    const double h = mesh.voxel_size;
     const Vec3 way = to - from;
     double share = 1;
     for (unsigned k = 0; k < 3; ++k) {
@@ -36,14 +36,8 @@ double sum_of(const std::vector<double>& all) {
 
 class Relaxation {
 public:
-    Relaxation(double voxel_size, const GridPoints& grid, const Crossings& crossings,
-               const DualVertices& duals, PlacedVertices& vertices)
-        : h_(voxel_size),
-          grid_(grid),
-          crossings_(crossings),
-          duals_(duals),
-          vertices_(vertices),
-          placed_(vertices.positions) {
+    Relaxation(const DualMesh& mesh, PlacedVertices& vertices)
+        : mesh_(mesh), duals_(mesh.duals), vertices_(vertices), placed_(vertices.positions) {
         list_neighbours();
     }
 
@@ -123,7 +117,9 @@ private:
         Vec3 normal(0, 0, 0), place(0, 0, 0);
         double sum = 0;
         const auto add = [&](Index v, double share) {
-            const double weight = share / ((p - placed_[v]).sqrnorm() / (h_ * h_) + relaxation::nearness);
+            const double weight =
+                share
+                / ((p - placed_[v]).sqrnorm() / (mesh_.voxel_size * mesh_.voxel_size) + relaxation::nearness);
             normal += vertices_.directions[v] * weight;
             place += placed_[v] * weight;
             sum += weight;
@@ -166,12 +162,10 @@ private:
     }
 
     Vec3 kept_in(Index dual, const Vec3& p) const {
-        return within_voxel(grid_, crossings_, duals_, dual, h_, vertices_.positions[dual], p);
+        return within_voxel(mesh_, dual, vertices_.positions[dual], p);
     }
 
-    double h_;
-    const GridPoints& grid_;
-    const Crossings& crossings_;
+    const DualMesh& mesh_;
     const DualVertices& duals_;
     PlacedVertices& vertices_;
     const std::vector<Vec3> placed_;
@@ -191,10 +185,9 @@ const NormalSet* own_set(const NormalSets& sets, Index voxel, const Vec3& normal
 
 } // namespace
 
-void extend_borders(const OctreeLevel& level, const GridPoints& grid, const NormalSets& sets,
-                    const Crossings& crossings, const DualVertices& duals, PlacedVertices& vertices) {
+void extend_borders(const DualMesh& mesh, const NormalSets& sets, PlacedVertices& vertices) {
     const std::vector<Vec3> placed = vertices.positions;
-    const double h = level.voxel_size;
+    const DualVertices& duals = mesh.duals;
     for_each_index(duals.size(), duals_per_chunk, [&](Index v) {
         if (!duals.open[v] || vertices.classes[v] != VertexClass::smooth) return;
         const NormalSet* set = own_set(sets, vertices.voxel[v], vertices.directions[v]);
@@ -203,8 +196,8 @@ void extend_borders(const OctreeLevel& level, const GridPoints& grid, const Norm
         // the neighbour before to the one after.
         const auto corners = duals.corners_of(v);
         const auto beside = [&](FacetCorner corner, bool enters) {
-            return placed[crossings.of(corner).leaving == enters ? duals.from(corner.previous())
-                                                                 : duals.to(corner)];
+            return placed[mesh.crossings.of(corner).leaving == enters ? duals.from(corner.previous())
+                                                                      : duals.to(corner)];
         };
         const Vec3 first = beside(corners.front(), true), last = beside(corners.back(), false);
         Vec3 inner(0, 0, 0);
@@ -217,19 +210,18 @@ void extend_borders(const OctreeLevel& level, const GridPoints& grid, const Norm
                              + std::sqrt(3 * std::max(0.0, set->spread.along(outward)));
         if (!(reach > 0)) return;
         const Vec3 to = placed[v] + outward * reach;
-        vertices.positions[v] = within_voxel(grid, crossings, duals, v, h, placed[v], to);
+        vertices.positions[v] = within_voxel(mesh, v, placed[v], to);
     });
 }
 
-void relax_vertices(const Octree& octree, const OctreeLevel& level, const GridPoints& grid,
-                    const Crossings& crossings, const DualVertices& duals, const RelaxOptions& options,
-                    PlacedVertices& vertices) {
+void relax_vertices(const Octree& octree, const OctreeLevel& level, const DualMesh& mesh,
+                    const RelaxOptions& options, PlacedVertices& vertices) {
     check_option(options.rounds >= 0, "relaxation rounds", options.rounds, "be 0 or more");
     check_option(options.step > 0 && options.step <= 1, "relaxation step", options.step, "lie in (0, 1]");
     if (options.rounds == 0 && !options.fit) return;
-    Relaxation relaxation(level.voxel_size, grid, crossings, duals, vertices);
+    Relaxation relaxation(mesh, vertices);
     for (int round = 0; round < options.rounds; ++round) relaxation.round(options.step);
-    if (options.fit) relaxation.fit(PointFit(octree, level, duals, vertices));
+    if (options.fit) relaxation.fit(PointFit(octree, level, mesh.duals, vertices));
 }
 
 } // namespace hsdm

@@ -21,14 +21,12 @@ struct RelaxOptions {
 /// two steps a voxel's points are a tenth farther from the facets than as placed, its vertices go back; all
 /// do if the sum over all points grew. O(rounds * crossings), parallel; the same for any number of threads.
 /// Throws OptionError.
-void relax_vertices(const Octree& octree, const OctreeLevel& level, const GridPoints& grid,
-                    const Crossings& crossings, const DualVertices& duals, const RelaxOptions& options,
-                    PlacedVertices& vertices);
+void relax_vertices(const Octree& octree, const OctreeLevel& level, const DualMesh& mesh,
+                    const RelaxOptions& options, PlacedVertices& vertices);
 
 /// Moves smooth border vertices outwards, within their sheet and voxel, to where the points of the voxel's
 /// own set end: evenly spread points reach sqrt(3) standard deviations from their mean. O(dual vertices),
 /// parallel.
-void extend_borders(const OctreeLevel& level, const GridPoints& grid, const NormalSets& sets,
-                    const Crossings& crossings, const DualVertices& duals, PlacedVertices& vertices);
+void extend_borders(const DualMesh& mesh, const NormalSets& sets, PlacedVertices& vertices);
 
 } // namespace hsdm

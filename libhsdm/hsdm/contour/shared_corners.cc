@@ -12,9 +12,8 @@ namespace {
 
 class SharedCorners {
 public:
-    SharedCorners(const GridPoints& grid, const Crossings& crossings, const DualVertices& duals,
-                  double voxel_size, const PlacedVertices& vertices)
-        : grid_(grid), crossings_(crossings), duals_(duals), h_(voxel_size), vertices_(vertices) {}
+    SharedCorners(const DualMesh& mesh, const PlacedVertices& vertices)
+        : mesh_(mesh), duals_(mesh.duals), vertices_(vertices) {}
 
     void find(const PlacedVertices::Beyond& beyond, std::vector<EdgeCollapse>& edges) {
         if (duals_.open[beyond.dual]) return;
@@ -37,13 +36,13 @@ private:
 
     bool can_hold(Index dual, const PlacedVertices::Beyond& beyond) const {
         if (dual == beyond.dual || duals_.open[dual] || !may_reach(dual, beyond)) return false;
-        const double near = creases::same_place * h_;
+        const double near = creases::same_place * mesh_.voxel_size;
         if (is_corner(dual)) return (vertices_.positions[dual] - beyond.position).norm() < near;
         const auto corners = duals_.corners_of(dual);
         return std::all_of(corners.begin(), corners.end(), [&](FacetCorner corner) {
-            const Crossing& x = crossings_.of(corner);
-            return std::abs(x.normal | (beyond.position - crossing_position(grid_, x, h_))) < near
-                   && has_sheet(beyond, x.normal);
+            const Vec3& normal = mesh_.crossings.of(corner).normal;
+            return std::abs(normal | (beyond.position - mesh_.crossing_of(corner))) < near
+                   && has_sheet(beyond, normal);
         });
     }
 
@@ -51,7 +50,7 @@ private:
     /// into voxels of which no sheet crosses an edge?
     bool may_reach(Index dual, const PlacedVertices::Beyond& beyond) const {
         if (outside(dual, beyond.position) < creases::same_place) return true;
-        const VoxelCoord here = voxel_of(beyond.dual), there = voxel_of(dual);
+        const VoxelCoord here = mesh_.voxel_of(beyond.dual), there = mesh_.voxel_of(dual);
         unsigned axis = 0;
         while (axis < 2 && here[axis] == there[axis]) ++axis;
         if (there[axis] != here[axis] + beyond.step[axis]) return false;
@@ -67,23 +66,17 @@ private:
 
     /// How far a point lies beyond the faces of a dual vertex's voxel, in voxels; 0 inside.
     double outside(Index dual, const Vec3& point) const {
-        const VoxelCoord voxel = voxel_of(dual);
+        const VoxelCoord voxel = mesh_.voxel_of(dual);
         double most = 0;
         for (unsigned k = 0; k < 3; ++k) {
-            const double at = point[k] / h_ - voxel[k];
+            const double at = point[k] / mesh_.voxel_size - voxel[k];
             most = std::max({most, -at, at - 1});
         }
         return most;
     }
 
-    VoxelCoord voxel_of(Index dual) const {
-        return CornerVoxel(grid_, crossings_, duals_.corners_of(dual)[0]).coord;
-    }
-
-    const GridPoints& grid_;
-    const Crossings& crossings_;
+    const DualMesh& mesh_;
     const DualVertices& duals_;
-    double h_;
     const PlacedVertices& vertices_;
     // Candidates: (is no corner itself, how far the corner lies outside its voxel, dual vertex). The best
     // comes first.
@@ -108,13 +101,11 @@ std::vector<EdgeCollapse> with_one_corner_each(const std::vector<EdgeCollapse>& 
 
 } // namespace
 
-std::vector<EdgeCollapse> shared_corners(const GridPoints& grid, const Crossings& crossings,
-                                         const DualVertices& duals, double voxel_size,
-                                         const PlacedVertices& vertices) {
+std::vector<EdgeCollapse> shared_corners(const DualMesh& mesh, const PlacedVertices& vertices) {
     std::vector<EdgeCollapse> edges;
-    SharedCorners corners(grid, crossings, duals, voxel_size, vertices);
+    SharedCorners corners(mesh, vertices);
     for (const PlacedVertices::Beyond& beyond : vertices.beyond) corners.find(beyond, edges);
-    return with_one_corner_each(edges, creases::same_place * voxel_size);
+    return with_one_corner_each(edges, creases::same_place * mesh.voxel_size);
 }
 
 } // namespace hsdm

@@ -11,8 +11,6 @@ namespace hsdm {
 /// sheet that the first lacks (the far side of a thin part), a sheet that misses the corner, or a corner of
 /// its own elsewhere; nor at borders. Returns the edges by ascending dual vertex, for each the best vertex to
 /// move to the corner first. O(vertices.beyond).
-std::vector<EdgeCollapse> shared_corners(const GridPoints& grid, const Crossings& crossings,
-                                         const DualVertices& duals, double voxel_size,
-                                         const PlacedVertices& vertices);
+std::vector<EdgeCollapse> shared_corners(const DualMesh& mesh, const PlacedVertices& vertices);
 
 } // namespace hsdm
