@@ -74,7 +74,7 @@ install_missing() {
 
 configure() {
     mkdir -p build
-    cmake --preset release "$@" >build/configure.log 2>&1 || {
+    cmake --preset release -DHSDM_UNITY=ON "$@" >build/configure.log 2>&1 || {
         cat build/configure.log >&2
         exit 1
     }

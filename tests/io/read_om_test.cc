@@ -6,11 +6,13 @@
 #include "hsdm/io/write_om.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "io/temp_file.hh"
+#include "support/meshes.hh"
 
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <fstream>
 #include <initializer_list>
 #include <sstream>
 
@@ -27,7 +29,7 @@ std::string content_of(const std::string& path) {
 
 /// A cube with classes, normals and sharp edges.
 PolyMesh classified_cube() {
-    PolyMesh mesh = to_mesh(cube(4)).mesh;
+    PolyMesh mesh = to_mesh(support::divided_cube(4)).mesh;
     classify_features(mesh);
     smooth_normals(mesh);
     return mesh;
@@ -119,7 +121,7 @@ TEST_CASE(".om of the first versions, with lists of corners, is read", "[mesh_io
 
 TEST_CASE("a damaged .om is refused or read, never beyond its bytes and never without end", "[mesh_io]") {
     const TempFile whole("a.om", "");
-    write_om(whole.path(), to_mesh(cube(1)).mesh);
+    write_om(whole.path(), to_mesh(support::divided_cube(1)).mesh);
     const std::string content = content_of(whole.path());
     const auto read = [](const std::string& damaged) {
         try {

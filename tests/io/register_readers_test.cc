@@ -6,6 +6,7 @@
 #include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/mesh_types.hh"
 #include "io/temp_file.hh"
+#include "support/meshes.hh"
 
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <catch2/catch.hpp>
@@ -70,7 +71,7 @@ TEST_CASE("registering point readers leaves OpenMesh's own formats alone", "[io]
 
 TEST_CASE("OpenMesh reads every property of an .om file without a word", "[io]") {
     register_readers();
-    PolyMesh mesh = to_mesh(test::cube(2)).mesh;
+    PolyMesh mesh = to_mesh(support::divided_cube(2)).mesh;
     classify_features(mesh);
     const TempFile file("a.om", "");
     write_om(file.path(), mesh);

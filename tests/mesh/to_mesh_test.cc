@@ -204,7 +204,7 @@ TEST_CASE("deleted elements do not come back as polygons") {
 }
 
 TEST_CASE("normals and properties that do not fit the vertices are never read beyond their end") {
-    PolygonMesh polygons = cube();
+    PolygonMesh polygons = unit_cube();
     polygons.properties.push_back({"hsdm_normals_0_x", VertexProperty::Type::float32, {1}});
     polygons.properties.push_back({"short", VertexProperty::Type::float64, {1}});
     CHECK(to_mesh(polygons).rejected == 0);

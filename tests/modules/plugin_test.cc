@@ -6,6 +6,7 @@
 #include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/modules/plugin_loader.hh"
 #include "support/folder.hh"
+#include "support/meshes.hh"
 
 #include <catch2/catch.hpp>
 
@@ -195,7 +196,7 @@ TEST_CASE("a module that throws becomes an error of the program, its message cut
 TEST_CASE("a mesh that a module leaves unsound is an error that names the module and what is wrong") {
     const Plugin ill = load_plugin("ill", OwnModules(HSDM_ODD_MODULE_DIR));
     const auto left = [&](const char* how) {
-        PolyMesh mesh = to_mesh(test::cube(3)).mesh;
+        PolyMesh mesh = to_mesh(support::divided_cube(3)).mesh;
         try {
             ill.process(mesh, {{"how", how}});
         } catch (const Error& error) {
@@ -212,7 +213,7 @@ TEST_CASE("a mesh that a module leaves unsound is an error that names the module
     }
     CHECK_THAT(left("nan"), Contains("vertex 5 at no finite position"));
     CHECK_THAT(left("empty"), Contains("without faces"));
-    PolyMesh mesh = to_mesh(test::cube(3)).mesh;
+    PolyMesh mesh = to_mesh(support::divided_cube(3)).mesh;
     ill.process(mesh, {{"how", "nan-normal"}});
     CHECK(mesh.normal(OpenMesh::VertexHandle(5)) == Vec3(0, 0, 0));
 }

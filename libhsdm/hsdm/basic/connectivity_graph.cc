@@ -12,8 +12,6 @@
 namespace hsdm {
 namespace {
 
-constexpr Index grain = 4096;
-
 /// Each vertex's chosen neighbours: those of vertex v are target[first[v]] .. target[first[v + 1]].
 struct Choices {
     std::vector<Index> first, target;
@@ -60,11 +58,11 @@ Choices choose_all(const OctreeLevel& level, const std::vector<Vec3>& positions,
     Choices choices;
     choices.first.assign(level.size() + 1, 0);
     const auto choose_some = [&](std::size_t begin, std::size_t end, std::vector<Index>& targets) {
-        targets.reserve(5 * grain);
+        targets.reserve(5 * chunks::quick);
         for (auto v = static_cast<Index>(begin); v < end; ++v)
             choices.first[v + 1] = choose(level, positions, v, options, targets);
     };
-    choices.target = collected<Index>(level.size(), grain, choose_some);
+    choices.target = collected<Index>(level.size(), chunks::quick, choose_some);
     counts_to_first(choices.first);
     return choices;
 }
@@ -74,7 +72,7 @@ Choices choose_all(const OctreeLevel& level, const std::vector<Vec3>& positions,
 void make_half_edges(const Choices& choices, bool mutual, ConnectivityGraph& graph) {
     const std::size_t n = graph.vertex_count();
     auto for_each_edge = [&](auto&& enter) {
-        for_each_index(n, grain, [&](Index v) {
+        for_each_index(n, chunks::quick, [&](Index v) {
             for (Index i = choices.first[v]; i < choices.first[v + 1]; ++i) {
                 const Index u = choices.target[i];
                 const bool both = choices.chose(u, v);
@@ -93,7 +91,7 @@ void make_half_edges(const Choices& choices, bool mutual, ConnectivityGraph& gra
     for_each_edge([&](Index from, Index to) {
         graph.end[std::atomic_ref(next[from]).fetch_add(1, std::memory_order_relaxed)] = to;
     });
-    for_each_index(n, grain, [&](Index v) {
+    for_each_index(n, chunks::quick, [&](Index v) {
         std::sort(graph.end.begin() + graph.first_edge[v], graph.end.begin() + graph.first_edge[v + 1]);
     });
 }
@@ -108,7 +106,7 @@ ConnectivityGraph extract_graph(const Octree& octree, const OctreeLevel& level, 
     std::iota(graph.voxel.begin(), graph.voxel.end(), Index{0});
     make_half_edges(choose_all(level, graph.positions, options.neighbors), options.mutual, graph);
     graph.twin.resize(graph.half_edge_count());
-    for_each_index(graph.vertex_count(), grain, [&](Index v) {
+    for_each_index(graph.vertex_count(), chunks::quick, [&](Index v) {
         for (Index h = graph.first_edge[v]; h < graph.first_edge[v + 1]; ++h)
             graph.twin[h] = graph.find(graph.end[h], v);
     });

@@ -9,8 +9,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t grain = 2048;
-
 std::span<const Index> ends(const ConnectivityGraph& graph, Index v) {
     return {graph.end.data() + graph.first_edge[v], graph.end.data() + graph.first_edge[v + 1]};
 }
@@ -137,13 +135,14 @@ std::vector<Loop> minimal_loops_through(const ConnectivityGraph& graph, Index fi
 }
 
 LoopList find_short_loops(const ConnectivityGraph& graph) {
-    std::vector<std::vector<Index>> half_edges(chunk_count(graph.vertex_count(), grain)),
+    std::vector<std::vector<Index>> half_edges(chunk_count(graph.vertex_count(), chunks::usual)),
         sizes(half_edges.size());
-    for_chunks(graph.vertex_count(), grain, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        half_edges[chunk].reserve(5 * grain);
-        for (auto v = static_cast<Index>(begin); v < end; ++v)
-            loops_from(graph, v, half_edges[chunk], sizes[chunk]);
-    });
+    for_chunks(graph.vertex_count(), chunks::usual,
+               [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+                   half_edges[chunk].reserve(5 * chunks::usual);
+                   for (auto v = static_cast<Index>(begin); v < end; ++v)
+                       loops_from(graph, v, half_edges[chunk], sizes[chunk]);
+               });
     sizes.insert(sizes.begin(), std::vector<Index>{0});
     LoopList list{joined(half_edges), joined(sizes)};
     counts_to_first(list.begin);

@@ -8,8 +8,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t grid_points_per_chunk = 2048;
-
 /// A crossing on the perimeter of a face.
 struct Stop {
     FacetSide side; // of its facet, through the face
@@ -116,9 +114,9 @@ Links pair_crossings(const GridPoints& grid, const Crossings& crossings, const N
     Links links;
     links.of_crossing.resize(crossings.crossings.size());
     const std::size_t n = grid.size();
-    std::vector<std::size_t> rims(chunk_count(n, grid_points_per_chunk), 0), joined_faces(rims);
+    std::vector<std::size_t> rims(chunk_count(n, chunks::usual), 0), joined_faces(rims);
     std::vector<std::vector<FacetSide>> crowded(rims.size());
-    for_chunks(n, grid_points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+    for_chunks(n, chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         FacePairing face(grid, crossings, sets, related);
         std::vector<FacetSide> in_face;
         auto join = [&](const Stop& a, const Stop& b, bool rim) {

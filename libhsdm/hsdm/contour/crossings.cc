@@ -10,8 +10,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t grid_points_per_chunk = 1024;
-
 /// A sheet along one edge: the union of the local sheets at the two ends that share a set beside the edge.
 struct EdgeSheet {
     double weight[2] = {0, 0};   // at the lower and the upper end
@@ -304,11 +302,11 @@ CrossingCandidates find_crossings(const GridPoints& grid, const LocalSheets& loc
     CrossingCandidates result;
     const std::size_t n = grid.size();
     result.crossings.first.assign(3 * n + 1, 0);
-    const std::size_t chunks = chunk_count(n, grid_points_per_chunk);
+    const std::size_t chunks = chunk_count(n, chunks::slow);
     std::vector<std::vector<Crossing>> found(chunks);
     std::vector<std::vector<std::uint8_t>> standing(chunks);
     std::vector<std::size_t> dropped(chunks);
-    for_chunks(n, grid_points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+    for_chunks(n, chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         EdgeCrossings edge(grid, local, sets, related, voxel_size, options);
         std::vector<Candidate> on_edge;
         for (std::size_t c = begin; c < end; ++c)

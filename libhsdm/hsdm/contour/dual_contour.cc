@@ -13,9 +13,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t edges_per_chunk = 4096;
-constexpr std::size_t values_per_chunk = 1 << 14;
-
 /// Extra vertices in the middle of mesh edges. Two links across one face that connect the same two vertices
 /// would make one edge with four facets; a midpoint on all but the first keeps the edges apart.
 class Midpoints {
@@ -217,9 +214,9 @@ PolygonMesh joined_facets(const std::vector<PolygonMesh>& parts) {
 PolygonMesh facets_of(const DualMesh& dual, const Midpoints& midpoints, const PlacedVertices& vertices) {
     const Crossings& crossings = dual.crossings;
     const std::size_t edges = crossings.first.size() - 1;
-    const std::size_t chunks = chunk_count(edges, edges_per_chunk);
+    const std::size_t chunks = chunk_count(edges, chunks::quick);
     std::vector<PolygonMesh> parts(2 * chunks); // facets, then strips
-    for_chunks(edges, edges_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+    for_chunks(edges, chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         FacetBuilder builder(dual, midpoints, vertices, parts[chunk]);
         for (std::size_t e = begin; e < end; ++e)
             builder.add_facets(crossings.first[e], crossings.first[e + 1]);
@@ -235,7 +232,7 @@ PolygonMesh facets_of(const DualMesh& dual, const Midpoints& midpoints, const Pl
 template <class T>
 std::vector<T> of_origins(const std::vector<T>& values, const std::vector<Index>& origin) {
     std::vector<T> result(origin.size());
-    for_each_index(result.size(), values_per_chunk, [&](Index i) { result[i] = values[origin[i]]; });
+    for_each_index(result.size(), chunks::light, [&](Index i) { result[i] = values[origin[i]]; });
     return result;
 }
 

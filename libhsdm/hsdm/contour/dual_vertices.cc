@@ -9,8 +9,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t crossings_per_chunk = 4096;
-
 /// The side of a corner that its chain leaves it by.
 FacetSide side_after(const Crossings& crossings, FacetCorner corner) {
     return crossings.of(corner).leaving ? corner : corner.previous();
@@ -236,7 +234,7 @@ void append(const ChunkDualVertices& chunk, DualVertices& duals) {
 /// one side to each.
 void number_sides(const Crossings& crossings, std::span<const std::uint8_t> shared, DualVertices& duals) {
     duals.of_side.assign(8 * crossings.crossings.size(), no_index);
-    for_each_index(duals.size(), crossings_per_chunk, [&](Index v) {
+    for_each_index(duals.size(), chunks::quick, [&](Index v) {
         const auto corners = duals.corners_of(v);
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const std::size_t leaves_by = crossings.of(corners[i]).leaving, corner = corners[i].number();
@@ -258,8 +256,8 @@ CornerVoxel::CornerVoxel(const GridPoints& grid, const Crossings& crossings, Fac
 
 DualVertices build_dual_vertices(const GridPoints& grid, const Crossings& crossings, const Links& links) {
     const std::size_t n = crossings.crossings.size();
-    std::vector<ChunkDualVertices> chunks(chunk_count(n, crossings_per_chunk));
-    for_chunks(n, crossings_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+    std::vector<ChunkDualVertices> chunks(chunk_count(n, chunks::quick));
+    for_chunks(n, chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t c) {
         Chain chain(crossings, links);
         ChainCutter cutter(grid, crossings, links);
         Cut cut;

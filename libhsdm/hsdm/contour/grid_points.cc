@@ -8,8 +8,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t grid_points_per_chunk = 2048;
-
 constexpr std::array<Index, 8> no_voxels{no_index, no_index, no_index, no_index,
                                          no_index, no_index, no_index, no_index};
 
@@ -47,22 +45,21 @@ private:
 /// straddles two chunks comes in two calls.
 template <class Each>
 void for_blocks(const OctreeLevel& level, Each each) {
-    for_chunks(level.size(), grid_points_per_chunk,
-               [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-                   BlockGridPoints points;
-                   for (std::size_t first = begin, v = begin; v < end; ++v) {
-                       const MortonCode block = level.codes[v] / BlockGridPoints::voxels;
-                       points.add(level.codes[v]);
-                       if (v + 1 < end && level.codes[v + 1] / BlockGridPoints::voxels == block) continue;
-                       each(points, block, first, v + 1, chunk);
-                       first = v + 1;
-                   }
-               });
+    for_chunks(level.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        BlockGridPoints points;
+        for (std::size_t first = begin, v = begin; v < end; ++v) {
+            const MortonCode block = level.codes[v] / BlockGridPoints::voxels;
+            points.add(level.codes[v]);
+            if (v + 1 < end && level.codes[v + 1] / BlockGridPoints::voxels == block) continue;
+            each(points, block, first, v + 1, chunk);
+            first = v + 1;
+        }
+    });
 }
 
 /// Every corner of every voxel, sorted, each once.
 std::vector<MortonCode> grid_point_codes(const OctreeLevel& level) {
-    std::vector<std::vector<CodeIndex>> parts(chunk_count(level.size(), grid_points_per_chunk));
+    std::vector<std::vector<CodeIndex>> parts(chunk_count(level.size(), chunks::usual));
     for_blocks(level,
                [&](BlockGridPoints& points, MortonCode block, std::size_t, std::size_t, std::size_t chunk) {
                    points.take(block, [&](int, MortonCode code) { parts[chunk].push_back({code, 0}); });
@@ -104,7 +101,7 @@ void connect_grid_point(GridPoints& grid, std::size_t i) {
 
 std::vector<std::array<Index, 3>> grid_points_below(const GridPoints& grid) {
     std::vector<std::array<Index, 3>> below(grid.size(), {no_index, no_index, no_index});
-    for_each_index(grid.size(), grid_points_per_chunk, [&](Index c) {
+    for_each_index(grid.size(), chunks::usual, [&](Index c) {
         for (unsigned axis = 0; axis < 3; ++axis)
             if (const Index next = grid.next[c][axis]; next != no_index) below[next][axis] = c;
     });
@@ -117,7 +114,7 @@ GridPoints build_grid_points(const OctreeLevel& level) {
     grid.index.build(grid.codes);
     connect_voxels(level, grid);
     grid.next.resize(grid.size());
-    for_each_index(grid.size(), grid_points_per_chunk, [&](Index i) { connect_grid_point(grid, i); });
+    for_each_index(grid.size(), chunks::usual, [&](Index i) { connect_grid_point(grid, i); });
     return grid;
 }
 
@@ -127,7 +124,7 @@ void add_grid_points(GridPoints& grid, std::span<const MortonCode> codes) {
     grid.index.build(grid.codes);
     grid.voxels.resize(grid.size(), no_voxels);
     grid.next.resize(grid.size());
-    for_chunks(codes.size(), grid_points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for_chunks(codes.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = n + begin; i < n + end; ++i) {
             connect_grid_point(grid, i);
             for (unsigned axis = 0; axis < 3; ++axis) {

@@ -10,8 +10,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t grid_points_per_chunk = 2048;
-
 // Costs are in units of one supported crossing dropped.
 constexpr double impossible = 1e30;
 
@@ -125,7 +123,7 @@ private:
     /// them, weighted by nearness, over the sum of their absolute values; in units of most_belief, 1 if it is
     /// outside all, -1 inside all. 0 if a sheet passes nearer than its error.
     void set_beliefs() {
-        for_each_index(grid_.size(), grid_points_per_chunk, [&](Index c) {
+        for_each_index(grid_.size(), chunks::usual, [&](Index c) {
             double sum = 0, size = 0;
             for (const LocalSheet& sheet : sheets_.sheets_at(c)) {
                 if (std::abs(sheet.distance) < sheets::surface_error * h_ * sheet.weight) return;
@@ -141,7 +139,7 @@ private:
     /// continued. Ties stay unknown if `undecided`, else count as outside.
     void vote(bool carried_only, bool undecided = true) {
         std::vector<Side> next = side_;
-        for_each_index(grid_.size(), grid_points_per_chunk, [&](Index c) {
+        for_each_index(grid_.size(), chunks::usual, [&](Index c) {
             if (side_[c] != unknown) return;
             double sum = belief_[c];
             for (unsigned a = 0; a < 3; ++a) {
@@ -190,7 +188,7 @@ private:
                         if (n != no_index && side_[n] != unknown) found.push_back(n);
             }
         };
-        std::vector<Index> grid_points = collected<Index>(grid_.size(), grid_points_per_chunk, add_doubtful);
+        std::vector<Index> grid_points = collected<Index>(grid_.size(), chunks::usual, add_doubtful);
         sort_unique(grid_points);
         return grid_points;
     }
@@ -275,16 +273,15 @@ private:
         Crossings result;
         result.dropped_beyond_crease = list_.dropped_beyond_crease;
         result.first.assign(3 * grid_.size() + 1, 0);
-        std::vector<std::vector<Crossing>> parts(chunk_count(grid_.size(), grid_points_per_chunk));
+        std::vector<std::vector<Crossing>> parts(chunk_count(grid_.size(), chunks::usual));
         std::vector<std::size_t> changes(parts.size());
-        for_chunks(grid_.size(), grid_points_per_chunk,
-                   [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-                       for (std::size_t edge = 3 * begin; edge < 3 * end; ++edge) {
-                           const std::size_t before = parts[chunk].size();
-                           choose(static_cast<Index>(edge), parts[chunk], changes[chunk]);
-                           result.first[edge + 1] = static_cast<Index>(parts[chunk].size() - before);
-                       }
-                   });
+        for_chunks(grid_.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+            for (std::size_t edge = 3 * begin; edge < 3 * end; ++edge) {
+                const std::size_t before = parts[chunk].size();
+                choose(static_cast<Index>(edge), parts[chunk], changes[chunk]);
+                result.first[edge + 1] = static_cast<Index>(parts[chunk].size() - before);
+            }
+        });
         result.crossings = joined(parts);
         counts_to_first(result.first);
         for (std::size_t n : changes) result.settled += n;

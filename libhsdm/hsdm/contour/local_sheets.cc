@@ -11,8 +11,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t grid_points_per_chunk = 2048;
-
 /// The sets around one grid point and their sheets, on the stack.
 struct SheetsAtPoint {
     static constexpr std::size_t most = 64; // eight voxels of at most eight sets
@@ -124,7 +122,7 @@ LocalSheets connect_members(const GridPoints& grid, const NormalSets& sets, cons
             result.first_member[i + 1] = static_cast<Index>(grid_point.member_count);
         }
     };
-    result.members = collected<SheetMember>(n, grid_points_per_chunk, connect);
+    result.members = collected<SheetMember>(n, chunks::usual, connect);
     counts_to_first(result.first_member);
     return result;
 }
@@ -145,7 +143,7 @@ bool joined_nearby(const GridPoints& grid, const LocalSheets& sheets, const Voxe
 }
 
 std::vector<Index> grid_points_with_several(const LocalSheets& sheets) {
-    return indices_where(sheets.first_member.size() - 1, grid_points_per_chunk, [&](Index i) {
+    return indices_where(sheets.first_member.size() - 1, chunks::usual, [&](Index i) {
         return std::ranges::any_of(sheets.members_at(i), [](const SheetMember& m) { return m.sheet > 0; });
     });
 }
@@ -240,8 +238,8 @@ LocalSheets group_local_sheets(const GridPoints& grid, const NormalSets& sets, c
     close_sheets(grid, sets, result);
     const std::size_t n = grid.size();
     result.first_sheet.assign(n + 1, 0);
-    std::vector<std::vector<LocalSheet>> sheets(chunk_count(n, grid_points_per_chunk));
-    for_chunks(n, grid_points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+    std::vector<std::vector<LocalSheet>> sheets(chunk_count(n, chunks::usual));
+    for_chunks(n, chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         SheetsAtPoint grid_point;
         for (std::size_t i = begin; i < end; ++i) {
             SheetMember* first = result.members.data() + result.first_member[i];
@@ -273,7 +271,7 @@ std::size_t extend_grid_points(GridPoints& grid, LocalSheets& sheets, const Octr
                             grid_points.add(i, axis, up, missing);
                 }
     };
-    std::vector<MortonCode> missing = collected<MortonCode>(grid.size(), grid_points_per_chunk, add_missing);
+    std::vector<MortonCode> missing = collected<MortonCode>(grid.size(), chunks::usual, add_missing);
     if (missing.empty()) return 0;
     tbb::parallel_sort(missing.begin(), missing.end());
     missing.erase(std::unique(missing.begin(), missing.end()), missing.end());

@@ -14,7 +14,6 @@ namespace hsdm {
 namespace {
 
 constexpr std::uint8_t unassigned = 0xff;
-constexpr std::size_t voxels_per_chunk = 1024;
 
 /// Working space of one thread, reused from voxel to voxel.
 struct Scratch {
@@ -298,9 +297,9 @@ NormalSets build_normal_sets(const Octree& octree, const OctreeLevel& level,
             result.first[v + 1] = static_cast<Index>(n);
         }
     };
-    result.sets = collected<NormalSet>(level.size(), voxels_per_chunk, cluster);
+    result.sets = collected<NormalSet>(level.size(), chunks::slow, cluster);
     counts_to_first(result.first);
-    for_each_index(level.size(), voxels_per_chunk, [&](Index v) {
+    for_each_index(level.size(), chunks::slow, [&](Index v) {
         for (Index i = level.first_point[v]; i < level.first_point[v + 1]; ++i)
             if (result.of_point[i] != no_index) result.of_point[i] += result.first[v];
     });

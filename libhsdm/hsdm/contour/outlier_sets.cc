@@ -7,8 +7,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t sets_per_chunk = 1024;
-
 /// Points in a set, the mean over points rather than sets, so that full voxels count more than clipped ones.
 double typical_count(const NormalSets& sets) {
     double points = 0, squares = 0; // integers: in any order the same
@@ -70,7 +68,7 @@ Discarded drop_outlier_sets(const OctreeLevel& level, const RelationTest& relate
                             const OutlierSetOptions& options) {
     const double most = std::max(1.0, options.most_share * typical_count(sets));
     std::vector<std::uint8_t> is_outlier(sets.sets.size(), 0);
-    for_chunks(sets.sets.size(), sets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for_chunks(sets.sets.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
         std::vector<Index> group;
         for (std::size_t s = begin; s < end; ++s)
             is_outlier[s] =

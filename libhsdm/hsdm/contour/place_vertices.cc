@@ -11,8 +11,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t duals_per_chunk = 1024;
-
 struct WeightedPlane {
     Vec3 normal;
     Vec3 point;
@@ -100,7 +98,7 @@ double misfit(const Vec3& p, const Problem& problem) {
 }
 
 /// Is a point inside the box by at least `slack` voxels, or, if negative, outside by at most that?
-bool inside(const Vec3& p, const Problem& problem, double slack = placement::margin) {
+bool is_inside(const Vec3& p, const Problem& problem, double slack = placement::margin) {
     for (unsigned k = 0; k < 3; ++k) {
         const double at = (p[k] - problem.lo[k]) / problem.size;
         if (at < slack || at > 1 - slack) return false;
@@ -166,7 +164,7 @@ public:
             sheets = 3;
             solution = least_squares(problem_, sheets);
         }
-        if (!inside(solution.position, problem_) && !may_leave(solution.position)) {
+        if (!is_inside(solution.position, problem_) && !may_leave(solution.position)) {
             note_corner(dual, solution);
             const Vec3 unclamped = solution.position;
             result.is_clamped[dual] = keep_inside(solution);
@@ -246,7 +244,7 @@ private:
                     const Solution apex = least_squares(problem_, 3);
                     problem_.planes.resize(planes);
                     const double d = (apex.position - sets_.sets[s].centroid).sqrnorm();
-                    if (apex.rank == 3 && inside(apex.position, problem_, -placement::margin)
+                    if (apex.rank == 3 && is_inside(apex.position, problem_, -placement::margin)
                         && (d < nearest || (d == nearest && s < best)))
                         nearest = d, best = s;
                 }
@@ -274,7 +272,7 @@ private:
     /// voxel, it has no vertex on them. Beyond an edge or corner of the voxel this must hold for all voxels
     /// between.
     bool may_leave(const Vec3& position) const {
-        if (!inside(position, problem_, -placement::farthest_out)) return false;
+        if (!is_inside(position, problem_, -placement::farthest_out)) return false;
         const VoxelCoord step = step_to(position);
         for (unsigned way = 1; way < 8; ++way)
             if (is_crossed(step, way)) return false;
@@ -284,7 +282,7 @@ private:
     /// Do the planes of `sheets` sheets determine the position, at most `out` voxels outside, and pass it
     /// within `clear` voxels?
     bool meet(int sheets, const Solution& solution, const Vec3& position, double out, double clear) const {
-        return solution.rank == sheets && inside(position, problem_, -out)
+        return solution.rank == sheets && is_inside(position, problem_, -out)
                && misfit(position, problem_) <= clear * problem_.size;
     }
 
@@ -352,7 +350,7 @@ private:
             && solution.rank > 1) {
             // Planes that meet far away say nothing about this voxel: use the steepest direction alone.
             solution = least_squares(problem_, 1);
-            if (inside(solution.position, problem_)) return false;
+            if (is_inside(solution.position, problem_)) return false;
         }
         solution.position = least_in_box(solution, problem_);
         return true;
@@ -382,7 +380,7 @@ std::vector<std::uint8_t> sets_that_cross(const DualMesh& mesh, const NormalSets
             }
     };
     std::vector<std::uint8_t> crosses(sets.sets.size(), 0);
-    for (Index s : collected<Index>(mesh.duals.size(), duals_per_chunk, find)) crosses[s] = 1;
+    for (Index s : collected<Index>(mesh.duals.size(), chunks::slow, find)) crosses[s] = 1;
     return crosses;
 }
 
@@ -414,9 +412,9 @@ PlacedVertices place_vertices(const DualMesh& mesh, const NormalSets& sets, cons
     result.voxel.resize(count);
     result.is_clamped.resize(count);
     const auto crosses = sets_that_cross(mesh, sets, related);
-    std::vector<std::vector<PlacedVertices::Beyond>> beyond(chunk_count(count, duals_per_chunk));
+    std::vector<std::vector<PlacedVertices::Beyond>> beyond(chunk_count(count, chunks::slow));
     std::vector<std::vector<PlacedVertices::OnCrease>> on_creases(beyond.size());
-    for_chunks(count, duals_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+    for_chunks(count, chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         Placer placer(mesh, sets, related, crosses);
         for (std::size_t v = begin; v < end; ++v) placer.place(static_cast<Index>(v), result);
         beyond[chunk] = std::move(placer.beyond);

@@ -9,8 +9,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t per_chunk = 512;
-
 /// A triangle of a facet round a vertex.
 struct Around {
     Around(const std::vector<Vec3>& at, Index a, Index b, Index c)
@@ -91,8 +89,8 @@ void PointFit::gather_beside(Index voxel, std::vector<Index>& duals) const {
 PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
     Measure result{std::vector<double>(level_.size(), 0), std::vector<Heights>(duals_.size())};
     // Contributions to vertices in other chunks' voxels are added afterwards, in the order of the chunks.
-    std::vector<std::vector<Foreign>> foreign(chunk_count(level_.size(), per_chunk));
-    for_chunks(level_.size(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+    std::vector<std::vector<Foreign>> foreign(chunk_count(level_.size(), 2 * chunks::heavy));
+    for_chunks(level_.size(), 2 * chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         std::vector<Index> beside;
         std::vector<Around> around;
         for (std::size_t x = begin; x < end; ++x) {
@@ -136,11 +134,11 @@ std::vector<double> PointFit::rises(const std::vector<Heights>& heights) const {
         double square, variance; // of the mean
     };
     std::vector<Moments> of_mean(duals_.size());
-    for_each_index(duals_.size(), per_chunk, [&](Index v) {
+    for_each_index(duals_.size(), 2 * chunks::heavy, [&](Index v) {
         of_mean[v] = {heights[v].mean() * heights[v].mean(), heights[v].variance()};
     });
     std::vector<double> rises(duals_.size(), 0);
-    for_each_index(duals_.size(), per_chunk, [&](Index v) {
+    for_each_index(duals_.size(), 2 * chunks::heavy, [&](Index v) {
         Moments sum{0, 0};
         for (FacetCorner corner : duals_.corners_of(v))
             for (const FacetCorner beside : corners_of_facet(corner.crossing())) {

@@ -13,8 +13,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t duals_per_chunk = 1024;
-
 /// The point on the way from `from` to `to` where it leaves the dual vertex's voxel, or `to`.
 Vec3 within_voxel(const DualMesh& mesh, Index dual, const Vec3& from, const Vec3& to) {
     const VoxelCoord voxel = mesh.voxel_of(dual);
@@ -43,7 +41,7 @@ public:
 
     void round(double step) {
         next_ = vertices_.positions;
-        for_each_index(duals_.size(), duals_per_chunk, [&](Index v) {
+        for_each_index(duals_.size(), chunks::slow, [&](Index v) {
             if (duals_.open[v]) return;
             if (vertices_.classes[v] == VertexClass::smooth)
                 next_[v] = kept_in(v, on_sheet(v, moved_on_sheet(v, step)));
@@ -84,7 +82,7 @@ private:
     void list_neighbours() {
         neighbours_.resize(2 * duals_.corners.size());
         neighbour_count_.resize(duals_.size());
-        for_each_index(duals_.size(), duals_per_chunk, [&](Index v) {
+        for_each_index(duals_.size(), chunks::slow, [&](Index v) {
             Neighbour* const first = neighbours_.data() + 2 * std::size_t{duals_.first[v]};
             Neighbour* last = first;
             const auto add = [&](Index n) {
@@ -153,7 +151,7 @@ private:
 
     /// Moves vertices along their directions.
     void rise(const std::vector<double>& heights) {
-        for_each_index(duals_.size(), duals_per_chunk, [&](Index v) {
+        for_each_index(duals_.size(), chunks::slow, [&](Index v) {
             if (heights[v] != 0) {
                 const Vec3 to = vertices_.positions[v] + vertices_.directions[v] * heights[v];
                 vertices_.positions[v] = kept_in(v, to);
@@ -188,7 +186,7 @@ const NormalSet* own_set(const NormalSets& sets, Index voxel, const Vec3& normal
 void extend_borders(const DualMesh& mesh, const NormalSets& sets, PlacedVertices& vertices) {
     const std::vector<Vec3> placed = vertices.positions;
     const DualVertices& duals = mesh.duals;
-    for_each_index(duals.size(), duals_per_chunk, [&](Index v) {
+    for_each_index(duals.size(), chunks::slow, [&](Index v) {
         if (!duals.open[v] || vertices.classes[v] != VertexClass::smooth) return;
         const NormalSet* set = own_set(sets, vertices.voxel[v], vertices.directions[v]);
         if (!set) return;

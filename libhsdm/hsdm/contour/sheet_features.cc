@@ -10,8 +10,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t facets_per_chunk = 1024;
-
 /// The angle at an edge, measured in the plane across it from one sheet's normal to the other's.
 struct Fold {
     Vec3 from, to;
@@ -117,7 +115,7 @@ public:
     SheetFacets(const OctreeLevel& level, const NormalSets& sets, const PolygonMesh& mesh,
                 std::span<const Index> voxel, bool turned)
         : level_(level), sets_(sets), mesh_(mesh), voxel_(voxel), normals_(mesh.facet_count()) {
-        for_each_index(normals_.size(), facets_per_chunk, [&](Index f) {
+        for_each_index(normals_.size(), chunks::slow, [&](Index f) {
             normals_[f] = unit(area_vector(mesh, mesh.facet(f))) * (turned ? -1 : 1);
         });
     }
@@ -209,9 +207,8 @@ SheetFeatures sheet_features(const Octree& octree, const OctreeLevel& level, con
     auto& sides = result.hints.sides;
     sides.assign(mesh.corners.size(), EdgeHint::none);
     const SheetFacets facets(level, sets, mesh, voxel, turned);
-    constexpr std::size_t sides_per_chunk = 4 * facets_per_chunk;
-    std::vector<Tally> tallies(chunk_count(sides.size(), sides_per_chunk));
-    for_chunks(sides.size(), sides_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+    std::vector<Tally> tallies(chunk_count(sides.size(), 4 * chunks::slow));
+    for_chunks(sides.size(), 4 * chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         EdgeJudge judge(octree, level, facets, crease_angle);
         for (std::size_t c = begin; c < end; ++c) {
             const Index twin = links.twin[c];

@@ -12,6 +12,11 @@
 
 namespace hsdm {
 
+/// Items of a chunk, by what one takes: from a search of its own down to a copy.
+namespace chunks {
+inline constexpr std::size_t heavy = 256, slow = 1024, usual = 2048, quick = 4096, light = 1 << 14;
+} // namespace chunks
+
 inline std::size_t chunk_count(std::size_t n, std::size_t chunk_size) {
     return (n + chunk_size - 1) / chunk_size;
 }

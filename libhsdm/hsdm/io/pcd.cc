@@ -52,8 +52,8 @@ public:
             if (line.empty() || line.front() == '#') continue;
             words_ = fields(line, most_columns + 2);
             if (!is_keyword(words_[0]))
-                fail(quoted(words_[0]) + " is no word of a PCD header; correct or remove the line");
-            if (words_.size() < 2) fail(quoted(words_[0]) + " has no value; correct the header");
+                fail(io::quoted(words_[0]) + " is no word of a PCD header; correct or remove the line");
+            if (words_.size() < 2) fail(io::quoted(words_[0]) + " has no value; correct the header");
             read_line();
             if (words_[0] != "DATA") continue;
             check();
@@ -68,7 +68,7 @@ private:
 
     std::uint64_t count(std::size_t word) const {
         const auto value = to_count(words_[word]);
-        if (!value) fail(quoted(words_[word]) + " is no count; correct the header");
+        if (!value) fail(io::quoted(words_[word]) + " is no count; correct the header");
         return *value;
     }
 
@@ -104,7 +104,8 @@ private:
             else if (words_[1] == "binary_compressed")
                 header_.data = PcdData::compressed;
             else if (words_[1] != "ascii")
-                fail("unknown data " + quoted(words_[1]) + "; known are ascii, binary and binary_compressed");
+                fail("unknown data " + io::quoted(words_[1])
+                     + "; known are ascii, binary and binary_compressed");
         }
     }
 
@@ -112,11 +113,11 @@ private:
         if (word == "TYPE") {
             field.type = words_[at][0];
             if (words_[at].size() != 1 || std::string_view("IUF").find(field.type) == std::string_view::npos)
-                fail("unknown type " + quoted(words_[at]) + "; known are I, U and F");
+                fail("unknown type " + io::quoted(words_[at]) + "; known are I, U and F");
         } else {
             const std::uint64_t value = count(at);
             if (word == "COUNT" ? value > most_columns : value != 1 && value != 2 && value != 4 && value != 8)
-                fail(quoted(words_[at]) + " is no " + lower(word) + " of a field; correct the header");
+                fail(io::quoted(words_[at]) + " is no " + lower(word) + " of a field; correct the header");
             (word == "COUNT" ? field.count : field.size) = static_cast<std::size_t>(value);
         }
     }
@@ -127,7 +128,7 @@ private:
         Vec3 at;
         for (unsigned k = 0; k < 3; ++k) {
             const auto value = to_number(words_[k + 1]);
-            if (!value) fail(quoted(words_[k + 1]) + " is no number; correct the header");
+            if (!value) fail(io::quoted(words_[k + 1]) + " is no number; correct the header");
             at[k] = *value;
         }
         if (std::isfinite(at.sqrnorm()) && at.sqrnorm() > 0) header_.viewpoint = at;
@@ -139,8 +140,8 @@ private:
         for (const PcdField& field : header_.fields) {
             values += field.count;
             if (field.type == 'F' && field.size < 4)
-                fail("field " + quoted(field.name) + " is of type F and size " + std::to_string(field.size)
-                     + "; correct the header");
+                fail("field " + io::quoted(field.name) + " is of type F and size "
+                     + std::to_string(field.size) + "; correct the header");
         }
         if (values > most_columns)
             fail("a point of " + std::to_string(values) + " values, more than " + std::to_string(most_columns)

@@ -16,7 +16,7 @@ std::vector<Column> columns_of(const Text& text, const PlyElement& vertex) {
         for (const PlyProperty& property : vertex.properties)
             present += (present.empty() ? "" : ", ") + property.name;
         throw Error(text.file(), "the vertices have no properties x, y and z"
-                                     + (present.empty() ? "" : ", only " + quoted(present))
+                                     + (present.empty() ? "" : ", only " + io::quoted(present))
                                      + "; export them as points");
     }
     return *columns;

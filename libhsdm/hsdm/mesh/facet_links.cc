@@ -9,8 +9,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t grain = 1 << 13;
-
 bool is_proper(std::span<const Index> facet, std::size_t vertex_count) {
     if (facet.size() < 3) return false;
     if (std::any_of(facet.begin(), facet.end(), [&](Index v) { return v >= vertex_count; })) return false;
@@ -59,7 +57,7 @@ private:
     void find_proper_facets() {
         links_.accepted.resize(facets_.facet_count());
         links_.facet.resize(facets_.corners.size());
-        for_each_index(facets_.facet_count(), grain, [&](Index f) {
+        for_each_index(facets_.facet_count(), chunks::quick, [&](Index f) {
             links_.accepted[f] = is_proper(facets_.facet(f), facets_.vertex_count());
             for (Index c = facets_.first[f]; c < facets_.first[f + 1]; ++c) links_.facet[c] = f;
         });
@@ -79,7 +77,7 @@ private:
         std::vector<Index> fill(first_out_.begin(), first_out_.end() - 1);
         for_each_accepted_side(
             [&](Index c) { out_[fill[start(c)]++] = static_cast<std::uint64_t>(end(c)) << 32 | c; });
-        for_each_index(facets_.vertex_count(), grain, [&](Index v) {
+        for_each_index(facets_.vertex_count(), chunks::quick, [&](Index v) {
             std::sort(out_.begin() + first_out_[v], out_.begin() + first_out_[v + 1]);
         });
     }
@@ -95,7 +93,7 @@ private:
     /// Whether two facets run along an edge the same way.
     bool is_contested() const {
         std::atomic<bool> contested = false;
-        for_each_index(facets_.vertex_count(), grain, [&](Index v) {
+        for_each_index(facets_.vertex_count(), chunks::quick, [&](Index v) {
             const auto sides = sides_out(v);
             for (std::size_t i = 1; i < sides.size(); ++i)
                 if (end_of(sides[i]) == end_of(sides[i - 1])) contested = true;
@@ -121,7 +119,7 @@ private:
 
     void find_twins() {
         links_.twin.assign(facets_.corners.size(), no_index);
-        for_each_index(facets_.facet_count(), grain, [&](Index f) {
+        for_each_index(facets_.facet_count(), chunks::quick, [&](Index f) {
             if (!links_.accepted[f]) return;
             for (Index c = facets_.first[f]; c < facets_.first[f + 1]; ++c) {
                 const Index u = start(c), v = end(c);
@@ -167,7 +165,7 @@ private:
         links_.side_out.resize(count);
         links_.open_in.resize(count);
         std::vector<char> several(count, 0);
-        for_each_index(count, grain, [&](Index i) {
+        for_each_index(count, chunks::quick, [&](Index i) {
             const Index v = links_.source[i];
             several[i] = assign_fan(fan_start(v), i) < sides_out(v).size();
         });

@@ -8,8 +8,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t per_chunk = 1 << 14;
-
 /// The ring of a facet from the corner after v round to the one before it.
 std::vector<Index> without(std::span<const Index> ring, Index v) {
     const auto at = std::find(ring.begin(), ring.end(), v);
@@ -24,13 +22,13 @@ VertexFacets facets_at_vertices(const PolygonMesh& mesh) {
     const std::size_t n = mesh.vertex_count();
     VertexFacets at{std::vector<std::array<Index, 2>>(n), std::vector<std::uint8_t>(n)};
     std::vector<Index> counts(n, 0);
-    for_each_index(mesh.facet_count(), per_chunk, [&](Index f) {
+    for_each_index(mesh.facet_count(), chunks::light, [&](Index f) {
         for (Index v : mesh.facet(f)) {
             const Index place = std::atomic_ref(counts[v]).fetch_add(1, std::memory_order_relaxed);
             if (place < 2) at.facets[v][place] = f;
         }
     });
-    for_each_index(n, per_chunk, [&](Index v) {
+    for_each_index(n, chunks::light, [&](Index v) {
         at.count[v] = static_cast<std::uint8_t>(std::min<Index>(counts[v], 3));
         // in ascending order, whichever thread came first
         if (counts[v] == 2) std::ranges::sort(at.facets[v]);

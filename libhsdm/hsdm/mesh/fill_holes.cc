@@ -14,8 +14,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t sides_per_chunk = 1 << 14;
-
 /// A loop around a single facet: closing it would lay a second facet over the same vertices.
 bool is_lone_facet(const PolygonMesh& mesh, std::span<const Index> facets) {
     return std::all_of(facets.begin(), facets.end(), [&](Index f) { return f == facets[0]; })
@@ -65,7 +63,7 @@ private:
     };
 
     std::vector<Index> sides_without_twin() const {
-        return indices_where(mesh_.corners.size(), sides_per_chunk, [&](Index side) {
+        return indices_where(mesh_.corners.size(), chunks::light, [&](Index side) {
             return links_.twin[side] == no_index && links_.accepted[links_.facet[side]];
         });
     }

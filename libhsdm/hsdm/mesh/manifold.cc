@@ -19,8 +19,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t grain = 1 << 13;
-
 // ---- step 1: simple facets, each set of vertices once --------------------------------------------------
 
 bool is_simple(std::span<const Index> facet) {
@@ -54,7 +52,7 @@ void add_simple_parts(std::span<const Index> facet, PolygonMesh& out, std::size_
 
 void keep_simple(PolygonMesh& mesh, ManifoldCounts& counts) {
     std::atomic<bool> all_simple{true};
-    for_each_index(mesh.facet_count(), grain, [&](std::size_t f) {
+    for_each_index(mesh.facet_count(), chunks::quick, [&](std::size_t f) {
         if (!is_simple(mesh.facet(f))) all_simple.store(false, std::memory_order_relaxed);
     });
     if (all_simple) return;
@@ -120,7 +118,7 @@ void thin_out(const PolygonMesh& mesh, std::span<const CodeIndex> group, std::ve
 
 void remove_duplicates(PolygonMesh& mesh, ManifoldCounts& counts) {
     std::vector<CodeIndex> keys(mesh.facet_count());
-    for_each_index(keys.size(), grain, [&](std::size_t f) {
+    for_each_index(keys.size(), chunks::quick, [&](std::size_t f) {
         keys[f] = {vertex_set_hash(mesh.facet(f)), static_cast<Index>(f)};
     });
     radix_sort(keys, 32);
@@ -182,7 +180,7 @@ private:
     void link_corners() {
         next_ = next_sides(mesh_);
         facet_.resize(mesh_.corners.size());
-        for_each_index(mesh_.facet_count(), grain, [&](std::size_t f) {
+        for_each_index(mesh_.facet_count(), chunks::quick, [&](std::size_t f) {
             std::fill(facet_.begin() + mesh_.first[f], facet_.begin() + mesh_.first[f + 1],
                       static_cast<Index>(f));
         });

@@ -10,17 +10,15 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t facets_per_chunk = 4096;
-
 /// The connected components of a mesh, each known by the least of its vertices.
 class Components {
 public:
     explicit Components(const PolygonMesh& mesh)
         : mesh_(mesh), vertices_(mesh.vertex_count()), facets_(mesh.vertex_count(), 0) {
-        for_each_index(mesh.facet_count(), facets_per_chunk, [&](Index f) {
+        for_each_index(mesh.facet_count(), chunks::quick, [&](Index f) {
             for (Index v : mesh.facet(f)) vertices_.join(mesh.facet(f)[0], v);
         });
-        for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t f, std::size_t end, std::size_t) {
+        for_chunks(mesh.facet_count(), chunks::quick, [&](std::size_t f, std::size_t end, std::size_t) {
             for (std::size_t first = f; f < end; first = f) { // facets of one come in long runs
                 const Index component = of(f);
                 while (++f < end && of(f) == component) continue;

@@ -10,8 +10,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t facets_per_chunk = 2048;
-
 using Edge = std::array<Index, 2>; // the lower vertex first
 
 Edge edge(Index a, Index b) {
@@ -47,7 +45,7 @@ std::vector<Cut> possible_cuts(const PolygonMesh& mesh, double least_sine) {
             if (sine < least_sine) cuts.push_back({edge(quad[corner], quad[(corner + 2) % 4]), f, corner});
         }
     };
-    return collected<Cut>(mesh.facet_count(), facets_per_chunk, find);
+    return collected<Cut>(mesh.facet_count(), chunks::usual, find);
 }
 
 /// Removes the cuts whose diagonal is an edge already or that of a facet before; leaves them by facet.

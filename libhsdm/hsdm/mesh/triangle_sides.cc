@@ -5,13 +5,11 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t sides_per_chunk = 3 * 4096;
-
 /// The sides of triangles, and behind them those of other facets.
 EdgeTable edges_of(std::span<const Index> corners, const PolygonMesh& others, std::size_t vertex_count) {
     const auto count = static_cast<Index>(corners.size());
     return EdgeTable(vertex_count, [&](const auto& visit) {
-        for_chunks(count, sides_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for_chunks(count, 3 * chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (auto s = static_cast<Index>(begin); s < end; ++s)
                 visit(corners[s], corners[next_side(s)], s);
         });

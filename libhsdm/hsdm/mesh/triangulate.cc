@@ -5,8 +5,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t grain = 1 << 12;
-
 /// Corners looked at before a polygon's remaining ears are given up and fanned: bounds the time that a
 /// polygon of 10^5 corners may take.
 constexpr std::size_t ear_budget = std::size_t{1} << 26;
@@ -98,7 +96,7 @@ Triangulation triangulate(const PolygonMesh& mesh) {
         result.first[f + 1] = result.first[f] + (corners < 3 ? 0 : corners - 2);
     }
     result.triangles.resize(result.first.back());
-    for_each_index(facets, grain, [&](Index f) {
+    for_each_index(facets, chunks::quick, [&](Index f) {
         cut(mesh.positions, mesh.facet(f), result.triangles.data() + result.first[f]);
     });
     return result;
@@ -106,7 +104,7 @@ Triangulation triangulate(const PolygonMesh& mesh) {
 
 std::vector<Index> facet_of_triangle(const Triangulation& triangulation) {
     std::vector<Index> facet(triangulation.size());
-    for_each_index(triangulation.first.size() - 1, grain, [&](Index f) {
+    for_each_index(triangulation.first.size() - 1, chunks::quick, [&](Index f) {
         std::fill(facet.begin() + triangulation.first[f], facet.begin() + triangulation.first[f + 1], f);
     });
     return facet;

@@ -14,24 +14,22 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t facets_per_chunk = 1 << 12;
-
 /// Properties of components, indexed by the vertex that represents each.
-struct Components {
+struct ComponentVolumes {
     std::vector<Index> of_facet;
     std::vector<std::uint8_t> open; ///< has a border
     std::vector<double> volume;     ///< six times the signed one, if closed
 };
 
-Components find_components(const PolygonMesh& mesh, const FacetLinks& links) {
+ComponentVolumes find_components(const PolygonMesh& mesh, const FacetLinks& links) {
     DisjointSets sets(mesh.vertex_count());
-    for_each_index(mesh.facet_count(), facets_per_chunk, [&](Index f) {
+    for_each_index(mesh.facet_count(), chunks::quick, [&](Index f) {
         for (Index v : mesh.facet(f)) sets.join(mesh.facet(f)[0], v);
     });
-    Components result;
+    ComponentVolumes result;
     result.of_facet.resize(mesh.facet_count());
     result.open.assign(mesh.vertex_count(), 0);
-    for_each_index(mesh.facet_count(), facets_per_chunk, [&](Index f) {
+    for_each_index(mesh.facet_count(), chunks::quick, [&](Index f) {
         const Index c = result.of_facet[f] = sets.find(mesh.facet(f)[0]);
         for (Index side = mesh.first[f]; side < mesh.first[f + 1]; ++side)
             if (links.twin[side] == no_index)
@@ -41,9 +39,9 @@ Components find_components(const PolygonMesh& mesh, const FacetLinks& links) {
 }
 
 /// Sums volumes about each component's own first vertex, so that small components far away lose no digits.
-void measure_volumes(const PolygonMesh& mesh, const Triangulation& cut, Components& components) {
+void measure_volumes(const PolygonMesh& mesh, const Triangulation& cut, ComponentVolumes& components) {
     std::vector<double> of_facet(mesh.facet_count());
-    for_each_index(mesh.facet_count(), facets_per_chunk, [&](Index f) {
+    for_each_index(mesh.facet_count(), chunks::quick, [&](Index f) {
         const Vec3& centre = mesh.positions[components.of_facet[f]];
         double sum = 0;
         for (Index t = cut.first[f]; t < cut.first[f + 1]; ++t) {
@@ -147,10 +145,11 @@ private:
 /// Per point, the sum of the weights of the components that enclose it; a component that faces inward counts
 /// negative.
 template <class Weight>
-std::vector<int> sum_around(const PolygonMesh& mesh, const Triangulation& cut, const Components& components,
-                            std::span<const Index> points, const Weight& weight) {
+std::vector<int> sum_around(const PolygonMesh& mesh, const Triangulation& cut,
+                            const ComponentVolumes& components, std::span<const Index> points,
+                            const Weight& weight) {
     Surroundings around(mesh, points);
-    for_each_index(mesh.facet_count(), facets_per_chunk, [&](Index f) {
+    for_each_index(mesh.facet_count(), chunks::quick, [&](Index f) {
         if (const Index c = components.of_facet[f]; const int w = weight(c))
             for (Index t = cut.first[f]; t < cut.first[f + 1]; ++t) around.add(cut.triangles[t], c, w);
     });
@@ -160,7 +159,7 @@ std::vector<int> sum_around(const PolygonMesh& mesh, const Triangulation& cut, c
 /// Marks the components to turn: closed ones that face inward and are not enclosed by others; and inside of
 /// these all that then does not face against what encloses it, as walls of cavities and what is in them do.
 std::vector<std::uint8_t> find_turns(const PolygonMesh& mesh, const Triangulation& cut,
-                                     const Components& components) {
+                                     const ComponentVolumes& components) {
     std::vector<std::uint8_t> turns(mesh.vertex_count(), 0);
     std::vector<Index> closed;
     bool any_inward = false;
@@ -195,7 +194,7 @@ void turn(PolygonMesh& mesh, std::size_t f, FeatureHints& hints) {
 } // namespace
 
 std::size_t turn_outward(PolygonMesh& mesh, FacetLinks& links, FeatureHints& hints) {
-    Components components = find_components(mesh, links);
+    ComponentVolumes components = find_components(mesh, links);
     const Triangulation cut = triangulate(mesh);
     measure_volumes(mesh, cut, components);
     std::vector<std::uint8_t> turns = find_turns(mesh, cut, components);

@@ -62,13 +62,12 @@ private:
 
 /// Sorts by both ends and adds up edges between the same nodes.
 void sort_and_merge(std::vector<SignedEdge>& edges, std::size_t nodes) {
-    constexpr std::size_t nodes_per_chunk = 4096;
     std::vector<Index> end(nodes + 1, 0); // of each node's edges, once they are there
     for (const SignedEdge& e : edges) ++end[e.a + 1];
     counts_to_first(end);
     std::vector<SignedEdge> sorted(edges.size());
     for (const SignedEdge& e : edges) sorted[end[e.a]++] = e;
-    for_each_index(nodes, nodes_per_chunk, [&](Index v) {
+    for_each_index(nodes, chunks::quick, [&](Index v) {
         std::sort(sorted.begin() + (v == 0 ? 0 : end[v - 1]), sorted.begin() + end[v],
                   [](const SignedEdge& e, const SignedEdge& f) { return e.b < f.b; });
     });

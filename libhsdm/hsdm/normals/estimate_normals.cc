@@ -14,8 +14,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t points_per_chunk = 1024, bent_per_chunk = 256;
-
 /// Computes new normals from old ones, whose signs do not matter.
 class Renewal {
 public:
@@ -49,8 +47,8 @@ public:
     /// For points away from creases that are not too flat, the results of curved().
     std::vector<Vec3> all_curved() const {
         std::vector<Vec3> renewed(octree_.size());
-        for_chunks(octree_.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-            std::array<Index, points_per_chunk + 1> bent;
+        for_chunks(octree_.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
+            std::array<Index, chunks::slow + 1> bent;
             std::size_t count = 0;
             for (std::size_t i = begin; i < end; ++i) {
                 renewed[i] = normals_[i];
@@ -69,7 +67,7 @@ public:
     template <class NormalOf>
     std::vector<Vec3> all(const NormalOf& normal_of) const {
         std::vector<Vec3> renewed(octree_.size());
-        for_each_index(octree_.size(), points_per_chunk, [&](Index i) { renewed[i] = normal_of(i); });
+        for_each_index(octree_.size(), chunks::slow, [&](Index i) { renewed[i] = normal_of(i); });
         return renewed;
     }
 
@@ -148,7 +146,7 @@ public:
 
 private:
     void fit_all() {
-        for_chunks(octree_.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for_chunks(octree_.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t i = begin; i < end; i += 2) {
                 const std::array<Index, 2> points{static_cast<Index>(i),
                                                   static_cast<Index>(std::min(i + 1, end - 1))};
@@ -188,7 +186,7 @@ private:
     void choose_tolerance(const EstimateOptions& options) {
         const double relative = std::clamp(options.noise_tolerance * result_.noise, options.least_tolerance,
                                            estimation::most_tolerance);
-        for_each_index(octree_.size(), points_per_chunk, [&](Index i) {
+        for_each_index(octree_.size(), chunks::slow, [&](Index i) {
             double least = result_.spread[i];
             for (Index j : neighbors_.of(i)) least = std::min(least, result_.spread[j]);
             const double base = relative * neighbors_.reach[i];
@@ -197,7 +195,7 @@ private:
     }
 
     void find_bent() {
-        result_.bent = indices_where(octree_.size(), points_per_chunk, [&](Index i) {
+        result_.bent = indices_where(octree_.size(), chunks::slow, [&](Index i) {
             return result_.spread[i] > estimation::bent_spread * result_.tolerance[i];
         });
     }
@@ -207,7 +205,7 @@ private:
     void renew(const NormalOf& normal_of) {
         const std::vector<Index>& bent = result_.bent;
         std::vector<Vec3> renewed(bent.size());
-        for_each_index(bent.size(), bent_per_chunk, [&](Index b) { renewed[b] = normal_of(bent[b]); });
+        for_each_index(bent.size(), chunks::heavy, [&](Index b) { renewed[b] = normal_of(bent[b]); });
         for (std::size_t b = 0; b < bent.size(); ++b) result_.normals[bent[b]] = renewed[b];
     }
 

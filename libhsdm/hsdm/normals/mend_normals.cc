@@ -11,8 +11,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t points_per_chunk = 1 << 14;
-
 /// How two points next to each other lie.
 struct Pair {
     enum Kind { unclear, flat, creased, steep } kind = unclear;
@@ -40,10 +38,10 @@ Pair compare(const Octree& octree, std::size_t i, std::size_t j, double farthest
 /// Sums over pairs of each point with its two successors, in a fixed order; for large clouds over a sample.
 template <class Sum, class F>
 Sum sum_pairs(const Octree& octree, double farthest, const F& add) {
-    std::vector<Sum> parts(chunk_count(octree.size(), points_per_chunk));
+    std::vector<Sum> parts(chunk_count(octree.size(), chunks::light));
     constexpr std::size_t samples = 1 << 17;
     const std::size_t stride = octree.size() / samples + 1;
-    for_chunks(octree.size(), points_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+    for_chunks(octree.size(), chunks::light, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         for (std::size_t i = begin; i < end; i += stride)
             for (std::size_t j = i + 1; j < std::min(octree.size(), i + 3); ++j)
                 add(compare(octree, i, j, farthest), parts[chunk]);

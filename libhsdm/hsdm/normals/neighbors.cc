@@ -17,7 +17,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t leaves_per_chunk = 256;
 /// At most so many points of one voxel of the finest level are searched together. With all of them time would
 /// grow with their square for clouds whose parts lie so far apart that each is in few voxels.
 constexpr Index crowd = 256;
@@ -243,7 +242,7 @@ public:
         for (auto level = levels_.size() - 1; level-- > 0;)
             levels_[level] = coarser_level(levels_[level + 1], static_cast<int>(level));
         tbb::enumerable_thread_specific<Scratch> scratch;
-        for_chunks(leaves.size(), leaves_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for_chunks(leaves.size(), chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t) {
             Scratch& own = scratch.local();
             float limit = 0; // not known yet
             for (std::size_t l = begin; l < end; ++l) limit = search_leaf(leaves[l], limit, own);

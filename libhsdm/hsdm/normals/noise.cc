@@ -44,10 +44,10 @@ double lower_third(std::vector<double> values) {
 /// measure(point) of a sample of the points.
 template <class Measure>
 auto sampled(const Octree& octree, const Measure& measure) {
-    constexpr std::size_t samples = 1 << 14, samples_per_chunk = 1024;
+    constexpr std::size_t samples = 1 << 14;
     const std::size_t stride = octree.size() / samples + 1;
     std::vector<decltype(measure(0))> values((octree.size() + stride - 1) / stride);
-    for_each_index(values.size(), samples_per_chunk, [&](Index r) { values[r] = measure(r * stride); });
+    for_each_index(values.size(), chunks::slow, [&](Index r) { values[r] = measure(r * stride); });
     return values;
 }
 

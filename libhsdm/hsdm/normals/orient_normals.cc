@@ -12,8 +12,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t points_per_chunk = 1 << 14;
-
 /// Signs of the components that no view decided: those that most normals came with if these count, else by
 /// the sensor, else by the signed volume about their own centre.
 std::vector<std::int8_t> free_signs(const Patches& patches, const Signs& signs,
@@ -76,7 +74,7 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
     const bool seen = views_agree(patches, view, signs);
     if (seen) turn[signs.component[outside]] = signs.sign[outside];
     result.turns.resize(octree.size());
-    for_each_index(octree.size(), points_per_chunk, [&](Index i) {
+    for_each_index(octree.size(), chunks::light, [&](Index i) {
         const Index p = patches.of_point[i];
         result.turns[i] = p != no_index && patches.sign[i] * signs.sign[p] * turn[signs.component[p]] < 0;
     });
@@ -88,7 +86,7 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
 }
 
 void turn_normals(const Orientation& orientation, std::vector<Vec3>& normals) {
-    for_each_index(normals.size(), points_per_chunk, [&](Index i) {
+    for_each_index(normals.size(), chunks::light, [&](Index i) {
         if (orientation.turns[i]) normals[i] = -normals[i];
     });
 }

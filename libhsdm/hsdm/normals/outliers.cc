@@ -11,8 +11,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t points_per_chunk = 4096;
-
 double median(std::vector<double>& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
@@ -36,7 +34,7 @@ std::vector<std::uint8_t> find_outliers(const Octree& octree, const Neighbors& n
     std::vector<double> all = neighbors.reach;
     const double typical = median(all);
     std::vector<std::uint8_t> found(octree.size(), 0);
-    for_each_index(octree.size(), points_per_chunk, [&](Index i) {
+    for_each_index(octree.size(), chunks::quick, [&](Index i) {
         const double reach = neighbors.reach[i], sparseness = reach / typical;
         const auto around = neighbors.of(i);
         // Is the reach more than `times` the neighbours' median reach, that is, more than that for over
@@ -124,7 +122,7 @@ Discarded drop_outliers_by_normals(Octree& octree, const NormalOutlierOptions& o
     const Neighbors neighbors = find_neighbors_of(octree, sparse, {.count = options.neighbors});
     const double farthest = options.most_distance * octree.voxel_size(density.depth);
     std::vector<std::uint8_t> stray(octree.size(), 0);
-    for_each_index(sparse.size(), points_per_chunk, [&](Index k) {
+    for_each_index(sparse.size(), chunks::quick, [&](Index k) {
         stray[sparse[k]] =
             support(octree, sparse[k], neighbors.of(k), is_sparse, farthest, options) < options.least_support;
     });

@@ -9,7 +9,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t patches_per_chunk = 1024;
 constexpr Index occupied = no_index - 1, unlabelled = no_index;
 
 /// Connected regions of empty voxels in the octree's cube and a margin of one voxel around; region 0 is
@@ -209,7 +208,7 @@ OutsideView view_outside(const Octree& octree, const Patches& patches, double sp
     const EmptySpace space(level);
     const View view(octree, level, space, spacing);
     std::vector<Sights> seen(patches.size());
-    for_each_index(patches.size(), patches_per_chunk, [&](Index p) {
+    for_each_index(patches.size(), chunks::slow, [&](Index p) {
         seen[p] = {view.look(patches.centroids[p], patches.normals[p]),
                    view.look(patches.centroids[p], -patches.normals[p])};
     });

@@ -10,8 +10,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t leaves_per_chunk = 256;
-
 class PatchBuilder {
 public:
     PatchBuilder(const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate)
@@ -21,8 +19,8 @@ public:
         const std::size_t leaves = neighbors_.leaf_first.size() - 1;
         result_.of_point.assign(octree_.size(), no_index);
         result_.sign.assign(octree_.size(), 1);
-        std::vector<Index> first(chunk_count(leaves, leaves_per_chunk) + 1, 0);
-        for_chunks(leaves, leaves_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        std::vector<Index> first(chunk_count(leaves, chunks::heavy) + 1, 0);
+        for_chunks(leaves, chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
             Index count = 0;
             for (std::size_t l = begin; l < end; ++l) count += join_leaf(l, count);
             first[chunk + 1] = count;
@@ -31,7 +29,7 @@ public:
         result_.centroids.assign(first.back(), Vec3(0, 0, 0));
         result_.normals.assign(first.back(), Vec3(0, 0, 0));
         result_.counts.assign(first.back(), 0);
-        for_chunks(leaves, leaves_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        for_chunks(leaves, chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
             sum_points(neighbors_.leaf_first[begin], neighbors_.leaf_first[end], first[chunk]);
             for (Index p = first[chunk]; p < first[chunk + 1]; ++p) {
                 result_.centroids[p] /= result_.counts[p];
@@ -142,7 +140,7 @@ std::vector<SignedEdge> patch_evidence(const Octree& octree, const Neighbors& ne
         }
         found = std::move(list.edges);
     };
-    return collected<SignedEdge>(neighbors.leaf_first.size() - 1, leaves_per_chunk, gather);
+    return collected<SignedEdge>(neighbors.leaf_first.size() - 1, chunks::heavy, gather);
 }
 
 } // namespace hsdm

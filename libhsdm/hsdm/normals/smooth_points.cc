@@ -15,8 +15,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t voxels_per_chunk = 256;
-
 /// Points, mean and second moments about it of one voxel.
 struct VoxelSums {
     double count = 0;
@@ -41,7 +39,7 @@ public:
     std::vector<Vec3> run() {
         sum_voxels();
         std::vector<Vec3> moved(grid_.size());
-        for_chunks(level_.size(), voxels_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for_chunks(level_.size(), chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t) {
             std::vector<Index> around;
             for (std::size_t v = begin; v < end; ++v) {
                 find_around(static_cast<Index>(v), around);
@@ -66,7 +64,7 @@ private:
     void sum_voxels() {
         level_ = extract_level(grid_, depth_);
         sums_.resize(level_.size());
-        for_each_index(level_.size(), voxels_per_chunk, [&](Index v) {
+        for_each_index(level_.size(), chunks::heavy, [&](Index v) {
             const Index first = level_.first_point[v], last = level_.first_point[v + 1];
             VoxelSums& sum = sums_[v];
             sum.count = last - first;

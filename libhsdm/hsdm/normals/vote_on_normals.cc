@@ -10,8 +10,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t bent_per_chunk = 256;
-
 /// The neighbours that lie on one plane with the point and whose normals agree with a given one.
 class Agreement {
 public:
@@ -60,7 +58,7 @@ void vote_on_normals(const Octree& octree, const Neighbors& neighbors, Estimated
     const std::vector<Index>& bent = estimate.bent;
     std::vector<Vec3> settled(bent.size());
     for (int round = 0; round < normal_votes::rounds; ++round) {
-        for_each_index(bent.size(), bent_per_chunk, [&](Index b) {
+        for_each_index(bent.size(), chunks::heavy, [&](Index b) {
             const Vec3& own = settled[b] = estimate.normals[bent[b]];
             const auto around = neighbors.of(bent[b]);
             if (std::any_of(around.begin(), around.end(), [&](Index j) {

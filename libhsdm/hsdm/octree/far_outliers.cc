@@ -11,8 +11,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t points_per_chunk = 1 << 14;
-
 /// The box of all but the outer two percent of a sample along each axis.
 Box box_of_most(const Octree& octree, const PointCloud& cloud) {
     constexpr std::size_t samples = 1 << 12;
@@ -40,7 +38,7 @@ using Places = std::vector<std::pair<MortonCode, Index>>;
 Places shifted_places(const Octree& octree) {
     constexpr double last = (1 << morton_levels) - 1;
     Places places(octree.size());
-    for_each_index(places.size(), points_per_chunk, [&](Index i) {
+    for_each_index(places.size(), chunks::light, [&](Index i) {
         std::array<std::uint32_t, 3> c;
         for (unsigned k = 0; k < 3; ++k) {
             const double x = (octree.positions[i][k] / octree.extent + 1.0 / 3) / 2;
@@ -94,7 +92,7 @@ CloudFrame frame_of_rest(const Octree& octree, const PointCloud& cloud) {
 /// has no voxels, as for parts 2^1000 times as far apart as they are large.
 bool take_anew(Octree& octree, const PointCloud& cloud, const CloudFrame& frame) {
     std::vector<Vec3> positions(octree.size());
-    for_each_index(positions.size(), points_per_chunk,
+    for_each_index(positions.size(), chunks::light,
                    [&](Index i) { positions[i] = frame.to_work(cloud.positions[octree.source[i]]); });
     const Box bounds = bounds_of(positions);
     if (!has_voxels(bounds)) return false;
@@ -112,7 +110,7 @@ double cut_gaps(const Octree& octree, const PointCloud& cloud, double widest, Cl
     std::vector<double> coordinates(octree.size());
     double longest = 0;
     for (unsigned axis = 0; axis < 3; ++axis) {
-        for_each_index(coordinates.size(), points_per_chunk, [&](Index i) {
+        for_each_index(coordinates.size(), chunks::light, [&](Index i) {
             coordinates[i] = uncut.to_work(cloud.positions[octree.source[i]])[axis];
         });
         longest = std::max(longest, frame.cut_gaps(axis, coordinates, widest));
@@ -125,7 +123,7 @@ std::size_t mark_scraps(const Octree& octree, const PointCloud& cloud, const Clo
                         std::vector<std::uint8_t>& marks) {
     const CloudFrame uncut = frame.without_cuts();
     std::vector<std::pair<std::array<Index, 3>, Index>> points(octree.size());
-    for_each_index(points.size(), points_per_chunk, [&](Index i) {
+    for_each_index(points.size(), chunks::light, [&](Index i) {
         points[i] = {frame.stretch_of_uncut(uncut.to_work(cloud.positions[octree.source[i]])), i};
     });
     tbb::parallel_sort(points.begin(), points.end());

@@ -24,7 +24,6 @@ Vec3 centred_origin(const Box& bounds, double extent) {
 
 namespace {
 
-constexpr std::size_t grain = 1 << 14;
 constexpr double cells = 1 << morton_levels; // along an edge of the cube
 constexpr std::size_t ahead = 16;            // points prefetched ahead: their order is not the cloud's
 
@@ -48,7 +47,7 @@ template <class T, class Change>
 std::vector<T> gathered(const std::vector<T>& values, const std::vector<Index>& places,
                         const Change& change) {
     std::vector<T> result(places.size());
-    for_each_index(places.size(), grain, [&](Index i) {
+    for_each_index(places.size(), chunks::light, [&](Index i) {
         if (i + ahead < places.size()) __builtin_prefetch(&values[places[i + ahead]]);
         result[i] = change(values[places[i]]);
     });
@@ -94,9 +93,9 @@ void order_points(std::span<const Vec3> positions, std::span<const Vec3> normals
         return a.code >> in_cell == b.code >> in_cell;
     };
     // chunks end at cell boundaries
-    std::vector<std::size_t> first(chunk_count(keys.size(), grain) + 1, keys.size());
+    std::vector<std::size_t> first(chunk_count(keys.size(), chunks::light) + 1, keys.size());
     for (std::size_t chunk = 0; chunk + 1 < first.size(); ++chunk) {
-        std::size_t i = chunk * grain;
+        std::size_t i = chunk * chunks::light;
         if (chunk > 0) i = std::max(i, first[chunk - 1]);
         while (i > 0 && i < keys.size() && same_cell(keys[i - 1], keys[i])) ++i;
         first[chunk] = i;
@@ -143,7 +142,7 @@ std::size_t merge_equal(std::span<const Vec3> positions, std::span<const Vec3> n
 std::vector<Index> take_order(std::vector<CodeIndex>& keys, std::vector<MortonCode>& codes) {
     std::vector<Index> order(keys.size());
     codes.resize(keys.size());
-    for_each_index(keys.size(), grain, [&](Index i) {
+    for_each_index(keys.size(), chunks::light, [&](Index i) {
         codes[i] = keys[i].code;
         order[i] = keys[i].index;
     });
@@ -190,7 +189,7 @@ Octree build(const PointCloud& cloud, std::vector<Vec3>* ours, const OctreeOptio
     const bool with_values = !cloud.colors.empty() || !cloud.scalars.empty();
     const double scale = cells / octree.extent, per_unit = 1 / options.unit;
     std::vector<CodeIndex> keys(n);
-    for_each_index(n, grain, [&](Index i) {
+    for_each_index(n, chunks::light, [&](Index i) {
         keys[i] = {code_of(cloud.positions[i] * per_unit - octree.origin, scale), i};
     });
     const std::span<const Vec3> normals = with_normals ? cloud.normals : std::span<const Vec3>();
@@ -224,7 +223,7 @@ void rearrange(Octree& octree, std::vector<Vec3> positions, double extent) {
     const Vec3 shift = before - octree.origin;
     const double scale = cells / extent;
     std::vector<CodeIndex> keys(positions.size());
-    for_each_index(keys.size(), grain, [&](Index i) {
+    for_each_index(keys.size(), chunks::light, [&](Index i) {
         positions[i] += shift;
         keys[i] = {code_of(positions[i], scale), i};
     });
@@ -269,8 +268,9 @@ namespace {
 
 /// The places where shifted codes change, followed by the number of codes.
 std::vector<Index> find_runs(const std::vector<MortonCode>& codes, int shift) {
-    std::vector<Index> runs = indices_where(
-        codes.size(), grain, [&](Index i) { return i == 0 || codes[i] >> shift != codes[i - 1] >> shift; });
+    std::vector<Index> runs = indices_where(codes.size(), chunks::light, [&](Index i) {
+        return i == 0 || codes[i] >> shift != codes[i - 1] >> shift;
+    });
     runs.push_back(static_cast<Index>(codes.size()));
     return runs;
 }
@@ -279,7 +279,8 @@ std::vector<Index> find_runs(const std::vector<MortonCode>& codes, int shift) {
 void fill_level(const std::vector<MortonCode>& codes, int shift, const std::vector<Index>& runs,
                 OctreeLevel& level) {
     level.codes.resize(runs.size() - 1);
-    for_each_index(level.codes.size(), grain, [&](Index v) { level.codes[v] = codes[runs[v]] >> shift; });
+    for_each_index(level.codes.size(), chunks::light,
+                   [&](Index v) { level.codes[v] = codes[runs[v]] >> shift; });
     level.build_index();
 }
 
@@ -305,7 +306,7 @@ OctreeLevel coarser_level(const OctreeLevel& finer, int depth) {
     const int shift = 3 * (finer.depth - depth);
     level.first_point = find_runs(finer.codes, shift);
     fill_level(finer.codes, shift, level.first_point, level);
-    for_each_index(level.first_point.size(), grain,
+    for_each_index(level.first_point.size(), chunks::light,
                    [&](Index v) { level.first_point[v] = finer.first_point[level.first_point[v]]; });
     return level;
 }

@@ -13,8 +13,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t points_per_chunk = 1 << 14;
-
 void note_small_components(const SmallComponents& small, Report& report) {
     report.rejected["components_small"] = small.components;
     report.rejected["facets_of_small_components"] = small.facets.count;
@@ -67,7 +65,7 @@ Discarded measure_error(std::span<const Vec3> points, const MethodInput& in, con
 
 std::vector<Vec3> points_as_read(const PointCloud& cloud, const CloudFrame& frame, const Octree& octree) {
     std::vector<Vec3> points(octree.size());
-    for_each_index(points.size(), points_per_chunk, [&](Index i) {
+    for_each_index(points.size(), chunks::light, [&](Index i) {
         points[i] = frame.to_work(cloud.positions[octree.source[i]]) - octree.origin;
     });
     return points;

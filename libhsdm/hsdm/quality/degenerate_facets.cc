@@ -11,8 +11,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t facets_per_chunk = 1 << 12;
-
 /// Do the facets, which share a side, have the same vertices?
 bool are_over_the_same(std::span<const Index> a, std::span<const Index> b) {
     return a.size() == b.size() && std::all_of(a.begin(), a.end(), [&](Index v) {
@@ -59,7 +57,7 @@ bool spans_cut(const PolygonMesh& mesh, const Vec3& origin, const CloudFrame& fr
 Discarded drop_degenerate_facets(PolygonMesh& mesh, const Vec3& origin, const CloudFrame& frame,
                                  FacetLinks& links, FeatureHints& hints) {
     std::vector<std::uint8_t> unsound(mesh.facet_count());
-    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for_chunks(mesh.facet_count(), chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t) {
         std::vector<Vec3> ring;
         for (std::size_t f = begin; f < end; ++f) {
             ring.clear();

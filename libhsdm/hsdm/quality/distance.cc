@@ -13,9 +13,6 @@
 namespace hsdm {
 namespace {
 
-/// Points per task, searched in order, each starting at the nearest triangle of the one before; also the unit
-/// of the sums, so that their rounding does not depend on the number of threads.
-constexpr std::size_t chunk = 1 << 11;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t packet = 32;  // most points of a packet, which lie close together
 constexpr std::size_t fewest = 6;   // fewest points for which a packet is worth a descent of the tree
@@ -81,13 +78,13 @@ struct Sums {
     std::size_t farthest = 0, beyond = 0, first_beyond = 0;
 };
 
-/// Sums up distances. squares() is called once per chunk and returns a function from a point's index to its
-/// squared distance.
+/// Sums up distances, chunk by chunk, so that their rounding does not depend on the number of threads.
+/// squares() is called once per chunk and returns a function from a point's index to its squared distance.
 template <class Squares>
 Distance sum_up(std::size_t points, double beyond, Squares squares) {
     if (points == 0) return {};
-    std::vector<Sums> chunks(chunk_count(points, chunk));
-    for_chunks(points, chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+    std::vector<Sums> chunks(chunk_count(points, chunks::usual));
+    for_chunks(points, chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t c) {
         auto squared = squares();
         Sums sums;
         for (std::size_t i = begin; i < end; ++i) {
@@ -142,15 +139,15 @@ Distance points_to_mesh_by_cells(std::span<const Vec3> points, const PolygonMesh
     if (!cells.usable()) return points_to_mesh(points, MeshDistance(mesh), beyond);
     const Triangulation cut = triangulate(mesh);
     std::vector<double> squared(points.size());
-    for_chunks(points.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for_chunks(points.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
         CellSearch search(mesh, cut, cells);
         for (std::size_t i = begin; i < end; ++i) squared[i] = search.squared_distance(points[i]);
     });
     const std::vector<Index> far =
-        indices_where(points.size(), chunk, [&](Index i) { return squared[i] == infinity; });
+        indices_where(points.size(), chunks::usual, [&](Index i) { return squared[i] == infinity; });
     if (!far.empty()) {
         const MeshDistance by_tree(mesh, cut);
-        for_chunks(far.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for_chunks(far.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
             Index hint = no_index;
             for (std::size_t i = begin; i < end; ++i) {
                 const double d = by_tree(points[far[i]], hint);
@@ -172,8 +169,7 @@ std::vector<Vec3> sample_surface(const PolygonMesh& mesh, std::size_t count) {
     std::vector<Vec3> samples;
     if (!(area.back() > 0)) return samples;
     samples.resize(count);
-    constexpr std::size_t grain = 1 << 12;
-    for_chunks(count, grain, [&](std::size_t i, std::size_t end, std::size_t) {
+    for_chunks(count, chunks::quick, [&](std::size_t i, std::size_t end, std::size_t) {
         for (; i < end; ++i) {
             // Evenly spaced along the running area; inside the triangle the additive recurrence of the two
             // generalised golden ratios of the plane, folded into the triangle.

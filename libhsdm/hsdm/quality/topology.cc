@@ -14,9 +14,6 @@
 namespace hsdm {
 namespace {
 
-// values per partial sum: fixed, so that rounding does not depend on the number of threads
-constexpr std::size_t chunk = 1 << 12;
-
 /// The facets as loops without immediate repeats of a vertex; a loop left with fewer than three corners has
 /// collapsed and is no part of the surface. Corner c is also the half-edge from its vertex to the next one.
 struct Loops {
@@ -59,7 +56,7 @@ struct Fans {
 
 EdgeTable edges_of(const Loops& loops, std::size_t vertices) {
     return EdgeTable(vertices, [&](const auto& visit) {
-        for_each_index(loops.vertex.size(), chunk,
+        for_each_index(loops.vertex.size(), chunks::quick,
                        [&](Index c) { visit(loops.vertex[c], loops.vertex[loops.next[c]], c); });
     });
 }
@@ -82,10 +79,10 @@ bool join_at_edge(const Loops& loops, std::span<const EdgeSide> edge, Fans& fans
 /// Counts edges into `topology`; returns the half-edges on the boundary, by their edges.
 std::vector<Index> measure_edges(const Loops& loops, std::size_t vertices, Fans& fans, Topology& topology) {
     const EdgeTable table = edges_of(loops, vertices);
-    struct Sums {
+    struct EdgeSums {
         std::size_t edges = 0, misoriented = 0, branching = 0;
     };
-    std::vector<Sums> sums(table.chunks());
+    std::vector<EdgeSums> sums(table.chunks());
     std::vector<std::vector<Index>> boundary(table.chunks());
     table.for_edges([&](Index lower, std::span<const EdgeSide> edge, std::size_t c) {
         ++sums[c].edges;
@@ -96,7 +93,7 @@ std::vector<Index> measure_edges(const Loops& loops, std::size_t vertices, Fans&
         for (Index v : {lower, edge[0].upper}) // edges of other chunks may end there
             std::atomic_ref(fans.branches[v]).store(1, std::memory_order_relaxed);
     });
-    for (const Sums& sum : sums) {
+    for (const EdgeSums& sum : sums) {
         topology.edges += sum.edges;
         topology.misoriented_edges += sum.misoriented;
         topology.nonmanifold_edges += sum.branching;
@@ -144,7 +141,7 @@ bool is_degenerate(const PolygonMesh& mesh, std::span<const Index> facet, std::v
 
 std::size_t count_degenerate(const PolygonMesh& mesh) {
     std::vector<unsigned char> degenerate(mesh.facet_count());
-    for_chunks(degenerate.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for_chunks(degenerate.size(), chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t) {
         std::vector<Vec3> ring;
         for (std::size_t f = begin; f != end; ++f) degenerate[f] = is_degenerate(mesh, mesh.facet(f), ring);
     });
@@ -158,7 +155,7 @@ std::size_t count_duplicates(const PolygonMesh& mesh) {
         auto operator<=>(const Key&) const = default;
     };
     std::vector<Key> keys(mesh.facet_count());
-    for_each_index(keys.size(), chunk, [&](Index f) {
+    for_each_index(keys.size(), chunks::quick, [&](Index f) {
         keys[f] = {mesh.facet(f).size(), f};
         for (Index v : mesh.facet(f)) keys[f].set += hash_index(v);
     });
@@ -175,8 +172,8 @@ std::size_t count_duplicates(const PolygonMesh& mesh) {
 /// Sum of term(i) over 0 .. n - 1, the same bits for any number of threads.
 template <class Term>
 double chunked_sum(std::size_t n, Term term) {
-    std::vector<double> sums(chunk_count(n, chunk), 0.0);
-    for_chunks(n, chunk, [&](std::size_t i, std::size_t end, std::size_t c) {
+    std::vector<double> sums(chunk_count(n, chunks::quick), 0.0);
+    for_chunks(n, chunks::quick, [&](std::size_t i, std::size_t end, std::size_t c) {
         double sum = 0;
         for (; i < end; ++i) sum += term(i);
         sums[c] = sum;

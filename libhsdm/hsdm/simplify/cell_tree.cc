@@ -9,9 +9,7 @@
 #include <cmath>
 
 namespace hsdm {
-namespace {
-constexpr std::size_t vertices_per_chunk = 4096;
-} // namespace
+namespace {} // namespace
 
 MortonCode CellTree::code_at(const Vec3& position) const {
     const double cells = static_cast<double>(1u << depth());
@@ -50,7 +48,7 @@ CellTree build_cell_tree(std::span<const Vec3> positions, double extent, int dep
     tree.extent = extent;
     tree.levels.resize(static_cast<std::size_t>(depth) + 1);
     std::vector<MortonCode> of_vertex(positions.size());
-    for_chunks(positions.size(), vertices_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for_chunks(positions.size(), chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t v = begin; v < end; ++v) of_vertex[v] = tree.code_at(positions[v]);
     });
     std::vector<MortonCode> codes = of_vertex;
@@ -67,7 +65,7 @@ CellTree build_cell_tree(std::span<const Vec3> positions, double extent, int dep
             here.parent[c] = here.parent[c - 1] + (codes[c] != codes[c - 1]);
     }
     tree.of_vertex.resize(positions.size());
-    for_chunks(positions.size(), vertices_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for_chunks(positions.size(), chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t v = begin; v < end; ++v) tree.of_vertex[v] = tree.find(depth, of_vertex[v]);
     });
     return tree;

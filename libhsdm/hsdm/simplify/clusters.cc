@@ -16,8 +16,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t clusters_per_chunk = 1024, edges_per_chunk = 8192, facets_per_chunk = 8192;
-
 /// The items for which keep() is true, in order; keep() is called once per item, from many threads.
 template <class T, class Keep>
 std::vector<T> kept(const std::vector<T>& list, std::size_t per_chunk, const Keep& keep) {
@@ -62,8 +60,8 @@ private:
     /// vertices, which may have one half-edge only, by sorting.
     void gather_edges() {
         const std::vector<std::uint8_t> border = border_vertices(mesh_);
-        std::vector<Edges> parts(chunk_count(mesh_.facet_count(), facets_per_chunk)), at_border(parts.size());
-        for_chunks(mesh_.facet_count(), facets_per_chunk,
+        std::vector<Edges> parts(chunk_count(mesh_.facet_count(), chunks::quick)), at_border(parts.size());
+        for_chunks(mesh_.facet_count(), chunks::quick,
                    [&](std::size_t f, std::size_t end, std::size_t chunk) {
                        for (; f < end; ++f) {
                            const auto ring = mesh_.facet(f);
@@ -97,7 +95,7 @@ private:
         const auto& parent_cell = tree_.levels[level + 1].parent;
         const auto cell_of = [&](Index cluster) { return parent_cell[below.cell[cluster]]; };
         DisjointSets joined(below.size());
-        for_chunks(edges_.size(), edges_per_chunk, [&](std::size_t e, std::size_t end, std::size_t) {
+        for_chunks(edges_.size(), chunks::quick, [&](std::size_t e, std::size_t end, std::size_t) {
             for (; e < end; ++e) {
                 const Index i = current_[edges_[e].first], j = current_[edges_[e].second];
                 if (i != no_index && j != no_index && cell_of(i) == cell_of(j)) joined.join(i, j);
@@ -127,12 +125,12 @@ private:
                               const std::vector<std::uint8_t>& eligible, std::size_t level) {
         const auto& parent_cell = tree_.levels[level + 1].parent;
         std::vector<Index> part(below.size());
-        for_chunks(part.size(), clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for_chunks(part.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t i = begin; i < end; ++i) part[i] = joined.find(static_cast<Index>(i));
         });
         const Groups members(part, part.size());
         std::vector<std::uint8_t> missed(below.size(), 0);
-        for_chunks(below.size(), clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for_chunks(below.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t i = begin; i < end; ++i) {
                 const Index cell = parent_cell[below.cell[i]];
                 if (part[i] != i || !eligible[cell]) continue;
@@ -151,7 +149,7 @@ private:
             const Index i = current_[edge.first], j = current_[edge.second];
             return i != no_index && j != no_index && i != j && part[i] == part[j] && missed[part[i]];
         };
-        for (const Edge& edge : kept(edges_, edges_per_chunk, is_inside)) {
+        for (const Edge& edge : kept(edges_, chunks::quick, is_inside)) {
             const Index i = current_[edge.first], j = current_[edge.second];
             sides.push_back({part[i], std::min(i, j), std::max(i, j)});
         }
@@ -198,7 +196,7 @@ private:
         const Groups members(below.parent, count);
         std::vector<Quadric> sums(count);
         std::vector<int> euler(count, 0);
-        for_chunks(count, clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for_chunks(count, chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t i = begin; i < end; ++i) {
                 sums[i] = sum_of(members.of(i));
                 for (Index member : members.of(i)) euler[i] += euler_[member];
@@ -207,16 +205,16 @@ private:
         const auto change = [&](Index cluster, int by) {
             std::atomic_ref(euler[cluster]).fetch_add(by, std::memory_order_relaxed);
         };
-        for_chunks(current_.size(), clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for_chunks(current_.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t v = begin; v < end; ++v)
                 if (current_[v] != no_index) current_[v] = below.parent[current_[v]];
         });
-        edges_ = kept(edges_, edges_per_chunk, [&](const Edge& edge) {
+        edges_ = kept(edges_, chunks::quick, [&](const Edge& edge) {
             const Index i = current_[edge.first], j = current_[edge.second];
             if (i != no_index && i == j) change(i, -1);
             return i != no_index && j != no_index && i != j;
         });
-        facets_ = kept(facets_, facets_per_chunk, [&](Index f) {
+        facets_ = kept(facets_, chunks::quick, [&](Index f) {
             const auto ring = mesh_.facet(f);
             const Index first = current_[ring[0]];
             bool one = true, any_lost = false;
@@ -241,7 +239,7 @@ private:
     void decide(ClusterLevel& here, const std::vector<std::uint8_t>& eligible, std::size_t level) {
         CellLevel& cells = tree_.levels[level];
         std::vector<std::uint8_t> fits(here.size());
-        for_chunks(here.size(), clusters_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for_chunks(here.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t i = begin; i < end; ++i) {
                 here.positions[i] = place_in(planes_[i], box_of(here.cell[i], level));
                 fits[i] = euler_[i] == 1 && planes_[i].rms(here.positions[i]) <= tolerance_;

@@ -13,7 +13,7 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t vertices_per_chunk = 256, collapses_per_chunk = 32;
+constexpr std::size_t collapses_per_chunk = 32;
 // beside the middle, which is tested first
 constexpr double along_edge[] = {0.125, 0.25, 0.375, 0.625, 0.75, 0.875};
 
@@ -58,7 +58,7 @@ private:
     };
 
     void find_beside() {
-        for_chunks(beside_.size(), vertices_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for_chunks(beside_.size(), chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t) {
             Index hint = no_index;
             for (auto v = static_cast<Index>(begin); v < end; ++v) {
                 fine_.triangle_within(mesh_.at(v), tolerance_, hint);
@@ -91,8 +91,8 @@ private:
 
     std::vector<Collapse> find_collapses() {
         const std::vector<Index> out = mesh_.sides_out();
-        std::vector<std::vector<Collapse>> parts(chunk_count(out.size(), vertices_per_chunk));
-        for_chunks(out.size(), vertices_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+        std::vector<std::vector<Collapse>> parts(chunk_count(out.size(), chunks::heavy));
+        for_chunks(out.size(), chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t c) {
             Scratch scratch;
             for (auto v = static_cast<Index>(begin); v < end; ++v)
                 if (out[v] != no_index && (mesh_.has_changed(v) || waits_[v]) && !mesh_.is_locked(v))

@@ -12,8 +12,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t sides_per_chunk = 2048;
-
 class PlaneCollapsing {
 public:
     PlaneCollapsing(CollapsingMesh mesh, std::vector<Quadric> planes, std::vector<double> tolerance)
@@ -133,13 +131,12 @@ private:
     }
 
     std::vector<Candidate> find_candidates() {
-        std::vector<std::vector<Candidate>> parts(chunk_count(mesh_.side_count(), sides_per_chunk));
-        for_chunks(mesh_.side_count(), sides_per_chunk,
-                   [&](std::size_t begin, std::size_t end, std::size_t c) {
-                       for (auto s = static_cast<Index>(begin); s < end; ++s)
-                           if (!mesh_.is_gone(s) && mesh_.twin(s) != no_index && s < mesh_.twin(s))
-                               add_candidate(s, parts[c]);
-                   });
+        std::vector<std::vector<Candidate>> parts(chunk_count(mesh_.side_count(), chunks::usual));
+        for_chunks(mesh_.side_count(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t c) {
+            for (auto s = static_cast<Index>(begin); s < end; ++s)
+                if (!mesh_.is_gone(s) && mesh_.twin(s) != no_index && s < mesh_.twin(s))
+                    add_candidate(s, parts[c]);
+        });
         return joined(parts);
     }
 

@@ -17,9 +17,7 @@ namespace {
 
 // share of the bound kept free for rounding, in case someone measures from the same origin in another way
 constexpr double rounding = 1e-9;
-constexpr std::size_t places_per_chunk = 2048;
 constexpr std::size_t far_per_chunk = 64; // distances of far places take long to measure
-constexpr std::size_t items_per_chunk = 512, facets_per_chunk = 1024;
 
 std::array<Vec3, 3> corners_of(const PolygonMesh& mesh, const Triangle& t) {
     return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
@@ -78,7 +76,7 @@ void add_places(const std::array<Vec3, 3>& corners, const std::array<bool, 3>& t
 /// Calls is_near(i, hint, scratch) for each index i that is not known to be near; then `near` says which are.
 template <class IsNear>
 void find_near(std::vector<std::uint8_t>& near, const IsNear& is_near) {
-    for_chunks(near.size(), items_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for_chunks(near.size(), chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t) {
         Index hint = no_index;
         std::vector<Vec3> scratch;
         for (auto i = static_cast<Index>(begin); i < end; ++i)
@@ -121,7 +119,7 @@ FarPlaces DistanceCheck::find_far(const PolygonMesh& mesh, const Unchanged& same
 void DistanceCheck::follow_triangles(const SurfaceWalk& before, const Triangulation& cut_before,
                                      const Unchanged& same) {
     followed_.resize(cut_before.size());
-    for_chunks(same.facet_now.size(), facets_per_chunk, [&](std::size_t f, std::size_t end, std::size_t) {
+    for_chunks(same.facet_now.size(), chunks::slow, [&](std::size_t f, std::size_t end, std::size_t) {
         Index hint = no_index;
         for (; f < end; ++f)
             for (Index t = cut_before.first[f]; t < cut_before.first[f + 1]; ++t) {
@@ -141,8 +139,8 @@ void DistanceCheck::follow_triangles(const SurfaceWalk& before, const Triangulat
 std::vector<Index> DistanceCheck::far_from(std::span<const Vec3> places, double bound,
                                            std::vector<Index>& near) const {
     near.resize(places.size(), no_index);
-    std::vector<std::vector<Index>> parts(chunk_count(places.size(), places_per_chunk));
-    for_chunks(places.size(), places_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+    std::vector<std::vector<Index>> parts(chunk_count(places.size(), chunks::usual));
+    for_chunks(places.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t c) {
         Index hint = no_index;
         for (std::size_t i = begin; i < end; ++i) {
             if (near[i] != no_index) {

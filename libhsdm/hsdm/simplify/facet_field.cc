@@ -13,13 +13,11 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t facets_per_chunk = 2048;
-
 void measure_facets(const PolygonMesh& mesh, FacetField& field) {
     field.area.resize(mesh.facet_count());
     field.centre.resize(field.size());
     field.normal.resize(field.size());
-    for_each_index(field.size(), facets_per_chunk, [&](Index f) {
+    for_each_index(field.size(), chunks::usual, [&](Index f) {
         const auto ring = mesh.facet(f);
         field.area[f] = area_vector(mesh, ring);
         field.normal[f] = unit(field.area[f]);
@@ -31,7 +29,7 @@ void measure_facets(const PolygonMesh& mesh, FacetField& field) {
 
 void link_facets(const PolygonMesh& mesh, FacetField& field) {
     std::vector<Index> facet_of(mesh.corners.size());
-    for_each_index(field.size(), facets_per_chunk, [&](Index f) {
+    for_each_index(field.size(), chunks::usual, [&](Index f) {
         std::fill(facet_of.begin() + mesh.first[f], facet_of.begin() + mesh.first[f + 1], f);
     });
     field.beside.assign(mesh.corners.size(), no_index);
@@ -47,14 +45,14 @@ void gather_normals(FacetField& field) {
     std::vector<double> bend(field.size(), 0), wider_bend(field.size());
     std::vector<NormalSum> wider(field.size());
     field.around.resize(field.size());
-    for_each_index(field.size(), facets_per_chunk, [&](Index f) {
+    for_each_index(field.size(), chunks::usual, [&](Index f) {
         field.around[f].add(field.normal[f], field.area[f].norm());
         field.for_beside(f, [&](Index g) {
             bend[f] += (field.normal[g] - field.normal[f]) | (field.centre[g] - field.centre[f]);
         });
     });
     for (int away = 0; away < surroundings::most_sides_away; ++away) {
-        for_each_index(field.size(), facets_per_chunk, [&](Index f) {
+        for_each_index(field.size(), chunks::usual, [&](Index f) {
             wider[f] = field.around[f];
             wider_bend[f] = bend[f];
             field.for_beside(f, [&](Index g) {
@@ -66,14 +64,14 @@ void gather_normals(FacetField& field) {
         bend.swap(wider_bend);
     }
     field.convex.resize(field.size());
-    for_each_index(field.size(), facets_per_chunk, [&](Index f) { field.convex[f] = bend[f] > 0; });
+    for_each_index(field.size(), chunks::usual, [&](Index f) { field.convex[f] = bend[f] > 0; });
 }
 
 void measure_bend(FacetField& field) {
     field.spread.resize(field.size());
     field.next_spread.resize(field.size());
     field.mean_normal.resize(field.size());
-    for_each_index(field.size(), facets_per_chunk, [&](Index f) {
+    for_each_index(field.size(), chunks::usual, [&](Index f) {
         const std::array<double, 3> deviation = field.around[f].deviation();
         field.spread[f] = deviation[2];
         field.next_spread[f] = deviation[1];

@@ -10,8 +10,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t facets_per_chunk = 4096;
-
 /// May a box touch one of the boxes added? True if some cell of a grid is touched by both. Counts are prefix
 /// sums along the axes, so that a large box takes no longer than a small one.
 class BoxGrid {
@@ -85,8 +83,8 @@ std::vector<Index> with_touching(const PolygonMesh& mesh, const std::vector<std:
     for (std::size_t f = 0; f < marked.size(); ++f)
         if (marked[f]) grid.add(box_of(mesh, f));
     grid.sum_up();
-    std::vector<std::vector<Index>> parts(chunk_count(marked.size(), facets_per_chunk));
-    for_chunks(marked.size(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+    std::vector<std::vector<Index>> parts(chunk_count(marked.size(), chunks::quick));
+    for_chunks(marked.size(), chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t c) {
         for (std::size_t f = begin; f < end; ++f)
             if (marked[f] || grid.touches(box_of(mesh, f))) parts[c].push_back(static_cast<Index>(f));
     });

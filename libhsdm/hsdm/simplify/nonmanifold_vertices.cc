@@ -9,13 +9,12 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t facets_per_chunk = 2048;
 // largest ratio that counts as 0: of twice a facet's area to its squared length, of a side to its length
 constexpr double flat = 1e-6;
 
 std::vector<Index> flat_facets(const PolygonMesh& mesh) {
-    std::vector<std::vector<Index>> parts(chunk_count(mesh.facet_count(), facets_per_chunk));
-    for_chunks(mesh.facet_count(), facets_per_chunk, [&](std::size_t f, std::size_t end, std::size_t c) {
+    std::vector<std::vector<Index>> parts(chunk_count(mesh.facet_count(), chunks::usual));
+    for_chunks(mesh.facet_count(), chunks::usual, [&](std::size_t f, std::size_t end, std::size_t c) {
         for (; f < end; ++f) {
             const auto ring = mesh.facet(f);
             double longest = 0, shortest = std::numeric_limits<double>::infinity();

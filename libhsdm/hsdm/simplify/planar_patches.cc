@@ -14,8 +14,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t vertices_per_chunk = 1024;
-
 /// The plane fitted to facets, updated with each one added.
 class GrowingPlane {
 public:
@@ -199,7 +197,7 @@ std::vector<Quadric> vertex_planes(const PolygonMesh& mesh, const PlanarPatches&
         centre /= static_cast<double>(ring.size());
         for (Index v : ring) planes[v].add_plane(area / length, centre, share);
     }
-    for_chunks(planes.size(), vertices_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for_chunks(planes.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t v = begin; v < end; ++v) planes[v].drop_shared(mesh.positions[v], tolerance);
     });
     return planes;

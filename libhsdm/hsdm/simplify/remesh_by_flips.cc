@@ -19,8 +19,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t triangles_per_chunk = 1024, sides_per_chunk = 3 * triangles_per_chunk;
-
 class FlipRemeshing {
 public:
     FlipRemeshing(PolygonMesh& mesh, const ToleranceEnvelope& fine, std::span<const std::uint8_t> fixed,
@@ -131,7 +129,7 @@ private:
             half_.resize(facet_.size(), ring.size() == 4);
         }
         std::vector<Index> corners(3 * facet_.size());
-        for_chunks(facet_.size(), triangles_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for_chunks(facet_.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t t = begin; t < end; ++t)
                 if (t == 0 || facet_[t - 1] != facet_[t]) cut(mesh_.facet(facet_[t]), &corners[3 * t]);
         });
@@ -192,7 +190,7 @@ private:
     void judge_all(const std::vector<std::uint8_t>& turned) {
         verdicts_.resize(side_count());
         waits_.assign(half_.size(), 0);
-        for_chunks(side_count(), sides_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for_chunks(side_count(), 3 * chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
             Index hint = no_index;
             for (auto s = static_cast<Index>(begin); s < end; ++s) {
                 if (!is_due(s, turned)) continue;
@@ -302,8 +300,8 @@ private:
     }
 
     std::vector<Quad> possible_quads() const {
-        std::vector<std::vector<Quad>> parts(chunk_count(side_count(), sides_per_chunk));
-        for_chunks(side_count(), sides_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
+        std::vector<std::vector<Quad>> parts(chunk_count(side_count(), 3 * chunks::slow));
+        for_chunks(side_count(), 3 * chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t c) {
             for (auto s = static_cast<Index>(begin); s < end; ++s)
                 if (twin(s) != no_index && s < twin(s))
                     if (const auto quad = quad_across(s)) parts[c].push_back(*quad);

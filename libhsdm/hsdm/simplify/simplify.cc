@@ -20,7 +20,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t vertices_per_chunk = 2048, facets_per_chunk = 8192;
 constexpr std::size_t fewest_samples = 10000, most_samples = 100000;
 
 /// A cluster, which becomes a vertex of the result.
@@ -139,7 +138,7 @@ private:
     /// Finds the leaf and the cluster of every fine vertex.
     void locate() {
         places_.resize(fine_.vertex_count());
-        for_chunks(places_.size(), vertices_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for_chunks(places_.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t v = begin; v < end; ++v) {
                 Place place{tree_.depth(), static_cast<Index>(v), tree_.of_vertex[v]};
                 while (place.level > 0) {
@@ -176,9 +175,9 @@ private:
             }
             vertex_[v] = n;
         }
-        std::vector<PolygonMesh> parts(chunk_count(fine_.facet_count(), facets_per_chunk));
+        std::vector<PolygonMesh> parts(chunk_count(fine_.facet_count(), chunks::quick));
         std::vector<std::vector<Index>> pinched(parts.size());
-        for_chunks(fine_.facet_count(), facets_per_chunk,
+        for_chunks(fine_.facet_count(), chunks::quick,
                    [&](std::size_t begin, std::size_t end, std::size_t chunk) {
                        std::vector<Index> ring, open;
                        for (std::size_t f = begin; f < end; ++f) {

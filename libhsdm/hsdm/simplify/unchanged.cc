@@ -7,8 +7,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t facets_per_chunk = 2048;
-
 Index origin_of(const PolygonMesh& mesh, Index v) {
     return mesh.origin.empty() ? v : mesh.origin[v];
 }
@@ -45,7 +43,7 @@ std::vector<Index> first_vertices(const PolygonMesh& mesh) {
 
 void find_facets(const PolygonMesh& before, const PolygonMesh& now, Unchanged& same) {
     const Groups facets_from(first_vertices(before), before.vertex_count());
-    for_chunks(now.facet_count(), facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for_chunks(now.facet_count(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
         std::vector<Index> ring, other;
         for (std::size_t f = begin; f < end; ++f) {
             ring.clear();

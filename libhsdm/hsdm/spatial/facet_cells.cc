@@ -11,7 +11,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t facets_per_chunk = 4096, entries_per_chunk = 16384;
 // mean number of cells per facet; about four if facets span the voxels of a grid
 constexpr double most_cells = 16;
 constexpr std::size_t most_facets = 64; // mean number of facets per cell
@@ -28,14 +27,13 @@ FacetCells::FacetCells(const PolygonMesh& mesh, double size) : size_(size), per_
     const std::vector<std::size_t> offset = count(mesh);
     if (offset.empty()) return;
     std::vector<CodeIndex> entries(offset.back());
-    for_chunks(mesh.facet_count(), facets_per_chunk,
-               [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-                   std::size_t at = offset[chunk];
-                   for (std::size_t f = begin; f < end; ++f)
-                       range_of(*this, mesh, f).for_each([&](const VoxelCoord& c) {
-                           entries[at++] = {morton_encode(c), static_cast<Index>(f)};
-                       });
-               });
+    for_chunks(mesh.facet_count(), chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        std::size_t at = offset[chunk];
+        for (std::size_t f = begin; f < end; ++f)
+            range_of(*this, mesh, f).for_each([&](const VoxelCoord& c) {
+                entries[at++] = {morton_encode(c), static_cast<Index>(f)};
+            });
+    });
     const int bits = static_cast<int>(std::bit_width(static_cast<std::uint32_t>(std::ranges::max(last_))));
     radix_sort(entries, 3 * bits);
     group(entries);
@@ -57,9 +55,9 @@ bool FacetCells::fit(const Box& box) {
 
 /// Where the entries of each chunk of facets begin and end; empty if there are too many.
 std::vector<std::size_t> FacetCells::count(const PolygonMesh& mesh) const {
-    const std::size_t facets = mesh.facet_count(), chunks = chunk_count(facets, facets_per_chunk);
+    const std::size_t facets = mesh.facet_count(), chunks = chunk_count(facets, chunks::quick);
     std::vector<double> counts(chunks, 0.0);
-    for_chunks(facets, facets_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+    for_chunks(facets, chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         for (std::size_t f = begin; f < end; ++f) counts[chunk] += range_of(*this, mesh, f).count();
     });
     const double total = std::accumulate(counts.begin(), counts.end(), 0.0);
@@ -71,7 +69,7 @@ std::vector<std::size_t> FacetCells::count(const PolygonMesh& mesh) const {
 
 void FacetCells::group(const std::vector<CodeIndex>& entries) {
     facet_.resize(entries.size());
-    first_ = indices_where(entries.size(), entries_per_chunk, [&](Index i) {
+    first_ = indices_where(entries.size(), chunks::light, [&](Index i) {
         facet_[i] = entries[i].index;
         return i == 0 || entries[i].code != entries[i - 1].code;
     });

@@ -8,7 +8,6 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t facets_per_chunk = 2048;
 /// Least area of a triangle seen from a corner, over the square of its longest arm: far above rounding, far
 /// below shapes in use.
 constexpr double least_area = 1e-6;
@@ -29,7 +28,7 @@ struct Sight {
 /// Per vertex its first facet, no_index if it has none.
 std::vector<Index> first_facets(const PolygonMesh& mesh, const std::vector<Index>& vertex) {
     std::vector<Index> first(mesh.vertex_count(), no_index);
-    for_each_index(mesh.facet_count(), facets_per_chunk, [&](Index f) {
+    for_each_index(mesh.facet_count(), chunks::usual, [&](Index f) {
         for (Index v : mesh.facet(f)) {
             const std::atomic_ref least(first[vertex[v]]);
             Index seen = least.load(std::memory_order_relaxed);
@@ -43,7 +42,7 @@ std::vector<Index> first_facets(const PolygonMesh& mesh, const std::vector<Index
 std::vector<Sight> find_sights(const PolygonMesh& mesh, const std::vector<Index>& vertex) {
     const std::vector<Index> first = first_facets(mesh, vertex);
     std::vector<Sight> sights(first.size());
-    for_each_index(first.size(), 2 * facets_per_chunk, [&](Index v) {
+    for_each_index(first.size(), 2 * chunks::usual, [&](Index v) {
         if (first[v] == no_index) return;
         const auto facet = mesh.facet(first[v]);
         std::size_t k = 0;
@@ -94,7 +93,7 @@ std::uint32_t turns_at(const PolygonMesh& mesh, std::span<const Index> facet, st
 std::vector<std::uint8_t> flat_fans(const PolygonMesh& mesh, const std::vector<Index>& vertex) {
     const std::vector<Sight> sights = find_sights(mesh, vertex);
     std::vector<Fan> fans(mesh.vertex_count());
-    for_each_index(mesh.facet_count(), facets_per_chunk, [&](Index f) {
+    for_each_index(mesh.facet_count(), chunks::usual, [&](Index f) {
         const auto facet = mesh.facet(f);
         const std::size_t n = facet.size();
         for (std::size_t k = 0; k < n; ++k) {

@@ -16,7 +16,6 @@ namespace {
 constexpr int most_steps = 12; // after more steps a search is faster
 // of a triangle's corner angle: the walk does not cross flatter triangles
 constexpr double least_squared_sine = 1e-4;
-constexpr std::size_t triangles_per_chunk = 4096;
 constexpr double farthest = 3; // in cells: farther triangles are searched for in the tree
 
 std::vector<Index> twins_of(const PolygonMesh& mesh, const Triangulation& cut) {
@@ -150,7 +149,7 @@ void SurfaceWalk::make_steps(const std::vector<Index>& twin) {
     rounding_ = static_cast<float>(2 * std::numeric_limits<float>::epsilon() * box.diagonal()
                                    / std::sqrt(least_squared_sine));
     steps_ = std::make_unique_for_overwrite<Step[]>(triangles_.size());
-    for_each_index(triangles_.size(), triangles_per_chunk, [&](Index t) {
+    for_each_index(triangles_.size(), chunks::quick, [&](Index t) {
         const auto& [ia, ib, ic] = triangles_[t];
         const Vec3 &a = positions_[ia], ab = positions_[ib] - a, ac = positions_[ic] - a;
         const Vec3 normal = ab % ac;

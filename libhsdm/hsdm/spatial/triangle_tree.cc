@@ -13,7 +13,6 @@ namespace hsdm {
 namespace {
 
 using Range = tbb::blocked_range<std::size_t>;
-constexpr std::size_t grain = 1 << 10;
 /// Four entries a level of the walk, and 4^15 blocks hold 2^32 triangles.
 constexpr std::size_t stack_size = 4 * 17;
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -62,7 +61,7 @@ TriangleTree::TriangleTree(const std::vector<Vec3>& positions, const std::vector
                            Order order) {
     if (triangles.empty()) return;
     const Box box = tbb::parallel_reduce(
-        Range(0, triangles.size(), grain), Box{},
+        Range(0, triangles.size(), chunks::slow), Box{},
         [&](const Range& range, Box part) {
             for (std::size_t t = range.begin(); t != range.end(); ++t)
                 for (Index v : triangles[t]) part.add(positions[v]);
@@ -82,7 +81,7 @@ TriangleTree::TriangleTree(const std::vector<Vec3>& positions, const std::vector
 void TriangleTree::set_order(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                              Order order) {
     std::vector<Item> items(triangles.size());
-    for_each_index(items.size(), grain, [&](Index t) {
+    for_each_index(items.size(), chunks::slow, [&](Index t) {
         Box box;
         for (Index v : triangles[t]) box.add(positions[v] - centre_);
         const Vec3 middle = (box.lo + box.hi) / 2;
@@ -92,7 +91,7 @@ void TriangleTree::set_order(const std::vector<Vec3>& positions, const std::vect
     if (order == Order::compact) split(items.data(), items.data() + items.size());
     triangle_of_.resize(items.size());
     place_of_.resize(items.size());
-    for_each_index(items.size(), grain, [&](Index i) {
+    for_each_index(items.size(), chunks::slow, [&](Index i) {
         triangle_of_[i] = items[i].triangle;
         place_of_[items[i].triangle] = i;
     });
@@ -103,7 +102,7 @@ void TriangleTree::fill_blocks(const std::vector<Vec3>& positions, const std::ve
     const std::size_t parents = (blocks + width - 1) / width;
     blocks_ = std::make_unique_for_overwrite<Block[]>(blocks);
     std::vector<Boxes> boxes(parents);
-    for_each_index(parents * width, grain, [&](Index b) {
+    for_each_index(parents * width, chunks::slow, [&](Index b) {
         Box box;
         for (std::size_t lane = 0; b < blocks && lane < width; ++lane) {
             const std::size_t place = std::min(b * width + lane, triangle_of_.size() - 1);
