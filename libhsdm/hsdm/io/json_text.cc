@@ -57,25 +57,18 @@ void JsonText::value(std::string_view text) {
     append(text_, std::string(text));
 }
 
-void JsonText::value(double number) {
+template <class Number>
+requires std::is_arithmetic_v<Number>
+void JsonText::value(Number number) {
     start_value();
     append(text_, number);
 }
-
-void JsonText::value(bool flag) {
-    start_value();
-    append(text_, flag);
-}
-
-void JsonText::value(std::int64_t number) {
-    start_value();
-    append(text_, number);
-}
-
-void JsonText::value(std::uint64_t number) {
-    start_value();
-    append(text_, number);
-}
+template void JsonText::value(bool);
+template void JsonText::value(int);
+template void JsonText::value(unsigned);
+template void JsonText::value(std::int64_t);
+template void JsonText::value(std::uint64_t);
+template void JsonText::value(double);
 
 void JsonText::document(std::string_view text) {
     start_value();

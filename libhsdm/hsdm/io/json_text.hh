@@ -24,12 +24,10 @@ public:
 
     void value(std::string_view text);
     void value(const char* text) { value(std::string_view(text)); }
-    void value(double number); ///< the shortest digits that read back the same
-    void value(bool flag);
-    void value(std::int64_t number);
-    void value(std::uint64_t number);
-    void value(int number) { value(std::int64_t(number)); }
-    void value(unsigned number) { value(std::uint64_t(number)); }
+    /// A flag or a number, of which the shortest digits that read back the same.
+    template <class Number>
+    requires std::is_arithmetic_v<Number>
+    void value(Number number);
     /// A range of values.
     template <class Values>
     requires requires(const Values& v) {

@@ -48,9 +48,8 @@ CellTree build_cell_tree(std::span<const Vec3> positions, double extent, int dep
     tree.extent = extent;
     tree.levels.resize(static_cast<std::size_t>(depth) + 1);
     std::vector<MortonCode> of_vertex(positions.size());
-    for_chunks(positions.size(), chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t v = begin; v < end; ++v) of_vertex[v] = tree.code_at(positions[v]);
-    });
+    for_each_index(positions.size(), chunks::quick,
+                   [&](Index v) { of_vertex[v] = tree.code_at(positions[v]); });
     std::vector<MortonCode> codes = of_vertex;
     tbb::parallel_sort(codes.begin(), codes.end());
     for (std::size_t level = tree.levels.size(); level-- > 0;) {
@@ -65,9 +64,8 @@ CellTree build_cell_tree(std::span<const Vec3> positions, double extent, int dep
             here.parent[c] = here.parent[c - 1] + (codes[c] != codes[c - 1]);
     }
     tree.of_vertex.resize(positions.size());
-    for_chunks(positions.size(), chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t v = begin; v < end; ++v) tree.of_vertex[v] = tree.find(depth, of_vertex[v]);
-    });
+    for_each_index(positions.size(), chunks::quick,
+                   [&](Index v) { tree.of_vertex[v] = tree.find(depth, of_vertex[v]); });
     return tree;
 }
 

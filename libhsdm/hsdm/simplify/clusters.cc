@@ -95,11 +95,9 @@ private:
         const auto& parent_cell = tree_.levels[level + 1].parent;
         const auto cell_of = [&](Index cluster) { return parent_cell[below.cell[cluster]]; };
         DisjointSets joined(below.size());
-        for_chunks(edges_.size(), chunks::quick, [&](std::size_t e, std::size_t end, std::size_t) {
-            for (; e < end; ++e) {
-                const Index i = current_[edges_[e].first], j = current_[edges_[e].second];
-                if (i != no_index && j != no_index && cell_of(i) == cell_of(j)) joined.join(i, j);
-            }
+        for_each_index(edges_.size(), chunks::quick, [&](Index e) {
+            const Index i = current_[edges_[e].first], j = current_[edges_[e].second];
+            if (i != no_index && j != no_index && cell_of(i) == cell_of(j)) joined.join(i, j);
         });
         const std::vector<Index> part = divide(joined, below, eligible, level);
         ClusterLevel here;
@@ -125,9 +123,7 @@ private:
                               const std::vector<std::uint8_t>& eligible, std::size_t level) {
         const auto& parent_cell = tree_.levels[level + 1].parent;
         std::vector<Index> part(below.size());
-        for_chunks(part.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t i = begin; i < end; ++i) part[i] = joined.find(static_cast<Index>(i));
-        });
+        for_each_index(part.size(), chunks::slow, [&](Index i) { part[i] = joined.find(i); });
         const Groups members(part, part.size());
         std::vector<std::uint8_t> missed(below.size(), 0);
         for_chunks(below.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -196,18 +192,15 @@ private:
         const Groups members(below.parent, count);
         std::vector<Quadric> sums(count);
         std::vector<int> euler(count, 0);
-        for_chunks(count, chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t i = begin; i < end; ++i) {
-                sums[i] = sum_of(members.of(i));
-                for (Index member : members.of(i)) euler[i] += euler_[member];
-            }
+        for_each_index(count, chunks::slow, [&](Index i) {
+            sums[i] = sum_of(members.of(i));
+            for (Index member : members.of(i)) euler[i] += euler_[member];
         });
         const auto change = [&](Index cluster, int by) {
             std::atomic_ref(euler[cluster]).fetch_add(by, std::memory_order_relaxed);
         };
-        for_chunks(current_.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t v = begin; v < end; ++v)
-                if (current_[v] != no_index) current_[v] = below.parent[current_[v]];
+        for_each_index(current_.size(), chunks::slow, [&](Index v) {
+            if (current_[v] != no_index) current_[v] = below.parent[current_[v]];
         });
         edges_ = kept(edges_, chunks::quick, [&](const Edge& edge) {
             const Index i = current_[edge.first], j = current_[edge.second];
@@ -239,11 +232,9 @@ private:
     void decide(ClusterLevel& here, const std::vector<std::uint8_t>& eligible, std::size_t level) {
         CellLevel& cells = tree_.levels[level];
         std::vector<std::uint8_t> fits(here.size());
-        for_chunks(here.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
-            for (std::size_t i = begin; i < end; ++i) {
-                here.positions[i] = place_in(planes_[i], box_of(here.cell[i], level));
-                fits[i] = euler_[i] == 1 && planes_[i].rms(here.positions[i]) <= tolerance_;
-            }
+        for_each_index(here.size(), chunks::slow, [&](Index i) {
+            here.positions[i] = place_in(planes_[i], box_of(here.cell[i], level));
+            fits[i] = euler_[i] == 1 && planes_[i].rms(here.positions[i]) <= tolerance_;
         });
         cells.whole = eligible;
         for (std::size_t i = 0; i < here.size(); ++i)

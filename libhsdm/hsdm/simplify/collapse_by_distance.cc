@@ -91,14 +91,13 @@ private:
 
     std::vector<Collapse> find_collapses() {
         const std::vector<Index> out = mesh_.sides_out();
-        std::vector<std::vector<Collapse>> parts(chunk_count(out.size(), chunks::heavy));
-        for_chunks(out.size(), chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t c) {
+        const auto find = [&](std::size_t begin, std::size_t end, std::vector<Collapse>& part) {
             Scratch scratch;
             for (auto v = static_cast<Index>(begin); v < end; ++v)
                 if (out[v] != no_index && (mesh_.has_changed(v) || waits_[v]) && !mesh_.is_locked(v))
-                    add_collapse(out[v], scratch, parts[c]);
-        });
-        return joined(parts);
+                    add_collapse(out[v], scratch, part);
+        };
+        return collected<Collapse>(out.size(), chunks::heavy, find);
     }
 
     /// Adds the shortest side that may collapse, judged by the middles of new edges alone.

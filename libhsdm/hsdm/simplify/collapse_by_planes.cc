@@ -131,13 +131,12 @@ private:
     }
 
     std::vector<Candidate> find_candidates() {
-        std::vector<std::vector<Candidate>> parts(chunk_count(mesh_.side_count(), chunks::usual));
-        for_chunks(mesh_.side_count(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t c) {
+        const auto find = [&](std::size_t begin, std::size_t end, std::vector<Candidate>& part) {
             for (auto s = static_cast<Index>(begin); s < end; ++s)
                 if (!mesh_.is_gone(s) && mesh_.twin(s) != no_index && s < mesh_.twin(s))
-                    add_candidate(s, parts[c]);
-        });
-        return joined(parts);
+                    add_candidate(s, part);
+        };
+        return collected<Candidate>(mesh_.side_count(), chunks::usual, find);
     }
 
     /// Adds an edge if it may collapse. Edges near which nothing changed are skipped, and so are those whose

@@ -86,10 +86,7 @@ void find_near(std::vector<std::uint8_t>& near, const IsNear& is_near) {
 
 /// Indices of what is not near.
 std::vector<Index> far_of(const std::vector<std::uint8_t>& near) {
-    std::vector<Index> far;
-    for (Index i = 0; i < near.size(); ++i)
-        if (!near[i]) far.push_back(i);
-    return far;
+    return indices_where(near.size(), chunks::light, [&](Index i) { return !near[i]; });
 }
 
 } // namespace
@@ -139,8 +136,7 @@ void DistanceCheck::follow_triangles(const SurfaceWalk& before, const Triangulat
 std::vector<Index> DistanceCheck::far_from(std::span<const Vec3> places, double bound,
                                            std::vector<Index>& near) const {
     near.resize(places.size(), no_index);
-    std::vector<std::vector<Index>> parts(chunk_count(places.size(), chunks::usual));
-    for_chunks(places.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t c) {
+    const auto find = [&](std::size_t begin, std::size_t end, std::vector<Index>& far) {
         Index hint = no_index;
         for (std::size_t i = begin; i < end; ++i) {
             if (near[i] != no_index) {
@@ -150,10 +146,10 @@ std::vector<Index> DistanceCheck::far_from(std::span<const Vec3> places, double 
                 hint = now.near;
             }
             near[i] = to_mesh_->triangle_within(places[i], bound, hint);
-            if (near[i] == no_index) parts[c].push_back(static_cast<Index>(i));
+            if (near[i] == no_index) far.push_back(static_cast<Index>(i));
         }
-    });
-    return joined(parts);
+    };
+    return collected<Index>(places.size(), chunks::usual, find);
 }
 
 /// Vertices of the mesh farther than the bound from the fine mesh; its own vertices are on it and need no
@@ -219,9 +215,8 @@ FarPoints DistanceCheck::find_far_points() {
     // If the fine mesh misses points by more than the bound, such a point counts only if the mesh is farther
     // from it than the fine mesh is from any.
     std::vector<double> off(missed.size());
-    for_chunks(missed.size(), far_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i) off[i] = to_mesh_->tree()(points_[missed[i]]);
-    });
+    for_each_index(missed.size(), far_per_chunk,
+                   [&](Index i) { off[i] = to_mesh_->tree()(points_[missed[i]]); });
     for (std::size_t i = 0; i < missed.size(); ++i)
         if (off[i] > farthest) found.points.push_back(missed[i]);
     return found;

@@ -83,12 +83,8 @@ std::vector<Index> with_touching(const PolygonMesh& mesh, const std::vector<std:
     for (std::size_t f = 0; f < marked.size(); ++f)
         if (marked[f]) grid.add(box_of(mesh, f));
     grid.sum_up();
-    std::vector<std::vector<Index>> parts(chunk_count(marked.size(), chunks::quick));
-    for_chunks(marked.size(), chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t c) {
-        for (std::size_t f = begin; f < end; ++f)
-            if (marked[f] || grid.touches(box_of(mesh, f))) parts[c].push_back(static_cast<Index>(f));
-    });
-    return joined(parts);
+    return indices_where(marked.size(), chunks::quick,
+                         [&](Index f) { return marked[f] || grid.touches(box_of(mesh, f)); });
 }
 
 } // namespace

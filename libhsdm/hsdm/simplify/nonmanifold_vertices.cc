@@ -13,22 +13,17 @@ namespace {
 constexpr double flat = 1e-6;
 
 std::vector<Index> flat_facets(const PolygonMesh& mesh) {
-    std::vector<std::vector<Index>> parts(chunk_count(mesh.facet_count(), chunks::usual));
-    for_chunks(mesh.facet_count(), chunks::usual, [&](std::size_t f, std::size_t end, std::size_t c) {
-        for (; f < end; ++f) {
-            const auto ring = mesh.facet(f);
-            double longest = 0, shortest = std::numeric_limits<double>::infinity();
-            Index before = ring.back();
-            for (const Index v : ring) {
-                longest = std::max(longest, (mesh.positions[v] - mesh.positions[ring[0]]).sqrnorm());
-                shortest = std::min(shortest, (mesh.positions[v] - mesh.positions[before]).sqrnorm());
-                before = v;
-            }
-            if (area_vector(mesh, ring).norm() <= flat * longest || shortest <= flat * flat * longest)
-                parts[c].push_back(static_cast<Index>(f));
+    return indices_where(mesh.facet_count(), chunks::usual, [&](Index f) {
+        const auto ring = mesh.facet(f);
+        double longest = 0, shortest = std::numeric_limits<double>::infinity();
+        Index before = ring.back();
+        for (const Index v : ring) {
+            longest = std::max(longest, (mesh.positions[v] - mesh.positions[ring[0]]).sqrnorm());
+            shortest = std::min(shortest, (mesh.positions[v] - mesh.positions[before]).sqrnorm());
+            before = v;
         }
+        return area_vector(mesh, ring).norm() <= flat * longest || shortest <= flat * flat * longest;
     });
-    return joined(parts);
 }
 
 } // namespace

@@ -197,9 +197,8 @@ std::vector<Quadric> vertex_planes(const PolygonMesh& mesh, const PlanarPatches&
         centre /= static_cast<double>(ring.size());
         for (Index v : ring) planes[v].add_plane(area / length, centre, share);
     }
-    for_chunks(planes.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t v = begin; v < end; ++v) planes[v].drop_shared(mesh.positions[v], tolerance);
-    });
+    for_each_index(planes.size(), chunks::slow,
+                   [&](Index v) { planes[v].drop_shared(mesh.positions[v], tolerance); });
     return planes;
 }
 

@@ -300,13 +300,12 @@ private:
     }
 
     std::vector<Quad> possible_quads() const {
-        std::vector<std::vector<Quad>> parts(chunk_count(side_count(), 3 * chunks::slow));
-        for_chunks(side_count(), 3 * chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t c) {
+        const auto find = [&](std::size_t begin, std::size_t end, std::vector<Quad>& part) {
             for (auto s = static_cast<Index>(begin); s < end; ++s)
                 if (twin(s) != no_index && s < twin(s))
-                    if (const auto quad = quad_across(s)) parts[c].push_back(*quad);
-        });
-        return joined(parts);
+                    if (const auto quad = quad_across(s)) part.push_back(*quad);
+        };
+        return collected<Quad>(side_count(), 3 * chunks::slow, find);
     }
 
     std::size_t join() {
