@@ -43,7 +43,7 @@ struct Decimation {
         remesh(remeshed, checks, Diagonals::may_flip);
         const CollapsingMesh undropped(remeshed);
         const auto drops =
-            find_distance_collapses(undropped, checks.bound().to_fine(), drop_share * tolerance);
+            find_distance_collapses(undropped, checks.distances().to_fine(), drop_share * tolerance);
         by_distance = kept(
             collapse_by_distance(undropped, drops, std::vector<std::uint8_t>(remeshed.vertex_count(), 1)));
         remesh(by_distance, checks, Diagonals::stay);

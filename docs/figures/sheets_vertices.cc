@@ -46,7 +46,7 @@ Style class_style(VertexClass of) {
 Vec3 mean_crossing(const Steps& steps, Index v) {
     Vec3 sum(0, 0, 0);
     const auto corners = steps.duals.corners_of(v);
-    for (FacetCorner corner : corners) sum += steps.crossing_of(corner);
+    for (FacetCorner corner : corners) sum += steps.crossing_position_of(corner);
     return sum / static_cast<double>(corners.size());
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// Exceptions of the public functions. Stages do not throw: what goes wrong there is counted in a report.
+// Exceptions of the public functions. Stages throw OptionError for their own options and nothing else: what
+// goes wrong with the data is counted in a report.
 
 #include <cstddef>
 #include <stdexcept>

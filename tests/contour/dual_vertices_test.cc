@@ -46,8 +46,8 @@ void check_vertices(const Stages& stages) {
         wrong += before != (duals.open[v] ? no_index : corners.back().crossing());
         wrong += after != (duals.open[v] ? no_index : corners.front().crossing());
     }
-    REQUIRE(duals.of_side.size() == 8 * stages.crossings.crossings.size());
-    for (Index v : duals.of_side) wrong += v >= duals.size();
+    REQUIRE(duals.of_corner.size() == 8 * stages.crossings.crossings.size());
+    for (Index v : duals.of_corner) wrong += v >= duals.size();
     CHECK(wrong == 0);
 }
 
@@ -160,7 +160,7 @@ TEST_CASE("dual vertices do not depend on the number of threads", "[contour]") {
     const DualVertices single = build_dual_vertices(many.grid, many.crossings, many.links);
     CHECK(many.duals.corners == single.corners);
     CHECK(many.duals.first == single.first);
-    CHECK(many.duals.of_side == single.of_side);
+    CHECK(many.duals.of_corner == single.of_corner);
     CHECK(many.duals.open == single.open);
     CHECK(many.duals.after_cut == single.after_cut);
     CHECK(many.duals.caps == single.caps);

@@ -25,12 +25,12 @@ PolygonMesh ball(Index n) {
 /// A mesh that is its own leaves, decimated.
 struct Decimated {
     PolygonMesh fine;
-    DecimatedLeaves result;
+    DecimatedMesh result;
 
     Decimated(PolygonMesh mesh, std::vector<Quadric> planes, const DecimateOptions& options = {},
               double band = 0.35)
         : fine(std::move(mesh)) {
-        LeafMesh leaves{fine, std::vector<Index>(fine.vertex_count())};
+        ClusteredMesh leaves{fine, std::vector<Index>(fine.vertex_count())};
         std::iota(leaves.vertex.begin(), leaves.vertex.end(), Index{0});
         leaves.mesh.origin = leaves.vertex;
         MeshChecks checks(fine, nullptr, fine.positions, bound, 0.05, band * bound);

@@ -24,8 +24,8 @@ struct Links {
     std::vector<std::array<Link, 4>> of_crossing; ///< of the four sides of its facet
     std::size_t open = 0;                         ///< sides without a twin: boundary half-edges of the mesh
     std::size_t rims = 0;
-    /// The links of grid faces that hold at least two (one side of each pair; open sides count), each face's
-    /// list ended by no_side. Only in such faces can two mesh edges join the same two vertices.
+    /// For each grid face with two links or more: one side of each pair and every open side, then no_side.
+    /// Only there can two mesh edges join the same two vertices.
     std::vector<FacetSide> crowded;
 
     Link& of(FacetSide side) { return of_crossing[side.crossing()][side.j()]; }

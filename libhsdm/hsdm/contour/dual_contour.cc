@@ -45,10 +45,10 @@ public:
             const bool strip = rim && dual.duals.ends(side) != dual.duals.ends(twin);
             const bool halved = repeated(side);
             if (twin == no_side || strip) {
-                if (halved) halve(side, dual.crossing_of(side));
-                if (strip && repeated(twin)) halve(twin, dual.crossing_of(twin));
+                if (halved) halve(side, dual.crossing_position_of(side));
+                if (strip && repeated(twin)) halve(twin, dual.crossing_position_of(twin));
             } else if (halved) {
-                halve(side, 0.5 * (dual.crossing_of(side) + dual.crossing_of(twin)));
+                halve(side, 0.5 * (dual.crossing_position_of(side) + dual.crossing_position_of(twin)));
                 of_side_[twin.number()] = mid(side);
             }
         }

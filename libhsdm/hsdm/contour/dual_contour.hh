@@ -26,7 +26,11 @@ struct DualContour {
     PolygonMesh mesh;                 ///< relative to the octree's origin; an oriented 2-manifold
     std::vector<VertexClass> classes; ///< per vertex
     std::vector<Index> voxel;         ///< per vertex, the occupied voxel it stands for
-    std::size_t beyond_crease = 0, settled = 0, trimmed = 0, tips = 0, clamped = 0;
+    std::size_t beyond_crease = 0;    ///< crossings clipped where another sheet crosses theirs
+    std::size_t settled = 0;          ///< crossings dropped, restored or added so that signs agree
+    std::size_t trimmed = 0;          ///< crossings dropped beyond the end of the data
+    std::size_t tips = 0;             ///< pairs of crossings dropped
+    std::size_t clamped = 0;          ///< vertices kept in their voxels
     /// vertices merged into the vertex of the next voxel, which holds their corner (shared_corners)
     std::size_t corners_merged = 0;
     std::size_t midpoints = 0; ///< vertices added so that no two mesh edges join the same two vertices
@@ -38,6 +42,8 @@ struct DualContour {
     ManifoldCounts manifold;         ///< what make_manifold still had to mend at the end
 };
 
+/// Facets from the normal sets of one level (docs/sheets.md): an oriented 2-manifold, possibly with a border.
+/// O(sets), parallel. Throws OptionError.
 DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
                          const DualContourOptions& options = {});
 

@@ -7,16 +7,16 @@ namespace hsdm {
 
 struct DualMesh {
     GridPoints grid;
-    Crossings crossings; ///< each has a facet
-    Links links;         ///< the twins of the facets' sides
-    DualVertices duals;  ///< and the corners of facets round each
+    Crossings crossings; ///< each is dual to a facet
+    Links links;         ///< per side of a facet, its twin
+    DualVertices duals;  ///< the vertices, each with the facet corners round it in order
     double voxel_size = 0;
 
     /// Where the crossing lies that a facet is dual to, relative to the octree's origin.
-    Vec3 crossing_of(FacetCorner corner) const {
+    Vec3 crossing_position_of(FacetCorner corner) const {
         return crossing_position(grid, crossings.of(corner), voxel_size);
     }
-    /// The voxel that a dual vertex stands for, in voxels; its facets meet there.
+    /// Integer coordinates of the voxel whose chain of crossings the dual vertex is.
     VoxelCoord voxel_of(Index dual) const {
         return CornerVoxel(grid, crossings, duals.corners_of(dual)[0]).coord;
     }

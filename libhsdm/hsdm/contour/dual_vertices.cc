@@ -230,16 +230,16 @@ void append(const ChunkDualVertices& chunk, DualVertices& duals) {
     }
 }
 
-/// Fills of_side: both sides of a corner belong to its dual vertex; of a corner shared by two dual vertices,
-/// one side to each.
+/// Fills of_corner: both sides of a corner belong to its dual vertex; of a corner shared by two dual
+/// vertices, one side to each.
 void number_sides(const Crossings& crossings, std::span<const std::uint8_t> shared, DualVertices& duals) {
-    duals.of_side.assign(8 * crossings.crossings.size(), no_index);
+    duals.of_corner.assign(8 * crossings.crossings.size(), no_index);
     for_each_index(duals.size(), chunks::quick, [&](Index v) {
         const auto corners = duals.corners_of(v);
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const std::size_t leaves_by = crossings.of(corners[i]).leaving, corner = corners[i].number();
-            if (i > 0 || !(shared[v] & 1u)) duals.of_side[2 * corner + 1 - leaves_by] = v;
-            if (i + 1 < corners.size() || !(shared[v] & 2u)) duals.of_side[2 * corner + leaves_by] = v;
+            if (i > 0 || !(shared[v] & 1u)) duals.of_corner[2 * corner + 1 - leaves_by] = v;
+            if (i + 1 < corners.size() || !(shared[v] & 2u)) duals.of_corner[2 * corner + leaves_by] = v;
         }
     });
 }

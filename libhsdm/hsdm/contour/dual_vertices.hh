@@ -12,10 +12,11 @@ namespace hsdm {
 struct DualVertices {
     std::vector<FacetCorner> corners;
     std::vector<Index> first{0};
-    /// Per corner two: its dual vertex as the end of the previous corner's side and as the start of its own.
-    std::vector<Index> of_side;
+    /// Two per corner c, alike but where a chain is cut there: [2 c] the dual vertex at which the side
+    /// c.previous() ends, [2 c + 1] the one at which the side c starts.
+    std::vector<Index> of_corner;
     /// Polygons between the three or more dual vertices of a closed chain that was cut at that many places
-    /// (the sides of a thin part and its rims); against the facets beside.
+    /// (the sides of a thin part and its rims); each of their sides is the twin of one beside it.
     std::vector<std::vector<Index>> caps;
     std::vector<std::uint8_t> open; ///< per dual vertex, is it at a border of the surface (an open chain)?
     std::vector<Index>
@@ -23,8 +24,8 @@ struct DualVertices {
     std::size_t cut = 0; ///< chains cut into two or more vertices
 
     /// The vertices that a side leads from and to.
-    Index from(FacetSide side) const { return of_side[2 * std::size_t{side.number()} + 1]; }
-    Index to(FacetSide side) const { return of_side[2 * std::size_t{side.next().number()}]; }
+    Index from(FacetSide side) const { return of_corner[2 * std::size_t{side.number()} + 1]; }
+    Index to(FacetSide side) const { return of_corner[2 * std::size_t{side.next().number()}]; }
     /// ... in the lower and in the upper voxel.
     std::array<Index, 2> ends(FacetSide side) const {
         const std::array<Index, 2> ends{from(side), to(side)};

@@ -15,8 +15,9 @@ namespace hsdm {
 /// side, with b, c the axes after a. A facet whose crossing leaves the solid runs this way, others against
 /// it.
 ///
-/// A corner also names the facet's side from there to the next corner: it passes through the grid face
-/// between voxels j and j + 1.
+/// The same number names the facet's side (half-edge) from this corner to the next, as FacetSide: it passes
+/// through the grid face between voxels j and j + 1. The side of a grid point, inside or outside, and the
+/// sides of a thin part are other things.
 class FacetCorner {
 public:
     constexpr FacetCorner() = default; ///< none

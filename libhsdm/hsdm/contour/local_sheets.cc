@@ -265,9 +265,9 @@ std::size_t extend_grid_points(GridPoints& grid, LocalSheets& sheets, const Octr
             for (const LocalSheet& sheet : sheets.sheets_at(i))
                 for (unsigned axis = 0; axis < 3; ++axis) {
                     const double rise = sheet.normal[axis] * level.voxel_size;
-                    const bool inside = sheet.distance < 0;
+                    const bool is_inside = sheet.distance < 0;
                     for (bool up : {true, false})
-                        if (inside != (sheet.distance + (up ? rise : -rise) < 0))
+                        if (is_inside != (sheet.distance + (up ? rise : -rise) < 0))
                             grid_points.add(i, axis, up, missing);
                 }
     };

@@ -193,7 +193,7 @@ private:
         for (unsigned k = 0; k < 3; ++k) problem_.lo[k] = at.coord[k] * mesh_.voxel_size;
         problem_.mean = Vec3(0, 0, 0);
         for (FacetCorner corner : corners) {
-            const Vec3 p = mesh_.crossing_of(corner);
+            const Vec3 p = mesh_.crossing_position_of(corner);
             problem_.planes.push_back({mesh_.crossings.of(corner).normal, p, 1});
             problem_.mean += p;
         }

@@ -22,8 +22,8 @@ struct PlacedVertices {
         Vec3 position;
         std::array<Vec3, 3> normals; ///< of the three sheets
         VoxelCoord step;             ///< from the vertex's voxel to the one that the corner lies in
-        /// bit w, w a mask of axes: do the sheets cross an edge of the voxel reached by `step` along these
-        /// axes only?
+        /// Bit w, w a mask of axes from 1 to 7: does one of the vertex's sheets cross an edge of the voxel
+        /// that `step` along the axes of w alone leads to? 0 if `step` is 0 along one of them.
         std::uint8_t crossed;
     };
     std::vector<Beyond> beyond; ///< by ascending dual vertex

@@ -41,7 +41,7 @@ private:
         const auto corners = duals_.corners_of(dual);
         return std::all_of(corners.begin(), corners.end(), [&](FacetCorner corner) {
             const Vec3& normal = mesh_.crossings.of(corner).normal;
-            return std::abs(normal | (beyond.position - mesh_.crossing_of(corner))) < near
+            return std::abs(normal | (beyond.position - mesh_.crossing_position_of(corner))) < near
                    && has_sheet(beyond, normal);
         });
     }

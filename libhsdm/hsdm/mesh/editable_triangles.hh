@@ -40,9 +40,9 @@ public:
     /// form one closed fan of all of its facets.
     bool ring_of(Index side, std::vector<Index>& ring) const;
 
-    /// Turns the edge of a side with a twin: triangles a b c and b a d become d b c and c a d, each in the
-    /// place of one. The new edge is that of previous_side(side); the side that ran b d is now `side`, the
-    /// one that ran c a its former twin, and those that ran b c and a d are where they were.
+    /// Flips the edge of a side with a twin. Let the side run a b, in triangle a b c, its twin in b a d: the
+    /// side's triangle becomes d b c, the twin's c a d. The side is d b then, its former twin c a, the new
+    /// edge that of previous_side(side), and b c and a d are where they were.
     void flip_edge(Index side);
     /// Counts the two triangles at a side as one facet from now on.
     void count_as_one(Index side) { --facets_[start(side)], --facets_[end(side)]; }

@@ -4,6 +4,7 @@
 #include "hsdm/quality/distance_to_surface.hh"
 #include "hsdm/spatial/cell_search.hh"
 #include "hsdm/spatial/mesh_distance.hh"
+#include "hsdm/spatial/point_triangle.hh"
 #include "hsdm/spatial/surface_walk.hh"
 
 #include <algorithm>
@@ -13,7 +14,6 @@
 namespace hsdm {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t packet = 32;  // most points of a packet, which lie close together
 constexpr std::size_t fewest = 6;   // fewest points for which a packet is worth a descent of the tree
 constexpr double packet_size = 0.8; // largest diagonal of a packet, in mean sizes of the tree's blocks

@@ -36,10 +36,10 @@ public:
     std::vector<Index> sides_out() const;
 
     /// May the start of a side collapse onto its end, which moves to a place? A 2-manifold must stay one
-    /// (link condition), no facet may turn by 40 degrees or get thinner than the thinnest there. The rings
-    /// are those of the two ends. `faces`: the normals that facets there should have, if known; then a facet
-    /// that has none of them may turn to one that it should have, a facet that faces away from one must not
-    /// grow, and a vertex amid three others may leave a needle.
+    /// (link condition), no facet may turn by 40 degrees or get thinner than collapses::least_shape and than
+    /// the thinnest there. The rings are those of the two ends. `faces`: the normals that facets there should
+    /// have, if known; then a facet that has none of them may turn to one that it should have, a facet that
+    /// faces away from one must not grow, and a vertex amid three others may leave a needle.
     bool may_collapse(const std::vector<Index>& ring, const std::vector<Index>& ring_to, const Vec3& place,
                       std::span<const Vec3> faces = {}) const;
     /// Collapses the start of a side onto its end, which moves to a place; false if may_collapse() does not
@@ -50,10 +50,11 @@ public:
     /// above) or get thinner than the thinnest there.
     bool move(Index side, const Vec3& place, std::span<const Vec3> faces = {});
 
-    /// Flips the edge of a side that is not gone, so that it joins the two vertices opposite. False if these
-    /// already share an edge, the one in the side's triangle is a border vertex, one would get more than 64
-    /// facets, or an end of the edge would keep fewer than three. Whether the new triangles are better is the
-    /// caller's concern. The new edge is that of previous_side(side).
+    /// Flips the edge of a side that is not gone, so that it joins the two vertices opposite. False at a
+    /// border; if both ends or both opposite vertices are locked; if these share an edge already, the one in
+    /// the side's triangle has no closed fan, or one has 64 facets; or if an end would keep fewer than three.
+    /// Whether the new triangles are better is the caller's concern. The new edge is that of
+    /// previous_side(side).
     bool flip(Index side);
     /// Undoes the last flip not undone yet; `laid`: a side of the flipped edge.
     void take_back_flip(Index laid) { lay(laid); }

@@ -24,8 +24,8 @@ struct Faults {
     FaultCounts counts;
     bool manifold = true;
     std::vector<Index> vertices; // where the mesh is no 2-manifold
-    // vertices of the leaves' mesh beside places too far off or intersections
-    std::vector<std::array<Index, 3>> leaves;
+    // sources beside places too far off or intersections
+    std::vector<std::array<Index, 3>> sources;
 
     bool no_worse_than(const FaultCounts& other) const {
         return manifold && counts.intersecting <= other.intersecting && counts.distant <= other.distant
@@ -33,7 +33,7 @@ struct Faults {
     }
 };
 
-/// Returns the leaves' mesh with vertices merged. A vertex with a tolerance of 0 is to stay.
+/// Returns the mesh with vertices merged. A vertex with a tolerance of 0 is to stay.
 using Merge = std::function<CollapsedMesh(const std::vector<double>& tolerance)>;
 
 /// A way to merge vertices, and what the remeshing after it may do.
@@ -42,30 +42,31 @@ struct DecimationStep {
     Diagonals diagonals; ///< of the remeshing
 };
 
-/// Merges vertices of a mesh as far as that causes no new faults.
+/// Merges vertices of a mesh as far as that causes no new faults. A `source` is a vertex of the mesh that the
+/// step begins from: the one over the octree's leaves first, what the first step left of it then.
 class DecimationRounds {
 public:
-    DecimationRounds(const LeafMesh& leaves, MeshChecks& checks, const DecimateOptions& options)
-        : leaves_(leaves),
+    DecimationRounds(const ClusteredMesh& clustered, MeshChecks& checks, const DecimateOptions& options)
+        : input_(clustered),
           checks_(checks),
           options_(options),
-          tolerance_(leaves.mesh.vertex_count(), checks.envelope().tolerance) {}
+          tolerance_(clustered.mesh.vertex_count(), checks.envelope().tolerance) {}
 
-    DecimatedLeaves run(const DecimationStep& step) {
+    DecimatedMesh run(const DecimationStep& step) {
         for (int round = 0; round < options_.rounds; ++round) {
             merge_once(step);
             const Faults faults = find_faults();
             result_.faults = faults.counts;
             if (faults.no_worse_than(options_.faults)) return std::move(result_);
-            const std::size_t kept = keep(faults.leaves);
+            const std::size_t kept = keep(faults.sources);
             if (kept + keep_closer(faults.vertices) > 0) continue;
             std::vector<Index> vertices; // the faults' own vertices, when nothing above has helped
-            for (const auto& leaves : faults.leaves)
-                for (Index leaf : leaves) vertices.push_back(result_.vertex[leaf]);
+            for (const auto& sources : faults.sources)
+                for (Index source : sources) vertices.push_back(result_.vertex[source]);
             if (keep_closer(vertices) == 0) break;
         }
-        result_.mesh = leaves_.mesh;
-        result_.vertex.resize(leaves_.mesh.vertex_count());
+        result_.mesh = input_.mesh;
+        result_.vertex.resize(input_.mesh.vertex_count());
         std::iota(result_.vertex.begin(), result_.vertex.end(), Index{0});
         result_.faults = find_faults().counts;
         return std::move(result_);
@@ -78,12 +79,12 @@ private:
         std::vector<std::uint8_t> merged(stands_for.size(), 0);
         for (Index v = 0; v < stands_for.size(); ++v)
             merged[stands_for[v]] |= stands_for[v] != v || flipped[v] != 0
-                                     || result_.mesh.positions[v] != leaves_.mesh.positions[v];
-        const std::vector<Index> leaf = drop_replaced(result_.mesh, stands_for);
+                                     || result_.mesh.positions[v] != input_.mesh.positions[v];
+        const std::vector<Index> source = drop_replaced(result_.mesh, stands_for);
         result_.vertex = std::move(stands_for);
-        has_merged_ = picked(merged, leaf);
+        has_merged_ = picked(merged, source);
         // Facets that no merger has changed stay as they are.
-        std::vector<std::uint8_t> fixed(leaf.size(), 1);
+        std::vector<std::uint8_t> fixed(source.size(), 1);
         for (Index v : with_neighbours(result_.mesh, has_merged_)) fixed[v] = 0;
         remesh_by_flips(result_.mesh, checks_.envelope(), fixed, step.diagonals, remeshed_);
     }
@@ -109,15 +110,15 @@ private:
         faults.manifold = faults.vertices.empty();
         faults.counts = found.count();
         for (Index v : found.far.fine_vertices) {
-            const Index leaf = leaves_.vertex[v];
-            faults.leaves.push_back({leaf, leaf, leaf});
+            const Index source = input_.vertex[v];
+            faults.sources.push_back({source, source, source});
         }
-        for (Index v : found.far.vertices) add_leaves(mesh.positions[v], faults.leaves);
-        for (const Vec3& place : found.far.on_facets) add_leaves(place, faults.leaves);
-        for (Index p : found.far_points.points) add_leaves(checks_.bound().point(p), faults.leaves);
+        for (Index v : found.far.vertices) add_sources(mesh.positions[v], faults.sources);
+        for (const Vec3& place : found.far.on_facets) add_sources(place, faults.sources);
+        for (Index p : found.far_points.points) add_sources(checks_.distances().point(p), faults.sources);
         for (const auto& [f, g] : found.intersecting)
             for (Index v : mesh.facet(diagonal(g) < diagonal(f) ? g : f))
-                add_leaves(mesh.positions[v], faults.leaves);
+                add_sources(mesh.positions[v], faults.sources);
         result_.far_points = std::move(found.far_points);
         return faults;
     }
@@ -128,50 +129,52 @@ private:
         return (box.hi - box.lo).sqrnorm();
     }
 
-    /// Adds the leaves' vertices that stand for the corners of a triangle of the fine surface near a place.
-    void add_leaves(const Vec3& place, std::vector<std::array<Index, 3>>& leaves) const {
-        const SurfaceWalk& fine = checks_.bound().to_fine();
+    /// Adds the sources that stand for the corners of a triangle of the fine surface near a place.
+    void add_sources(const Vec3& place, std::vector<std::array<Index, 3>>& sources) const {
+        const SurfaceWalk& fine = checks_.distances().to_fine();
         Index triangle = no_index, hint = no_index;
         double reach = checks_.envelope().tolerance;
         for (int k = 0; k < most_doublings && triangle == no_index; ++k, reach *= 2)
             triangle = fine.triangle_within(place, reach, hint);
         if (triangle == no_index) return;
         const auto [a, b, c] = fine.corners(triangle);
-        leaves.push_back({leaves_.vertex[a], leaves_.vertex[b], leaves_.vertex[c]});
+        sources.push_back({input_.vertex[a], input_.vertex[b], input_.vertex[c]});
     }
 
-    bool may_be_kept(Index leaf) const { return tolerance_[leaf] > 0 && has_merged_[result_.vertex[leaf]]; }
+    bool may_be_kept(Index source) const {
+        return tolerance_[source] > 0 && has_merged_[result_.vertex[source]];
+    }
 
-    /// Sets the tolerance of the leaves' vertices at faults to 0, so that they stay as they were; where all
+    /// Sets the tolerance of the sources at faults to 0, so that they stay as they were; where all
     /// of them do already, that of those around them. So a fault in one place costs no vertices elsewhere.
     /// Returns how many that concerns.
     std::size_t keep(const std::vector<std::array<Index, 3>>& faults) {
         std::vector<Index> kept;
         std::vector<std::uint8_t> around(tolerance_.size(), 0);
         bool is_helped = true;
-        for (const auto& leaves : faults) {
+        for (const auto& sources : faults) {
             const std::size_t before = kept.size();
-            std::copy_if(leaves.begin(), leaves.end(), std::back_inserter(kept),
-                         [&](Index leaf) { return may_be_kept(leaf); });
+            std::copy_if(sources.begin(), sources.end(), std::back_inserter(kept),
+                         [&](Index source) { return may_be_kept(source); });
             if (kept.size() > before) continue;
             is_helped = false;
-            for (Index leaf : leaves) around[leaf] = 1;
+            for (Index source : sources) around[source] = 1;
         }
         for (int ring = 0; ring < decimation::most_rings && !is_helped; ++ring)
-            for (Index leaf : with_neighbours(leaves_.mesh, around)) {
-                around[leaf] = 1;
-                if (!may_be_kept(leaf)) continue;
-                kept.push_back(leaf);
+            for (Index source : with_neighbours(input_.mesh, around)) {
+                around[source] = 1;
+                if (!may_be_kept(source)) continue;
+                kept.push_back(source);
                 is_helped = true;
             }
         std::sort(kept.begin(), kept.end());
         kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
-        for (Index leaf : kept) tolerance_[leaf] = 0;
+        for (Index source : kept) tolerance_[source] = 0;
         return kept.size();
     }
 
     /// Lowers the tolerances of what was merged into these vertices or, where nothing was, into those around
-    /// them. Returns how many vertices of the leaves that concerns.
+    /// them. Returns how many sources that concerns.
     std::size_t keep_closer(const std::vector<Index>& vertices) {
         std::vector<std::uint8_t> wrong(result_.mesh.vertex_count(), 0);
         for (Index v : vertices) wrong[v] = 1;
@@ -184,14 +187,14 @@ private:
 
     std::size_t lower_tolerances(const std::vector<std::uint8_t>& wrong) {
         std::vector<Index> concerned;
-        for (Index leaf = 0; leaf < tolerance_.size(); ++leaf) {
-            const Index v = result_.vertex[leaf];
-            if (wrong[v] && has_merged_[v] && tolerance_[leaf] > 0) concerned.push_back(leaf);
+        for (Index source = 0; source < tolerance_.size(); ++source) {
+            const Index v = result_.vertex[source];
+            if (wrong[v] && has_merged_[v] && tolerance_[source] > 0) concerned.push_back(source);
         }
         const bool few = static_cast<double>(concerned.size())
                          < decimation::few_leaves * static_cast<double>(tolerance_.size());
-        for (Index leaf : concerned) {
-            double& tolerance = tolerance_[leaf];
+        for (Index source : concerned) {
+            double& tolerance = tolerance_[source];
             tolerance = few || tolerance < decimation::least_share * checks_.envelope().tolerance
                             ? 0
                             : 0.5 * tolerance;
@@ -199,13 +202,13 @@ private:
         return concerned.size();
     }
 
-    const LeafMesh& leaves_;
+    const ClusteredMesh& input_;
     MeshChecks& checks_;
     const DecimateOptions& options_;
-    std::vector<double> tolerance_;        // per vertex of the leaves
+    std::vector<double> tolerance_;        // per source
     std::vector<std::uint8_t> has_merged_; // per vertex of the result
     RemeshedGroups remeshed_;              // results of the round before
-    DecimatedLeaves result_;
+    DecimatedMesh result_;
 };
 
 /// Composes two maps: per item of the first, what stands for it after both.
@@ -217,30 +220,29 @@ std::vector<Index> through(const std::vector<Index>& first, const std::vector<In
 
 } // namespace
 
-DecimatedLeaves decimate(const LeafMesh& leaves, std::vector<Quadric> planes, MeshChecks& checks,
-                         const DecimateOptions& options) {
+DecimatedMesh decimate(const ClusteredMesh& clustered, std::vector<Quadric> planes, MeshChecks& checks,
+                       const DecimateOptions& options) {
     std::vector<PlaneCollapse> plane_collapses; // of the round before; most of them are made again
-    const CollapsingMesh unmerged(leaves.mesh);
+    const CollapsingMesh unmerged(clustered.mesh);
     const auto by_planes = [&](const std::vector<double>& tolerance) {
         return collapse_by_planes(unmerged, planes, tolerance, plane_collapses);
     };
-    DecimatedLeaves merged = DecimationRounds(leaves, checks, options).run({by_planes, Diagonals::may_flip});
+    DecimatedMesh merged = DecimationRounds(clustered, checks, options).run({by_planes, Diagonals::may_flip});
     planes = std::vector<Quadric>(); // collapse by distance does not need them
 
-    const LeafMesh base{std::move(merged.mesh), through(leaves.vertex, merged.vertex)};
+    const ClusteredMesh base{std::move(merged.mesh), through(clustered.vertex, merged.vertex)};
     DecimateOptions drop_options = options;
     drop_options.faults = merged.faults;
     const CollapsingMesh undropped(base.mesh);
     const std::vector<DistanceCollapse> drops = find_distance_collapses(
-        undropped, checks.bound().to_fine(), bounds::drop_share * checks.envelope().tolerance);
+        undropped, checks.distances().to_fine(), bounds::drop_share * checks.envelope().tolerance);
     const auto by_distance = [&](const std::vector<double>& tolerance) {
         std::vector<std::uint8_t> may_go(tolerance.size()); // a vertex with a fault in a round before stays
         for (std::size_t v = 0; v < may_go.size(); ++v)
             may_go[v] = tolerance[v] >= checks.envelope().tolerance;
         return collapse_by_distance(undropped, drops, may_go);
     };
-    DecimatedLeaves dropped =
-        DecimationRounds(base, checks, drop_options).run({by_distance, Diagonals::stay});
+    DecimatedMesh dropped = DecimationRounds(base, checks, drop_options).run({by_distance, Diagonals::stay});
     dropped.vertex = through(merged.vertex, dropped.vertex);
     return dropped;
 }

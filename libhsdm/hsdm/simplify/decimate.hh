@@ -8,8 +8,8 @@
 
 namespace hsdm {
 
-/// A mesh over the leaves of an octree, as clusters of the vertices of a finer one.
-struct LeafMesh {
+/// A mesh whose vertices stand for clusters of the vertices of a finer one: in a leaf each, or larger ones.
+struct ClusteredMesh {
     PolygonMesh mesh;          ///< `origin`: per vertex one of the fine vertices that it stands for
     std::vector<Index> vertex; ///< per fine vertex, the vertex that stands for it
 };
@@ -20,7 +20,7 @@ struct DecimateOptions {
     int rounds = bounds::rounds;
 };
 
-struct DecimatedLeaves {
+struct DecimatedMesh {
     PolygonMesh mesh;
     std::vector<Index> vertex; ///< per vertex of the leaves, the vertex that stands for it
     FaultCounts faults;
@@ -32,7 +32,7 @@ struct DecimatedLeaves {
 /// Where a round causes faults, the vertices there get smaller tolerances or stay as they were, and the
 /// collapses are repeated; if the rounds do not suffice the mesh is left as it was before that step.
 /// `planes`: per vertex of the leaves.
-DecimatedLeaves decimate(const LeafMesh& leaves, std::vector<Quadric> planes, MeshChecks& checks,
-                         const DecimateOptions& options);
+DecimatedMesh decimate(const ClusteredMesh& leaves, std::vector<Quadric> planes, MeshChecks& checks,
+                       const DecimateOptions& options);
 
 } // namespace hsdm

@@ -19,11 +19,11 @@ struct FarPlaces {
 };
 
 struct FarPoints {
-    /// farther than the bound, and than the farthest point is from the fine mesh (if that is beyond the
-    /// bound)
+    /// Points that the coarse mesh is to blame for: farther than the bound although the fine mesh is not; and
+    /// of those that the fine mesh misses too the ones farther than any of these is from the fine mesh.
     std::vector<Index> points;
     std::size_t beyond = 0;      ///< number of all points farther than the bound
-    std::size_t unreachable = 0; ///< number of those that are so far from the fine mesh too
+    std::size_t unreachable = 0; ///< of these, farther than the bound from the fine mesh too
 };
 
 /// Compares one mesh after the other with the same fine mesh and points, and measures again only what has
@@ -64,7 +64,8 @@ private:
     SurfaceWalk to_fine_;
     std::optional<SurfaceWalk> to_mesh_;
     std::vector<Followed> followed_; // per triangle of the mesh before
-    // of the mesh last compared: per vertex and facet, is it near the fine mesh? per vertex, is it at a border?
+    // of the mesh last compared: per vertex and facet, is it near the fine mesh? per vertex, is it at a
+    // border?
     std::vector<std::uint8_t> vertex_is_near_, facet_is_near_, border_;
     // per fine vertex, per point: a triangle of the mesh near it, or no_index
     std::vector<Index> near_vertex_, near_point_;

@@ -6,8 +6,7 @@ namespace hsdm {
 
 MeshChecks::MeshChecks(const PolygonMesh& fine, const FacetCells* cells, std::span<const Vec3> points,
                        double bound, double spacing, double tolerance)
-    : bound_(fine, cells, points, bound, spacing),
-      envelope_{bound_.to_fine(), tolerance} {}
+    : distances_(fine, cells, points, bound, spacing), envelope_{distances_.to_fine(), tolerance} {}
 
 Unchanged MeshChecks::compare_with_last(const PolygonMesh& mesh) {
     Unchanged same = find_unchanged(last_, mesh);
@@ -21,15 +20,15 @@ Findings MeshChecks::look_at(const PolygonMesh& mesh) {
     Findings found;
     tbb::parallel_invoke([&] { found.intersecting = intersections_.find(mesh, same); },
                          [&] {
-                             found.far = bound_.find_far(mesh, same);
-                             found.far_points = bound_.find_far_points();
+                             found.far = distances_.find_far(mesh, same);
+                             found.far_points = distances_.find_far_points();
                          });
     return found;
 }
 
 FarPoints MeshChecks::far_points(const PolygonMesh& mesh) {
-    bound_.find_far(mesh, compare_with_last(mesh));
-    return bound_.find_far_points();
+    distances_.find_far(mesh, compare_with_last(mesh));
+    return distances_.find_far_points();
 }
 
 } // namespace hsdm

@@ -11,7 +11,7 @@ struct FaultCounts {
     std::size_t intersecting = 0; ///< pairs of facets that intersect
     /// places on the mesh beyond the bound, and fine vertices beyond twice the bound
     std::size_t distant = 0;
-    std::size_t points = 0; ///< points beyond the bound
+    std::size_t points = 0; ///< points that the mesh is to blame for (FarPoints)
 };
 
 struct Findings {
@@ -36,14 +36,14 @@ public:
     FarPoints far_points(const PolygonMesh& mesh);
 
     /// The distance check, as of the mesh last looked at.
-    const DistanceCheck& bound() const { return bound_; }
+    const DistanceCheck& distances() const { return distances_; }
     const ToleranceEnvelope& envelope() const { return envelope_; }
 
 private:
     Unchanged compare_with_last(const PolygonMesh& mesh);
 
     PolygonMesh last_; // the mesh last looked at
-    DistanceCheck bound_;
+    DistanceCheck distances_;
     IntersectionCheck intersections_;
     ToleranceEnvelope envelope_;
 };

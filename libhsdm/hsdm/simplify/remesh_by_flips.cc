@@ -291,8 +291,8 @@ private:
             if (!(sine >= flips::least_corner)) return std::nullopt; // NaN where corners coincide
             least = std::min(least, sine);
         }
-        // Others cut a quad along its shorter diagonal: that must be this one, or be no farther off a plane
-        // than the tolerance.
+        // triangulate() cuts a quad along its shorter diagonal: that must be this one, or be no farther off a
+        // plane than the tolerance.
         const bool shorter = (at(b) - at(a)).sqrnorm() <= (at(d) - at(c)).sqrnorm();
         if (!shorter && warp(a, b, c, d) > tolerance_) return std::nullopt;
         const bool whole = half_[s / 3] && half_[t / 3] && s % 3 == 0 && t % 3 == 0;

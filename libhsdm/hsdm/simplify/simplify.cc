@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t fewest_samples = 10000, most_samples = 100000;
 
 /// A cluster, which becomes a vertex of the result.
-struct Place {
+struct LeafCluster {
     int level = 0;
     Index cluster = no_index;
     Index cell = no_index;
@@ -62,7 +62,7 @@ public:
             const std::size_t samples =
                 std::clamp(2 * result_.mesh.facet_count(), fewest_samples, most_samples);
             result_.to_fine =
-                points_to_surface(sample_surface(result_.mesh, samples), checks_->bound().to_fine());
+                points_to_surface(sample_surface(result_.mesh, samples), checks_->distances().to_fine());
         }
         result_.vertex = std::move(vertex_);
         result_.mesh.origin.clear();
@@ -90,15 +90,15 @@ private:
 
     /// Merges vertices of leaves (decimate).
     void decimate_leaves() {
-        LeafMesh leaves{std::move(result_.mesh), std::move(vertex_)};
+        ClusteredMesh leaves{std::move(result_.mesh), std::move(vertex_)};
         std::vector<Quadric> leaf_planes(leaves.mesh.vertex_count());
         for (std::size_t v = 0; v < planes_.size(); ++v) leaf_planes[leaves.vertex[v]] += planes_[v];
         // A vertex that stands for a dropped doublet has that one's planes too.
         for (std::size_t v = 0; v < leaf_planes.size(); ++v)
             leaf_planes[v].drop_shared(leaves.mesh.positions[v], tolerance());
         planes_ = std::vector<Quadric>();
-        DecimatedLeaves merged = decimate(leaves, std::move(leaf_planes), *checks_,
-                                          {.faults = faults_, .rounds = options_.rounds});
+        DecimatedMesh merged = decimate(leaves, std::move(leaf_planes), *checks_,
+                                        {.faults = faults_, .rounds = options_.rounds});
         result_.mesh = std::move(merged.mesh);
         result_.merged = leaves.mesh.vertex_count() - result_.mesh.vertex_count();
         set_beyond(merged.far_points);
@@ -140,7 +140,7 @@ private:
         places_.resize(fine_.vertex_count());
         for_chunks(places_.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t v = begin; v < end; ++v) {
-                Place place{tree_.depth(), static_cast<Index>(v), tree_.of_vertex[v]};
+                LeafCluster place{tree_.depth(), static_cast<Index>(v), tree_.of_vertex[v]};
                 while (place.level > 0) {
                     const auto level = static_cast<std::size_t>(place.level);
                     const Index up = tree_.levels[level].parent[place.cell];
@@ -164,7 +164,7 @@ private:
         coarse_.clear();
         vertex_.resize(fine_.vertex_count());
         for (std::size_t v = 0; v < places_.size(); ++v) {
-            const Place& place = places_[v];
+            const LeafCluster& place = places_[v];
             Index& n = number[static_cast<std::size_t>(place.level)][place.cluster];
             if (n == no_index) {
                 n = static_cast<Index>(coarse_.size());
@@ -230,7 +230,7 @@ private:
         return simple;
     }
 
-    std::size_t split_at(const Place& place) { return tree_.split(place.level, place.cell); }
+    std::size_t split_at(const LeafCluster& place) { return tree_.split(place.level, place.cell); }
 
     std::size_t split_troubled() {
         std::size_t splits = 0;
@@ -286,7 +286,7 @@ private:
     std::size_t split_near(const Vec3& point) {
         const std::size_t splits = split_around(point);
         if (splits > 0) return splits;
-        const Index facet = checks_->bound().nearest_facet(point);
+        const Index facet = checks_->distances().nearest_facet(point);
         return facet == no_index ? 0 : split_facet(facet);
     }
 
@@ -315,7 +315,8 @@ private:
             for (Index c = 0; c < tree_.levels[static_cast<std::size_t>(level)].codes.size(); ++c)
                 result_.leaves_per_level[static_cast<std::size_t>(level)] += tree_.is_leaf(level, c);
         result_.level.clear();
-        for (const Place& place : coarse_) result_.level.push_back(static_cast<std::uint8_t>(place.level));
+        for (const LeafCluster& place : coarse_)
+            result_.level.push_back(static_cast<std::uint8_t>(place.level));
     }
 
     const PolygonMesh& fine_;
@@ -325,11 +326,11 @@ private:
     PlanarPatches patches_;
     std::vector<Quadric> planes_; // per fine vertex
     std::vector<ClusterLevel> clusters_;
-    std::vector<Place> places_;  // per fine vertex
-    std::vector<Index> vertex_;  // per fine vertex, the vertex of the result
-    std::vector<Place> coarse_;  // per vertex of the result
-    std::vector<Index> pinched_; // facets of the fine mesh with opposite corners in one vertex
-    RemeshedGroups remeshed_;    // results of the round before
+    std::vector<LeafCluster> places_; // per fine vertex
+    std::vector<Index> vertex_;       // per fine vertex, the vertex of the result
+    std::vector<LeafCluster> coarse_; // per vertex of the result
+    std::vector<Index> pinched_;      // facets of the fine mesh with opposite corners in one vertex
+    RemeshedGroups remeshed_;         // results of the round before
     std::optional<MeshChecks> checks_;
     FaultCounts faults_; // of the last round, including those at leaves that cannot be subdivided
     AdaptiveMesh result_;

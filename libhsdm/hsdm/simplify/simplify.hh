@@ -12,7 +12,8 @@ namespace hsdm {
 struct SimplifyOptions {
     /// The mesh's units, > 0: how far the coarse surface may lie from the fine one, and points from it.
     double max_error = 0;
-    /// rounds of looking for faults and subdividing leaves there, >= 1
+    /// rounds of looking for faults and subdividing leaves there, and in each step of decimation of undoing
+    /// collapses, >= 1
     int rounds = bounds::rounds;
     bool measure = true; ///< else `to_fine` stays zero
 };
@@ -30,7 +31,7 @@ struct AdaptiveMesh {
     std::size_t intersection_splits = 0;       ///< ... because facets intersected
     std::size_t merged = 0;                    ///< vertices of leaves that were merged into others (decimate)
     std::size_t points_beyond = 0;             ///< points farther than max_error from the result
-    /// those of points_beyond that are as far from the fine mesh already: all of them
+    /// of points_beyond, those that the fine mesh misses too: all of them
     std::size_t unreachable = 0;
     Distance to_fine; ///< distance of points spread over the mesh from the fine one
 };

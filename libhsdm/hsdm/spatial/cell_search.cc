@@ -1,5 +1,6 @@
 #include "hsdm/spatial/cell_search.hh"
 
+#include "hsdm/spatial/point_triangle.hh"
 #include "hsdm/spatial/two_triangles.hh"
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 namespace hsdm {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double farthest =
     1 - 2 * FacetCells::rounding; // in cells: the 27 cells around a point hold all facets nearer than this
 // of a triangle's corner angle: normals of flatter triangles are not relied on

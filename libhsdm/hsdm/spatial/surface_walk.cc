@@ -16,7 +16,7 @@ namespace {
 constexpr int most_steps = 12; // after more steps a search is faster
 // of a triangle's corner angle: the walk does not cross flatter triangles
 constexpr double least_squared_sine = 1e-4;
-constexpr double farthest = 3; // in cells: farther triangles are searched for in the tree
+constexpr double farthest_cells = 3; // in cells: farther triangles are searched for in the tree
 
 std::vector<Index> twins_of(const PolygonMesh& mesh, const Triangulation& cut) {
     const std::span corners(cut.triangles.empty() ? nullptr : cut.triangles.front().data(), 3 * cut.size());
@@ -65,7 +65,7 @@ const MeshDistance& SurfaceWalk::tree() const {
 }
 
 bool SurfaceWalk::is_in_reach(double distance) const {
-    return cells_ && distance <= farthest * cells_->cell_size();
+    return cells_ && distance <= farthest_cells * cells_->cell_size();
 }
 
 /// The nearest triangle that is no farther than `reach`, or any that is no farther than `enough`.
@@ -123,7 +123,7 @@ bool SurfaceWalk::leads_within(const Vec3& place, double bound, Index& hint) con
 }
 
 double SurfaceWalk::distance(const Vec3& place, Index& hint, double enough) const {
-    double most = cells_ ? farthest * cells_->cell_size() : 0; // largest bound for a search in cells
+    double most = cells_ ? farthest_cells * cells_->cell_size() : 0; // largest bound for a search in cells
     if (hint != no_index) {
         const auto [triangle, end] = walk(place, enough, hint);
         hint = triangle;

@@ -1,6 +1,7 @@
 #include "hsdm/spatial/triangle_tree.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/spatial/point_triangle.hh"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_invoke.h>
@@ -15,7 +16,6 @@ namespace {
 using Range = tbb::blocked_range<std::size_t>;
 /// Four entries a level of the walk, and 4^15 blocks hold 2^32 triangles.
 constexpr std::size_t stack_size = 4 * 17;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A triangle while they are sorted: the centre of its box, and its index.
 struct Item {
