@@ -81,7 +81,8 @@ configure() {
 }
 
 demo() {
-    cmake --build build/release --target hsdm_command hsdm_generate
+    # What `cmake --install` takes, and the scanner.
+    cmake --build build/release --target hsdm_command hsdm_modules hsdm_generate
     hsdm=build/release/apps/hsdm/hsdm
     mkdir -p demo
     build/release/tests/support/hsdm_generate part --points 200000 --noise 0.002 --normal-noise 5 -o demo/scan.ply
