@@ -85,6 +85,8 @@ std::string suggestion(std::string_view word, std::span<const std::string> known
     const std::string* nearest = nullptr;
     std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
     for (const std::string& name : known) {
+        // So many letters at least are put in or left out: very long words cost no time.
+        if (std::max(word.size(), name.size()) - std::min(word.size(), name.size()) >= least) continue;
         const std::size_t distance = edit_distance(word, name);
         if (distance >= least) continue;
         least = distance;

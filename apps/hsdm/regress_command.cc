@@ -91,9 +91,19 @@ struct SuiteAgain {
     ~SuiteAgain() { set_activity(path.c_str(), current_phase()); }
 };
 
+/// A suite that cannot be read is an input that failed; one that says nothing sensible is wrong usage.
+std::vector<Case> read_suite(const std::string& path) {
+    const io::SourceBytes text = io::SourceBytes::open(path);
+    try {
+        return parse_suite(std::string(text.view()), path);
+    } catch (const Error& error) {
+        throw UsageError(error.what());
+    }
+}
+
 int run_regress(const std::string& path, const std::string& json_path) {
     set_activity(path.c_str(), "read");
-    const std::vector<Case> cases = parse_suite(std::string(io::SourceBytes::open(path).view()), path);
+    const std::vector<Case> cases = read_suite(path);
     const SuiteAgain again{path};
     check_claims(path, cases, json_path);
     std::ostream& out = is_standard_output(json_path) ? std::cerr : std::cout;
@@ -132,7 +142,7 @@ void add_regress(CLI::App& app, Run& run) {
         "A case: {\"name\": \"part\", \"input\": \"part.ply\", \"args\": [\"--depth\", \"5\"],\n"
         "         \"expect\": {\"mesh.closed\": true, \"mesh.faces\": {\"value\": 300, \"tolerance\": 10},\n"
         "                    \"error.normalised_max\": {\"max\": 0.02}}}\n"
-        "Exit status 1 if any case is out of tolerance.");
+        "Exit status 1 if any case is out of tolerance, 2 if the suite is not as described.");
     sub->callback([&run, suite, json] { run = [suite, json] { return run_regress(*suite, *json); }; });
 }
 

@@ -1,12 +1,16 @@
 #include "suite_file.hh"
 
+#include "messages.hh"
+
 #include "hsdm/errors.hh"
+#include "hsdm/report.hh"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 namespace hsdm::command {
 namespace {
@@ -15,6 +19,8 @@ namespace {
 constexpr int deepest = 32;
 /// More than any case expects: finding a key takes the time of all before it.
 constexpr std::size_t most_keys = 1000;
+/// As long as paths can be; names are matched by a recursion over their bytes.
+constexpr std::size_t most_bytes = 4096;
 
 /// A value of a suite and where it stands, for messages.
 struct Place {
@@ -24,23 +30,42 @@ struct Place {
     [[noreturn]] void fail(const std::string& message) const {
         throw Error(path, in + message + "; see docs/command.md");
     }
+
+    /// For a key that is none of those known; names the nearest.
+    [[noreturn]] void fail_at(const std::string& key, const std::string& message,
+                              const std::vector<std::string>& known) const {
+        const std::string near = suggestion(key, known);
+        if (near.empty()) fail(message);
+        throw Error(path, in + message + near);
+    }
+
+    void check_keys(const Json& object, const std::vector<std::string>& known,
+                    const std::string& of = "") const {
+        for (const auto& [key, value] : object.items())
+            if (std::find(known.begin(), known.end(), key) == known.end())
+                fail_at(key, of + "has the key `" + key + "`, which is not known", known);
+    }
 };
 
 Json parse_json(const std::string& text, const std::string& path) {
-    std::array<std::size_t, deepest + 2> keys{}; // of the object that is open at each depth
-    const auto limit = [&](int depth, Json::parse_event_t event, Json&) {
+    std::array<std::set<std::string>, deepest + 2> keys; // of the object that is open at each depth
+    const auto check = [&](int depth, Json::parse_event_t event, Json& parsed) {
         if (depth > deepest)
             throw Error(path, "is nested more than " + std::to_string(deepest)
                                   + " deep, which no suite is; see docs/command.md");
         const auto level = static_cast<std::size_t>(depth);
-        if (event == Json::parse_event_t::object_start) keys[level + 1] = 0;
-        if (event == Json::parse_event_t::key && ++keys[level] > most_keys)
+        if (event == Json::parse_event_t::object_start) keys[level + 1].clear();
+        if (event != Json::parse_event_t::key) return true;
+        const auto key = parsed.get<std::string>();
+        if (!keys[level].insert(key).second)
+            throw Error(path, "has the key `" + key + "` twice in one object; leave one out");
+        if (keys[level].size() > most_keys)
             throw Error(path, "has an object of more than " + std::to_string(most_keys)
                                   + " keys, which no suite has; see docs/command.md");
         return true;
     };
     try {
-        return Json::parse(text, limit);
+        return Json::parse(text, check);
     } catch (const Json::parse_error& error) {
         const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
         const std::string what = error.what(), mark = " - "; // behind it stands what was wrong
@@ -64,11 +89,68 @@ std::string text_of(const Json& object, const char* key, const std::string& fall
     const Json* const value = member(object, key);
     if (!value) return fallback;
     if (!value->is_string()) place.fail("`" + std::string(key) + "` must be text");
-    return value->get<std::string>();
+    auto text = value->get<std::string>();
+    if (text.size() > most_bytes)
+        place.fail("`" + std::string(key) + "` is longer than " + std::to_string(most_bytes) + " bytes");
+    return text;
 }
 
-Case parse_case(const Json& entry, const std::filesystem::path& folder, const Place& place) {
+/// A report with every key that one can have, but for those in lists, options and rejected.
+const Json& model_report() {
+    static const Json model = [] {
+        Report report;
+        report.input.bbox = {{0, 0, 0}, {0, 0, 0}}; // what is not finite would be left out
+        report.input.first_nonfinite = 0;
+        return Json::parse(to_json(report));
+    }();
+    return model;
+}
+
+/// False for a key that no report has. What is in lists and counts by stage shows only when a report is
+/// there.
+bool may_lead_somewhere(const std::string& dotted) {
+    std::size_t end = 0;
+    do {
+        end = dotted.find('.', end + 1);
+        const Json* const part = find_key(model_report(), dotted.substr(0, end));
+        if (!part) return false;
+        if (part->is_array() || (part->is_object() && part->empty())) return true;
+    } while (end != std::string::npos);
+    return true;
+}
+
+std::vector<std::string> report_keys() {
+    std::vector<std::string> keys;
+    for (const auto& [group, value] : model_report().items()) {
+        keys.push_back(group);
+        if (!value.is_object()) continue;
+        for (const auto& [key, inner] : value.items()) keys.push_back(group + '.' + key);
+    }
+    return keys;
+}
+
+/// Refuses what could never be missed as well as what could never hold.
+void check_expectations(const Json& expect, const Place& place) {
+    if (expect.empty()) place.fail("expects nothing: `expect` must name a key of the report");
+    for (const auto& [key, expected] : expect.items()) {
+        const std::string quoted = '`' + key + '`';
+        if (!may_lead_somewhere(key))
+            place.fail_at(key, "expects " + quoted + ", which no report has", report_keys());
+        if (!expected.is_object()) continue;
+        place.check_keys(expected, {"min", "max", "value", "tolerance", "relative"}, quoted + ' ');
+        for (const auto& [bound, limit] : expected.items())
+            if (!limit.is_number()) place.fail(quoted + ": `" + bound + "` must be a number");
+        if (!expected.contains("min") && !expected.contains("max") && !expected.contains("value"))
+            place.fail(quoted + " has no bound: `min`, `max` or `value`");
+        if (!expected.contains("value") && (expected.contains("tolerance") || expected.contains("relative")))
+            place.fail(quoted + " has a tolerance but no `value`");
+    }
+}
+
+Case parse_case(const Json& entry, const std::filesystem::path& folder, OtherKeys others,
+                const Place& place) {
     if (!entry.is_object()) place.fail("must be an object with an `input`");
+    if (others == OtherKeys::refused) place.check_keys(entry, {"name", "input", "args", "expect"});
     const std::string input = text_of(entry, "input", "", place);
     if (input.empty()) place.fail("has no `input`");
     Case one;
@@ -84,6 +166,7 @@ Case parse_case(const Json& entry, const std::filesystem::path& folder, const Pl
     const Json* const expect = member(entry, "expect");
     one.expect = expect ? *expect : Json::object();
     if (!one.expect.is_object()) place.fail("`expect` must be an object");
+    if (others == OtherKeys::refused) check_expectations(one.expect, place);
     return one;
 }
 
@@ -97,15 +180,18 @@ const Json* element(const Json& array, std::string_view digits) {
 
 } // namespace
 
-std::vector<Case> parse_suite(const std::string& text, const std::string& path) {
+std::vector<Case> parse_suite(const std::string& text, const std::string& path, OtherKeys others) {
     const Json suite = parse_json(text, path);
     const Place place{path, ""};
     const Json* const entries = suite.is_object() ? member(suite, "cases") : nullptr;
     if (!entries || !entries->is_array()) place.fail("is no suite: an object with a list `cases` is");
+    if (others == OtherKeys::refused) place.check_keys(suite, {"root", "cases"});
     const auto folder = std::filesystem::path(path).parent_path() / text_of(suite, "root", ".", place);
+    if (entries->empty()) place.fail("has no cases, so it would check nothing");
     std::vector<Case> cases;
     for (const Json& entry : *entries)
-        cases.push_back(parse_case(entry, folder, {path, "case " + std::to_string(cases.size() + 1) + ": "}));
+        cases.push_back(
+            parse_case(entry, folder, others, {path, "case " + std::to_string(cases.size() + 1) + ": "}));
     return cases;
 }
 
@@ -124,11 +210,6 @@ std::string miss(const std::string& key, const Json* value, const Json& expected
     if (value == nullptr) return key + " is not in the report";
     const std::string found = key + " is " + value->dump();
     if (!expected.is_object()) return *value == expected ? "" : found + ", expected " + expected.dump();
-    for (const auto& [bound, limit] : expected.items()) {
-        const bool known = bound == "min" || bound == "max" || bound == "value" || bound == "tolerance"
-                           || bound == "relative";
-        if (!known || !limit.is_number()) return key + ": `" + bound + "` is no bound; see docs/command.md";
-    }
     if (!value->is_number()) return found + ", a number was expected";
     const double x = value->get<double>();
     if (expected.contains("min") && !(x >= expected["min"].get<double>()))

@@ -18,15 +18,22 @@ struct Case {
     Json expect; ///< an object: report key, with dots between levels -> what it must be
 };
 
-/// The cases of a suite's text; `path`, which messages name, is where their inputs are looked for. Throws
-/// Error `FILE:LINE: what, and what to do`, or `FILE: case N: ...`.
-std::vector<Case> parse_suite(const std::string& text, const std::string& path);
+/// What is done about keys that suites do not have; `left` is for suites that other programs read, too.
+enum class OtherKeys { refused, left };
+
+/// The cases of a suite's text, at least one, each with an expectation; `path`, which messages name, is where
+/// their inputs are looked for. Throws Error `FILE:LINE: what, and what to do`, or `FILE: case N: ...`, also
+/// for an expectation that no report can be held against: a key that none has, a bound that is none.
+/// With OtherKeys::left only what a case reads and runs is checked.
+std::vector<Case> parse_suite(const std::string& text, const std::string& path,
+                              OtherKeys others = OtherKeys::refused);
 
 /// The value that a key with dots leads to, through objects and, by digits, arrays; null if there is none.
 const Json* find_key(const Json& report, const std::string& dotted);
 
 /// Empty if the value (null: there is none) is as expected, else the reason. A plain value must be equal; an
-/// object holds bounds `min`, `max`, or `value` with `tolerance` (absolute) or `relative`.
+/// object holds bounds, as parse_suite() has checked: `min`, `max`, or `value` with `tolerance` (absolute) or
+/// `relative`.
 std::string miss(const std::string& key, const Json* value, const Json& expected);
 
 } // namespace hsdm::command

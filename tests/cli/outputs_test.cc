@@ -101,7 +101,8 @@ TEST_CASE("process and regress destroy neither mesh nor suite nor cloud", "[cli]
     CHECK(run(folder, process + "-o m.off --in-place --quiet").status == 0);
     CHECK(run(folder, process + "--in-place --quiet").status == 0);
     CHECK(read_file(folder / "m.off").starts_with("OFF"));
-    const std::string suite = R"({"cases": [{"input": "scan.xyz", "args": ["--depth", "3"]}]})";
+    const std::string suite = R"({"cases": [{"input": "scan.xyz", "args": ["--depth", "3"],
+                                          "expect": {"mesh.closed": true}}]})";
     folder.write("suite.json", suite);
     check_refused(folder, "regress suite.json --json suite.json", {"--json suite.json", "the suite"});
     check_refused(folder, "regress suite.json --json ./scan.xyz", {"--json ./scan.xyz", "the input"});

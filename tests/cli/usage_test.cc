@@ -289,13 +289,15 @@ TEST_CASE("what a suite's cases ask for wrongly is told in words of the command"
     const Folder folder;
     CHECK_THAT(run(folder, "regress .").err, StartsWith("hsdm: .: is a directory"));
     folder.write("scan.xyz", xyz(sphere_scan(300)));
-    folder.write("suite.json", R"({"cases": [{"input": "scan.xyz", "args": ["--depth", "99"]},
-                                             {"input": "scan.xyz", "args": ["--dept", "3"]},
-                                             {"input": "scan.xyz", "expect": {"a~b.c/d": 1}}]})");
+    folder.write("suite.json", R"({"cases": [{"input": "scan.xyz", "args": ["--depth", "99"],
+                                              "expect": {"mesh.closed": true}},
+                                             {"input": "scan.xyz", "args": ["--dept", "3"],
+                                              "expect": {"mesh.closed": true}},
+                                             {"input": "scan.xyz", "expect": {"rejected.a~b/c": 1}}]})");
     const CommandResult missed = run(folder, "regress suite.json");
     CHECK_THAT(missed.out, Contains("args: --depth 99: must be a whole number from 1 to 16"));
     CHECK_THAT(missed.out, Contains("args: --dept: a case has no such option; did you mean --depth?"));
-    CHECK_THAT(missed.out, Contains("a~b.c/d is not in the report"));
+    CHECK_THAT(missed.out, Contains("rejected.a~b/c is not in the report"));
 }
 
 TEST_CASE("what is dropped and threads that are not started are said", "[cli]") {

@@ -56,7 +56,7 @@ std::vector<SuiteCase> measurement_cases() {
             continue;
         }
         const io::SourceBytes text = io::SourceBytes::open(path);
-        for (Case& one : command::parse_suite(std::string(text.view()), path))
+        for (Case& one : command::parse_suite(std::string(text.view()), path, command::OtherKeys::left))
             if (std::string name = std::string(suite) + ' ' + one.name; !names || names->contains(name))
                 cases.push_back({std::move(name), std::move(one)});
     }

@@ -26,9 +26,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
                 "a message begins with the file's name");
         return 0;
     }
+    promise(!cases.empty(), "a suite has cases");
     for (const command::Case& one : cases) {
         promise(!one.input.empty(), "a case has an input");
-        promise(one.expect.is_object(), "a case expects keys of a report");
+        promise(one.expect.is_object() && !one.expect.empty(), "a case expects keys of a report");
         for (const auto& [key, expected] : one.expect.items()) {
             command::miss(key, command::find_key(report(), key), expected);
             if (!expected.is_object())
