@@ -14,6 +14,7 @@
 #include <string_view>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include <poll.h>
 #include <pthread.h>
@@ -74,7 +75,15 @@ void say_what_stands(LastWords& words, const FilesWritten& files) {
     list(words, "; in part: ", files.in_part);
 }
 
+std::mutex last_work_mutex;
+const std::function<void()>* last_work = nullptr;
+
 [[noreturn]] void end_by_signal(int signal) {
+    last_work_mutex.lock(); // and never unlocked
+    try {
+        if (last_work) (*last_work)();
+    } catch (...) { // the message will not list what could not be written
+    }
     const FilesWritten& files = abandon_files();
     LastWords words;
     words << "hsdm: cancelled";
@@ -131,6 +140,20 @@ void handle_signals() {
     } catch (const std::system_error&) { // no room for a thread: the kernel ends the process as usual
         pthread_sigmask(SIG_UNBLOCK, &awaited, nullptr);
     }
+}
+
+LastWork::LastWork(std::function<void()> work) : work_(std::move(work)) {
+    const auto held = lock();
+    last_work = &work_;
+}
+
+LastWork::~LastWork() {
+    const auto held = lock();
+    last_work = nullptr;
+}
+
+std::unique_lock<std::mutex> LastWork::lock() {
+    return std::unique_lock(last_work_mutex);
 }
 
 } // namespace hsdm::command

@@ -1,6 +1,9 @@
 #pragma once
 // How the command ends before its time: by a signal, or where an exception can go no further.
 
+#include <functional>
+#include <mutex>
+
 namespace hsdm::command {
 
 /// To be called once, before any thread is started. From then on SIGINT, SIGTERM, SIGHUP, SIGQUIT and SIGXCPU
@@ -9,5 +12,22 @@ namespace hsdm::command {
 /// (nohup), but for SIGINT and SIGQUIT, which shells ignore for every job in the background. SIGPIPE and
 /// SIGXFSZ are ignored: writing fails with an error instead. std::terminate ends with a message and status 1.
 void handle_signals();
+
+/// While it lives, a signal has the work done before it ends the process, by the thread that waits for
+/// signals. The work must come to an end soon; its exceptions are dropped. One at a time.
+class LastWork {
+public:
+    explicit LastWork(std::function<void()> work);
+    /// Waits for the end of the process if the work has begun.
+    ~LastWork();
+    LastWork(const LastWork&) = delete;
+    LastWork& operator=(const LastWork&) = delete;
+
+    /// To be held while what the work reads is changed. Once the work has begun, it is waited for for ever.
+    std::unique_lock<std::mutex> lock();
+
+private:
+    std::function<void()> work_;
+};
 
 } // namespace hsdm::command

@@ -4,7 +4,9 @@
 #include "activity.hh"
 #include "command.hh"
 #include "file_claims.hh"
+#include "interrupt.hh"
 #include "messages.hh"
+#include "outcome.hh"
 #include "reconstruct_arguments.hh"
 #include "suite_file.hh"
 
@@ -18,19 +20,21 @@
 #include <chrono>
 #include <iomanip>
 #include <iostream>
-#include <optional>
+#include <regex>
+#include <utility>
 
 namespace hsdm::command {
 namespace {
 
-struct Outcome {
-    Json report;
-    std::vector<std::string> misses;
-    double seconds = 0;
+struct Arguments {
+    std::string suite, filter, json, junit;
+
+    bool table_gives_way() const { return is_standard_output(json) || is_standard_output(junit); }
 };
 
 Outcome run_case(const Case& one) {
     Outcome outcome;
+    outcome.name = one.name;
     const auto start = std::chrono::steady_clock::now();
     try {
         ReadOptions read;
@@ -56,7 +60,7 @@ Outcome run_case(const Case& one) {
     return outcome;
 }
 
-void print_row(std::ostream& out, const Case& one, const Outcome& outcome, int width) {
+void print_row(std::ostream& out, const Outcome& outcome, int width) {
     const auto count = [&outcome](const char* key) {
         const Json* const value = outcome.report.is_null() ? nullptr : find_key(outcome.report, key);
         return value == nullptr ? std::string("-") : value->dump();
@@ -66,23 +70,25 @@ void print_row(std::ostream& out, const Case& one, const Outcome& outcome, int w
     std::ostringstream percent;
     if (error != nullptr) percent << std::setprecision(3) << 100 * error->get<double>();
     out << (outcome.misses.empty() ? "ok    " : "MISS  ") << std::left << std::setw(width)
-        << printable(one.name) << std::right << std::setw(10) << count("mesh.faces") << std::setw(8)
+        << printable(outcome.name) << std::right << std::setw(10) << count("mesh.faces") << std::setw(8)
         << count("mesh.closed") << std::setw(7) << count("mesh.genus") << std::setw(10) << percent.str()
         << std::setw(9) << std::fixed << std::setprecision(2) << outcome.seconds << std::defaultfloat << '\n';
     for (const std::string& reason : outcome.misses) out << "      " << printable(reason) << '\n';
     out << std::flush;
 }
 
-/// Throws UsageError for a result that would destroy the suite or a cloud, Error for one that cannot be
-/// written.
-void check_claims(const std::string& path, const std::vector<Case>& cases, const std::string& json_path) {
+/// Throws UsageError for a result that would destroy the suite, a cloud or the other, Error for one that
+/// cannot be written.
+void check_claims(const Arguments& given, const std::vector<Case>& cases) {
     FileClaims claims;
-    claims.reads("the suite", path);
+    claims.reads("the suite", given.suite);
     for (const Case& one : cases) claims.reads("the input", one.input);
-    if (!json_path.empty()) claims.writes("--json " + json_path, json_path);
-    if (!is_standard_output(json_path)) claims.writes("the table", "-");
+    if (!given.json.empty()) claims.writes("--json " + given.json, given.json);
+    if (!given.junit.empty()) claims.writes("--junit " + given.junit, given.junit);
+    if (!given.table_gives_way()) claims.writes("the table", "-");
     claims.check();
-    if (!json_path.empty()) check_writable(json_path);
+    for (const std::string* path : {&given.json, &given.junit})
+        if (!path->empty()) check_writable(*path);
 }
 
 /// Resets the activity, which keeps pointers, to the suite's path before the cases are freed.
@@ -101,49 +107,93 @@ std::vector<Case> read_suite(const std::string& path) {
     }
 }
 
-int run_regress(const std::string& path, const std::string& json_path) {
-    set_activity(path.c_str(), "read");
-    const std::vector<Case> cases = read_suite(path);
-    const SuiteAgain again{path};
-    check_claims(path, cases, json_path);
-    std::ostream& out = is_standard_output(json_path) ? std::cerr : std::cout;
-    std::size_t width = 4;
+/// Leaves out the cases whose names the filter does not match; returns their number.
+std::size_t leave_out(std::vector<Case>& cases, const Arguments& given) {
+    if (given.filter.empty()) return 0;
+    try {
+        const std::regex wanted(given.filter);
+        const std::size_t left_out =
+            std::erase_if(cases, [&wanted](const Case& one) { return !std::regex_search(one.name, wanted); });
+        if (!cases.empty()) return left_out;
+    } catch (const std::regex_error&) {
+        throw UsageError("--filter " + given.filter + ": is no regular expression (ECMAScript); correct it");
+    }
+    throw UsageError("--filter " + given.filter + ": matches the name of no case of " + given.suite);
+}
+
+void write_results(const Arguments& given, const std::vector<Outcome>& outcomes) {
+    const auto write = [](const std::string& path, const std::string& text) {
+        set_activity(path.c_str(), "write");
+        write_text(path, text);
+    };
+    if (!given.json.empty()) write(given.json, to_json(outcomes));
+    if (!given.junit.empty()) write(given.junit, to_junit(given.suite, outcomes));
+}
+
+/// The arguments without outputs that may keep a signal waiting.
+Arguments with_files_alone(Arguments given) {
+    for (std::string* path : {&given.json, &given.junit})
+        if (!path->empty() && find_target(*path).kind != OutputTarget::Kind::file) path->clear();
+    return given;
+}
+
+/// Runs the cases, prints a row for each and writes the results, on a signal those that there are. Returns
+/// how many are within tolerance.
+std::size_t run_cases(const std::vector<Case>& cases, const Arguments& given, std::ostream& out) {
+    std::size_t width = 4, within = 0;
     for (const Case& one : cases) width = std::max(width, printable(one.name).size());
     out << "      " << std::left << std::setw(static_cast<int>(width)) << "case" << std::right
-        << "     faces  closed  genus   error %  seconds\n";
-    Json results = Json::array();
-    std::size_t missed = 0;
+        << "     faces  closed  genus   error %  seconds" << std::endl;
+    std::vector<Outcome> outcomes;
+    LastWork on_signal([&cases, &outcomes, files = with_files_alone(given)] {
+        if (outcomes.size() < cases.size())
+            outcomes.push_back({cases[outcomes.size()].name, nullptr, {"interrupted"}, 0, true});
+        write_results(files, outcomes);
+    });
     for (const Case& one : cases) {
         const Outcome outcome = run_case(one);
-        missed += !outcome.misses.empty();
-        print_row(out, one, outcome, static_cast<int>(width));
-        results.push_back({{"name", one.name},
-                           {"ok", outcome.misses.empty()},
-                           {"misses", outcome.misses},
-                           {"seconds", outcome.seconds},
-                           {"report", outcome.report}});
+        within += outcome.misses.empty();
+        {
+            const auto held = on_signal.lock();
+            outcomes.push_back(outcome);
+        }
+        print_row(out, outcome, static_cast<int>(width)); // may wait for a reader, so without the lock
     }
-    out << cases.size() - missed << " of " << cases.size() << " within tolerance\n";
-    set_activity(json_path.c_str(), "write");
-    if (!json_path.empty())
-        write_text(json_path, results.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
-    return missed == 0 ? done : failed;
+    write_results(given, outcomes);
+    return within;
+}
+
+int run_regress(const Arguments& given) {
+    set_activity(given.suite.c_str(), "read");
+    std::vector<Case> cases = read_suite(given.suite);
+    const SuiteAgain again{given.suite};
+    check_claims(given, cases);
+    const std::size_t left_out = leave_out(cases, given);
+    std::ostream& out = given.table_gives_way() ? std::cerr : std::cout;
+    const std::size_t within = run_cases(cases, given, out);
+    out << within << " of " << cases.size() << " within tolerance";
+    if (left_out > 0) out << ", " << left_out << " left out by --filter";
+    out << '\n';
+    return within == cases.size() ? done : failed;
 }
 
 } // namespace
 
 void add_regress(CLI::App& app, Run& run) {
     CLI::App* const sub = app.add_subcommand("regress", "reconstruct a list of clouds and check the reports");
-    const auto suite = std::make_shared<std::string>();
-    const auto json = std::make_shared<std::string>();
-    sub->add_option("suite", *suite, "a JSON file: root, cases [{name, input, args, expect}]")->required();
-    sub->add_option("--json", *json, "write the reports and what missed here")->type_name("FILE");
+    const auto given = std::make_shared<Arguments>();
+    sub->add_option("suite", given->suite, "a JSON file: root, cases [{name, input, args, expect}]")
+        ->required();
+    sub->add_option("--filter", given->filter, "run the cases in whose names this is found")
+        ->type_name("REGEX");
+    sub->add_option("--json", given->json, "write the reports and what missed here")->type_name("FILE");
+    sub->add_option("--junit", given->junit, "write what missed here, as JUnit's XML")->type_name("FILE");
     sub->footer(
         "A case: {\"name\": \"part\", \"input\": \"part.ply\", \"args\": [\"--depth\", \"5\"],\n"
         "         \"expect\": {\"mesh.closed\": true, \"mesh.faces\": {\"value\": 300, \"tolerance\": 10},\n"
         "                    \"error.normalised_max\": {\"max\": 0.02}}}\n"
         "Exit status 1 if any case is out of tolerance, 2 if the suite is not as described.");
-    sub->callback([&run, suite, json] { run = [suite, json] { return run_regress(*suite, *json); }; });
+    sub->callback([&run, given] { run = [given] { return run_regress(*given); }; });
 }
 
 } // namespace hsdm::command

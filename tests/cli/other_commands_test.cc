@@ -179,6 +179,64 @@ TEST_CASE("regress passes within tolerance, fails outside it, and names what mis
     CHECK(run(folder, "regress missing.json").status == 1);
 }
 
+TEST_CASE("regress runs the cases that --filter names and says how many it leaves out", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan(1000)));
+    std::string cases;
+    for (const char* name : {"sphere, coarse", "sphere, fine", "part"})
+        cases += (cases.empty() ? "" : ", ")
+                 + Json{{"name", name},
+                        {"input", "scan.xyz"},
+                        {"args", {"--depth", "3"}},
+                        {"expect", {{"mesh.closed", true}}}}
+                       .dump();
+    folder.write("suite.json", R"({"cases": [)" + cases + "]}");
+    const CommandResult some =
+        run(folder, "regress suite.json --filter '^sphere.*(fine|coarse)$' --json r.json");
+    INFO(some.out << some.err);
+    CHECK(some.status == 0);
+    CHECK(some.out.ends_with("2 of 2 within tolerance, 1 left out by --filter\n"));
+    const Json results = Json::parse(read_file(folder / "r.json"));
+    REQUIRE(results.size() == 2);
+    CHECK(results[1]["name"] == "sphere, fine");
+    CHECK_FALSE(results[1].contains("interrupted"));
+    CommandResult refused = run(folder, "regress suite.json --filter cube");
+    CHECK(refused.status == 2);
+    CHECK(refused.err.starts_with("hsdm: --filter cube: matches the name of no case of suite.json\n"));
+    refused = run(folder, "regress suite.json --filter '('");
+    CHECK(refused.status == 2);
+    CHECK(refused.err.starts_with("hsdm: --filter (: is no regular expression"));
+}
+
+TEST_CASE("regress writes what missed as JUnit's XML", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan(1000)));
+    folder.write("suite.json", R"({"cases": [
+        {"name": "good", "input": "scan.xyz", "args": ["--depth", "3"], "expect": {"mesh.closed": true}},
+        {"name": "<a & \"b\">\u0007\uffff", "input": "scan.xyz", "args": ["--depth", "3"],
+         "expect": {"mesh.closed": false, "mesh.genus": 7}},
+        {"name": "none", "input": "missing.xyz", "expect": {"mesh.closed": true}}]})");
+    const CommandResult result = run(folder, "regress suite.json --junit r.xml");
+    INFO(result.out << result.err);
+    CHECK(result.status == 1);
+    const std::string xml = read_file(folder / "r.xml");
+    for (const char* part :
+         {"<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n",
+          "<testsuite name=\"suite.json\" tests=\"3\" failures=\"1\" errors=\"1\" time=\"",
+          "<testcase classname=\"suite.json\" name=\"good\" time=\"",
+          "name=\"&lt;a &amp; &quot;b&quot;&gt;\\x07\\uffff\" time=\"",
+          "<failure message=\"mesh.closed is true, expected false\">mesh.closed is true, expected false\n"
+          "mesh.genus is 0, expected 7\n</failure>\n",
+          "<error message=\"./missing.xyz: "}) {
+        INFO(part);
+        CHECK(xml.find(part) != std::string::npos);
+    }
+    CHECK(xml.ends_with("</testsuite>\n</testsuites>\n"));
+    const CommandResult piped = run(folder, "regress suite.json --junit -");
+    CHECK(piped.out.starts_with("<?xml")); // and the table gave way
+    CHECK(piped.err.find("1 of 3 within tolerance") != std::string::npos);
+}
+
 TEST_CASE("what is written as .om is read by every command, with its sharp edges", "[cli]") {
     const Folder folder;
     const std::string modules = with_modules(folder);

@@ -106,6 +106,10 @@ TEST_CASE("process and regress destroy neither mesh nor suite nor cloud", "[cli]
     folder.write("suite.json", suite);
     check_refused(folder, "regress suite.json --json suite.json", {"--json suite.json", "the suite"});
     check_refused(folder, "regress suite.json --json ./scan.xyz", {"--json ./scan.xyz", "the input"});
+    check_refused(folder, "regress suite.json --junit suite.json", {"--junit suite.json", "the suite"});
+    check_refused(folder, "regress suite.json --junit ./scan.xyz --filter .",
+                  {"--junit ./scan.xyz", "the input"});
+    check_refused(folder, "regress suite.json --json r --junit ./r", {"--json r", "--junit ./r"});
     CHECK(read_file(folder / "suite.json") == suite);
     const CommandResult piped = run(folder, "regress suite.json --json -");
     CHECK(piped.status == 0);

@@ -4,7 +4,11 @@
 
 #include <catch2/catch.hpp>
 
+#include <nlohmann/json.hpp>
+
 #include <cstdio>
+
+#include <sys/stat.h>
 
 using namespace hsdm;
 using namespace hsdm::test;
@@ -94,6 +98,41 @@ TEST_CASE("after a signal the message says what stands and what is there in part
     CHECK(result.status == 130);
     CHECK(result.err == "hsdm: cancelled; in part: /dev/fd/3\n");
     CHECK(list(folder) == "a.off\nerr\nout\nscan.xyz\n");
+}
+
+TEST_CASE("a signal during a suite leaves the rows and results of the cases that are done", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan(500)));
+    REQUIRE(mkfifo((folder / "stuck.xyz").c_str(), 0600) == 0);
+    folder.write("suite.json", R"({"cases": [
+        {"name": "first", "input": "scan.xyz", "args": ["--depth", "3"], "expect": {"mesh.closed": true}},
+        {"name": "second", "input": "stuck.xyz", "expect": {"mesh.closed": true}},
+        {"name": "third", "input": "scan.xyz", "expect": {"mesh.closed": true}}]})");
+    const auto end_after_first = [&folder](const std::string& signal, const std::string& arguments) {
+        for (const char* old : {"out", "r.json", "r.xml"}) std::remove((folder / old).c_str());
+        return end_by(folder, signal, arguments, "grep -q '^ok    first' out 2>/dev/null");
+    };
+    const std::pair<const char*, int> signals[] = {{"INT", 130}, {"TERM", 143}};
+    for (const auto& [signal, status] : signals) {
+        INFO(signal);
+        const CommandResult result =
+            end_after_first(signal, "regress suite.json --json r.json --junit r.xml");
+        CHECK(result.status == status);
+        CHECK(result.err == "hsdm: cancelled; written before: r.json, r.xml\n");
+        const auto results = nlohmann::json::parse(read_file(folder / "r.json"));
+        REQUIRE(results.size() == 2);
+        CHECK(results[0]["ok"] == true);
+        CHECK_FALSE(results[0].contains("interrupted"));
+        CHECK(results[1]["name"] == "second");
+        CHECK(results[1]["ok"] == false);
+        CHECK(results[1]["interrupted"] == true);
+        CHECK(read_file(folder / "r.xml").find("<error message=\"interrupted\">") != std::string::npos);
+        CHECK(list(folder) == "err\nout\nr.json\nr.xml\nscan.xyz\nstuck.xyz\nsuite.json\n");
+    }
+    // What goes into a pipe may have to wait for a reader, and a signal does not.
+    const CommandResult piped = end_after_first("INT", "regress suite.json --json wait");
+    CHECK(piped.status == 130);
+    CHECK(piped.err == "hsdm: cancelled; nothing was written\n");
 }
 
 TEST_CASE("a signal that was ignored stays so where shells do not do it for every job", "[cli]") {
