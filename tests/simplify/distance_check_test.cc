@@ -53,7 +53,8 @@ TEST_CASE("a facet over the fine mesh's own vertices is looked at", "[simplify]"
     CHECK(under.vertices.empty());
     CHECK(!under.fine_vertices.empty());
     // One slope of two.
-    const FarPlaces slope = meshes.find_far(quad_over(fine, {0, 4, side * (side - 1) + 4, side * (side - 1)}));
+    const FarPlaces slope =
+        meshes.find_far(quad_over(fine, {0, 4, side * (side - 1) + 4, side * (side - 1)}));
     CHECK(slope.facets.empty());
     CHECK(slope.fine_vertices.size() == std::size_t{4} * side);
 }

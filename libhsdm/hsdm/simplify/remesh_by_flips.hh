@@ -27,9 +27,10 @@ struct RemeshCounts {
 /// facets that this mesh has too (find_unchanged) get the same result without being looked at, only changed
 /// facets and those beside them are remeshed; if the results do not fit together, all are. On return it holds
 /// the groups of this mesh.
-RemeshCounts remesh_by_flips(PolygonMesh& mesh, const ToleranceEnvelope& fine, std::span<const std::uint8_t> fixed,
-                             Diagonals diagonals, RemeshedGroups& before);
-RemeshCounts remesh_by_flips(PolygonMesh& mesh, const ToleranceEnvelope& fine, std::span<const std::uint8_t> fixed,
-                             Diagonals diagonals = Diagonals::may_flip);
+RemeshCounts remesh_by_flips(PolygonMesh& mesh, const ToleranceEnvelope& fine,
+                             std::span<const std::uint8_t> fixed, Diagonals diagonals,
+                             RemeshedGroups& before);
+RemeshCounts remesh_by_flips(PolygonMesh& mesh, const ToleranceEnvelope& fine,
+                             std::span<const std::uint8_t> fixed, Diagonals diagonals = Diagonals::may_flip);
 
 } // namespace hsdm
