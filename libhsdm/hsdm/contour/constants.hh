@@ -33,7 +33,7 @@ HSDM_TUNED double most_lift = 0.1;
 
 /// cosine: with a direction, of the normals of a sheet that faces back.
 /// Why: by trial; 135 degrees, halfway from a right angle to opposite.
-HSDM_TUNED double faces_back = -0.7;
+inline constexpr double faces_back = -0.7;
 
 } // namespace hsdm::sets
 
@@ -72,7 +72,7 @@ HSDM_TUNED double crease_gap = 0.5;
 
 /// squared sine: planes closer to parallel have no line in common.
 /// Why: 6 degrees; beyond smooth_angle only opposite sheets are that parallel, the two sides of a plate.
-HSDM_TUNED double least_sine_squared = 0.01;
+inline constexpr double least_sine_squared = 0.01;
 
 /// voxels: how far a set's points may reach beyond the plane they should end at.
 /// Why: as far as sheets may be off each other (smooth_gap).
@@ -147,7 +147,7 @@ HSDM_TUNED double cost_of_invention = 2;
 
 /// crossings: cost of one that leaves a side open.
 /// Why: more than all six edges of a grid point can cost otherwise, so that it comes last.
-HSDM_TUNED double cost_of_leak = 8;
+inline constexpr double cost_of_leak = 8;
 
 /// crossings: cost of a side against all sheets around a grid point.
 /// Why: as much as one crossing that the data carry.
@@ -159,7 +159,7 @@ HSDM_TUNED int vote_rounds = 3;
 
 /// rounds: of changing sides where that lowers the cost.
 /// Why: bounds the work; a round without change ends it.
-HSDM_TUNED int settle_rounds = 8;
+inline constexpr int settle_rounds = 8;
 
 /// voxels: an invented crossing stays this far from the ends of its edge.
 /// Why: by trial; off the grid points by enough that facets there keep an area.
@@ -208,7 +208,7 @@ HSDM_TUNED double tip_reach = 1.0;
 
 /// voxels: a narrower face between two sides is none; one vertex serves both its creases.
 /// Why: by trial; as small as the noise of a crossing.
-HSDM_TUNED double least_width = 0.05;
+inline constexpr double least_width = 0.05;
 
 } // namespace hsdm::cuts
 
@@ -311,7 +311,7 @@ namespace hsdm::creases {
 
 /// rounds: of moving vertices to creases.
 /// Why: bounds the work; one that moves may make way for another.
-HSDM_TUNED int move_rounds = 4;
+inline constexpr int move_rounds = 4;
 
 /// cosine: of a facet's normal with that before, and with its sheet's.
 /// Why: 45 degrees: a facet laid along the other sheet of a right angle turns by more.
@@ -345,7 +345,7 @@ namespace hsdm::untangling {
 
 /// rounds: of moving vertices of facets that intersect.
 /// Why: by trial; six steps of a half leave a fiftieth of the way.
-HSDM_TUNED int rounds = 6;
+inline constexpr int rounds = 6;
 
 /// share: of the way to the mean of its neighbours that a vertex moves in a round.
 /// Why: by trial; the whole way shrinks what is sharp.
@@ -357,7 +357,7 @@ HSDM_TUNED double reach = 0.5;
 
 /// voxels: facets this close to a moved one are checked against it.
 /// Why: reach on both sides.
-HSDM_TUNED double nearby = 1;
+inline constexpr double nearby = 1;
 
 } // namespace hsdm::untangling
 
@@ -366,7 +366,7 @@ namespace hsdm::holes {
 
 /// edges: longer loops stay open.
 /// Why: by trial; longer than a defect (pairing.longest_defect) with room for the loops of several that met.
-HSDM_TUNED int most_edges = 24;
+inline constexpr int most_edges = 24;
 
 /// voxels: wider loops stay open, where voxels are wide against the spacing.
 /// Why: as wide as a loop of 24 edges can be round.

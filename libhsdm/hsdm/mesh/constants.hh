@@ -11,11 +11,11 @@ namespace hsdm::quad_splitting {
 /// radians: greatest bend of an edge inside or on a polygon, or between a hole's facets and those around.
 /// Why: 149 degrees: pi is a facet folded back onto its neighbour; sharper tips than 31 degrees are better
 /// left open.
-HSDM_TUNED double most_bend = 2.6;
+inline constexpr double most_bend = 2.6;
 
 /// weight: of a bend of a right angle against the square of its edge.
 /// Why: by trial; flat ways round are taken if they are less than twice as long.
-HSDM_TUNED double bend_cost = 4;
+inline constexpr double bend_cost = 4;
 
 /// radians: two triangles that bend more stay two.
 /// Why: 60 degrees: a quad that bends more is drawn and cut differently by everybody.
@@ -27,7 +27,7 @@ HSDM_TUNED double least_corner = 0.2;
 
 /// edges: of a polygon that is split exactly, larger ones lose their best ears first.
 /// Why: bounds the work, which grows with the cube.
-HSDM_TUNED std::size_t exact_edges = 128;
+inline constexpr std::size_t exact_edges = 128;
 
 } // namespace hsdm::quad_splitting
 
@@ -36,7 +36,7 @@ namespace hsdm::manifolds {
 
 /// rounds: of pairing facets at crowded edges anew.
 /// Why: bounds the work; what is left is subdivided.
-HSDM_TUNED int pairing_rounds = 6;
+inline constexpr int pairing_rounds = 6;
 
 } // namespace hsdm::manifolds
 
@@ -58,11 +58,11 @@ HSDM_TUNED double least_area = 0.01;
 
 /// share: of what a facet with less than that had before, which it must keep.
 /// Why: by trial; half, so that what was thin already does not refuse.
-HSDM_TUNED double least_share = 0.5;
+inline constexpr double least_share = 0.5;
 
 /// share: of a side over the longest one; with less its ends are one place.
 /// Why: as least_area.
-HSDM_TUNED double least_side = 0.01;
+inline constexpr double least_side = 0.01;
 
 /// corners: of two facets that are united.
 /// Why: two quads with an edge in common have six.
@@ -70,7 +70,7 @@ HSDM_TUNED std::size_t most_corners = 6;
 
 /// rounds: of trying again those that were refused.
 /// Why: bounds the work; a round without change ends it.
-HSDM_TUNED int most_rounds = 16;
+inline constexpr int most_rounds = 16;
 
 } // namespace hsdm::edge_collapses
 
@@ -87,6 +87,6 @@ HSDM_TUNED std::size_t most_open = 32;
 
 /// ratio: of the largest component's facets to a splinter's.
 /// Why: by trial; beside a small part a small one is no splinter.
-HSDM_TUNED double least_ratio = 32;
+inline constexpr double least_ratio = 32;
 
 } // namespace hsdm::splinters

@@ -119,7 +119,7 @@ HSDM_TUNED double small_of_more = 0.2;
 
 /// points: of a cloud that has a noise.
 /// Why: of fewer there is nothing to take a typical value of.
-HSDM_TUNED std::size_t fewest = 500;
+inline constexpr std::size_t fewest = 500;
 
 /// share: of the reach; noisier points have 32 neighbours.
 /// Why: measured: 0.1 is noise of half a spacing; from 0.3 spacings on planes of 16 points are too unsteady.
@@ -160,7 +160,7 @@ HSDM_TUNED int rounds = 3;
 
 /// rounds: of all of that, with the noise that the moves say.
 /// Why: bounds the work.
-HSDM_TUNED int most_rounds = 4;
+inline constexpr int most_rounds = 4;
 
 /// share: of the noise that was thought; found less, all is done again.
 /// Why: by trial; a twentieth makes no difference.
@@ -190,7 +190,7 @@ HSDM_TUNED double noise_tolerance = 3;
 
 /// reaches: the same at most.
 /// Why: half a neighbourhood's radius: beyond, every plane holds all neighbours.
-HSDM_TUNED double most_tolerance = 0.5;
+inline constexpr double most_tolerance = 0.5;
 
 /// factor: by which the spread of the flattest neighbour may widen the tolerance.
 /// Why: by trial.
@@ -312,11 +312,11 @@ HSDM_TUNED float view_weight = 4;
 
 /// share: of the views that must fit the signs that came out, net of the others.
 /// Why: three of four agree; of a shell thinner than voxels views are right as often as wrong.
-HSDM_TUNED double clear_views = 0.5;
+inline constexpr double clear_views = 0.5;
 
 /// sweeps: of turning components that evidence contradicts, in each round that is undone.
 /// Why: bounds the work.
-HSDM_TUNED int sweeps = 8;
+inline constexpr int sweeps = 8;
 
 } // namespace hsdm::turning
 
@@ -346,43 +346,43 @@ namespace hsdm::contradictions {
 
 /// cosine: of normals of one plane, of either sign.
 /// Why: 26 degrees: pairs of neighbours on smooth ground differ by less.
-HSDM_TUNED double parallel = 0.9;
+inline constexpr double parallel = 0.9;
 
 /// cosine: of normals across a crease that says something.
 /// Why: 60 degrees and more: blunter creases are not told from noise in a normal.
-HSDM_TUNED double crossing = 0.5;
+inline constexpr double crossing = 0.5;
 
 /// sine: of the rise of a chord out of a plane that both points are on.
 /// Why: 12 degrees; by trial.
-HSDM_TUNED double flattest = 0.2;
+inline constexpr double flattest = 0.2;
 
 /// cosine: of one normal with the other's mirror image that says something.
 /// Why: 60 degrees, as far as the crease itself.
-HSDM_TUNED double clear = 0.5;
+inline constexpr double clear = 0.5;
 
 /// spacings: between points that say something.
 /// Why: twice, so that most of successors in the octree's order count and none of another sheet.
-HSDM_TUNED double farthest = 2;
+inline constexpr double farthest = 2;
 
 /// mean rises: that a pair on one plane may have.
 /// Why: three times what curvature and noise make; the sides of the thinnest plate lie farther off each
 /// other.
-HSDM_TUNED double most_rises = 3;
+inline constexpr double most_rises = 3;
 
 /// sine: added to that.
 /// Why: half a degree, for clouds without noise.
-HSDM_TUNED double added_rise = 0.01;
+inline constexpr double added_rise = 0.01;
 
 /// pairs: that contradict each other at least.
 /// Why: by trial; outliers cause some.
-HSDM_TUNED std::size_t fewest = 10;
+inline constexpr std::size_t fewest = 10;
 
 /// pairs: flat ones to each that is opposed.
 /// Why: 0.05 %; measured clouds with right normals have less than 0.02 %.
-HSDM_TUNED std::size_t flat_per_opposed = 2000;
+inline constexpr std::size_t flat_per_opposed = 2000;
 
 /// percent: of creased pairs that are opposed.
 /// Why: by trial; thin parts and outliers cause some.
-HSDM_TUNED std::size_t creased_percent = 15;
+inline constexpr std::size_t creased_percent = 15;
 
 } // namespace hsdm::contradictions

@@ -24,7 +24,7 @@ HSDM_TUNED double spacings_per_voxel = 3;
 
 /// deviations: edge of the voxel that suits the noise.
 /// Why: by trial; two sheets of one voxel are told apart by 0.3 of it, and noise reaches as far.
-HSDM_TUNED double noises_per_voxel = 2;
+inline constexpr double noises_per_voxel = 2;
 
 } // namespace hsdm::spacings
 
@@ -33,26 +33,26 @@ namespace hsdm::far_points {
 
 /// points: one in so many is left out at either end of each axis for the box that most lie in.
 /// Why: two percent: more garbage than scanners make.
-HSDM_TUNED std::size_t one_outer_in = 50;
+inline constexpr std::size_t one_outer_in = 50;
 
 /// boxes: that hold most points, across the cloud's box; of fewer nothing is far away.
 /// Why: 4096: the octree's 21 levels still have nine for such a box.
-HSDM_TUNED double boxes_across = 1 << 12;
+inline constexpr double boxes_across = 1 << 12;
 
 /// boxes: between a point that is far away and the box of most.
 /// Why: 1024: by trial.
-HSDM_TUNED double margin = 1 << 10;
+inline constexpr double margin = 1 << 10;
 
 /// points: of a part, far from all else though it is.
 /// Why: eight voxels of a surface, by eight points each.
-HSDM_TUNED std::size_t fewest_of_part = 64;
+inline constexpr std::size_t fewest_of_part = 64;
 
 /// gaps: across the cloud's box, the widest that is first tried as a cut.
 /// Why: as boxes_across.
-HSDM_TUNED double gaps_per_extent = 1 << 12;
+inline constexpr double gaps_per_extent = 1 << 12;
 
 /// share: of the points between cuts that belong to no part; of more, nothing is cut.
 /// Why: by trial; such a cloud is scattered and has no parts.
-HSDM_TUNED double most_scraps = 0.02;
+inline constexpr double most_scraps = 0.02;
 
 } // namespace hsdm::far_points

@@ -12,7 +12,7 @@ HSDM_TUNED double adaptive_spacings = 2;
 
 /// voxels: the error bound of an adaptive grid that none is asked of.
 /// Why: a tenth: what a uniform grid of such voxels keeps in the mean on curved ground.
-HSDM_TUNED double default_error = 0.1;
+inline constexpr double default_error = 0.1;
 
 /// voxels: standard deviation of noise that need not be taken out of points with normals.
 /// Why: beyond, noise decides topology; below, creases stay as crisp as they are.

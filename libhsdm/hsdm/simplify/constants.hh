@@ -34,7 +34,7 @@ HSDM_TUNED double place_spacing = 0.5;
 
 /// rounds: of looking for what is wrong and subdividing or keeping there.
 /// Why: bounds the work.
-HSDM_TUNED int rounds = 24;
+inline constexpr int rounds = 24;
 
 } // namespace hsdm::bounds
 
@@ -47,7 +47,7 @@ HSDM_TUNED std::size_t most_parts = 4;
 
 /// members: of the leaves below that are joined to parts; a piece of more is divided no further.
 /// Why: bounds the work, which grows with the square; eight children of eight parts each.
-HSDM_TUNED std::size_t most_members = 64;
+inline constexpr std::size_t most_members = 64;
 
 } // namespace hsdm::leaf_parts
 
@@ -91,11 +91,11 @@ HSDM_TUNED int released_sides = 3;
 
 /// factor: by which a height may have grown while the facet waited.
 /// Why: by trial; less looks at facets again and again, more takes them out of order.
-HSDM_TUNED double stale = 1.3;
+inline constexpr double stale = 1.3;
 
 /// share: of the core's tolerance; growth by less does not count.
 /// Why: by trial, as above.
-HSDM_TUNED double stale_height = 0.1;
+inline constexpr double stale_height = 0.1;
 
 } // namespace hsdm::flat_ground
 
@@ -132,7 +132,7 @@ HSDM_TUNED std::size_t first_refit = 40;
 
 /// trims: of a facet, after which no other region gets it.
 /// Why: bounds the work.
-HSDM_TUNED int most_trims = 2;
+inline constexpr int most_trims = 2;
 
 } // namespace hsdm::developable
 
@@ -169,7 +169,7 @@ HSDM_TUNED double growth = 0.95;
 
 /// factor: on the number of strips where one turned too far, which tells nothing of heights.
 /// Why: by trial.
-HSDM_TUNED double blind_growth = 3;
+inline constexpr double blind_growth = 3;
 
 /// share: of the patch's tolerance, that a strip's facet may be off its plane.
 /// Why: strips are missed by the tolerance at their middle and edges; single facets that noise lifts may be
@@ -219,7 +219,7 @@ HSDM_TUNED std::size_t most_facets = 24;
 
 /// facets: of a vertex that flips give facets.
 /// Why: bounds the work.
-HSDM_TUNED std::size_t most_flipped = 64;
+inline constexpr std::size_t most_flipped = 64;
 
 /// sweeps: of merging, and of dropping.
 /// Why: bounds the work; each leaves two thirds at most of what can merge.
@@ -249,11 +249,11 @@ HSDM_TUNED double flat_cosine = 0.9994;
 
 /// rounds: of removing.
 /// Why: bounds the work; one that goes may leave its neighbours straight.
-HSDM_TUNED int rounds = 4;
+inline constexpr int rounds = 4;
 
 /// facets: of a vertex that may go.
 /// Why: bounds the work, which grows with the square.
-HSDM_TUNED std::size_t most_neighbours = 64;
+inline constexpr std::size_t most_neighbours = 64;
 
 } // namespace hsdm::flat_vertices
 
@@ -271,11 +271,11 @@ namespace hsdm::decimation {
 
 /// share: of the tolerance; what goes wrong below is not merged at all.
 /// Why: two halvings: what is wrong still has another cause.
-HSDM_TUNED double least_share = 0.2;
+inline constexpr double least_share = 0.2;
 
 /// share: of all leaves; so few need not be merged.
 /// Why: by trial; two in a hundred cost no facets worth another round.
-HSDM_TUNED double few_leaves = 0.02;
+inline constexpr double few_leaves = 0.02;
 
 /// rings: of facets around something wrong in which leaves are kept.
 /// Why: by trial; what lies farther off is not the cause.
@@ -325,6 +325,6 @@ namespace hsdm::leaf_doublets {
 
 /// rounds: of taking out vertices with two facets.
 /// Why: bounds the work; a chain of such vertices goes one a round.
-HSDM_TUNED int most_rounds = 16;
+inline constexpr int most_rounds = 16;
 
 } // namespace hsdm::leaf_doublets
