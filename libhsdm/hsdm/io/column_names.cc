@@ -103,11 +103,11 @@ std::vector<Column> parse_columns(const std::string& list) {
         const std::string plain = lower(name);
         if (name.empty() || (role == Role::scalar && !contains(scalar_names, plain) && !is_label_name(plain)))
             throw OptionError(
-                "columns: " + quoted(name)
+                "columns: " + io::quoted(name)
                 + " is no column; known are x y z nx ny nz r g b a intensity label, and _ for one "
                   "to skip, e.g. x,y,z,_,nx,ny,nz");
         if (role < Role::scalar && present[static_cast<std::size_t>(role)])
-            throw OptionError("columns: " + quoted(name) + " is there twice; name each column once");
+            throw OptionError("columns: " + io::quoted(name) + " is there twice; name each column once");
         present.set(static_cast<std::size_t>(role));
         columns.push_back({role, plain});
     }
@@ -116,7 +116,7 @@ std::vector<Column> parse_columns(const std::string& list) {
     demote_incomplete(complete);
     for (std::size_t i = 0; i < columns.size(); ++i)
         if (columns[i].role != complete[i].role)
-            throw OptionError("columns: " + quoted(columns[i].name)
+            throw OptionError("columns: " + io::quoted(columns[i].name)
                               + " is not complete; give nx, ny and nz or none, r, g and b or none");
     return columns;
 }

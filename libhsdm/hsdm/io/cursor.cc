@@ -51,7 +51,7 @@ double Cursor::number(const char* what) {
         return value;
     }
     const char* begin = at_;
-    fail(begin, quoted(field()) + " stands where " + what + " should be; correct the line");
+    fail(begin, io::quoted(field()) + " stands where " + what + " should be; correct the line");
 }
 
 double Cursor::number_in_line(const char* what) {
@@ -66,7 +66,7 @@ std::int64_t Cursor::integer_in_line(const char* what) {
     const double value = found ? number(what) : number_in_line(what);
     constexpr double most = 9e15; // up to here every whole number is a double
     if (value != std::floor(value) || std::abs(value) > most)
-        fail(begin, quoted({begin, static_cast<std::size_t>(at_ - begin)}) + " stands where " + what
+        fail(begin, io::quoted({begin, static_cast<std::size_t>(at_ - begin)}) + " stands where " + what
                         + ", a whole number, should be; correct the line");
     return static_cast<std::int64_t>(value);
 }

@@ -58,7 +58,7 @@ private:
         std::int64_t index = 0;
         const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
         if (error == std::errc::invalid_argument || end != digits.data() + digits.size() || index == 0)
-            cursor_.fail(at, quoted(digits) + " is no index of a face's corner; correct the line");
+            cursor_.fail(at, io::quoted(digits) + " is no index of a face's corner; correct the line");
         if (error != std::errc()) return no_index;
         return to_index(
             static_cast<double>(index > 0 ? index - 1 : static_cast<std::int64_t>(count) + index));

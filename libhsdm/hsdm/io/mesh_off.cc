@@ -15,7 +15,7 @@ void read_keyword(Cursor& cursor) {
     if (!is_off_keyword(keyword)) return; // some writers leave it out
     if (keyword.find_first_of("4n") != std::string_view::npos)
         cursor.fail(cursor.at(),
-                    quoted(keyword) + " has vertices that are not x y z; export the file as OFF");
+                    io::quoted(keyword) + " has vertices that are not x y z; export the file as OFF");
     cursor = ahead;
     if (cursor.find_in_line() && ahead.find_in_line() && ahead.field() == "BINARY")
         cursor.fail(cursor.at(), "binary OFF files are not read; export the file as text");

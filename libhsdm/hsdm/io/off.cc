@@ -28,7 +28,7 @@ OffKeyword read_keyword(const Text& text, const char* line_begin, std::string_vi
         else if (letter == 'N')
             keyword.normals = true;
         else
-            text.fail(line_begin, quoted(line.substr(0, off + 3))
+            text.fail(line_begin, io::quoted(line.substr(0, off + 3))
                                       + " has vertices that are not x y z; export the file as OFF");
     }
     if (keyword.rest.starts_with("BINARY"))
@@ -105,7 +105,7 @@ private:
         const auto vertices = counts.size() < 2 ? std::nullopt : to_count(counts[0]);
         const auto faces = counts.size() < 2 ? std::nullopt : to_count(counts[1]);
         if (!vertices || !faces)
-            text_.fail(line_, quoted(line)
+            text_.fail(line_, io::quoted(line)
                                   + " are not the numbers of vertices, faces and edges; correct the header");
         if (*vertices == 0) text_.fail(line_, "holds no points: the header says 0 vertices");
         vertices_ = *vertices;

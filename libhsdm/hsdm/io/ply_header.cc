@@ -57,7 +57,7 @@ public:
             else if (words_[0] == "property")
                 read_property();
             else
-                fail(quoted(words_[0]) + " is no word of a PLY header; correct or remove the line");
+                fail(io::quoted(words_[0]) + " is no word of a PLY header; correct or remove the line");
         }
         text_.fail(text_.end, "the header has no end_header; the file was cut off");
     }
@@ -75,21 +75,21 @@ private:
         else if (words_[1] == "binary_big_endian")
             header_.encoding = PlyEncoding::big_endian;
         else
-            fail("unknown format " + quoted(words_[1])
+            fail("unknown format " + io::quoted(words_[1])
                  + "; known are ascii, binary_little_endian, binary_big_endian");
     }
 
     void read_element() {
         if (words_.size() < 3) fail("an element needs a name and a count; correct the header");
         const auto count = to_count(words_[2]);
-        if (!count) fail(quoted(words_[2]) + " is no count of elements; correct the header");
+        if (!count) fail(io::quoted(words_[2]) + " is no count of elements; correct the header");
         header_.elements.push_back({std::string(words_[1]), *count, {}});
     }
 
     PlyType type(std::string_view name) const {
         for (const TypeName& known : type_names)
             if (known.name == name) return known.type;
-        fail("unknown property type " + quoted(name)
+        fail("unknown property type " + io::quoted(name)
              + "; known are char uchar short ushort int uint float double");
     }
 

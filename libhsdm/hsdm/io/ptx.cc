@@ -55,7 +55,8 @@ ScanHeader read_header(const Text& text, const char*& at) {
         if (i < 2) {
             const auto count = to_count(trim(line));
             if (!count || *count > no_index)
-                text.fail(line.data(), quoted(line) + " is no count of columns or rows; correct the header");
+                text.fail(line.data(),
+                          io::quoted(line) + " is no count of columns or rows; correct the header");
             header.rays *= *count;
         }
         if (i >= 6) header.matrix[i - 6] = Vec3(numbers[0], numbers[1], numbers[2]);

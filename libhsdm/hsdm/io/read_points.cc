@@ -144,7 +144,8 @@ PointFile read_unrecognised(const SourceBytes& bytes, Format promised, TableKind
             if (line.empty() || line.front() == '#') continue;
             if (is_number(line)) break;
             throw Error(bytes.name(), text.line_of(line.data()),
-                        quoted(line) + " is not how this format begins; check the file's name and content");
+                        io::quoted(line)
+                            + " is not how this format begins; check the file's name and content");
         }
     }
     for (const Magic& magic : unread)

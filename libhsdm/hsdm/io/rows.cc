@@ -141,8 +141,8 @@ std::string_view field_at(const Text& text, const char* at) {
     const std::string column = std::to_string(error.column + 1);
     switch (error.kind) {
     case RowError::not_a_number:
-        text.fail(error.at, quoted(field_at(text, error.at)) + " in column " + column + " is not a number; "
-                                + layout.advice);
+        text.fail(error.at, io::quoted(field_at(text, error.at)) + " in column " + column
+                                + " is not a number; " + layout.advice);
     case RowError::bad_list:
         text.fail(error.at, "the list in column " + column + " has no valid count; export the file again");
     case RowError::too_long:

@@ -86,8 +86,8 @@ public:
             text_.fail(prelude_.count_at, "a count of points and no point after it; the file was cut off");
         if (!first_text) throw Error(text_.file(), "holds no points; expected lines of x y z");
         const char* at = first_text;
-        text_.fail(first_text,
-                   quoted(trim(text_.line(at))) + " and what follows hold no point; expected lines of x y z");
+        text_.fail(first_text, io::quoted(trim(text_.line(at)))
+                                   + " and what follows hold no point; expected lines of x y z");
     }
 
 private:
@@ -109,7 +109,7 @@ private:
             text_.fail(at, "commas beside other separators look like decimal commas; write 1.5 for 1,5, or "
                            "separate columns in one way only");
         if (first_bad < cells.size())
-            text_.fail(at, quoted(cells[first_bad]) + " in column " + std::to_string(first_bad + 1)
+            text_.fail(at, io::quoted(cells[first_bad]) + " in column " + std::to_string(first_bad + 1)
                                + " is not a number; correct it, or name the columns and give this one as _");
         if (cells.size() == 1 && !prelude_.count && to_count(cells[0])) {
             prelude_.count = to_count(cells[0]);

@@ -61,7 +61,7 @@ private:
             if (!next || (next != end && !is_blank(*next))) {
                 const char* field_end = std::find_if(at, end, is_blank);
                 chunk.error_at = at;
-                chunk.error = quoted({at, static_cast<std::size_t>(field_end - at)})
+                chunk.error = io::quoted({at, static_cast<std::size_t>(field_end - at)})
                               + " is not a number; correct the line";
                 return 0;
             }
@@ -118,7 +118,8 @@ void set_colors(PointCloud& cloud, const std::vector<Vec3>& colors) {
 }
 
 [[noreturn]] void fail_without_points(const Text& text, std::string_view tag) {
-    throw Error(text.file(), "holds no points: no line begins with " + quoted(tag) + "; check the format");
+    throw Error(text.file(),
+                "holds no points: no line begins with " + io::quoted(tag) + "; check the format");
 }
 
 } // namespace
