@@ -73,6 +73,7 @@ int parse_and_run(int argc, char** argv) {
     add_info(app, run);
     add_compare(app, run);
     add_process(app, run);
+    add_stages(app, run);
     add_regress(app, run);
     return guarded([&] {
         if (const auto status = parse_command_line(app, argc, argv)) return *status;

@@ -25,6 +25,7 @@ void add_reconstruct(CLI::App& app, Run& run);
 void add_info(CLI::App& app, Run& run);
 void add_compare(CLI::App& app, Run& run);
 void add_process(CLI::App& app, Run& run);
+void add_stages(CLI::App& app, Run& run);
 void add_regress(CLI::App& app, Run& run);
 
 /// Parses and runs; every exception becomes a message on standard error and an exit status.

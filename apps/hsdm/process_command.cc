@@ -1,25 +1,23 @@
-// hsdm process: a mesh through processing modules.
+// hsdm process: a mesh through stages.
 
 #include "activity.hh"
 #include "command.hh"
 #include "file_claims.hh"
+#include "mesh_stages.hh"
 #include "messages.hh"
-#include "module_watch.hh"
 #include "reconstruct_output.hh"
+#include "stages_command.hh"
 #include "summary.hh"
 #include "usage.hh"
 
-#include "hsdm/cloud/cloud_frame.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/features/features.hh"
 #include "hsdm/io/output_target.hh"
 #include "hsdm/io/read_mesh.hh"
 #include "hsdm/io/write_mesh.hh"
 #include "hsdm/mesh/to_mesh.hh"
-#include "hsdm/modules/plugin_loader.hh"
 #include "hsdm/point_cloud.hh"
 
-#include <cmath>
 #include <filesystem>
 #include <iostream>
 
@@ -28,39 +26,9 @@ namespace {
 
 struct ProcessArguments {
     std::string input, output, format;
-    std::vector<std::string> modules;
+    std::vector<std::string> stages;
     bool list = false, ascii = false, quiet = false, in_place = false;
 };
-
-int list_modules() {
-    const std::vector<PluginListing> modules = list_plugins();
-    for (const PluginListing& module : modules) {
-        if (!module.problem.empty()) {
-            std::cout << printable(module.path) << ": cannot be used: " << printable(module.problem) << '\n';
-            continue;
-        }
-        std::cout << printable(module.name + ": " + module.description + "; options: " + module.options)
-                  << '\n';
-    }
-    if (!modules.empty()) return done;
-    std::string places;
-    for (const std::string& folder : plugin_folders()) places += (places.empty() ? "" : ", ") + folder;
-    std::cout << "no processing module found in " << printable(places)
-              << "; set HSDM_PLUGIN_PATH to their folder\n";
-    return done;
-}
-
-using Step = std::pair<Plugin, PluginRequest>;
-
-std::vector<Step> load_steps(const std::vector<std::string>& modules) {
-    std::vector<Step> steps;
-    for (const std::string& text : modules) {
-        PluginRequest request = parse_plugin_request(text);
-        Plugin plugin = load_plugin(request.name);
-        steps.emplace_back(std::move(plugin), std::move(request));
-    }
-    return steps;
-}
 
 /// The claims of the mesh and of what is written in the end.
 FileClaims mesh_claims(const ProcessArguments& a) {
@@ -76,7 +44,7 @@ FileClaims mesh_claims(const ProcessArguments& a) {
 
 /// Throws UsageError for an output that would destroy the mesh, unless that is what was asked for, or a
 /// module.
-void check_claims(const ProcessArguments& a, const std::vector<Step>& steps) {
+void check_claims(const ProcessArguments& a, const std::vector<StageCall>& stages) {
     FileClaims claims = mesh_claims(a);
     try {
         claims.check();
@@ -84,7 +52,7 @@ void check_claims(const ProcessArguments& a, const std::vector<Step>& steps) {
         if (a.input == "-") throw;
         throw UsageError(std::string(error.what()) + ", or overwrite the mesh with --in-place");
     }
-    for (const Step& step : steps) claims.reads("the module", step.first.path());
+    claim_modules(stages, claims);
     if (!a.quiet && !is_standard_output(a.in_place ? a.input : a.output)) claims.writes("the summary", "-");
     claims.check();
 }
@@ -97,15 +65,12 @@ PolygonMesh read_input(const std::string& input) {
     return facets;
 }
 
-/// Modules multiply lengths, so a mesh of extreme size is measured in a unit of its own, a power of two, for
-/// them. Returns that unit.
-double scale_for_modules(PolygonMesh& facets, const ProcessArguments& a) {
-    const double unit = CloudFrame(bounds_of(facets.positions)).unit();
+/// Returns the unit that the mesh is measured in then.
+double scale_for_stages(PolygonMesh& facets, const ProcessArguments& a) {
+    const double unit = unit_for_stages(bounds_of(facets.positions));
     if (unit == 1) return unit;
     for (Vec3& p : facets.positions) p /= unit;
-    if (!a.quiet)
-        complain(a.input + ": lengths, also those of the modules' options, are measured in units of 2^"
-                 + std::to_string(std::ilogb(unit)));
+    if (!a.quiet) complain(words_of_unit(a.input, unit));
     return unit;
 }
 
@@ -118,41 +83,28 @@ ToMeshResult build(const std::string& input, const PolygonMesh& facets) {
     return built;
 }
 
-/// Throws Error that names the mesh too.
-std::string process(const std::string& input, const Plugin& plugin, PolyMesh& mesh,
-                    const PluginRequest& request) {
-    try {
-        const ModuleWatch watch(input + ": module " + plugin.name());
-        return plugin.process(mesh, request.options);
-    } catch (const Error& error) {
-        throw Error(input, error.what());
-    }
-}
-
 int run_process(const ProcessArguments& a) {
-    if (a.list) return list_modules();
+    if (a.list) return list_stages(false);
     if (a.in_place && a.input == "-")
         throw UsageError("--in-place writes the mesh's own file, and standard input has none; use -o FILE");
     std::error_code ignored;
     if (a.in_place && !a.output.empty() && !std::filesystem::equivalent(a.input, a.output, ignored))
         throw UsageError("--in-place writes the mesh's own file, and -o names another; leave one out");
-    if (a.input.empty() || (a.output.empty() && !a.in_place) || a.modules.empty())
-        throw UsageError("process needs a mesh, -o FILE or --in-place, and at least one --module NAME");
+    if (a.input.empty() || (a.output.empty() && !a.in_place) || a.stages.empty())
+        throw UsageError("process needs a mesh, -o FILE or --in-place, and at least one --stage NAME");
     const std::string& output = a.in_place ? a.input : a.output;
     const MeshFormat format = format_for(output, a.format);
-    const std::vector<Step> steps = load_steps(a.modules);
-    check_claims(a, steps);
+    const std::vector<StageCall> stages = parse_stages(a.stages);
+    check_claims(a, stages);
     check_writable(output);
     PolygonMesh facets = read_input(a.input);
-    const double unit = scale_for_modules(facets, a);
+    const double unit = scale_for_stages(facets, a);
     ToMeshResult built = build(a.input, facets);
     facets = {};
     std::ostream& text = is_standard_output(output) ? std::cerr : std::cout;
-    for (std::size_t i = 0; i < steps.size(); ++i) {
-        const auto& [plugin, request] = steps[i];
-        set_phase(a.modules[i].c_str());
-        const std::string summary = process(a.input, plugin, built.mesh, request);
-        if (!a.quiet) text << printable(plugin.name() + ": " + summary) << std::endl;
+    for (const StageCall& stage : stages) {
+        const std::string summary = run_stage(a.input, stage, built.mesh).summary;
+        if (!a.quiet) text << printable(stage.stage.name + ": " + summary) << std::endl;
     }
     set_phase("write");
     if (unit != 1)
@@ -174,7 +126,7 @@ int run_process(const ProcessArguments& a) {
 
 void add_process(CLI::App& app, Run& run) {
     CLI::App* const sub =
-        app.add_subcommand("process", "a mesh through processing modules loaded at run time");
+        app.add_subcommand("process", "a mesh through stages, built in or loaded at run time");
     const auto a = std::make_shared<ProcessArguments>();
     sub->add_option("mesh", a->input, "OFF, STL, PLY, OBJ or .om");
     sub->add_option("-o,--output", a->output, "the mesh to write; - is standard output")->type_name("FILE");
@@ -183,15 +135,15 @@ void add_process(CLI::App& app, Run& run) {
         ->check(one_of({"off", "stl", "ply", "obj", "om"}))
         ->type_name("off|stl|ply|obj|om");
     sub->add_flag("--ascii", a->ascii, "text instead of binary STL and PLY");
-    sub->add_option("--module", a->modules,
-                    "NAME or NAME:key=value,key=value; several run in the order given")
-        ->type_name("MODULE");
-    sub->add_flag("--list", a->list, "the modules there are, and their options");
+    sub->add_option("--stage,--module", a->stages,
+                    "NAME or NAME:key=value,key=value; several run in the order given (hsdm stages)")
+        ->type_name("STAGE");
+    sub->add_flag("--list", a->list, "the stages there are, as hsdm stages");
     sub->add_flag("--quiet", a->quiet, "no summary, errors only");
     sub->footer(
         "Modules are looked for in the folders of HSDM_PLUGIN_PATH, then in that of the installation, and\n"
         "refused if others could have written them.\nExamples:\n  hsdm process --list\n"
-        "  hsdm process part.off --module classify-features --module smooth-normals -o part.ply");
+        "  hsdm process part.off --stage classify --stage decimate:ratio=0.125 -o part.ply");
     sub->callback([&run, a] { run = [a] { return run_process(*a); }; });
 }
 

@@ -151,6 +151,12 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
         ->type_name("N")
         ->capture_default_str()
         ->group(method);
+    app.add_option(
+           "--stage", a.stages,
+           "what the mesh goes through then: NAME or NAME:key=value,key=value; several run in the order "
+           "given (hsdm stages)")
+        ->type_name("STAGE")
+        ->group(method);
     app.add_option("--memory", a.memory, "not available yet: upper bound on memory")
         ->type_name("SIZE")
         ->group(method);
@@ -252,8 +258,7 @@ std::optional<std::pair<int, int>> ReconstructArguments::level_range() const {
     return std::pair(*first, *last);
 }
 
-ReconstructOptions case_options(const std::string& name, const std::vector<std::string>& words,
-                                ReadOptions& read) {
+CaseOptions case_options(const std::string& name, const std::vector<std::string>& words) {
     CLI::App app("", "a case");
     ReconstructArguments arguments;
     add_method_options(app, arguments);
@@ -265,9 +270,8 @@ ReconstructOptions case_options(const std::string& name, const std::vector<std::
         throw Error(name, "args: " + fault_of(app, error));
     }
     if (!arguments.levels.empty()) throw Error(name, "args: --levels makes several meshes; give one --depth");
-    read = arguments.read;
     try {
-        return arguments.options();
+        return {arguments.options(), arguments.read, arguments.stages};
     } catch (const UsageError& error) {
         throw Error(name, error.what());
     }

@@ -29,6 +29,7 @@ struct ReconstructArguments {
     std::string min_component;
     double crease_degrees = 35;
     int smoothing = 3;
+    std::vector<std::string> stages;
     std::string memory;
     int threads = 0;
     std::string debug_dir;
@@ -52,9 +53,13 @@ void add_text_options(CLI::App& app, ReconstructArguments& arguments);
 /// Inputs, outputs and messages.
 void add_file_options(CLI::App& app, ReconstructArguments& arguments);
 
-/// The options of library and reader that the `args` of a suite's case stand for, through the same parser.
+/// What the `args` of a suite's case stand for, through the same parser; the library's options are theirs.
 /// Throws Error that begins with the case's name.
-ReconstructOptions case_options(const std::string& name, const std::vector<std::string>& words,
-                                ReadOptions& read);
+struct CaseOptions {
+    ReconstructOptions reconstruct;
+    ReadOptions read;
+    std::vector<std::string> stages;
+};
+CaseOptions case_options(const std::string& name, const std::vector<std::string>& words);
 
 } // namespace hsdm::command

@@ -2,6 +2,7 @@
 
 #include "activity.hh"
 #include "command.hh"
+#include "mesh_stages.hh"
 #include "messages.hh"
 #include "reconstruct_arguments.hh"
 #include "reconstruct_output.hh"
@@ -54,11 +55,12 @@ public:
     explicit ReconstructRun(const ReconstructArguments& arguments)
         : arguments_(arguments),
           levels_(arguments.level_range()),
+          stages_(parse_stages(arguments.stages)),
           options_(checked_options(arguments, levels_)),
-          plan_(arguments, levels_),
+          plan_(arguments, levels_, stages_),
           text_(plan_.uses_standard_output() ? std::cerr : std::cout) {
         options_.measure = !arguments.quiet || !arguments.report.empty();
-        options_.classify = options_.measure || plan_.writes_features();
+        options_.classify = options_.measure || plan_.writes_features() || !stages_.empty();
         options_.vertex_normals = plan_.writes_properties();
     }
 
@@ -150,6 +152,8 @@ private:
         bar.show("read", 0);
         PointFile file = read_points(input, arguments_.read);
         const double read_seconds = seconds_since(start);
+        std::vector<Vec3> points; // for the stages' mesh to be measured
+        if (options_.measure && !stages_.empty()) points = file.cloud.positions;
         ReconstructOptions options = options_;
         options.debug_dir = plan_.debug_dir(input);
         options.progress = [&bar](const char* phase, double share) {
@@ -158,15 +162,14 @@ private:
             return true;
         };
         const auto write_all = [&](std::span<Reconstruction> results) {
-            set_phase("write");
-            bar.show("write", 0.97);
+            bar.show(stages_.empty() ? "write" : "stages", 0.97);
             std::vector<Made> made;
             for (Reconstruction& result : results) {
                 result.report.input.file = input;
                 result.report.input.dropped_nonfinite += file.nonfinite;
                 result.report.seconds.read = read_seconds;
                 if (!file.columns.empty()) result.report.options["columns"] = file.columns;
-                const bool as_text = write_one(result);
+                const bool as_text = write_one(name, points, result);
                 result.report.seconds.total = seconds_since(start);
                 made.push_back({std::move(result.report), as_text});
             }
@@ -187,14 +190,17 @@ private:
                             levels_ ? std::optional<int>(report.grid.depth) : std::nullopt);
     }
 
-    /// Writes one level; a failure does not stop the others. Returns whether the mesh became text for its
-    /// precision.
-    bool write_one(Reconstruction& result) const {
+    /// Runs the stages on one level and writes it; a failure does not stop the others. Returns whether the
+    /// mesh became text for its precision.
+    bool write_one(const std::string& name, std::span<const Vec3> points, Reconstruction& result) const {
         Report& report = result.report;
         if (!report.failure.empty()) return false;
         bool as_text = false;
-        const auto start = Clock::now();
+        auto start = Clock::now();
         try {
+            run_stages(name, stages_, points, arguments_.quiet, result);
+            set_phase("write");
+            start = Clock::now();
             as_text = write_outputs(target(report), result.mesh).text_for_precision;
         } catch (const std::exception& error) {
             if (!levels_) throw;
@@ -241,6 +247,7 @@ private:
 
     const ReconstructArguments& arguments_;
     std::optional<std::pair<int, int>> levels_;
+    std::vector<StageCall> stages_;
     ReconstructOptions options_;
     OutputPlan plan_;
     std::ostream& text_;

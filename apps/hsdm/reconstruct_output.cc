@@ -74,10 +74,11 @@ MeshFormat format_for(const std::string& output, const std::string& format) {
     }
 }
 
-OutputPlan::OutputPlan(const ReconstructArguments& arguments, std::optional<std::pair<int, int>> levels)
+OutputPlan::OutputPlan(const ReconstructArguments& arguments, std::optional<std::pair<int, int>> levels,
+                       const std::vector<StageCall>& stages)
     : arguments_(arguments), levels_(levels), format_(format_for(arguments.output, arguments.format)) {
     check_combinations();
-    check_claims();
+    check_claims(stages);
     make_folders();
     for (const std::string* path : {&arguments.output, &arguments.report, &arguments.features})
         if (!path->empty()) check_writable(*path);
@@ -95,8 +96,9 @@ void OutputPlan::check_combinations() const {
         throw UsageError("--levels makes several files; standard output holds one");
 }
 
-void OutputPlan::check_claims() const {
+void OutputPlan::check_claims(const std::vector<StageCall>& stages) const {
     FileClaims claims;
+    claim_modules(stages, claims);
     for (const std::string& input : arguments_.inputs) {
         claims.reads("the input", input);
         claim_outputs(input, claims);

@@ -2,6 +2,7 @@
 // Where the meshes of `hsdm reconstruct` go, settled and checked before any work.
 
 #include "file_claims.hh"
+#include "mesh_stages.hh"
 #include "reconstruct_arguments.hh"
 
 namespace hsdm::command {
@@ -18,8 +19,10 @@ struct MeshTarget {
 class OutputPlan {
 public:
     /// Makes the folders. Throws UsageError for options that do not fit together and for outputs that would
-    /// destroy inputs or each other, Error for what cannot be written. `levels` as of level_range(), checked.
-    OutputPlan(const ReconstructArguments& arguments, std::optional<std::pair<int, int>> levels);
+    /// destroy inputs or each other, Error for what cannot be written. `levels` as of level_range(), checked;
+    /// `stages` are those of the arguments.
+    OutputPlan(const ReconstructArguments& arguments, std::optional<std::pair<int, int>> levels,
+               const std::vector<StageCall>& stages);
 
     /// `depth` is set when --levels names several.
     MeshTarget target(const std::string& input, std::optional<int> depth) const;
@@ -37,7 +40,7 @@ public:
 
 private:
     void check_combinations() const;
-    void check_claims() const;
+    void check_claims(const std::vector<StageCall>& stages) const;
     void claim_outputs(const std::string& input, FileClaims& claims) const;
     void make_folders() const;
 

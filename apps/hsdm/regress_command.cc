@@ -5,6 +5,7 @@
 #include "command.hh"
 #include "file_claims.hh"
 #include "interrupt.hh"
+#include "mesh_stages.hh"
 #include "messages.hh"
 #include "outcome.hh"
 #include "reconstruct_arguments.hh"
@@ -37,15 +38,18 @@ Outcome run_case(const Case& one) {
     outcome.name = one.name;
     const auto start = std::chrono::steady_clock::now();
     try {
-        ReadOptions read;
-        ReconstructOptions options = case_options(one.name, one.arguments, read);
+        const CaseOptions asked = case_options(one.name, one.arguments);
+        const std::vector<StageCall> stages = parse_stages(asked.stages);
+        ReconstructOptions options = asked.reconstruct;
         options.progress = [](const char* phase, double) {
             set_phase(phase);
             return true;
         };
         set_activity(one.input.c_str(), "read");
-        PointFile file = read_points(one.input, read);
+        PointFile file = read_points(one.input, asked.read);
+        const std::vector<Vec3> points = stages.empty() ? std::vector<Vec3>() : file.cloud.positions;
         Reconstruction result = reconstruct(std::move(file.cloud), options);
+        run_stages(one.input, stages, points, false, result);
         result.report.input.file = one.input;
         result.report.input.dropped_nonfinite += file.nonfinite;
         outcome.report = Json::parse(to_json(result.report));

@@ -129,10 +129,12 @@ std::string summary_of(const Report& r, const std::string& written) {
         << plural(r.features.sharp_edges, "sharp edge", "sharp edges") << "\ntopology  "
         << topology_words(r.mesh) << small_component_words(r);
     for (const Report::Dropped& dropped : r.dropped) out << "\ndropped   " << dropped_words(dropped);
+    for (const Report::Stage& stage : r.stages)
+        out << "\nstage     " << printable(stage.call + ": " + stage.summary);
     out << "\nerror     points to mesh: max " << number(r.error.points_to_mesh_max, 3) << " ("
         << number(100 * r.error.normalised_max, 3) << " % of the diagonal), mean "
-        << number(r.error.points_to_mesh_mean, 3) << bound_words(r) << "\nwritten   " << printable(written)
-        << " in " << seconds(r.seconds.total) << "\n";
+        << number(r.error.points_to_mesh_mean, 3) << (r.stages.empty() ? bound_words(r) : "")
+        << "\nwritten   " << printable(written) << " in " << seconds(r.seconds.total) << "\n";
     return std::move(out).take();
 }
 

@@ -2,10 +2,9 @@
 #include <hsdm/plugin.hh>
 
 std::string scale(hsdm::PolyMesh& mesh, const hsdm::PluginOptions& options) {
-    options.allow({"factor"});
     const double factor = options.number("factor", 1);
     for (const auto v : mesh.vertices()) mesh.set_point(v, factor * mesh.point(v));
     return "scaled by " + options.text("factor", "1");
 }
 
-HSDM_PLUGIN("scale", "multiplies all coordinates", "factor (1)", scale)
+HSDM_PLUGIN("scale", "multiplies all coordinates", "factor=1 (length): above 0", scale)

@@ -5,6 +5,8 @@
 #include "hsdm/errors.hh"
 #include "hsdm/features/AnisotropicNormalSmootherT.hh"
 #include "hsdm/features/FeatureClassifierT.hh"
+#include "hsdm/features/HoleFillerT.hh"
+#include "hsdm/features/ModFeatureT.hh"
 #include "hsdm/io/read_mesh.hh"
 #include "hsdm/io/read_points.hh"
 #include "hsdm/io/register_readers.hh"

@@ -5,26 +5,24 @@
 /// A module:
 ///
 ///     std::string scale(hsdm::PolyMesh& mesh, const hsdm::PluginOptions& options) {
-///         options.allow({"factor"});
 ///         const double factor = options.number("factor", 1);
 ///         for (const auto v : mesh.vertices()) mesh.set_point(v, factor * mesh.point(v));
 ///         return "scaled by " + options.text("factor", "1");
 ///     }
-///     HSDM_PLUGIN("scale", "multiplies all coordinates", "factor (1)", scale)
+///     HSDM_PLUGIN("scale", "multiplies all coordinates", "factor=1 (length): above 0", scale)
 
 #include "hsdm/mesh_types.hh"
 #include "hsdm/plugin_build.hh"
 
 #include <cstddef>
 #include <cstdint>
-#include <initializer_list>
 #include <string>
 
 namespace hsdm {
 
 /// Version of this interface. The record's first two texts and PluginInfo's first two members stay what they
 /// are in every version.
-#define HSDM_PLUGIN_ABI 2
+#define HSDM_PLUGIN_ABI 3
 /// The same as a number.
 inline constexpr std::uint32_t plugin_abi = HSDM_PLUGIN_ABI;
 
@@ -47,21 +45,18 @@ struct PluginInfo {
                    std::size_t capacity);
 };
 
-/// The `key=value` options a module was called with.
+/// The `key=value` options a module was called with. hsdm has checked them against those that the module
+/// declares; for other callers each of the functions checks what it returns.
 class PluginOptions {
 public:
     /// Keeps the pointer: the options must outlive it.
     PluginOptions(const PluginOption* options, std::size_t count) : options_(options), count_(count) {}
 
-    /// Throws OptionError for a key that is not among the known, or is given twice.
-    void allow(std::initializer_list<const char*> known) const;
     /// Whether the key is given.
     bool has(const char* key) const { return find(key) != nullptr; }
     /// The value, or the fallback where the key is not given. Throws OptionError for no finite number.
     double number(const char* key, double fallback) const;
-    /// The same for whole numbers that an int holds.
-    int integer(const char* key, int fallback) const;
-    /// As integer(), of 0 or more.
+    /// The same for whole numbers of 0 or more that an int holds.
     int count(const char* key, int fallback) const;
     /// An angle above 0 and below 180 degrees, which the value is in; it and the fallback in radians.
     double angle(const char* key, double fallback) const;
@@ -70,6 +65,7 @@ public:
 
 private:
     const char* find(const char* key) const;
+    const char* checked(const char* key, const char* kind) const;
 
     const PluginOption* options_;
     std::size_t count_;
@@ -86,8 +82,8 @@ int run_plugin(PluginFunction function, PolyMesh& mesh, const PluginOption* opti
 } // namespace hsdm
 
 /// Defines the record and the exported function. Once per module, at namespace scope. Name, description (one
-/// line) and options (one line: keys, units, defaults) are string literals: the record is one text, in which
-/// zeros part mark, build, name, description and options.
+/// line) and options (as StageOption's declarations, `key=fallback (kind): help` with `; ` between them) are
+/// string literals: the record is one text, in which zeros part mark, build, name, description and options.
 #define HSDM_PLUGIN(plugin_name, plugin_description, plugin_options, plugin_function)                        \
     __attribute__((section(".hsdm_plugin"), used)) static constexpr char hsdm_plugin_record[] =              \
         HSDM_PLUGIN_MARK "\0" HSDM_PLUGIN_BUILD "\0" plugin_name "\0" plugin_description                     \

@@ -87,6 +87,16 @@ struct Report {
     };
     std::vector<Dropped> dropped; ///< in the order of the stages
 
+    /// A stage that the mesh went through afterwards.
+    struct Stage {
+        std::string call;    ///< as it was asked for, `name:key=value,...`
+        std::string summary; ///< one line: what it did
+        double seconds = 0;  ///< how long it took
+    };
+    /// In their order, set by the command; with any, `mesh`, `features` and `error` are of the mesh they
+    /// leave.
+    std::vector<Stage> stages;
+
     /// Wall-clock time.
     struct Seconds {
         double read = 0,  ///< set by the command

@@ -87,11 +87,11 @@ bool has_kept_library() {
 
 /// With so many threads, even if there are fewer cores; 0: as many as there are.
 MeshHash result_of(const Case& one, int threads = 0) {
-    ReadOptions read;
-    ReconstructOptions options = command::case_options(one.name, one.arguments, read);
+    const command::CaseOptions asked = command::case_options(one.name, one.arguments);
+    ReconstructOptions options = asked.reconstruct;
     options.threads = threads;
     options.measure = false; // the report's errors are of no concern here, but a third of the time
-    const Reconstruction result = reconstruct(read_points(one.input, read).cloud, options);
+    const Reconstruction result = reconstruct(read_points(one.input, asked.read).cloud, options);
     if (threads > 0) CHECK(result.report.threads == threads);
     return hash_of(result.mesh);
 }

@@ -10,4 +10,4 @@ std::string nothing(hsdm::PolyMesh&, const hsdm::PluginOptions&) {
 
 } // namespace
 
-HSDM_PLUGIN("debug_mode", "has checked containers", "no options", nothing)
+HSDM_PLUGIN("debug_mode", "has checked containers", "", nothing)

@@ -11,10 +11,9 @@ namespace {
 const hsdm::test::WhenLoaded when_loaded;
 
 std::string fail(hsdm::PolyMesh&, const hsdm::PluginOptions& options) {
-    options.allow({"long"});
     throw std::runtime_error(options.has("long") ? std::string(5000, 'x') : "out of luck");
 }
 
 } // namespace
 
-HSDM_PLUGIN("failing", "always fails", "long: with a long message", fail)
+HSDM_PLUGIN("failing", "always fails", "long= (text): with a long message", fail)

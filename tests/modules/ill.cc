@@ -51,11 +51,10 @@ void hurt(hsdm::PolyMesh& mesh, const std::string& how) {
 }
 
 std::string run(hsdm::PolyMesh& mesh, const hsdm::PluginOptions& options) {
-    options.allow({"how"});
     hurt(mesh, options.text("how", ""));
     return "done";
 }
 
 } // namespace
 
-HSDM_PLUGIN("ill", "does what no module may", "how", run)
+HSDM_PLUGIN("ill", "does what no module may", "how= (text): what", run)

@@ -20,7 +20,7 @@
 
 using namespace hsdm;
 using Catch::Matchers::Contains;
-using Options = std::vector<std::pair<std::string, std::string>>;
+using Options = StageArguments;
 
 namespace {
 
@@ -62,7 +62,9 @@ TEST_CASE("a module is found in its folder and tells what it is") {
     const Plugin plugin = load_plugin("classify-features", folders);
     CHECK(plugin.name() == "classify-features");
     CHECK_FALSE(plugin.description().empty());
-    CHECK_THAT(plugin.options(), Contains("crease-degrees"));
+    REQUIRE(plugin.options().size() == 3);
+    CHECK(plugin.options()[0].key == "crease-degrees");
+    CHECK(plugin.options()[0].fallback == "35");
 }
 
 TEST_CASE("classify-features does what the library does") {
@@ -105,15 +107,16 @@ TEST_CASE("a module's options are checked: unknown, twice, no number, out of ran
     CHECK_THROWS_AS(process({{"crease-degrees", "steep"}}), OptionError);
     CHECK_THROWS_AS(process({{"crease-degrees", "30x"}}), OptionError);
     CHECK_THROWS_AS(process({{"crease-degrees", ""}}), OptionError);
-    CHECK_THROWS_WITH(process({{"crease-degrees", "400"}}),
-                      "classify-features: crease-degrees 400: must lie between 0 and 180 degrees");
+    CHECK_THROWS_WITH(
+        process({{"crease-degrees", "400"}}),
+        "classify-features: crease-degrees 400: must be an angle above 0 and below 180 degrees");
     for (const char* edge : {"0", "-0", "180", "1e-323"})
         CHECK_THROWS_WITH(process({{"corner-degrees", edge}}),
                           std::string("classify-features: corner-degrees ") + edge
-                              + ": must lie between 0 and 180 degrees");
+                              + ": must be an angle above 0 and below 180 degrees");
     CHECK_NOTHROW(process({{"corner-degrees", "179.99999999999997"}}));
     CHECK_THROWS_WITH(process({{"confirmation-rounds", "-1"}}),
-                      "classify-features: confirmation-rounds -1: must be 0 or more");
+                      "classify-features: confirmation-rounds -1: must be a whole number, 0 or more");
     CHECK_THROWS_AS(load_plugin("smooth-normals", folders).process(mesh, {{"rounds", "1.5"}}), OptionError);
 }
 
@@ -150,7 +153,8 @@ TEST_CASE("no code of a module runs when it is listed, nor when it is of another
                                       [](const PluginListing& one) { return one.name == "failing"; });
     REQUIRE(failing != listed.end());
     CHECK(failing->description == "always fails");
-    CHECK(failing->options == "long: with a long message");
+    REQUIRE(failing->options.size() == 1);
+    CHECK(failing->options[0].help == "with a long message");
 }
 
 TEST_CASE("a pipe, a folder and a loose link among the modules are passed by") {
@@ -260,10 +264,10 @@ TEST_CASE("HSDM_PLUGIN_PATH comes before the folder of the installation, the onl
 
 TEST_CASE("a request reads name:key=value,key=value") {
     CHECK(parse_plugin_request("smooth-normals").name == "smooth-normals");
-    CHECK(parse_plugin_request("smooth-normals").options.empty());
+    CHECK(parse_plugin_request("smooth-normals").arguments.empty());
     const auto request = parse_plugin_request("a:b=1,c=,d=x=y");
     CHECK(request.name == "a");
-    CHECK(request.options == Options{{"b", "1"}, {"c", ""}, {"d", "x=y"}});
+    CHECK(request.arguments == Options{{"b", "1"}, {"c", ""}, {"d", "x=y"}});
     for (const char* wrong : {"", ":a=1", "a:", "a:b", "a:=1", "a:b=1,", "a:b=1,,c=2"})
         CHECK_THROWS_AS(parse_plugin_request(wrong), OptionError);
 }
@@ -275,7 +279,7 @@ TEST_CASE("a colon in a module's path is told from the one before the options") 
     fs::create_directory(folder / "a:b");
     fs::rename(folder / "scale.so", folder / "a:b/scale:2.so");
     const auto request = parse_plugin_request((folder / "a:b/scale:2.so") + ":factor=3");
-    CHECK(request.options == Options{{"factor", "3"}});
+    CHECK(request.arguments == Options{{"factor", "3"}});
     CHECK(load_plugin(request.name).name() == "scale");
     CHECK(parse_plugin_request(folder / "a:b/scale:2.so").name == folder / "a:b/scale:2.so");
 }

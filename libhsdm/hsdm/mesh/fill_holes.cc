@@ -1,5 +1,6 @@
 #include "hsdm/mesh/fill_holes.hh"
 
+#include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/facet_links.hh"
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <tuple>
 #include <utility>
 
@@ -162,6 +164,13 @@ Pieces triangles_around(Index middle, std::span<const Index> loop) {
 }
 
 } // namespace
+
+void validate(const FillHolesOptions& options) {
+    check_option(options.max_edges >= 3, "max_edges", options.max_edges, "be 3 or more");
+    check_option(options.max_diameter > 0, "max_diameter", options.max_diameter, "be above 0");
+    check_option(options.max_bend > 0 && options.max_bend <= std::numbers::pi, "max_bend", options.max_bend,
+                 "lie in (0, pi], in radians");
+}
 
 BoundaryLoops boundary_loops(const PolygonMesh& mesh) {
     return HoleTracer(mesh).trace();

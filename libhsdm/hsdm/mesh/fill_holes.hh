@@ -21,6 +21,9 @@ struct FillHolesOptions {
     static constexpr int no_limit = std::numeric_limits<int>::max();
 };
 
+/// Throws OptionError naming the option, its value and its range.
+void validate(const FillHolesOptions& options);
+
 struct FillHolesCounts {
     std::size_t loops = 0;  ///< boundary loops before
     std::size_t closed = 0; ///< of these, closed

@@ -62,17 +62,27 @@ private:
     std::vector<std::size_t> facets_;
 };
 
-/// Removes the components c for which is_small(c).
+/// The components c for which is_small(c).
 template <class IsSmall>
-SmallComponents remove_components(PolygonMesh& mesh, std::vector<EdgeHint>& hints, Components& components,
-                                  IsSmall is_small) {
-    SmallComponents removed;
+SmallComponentFacets components_where(const PolygonMesh& mesh, Components& components, IsSmall is_small) {
+    SmallComponentFacets found;
     std::vector<std::uint8_t> small(components.facets().size(), 0);
     for (std::size_t c = 0; c < small.size(); ++c)
-        if (components.facets()[c] > 0 && is_small(c)) small[c] = 1, ++removed.components;
+        if (components.facets()[c] > 0 && is_small(c)) small[c] = 1, ++found.components;
+    found.facets.assign(mesh.facet_count(), 0);
+    if (found.components > 0)
+        for_each_index(mesh.facet_count(), chunks::quick,
+                       [&](Index f) { found.facets[f] = small[components.of(f)]; });
+    return found;
+}
+
+/// Removes the components with their facets.
+SmallComponents remove_components(PolygonMesh& mesh, std::vector<EdgeHint>& hints,
+                                  const SmallComponentFacets& small) {
+    SmallComponents removed;
+    removed.components = small.components;
     if (removed.components > 0)
-        removed.facets =
-            remove_facets(mesh, hints, [&](std::size_t f) { return small[components.of(f)] != 0; });
+        removed.facets = remove_facets(mesh, hints, [&](std::size_t f) { return small.facets[f] != 0; });
     return removed;
 }
 
@@ -85,26 +95,29 @@ Discarded drop_splinters(PolygonMesh& mesh, const SplinterOptions& options) {
     const auto largest = static_cast<double>(*std::max_element(sizes.begin(), sizes.end()));
     const std::vector<std::uint8_t> open = components.are_open(options.most_open);
     std::vector<EdgeHint> none;
-    return remove_components(mesh, none, components,
-                             [&](std::size_t c) {
-                                 return sizes[c] <= (open[c] ? options.most_open : options.most_facets)
-                                        && static_cast<double>(sizes[c]) * options.least_ratio <= largest;
-                             })
-        .facets;
+    const SmallComponentFacets small = components_where(mesh, components, [&](std::size_t c) {
+        return sizes[c] <= (open[c] ? options.most_open : options.most_facets)
+               && static_cast<double>(sizes[c]) * options.least_ratio <= largest;
+    });
+    return remove_components(mesh, none, small).facets;
 }
 
-SmallComponents drop_small_components(PolygonMesh& mesh, FeatureHints& hints,
-                                      const SmallComponentOptions& options) {
+SmallComponentFacets find_small_components(const PolygonMesh& mesh, const SmallComponentOptions& options) {
     if (mesh.facet_count() == 0) return {};
     Components components(mesh);
     const std::vector<double> areas = components.areas();
     const auto largest =
         static_cast<std::size_t>(std::max_element(areas.begin(), areas.end()) - areas.begin());
-    SmallComponents removed = remove_components(mesh, hints.sides, components, [&](std::size_t c) {
+    return components_where(mesh, components, [&](std::size_t c) {
         if (c == largest) return false;
         return static_cast<double>(components.facets()[c]) < options.least_facets || options.least_share >= 1
                || areas[c] < options.least_share * areas[largest];
     });
+}
+
+SmallComponents drop_small_components(PolygonMesh& mesh, FeatureHints& hints,
+                                      const SmallComponentOptions& options) {
+    SmallComponents removed = remove_components(mesh, hints.sides, find_small_components(mesh, options));
     if (removed.components > 0) remove_isolated_vertices(mesh);
     return removed;
 }

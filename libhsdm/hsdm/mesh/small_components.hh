@@ -33,6 +33,16 @@ struct SmallComponents {
     Discarded facets;
 };
 
+/// Which components are smaller than asked for.
+struct SmallComponentFacets {
+    std::size_t components = 0;       ///< of these
+    std::vector<std::uint8_t> facets; ///< per facet, 1 if it is of one of them, else 0
+};
+
+/// Finds the components that are smaller than asked for; never the largest by area. O(facets), parallel in
+/// parts.
+SmallComponentFacets find_small_components(const PolygonMesh& mesh, const SmallComponentOptions& options);
+
 /// Removes the components that are smaller than asked for, with their vertices and the hints of their sides.
 /// The largest by area always stays. O(facets), parallel in parts.
 SmallComponents drop_small_components(PolygonMesh& mesh, FeatureHints& hints,

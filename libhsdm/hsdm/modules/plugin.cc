@@ -1,10 +1,10 @@
 #include "hsdm/plugin.hh"
 
 #include "hsdm/errors.hh"
+#include "hsdm/modules/stage_options.hh"
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <cstring>
 #include <new>
 #include <numbers>
@@ -13,12 +13,11 @@
 namespace hsdm {
 namespace {
 
+/// A value that check_stage_value() has passed.
 template <class T>
-T parse(const char* key, std::string_view text, const char* kind) {
+T parse(std::string_view text) {
     T value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size())
-        throw OptionError(std::string(key) + " " + std::string(text) + ": must be " + kind);
+    std::from_chars(text.data(), text.data() + text.size(), value);
     return value;
 }
 
@@ -38,46 +37,25 @@ const char* PluginOptions::find(const char* key) const {
     return nullptr;
 }
 
-void PluginOptions::allow(std::initializer_list<const char*> known) const {
-    for (std::size_t i = 0; i < count_; ++i) {
-        const std::string_view key = options_[i].key;
-        if (std::find(known.begin(), known.end(), key) == known.end()) {
-            std::string names;
-            for (const char* name : known) names += (names.empty() ? "" : ", ") + std::string(name);
-            throw OptionError(std::string(key) + ": unknown option; "
-                              + (names.empty() ? "the module has none" : "known are " + names));
-        }
-        for (std::size_t j = 0; j < i; ++j)
-            if (key == options_[j].key) throw OptionError(std::string(key) + ": given twice");
-    }
-}
-
-double PluginOptions::number(const char* key, double fallback) const {
-    const char* value = find(key);
-    if (value == nullptr) return fallback;
-    const auto result = parse<double>(key, value, "a number");
-    if (!std::isfinite(result)) throw OptionError(std::string(key) + " " + value + ": must be finite");
-    return result;
-}
-
-int PluginOptions::integer(const char* key, int fallback) const {
-    const char* value = find(key);
-    return value == nullptr ? fallback : parse<int>(key, value, "a whole number");
-}
-
-int PluginOptions::count(const char* key, int fallback) const {
-    const int value = integer(key, fallback);
-    if (value < 0) throw OptionError(std::string(key) + " " + find(key) + ": must be 0 or more");
+const char* PluginOptions::checked(const char* key, const char* kind) const {
+    const char* const value = find(key);
+    if (value != nullptr) check_stage_value(key, kind, value);
     return value;
 }
 
+double PluginOptions::number(const char* key, double fallback) const {
+    const char* const value = checked(key, "number");
+    return value == nullptr ? fallback : parse<double>(value);
+}
+
+int PluginOptions::count(const char* key, int fallback) const {
+    const char* const value = checked(key, "count");
+    return value == nullptr ? fallback : parse<int>(value);
+}
+
 double PluginOptions::angle(const char* key, double fallback) const {
-    if (!has(key)) return fallback;
-    // What is checked is what is returned: the least angles are none in radians.
-    const double radians = number(key, 0) * std::numbers::pi / 180;
-    if (!(radians > 0 && radians < std::numbers::pi))
-        throw OptionError(std::string(key) + " " + find(key) + ": must lie between 0 and 180 degrees");
-    return radians;
+    const char* const value = checked(key, "angle");
+    return value == nullptr ? fallback : parse<double>(value) * std::numbers::pi / 180;
 }
 
 std::string PluginOptions::text(const char* key, const char* fallback) const {

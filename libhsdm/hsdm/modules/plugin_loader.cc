@@ -67,6 +67,16 @@ PluginRecord inspect(const std::string& path) {
     return *record;
 }
 
+std::vector<StageOption> declared_options(const std::string& path, const PluginRecord& record) {
+    try {
+        return parse_stage_options(record.options);
+    } catch (const Error& error) {
+        throw Error(path, std::string(error.what()) + "; see hsdm/plugin.hh");
+    } catch (const OptionError& error) {
+        throw Error(path, std::string(error.what()) + " in what it declares; see hsdm/plugin.hh");
+    }
+}
+
 const PluginInfo* load(const std::string& path) {
     // A path without '/' would make dlopen search the system's library folders.
     void* library = dlopen(fs::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
@@ -137,14 +147,15 @@ std::string not_found(const std::string& name, const std::vector<std::string>& f
 
 } // namespace
 
-Plugin::Plugin(const std::string& path) : path_(path), record_(inspect(path)), info_(load(path)) {}
+Plugin::Plugin(const std::string& path)
+    : path_(path), record_(inspect(path)), options_(declared_options(path, record_)), info_(load(path)) {}
 
-std::string Plugin::process(PolyMesh& mesh,
-                            const std::vector<std::pair<std::string, std::string>>& options) const {
+std::string Plugin::process(PolyMesh& mesh, const StageArguments& arguments) const {
+    check_stage_arguments(name(), options_, arguments);
     const bool had_faces = mesh.faces_sbegin() != mesh.faces_end();
     std::vector<PluginOption> plain;
-    plain.reserve(options.size());
-    for (const auto& [key, value] : options) plain.push_back({key.c_str(), value.c_str()});
+    plain.reserve(arguments.size());
+    for (const auto& [key, value] : arguments) plain.push_back({key.c_str(), value.c_str()});
     std::array<char, 1024> message{};
     const int result = info_->process(mesh, plain.data(), plain.size(), message.data(), message.size());
     message.back() = '\0';
@@ -170,14 +181,20 @@ std::vector<std::string> plugin_folders() {
     return folders;
 }
 
-Plugin load_plugin(const std::string& name, const std::vector<std::string>& folders) {
-    if (name.find('/') != std::string::npos) return Plugin(name);
+std::string module_path(const std::string& name, const std::vector<std::string>& folders) {
+    if (name.find('/') != std::string::npos) return name;
     for (const std::string& folder : folders) {
         const fs::path path = fs::path(folder) / (name + extension);
         std::error_code error;
-        if (fs::exists(path, error)) return Plugin(path.string());
+        if (fs::exists(path, error)) return path.string();
     }
-    throw Error(not_found(name, folders));
+    return "";
+}
+
+Plugin load_plugin(const std::string& name, const std::vector<std::string>& folders) {
+    const std::string path = module_path(name, folders);
+    if (path.empty()) throw Error(not_found(name, folders));
+    return Plugin(path);
 }
 
 std::vector<PluginListing> list_plugins(const std::vector<std::string>& folders) {
@@ -185,7 +202,7 @@ std::vector<PluginListing> list_plugins(const std::vector<std::string>& folders)
     std::set<std::string> seen;
     for (const std::string& folder : folders) {
         if (const std::string reason = distrust(folder); !reason.empty()) {
-            listings.push_back({folder, "", "", "", "nothing is loaded from here: " + reason});
+            listings.push_back({folder, "", "", {}, "nothing is loaded from here: " + reason});
             continue;
         }
         for (const fs::path& file : shared_libraries(folder)) {
@@ -196,7 +213,7 @@ std::vector<PluginListing> list_plugins(const std::vector<std::string>& folders)
             try {
                 const PluginRecord record = inspect(listing.path);
                 listing.description = record.description;
-                listing.options = record.options;
+                listing.options = declared_options(listing.path, record);
             } catch (const Error& error) {
                 listing.problem = error.what();
             }
@@ -219,7 +236,7 @@ PluginRequest parse_plugin_request(const std::string& text) {
         const std::size_t equals = part.find('=');
         if (equals == 0 || equals == std::string::npos)
             throw OptionError("module " + text + ": `" + part + "` must read key=value");
-        request.options.emplace_back(part.substr(0, equals), part.substr(equals + 1));
+        request.arguments.emplace_back(part.substr(0, equals), part.substr(equals + 1));
         begin = end + 1;
     }
     return request;

@@ -3,6 +3,7 @@
 
 #include "hsdm/mesh_types.hh"
 #include "hsdm/modules/plugin_record.hh"
+#include "hsdm/modules/stage_options.hh"
 
 #include <string>
 #include <utility>
@@ -27,19 +28,19 @@ public:
     /// The name by which modules are requested.
     const std::string& name() const { return record_.name; }
     const std::string& description() const { return record_.description; } ///< one line
-    const std::string& options() const { return record_.options; } ///< one line: keys, units, defaults
+    const std::vector<StageOption>& options() const { return options_; }   ///< as declared
 
-    /// Runs the module on the mesh; returns its one-line summary. Throws OptionError for an option the module
-    /// refuses, Error if it fails otherwise or leaves a mesh that is not sound: links that lead nowhere, a
-    /// position that is not finite, no face where there were some. The mesh may then be changed in part and
-    /// must not be walked over. Normals it leaves that are not finite become zero. O(half-edges) beside the
-    /// module's work.
-    std::string process(PolyMesh& mesh,
-                        const std::vector<std::pair<std::string, std::string>>& options = {}) const;
+    /// Runs the module on the mesh; returns its one-line summary. Throws OptionError for an argument that is
+    /// not as the module's options have it or that it refuses, Error if it fails otherwise or leaves a mesh
+    /// that is not sound: links that lead nowhere, a position that is not finite, no face where there were
+    /// some. The mesh may then be changed in part and must not be walked over. Normals it leaves that are not
+    /// finite become zero. O(half-edges) beside the module's work.
+    std::string process(PolyMesh& mesh, const StageArguments& arguments = {}) const;
 
 private:
     std::string path_;
     PluginRecord record_;
+    std::vector<StageOption> options_;
     const PluginInfo* info_ = nullptr;
 };
 
@@ -48,7 +49,11 @@ private:
 /// installed into. None is derived from where the program lies.
 std::vector<std::string> plugin_folders();
 
-/// The module NAME.so of the first folder that has one; a name with a '/' is a path. Throws Error; where
+/// Path of the module NAME.so in the first folder that has one; a name with a '/' is a path. Empty if there
+/// is none.
+std::string module_path(const std::string& name, const std::vector<std::string>& folders = plugin_folders());
+
+/// The module at module_path(). Throws Error; where
 /// nothing is found, it names the folders and the modules there are.
 Plugin load_plugin(const std::string& name, const std::vector<std::string>& folders = plugin_folders());
 
@@ -58,8 +63,8 @@ struct PluginListing {
     std::string path;        ///< of the shared library or the folder
     std::string name;        ///< by which it is asked for
     std::string description; ///< one line
-    std::string options;     ///< one line: keys, units, defaults
-    std::string problem;     ///< empty, or why the module cannot be used
+    std::vector<StageOption> options;
+    std::string problem; ///< empty, or why the module cannot be used
 };
 
 /// All modules of the folders, by folder and name; of two with the same file name the first counts. Loads
@@ -69,8 +74,8 @@ std::vector<PluginListing> list_plugins(const std::vector<std::string>& folders 
 /// `name` or `name:key=value,key=value`. A colon in the name is written `\:`; of a path it may stand as it
 /// is, if there is a file so far.
 struct PluginRequest {
-    std::string name;                                         ///< or path
-    std::vector<std::pair<std::string, std::string>> options; ///< key, value
+    std::string name; ///< or path
+    StageArguments arguments;
 };
 /// Throws OptionError for an empty name or key and a part without '='.
 PluginRequest parse_plugin_request(const std::string& text);

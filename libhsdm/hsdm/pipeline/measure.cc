@@ -2,12 +2,16 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/small_components.hh"
+#include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/pipeline/adaptive_grid.hh"
+#include "hsdm/quality/distance.hh"
 #include "hsdm/quality/distance_to_surface.hh"
 #include "hsdm/quality/topology.hh"
 
 #include <tbb/parallel_invoke.h>
 
+#include <algorithm>
 #include <numbers>
 
 namespace hsdm {
@@ -61,6 +65,18 @@ Discarded measure_error(std::span<const Vec3> points, const MethodInput& in, con
     return {distance.beyond, moved[distance.first_beyond] + in.octree.origin};
 }
 
+/// Vertices of each class, of a mesh that has classes.
+void count_classes(const PolyMesh& mesh, Report::Features& features) {
+    OpenMesh::VPropHandleT<std::uint8_t> classes;
+    if (!mesh.get_property_handle(classes, vertex_class_property)) return;
+    for (const auto v : mesh.vertices()) {
+        const auto of = static_cast<VertexClass>(mesh.property(classes, v));
+        features.smooth_vertices += of == VertexClass::smooth;
+        features.edge_vertices += of == VertexClass::edge;
+        features.corner_vertices += of == VertexClass::corner;
+    }
+}
+
 } // namespace
 
 std::vector<Vec3> points_as_read(const PointCloud& cloud, const CloudFrame& frame, const Octree& octree) {
@@ -105,6 +121,27 @@ void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, Polyg
         },
         [&] { measure_mesh(facets, report); });
     note_dropped("points more than a voxel's diagonal off the mesh", off, in.frame, report);
+}
+
+void measure_again(const PolyMesh& mesh, std::span<const Vec3> points, Report& report) {
+    report.features = {};
+    report.features.sharp_edges = static_cast<std::size_t>(
+        std::count_if(mesh.edges_begin(), mesh.edges_end(), [](const auto& e) { return e.feature(); }));
+    count_classes(mesh, report.features);
+    report.mesh = {};
+    report.error = {};
+    if (points.empty()) return;
+    PolygonMesh facets = to_polygons(mesh);
+    measure_mesh(facets, report);
+    const double unit = CloudFrame(bounds_of(points)).unit(); // distances are squared
+    std::vector<Vec3> measured(points.begin(), points.end());
+    for (std::vector<Vec3>* const places : {&measured, &facets.positions})
+        for (Vec3& p : *places) p /= unit;
+    const Distance distance = points_to_mesh(measured, facets);
+    report.error.points_to_mesh_max = distance.max * unit;
+    report.error.points_to_mesh_mean = distance.mean * unit;
+    report.error.points_to_mesh_rms = distance.rms * unit;
+    report.error.normalised_max = report.error.points_to_mesh_max / report.input.bbox.diagonal();
 }
 
 } // namespace hsdm

@@ -1,6 +1,7 @@
 #pragma once
 // The report's part on facets: their topology and how far the points are from them.
 
+#include "hsdm/mesh_types.hh"
 #include "hsdm/pipeline/method.hh"
 
 namespace hsdm {
@@ -12,5 +13,10 @@ std::vector<Vec3> points_as_read(const PointCloud& cloud, const CloudFrame& fram
 /// covers the points of dropped components too.
 void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, PolygonMesh& facets,
                       FacetKnowledge& known, Report& report);
+
+/// Measures a mesh that stages have changed since: its topology, its sharp edges and vertex classes, and if
+/// there are points, in the cloud's units, their distances from it. What the report said of the mesh before
+/// goes.
+void measure_again(const PolyMesh& mesh, std::span<const Vec3> points, Report& report);
 
 } // namespace hsdm

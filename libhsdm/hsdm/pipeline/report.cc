@@ -106,6 +106,18 @@ void fill(JsonText& json, const std::vector<Report::Dropped>& dropped) {
     json.end();
 }
 
+void fill(JsonText& json, const std::vector<Report::Stage>& stages) {
+    json.begin_array();
+    for (const Report::Stage& stage : stages) {
+        json.begin_object();
+        json.member("call", stage.call);
+        json.member("summary", stage.summary);
+        json.member("seconds", stage.seconds);
+        json.end();
+    }
+    json.end();
+}
+
 } // namespace
 
 std::string to_json(const Report& report) {
@@ -137,6 +149,8 @@ std::string to_json(const Report& report) {
     fill(json, report.rejected);
     json.key("dropped");
     fill(json, report.dropped);
+    json.key("stages");
+    fill(json, report.stages);
     json.key("seconds");
     fill(json, report.seconds);
     json.member("peak_memory_bytes", report.peak_memory_bytes);

@@ -1,0 +1,79 @@
+#include "mesh_stages.hh"
+
+#include "activity.hh"
+#include "command.hh"
+#include "file_claims.hh"
+#include "module_watch.hh"
+
+#include "hsdm/cloud/cloud_frame.hh"
+#include "hsdm/errors.hh"
+#include "hsdm/pipeline/measure.hh"
+
+#include <chrono>
+#include <cmath>
+
+namespace hsdm::command {
+namespace {
+
+Box box_of(const PolyMesh& mesh) {
+    Box box;
+    for (const auto v : mesh.vertices()) box.add(mesh.point(v));
+    return box;
+}
+
+void scale(PolyMesh& mesh, double factor) {
+    if (factor == 1) return;
+    for (const auto v : mesh.vertices()) mesh.set_point(v, mesh.point(v) * factor);
+}
+
+} // namespace
+
+std::vector<StageCall> parse_stages(const std::vector<std::string>& texts) {
+    std::vector<StageCall> stages;
+    for (const std::string& text : texts) stages.push_back(parse_stage_call(text));
+    return stages;
+}
+
+void claim_modules(const std::vector<StageCall>& stages, FileClaims& claims) {
+    for (const StageCall& call : stages)
+        if (!call.stage.module.empty()) claims.reads("the module", call.stage.module);
+}
+
+double unit_for_stages(const Box& box) {
+    return CloudFrame(box).unit();
+}
+
+std::string words_of_unit(const std::string& input, double unit) {
+    return input + ": lengths, also those of the stages' options, are measured in units of 2^"
+           + std::to_string(std::ilogb(unit));
+}
+
+Report::Stage run_stage(const std::string& input, const StageCall& call, PolyMesh& mesh) {
+    const auto start = std::chrono::steady_clock::now();
+    Report::Stage done{call.text, "", 0};
+    set_phase(call.text.c_str());
+    try {
+        const ModuleWatch watch(input + (call.stage.module.empty() ? ": stage " : ": module ")
+                                + call.stage.name);
+        done.summary = call(mesh);
+    } catch (const Error& error) {
+        throw Error(input, error.what());
+    }
+    done.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return done;
+}
+
+void run_stages(const std::string& input, const std::vector<StageCall>& stages, std::span<const Vec3> points,
+                bool quiet, Reconstruction& result) {
+    if (stages.empty()) return;
+    const double unit = unit_for_stages(box_of(result.mesh));
+    if (unit != 1 && !quiet) complain(words_of_unit(input, unit));
+    scale(result.mesh, 1 / unit);
+    for (const StageCall& call : stages) result.report.stages.push_back(run_stage(input, call, result.mesh));
+    result.mesh.delete_isolated_vertices();
+    result.mesh.garbage_collection();
+    scale(result.mesh, unit);
+    measure_again(result.mesh, points, result.report);
+}
+
+} // namespace hsdm::command
