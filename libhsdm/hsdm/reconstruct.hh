@@ -81,8 +81,9 @@ struct ReconstructOptions {
     bool measure = true;     ///< the report's error and mesh; else zero, but a bound is checked all the same
     std::string debug_dir{}; ///< if set, the phases of Fig. 3 (voxels, graph, facets) are written to dN in
                              ///< it, N the depth
-    std::function<bool(const char* phase, double done)>
-        progress{}; ///< done in [0, 1]; return false to cancel
+    /// Called on the thread that called, before each phase and while it runs some twenty times a second;
+    /// `done` in [0, 1]. Return false to cancel. Must not reconstruct itself.
+    std::function<bool(const char* phase, double done)> progress{};
 };
 
 /// A surface and how it came about.

@@ -2,6 +2,7 @@
 // Fixed chunks: the unit of parallel work. Their size never follows the number of threads, so neither do
 // results.
 
+#include "hsdm/core/interruption.hh"
 #include "hsdm/types.hh"
 
 #include <tbb/parallel_for.h>
@@ -21,10 +22,14 @@ inline std::size_t chunk_count(std::size_t n, std::size_t chunk_size) {
     return (n + chunk_size - 1) / chunk_size;
 }
 
-/// Calls f(i) for each i below n, in parallel, each a task of its own: they should be few and large.
+/// Calls f(i) for each i below n, in parallel, each a task of its own: they should be few and large. Throws
+/// Cancelled if an Interruption says so.
 template <class F>
 void for_each_task(std::size_t n, F&& f) {
-    tbb::parallel_for(std::size_t{0}, n, f);
+    tbb::parallel_for(std::size_t{0}, n, [&f](std::size_t i) {
+        Interruption::poll();
+        f(i);
+    });
 }
 
 /// Calls f(begin, end, chunk) for consecutive ranges of [0, n), in parallel.

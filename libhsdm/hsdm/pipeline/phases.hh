@@ -1,6 +1,7 @@
 #pragma once
-// Times the phases of Figure 1 and lets the caller cancel between them; shared by the methods.
+// Times the phases of Figure 1 and lets the caller cancel them; shared by the methods.
 
+#include "hsdm/core/interruption.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/reconstruct.hh"
 
@@ -8,7 +9,8 @@
 
 namespace hsdm {
 
-/// Times the phases of a reconstruction and asks the caller, before each, whether to go on.
+/// Times the phases of a reconstruction and asks the caller, before each and now and then within its parallel
+/// loops, whether to go on.
 class Phases {
 public:
     /// `begin` and `end`: the part of the caller's whole work, in [0, 1], that this one is.
@@ -20,8 +22,11 @@ public:
     template <class Work>
     auto run(const char* name, double done, double& seconds, const Work& work) const {
         current_ = name;
-        if (options_.progress && !options_.progress(name, begin_ + (end_ - begin_) * done)) throw Cancelled();
         const Timer timer(seconds);
+        if (!options_.progress) return work();
+        const auto goes_on = [&] { return options_.progress(name, begin_ + (end_ - begin_) * done); };
+        if (!goes_on()) throw Cancelled();
+        const Interruption interruption(goes_on);
         return work();
     }
 
