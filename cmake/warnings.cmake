@@ -7,10 +7,19 @@ function(hsdm_warnings target)
 endfunction()
 
 # hsdm_includes_openmesh_kernel(SOURCE...): g++ 12 reports -Wmaybe-uninitialized from inside OpenMesh's
-# own headers; that one warning is switched off for the files that include a mesh kernel, nothing else.
+# own headers; that one warning is switched off for the files that include a mesh kernel, nothing else. A file with
+# options of its own is compiled alone, so with HSDM_UNITY it is switched off for all of the library and the tests.
 # A property of a source file holds in one folder only: it is set where the target that compiles it lives.
 function(hsdm_includes_openmesh_kernel)
   if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    return()
+  endif()
+  if(HSDM_UNITY)
+    foreach(target hsdm hsdm_tests)
+      if(TARGET ${target})
+        target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)
+      endif()
+    endforeach()
     return()
   endif()
   list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE sources)
