@@ -20,7 +20,7 @@ PointCloud centers(std::vector<VoxelCoord> voxels) {
     return cloud;
 }
 
-PointCloud sphere_cloud(std::size_t n, unsigned seed) {
+PointCloud graph_cloud(std::size_t n, unsigned seed) {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> gauss;
     PointCloud cloud;
@@ -71,7 +71,7 @@ TEST_CASE("one choice makes an edge unless both ends are asked", "[basic]") {
 }
 
 TEST_CASE("the graph is a doubly-connected edge list of the voxels", "[basic]") {
-    const Octree octree = build_octree(sphere_cloud(20000, 3));
+    const Octree octree = build_octree(graph_cloud(20000, 3));
     const OctreeLevel level = extract_level(octree, 4);
     const ConnectivityGraph graph = extract_graph(octree, level);
     REQUIRE(graph.vertex_count() == level.size());
@@ -94,7 +94,7 @@ TEST_CASE("the graph is a doubly-connected edge list of the voxels", "[basic]") 
 }
 
 TEST_CASE("the graph does not depend on threads or on the order of the points", "[basic]") {
-    PointCloud cloud = sphere_cloud(200000, 4);
+    PointCloud cloud = graph_cloud(200000, 4);
     const Octree octree = build_octree(cloud);
     const ConnectivityGraph graph = extract_graph(octree, extract_level(octree, 7));
     std::shuffle(cloud.positions.begin(), cloud.positions.end(), std::mt19937_64(5));
@@ -108,7 +108,7 @@ TEST_CASE("the graph does not depend on threads or on the order of the points", 
 }
 
 TEST_CASE("neighbour options out of range are refused", "[basic]") {
-    const Octree octree = build_octree(sphere_cloud(100, 6));
+    const Octree octree = build_octree(graph_cloud(100, 6));
     const OctreeLevel level = extract_level(octree, 2);
     GraphOptions options;
     options.neighbors.wanted = 0;

@@ -51,7 +51,7 @@ void check_vertices(const Stages& stages) {
     CHECK(wrong == 0);
 }
 
-support::Solid plate() {
+support::Solid thin_plate() {
     return support::box({1, 1, 0.02}).placed(support::turned(Vec3(1, 2, 3), 0.4));
 }
 
@@ -60,7 +60,7 @@ support::Solid plate() {
 TEST_CASE("vertices are chains of linked corners in one voxel", "[contour]") {
     check_vertices(Stages(support::torus(1, 0.4), 10000, 4));
     check_vertices(Stages(support::mechanical_part(), 8000, 4));
-    check_vertices(Stages(plate(), 5000, 3));
+    check_vertices(Stages(thin_plate(), 5000, 3));
     check_vertices(Stages(support::flat_sheet(40, 0.8, 0.3), 3, 1));
     check_vertices(Stages(support::random_cloud(200, 1), 2));
 }
@@ -69,7 +69,6 @@ TEST_CASE("where nothing is cut each corner stands in one vertex, and Euler's fo
     for (const bool ring : {false, true}) {
         INFO((ring ? "torus" : "sphere"));
         const Stages stages(ring ? support::torus(1, 0.4) : support::sphere(1), 10000, 4);
-        CHECK(stages.duals.cut == 0);
         CHECK(stages.duals.after_cut.empty());
         CHECK(stages.duals.caps.empty());
         const std::vector<int> count = uses(stages);
@@ -93,15 +92,14 @@ TEST_CASE("where the surface ends its vertices are open, two open sides at each"
         open += stages.duals.open[v];
     }
     CHECK(open > 10);
-    CHECK(stages.links.open == open);
+    CHECK(support::open_sides(stages.links) == open);
 }
 
 TEST_CASE("no vertex has both sides of a plate, and what is cut apart stays in its voxel", "[contour]") {
-    const Stages stages(plate(), 5000, 3);
+    const Stages stages(thin_plate(), 5000, 3);
     const DualVertices& duals = stages.duals;
     const Vec3 up = support::turned(Vec3(1, 2, 3), 0.4).rotate(Vec3(0, 0, 1));
-    CHECK(duals.cut > 10);
-    CHECK(duals.after_cut.size() >= duals.cut);
+    CHECK(duals.after_cut.size() > 10);
     std::size_t both = 0;
     for (Index v = 0; v < duals.size(); ++v) {
         double least = 0, most = 0;
@@ -121,7 +119,7 @@ TEST_CASE("no vertex has both sides of a plate, and what is cut apart stays in i
 }
 
 TEST_CASE("a corner that two vertices share has one of them beside either face", "[contour]") {
-    const Stages stages(plate(), 5000, 3);
+    const Stages stages(thin_plate(), 5000, 3);
     const DualVertices& duals = stages.duals;
     const std::vector<int> count = uses(stages);
     std::size_t wrong = 0;
@@ -155,7 +153,7 @@ TEST_CASE("three vertices and more of one closed chain have a cap, which runs ag
 }
 
 TEST_CASE("dual vertices do not depend on the number of threads", "[contour]") {
-    const Stages many(plate(), 8000, 4);
+    const Stages many(thin_plate(), 8000, 4);
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     const DualVertices single = build_dual_vertices(many.grid, many.crossings, many.links);
     CHECK(many.duals.corners == single.corners);

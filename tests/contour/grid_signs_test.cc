@@ -1,7 +1,5 @@
+#include "contour/stages.hh"
 #include "hsdm/contour/grid_signs.hh"
-
-#include "hsdm/contour/crossing_pairs.hh"
-#include "support/sample.hh"
 
 #include <catch2/catch.hpp>
 #include <tbb/global_control.h>
@@ -46,7 +44,7 @@ struct Found {
         return result;
     }
     std::size_t open_sides(const Crossings& crossings) const {
-        return pair_crossings(grid, crossings, sets, related).open;
+        return support::open_sides(pair_crossings(grid, crossings, sets, related));
     }
 };
 

@@ -26,14 +26,14 @@ Built build(const PointCloud& cloud, int depth, const NormalSetOptions& options 
     return b;
 }
 
-PointCloud scan(const support::Solid& solid, std::size_t points, double normal_noise = 0) {
+PointCloud scan_of_sets(const support::Solid& solid, std::size_t points, double normal_noise = 0) {
     return support::sample(solid, {.points = points, .normal_noise = normal_noise});
 }
 
 } // namespace
 
 TEST_CASE("every point with a normal is in one set of its own voxel, and counts agree", "[contour]") {
-    const Built b = build(scan(support::box({1, 1, 1}), 20000), 4);
+    const Built b = build(scan_of_sets(support::box({1, 1, 1}), 20000), 4);
     std::vector<Index> counted(b.sets.sets.size(), 0);
     bool own_voxel = true;
     for (Index v = 0; v < b.level.size(); ++v)
@@ -48,7 +48,7 @@ TEST_CASE("every point with a normal is in one set of its own voxel, and counts 
 }
 
 TEST_CASE("the faces of a box in a voxel are as many sets, each with its face's normal", "[contour]") {
-    const Built b = build(scan(support::box({1, 1, 1}), 50000), 3);
+    const Built b = build(scan_of_sets(support::box({1, 1, 1}), 50000), 3);
     std::size_t corners = 0;
     for (Index v = 0; v < b.level.size(); ++v) {
         const VoxelCoord c = b.level.coord(v);
@@ -61,7 +61,7 @@ TEST_CASE("the faces of a box in a voxel are as many sets, each with its face's 
 }
 
 TEST_CASE("normal noise of ten degrees does not tear a plane's set apart", "[contour]") {
-    const Built b = build(scan(support::box({4, 4, 0.5}), 60000, 0.17), 3);
+    const Built b = build(scan_of_sets(support::box({4, 4, 0.5}), 60000, 0.17), 3);
     std::size_t flat = 0, torn = 0;
     for (Index v = 0; v < b.level.size(); ++v) {
         const VoxelCoord c = b.level.coord(v);
@@ -129,7 +129,7 @@ TEST_CASE("the two levels of a step are two sets", "[contour]") {
 }
 
 TEST_CASE("a set's centroid lies on a curved surface, not below it", "[contour]") {
-    const Built b = build(scan(support::sphere(1), 200000), 3);
+    const Built b = build(scan_of_sets(support::sphere(1), 200000), 3);
     double worst = 0;
     for (const NormalSet& set : b.sets.sets)
         if (set.count > 200) worst = std::max(worst, std::abs((set.centroid + b.octree.origin).norm() - 1));
@@ -137,7 +137,7 @@ TEST_CASE("a set's centroid lies on a curved surface, not below it", "[contour]"
 }
 
 TEST_CASE("sets do not depend on the order of the points", "[contour]") {
-    PointCloud cloud = scan(support::mechanical_part(), 20000, 0.1);
+    PointCloud cloud = scan_of_sets(support::mechanical_part(), 20000, 0.1);
     const Built b = build(cloud, 5);
     std::vector<std::size_t> order(cloud.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -156,7 +156,7 @@ TEST_CASE("sets do not depend on the order of the points", "[contour]") {
 }
 
 TEST_CASE("options of the sets out of range are refused", "[contour]") {
-    const Octree octree = build_octree(scan(support::sphere(1), 100));
+    const Octree octree = build_octree(scan_of_sets(support::sphere(1), 100));
     const OctreeLevel level = extract_level(octree, 2);
     NormalSetOptions options;
     options.max_sets = 9;

@@ -8,7 +8,7 @@ using support::Stages;
 namespace {
 
 /// A plate thinner than its voxels, so that chains round its rim are cut.
-Stages plate() {
+Stages plate_stages() {
     return {support::box({1, 1, 0.02}).placed(support::turned(Vec3(1, 2, 3), 0.4)), 5000, 3};
 }
 
@@ -21,7 +21,7 @@ Vec3 outward(const Stages& stages, Index v) {
 } // namespace
 
 TEST_CASE("sides that end on one point move apart, each along its own normal", "[contour]") {
-    const Stages stages = plate();
+    const Stages stages = plate_stages();
     const std::vector<Index>& after_cut = stages.duals.after_cut;
     REQUIRE(after_cut.size() > 10);
     std::vector<Vec3> positions = stages.vertices.positions;
@@ -41,7 +41,7 @@ TEST_CASE("sides that end on one point move apart, each along its own normal", "
 }
 
 TEST_CASE("sides that lie apart stay where they are", "[contour]") {
-    const Stages stages = plate();
+    const Stages stages = plate_stages();
     std::vector<Vec3> positions = stages.vertices.positions;
     for (Index v : stages.duals.after_cut)
         positions[v] = positions[v - 1] + outward(stages, v) * (0.2 * stages.h());

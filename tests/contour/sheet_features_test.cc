@@ -54,7 +54,7 @@ struct Part {
     }
 };
 
-PointCloud scan(const support::Solid& solid, std::size_t points, double normal_noise = 0) {
+PointCloud rough_scan(const support::Solid& solid, std::size_t points, double normal_noise = 0) {
     return support::sample(solid, {.points = points, .normal_noise = normal_noise});
 }
 
@@ -106,7 +106,7 @@ TEST_CASE("sheets and the dihedral test agree on the sharp edges of solids with 
     for (const Example& e : examples) {
         double sum = 0;
         for (std::uint64_t seed : {1u, 2u, 3u, 4u}) {
-            const Part part(scan(e.solid.placed(support::random_pose(seed)), e.points), e.voxel);
+            const Part part(rough_scan(e.solid.placed(support::random_pose(seed)), e.points), e.voxel);
             FeatureCounts sheets, dihedral;
             const double share = agreement(part.by_sheets(sheets), part.by_dihedral(dihedral));
             INFO(e.name << ", pose " << seed << ": " << sheets.sharp_edges << " sharp edges by sheets, "
@@ -123,7 +123,7 @@ TEST_CASE("sheets and the dihedral test agree on the sharp edges of solids with 
 TEST_CASE("tight bends are smooth by the points though they fold the mesh", "[contour]") {
     for (std::uint64_t seed : {1u, 2u, 3u}) {
         INFO("pose " << seed);
-        const Part part(scan(support::torus(1, 0.2).placed(support::random_pose(seed)), 30000), 0.12);
+        const Part part(rough_scan(support::torus(1, 0.2).placed(support::random_pose(seed)), 30000), 0.12);
         FeatureCounts sheets, dihedral;
         part.by_sheets(sheets);
         part.by_dihedral(dihedral);
@@ -137,7 +137,7 @@ TEST_CASE("corners of a box are found in every pose, and no others", "[contour]"
     std::size_t by_sheets = 0, by_dihedral = 0;
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
         const support::Pose placed = support::random_pose(seed);
-        const Part part(scan(support::box({1, 0.8, 0.6}).placed(placed), 15000), 0.1);
+        const Part part(rough_scan(support::box({1, 0.8, 0.6}).placed(placed), 15000), 0.1);
         FeatureCounts sheets, dihedral;
         const PolyMesh mesh = part.by_sheets(sheets);
         part.by_dihedral(dihedral);
@@ -161,7 +161,7 @@ TEST_CASE("corners of a box are found in every pose, and no others", "[contour]"
 
 TEST_CASE("normals smeared across creases leave the decision to the dihedral test", "[contour]") {
     const PointCloud cloud =
-        smeared(scan(support::box({1, 0.8, 0.6}).placed(support::random_pose(4)), 4000), 0.08);
+        smeared(rough_scan(support::box({1, 0.8, 0.6}).placed(support::random_pose(4)), 4000), 0.08);
     const Part part(cloud, 0.1);
     FeatureCounts sheets, dihedral;
     part.by_sheets(sheets);
@@ -172,7 +172,7 @@ TEST_CASE("normals smeared across creases leave the decision to the dihedral tes
 }
 
 TEST_CASE("features are the same whichever way the normals point", "[contour]") {
-    const PointCloud outward = scan(pocket_block().placed(support::random_pose(2)), 15000);
+    const PointCloud outward = rough_scan(pocket_block().placed(support::random_pose(2)), 15000);
     PointCloud inward = outward;
     for (Vec3& n : inward.normals) n = -n;
     FeatureCounts a, b;
@@ -183,7 +183,7 @@ TEST_CASE("features are the same whichever way the normals point", "[contour]") 
 }
 
 TEST_CASE("what the sheets say does not depend on the number of threads", "[contour]") {
-    const PointCloud cloud = scan(support::mechanical_part(support::random_pose(1)), 20000);
+    const PointCloud cloud = rough_scan(support::mechanical_part(support::random_pose(1)), 20000);
     const Part part(cloud, 0.15);
     tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     const Part again(cloud, 0.15);

@@ -3,7 +3,20 @@
 #include "hsdm/contour/grid_signs.hh"
 #include "hsdm/contour/trim_crossings.hh"
 
+#include <algorithm>
+
 namespace hsdm::support {
+namespace {
+
+template <class Test>
+std::size_t sides_where(const Links& links, const Test& test) {
+    std::size_t count = 0;
+    for (const auto& sides : links.of_crossing)
+        count += static_cast<std::size_t>(std::count_if(sides.begin(), sides.end(), test));
+    return count;
+}
+
+} // namespace
 
 Stages::Stages(const PointCloud& cloud, int depth, double cube_extent)
     : octree(build_octree(cloud, {.cube_extent = cube_extent})),
@@ -56,6 +69,14 @@ Crossings without(const Crossings& crossings, const std::vector<std::uint8_t>& m
         kept.first.push_back(static_cast<Index>(kept.crossings.size()));
     }
     return kept;
+}
+
+std::size_t open_sides(const Links& links) {
+    return sides_where(links, [](const Link& link) { return link.open(); });
+}
+
+std::size_t rim_sides(const Links& links) {
+    return sides_where(links, [](const Link& link) { return link.rim; });
 }
 
 PointCloud flat_sheet(int points_along, double width, double z) {

@@ -32,6 +32,11 @@ struct Stages : DualMesh {
 /// Without those that are marked, per crossing.
 Crossings without(const Crossings& crossings, const std::vector<std::uint8_t>& marked);
 
+/// Sides without a twin: the boundary half-edges of the mesh.
+std::size_t open_sides(const Links& links);
+/// Sides of the pairs that join opposite sheets, two each.
+std::size_t rim_sides(const Links& links);
+
 /// Points in a square grid over [0, 1] * [0, width] at height z, facing up; the octree's origin is kept at 0
 /// by a point without a normal, which no sheet has.
 PointCloud flat_sheet(int points_along, double width, double z);

@@ -21,12 +21,6 @@ PolygonMesh capped_cylinder(Index m, Index n) {
     return mesh;
 }
 
-PolygonMesh sphere(Index n) {
-    PolygonMesh mesh = support::divided_cube(n);
-    for (Vec3& p : mesh.positions) p.normalize();
-    return mesh;
-}
-
 PolygonMesh noisy(PolygonMesh mesh, double sigma) {
     support::Random random(7);
     for (Vec3& p : mesh.positions) p += sigma * random.gauss3();

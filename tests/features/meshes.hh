@@ -40,8 +40,9 @@ Mesh build(const PolygonMesh& polygons) {
 
 /// A cylinder of radius 1 and height 2 with m quads around, n up, and caps of m triangles each.
 PolygonMesh capped_cylinder(Index m, Index n);
-/// The cube blown up to the unit sphere.
-PolygonMesh sphere(Index n);
+inline PolygonMesh sphere(Index n) {
+    return support::divided_sphere(n);
+}
 /// n x n unit quads over z = height(x).
 template <class Height>
 PolygonMesh sheet(Index n, const Height& height) {

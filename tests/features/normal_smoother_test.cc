@@ -21,7 +21,7 @@ std::size_t smooth(Mesh& mesh, int rounds, const NormalSmoothingOptions& options
 }
 
 template <class Mesh>
-void classify(Mesh& mesh, const FeatureOptions& options = {}) {
+void mark_creases(Mesh& mesh, const FeatureOptions& options = {}) {
     FeatureClassifierT<Mesh> classifier(mesh);
     classifier.initialize(options);
     classifier.classify();
@@ -74,7 +74,7 @@ double worst_error_on_cube(Mesh& mesh) {
 
 TEMPLATE_TEST_CASE("a cube keeps its normals and is settled at once", "", EVERY_KIND_OF_MESH) {
     TestType mesh = build<TestType>(support::divided_cube(4));
-    classify(mesh);
+    mark_creases(mesh);
     CHECK(smooth(mesh, 10) == 0);
     CHECK(worst_error_on_cube(mesh) < 1e-6);
     auto number = OpenMesh::getProperty<VertexHandle, std::uint8_t>(mesh, "hsdm_normal_count");
@@ -88,7 +88,7 @@ TEMPLATE_TEST_CASE("a cube keeps its normals and is settled at once", "", EVERY_
 
 TEMPLATE_TEST_CASE("a cylinder's caps do not bleed into its side", "", EVERY_KIND_OF_MESH) {
     TestType mesh = build<TestType>(capped_cylinder(60, 10));
-    classify(mesh);
+    mark_creases(mesh);
     smooth(mesh, 20);
     auto number = OpenMesh::getProperty<VertexHandle, std::uint8_t>(mesh, "hsdm_normal_count");
     auto normals = OpenMesh::getProperty<VertexHandle, VertexNormalsT<TestType>>(mesh, "hsdm_normals");

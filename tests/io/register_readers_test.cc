@@ -6,12 +6,12 @@
 #include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/mesh_types.hh"
 #include "io/temp_file.hh"
+#include "support/captured.hh"
 #include "support/meshes.hh"
 
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <catch2/catch.hpp>
 
-#include <iostream>
 #include <sstream>
 
 using namespace hsdm;
@@ -76,13 +76,10 @@ TEST_CASE("OpenMesh reads every property of an .om file without a word", "[io]")
     classify_features(mesh);
     const TempFile file("a.om", "");
     write_om(file.path(), mesh);
-    std::ostringstream said;
-    std::streambuf* const errors = std::cerr.rdbuf(said.rdbuf()); // where omerr() writes
+    const support::Captured captured; // where omerr() writes
     PolyMesh back;
-    const bool read = OpenMesh::IO::read_mesh(back, file.path());
-    std::cerr.rdbuf(errors);
-    REQUIRE(read);
-    CHECK(said.str().empty());
+    REQUIRE(OpenMesh::IO::read_mesh(back, file.path()));
+    CHECK(captured.text().empty());
     for (const char* name : {vertex_class_property, normal_count_property})
         CHECK(OpenMesh::hasProperty<OpenMesh::VertexHandle, std::uint8_t>(back, name));
     REQUIRE(OpenMesh::hasProperty<OpenMesh::VertexHandle, VertexNormalsT<PolyMesh>>(back, "hsdm_normals"));

@@ -96,7 +96,7 @@ PolygonMesh boundary_of_cells(const std::set<std::array<int, 3>>& cells) {
     return mesh;
 }
 
-double signed_volume(const PolygonMesh& mesh) {
+double volume_of(const PolygonMesh& mesh) {
     double volume = 0;
     for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
         const auto facet = mesh.facet(f);
@@ -148,7 +148,7 @@ TEST_CASE("cubes that touch in a vertex or an edge are parted and stay closed", 
     CHECK(make_manifold(at_corner).split_vertices == 1);
     CHECK(manifold_fault(at_corner) == "");
     CHECK(boundary_edges(at_corner) == 0);
-    CHECK(signed_volume(at_corner) == Approx(2));
+    CHECK(volume_of(at_corner) == Approx(2));
 
     PolygonMesh at_edge = boundary_of_cells({{0, 0, 0}, {1, 1, 0}});
     const ManifoldCounts counts = make_manifold(at_edge);
@@ -179,7 +179,7 @@ TEST_CASE("an edge of a surface that touches itself between manifold ends is par
         make_manifold(mesh);
         CHECK(manifold_fault(mesh) == "");
         CHECK(boundary_edges(mesh) == 0);
-        CHECK(signed_volume(mesh) == Approx(static_cast<double>(cells.size())));
+        CHECK(volume_of(mesh) == Approx(static_cast<double>(cells.size())));
     }
 }
 
@@ -194,7 +194,7 @@ TEST_CASE("random unions of cells become closed manifolds of the same volume", "
         make_manifold(mesh);
         CHECK(manifold_fault(mesh) == "");
         CHECK(boundary_edges(mesh) == 0);
-        CHECK(signed_volume(mesh) == Approx(static_cast<double>(cells.size())));
+        CHECK(volume_of(mesh) == Approx(static_cast<double>(cells.size())));
     }
 }
 

@@ -1,5 +1,6 @@
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/mesh/vertex_normals.hh"
+#include "support/captured.hh"
 #include "support/meshes.hh"
 
 #include <OpenMesh/Tools/Utils/MeshCheckerT.hh>
@@ -29,18 +30,6 @@ std::vector<std::vector<Index>> facet_lists(const PolygonMesh& mesh) {
         lists.emplace_back(mesh.facet(f).begin(), mesh.facet(f).end());
     return lists;
 }
-
-/// Standard error while it lives: OpenMesh would print there.
-class Captured {
-public:
-    Captured() : old_(std::cerr.rdbuf(text_.rdbuf())) {}
-    ~Captured() { std::cerr.rdbuf(old_); }
-    std::string text() const { return text_.str(); }
-
-private:
-    std::ostringstream text_;
-    std::streambuf* old_;
-};
 
 } // namespace
 
@@ -127,7 +116,7 @@ TEST_CASE("isolated vertices are left out and the others keep their order") {
 }
 
 TEST_CASE("facets that would break the 2-manifold are counted and OpenMesh prints nothing") {
-    const Captured captured;
+    const support::Captured captured;
     PolygonMesh facets = unit_cube();
     facets.add_facet(std::vector<Index>{0, 2, 3});                      // a third facet at an edge
     facets.add_facet(std::vector<Index>{0, 2, 3, 1});                   // one twice

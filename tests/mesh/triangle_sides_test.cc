@@ -11,7 +11,7 @@ using namespace hsdm;
 namespace {
 
 /// Corners of the triangles of a torus of m * n quads, each cut in two.
-std::vector<Index> torus(Index m, Index n) {
+std::vector<Index> torus_triangles(Index m, Index n) {
     std::vector<Index> corners;
     for (Index i = 0; i < m; ++i)
         for (Index j = 0; j < n; ++j) {
@@ -55,7 +55,7 @@ TEST_CASE("the sides of a triangle follow each other round it", "[mesh]") {
 }
 
 TEST_CASE("every side of a closed surface has a twin", "[mesh]") {
-    const std::vector<Index> corners = torus(50, 60); // several chunks of triangles
+    const std::vector<Index> corners = torus_triangles(50, 60); // several chunks of triangles
     const TriangleSides sides = link_triangles(corners, {}, 3000);
     check_twins(corners, sides);
     CHECK(without_twin(sides) == 0);
@@ -64,7 +64,7 @@ TEST_CASE("every side of a closed surface has a twin", "[mesh]") {
 }
 
 TEST_CASE("sides at a border have no twin, and their ends are at the border", "[mesh]") {
-    std::vector<Index> corners = torus(10, 10);
+    std::vector<Index> corners = torus_triangles(10, 10);
     corners.erase(corners.begin(), corners.begin() + 6); // the quad of 0, 10, 11 and 1
     const TriangleSides sides = link_triangles(corners, {}, 101);
     check_twins(corners, sides);
@@ -123,7 +123,7 @@ TEST_CASE("other facets that share a side with each other alone concern no trian
 }
 
 TEST_CASE("twins do not depend on the order of the triangles", "[mesh]") {
-    const std::vector<Index> corners = torus(12, 9);
+    const std::vector<Index> corners = torus_triangles(12, 9);
     support::Random random(1);
     std::vector<Index> order(corners.size() / 3), mixed;
     for (Index t = 0; t < order.size(); ++t) order[t] = t;

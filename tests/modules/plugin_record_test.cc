@@ -28,7 +28,7 @@ TEST_CASE("what a module says of itself is read from its bytes") {
     CHECK(record->build == HSDM_PLUGIN_BUILD);
     CHECK(record->name == "scale");
     CHECK(record->description == "multiplies all coordinates");
-    CHECK(record->options == "factor (1)");
+    CHECK(record->options == "factor=1 (length): above 0");
 }
 
 TEST_CASE("a damaged module has a record or none, and is never read outside its bytes") {

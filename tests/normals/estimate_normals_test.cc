@@ -8,6 +8,7 @@
 #include <numbers>
 
 using namespace hsdm;
+using support::in_general_pose;
 using support::Solid;
 
 namespace {
@@ -34,10 +35,6 @@ Accuracy accuracy(const Solid& solid, std::size_t points, const EstimateOptions&
         result.off += (angle > 15) / static_cast<double>(octree.size());
     }
     return result;
-}
-
-Solid in_general_pose(const Solid& solid) {
-    return solid.placed(support::random_pose(2));
 }
 
 } // namespace

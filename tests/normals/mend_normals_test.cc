@@ -4,13 +4,10 @@
 #include <catch2/catch.hpp>
 
 using namespace hsdm;
+using support::in_general_pose;
 using support::Solid;
 
 namespace {
-
-Solid in_general_pose(const Solid& solid) {
-    return solid.placed(support::random_pose(6));
-}
 
 PointCloud with_flips(const Solid& solid, std::size_t points, double share) {
     PointCloud cloud = support::sample(solid, {.points = points});

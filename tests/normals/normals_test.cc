@@ -9,6 +9,7 @@
 #include <numbers>
 
 using namespace hsdm;
+using support::in_general_pose;
 using support::Solid;
 
 namespace {
@@ -25,10 +26,6 @@ double share_flipped(const PointCloud& cloud) {
     for (std::size_t i = 0; i < octree.size(); ++i)
         flipped += (octree.normals[i] | cloud.normals[octree.source[i]]) < 0;
     return static_cast<double>(flipped) / static_cast<double>(octree.size());
-}
-
-Solid in_general_pose(const Solid& solid, std::uint64_t seed = 4) {
-    return solid.placed(support::random_pose(seed));
 }
 
 } // namespace

@@ -54,14 +54,14 @@ struct Scan {
     }
 };
 
-support::Solid cube() {
+support::Solid turned_cube() {
     return support::box({1, 1, 1}).placed(support::turned(Vec3(1, 2, 3), 0.5));
 }
 
 } // namespace
 
 TEST_CASE("single points that are oriented wrongly are turned", "[normals]") {
-    for (const support::Solid& solid : {cube(), support::sphere(1)}) {
+    for (const support::Solid& solid : {turned_cube(), support::sphere(1)}) {
         Scan scan(solid);
         for (Index i = 0; i < scan.octree.size(); i += 23) scan.estimate.normals[i] *= -1;
         CHECK(scan.wrong() > 150);
@@ -71,7 +71,7 @@ TEST_CASE("single points that are oriented wrongly are turned", "[normals]") {
 }
 
 TEST_CASE("beside a crease points take the normal of their own face", "[normals]") {
-    Scan scan(cube());
+    Scan scan(turned_cube());
     const std::vector<Index> near = scan.near_creases();
     for (std::size_t k = 0; k < near.size(); k += 4) { // every fourth has that of the other face
         const auto around = scan.neighbors.of(near[k]);
@@ -90,7 +90,7 @@ TEST_CASE("normals that neighbours agree on stay as they are", "[normals]") {
     Scan ball(support::sphere(1));
     ball.vote();
     CHECK(ball.estimate.normals == ball.octree.normals);
-    Scan box(cube());
+    Scan box(turned_cube());
     box.vote();
     CHECK(box.wrong() == 0); // near creases too
 }
@@ -118,7 +118,7 @@ TEST_CASE("a point stays of its face where not clearly more neighbours are of an
 }
 
 TEST_CASE("points that are not said to be bent have no vote", "[normals]") {
-    Scan scan(cube());
+    Scan scan(turned_cube());
     scan.estimate.bent = scan.near_creases();
     std::vector<std::uint8_t> bent(scan.octree.size(), 0);
     for (Index i : scan.estimate.bent) bent[i] = 1;

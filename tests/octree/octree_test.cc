@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <tbb/global_control.h>
 
-#include <numeric>
+#include <limits>
 #include <random>
 #include <set>
 

@@ -25,7 +25,7 @@ std::vector<Example> examples() {
             {"mechanical part", support::mechanical_part(support::random_pose(random)), 3, 5}};
 }
 
-PointCloud scan(const support::Solid& solid, std::size_t points = 20000) {
+PointCloud level_scan(const support::Solid& solid, std::size_t points = 20000) {
     return support::sample(solid, {.points = points});
 }
 
@@ -34,7 +34,7 @@ PointCloud scan(const support::Solid& solid, std::size_t points = 20000) {
 TEST_CASE("nested levels on adaptive grids are sound, each that of its depth alone", "[pipeline][slow]") {
     for (const Example& e : examples()) {
         INFO(e.name);
-        const PointCloud cloud = scan(e.solid);
+        const PointCloud cloud = level_scan(e.solid);
         ReconstructOptions options;
         const std::vector<Reconstruction> uniform = reconstruct_levels(cloud, 4, 5, options);
         options.grid = Grid::adaptive;
@@ -64,7 +64,7 @@ TEST_CASE("nested levels on adaptive grids are sound, each that of its depth alo
 TEST_CASE("the stage for OpenMesh's meshes gives the mesh of the free function", "[pipeline]") {
     for (const Example& e : examples()) {
         INFO(e.name);
-        const PointCloud cloud = scan(e.solid, 4000);
+        const PointCloud cloud = level_scan(e.solid, 4000);
         const ReconstructOptions options{.max_error = MaxError{0.01, true}};
         const PolygonMesh expected = to_polygons(reconstruct(cloud, options).mesh);
         PolyMesh mesh;
@@ -83,7 +83,7 @@ TEST_CASE("the stage for OpenMesh's meshes gives the mesh of the free function",
 
 TEST_CASE("a level without a facet says so and leaves the others; if none has any it is an error",
           "[pipeline]") {
-    const PointCloud cloud = scan(support::sphere(1e12), 4000); // stages work in a unit of their own
+    const PointCloud cloud = level_scan(support::sphere(1e12), 4000); // stages work in a unit of their own
     ReconstructOptions options;
     options.method = Method::basic;
     const std::vector<Reconstruction> levels = reconstruct_levels(cloud, 4, 9, options); // 9: a voxel a point

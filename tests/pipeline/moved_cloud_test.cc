@@ -34,7 +34,7 @@ void check_same(const Reconstruction& a, const Reconstruction& b) {
     CHECK(lasting(a.report) == lasting(b.report));
 }
 
-PointCloud scan(double noise = 0) {
+PointCloud cloud_to_move(double noise = 0) {
     return support::sample(support::box({1, 0.7, 0.4}), {.points = 4000, .position_noise = noise});
 }
 
@@ -48,10 +48,10 @@ void check_moved_as_kept(const PointCloud& cloud, const ReconstructOptions& opti
 TEST_CASE("a cloud that is moved becomes the same mesh as one that is kept", "[pipeline]") {
     ReconstructOptions options;
     SECTION("by default") {
-        check_moved_as_kept(scan());
+        check_moved_as_kept(cloud_to_move());
     }
     SECTION("with colours and labels") {
-        PointCloud cloud = scan();
+        PointCloud cloud = cloud_to_move();
         Scalar height{"height", {}, false}, half{"half", {}, true};
         for (const Vec3& p : cloud.positions) {
             cloud.colors.push_back({static_cast<std::uint8_t>(100 + 80 * p[0]), 20, 30, 255});
@@ -64,17 +64,17 @@ TEST_CASE("a cloud that is moved becomes the same mesh as one that is kept", "[p
         check_moved_as_kept(cloud, options);
     }
     SECTION("with points that are not finite") {
-        PointCloud cloud = scan();
+        PointCloud cloud = cloud_to_move();
         cloud.positions[7] = Vec3(not_finite, 0, 0);
         check_moved_as_kept(cloud);
     }
     SECTION("with a point far away") {
-        PointCloud cloud = scan();
+        PointCloud cloud = cloud_to_move();
         cloud.positions[7] = Vec3(1e6, 0, 0);
         check_moved_as_kept(cloud);
     }
     SECTION("with noise that is smoothed") {
-        const PointCloud cloud = scan(0.02);
+        const PointCloud cloud = cloud_to_move(0.02);
         CHECK(reconstruct(cloud).report.rejected["points_moved"] > 0);
         check_moved_as_kept(cloud);
         options.max_error = MaxError{.value = 0.05};
@@ -86,22 +86,22 @@ TEST_CASE("a cloud that is moved becomes the same mesh as one that is kept", "[p
     }
     SECTION("with normals to be estimated") {
         options.normals = NormalSource::estimate;
-        check_moved_as_kept(scan(), options);
-        check_moved_as_kept(scan(0.02), options);
+        check_moved_as_kept(cloud_to_move(), options);
+        check_moved_as_kept(cloud_to_move(0.02), options);
     }
     SECTION("without small components") {
         options.min_component = MinComponent{.value = 10, .of_largest = false};
-        check_moved_as_kept(scan(), options);
+        check_moved_as_kept(cloud_to_move(), options);
     }
     SECTION("with the basic method") {
         options.method = Method::basic;
-        check_moved_as_kept(scan(), options);
+        check_moved_as_kept(cloud_to_move(), options);
     }
 }
 
 TEST_CASE("levels of a cloud that is moved are those of one that is kept", "[pipeline]") {
     for (double noise : {0.0, 0.02}) {
-        const PointCloud cloud = scan(noise);
+        const PointCloud cloud = cloud_to_move(noise);
         PointCloud moved = cloud;
         const std::vector<Reconstruction> kept = reconstruct_levels(cloud, 3, 5);
         const std::vector<Reconstruction> left = reconstruct_levels(std::move(moved), 3, 5);
@@ -115,7 +115,7 @@ TEST_CASE("levels of a cloud that is moved are those of one that is kept", "[pip
 
 TEST_CASE("a cloud that is moved gives its memory back as soon as nobody asks for it", "[pipeline]") {
     for (double noise : {0.0, 0.02}) {
-        PointCloud cloud = scan(noise);
+        PointCloud cloud = cloud_to_move(noise);
         cloud.colors.resize(cloud.size());
         cloud.scalars = {Scalar{"height", std::vector<double>(cloud.size()), false}};
         std::size_t phases = 0;
@@ -140,16 +140,16 @@ TEST_CASE("a cloud that is moved gives its memory back as soon as nobody asks fo
 }
 
 TEST_CASE("an option out of any cloud's range leaves one that is moved as it was", "[pipeline]") {
-    PointCloud cloud = scan();
+    PointCloud cloud = cloud_to_move();
     CHECK_THROWS_AS(reconstruct(std::move(cloud), {.depth = 0}), OptionError);
     CHECK_THROWS_AS(reconstruct_levels(std::move(cloud), 4, 3), OptionError);
-    CHECK(cloud.positions == scan().positions);
-    CHECK(cloud.normals == scan().normals);
+    CHECK(cloud.positions == cloud_to_move().positions);
+    CHECK(cloud.normals == cloud_to_move().normals);
 }
 
 TEST_CASE("a cloud that is moved and holds no surface is refused", "[pipeline]") {
     CHECK_THROWS_AS(reconstruct(PointCloud()), Error);
-    PointCloud cloud = scan();
+    PointCloud cloud = cloud_to_move();
     for (std::size_t i = 0; i < cloud.size(); ++i)
         if (i % 3 != 0) cloud.positions[i][1] = not_finite;
     CHECK_THROWS_WITH(reconstruct(std::move(cloud)), Catch::Contains("2666 of 4000 points"));

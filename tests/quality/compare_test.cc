@@ -1,6 +1,7 @@
 #include "hsdm/quality/compare.hh"
 
 #include "hsdm/errors.hh"
+#include "support/meshes.hh"
 #include "support/sample.hh"
 
 #include <catch2/catch.hpp>
@@ -9,15 +10,9 @@
 #include <limits>
 
 using namespace hsdm;
+using support::tetrahedron;
 
 namespace {
-
-PolygonMesh tetrahedron(double size) {
-    PolygonMesh mesh;
-    mesh.positions = {Vec3(0, 0, 0), Vec3(size, 0, 0), Vec3(0, size, 0), Vec3(0, 0, size)};
-    for (const auto& f : {std::array<Index, 3>{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}) mesh.add_facet(f);
-    return mesh;
-}
 
 PolygonMesh cloud(double size) {
     PolygonMesh points;

@@ -13,7 +13,7 @@ using support::grid;
 
 namespace {
 
-constexpr int depth = 4;
+constexpr int tree_depth = 4;
 
 /// A mesh in the unit cube and its clusters.
 struct Gathered {
@@ -25,7 +25,7 @@ struct Gathered {
     Gathered(PolygonMesh in, double tolerance)
         : mesh(std::move(in)),
           planes(vertex_planes(mesh)),
-          tree(build_cell_tree(mesh.positions, 1, depth)),
+          tree(build_cell_tree(mesh.positions, 1, tree_depth)),
           levels(build_clusters(mesh, tree, planes, tolerance)) {}
 
     /// Per vertex, its cluster of a level, or no_index where cells cannot be whole.
@@ -111,15 +111,15 @@ void check_places(const Gathered& found, double tolerance) {
 
 TEST_CASE("on the deepest level every vertex is a cluster of its own", "[simplify]") {
     const Gathered found(sheet(40, 0.4), 0.01);
-    CHECK(found.levels.size() == depth + 1);
-    CHECK(found.levels[depth].positions == found.mesh.positions);
-    CHECK(found.levels[depth].cell == found.tree.of_vertex);
+    CHECK(found.levels.size() == tree_depth + 1);
+    CHECK(found.levels[tree_depth].positions == found.mesh.positions);
+    CHECK(found.levels[tree_depth].cell == found.tree.of_vertex);
     check_levels(found);
 }
 
 TEST_CASE("a flat sheet has one cluster in each cell, all the way up", "[simplify]") {
     const Gathered found(sheet(40, 0.4), 1e-6);
-    for (std::size_t level = 0; level < depth; ++level) {
+    for (std::size_t level = 0; level < tree_depth; ++level) {
         CHECK(found.whole(level) == found.tree.levels[level].codes.size());
         CHECK(found.levels[level].size() == found.tree.levels[level].codes.size());
         for (const Vec3& place : found.levels[level].positions) CHECK(place[2] == Approx(0.4));
@@ -131,7 +131,7 @@ TEST_CASE("a flat sheet has one cluster in each cell, all the way up", "[simplif
 TEST_CASE("sheets that no edge joins stay apart in one cell", "[simplify]") {
     const Gathered found(both(sheet(40, 0.41), sheet(40, 0.43)), 1e-6);
     check_levels(found);
-    for (std::size_t level = 0; level < depth; ++level) {
+    for (std::size_t level = 0; level < tree_depth; ++level) {
         CHECK(found.levels[level].size() == 2 * found.tree.levels[level].codes.size());
         const std::vector<Index> cluster = found.of_vertex(level);
         const std::size_t half = cluster.size() / 2;
@@ -148,7 +148,7 @@ TEST_CASE("what bends stays whole only where its planes are met", "[simplify]") 
         check_levels(found);
         check_places(found, tolerance);
         std::size_t whole = 0;
-        for (std::size_t level = 0; level < depth; ++level) whole += found.whole(level);
+        for (std::size_t level = 0; level < tree_depth; ++level) whole += found.whole(level);
         CHECK((whole > before || tolerance < 1e-4));
         CHECK((whole > 0 || tolerance < 1e-4));
         CHECK((whole == 0 || tolerance > 1e-4));
@@ -194,7 +194,7 @@ TEST_CASE("clusters do not depend on the number of threads", "[simplify]") {
     const Gathered many(dome(60), 0.005);
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     const Gathered single(dome(60), 0.005);
-    for (std::size_t level = 0; level <= depth; ++level) {
+    for (std::size_t level = 0; level <= tree_depth; ++level) {
         CHECK(many.levels[level].cell == single.levels[level].cell);
         CHECK(many.levels[level].parent == single.levels[level].parent);
         CHECK(many.levels[level].positions == single.levels[level].positions);

@@ -16,12 +16,6 @@ namespace {
 
 constexpr double bound = 0.05;
 
-PolygonMesh ball(Index n) {
-    PolygonMesh mesh = support::divided_cube(n);
-    for (Vec3& p : mesh.positions) p.normalize();
-    return mesh;
-}
-
 /// A mesh that is its own leaves, decimated.
 struct Decimated {
     PolygonMesh fine;
@@ -69,14 +63,14 @@ TEST_CASE("of a cube its six faces are left, each vertex in one of the corners",
 }
 
 TEST_CASE("a ball keeps the bound with fewer facets", "[simplify]") {
-    const Decimated d(ball(12));
+    const Decimated d(support::divided_sphere(12));
     check_kept(d);
     CHECK(d.result.mesh.facet_count() < d.fine.facet_count() / 3);
     CHECK(d.result.mesh.facet_count() > 30);
 }
 
 TEST_CASE("where planes allow anything the bound is kept all the same", "[simplify]") {
-    const PolygonMesh fine = ball(8);
+    const PolygonMesh fine = support::divided_sphere(8);
     std::vector<Quadric> none(fine.vertex_count());
     for (std::size_t v = 0; v < none.size(); ++v) none[v].add_point(fine.positions[v]);
     const Decimated d(fine, none);
@@ -85,7 +79,7 @@ TEST_CASE("where planes allow anything the bound is kept all the same", "[simpli
 }
 
 TEST_CASE("if rounds do not suffice the mesh stays as it was", "[simplify]") {
-    const PolygonMesh fine = ball(8);
+    const PolygonMesh fine = support::divided_sphere(8);
     std::vector<Quadric> none(fine.vertex_count());
     for (std::size_t v = 0; v < none.size(); ++v) none[v].add_point(fine.positions[v]);
     const Decimated d(fine, none, {.faults = {}, .rounds = 1});
@@ -96,7 +90,7 @@ TEST_CASE("if rounds do not suffice the mesh stays as it was", "[simplify]") {
 }
 
 TEST_CASE("what goes too far is undone where it does, and all else stays merged", "[simplify]") {
-    const PolygonMesh fine = ball(12);
+    const PolygonMesh fine = support::divided_sphere(12);
     constexpr double band = 0.7; // by planes more goes than the bound bears
     const Decimated once(fine, vertex_planes(fine), {.faults = {}, .rounds = 1}, band);
     CHECK(once.result.mesh.vertex_count() == fine.vertex_count());
@@ -106,9 +100,9 @@ TEST_CASE("what goes too far is undone where it does, and all else stays merged"
 }
 
 TEST_CASE("decimation does not depend on the number of threads", "[simplify]") {
-    const Decimated many(ball(10));
+    const Decimated many(support::divided_sphere(10));
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    const Decimated single(ball(10));
+    const Decimated single(support::divided_sphere(10));
     CHECK(single.result.mesh.corners == many.result.mesh.corners);
     CHECK(single.result.mesh.positions == many.result.mesh.positions);
     CHECK(single.result.vertex == many.result.vertex);

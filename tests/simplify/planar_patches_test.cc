@@ -85,13 +85,7 @@ TEST_CASE("flat ground reaches into what bends beside it as far as the tolerance
 }
 
 TEST_CASE("strips go all round a shaft, but not one that is thinner than the tolerance", "[simplify]") {
-    const auto shaft = [](double radius) {
-        constexpr Index around = 120, along = 60;
-        return support::quad_tube(around, along, [=](Index c, Index r) {
-            const double turn = 2 * std::numbers::pi * c / around;
-            return Vec3(radius * std::cos(turn), radius * std::sin(turn), radius * r * 0.05);
-        });
-    };
+    const auto shaft = [](double radius) { return support::round_tube(120, 60, radius, 0.05 * radius); };
     const double tolerance = 0.01;
     const PlanarPatches patches = find_planar_patches(shaft(1), tolerance);
     const auto needed = static_cast<std::size_t>(2 * std::numbers::pi / std::sqrt(16 * tolerance));

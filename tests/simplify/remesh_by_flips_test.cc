@@ -11,15 +11,16 @@
 #include <cmath>
 
 using namespace hsdm;
+using support::cut_in_two;
 
 namespace {
 
-constexpr Index side = 7; // vertices
+constexpr Index sheet_side = 7; // vertices
 
 /// A sheet of quads over a square, `height` at (x, y) up; the vertices by rows.
 template <class Height>
 PolygonMesh sheet(const Height& height) {
-    return support::quad_sheet(side - 1, side - 1,
+    return support::quad_sheet(sheet_side - 1, sheet_side - 1,
                                [&](Index x, Index y) { return Vec3(x, y, height(double(x), double(y))); });
 }
 
@@ -28,18 +29,6 @@ RemeshCounts remeshed(PolygonMesh& mesh, const PolygonMesh& fine, bool fixed = f
     const SurfaceWalk surface(fine);
     const ToleranceEnvelope envelope{surface, tolerance};
     return remesh_by_flips(mesh, envelope, std::vector<std::uint8_t>(mesh.vertex_count(), fixed));
-}
-
-/// Every quad cut from its first corner.
-PolygonMesh cut_in_two(const PolygonMesh& quads) {
-    PolygonMesh cut;
-    cut.positions = quads.positions;
-    for (std::size_t f = 0; f < quads.facet_count(); ++f) {
-        const auto q = quads.facet(f);
-        cut.add_facet(std::array{q[0], q[1], q[2]});
-        cut.add_facet(std::array{q[0], q[2], q[3]});
-    }
-    return cut;
 }
 
 bool has_edge(const PolygonMesh& mesh, Index a, Index b) {
@@ -67,10 +56,10 @@ TEST_CASE("quads across a crease are cut along it", "[simplify]") {
     PolygonMesh mesh = sheet([](double x, double y) { return -std::abs(x - y); });
     const PolygonMesh fine = cut_in_two(mesh);
     remeshed(mesh, fine);
-    for (Index i = 0; i + 1 < side; ++i) {
+    for (Index i = 0; i + 1 < sheet_side; ++i) {
         INFO("ridge from " << i);
-        const Index v = i * side + i;
-        CHECK((has_edge(mesh, v, v + side + 1) || has_edge(mesh, v + side + 1, v)));
+        const Index v = i * sheet_side + i;
+        CHECK((has_edge(mesh, v, v + sheet_side + 1) || has_edge(mesh, v + sheet_side + 1, v)));
     }
     CHECK(points_to_mesh(fine.positions, mesh).max < 1e-12);
     CHECK(nonmanifold_vertices(mesh).empty());

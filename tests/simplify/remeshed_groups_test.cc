@@ -15,21 +15,13 @@ using namespace hsdm;
 
 namespace {
 
-constexpr Index side = 20; // vertices
+constexpr Index block_side = 20; // vertices
 
 /// A bent sheet of triangles over a square.
 PolygonMesh sheet() {
-    PolygonMesh mesh;
-    for (Index y = 0; y < side; ++y)
-        for (Index x = 0; x < side; ++x)
-            mesh.positions.emplace_back(x, y, 0.06 * std::sin(2.0 * x) * std::cos(3.0 * y));
-    for (Index y = 0; y + 1 < side; ++y)
-        for (Index x = 0; x + 1 < side; ++x) {
-            const Index v = y * side + x;
-            mesh.add_facet(std::array{v, v + 1, v + side + 1});
-            mesh.add_facet(std::array{v, v + side + 1, v + side});
-        }
-    return mesh;
+    return support::cut_in_two(support::quad_sheet(block_side - 1, block_side - 1, [](Index x, Index y) {
+        return Vec3(x, y, 0.06 * std::sin(2.0 * x) * std::cos(3.0 * y));
+    }));
 }
 
 using Rings = std::multiset<std::vector<Index>>;
@@ -71,14 +63,16 @@ TEST_CASE("only what changed, and what is beside it, becomes something else", "[
     RemeshedGroups groups;
     PolygonMesh first = sheet(), second = sheet();
     tidy(first, groups);
-    const Index moved = 5 * side + 6;
+    const Index moved = 5 * block_side + 6;
     second.positions[moved] += Vec3(0.3, -0.2, 0.1);
     tidy(second, groups);
     const Rings before = rings(first), after = rings(second);
     const auto is_far = [&](const std::vector<Index>& ring) {
         return std::ranges::all_of(ring, [&](Index v) {
             const auto apart = [](Index a, Index b) { return a > b ? a - b : b - a; };
-            return std::max(apart(v % side, moved % side), apart(v / side, moved / side)) > 4;
+            return std::max(apart(v % block_side, moved % block_side),
+                            apart(v / block_side, moved / block_side))
+                   > 4;
         });
     };
     Rings far_before, far_after;
@@ -117,7 +111,7 @@ TEST_CASE("vertices in the same place are not taken for each other", "[simplify]
         PolygonMesh mesh = sheet();
         const PolygonMesh other = sheet();
         const auto count = static_cast<Index>(mesh.vertex_count());
-        const Index common = 10 * side + 10;
+        const Index common = 10 * block_side + 10;
         for (const Vec3& p : other.positions) {
             const Vec3 way = p - other.positions[common];
             mesh.positions.push_back(other.positions[common] + Vec3(way[0], -way[2], way[1]));
@@ -160,7 +154,7 @@ TEST_CASE("changes here and there leave no vertex in trouble", "[simplify]") {
         CHECK(nonmanifold_vertices(now).empty());
         CHECK(measure_topology(now).euler == 1);
         for (int k = 0; k < 5; ++k) {
-            const auto v = static_cast<std::size_t>(random.uniform() * side * side);
+            const auto v = static_cast<std::size_t>(random.uniform() * block_side * block_side);
             mesh.positions[v] =
                 sheet().positions[v]
                 + 0.9 * Vec3(random.uniform() - 0.5, random.uniform() - 0.5, 0.2 * random.uniform());

@@ -38,14 +38,6 @@ double needed(double all, double tolerance) {
     return all / std::sqrt(16 * tolerance);
 }
 
-/// All the way round.
-PolygonMesh shaft(Index around, Index along) {
-    return support::quad_tube(around, along, [=](Index c, Index r) {
-        const double turn = 2 * std::numbers::pi * c / around;
-        return Vec3(std::cos(turn), std::sin(turn), 0.05 * r);
-    });
-}
-
 } // namespace
 
 TEST_CASE("strips are as few as keep their facets within the tolerance", "[simplify]") {
@@ -130,7 +122,7 @@ TEST_CASE("strips of the inside of a cylinder bulge the other way", "[simplify]"
 }
 
 TEST_CASE("strips go all the way round a shaft", "[simplify]") {
-    const Bent bent(shaft(120, 30));
+    const Bent bent(support::round_tube(120, 30, 1, 0.05));
     const std::optional<Strips> strips = bent.cut(0.01);
     REQUIRE(strips);
     CHECK(static_cast<double>(strips->planes.size()) >= needed(2 * std::numbers::pi, 0.01));

@@ -6,20 +6,14 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
 using namespace hsdm;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
-/// Quads over a cylinder without ends: a border, sides that turn, and a far side within reach.
-PolygonMesh tube(Index around, Index along, double radius) {
-    return support::quad_tube(around, along - 1, [=](Index i, Index z) {
-        const double angle = 2 * pi * i / around;
-        return Vec3(radius * std::cos(angle), radius * std::sin(angle), z);
-    });
+/// A border, sides that turn, and a far side within reach.
+PolygonMesh tube(double radius) {
+    return support::round_tube(24, 8, radius, 1);
 }
 
 /// Facets that share no vertex, and slivers among them: nothing to walk over.
@@ -93,8 +87,8 @@ void check_against_tree(const PolygonMesh& mesh, double cell_size) {
 } // namespace
 
 TEST_CASE("walks find what the tree finds on a tube", "[distance]") {
-    check_against_tree(tube(24, 9, 3), 1);
-    check_against_tree(tube(24, 9, 0.3), 0.8); // its other side is in the same cell
+    check_against_tree(tube(3), 1);
+    check_against_tree(tube(0.3), 0.8); // its other side is in the same cell
 }
 
 TEST_CASE("where there is nothing to walk over triangles are found all the same", "[distance]") {
@@ -116,7 +110,7 @@ TEST_CASE("a walk leads along a sheet, not across to another", "[distance]") {
 }
 
 TEST_CASE("far from the surface a walk with cells falls back on the tree", "[distance]") {
-    const PolygonMesh mesh = tube(24, 9, 3);
+    const PolygonMesh mesh = tube(3);
     const FacetCells cells(mesh, 1);
     const SurfaceWalk surface(mesh, triangulate(mesh), cells);
     const MeshDistance exact(mesh);

@@ -1,6 +1,8 @@
 #include "support/meshes.hh"
 
+#include <cmath>
 #include <map>
+#include <numbers>
 
 namespace hsdm::support {
 
@@ -22,8 +24,8 @@ PolygonMesh unit_cube() {
                    {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}});
 }
 
-PolygonMesh tetrahedron() {
-    return mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+PolygonMesh tetrahedron(double size) {
+    return mesh_of({{0, 0, 0}, {size, 0, 0}, {0, size, 0}, {0, 0, size}},
                    {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}});
 }
 
@@ -49,6 +51,30 @@ PolygonMesh divided_cube(Index n) {
                     mesh.add_facet(std::array{corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)});
                 }
     return mesh;
+}
+
+PolygonMesh divided_sphere(Index n) {
+    PolygonMesh mesh = divided_cube(n);
+    for (Vec3& p : mesh.positions) p.normalize();
+    return mesh;
+}
+
+PolygonMesh round_tube(Index around, Index rows, double radius, double step) {
+    return quad_tube(around, rows, [=](Index c, Index r) {
+        const double turn = 2 * std::numbers::pi * c / around;
+        return Vec3(radius * std::cos(turn), radius * std::sin(turn), step * r);
+    });
+}
+
+PolygonMesh cut_in_two(const PolygonMesh& quads) {
+    PolygonMesh cut;
+    cut.positions = quads.positions;
+    for (std::size_t f = 0; f < quads.facet_count(); ++f) {
+        const auto q = quads.facet(f);
+        cut.add_facet(std::array{q[0], q[1], q[2]});
+        cut.add_facet(std::array{q[0], q[2], q[3]});
+    }
+    return cut;
 }
 
 } // namespace hsdm::support

@@ -13,10 +13,12 @@ PolygonMesh mesh_of(std::vector<Vec3> positions, const std::vector<std::vector<I
 std::vector<Vec3> cube_corners();
 /// Six quads, outward.
 PolygonMesh unit_cube();
-/// Three edges of length 1 along the axes; outward.
-PolygonMesh tetrahedron();
+/// Three edges of length `size` along the axes; outward.
+PolygonMesh tetrahedron(double size = 1);
 /// The cube [-1, 1]^3, n x n quads on each side, vertices shared along its edges; outward.
 PolygonMesh divided_cube(Index n);
+/// That cube blown up to the unit sphere.
+PolygonMesh divided_sphere(Index n);
 
 /// columns x rows quads, vertices `at(column, row)` row by row; upward if columns lead along x and rows along
 /// y.
@@ -46,5 +48,11 @@ PolygonMesh quad_tube(Index around, Index rows, const At& at) {
         }
     return mesh;
 }
+
+/// A tube of quads about the z axis, open at both ends: rings `step` apart, the first at z = 0; outward.
+PolygonMesh round_tube(Index around, Index rows, double radius, double step);
+
+/// Every quad cut from its first corner.
+PolygonMesh cut_in_two(const PolygonMesh& quads);
 
 } // namespace hsdm::support

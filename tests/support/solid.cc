@@ -16,6 +16,10 @@ Solid Solid::placed(const Pose& pose) const {
     return result;
 }
 
+Solid in_general_pose(const Solid& solid) {
+    return solid.placed(random_pose(4));
+}
+
 Solid Solid::combine(Operation operation, const Solid& a, const Solid& b) {
     if (a.leaves_.size() + b.leaves_.size() > most_leaves)
         throw std::invalid_argument("a solid has at most " + std::to_string(most_leaves) + " primitives");

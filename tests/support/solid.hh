@@ -69,6 +69,9 @@ private:
     std::vector<Step> steps_;
 };
 
+/// Turned so that none of its directions is an axis.
+Solid in_general_pose(const Solid& solid);
+
 Solid sphere(double radius);
 /// About the z axis; `ring` from the axis to the tube's centre, `tube` < `ring`.
 Solid torus(double ring, double tube);
