@@ -36,6 +36,7 @@ std::vector<Leaf> find_leaves(const std::vector<MortonCode>& codes) {
     std::vector<Leaf> leaves;
     leaves.reserve(codes.size() / 4 + 1);
     for (std::size_t i = 0, end = 0; i < codes.size(); i = end) {
+        if (leaves.size() % chunks::quick == 0) Interruption::poll();
         int level = i == 0 ? 0 : split_level(codes[i - 1], codes[i]);
         if (i + neighborhoods::leaf_points < codes.size())
             level = std::max(level, split_level(codes[i], codes[i + neighborhoods::leaf_points]));

@@ -178,7 +178,8 @@ void run(InputCloud& cloud, const ReconstructOptions& options, std::optional<std
         report.options["levels"] = std::to_string(range->first) + ":" + std::to_string(range->second);
         report.options["resolution"] = "as asked by levels";
     } else {
-        const int depth = prepared.choose_resolution(options);
+        const int depth = Phases(options).run("resolution", 0.1, prepared.report.seconds.octree,
+                                              [&] { return prepared.choose_resolution(options); });
         range = {depth, depth};
     }
     const auto count = static_cast<double>(results.size());
