@@ -10,7 +10,7 @@
 namespace hsdm::command {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 std::string xml(std::string_view text) {
     // The last two are UTF-8, but no characters of XML.
@@ -44,7 +44,7 @@ void put_case(std::ostream& out, const std::string& suite, const Outcome& outcom
 } // namespace
 
 std::string to_json(const std::vector<Outcome>& outcomes) {
-    Json results = Json::array();
+    OrderedJson results = OrderedJson::array();
     for (const Outcome& one : outcomes) {
         results.push_back({{"name", one.name},
                            {"ok", one.misses.empty()},
@@ -53,7 +53,7 @@ std::string to_json(const std::vector<Outcome>& outcomes) {
                            {"report", one.report}});
         if (one.interrupted) results.back()["interrupted"] = true;
     }
-    return results.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+    return results.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + '\n';
 }
 
 std::string to_junit(const std::string& suite, const std::vector<Outcome>& outcomes) {

@@ -13,7 +13,7 @@ namespace {
 
 using Color = std::array<std::uint8_t, 4>;
 
-const std::vector<Vec3> triangle{Vec3(0, 0, 0), Vec3(1, 0, 0.25), Vec3(0, 1, 0)};
+const std::vector<Vec3> three_points{Vec3(0, 0, 0), Vec3(1, 0, 0.25), Vec3(0, 1, 0)};
 
 std::string stl_facet(const std::vector<Vec3>& corners) {
     std::string facet;
@@ -49,7 +49,7 @@ TEST_CASE("the vertices of an OFF file are read wherever its counts and comments
                                "# c\nOFF\r\n3 1 0\r\n", "\xef\xbb\xbfOFF\n3 1\n", "OFF3 1 0\n", "3 1 0\n"}) {
         CAPTURE(header);
         const auto file = read("a.off", header + rows);
-        CHECK(file.cloud.positions == triangle);
+        CHECK(file.cloud.positions == three_points);
         CHECK(file.format == "off");
         CHECK(file.faces == 1);
     }
@@ -98,7 +98,7 @@ TEST_CASE("the vertices of an OBJ file are read, normals and colours where there
         "a.obj",
         "# made by hand\nmtllib a.mtl\no part\nv 0 0 0\nv 1 0 0.25 1.0\nvn 0 0 1\nvt 0 0\nv 0 1 0\nvn 1 0 "
         "0\nvn 0 1 0 # last\nf 1//1 2//2 3//3\nf 1 2 3\nl 1 2\n");
-    CHECK(file.cloud.positions == triangle);
+    CHECK(file.cloud.positions == three_points);
     CHECK(file.cloud.normals == std::vector<Vec3>{Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0, 1, 0)});
     CHECK(file.faces == 2);
     CHECK(file.format == "obj");
@@ -115,22 +115,22 @@ TEST_CASE("Hoppe's point lines are read and other tagged lines skipped", "[io]")
     for (const char* name : {"a.pts", "a.xyz", "a.p", "a"}) {
         const auto file = read(name, "# scan\ns 3\np 0 0 0\np 1 0 0.25\nq 1 2 3\np 0 1 0\n");
         CHECK(file.format == "hoppe");
-        CHECK(file.cloud.positions == triangle);
+        CHECK(file.cloud.positions == three_points);
     }
     // Point elements of an OBJ file begin with p, too.
     const auto obj = read("a.txt", "p 1 2 3\nv 0 0 0\nv 1 0 0.25\nv 0 1 0\n");
     CHECK(obj.format == "obj");
-    CHECK(obj.cloud.positions == triangle);
+    CHECK(obj.cloud.positions == three_points);
     CHECK(error_of("a.xyz", "p 0 0 0\np 1 0\n").starts_with("a.xyz:2: 2 numbers, but x, y and z are needed"));
 }
 
 TEST_CASE("STL corners at the same position become one point, in order of appearance", "[io]") {
     const std::vector<Vec3> other{Vec3(0, 1, 0), Vec3(1, 0, 0.25), Vec3(-0.0, 2, 0)};
-    std::vector<Vec3> expected = triangle;
+    std::vector<Vec3> expected = three_points;
     expected.emplace_back(0, 2, 0);
     for (const std::string& content :
-         {text_stl({triangle, other}), binary_stl(2, stl_facet(triangle) + stl_facet(other)),
-          binary_stl(2, stl_facet(triangle) + stl_facet(other), "solid facet, or so it seems")}) {
+         {text_stl({three_points, other}), binary_stl(2, stl_facet(three_points) + stl_facet(other)),
+          binary_stl(2, stl_facet(three_points) + stl_facet(other), "solid facet, or so it seems")}) {
         const auto file = read("a.stl", content);
         CHECK(file.cloud.positions == expected);
         CHECK(file.faces == 2);
@@ -146,7 +146,7 @@ TEST_CASE("STL corners that are not finite are kept for drop_nonfinite", "[io]")
 }
 
 TEST_CASE("an STL file that is cut off or counts wrong is refused", "[io]") {
-    const std::string two = stl_facet(triangle) + stl_facet(triangle);
+    const std::string two = stl_facet(three_points) + stl_facet(three_points);
     CHECK(error_of("a.stl", binary_stl(3, two))
           == "a.stl: the file ends after 2 of 3 triangles (at byte 184); it was cut off, or its header "
              "counts wrong");
@@ -155,7 +155,7 @@ TEST_CASE("an STL file that is cut off or counts wrong is refused", "[io]") {
     CHECK(error_of("a.stl", binary_stl(1, two)).find("header's count is wrong") != std::string::npos);
     CHECK(error_of("a.stl", binary_stl(0, "")).find("0 triangles") != std::string::npos);
     CHECK(error_of("a.stl", std::string("\0\1\2", 3)).find("too short for an STL file") != std::string::npos);
-    std::string text = text_stl({triangle, triangle});
+    std::string text = text_stl({three_points, three_points});
     CHECK(error_of("a.stl", text.substr(0, text.size() - 40)).find("endsolid; it was cut off")
           != std::string::npos);
     CHECK(error_of("a.stl", text.substr(0, 100)).find("it was cut off") != std::string::npos);

@@ -14,7 +14,7 @@ using namespace hsdm;
 
 namespace {
 
-constexpr double bound = 0.05;
+constexpr double cell_bound = 0.05;
 
 /// A mesh that is its own leaves, decimated.
 struct Decimated {
@@ -27,7 +27,7 @@ struct Decimated {
         ClusteredMesh leaves{fine, std::vector<Index>(fine.vertex_count())};
         std::iota(leaves.vertex.begin(), leaves.vertex.end(), Index{0});
         leaves.mesh.origin = leaves.vertex;
-        MeshChecks checks(fine, nullptr, fine.positions, bound, 0.05, band * bound);
+        MeshChecks checks(fine, nullptr, fine.positions, cell_bound, 0.05, band * cell_bound);
         result = decimate(leaves, std::move(planes), checks, options);
     }
     explicit Decimated(const PolygonMesh& mesh) : Decimated(mesh, vertex_planes(mesh)) {}
@@ -37,8 +37,8 @@ void check_kept(const Decimated& d) {
     const PolygonMesh& mesh = d.result.mesh;
     CHECK(support::faults(mesh) == "");
     CHECK(measure_topology(mesh).euler == 2);
-    CHECK(points_to_mesh(d.fine.positions, mesh).max <= bound);
-    CHECK(points_to_mesh(sample_surface(mesh, 2000), d.fine).max <= 1.2 * bound);
+    CHECK(points_to_mesh(d.fine.positions, mesh).max <= cell_bound);
+    CHECK(points_to_mesh(sample_surface(mesh, 2000), d.fine).max <= 1.2 * cell_bound);
     CHECK(d.result.faults.intersecting + d.result.faults.distant + d.result.faults.points == 0);
     CHECK(d.result.far_points.points.empty());
     REQUIRE(d.result.vertex.size() == d.fine.vertex_count());
@@ -62,14 +62,14 @@ TEST_CASE("of a cube its six faces are left, each vertex in one of the corners",
             CHECK((d.result.mesh.positions[d.result.vertex[v]] - d.fine.positions[v]).norm() < 1e-9);
 }
 
-TEST_CASE("a ball keeps the bound with fewer facets", "[simplify]") {
+TEST_CASE("a ball keeps the cell_bound with fewer facets", "[simplify]") {
     const Decimated d(support::divided_sphere(12));
     check_kept(d);
     CHECK(d.result.mesh.facet_count() < d.fine.facet_count() / 3);
     CHECK(d.result.mesh.facet_count() > 30);
 }
 
-TEST_CASE("where planes allow anything the bound is kept all the same", "[simplify]") {
+TEST_CASE("where planes allow anything the cell_bound is kept all the same", "[simplify]") {
     const PolygonMesh fine = support::divided_sphere(8);
     std::vector<Quadric> none(fine.vertex_count());
     for (std::size_t v = 0; v < none.size(); ++v) none[v].add_point(fine.positions[v]);
@@ -91,7 +91,7 @@ TEST_CASE("if rounds do not suffice the mesh stays as it was", "[simplify]") {
 
 TEST_CASE("what goes too far is undone where it does, and all else stays merged", "[simplify]") {
     const PolygonMesh fine = support::divided_sphere(12);
-    constexpr double band = 0.7; // by planes more goes than the bound bears
+    constexpr double band = 0.7; // by planes more goes than the cell_bound bears
     const Decimated once(fine, vertex_planes(fine), {.faults = {}, .rounds = 1}, band);
     CHECK(once.result.mesh.vertex_count() == fine.vertex_count());
     const Decimated d(fine, vertex_planes(fine), {}, band);

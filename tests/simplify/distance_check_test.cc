@@ -10,11 +10,11 @@ using namespace hsdm;
 
 namespace {
 
-constexpr Index side = 9; // vertices
+constexpr Index fine_side = 9; // vertices
 
 /// A roof of quads over a square, 1 high along its middle.
 PolygonMesh roof() {
-    return support::quad_sheet(side - 1, side - 1,
+    return support::quad_sheet(fine_side - 1, fine_side - 1,
                                [](Index x, Index y) { return Vec3(x, y, 1 - std::abs(double(x) - 4) / 4); });
 }
 
@@ -47,16 +47,16 @@ TEST_CASE("a facet over the fine mesh's own vertices is looked at", "[simplify]"
     Sequence meshes{check, {}};
     CHECK(meshes.find_far(fine).size() == 0);
     // From eaves to eaves, under the ridge.
-    const FarPlaces under =
-        meshes.find_far(quad_over(fine, {0, side - 1, side * side - 1, side * (side - 1)}));
+    const FarPlaces under = meshes.find_far(
+        quad_over(fine, {0, fine_side - 1, fine_side * fine_side - 1, fine_side * (fine_side - 1)}));
     CHECK(under.facets.size() == 1);
     CHECK(under.vertices.empty());
     CHECK(!under.fine_vertices.empty());
     // One slope of two.
-    const FarPlaces slope =
-        meshes.find_far(quad_over(fine, {0, 4, side * (side - 1) + 4, side * (side - 1)}));
+    const FarPlaces slope = meshes.find_far(
+        quad_over(fine, {0, 4, fine_side * (fine_side - 1) + 4, fine_side * (fine_side - 1)}));
     CHECK(slope.facets.empty());
-    CHECK(slope.fine_vertices.size() == std::size_t{4} * side);
+    CHECK(slope.fine_vertices.size() == std::size_t{4} * fine_side);
 }
 
 TEST_CASE("what was near a facet that has gone is measured again, in any order of vertices", "[simplify]") {
@@ -64,8 +64,9 @@ TEST_CASE("what was near a facet that has gone is measured again, in any order o
     const std::vector<Vec3> points = {Vec3(1.5, 4, 0.375), Vec3(6.5, 4, 0.375), Vec3(6.5, 4, 3)};
     DistanceCheck check(fine, nullptr, points, 0.1, 1);
     Sequence meshes{check, {}};
-    const std::array<Index, 4> left{0, 4, side * (side - 1) + 4, side * (side - 1)};
-    const std::array<Index, 4> right{4, side - 1, side * side - 1, side * (side - 1) + 4};
+    const std::array<Index, 4> left{0, 4, fine_side * (fine_side - 1) + 4, fine_side * (fine_side - 1)};
+    const std::array<Index, 4> right{4, fine_side - 1, fine_side * fine_side - 1,
+                                     fine_side * (fine_side - 1) + 4};
     PolygonMesh both = quad_over(fine, left);
     for (Index v : right) both.positions.push_back(fine.positions[v]);
     both.origin.insert(both.origin.end(), right.begin(), right.end());
@@ -97,8 +98,8 @@ TEST_CASE("what was far from the fine mesh is so each time", "[simplify]") {
     PolygonMesh lifted = fine;
     for (Vec3& p : lifted.positions) p[2] += p[0] < 3.5 ? 0.05 : 0.2;
     const FarPlaces first = meshes.find_far(lifted), second = meshes.find_far(lifted);
-    CHECK(first.vertices.size() == std::size_t{5} * side);
-    CHECK(first.facets.size() == std::size_t{5} * (side - 1));
+    CHECK(first.vertices.size() == std::size_t{5} * fine_side);
+    CHECK(first.facets.size() == std::size_t{5} * (fine_side - 1));
     CHECK(second.vertices == first.vertices);
     CHECK(second.facets == first.facets);
 }
