@@ -22,5 +22,6 @@
 #include "hsdm/quality/topology.hh"
 #include "hsdm/reconstruct.hh"
 #include "hsdm/report.hh"
+#include "hsdm/spatial/neighbor_search.hh"
 #include "hsdm/types.hh"
 #include "hsdm/version.hh"
