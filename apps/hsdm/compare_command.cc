@@ -1,4 +1,4 @@
-// hsdm compare: how far two surfaces, or a surface and a cloud, are apart.
+// hsdm compare: how far two meshes, two clouds, or a mesh and a cloud are apart.
 
 #include "command.hh"
 #include "file_claims.hh"
@@ -6,7 +6,6 @@
 #include "messages.hh"
 #include "summary.hh"
 
-#include "hsdm/errors.hh"
 #include "hsdm/quality/compare.hh"
 
 #include <iostream>
@@ -14,11 +13,14 @@
 namespace hsdm::command {
 namespace {
 
-void fill(JsonText& json, const Distance& distance, double diagonal) {
+void fill(JsonText& json, const Distance& distance, const Percentiles& percentiles, double diagonal) {
     json.begin_object();
     json.member("max", distance.max);
     json.member("mean", distance.mean);
     json.member("rms", distance.rms);
+    json.member("median", percentiles.median);
+    json.member("p95", percentiles.p95);
+    json.member("p99", percentiles.p99);
     json.member("normalised_max", diagonal > 0 ? distance.max / diagonal : 0);
     json.end();
 }
@@ -37,10 +39,11 @@ void fill(JsonText& json, const std::string& path, const Loaded& loaded) {
     json.end();
 }
 
-void print(const char* title, const Distance& distance, double diagonal) {
+void print(const char* title, const Distance& distance, const Percentiles& percentiles, double diagonal) {
     std::cout << title << "  max " << distance.max << " ("
               << (diagonal > 0 ? 100 * (distance.max / diagonal) : 0) << " % of the diagonal), mean "
-              << distance.mean << ", rms " << distance.rms << '\n';
+              << distance.mean << ", rms " << distance.rms << "; median " << percentiles.median
+              << ", 95 % within " << percentiles.p95 << ", 99 % within " << percentiles.p99 << '\n';
 }
 
 void print(const char* title, const std::string& path, const Loaded& loaded) {
@@ -61,8 +64,6 @@ int run_compare(const std::string& path_a, const std::string& path_b, bool as_js
     claims.writes("the output", "-");
     claims.check();
     const Loaded a = load(path_a), b = load(path_b);
-    if (!a.is_mesh() && !b.is_mesh())
-        throw Error(path_b, "both files hold points without faces; one of the two must be a mesh");
     const Comparison result = compare(a.mesh, b.mesh);
     if (as_json) {
         JsonText json;
@@ -72,9 +73,9 @@ int run_compare(const std::string& path_a, const std::string& path_b, bool as_js
         json.key("b");
         fill(json, path_b, b);
         json.key("a_to_b");
-        fill(json, result.a_to_b, result.diagonal);
+        fill(json, result.a_to_b, result.a_to_b_percentiles, result.diagonal);
         json.key("b_to_a");
-        fill(json, result.b_to_a, result.diagonal);
+        fill(json, result.b_to_a, result.b_to_a_percentiles, result.diagonal);
         json.member("hausdorff", result.hausdorff());
         json.member("diagonal", result.diagonal);
         json.end();
@@ -83,8 +84,8 @@ int run_compare(const std::string& path_a, const std::string& path_b, bool as_js
     }
     print("a", path_a, a);
     print("b", path_b, b);
-    print("a to b", result.a_to_b, result.diagonal);
-    print("b to a", result.b_to_a, result.diagonal);
+    print("a to b", result.a_to_b, result.a_to_b_percentiles, result.diagonal);
+    print("b to a", result.b_to_a, result.b_to_a_percentiles, result.diagonal);
     return done;
 }
 
@@ -92,19 +93,21 @@ int run_compare(const std::string& path_a, const std::string& path_b, bool as_js
 
 void add_compare(CLI::App& app, Run& run) {
     CLI::App* const sub =
-        app.add_subcommand("compare", "distances between a mesh and a cloud or another mesh");
+        app.add_subcommand("compare", "distances between two meshes, two clouds, or a mesh and a cloud");
     struct Arguments {
         std::string a, b;
         bool json = false;
     };
     const auto arguments = std::make_shared<Arguments>();
     sub->add_option("a", arguments->a, "a mesh or a cloud; - is standard input")->required();
-    sub->add_option("b", arguments->b, "a mesh or a cloud; one of the two is a mesh")->required();
+    sub->add_option("b", arguments->b, "a mesh or a cloud")->required();
     sub->add_flag("--json", arguments->json, "as JSON");
     sub->footer(
         "Distances of a cloud are taken from every point, those of a mesh from points spread over its area\n"
-        "and from its vertices.\nExamples:\n  hsdm compare part.off scan.ply\n"
-        "  hsdm compare part.off truth.off --json");
+        "and from its vertices. To a mesh they are those to its surface, to a cloud those to its nearest "
+        "point.\n"
+        "Examples:\n  hsdm compare part.off scan.ply\n  hsdm compare part.off truth.off --json\n"
+        "  hsdm compare scan.ply later.ply");
     sub->callback([&run, arguments] {
         run = [arguments] { return run_compare(arguments->a, arguments->b, arguments->json); };
     });

@@ -19,6 +19,7 @@
 #include "hsdm/polygon_mesh.hh"
 #include "hsdm/quality/compare.hh"
 #include "hsdm/quality/distance.hh"
+#include "hsdm/quality/percentiles.hh"
 #include "hsdm/quality/topology.hh"
 #include "hsdm/reconstruct.hh"
 #include "hsdm/report.hh"

@@ -155,7 +155,20 @@ Distance points_to_mesh_by_cells(std::span<const Vec3> points, const PolygonMesh
             }
         });
     }
-    return sum_up(points.size(), beyond, [&] { return [&](std::size_t i) { return squared[i]; }; });
+    return summary_of(squared, beyond);
+}
+
+std::vector<double> squared_distances(std::span<const Vec3> points, const MeshDistance& mesh) {
+    std::vector<double> squared(points.size());
+    for_chunks(points.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
+        Packets packets(mesh.tree(), points);
+        for (std::size_t i = begin; i < end; ++i) squared[i] = packets(i).squared;
+    });
+    return squared;
+}
+
+Distance summary_of(std::span<const double> squared, double beyond) {
+    return sum_up(squared.size(), beyond, [&] { return [&](std::size_t i) { return squared[i]; }; });
 }
 
 std::vector<Vec3> sample_surface(const PolygonMesh& mesh, std::size_t count) {

@@ -14,6 +14,13 @@ class SurfaceWalk;
 Distance points_to_mesh(std::span<const Vec3> points, const MeshDistance& mesh,
                         double beyond = std::numeric_limits<double>::infinity());
 
+/// The same one by one, squared: what summary_of() makes of them are the same bits. O(points log triangles),
+/// parallel.
+std::vector<double> squared_distances(std::span<const Vec3> points, const MeshDistance& mesh);
+
+/// What there is to know of many squared distances, in the order of the points. O(n), parallel.
+Distance summary_of(std::span<const double> squared, double beyond = std::numeric_limits<double>::infinity());
+
 /// Every point against its nearest triangle by walks and searches, parallel, the same bits for any thread
 /// count: for points that lie close to the surface.
 Distance points_to_surface(std::span<const Vec3> points, const SurfaceWalk& surface,

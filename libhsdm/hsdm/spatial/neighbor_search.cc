@@ -45,6 +45,11 @@ struct Metric : flann::L2_3D<double> {
 /// Points of a subtree that is worth a task of its own.
 constexpr int least_task = 1 << 14;
 
+/// What takes the points that a search comes past, and the search's own memory.
+struct Taker : flann::ResultSet<double> {
+    std::vector<double> sides; ///< squared distance from the box of the points looked at, by axis
+};
+
 } // namespace hsdm::kd_tree
 
 namespace flann {
@@ -63,16 +68,13 @@ inline auto HsdmTree::divideTree(int left, int right, BoundingBox& box) -> NodeP
     node->left = left;
     node->right = right;
     if (right - left <= leaf_max_size_) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const auto at = [&](int k) {
-                return points_[static_cast<std::size_t>(vind_[static_cast<std::size_t>(k)])][axis];
-            };
-            box[axis].low = box[axis].high = at(left);
-            for (int k = left + 1; k < right; ++k) {
-                box[axis].low = std::min(box[axis].low, at(k));
-                box[axis].high = std::max(box[axis].high, at(k));
-            }
+        hsdm::Box tight;
+        for (auto i = vind_.begin() + left; i != vind_.begin() + right; ++i) {
+            const double* const p = points_[static_cast<std::size_t>(*i)];
+            tight.add(hsdm::Vec3(p[0], p[1], p[2]));
         }
+        for (unsigned axis = 0; axis < 3; ++axis)
+            box[axis].low = tight.lo[axis], box[axis].high = tight.hi[axis];
         return node;
     }
     int count = 0;
@@ -98,10 +100,11 @@ inline auto HsdmTree::divideTree(int left, int right, BoundingBox& box) -> NodeP
     return node;
 }
 
+/// `result` is a Taker.
 template <>
 inline void HsdmTree::findNeighbors(ResultSet<double>& result, const double* place,
                                     const SearchParams&) const {
-    static thread_local std::vector<double> sides; // squared distance from the box, by axis
+    std::vector<double>& sides = static_cast<hsdm::kd_tree::Taker&>(result).sides;
     sides.assign(3, 0);
     const double squared = computeInitialDistances(place, sides);
     searchLevel<false>(result, place, root_node_, squared, sides, 1);
@@ -117,7 +120,7 @@ using Near = std::pair<double, Index>;
 
 /// The nearest of the points that a search comes past, from when it is full a heap with the farthest in
 /// front.
-class Nearest final : public flann::ResultSet<double> {
+class Nearest final : public kd_tree::Taker {
 public:
     /// At most `count` points within a squared distance.
     Nearest(std::size_t count, double limit)
