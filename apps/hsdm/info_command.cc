@@ -7,7 +7,7 @@
 #include "summary.hh"
 
 #include "hsdm/cloud/cloud_frame.hh"
-#include "hsdm/octree/spacing.hh"
+#include "hsdm/quality/sampling.hh"
 
 #include <array>
 #include <cmath>
@@ -23,13 +23,6 @@ double diagonal(const Box& box) {
     return (box.hi / unit - box.lo / unit).norm() * unit;
 }
 
-/// 0 for points without extent, which have no octree.
-double spacing(const PointCloud& cloud) {
-    if (!(cloud.bounds().extent() > 0)) return 0;
-    const CloudFrame frame(cloud.bounds());
-    return frame.unit() * estimate_spacing(build_octree(cloud, {.unit = frame.unit()}));
-}
-
 /// The least and the greatest length of the normals that are there; nothing if none is.
 std::optional<std::pair<double, double>> normal_lengths(const PointCloud& cloud) {
     std::optional<std::pair<double, double>> range;
@@ -43,6 +36,20 @@ std::optional<std::pair<double, double>> normal_lengths(const PointCloud& cloud)
     return range;
 }
 
+void fill_sampling(JsonText& json, const Sampling& sampling) {
+    json.member("spacing", sampling.spacing);
+    json.key("nearest");
+    json.begin_object();
+    json.member("p5", sampling.nearest.p5);
+    json.member("median", sampling.nearest.median);
+    json.member("p95", sampling.nearest.p95);
+    json.member("p99", sampling.nearest.p99);
+    json.end();
+    json.member("duplicates", sampling.duplicates);
+    json.member("isolated", sampling.isolated);
+    json.member("statistical_outliers", sampling.statistical_outliers);
+}
+
 void fill_cloud(JsonText& json, const Loaded& loaded) {
     json.begin_object();
     json.member("points", loaded.cloud.size());
@@ -54,7 +61,7 @@ void fill_cloud(JsonText& json, const Loaded& loaded) {
     json.begin_array();
     for (const Scalar& scalar : loaded.cloud.scalars) json.value(scalar.name);
     json.end();
-    json.member("spacing", spacing(loaded.cloud));
+    fill_sampling(json, measure_sampling(loaded.cloud));
     if (const auto lengths = normal_lengths(loaded.cloud))
         json.member("normal_lengths", std::array{lengths->first, lengths->second});
     if (!loaded.columns.empty()) json.member("columns", loaded.columns);
@@ -93,9 +100,23 @@ void print_json(const std::string& path, const Loaded& loaded) {
     std::cout << std::move(json).take();
 }
 
+void print_sampling(const SamplingOptions& options, const Sampling& sampling) {
+    std::cout << "density   nearest other point of 5 % within " << sampling.nearest.p5 << ", of half within "
+              << sampling.nearest.median << ", of 95 % within " << sampling.nearest.p95 << '\n'
+              << "outliers  " << 100 * sampling.isolated << " % lie " << options.isolation
+              << " medians from their " << options.neighbors << " nearest, "
+              << 100 * sampling.statistical_outliers << " % more than the mean and 3 deviations\n";
+    if (sampling.duplicates > 0)
+        std::cout << "repeated  " << grouped(sampling.duplicates)
+                  << (sampling.duplicates == 1 ? " point" : " points") << " at the place of another\n";
+}
+
 void print_cloud(const Loaded& loaded) {
     const PointCloud& cloud = loaded.cloud;
-    std::cout << "cloud     " << grouped(cloud.size()) << " points, spacing " << spacing(cloud) << '\n';
+    const SamplingOptions options;
+    const Sampling sampling = measure_sampling(cloud, options);
+    std::cout << "cloud     " << grouped(cloud.size()) << " points, spacing " << sampling.spacing << '\n';
+    print_sampling(options, sampling);
     print_normals(loaded);
     print_dropped(std::cout, loaded.dropped);
     if (cloud.sensor) std::cout << "sensor    " << *cloud.sensor << '\n';

@@ -20,6 +20,7 @@
 #include "hsdm/quality/compare.hh"
 #include "hsdm/quality/distance.hh"
 #include "hsdm/quality/percentiles.hh"
+#include "hsdm/quality/sampling.hh"
 #include "hsdm/quality/topology.hh"
 #include "hsdm/reconstruct.hh"
 #include "hsdm/report.hh"

@@ -39,6 +39,10 @@ TEST_CASE("info tells a cloud from a mesh and measures both", "[cli]") {
     CHECK(cloud["kind"] == "cloud");
     CHECK(cloud["cloud"]["points"] == 4000);
     CHECK(cloud["cloud"]["spacing"].get<double>() == Approx(0.056).epsilon(0.15));
+    CHECK(cloud["cloud"]["nearest"]["median"].get<double>() < cloud["cloud"]["spacing"].get<double>());
+    CHECK(cloud["cloud"]["duplicates"] == 0);
+    CHECK(cloud["cloud"]["isolated"] == 0);
+    CHECK(cloud["cloud"]["statistical_outliers"].get<double>() < 0.02);
     const Json mesh = Json::parse(run(folder, "info part.ply --json").out);
     CHECK(mesh["kind"] == "mesh");
     CHECK(mesh["mesh"]["closed"] == true);
@@ -46,6 +50,26 @@ TEST_CASE("info tells a cloud from a mesh and measures both", "[cli]") {
     CHECK(mesh["mesh"]["signed_volume"].get<double>() == Approx(4.0 / 3 * 3.14159).epsilon(0.1));
     CHECK(run(folder, "info part.ply").out.find("closed") != std::string::npos);
     CHECK(run(folder, "info missing.off").status == 1);
+}
+
+TEST_CASE("info tells of a cloud's strays and repeated points", "[cli]") {
+    const Folder folder;
+    PointCloud scan = sphere_scan();
+    for (int i = 0; i < 40; ++i) scan.positions.emplace_back(0, 2 + 0.3 * i, 3);
+    for (int i = 0; i < 3; ++i) scan.positions.push_back(scan.positions[5]);
+    folder.write("scan.xyz", xyz(scan));
+    const Json cloud = Json::parse(run(folder, "info scan.xyz --json").out)["cloud"];
+    CHECK(cloud["points"] == 4043);
+    CHECK(cloud["duplicates"] == 3);
+    CHECK(cloud["isolated"].get<double>() == Approx(40.0 / 4040));
+    const std::string text = run(folder, "info scan.xyz").out;
+    CHECK(text.find("repeated  3 points") != std::string::npos);
+    CHECK(text.find("outliers  0.990099 % lie 3 medians from their 8 nearest") != std::string::npos);
+    CHECK(text.find("density   nearest other point of 5 % within ") != std::string::npos);
+    folder.write("one.xyz", "1 2 3\n1 2 3\n");
+    const Json one = Json::parse(run(folder, "info one.xyz --json").out)["cloud"];
+    CHECK(one["duplicates"] == 1);
+    CHECK(one["spacing"] == 0);
 }
 
 TEST_CASE("info measures meshes of any size", "[cli]") {
