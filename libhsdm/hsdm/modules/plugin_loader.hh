@@ -60,11 +60,11 @@ Plugin load_plugin(const std::string& name, const std::vector<std::string>& fold
 /// What a folder offers, one entry per shared library; a folder that is not looked into is one with a
 /// problem.
 struct PluginListing {
-    std::string path;        ///< of the shared library or the folder
-    std::string name;        ///< by which it is asked for
-    std::string description; ///< one line
-    std::vector<StageOption> options;
-    std::string problem; ///< empty, or why the module cannot be used
+    std::string path;                 ///< of the shared library or the folder
+    std::string name;                 ///< by which it is asked for
+    std::string description;          ///< one line
+    std::vector<StageOption> options; ///< as declared
+    std::string problem;              ///< empty, or why the module cannot be used
 };
 
 /// All modules of the folders, by folder and name; of two with the same file name the first counts. Loads
@@ -74,8 +74,8 @@ std::vector<PluginListing> list_plugins(const std::vector<std::string>& folders 
 /// `name` or `name:key=value,key=value`. A colon in the name is written `\:`; of a path it may stand as it
 /// is, if there is a file so far.
 struct PluginRequest {
-    std::string name; ///< or path
-    StageArguments arguments;
+    std::string name;         ///< or path
+    StageArguments arguments; ///< in the order given
 };
 /// Throws OptionError for an empty name or key and a part without '='.
 PluginRequest parse_plugin_request(const std::string& text);
