@@ -25,5 +25,6 @@
 #include "hsdm/reconstruct.hh"
 #include "hsdm/report.hh"
 #include "hsdm/spatial/neighbor_search.hh"
+#include "hsdm/spatial/transfer_attributes.hh"
 #include "hsdm/types.hh"
 #include "hsdm/version.hh"

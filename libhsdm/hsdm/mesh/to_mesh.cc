@@ -4,6 +4,7 @@
 #include "hsdm/errors.hh"
 #include "hsdm/mesh/facet_normal.hh"
 #include "hsdm/mesh/vertex_normals.hh"
+#include "hsdm/mesh/vertex_properties.hh"
 
 #include <algorithm>
 #include <array>
@@ -100,26 +101,6 @@ void write_geometry(const PolygonMesh& facets, const FacetLinks& links, PolyMesh
     });
 }
 
-/// The value as a T; an integer that cannot hold it takes its nearest limit, 0 for what is not a number.
-template <class T>
-T saturated(double value) {
-    if constexpr (std::is_integral_v<T>) {
-        if (!(value == value)) return 0;
-        constexpr double lowest = std::numeric_limits<T>::lowest(), highest = std::numeric_limits<T>::max();
-        return static_cast<T>(std::clamp(value, lowest, highest));
-    } else {
-        return static_cast<T>(value);
-    }
-}
-
-template <class T>
-void write_property(const VertexProperty& from, const FacetLinks& links, PolyMesh& mesh) {
-    auto property = kept_vertex_property<T>(mesh, from.name.c_str());
-    auto& values = mesh.property(property.getRawProperty()).data_vector();
-    for_each_index(links.source.size(), 1 << 13,
-                   [&](Index v) { values[v] = saturated<T>(from.values[links.source[v]]); });
-}
-
 bool is_normal_component(const VertexProperty& property) {
     for (std::size_t i = 0; i < 9; ++i)
         if (property.name == vertex_normal_component(i)) return true;
@@ -142,20 +123,7 @@ void write_vertex_normals(const PolygonMesh& facets, const FacetLinks& links, Po
 void write_properties(const PolygonMesh& facets, const FacetLinks& links, PolyMesh& mesh) {
     for (const VertexProperty& property : facets.properties) {
         if (property.values.size() != facets.vertex_count() || is_normal_component(property)) continue;
-        switch (property.type) {
-        case VertexProperty::Type::uint8:
-            write_property<std::uint8_t>(property, links, mesh);
-            break;
-        case VertexProperty::Type::int32:
-            write_property<std::int32_t>(property, links, mesh);
-            break;
-        case VertexProperty::Type::float32:
-            write_property<float>(property, links, mesh);
-            break;
-        case VertexProperty::Type::float64:
-            write_property<double>(property, links, mesh);
-            break;
-        }
+        set_vertex_property(property, links.source, mesh);
     }
     write_vertex_normals(facets, links, mesh);
 }
