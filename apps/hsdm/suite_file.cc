@@ -2,12 +2,12 @@
 
 #include "messages.hh"
 
+#include "hsdm/core/number_of.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/report.hh"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -172,10 +172,8 @@ Case parse_case(const Json& entry, const std::filesystem::path& folder, OtherKey
 
 /// The element of an array that digits name.
 const Json* element(const Json& array, std::string_view digits) {
-    std::size_t index = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
-    const bool known = error == std::errc() && end == digits.data() + digits.size() && index < array.size();
-    return known ? &array[index] : nullptr;
+    const auto index = number_of<std::size_t>(digits);
+    return index && *index < array.size() ? &array[*index] : nullptr;
 }
 
 } // namespace

@@ -3,7 +3,8 @@
 
 #include "command.hh"
 
-#include <charconv>
+#include "hsdm/core/number_of.hh"
+
 #include <optional>
 
 namespace hsdm::command {
@@ -17,14 +18,6 @@ std::string fault_of(const CLI::App& app, const CLI::ParseError& error);
 /// that was all (help, version); nothing if a subcommand is to run. Throws UsageError, which names the
 /// nearest known subcommand or option.
 std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv);
-
-/// Nothing if the text is not wholly a number.
-template <class Number>
-std::optional<Number> number_of(std::string_view text) {
-    Number value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
-}
 
 /// Checks of an option's text; what they say of it begins with it.
 CLI::Validator whole_number(int least, int most, const std::string& wanted);

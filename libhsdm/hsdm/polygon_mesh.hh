@@ -24,6 +24,9 @@ struct VertexProperty {
     std::vector<double> values; ///< one per vertex
 };
 
+/// The names of the properties that hold colours, each a Type::uint8.
+inline constexpr std::array<const char*, 4> color_properties{"red", "green", "blue", "alpha"};
+
 /// Polygons over shared vertices, as flat arrays: facet f is corners[first[f]] .. corners[first[f + 1]].
 struct PolygonMesh {
     std::vector<Vec3> positions;            ///< per vertex

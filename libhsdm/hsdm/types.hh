@@ -4,6 +4,7 @@
 #include <OpenMesh/Core/Geometry/VectorT.hh>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -17,6 +18,11 @@ using Vec3 = OpenMesh::Vec3d;
 using Index = std::uint32_t;
 /// Stands for none; no element has it.
 inline constexpr Index no_index = 0xffffffffu;
+
+/// Are all coordinates finite?
+inline bool is_finite(const Vec3& p) {
+    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+}
 
 /// Axis-aligned box; empty until the first point is added.
 struct Box {

@@ -6,9 +6,7 @@
 #include "hsdm/mesh/split_polygon.hh"
 
 #include <algorithm>
-#include <atomic>
 #include <numbers>
-#include <numeric>
 #include <string>
 
 namespace hsdm {
@@ -94,7 +92,7 @@ private:
 
     void test_hits() {
         hit_.resize(2 * loops_.size());
-        for_each_index(hit_.size(), 2048, [&](std::size_t c) {
+        for_each_index(hit_.size(), chunks::usual, [&](std::size_t c) {
             hit_[c] = hits_neighbor_voxel(level_, graph_, candidate(static_cast<Index>(c)).corners());
         });
         counts_.hit_test = static_cast<std::size_t>(std::count(hit_.begin(), hit_.end(), 1));

@@ -13,7 +13,8 @@ Vec3 voxel_centroid(const Octree& octree, const OctreeLevel& level, Index voxel)
 
 std::vector<Vec3> voxel_centroids(const Octree& octree, const OctreeLevel& level) {
     std::vector<Vec3> positions(level.size());
-    for_each_index(level.size(), 4096, [&](Index v) { positions[v] = voxel_centroid(octree, level, v); });
+    for_each_index(level.size(), chunks::quick,
+                   [&](Index v) { positions[v] = voxel_centroid(octree, level, v); });
     return positions;
 }
 

@@ -8,15 +8,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <functional>
 
 namespace hsdm {
 namespace {
-
-bool is_finite(const Vec3& p) {
-    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-}
 
 template <class T>
 void keep_only(std::vector<T>& values, const std::vector<Index>& kept) {
@@ -29,7 +24,7 @@ void keep_only(std::vector<T>& values, const std::vector<Index>& kept) {
 
 bool all_finite(std::span<const Vec3> positions) {
     return tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, positions.size(), 1 << 14), true,
+        tbb::blocked_range<std::size_t>(0, positions.size(), chunks::light), true,
         [&](const tbb::blocked_range<std::size_t>& range, bool finite) {
             for (std::size_t i = range.begin(); finite && i != range.end(); ++i)
                 finite = is_finite(positions[i]);
@@ -66,7 +61,7 @@ Dropped drop_nonfinite(PointCloud& cloud) {
     check_arrays(cloud);
     Dropped dropped;
     std::atomic<std::size_t> bad_points = 0, bad_normals = 0;
-    for_chunks(cloud.size(), 1 << 14, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for_chunks(cloud.size(), chunks::light, [&](std::size_t begin, std::size_t end, std::size_t) {
         std::size_t points = 0, normals = 0;
         for (std::size_t i = begin; i != end; ++i) {
             if (!is_finite(cloud.positions[i])) {

@@ -3,8 +3,6 @@
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -273,8 +271,7 @@ std::size_t extend_grid_points(GridPoints& grid, LocalSheets& sheets, const Octr
     };
     std::vector<MortonCode> missing = collected<MortonCode>(grid.size(), chunks::usual, add_missing);
     if (missing.empty()) return 0;
-    tbb::parallel_sort(missing.begin(), missing.end());
-    missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
+    parallel_sort_unique(missing);
     add_grid_points(grid, missing);
     sheets.first_member.resize(grid.size() + 1, sheets.first_member.back());
     sheets.first_sheet.resize(grid.size() + 1, sheets.first_sheet.back());

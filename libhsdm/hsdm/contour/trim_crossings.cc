@@ -8,7 +8,7 @@ namespace {
 
 /// The boundary loops that the mesh will have.
 struct OpenLoops {
-    std::vector<Index> of_corner;      ///< per side, its loop; no_index: it has a twin
+    std::vector<Index> of_side;        ///< per side, its loop; no_index: it has a twin
     std::vector<std::ptrdiff_t> sides; ///< per loop, how many sides it has
 };
 
@@ -25,14 +25,14 @@ OpenLoops find_open_loops(const Crossings& crossings, const Links& links) {
         }
     };
     OpenLoops loops;
-    loops.of_corner.assign(4 * links.of_crossing.size(), no_index);
+    loops.of_side.assign(4 * links.of_crossing.size(), no_index);
     for (Index x = 0; x < links.of_crossing.size(); ++x)
         for (const FacetSide start : corners_of_facet(x)) {
-            if (!links.of(start).open() || loops.of_corner[start.number()] != no_index) continue;
+            if (!links.of(start).open() || loops.of_side[start.number()] != no_index) continue;
             const auto number = static_cast<Index>(loops.sides.size());
             loops.sides.push_back(0);
-            for (FacetSide side = start; loops.of_corner[side.number()] == no_index; side = next(side)) {
-                loops.of_corner[side.number()] = number;
+            for (FacetSide side = start; loops.of_side[side.number()] == no_index; side = next(side)) {
+                loops.of_side[side.number()] = number;
                 ++loops.sides[number];
             }
         }
@@ -60,7 +60,7 @@ std::vector<Patch> find_patches(const Crossings& crossings, const Links& links, 
             for (const FacetSide side : corners_of_facet(patch.crossings[i])) {
                 const FacetSide twin = links.of(side).twin;
                 if (twin == no_side)
-                    patch.open.push_back(loops.of_corner[side.number()]);
+                    patch.open.push_back(loops.of_side[side.number()]);
                 else if (crossings.of(twin).supported)
                     ++patch.bordering;
                 else if (!std::exchange(seen[twin.crossing()], std::uint8_t{1}))

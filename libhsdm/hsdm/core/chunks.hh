@@ -6,8 +6,9 @@
 #include "hsdm/types.hh"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
-#include <cstring>
+#include <algorithm>
 #include <numeric>
 #include <vector>
 
@@ -83,6 +84,13 @@ std::vector<Index> indices_where(std::size_t n, std::size_t chunk_size, Test&& t
 template <class T>
 void sort_unique(std::vector<T>& values) {
     std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+/// The same for many values, in parallel.
+template <class T>
+void parallel_sort_unique(std::vector<T>& values) {
+    tbb::parallel_sort(values.begin(), values.end());
     values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 

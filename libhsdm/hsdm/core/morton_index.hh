@@ -17,7 +17,7 @@ public:
         const std::size_t slots = std::bit_ceil(std::max<std::size_t>(2 * codes.size(), 2 * siblings));
         slots_.assign(slots, Slot{});
         shift_ = 64 - std::countr_zero(slots / siblings);
-        for_chunks(codes.size(), codes_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for_chunks(codes.size(), chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t i = begin; i < end; ++i) slots_[take_slot(codes[i], i)].code = codes[i];
         });
     }
@@ -52,7 +52,7 @@ private:
         return static_cast<std::size_t>((code / siblings * 0x9e3779b97f4a7c15ull) >> shift_) * siblings
                + code % siblings;
     }
-    static constexpr std::size_t siblings = 8, codes_per_chunk = 4096;
+    static constexpr std::size_t siblings = 8;
 
     std::vector<Slot> slots_; // a power of two, load at most one half
     int shift_ = 0;

@@ -139,7 +139,7 @@ void FeatureClassifierT<Mesh>::classify_vertices(const std::vector<Vec3>& facet_
                                                  FeatureCounts& counts) {
     auto classes = kept_vertex_property<std::uint8_t>(mesh_, vertex_class_property);
     std::array<std::atomic<std::size_t>, 3> count{};
-    for_chunks(mesh_.n_vertices(), 1 << 11, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for_chunks(mesh_.n_vertices(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
         VertexFanT<Mesh> fan(mesh_, facet_normals);
         std::array<std::size_t, 3> here{};
         for (std::size_t i = begin; i != end; ++i) {

@@ -28,7 +28,7 @@ Normal to_normal(const Vec3& v) {
 /// Calls body(handle) for handles 0 .. count - 1, in parallel; the body tells deleted elements itself.
 template <class Handle, class Body>
 void for_each_handle(std::size_t count, const Body& body) {
-    for_each_index(count, 1 << 12, [&](Index i) { body(Handle(static_cast<int>(i))); });
+    for_each_index(count, chunks::quick, [&](Index i) { body(Handle(static_cast<int>(i))); });
 }
 
 template <class Handle>

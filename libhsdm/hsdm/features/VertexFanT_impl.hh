@@ -80,7 +80,7 @@ void write_vertex_normals(Mesh& mesh, const std::vector<Vec3>& facet_normals, bo
     using Normal = typename Mesh::Normal;
     auto normals = kept_vertex_property<VertexNormalsT<Mesh>>(mesh, vertex_normals_property);
     auto counts = kept_vertex_property<std::uint8_t>(mesh, normal_count_property);
-    for_chunks(mesh.n_vertices(), 1 << 11, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for_chunks(mesh.n_vertices(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
         VertexFanT<Mesh> fan(mesh, facet_normals);
         for (std::size_t i = begin; i != end; ++i) {
             const OpenMesh::VertexHandle v(static_cast<int>(i));

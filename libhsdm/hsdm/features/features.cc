@@ -84,11 +84,10 @@ std::size_t nearest_normal(const PolyMesh& mesh, const VertexMarks& marks, OpenM
 
 } // namespace
 
-std::size_t mark_edges_by_normals(PolyMesh& mesh) {
+void mark_edges_by_normals(PolyMesh& mesh) {
     VertexMarks marks;
     const auto is_marked = [&](const auto& e) { return mesh.status(e).feature(); };
-    if (!marks.find(mesh) || std::any_of(mesh.edges_begin(), mesh.edges_end(), is_marked)) return 0;
-    std::size_t count = 0;
+    if (!marks.find(mesh) || std::any_of(mesh.edges_begin(), mesh.edges_end(), is_marked)) return;
     for (const auto e : mesh.edges()) {
         const auto ends = {e.v0(), e.v1()};
         const auto is_smooth = [&](const auto& v) { return mesh.property(marks.classes, v) == 0; };
@@ -97,11 +96,8 @@ std::size_t mark_edges_by_normals(PolyMesh& mesh) {
         const auto parts = [&](const auto& v) {
             return nearest_normal(mesh, marks, v, a) != nearest_normal(mesh, marks, v, b);
         };
-        if (!std::any_of(ends.begin(), ends.end(), parts)) continue;
-        mesh.status(e).set_feature(true);
-        ++count;
+        if (std::any_of(ends.begin(), ends.end(), parts)) mesh.status(e).set_feature(true);
     }
-    return count;
 }
 
 namespace {

@@ -22,9 +22,9 @@ std::size_t smooth_normals(PolyMesh& mesh, const NormalSmoothingOptions& options
 
 /// Marks the edges that the classes and normals of their vertices tell of, on a mesh where no edge is marked,
 /// as of a file that holds `hsdm_vertex_class`, `hsdm_normal_count` and `hsdm_normals` but no status bits:
-/// both ends are on a crease, and of the normals at one of them another is nearest to either facet's. Returns
-/// how many. O(edges).
-std::size_t mark_edges_by_normals(PolyMesh& mesh);
+/// both ends are on a crease, and of the normals at one of them another is nearest to either facet's.
+/// O(edges).
+void mark_edges_by_normals(PolyMesh& mesh);
 
 /// The features as text: a line `x y z x y z` for each sharp edge, then a line `c x y z` for each corner, in
 /// the mesh's order; doubles in the fewest digits that read back to the same bits. Empty before

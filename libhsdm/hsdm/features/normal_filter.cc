@@ -15,7 +15,7 @@ std::size_t filter_normals(const FacetNeighbours& neighbours, const std::vector<
     const double settled = 2 * std::sin(settled_angle / 2); // as a chord between unit vectors
     std::vector<Vec3> next(normals.size());
     std::atomic<std::size_t> turning = 0;
-    for_chunks(normals.size(), 1 << 12, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for_chunks(normals.size(), chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t) {
         std::size_t here = 0;
         for (std::size_t f = begin; f != end; ++f) {
             next[f] = normals[f];

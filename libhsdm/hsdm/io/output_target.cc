@@ -1,8 +1,8 @@
 #include "hsdm/io/output_target.hh"
 
+#include "hsdm/core/number_of.hh"
 #include "hsdm/errors.hh"
 
-#include <charconv>
 #include <filesystem>
 #include <optional>
 
@@ -27,11 +27,7 @@ std::optional<int> own_descriptor(const fs::path& path) {
     std::error_code ignored;
     const std::string folder = fs::canonical(folder_of(path), ignored).string();
     if (folder != "/proc/" + std::to_string(::getpid()) + "/fd") return std::nullopt;
-    const std::string name = path.filename().string();
-    int number = -1;
-    const auto read = std::from_chars(name.data(), name.data() + name.size(), number);
-    if (read.ec != std::errc() || read.ptr != name.data() + name.size()) return std::nullopt;
-    return number;
+    return number_of<int>(path.filename().string());
 }
 
 void check_folder(const std::string& path, const fs::path& folder) {

@@ -212,7 +212,7 @@ PlyHeader ply_header_of(const PcdHeader& pcd) {
 std::unique_ptr<char[]> interleave(const char* values, const PcdHeader& pcd, std::size_t row) {
     const auto count = static_cast<std::size_t>(pcd.points);
     std::unique_ptr<char[]> points(new char[count * row]);
-    for_chunks(count, 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for_chunks(count, chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t) {
         std::size_t offset = 0; // in a point
         for (const PcdField& field : pcd.fields) {
             const std::size_t size = field.size * field.count;

@@ -4,8 +4,6 @@
 #include "hsdm/io/formats.hh"
 #include "hsdm/io/mesh_readers.hh"
 
-#include <cmath>
-
 namespace hsdm {
 namespace io {
 
@@ -47,10 +45,9 @@ PolygonMesh read_mesh(const SourceBytes& bytes) {
     PolygonMesh mesh = read_as(bytes, format);
     if (mesh.facet_count() == 0) return mesh;
     for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
-        for (double x : mesh.positions[v])
-            if (!std::isfinite(x))
-                throw Error(bytes.name(), "vertex " + std::to_string(v)
-                                              + " has a coordinate that is not finite; remove or correct it");
+        if (!is_finite(mesh.positions[v]))
+            throw Error(bytes.name(), "vertex " + std::to_string(v)
+                                          + " has a coordinate that is not finite; remove or correct it");
     return mesh;
 }
 

@@ -1,9 +1,9 @@
 #include "hsdm/io/text.hh"
 
+#include "hsdm/core/number_of.hh"
 #include "hsdm/errors.hh"
 
 #include <algorithm>
-#include <charconv>
 #include <cstring>
 
 namespace hsdm::io {
@@ -75,11 +75,7 @@ std::optional<double> to_number(std::string_view field) {
 }
 
 std::optional<std::uint64_t> to_count(std::string_view field) {
-    std::uint64_t value = 0;
-    const char* end = field.data() + field.size();
-    const auto [at, error] = std::from_chars(field.data(), end, value);
-    if (error != std::errc() || at != end) return std::nullopt;
-    return value;
+    return number_of<std::uint64_t>(field);
 }
 
 std::string_view trim(std::string_view text) {

@@ -3,8 +3,6 @@
 #include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/types.hh"
 
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
 namespace hsdm {
@@ -25,10 +23,6 @@ std::string numbered(const char* name, Handle handle) {
     return std::string(name) + " " + std::to_string(handle.idx());
 }
 
-bool is_finite(const Vec3& p) {
-    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-}
-
 class LinkCheck {
 public:
     explicit LinkCheck(const PolyMesh& mesh)
@@ -45,15 +39,10 @@ public:
     }
 
 private:
-    bool lives(VertexHandle v) const {
-        return v.idx() >= 0 && index_of(v) < mesh_.n_vertices() && !mesh_.status(v).deleted();
-    }
-    bool lives(FaceHandle f) const {
-        return f.idx() >= 0 && index_of(f) < mesh_.n_faces() && !mesh_.status(f).deleted();
-    }
+    bool lives(VertexHandle v) const { return mesh_.is_valid_handle(v) && !mesh_.status(v).deleted(); }
+    bool lives(FaceHandle f) const { return mesh_.is_valid_handle(f) && !mesh_.status(f).deleted(); }
     bool lives(HalfedgeHandle h) const {
-        return h.idx() >= 0 && index_of(h) < mesh_.n_halfedges()
-               && !mesh_.status(mesh_.edge_handle(h)).deleted();
+        return mesh_.is_valid_handle(h) && !mesh_.status(mesh_.edge_handle(h)).deleted();
     }
 
     /// Each half-edge is the next one's previous one. So no two have the same next one, and whoever goes from

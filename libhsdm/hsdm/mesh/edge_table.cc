@@ -4,7 +4,7 @@ namespace hsdm {
 
 EdgeTable::EdgeTable(const PolygonMesh& mesh)
     : EdgeTable(mesh.vertex_count(), [&](const auto& visit) {
-          for_each_index(mesh.facet_count(), facets_per_chunk, [&](Index f) {
+          for_each_index(mesh.facet_count(), chunks::quick, [&](Index f) {
               Index side = mesh.first[f + 1] - 1;
               for (Index next = mesh.first[f]; next < mesh.first[f + 1]; side = next++)
                   visit(mesh.corners[side], mesh.corners[next], side);
@@ -12,9 +12,8 @@ EdgeTable::EdgeTable(const PolygonMesh& mesh)
       }) {}
 
 std::vector<Index> next_sides(const PolygonMesh& mesh) {
-    constexpr std::size_t facets = 8192;
     std::vector<Index> next(mesh.corners.size());
-    for_each_index(mesh.facet_count(), facets, [&](Index f) {
+    for_each_index(mesh.facet_count(), chunks::quick, [&](Index f) {
         for (Index side = mesh.first[f]; side < mesh.first[f + 1]; ++side)
             next[side] = side + 1 < mesh.first[f + 1] ? side + 1 : mesh.first[f];
     });

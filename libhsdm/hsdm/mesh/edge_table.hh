@@ -34,7 +34,7 @@ public:
     std::size_t chunks() const { return chunk_count(first_.size() - 1, vertices_per_chunk); }
 
 private:
-    static constexpr std::size_t vertices_per_chunk = 1024, facets_per_chunk = 4096;
+    static constexpr std::size_t vertices_per_chunk = chunks::slow; // chunks() relies on it
 
     std::vector<Index> first_; // per vertex, where the sides of the edges begin whose lower vertex it is
     std::vector<EdgeSide> sides_;

@@ -12,8 +12,6 @@
 namespace hsdm {
 namespace {
 
-constexpr double infinite = Box::inf;
-
 /// One polygon, triangulated. Its corners are numbered 0 .. n - 1, side i runs from corner i to i + 1.
 class Triangulator {
 public:
@@ -46,7 +44,7 @@ private:
     /// Cost of a bend, to be added to the length of its edge; infinite beyond the limit.
     double bend_cost(const Vec3& a, const Vec3& b, double squared_length) const {
         const double cosine = a | b;
-        return cosine < least_cosine_ ? infinite : quad_splitting::bend_cost * squared_length * (1 - cosine);
+        return cosine < least_cosine_ ? Box::inf : quad_splitting::bend_cost * squared_length * (1 - cosine);
     }
 
     bool diagonal_free(std::size_t i, std::size_t j) const {
@@ -57,7 +55,7 @@ private:
     /// diagonal between them, and the apex of the triangle on that diagonal. Bends are measured against the
     /// best triangle of either part only, so the result is not always the optimum of all triangulations.
     struct Part {
-        double cost = infinite;
+        double cost = Box::inf;
         Index apex = 0;
         Vec3 normal{0, 0, 0};
     };
@@ -86,7 +84,7 @@ private:
                     if (cost < best.cost) best = {cost, static_cast<Index>(k), own};
                 }
             }
-        if (!(parts[n - 1].cost < infinite)) return false;
+        if (!(parts[n - 1].cost < Box::inf)) return false;
         std::vector<std::pair<std::size_t, std::size_t>> todo{{0, n - 1}};
         while (!todo.empty()) {
             const auto [i, j] = todo.back();
@@ -103,7 +101,7 @@ private:
     /// For loops too long to be solved exactly: cuts off the corner whose triangle costs least.
     bool cut_best_ear() {
         const std::size_t n = vertices_.size();
-        double least = infinite;
+        double least = Box::inf;
         std::size_t best = 0;
         for (std::size_t j = 0; j < n; ++j) {
             const std::size_t i = (j + n - 1) % n, k = (j + 1) % n;
@@ -117,7 +115,7 @@ private:
             least = cost;
             best = j;
         }
-        if (!(least < infinite)) return false;
+        if (!(least < Box::inf)) return false;
         const std::size_t i = (best + n - 1) % n, k = (best + 1) % n;
         triangles_.push_back({vertices_[i], vertices_[best], vertices_[k]});
         side_normal_[i] = normal(i, best, k);

@@ -57,7 +57,7 @@ void write_connectivity(const PolygonMesh& facets, const FacetLinks& links, Poly
     const Index edges = number_half_edges(links, half_edge);
     const Index faces = number_faces(links, face);
     mesh.resize(links.source.size(), edges, faces);
-    for_each_index(facets.facet_count(), 1 << 13, [&](Index f) {
+    for_each_index(facets.facet_count(), chunks::quick, [&](Index f) {
         if (face[f] == no_index) return;
         for (Index c = facets.first[f]; c < facets.first[f + 1]; ++c) {
             const Index next = next_side(facets, f, c);
@@ -75,7 +75,7 @@ void write_connectivity(const PolygonMesh& facets, const FacetLinks& links, Poly
         // The last half-edge ends in the facet's first vertex, where OpenMesh starts to go round a face.
         mesh.set_halfedge_handle(face_handle(face[f]), half_edge_handle(half_edge[facets.first[f + 1] - 1]));
     });
-    for_each_index(links.source.size(), 1 << 13, [&](Index v) {
+    for_each_index(links.source.size(), chunks::quick, [&](Index v) {
         const Index open = links.open_in[v];
         mesh.set_halfedge_handle(vertex_handle(v),
                                  open == no_index
@@ -85,13 +85,13 @@ void write_connectivity(const PolygonMesh& facets, const FacetLinks& links, Poly
 }
 
 void write_geometry(const PolygonMesh& facets, const FacetLinks& links, PolyMesh& mesh) {
-    for_each_index(links.source.size(), 1 << 13, [&](Index v) {
+    for_each_index(links.source.size(), chunks::quick, [&](Index v) {
         mesh.set_point(vertex_handle(v), facets.positions[links.source[v]]);
         // Always set: a normal that is never set is uninitialised memory.
         mesh.set_normal(vertex_handle(v),
                         facets.normals.empty() ? Vec3(0, 0, 0) : facets.normals[links.source[v]]);
     });
-    for_each_index(mesh.n_faces(), 1 << 13, [&](Index f) {
+    for_each_index(mesh.n_faces(), chunks::quick, [&](Index f) {
         HalfedgeHandle h = mesh.next_halfedge_handle(mesh.halfedge_handle(face_handle(f)));
         AreaVector area(mesh.point(mesh.from_vertex_handle(h)));
         for (const HalfedgeHandle last = mesh.halfedge_handle(face_handle(f)); h != last;
@@ -115,7 +115,7 @@ void write_vertex_normals(const PolygonMesh& facets, const FacetLinks& links, Po
                 continue;
             auto property = kept_vertex_property<NormalTriple<Vec3>>(mesh, vertex_normals_property);
             auto& values = mesh.property(property.getRawProperty()).data_vector();
-            for_each_index(links.source.size(), 1 << 13,
+            for_each_index(links.source.size(), chunks::quick,
                            [&](Index v) { values[v][i / 3][i % 3] = component.values[links.source[v]]; });
         }
 }
@@ -132,7 +132,7 @@ void write_properties(const PolygonMesh& facets, const FacetLinks& links, PolyMe
 void write_marks(const PolygonMesh& facets, const FacetLinks& links, PolyMesh& mesh) {
     for (const VertexProperty& classes : facets.properties) {
         if (classes.name != vertex_class_property || classes.values.size() != facets.vertex_count()) continue;
-        for_each_index(links.source.size(), 1 << 13, [&](Index v) {
+        for_each_index(links.source.size(), chunks::quick, [&](Index v) {
             mesh.status(vertex_handle(v)).set_feature(classes.values[links.source[v]] > 0);
         });
     }
@@ -174,11 +174,11 @@ Selection select(const PolyMesh& mesh) {
 
 void read_facets(const PolyMesh& mesh, const Selection& selection, PolygonMesh& polygons) {
     polygons.first.resize(selection.faces.size() + 1);
-    for_each_index(selection.faces.size(), 1 << 13,
+    for_each_index(selection.faces.size(), chunks::quick,
                    [&](Index f) { polygons.first[f + 1] = mesh.valence(selection.faces[f]); });
     for (std::size_t f = 0; f < selection.faces.size(); ++f) polygons.first[f + 1] += polygons.first[f];
     polygons.corners.resize(polygons.first.back());
-    for_each_index(selection.faces.size(), 1 << 13, [&](Index f) {
+    for_each_index(selection.faces.size(), chunks::quick, [&](Index f) {
         Index c = polygons.first[f];
         for (const auto v : mesh.fv_range(selection.faces[f]))
             polygons.corners[c++] = selection.number[static_cast<std::size_t>(v.idx())];
@@ -189,7 +189,7 @@ template <class Value>
 VertexProperty read_property(std::string name, VertexProperty::Type type, const Selection& selection,
                              const Value& value) {
     VertexProperty property{std::move(name), type, std::vector<double>(selection.vertices.size())};
-    for_each_index(selection.vertices.size(), 1 << 13, [&](Index v) {
+    for_each_index(selection.vertices.size(), chunks::quick, [&](Index v) {
         property.values[v] =
             static_cast<double>(value(static_cast<std::size_t>(selection.vertices[v].idx())));
     });
@@ -274,7 +274,7 @@ PolygonMesh to_polygons(const PolyMesh& mesh) {
     PolygonMesh polygons;
     polygons.positions.resize(selection.vertices.size());
     if (mesh.has_vertex_normals()) polygons.normals.resize(selection.vertices.size());
-    for_each_index(selection.vertices.size(), 1 << 13, [&](Index v) {
+    for_each_index(selection.vertices.size(), chunks::quick, [&](Index v) {
         polygons.positions[v] = mesh.point(selection.vertices[v]);
         if (!polygons.normals.empty()) polygons.normals[v] = mesh.normal(selection.vertices[v]);
     });

@@ -3,8 +3,6 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/normals/constants.hh"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -99,8 +97,7 @@ std::vector<Index> picked_edges(const std::vector<SignedEdge>& edges, std::size_
         for (Index v : {edges[e].a, edges[e].b}) best[v] = std::min(best[v], rank);
     }
     std::erase(best, none);
-    tbb::parallel_sort(best.begin(), best.end());
-    best.erase(std::unique(best.begin(), best.end()), best.end());
+    parallel_sort_unique(best);
     return {best.begin(), best.end()};
 }
 

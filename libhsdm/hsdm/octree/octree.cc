@@ -8,7 +8,6 @@
 #include <tbb/parallel_invoke.h>
 
 #include <cmath>
-#include <numeric>
 #include <span>
 #include <tuple>
 

@@ -4,12 +4,10 @@
 #include "hsdm/quality/distance_to_surface.hh"
 #include "hsdm/spatial/cell_search.hh"
 #include "hsdm/spatial/mesh_distance.hh"
-#include "hsdm/spatial/point_triangle.hh"
 #include "hsdm/spatial/surface_walk.hh"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace hsdm {
 namespace {
@@ -60,7 +58,7 @@ private:
             });
         double radius = 0;
         for (const Vec3& p : points) radius = std::max(radius, (p - middle).norm());
-        double off = has_part_ ? std::sqrt(tree_.nearest(part_, middle).squared) : infinity;
+        double off = has_part_ ? std::sqrt(tree_.nearest(part_, middle).squared) : Box::inf;
         if (off > near_enough * radius) off = std::sqrt(tree_.nearest(middle, hint_).squared);
         has_part_ = off <= tree_.block_size() && tree_.find_part(box, 1.00001 * (off + radius), part_);
     }
@@ -144,7 +142,7 @@ Distance points_to_mesh_by_cells(std::span<const Vec3> points, const PolygonMesh
         for (std::size_t i = begin; i < end; ++i) squared[i] = search.squared_distance(points[i]);
     });
     const std::vector<Index> far =
-        indices_where(points.size(), chunks::usual, [&](Index i) { return squared[i] == infinity; });
+        indices_where(points.size(), chunks::usual, [&](Index i) { return squared[i] == Box::inf; });
     if (!far.empty()) {
         const MeshDistance by_tree(mesh, cut);
         for_chunks(far.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {

@@ -9,8 +9,6 @@
 #include <cmath>
 
 namespace hsdm {
-namespace {} // namespace
-
 MortonCode CellTree::code_at(const Vec3& position) const {
     const double cells = static_cast<double>(1u << depth());
     std::array<std::uint32_t, 3> c{};

@@ -6,8 +6,6 @@
 #include "hsdm/simplify/border_vertices.hh"
 #include "hsdm/simplify/divide_by_planes.hh"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <atomic>
 #include <numeric>
@@ -18,13 +16,12 @@ namespace {
 
 /// The items for which keep() is true, in order; keep() is called once per item, from many threads.
 template <class T, class Keep>
-std::vector<T> kept(const std::vector<T>& list, std::size_t per_chunk, const Keep& keep) {
-    std::vector<std::vector<T>> parts(chunk_count(list.size(), per_chunk));
-    for_chunks(list.size(), per_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        for (std::size_t i = begin; i < end; ++i)
-            if (keep(list[i])) parts[chunk].push_back(list[i]);
-    });
-    return joined(parts);
+std::vector<T> kept(const std::vector<T>& list, const Keep& keep) {
+    return collected<T>(list.size(), chunks::quick,
+                        [&](std::size_t i, std::size_t end, std::vector<T>& part) {
+                            for (; i < end; ++i)
+                                if (keep(list[i])) part.push_back(list[i]);
+                        });
 }
 
 /// Builds each level of clusters from the one below. Edges and facets are dropped once all their vertices are
@@ -145,12 +142,11 @@ private:
             const Index i = current_[edge.first], j = current_[edge.second];
             return i != no_index && j != no_index && i != j && part[i] == part[j] && missed[part[i]];
         };
-        for (const Edge& edge : kept(edges_, chunks::quick, is_inside)) {
+        for (const Edge& edge : kept(edges_, is_inside)) {
             const Index i = current_[edge.first], j = current_[edge.second];
             sides.push_back({part[i], std::min(i, j), std::max(i, j)});
         }
-        tbb::parallel_sort(sides.begin(), sides.end());
-        sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
+        parallel_sort_unique(sides);
         std::vector<std::pair<Index, std::size_t>> pieces; // piece, and where its sides begin
         std::size_t s = 0;
         for (Index piece = 0; piece < missed.size(); ++piece) {
@@ -202,12 +198,12 @@ private:
         for_each_index(current_.size(), chunks::slow, [&](Index v) {
             if (current_[v] != no_index) current_[v] = below.parent[current_[v]];
         });
-        edges_ = kept(edges_, chunks::quick, [&](const Edge& edge) {
+        edges_ = kept(edges_, [&](const Edge& edge) {
             const Index i = current_[edge.first], j = current_[edge.second];
             if (i != no_index && i == j) change(i, -1);
             return i != no_index && j != no_index && i != j;
         });
-        facets_ = kept(facets_, chunks::quick, [&](Index f) {
+        facets_ = kept(facets_, [&](Index f) {
             const auto ring = mesh_.facet(f);
             const Index first = current_[ring[0]];
             bool one = true, any_lost = false;

@@ -1,5 +1,6 @@
 #include "hsdm/simplify/decimate.hh"
 
+#include "hsdm/core/chunks.hh"
 #include "hsdm/simplify/collapse_by_distance.hh"
 #include "hsdm/simplify/collapse_by_planes.hh"
 #include "hsdm/simplify/constants.hh"
@@ -167,8 +168,7 @@ private:
                 kept.push_back(source);
                 is_helped = true;
             }
-        std::sort(kept.begin(), kept.end());
-        kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+        sort_unique(kept);
         for (Index source : kept) tolerance_[source] = 0;
         return kept.size();
     }

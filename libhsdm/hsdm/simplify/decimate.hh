@@ -15,14 +15,14 @@ struct ClusteredMesh {
 };
 
 struct DecimateOptions {
-    FaultCounts faults; ///< faults of the mesh over the leaves
+    FaultCounts faults; ///< of the clustered mesh
     /// rounds of undoing collapses that cause faults, >= 1
     int rounds = bounds::rounds;
 };
 
 struct DecimatedMesh {
     PolygonMesh mesh;
-    std::vector<Index> vertex; ///< per vertex of the leaves, the vertex that stands for it
+    std::vector<Index> vertex; ///< per vertex of the clustered mesh, the vertex that stands for it
     FaultCounts faults;
     FarPoints far_points;
 };
@@ -31,8 +31,8 @@ struct DecimatedMesh {
 /// flips, so that the mesh stays a 2-manifold with no more faults, found by `checks`, than `options.faults`.
 /// Where a round causes faults, the vertices there get smaller tolerances or stay as they were, and the
 /// collapses are repeated; if the rounds do not suffice the mesh is left as it was before that step.
-/// `planes`: per vertex of the leaves.
-DecimatedMesh decimate(const ClusteredMesh& leaves, std::vector<Quadric> planes, MeshChecks& checks,
+/// `planes`: per vertex of the clustered mesh.
+DecimatedMesh decimate(const ClusteredMesh& clustered, std::vector<Quadric> planes, MeshChecks& checks,
                        const DecimateOptions& options);
 
 } // namespace hsdm

@@ -21,9 +21,7 @@ void measure_facets(const PolygonMesh& mesh, FacetField& field) {
         const auto ring = mesh.facet(f);
         field.area[f] = area_vector(mesh, ring);
         field.normal[f] = unit(field.area[f]);
-        Vec3 sum(0, 0, 0);
-        for (Index v : ring) sum += mesh.positions[v];
-        field.centre[f] = sum / static_cast<double>(ring.size());
+        field.centre[f] = centroid(mesh, ring);
     });
 }
 

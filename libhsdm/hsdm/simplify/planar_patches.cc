@@ -192,9 +192,7 @@ std::vector<Quadric> vertex_planes(const PolygonMesh& mesh, const PlanarPatches&
             for (Index v : ring) planes[v].add_shared(patches.planes[p], share);
             continue;
         }
-        Vec3 centre(0, 0, 0);
-        for (Index v : ring) centre += mesh.positions[v];
-        centre /= static_cast<double>(ring.size());
+        const Vec3 centre = centroid(mesh, ring);
         for (Index v : ring) planes[v].add_plane(area / length, centre, share);
     }
     for_each_index(planes.size(), chunks::slow,

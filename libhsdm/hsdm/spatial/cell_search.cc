@@ -1,6 +1,5 @@
 #include "hsdm/spatial/cell_search.hh"
 
-#include "hsdm/spatial/point_triangle.hh"
 #include "hsdm/spatial/two_triangles.hh"
 
 #include <algorithm>
@@ -28,7 +27,7 @@ double CellSearch::squared_distance(const Vec3& point) {
     const VoxelCoord cell = FacetCells::cell_of(place);
     if (cell != cell_) enter(cell);
     const VectorPair twice(point, point);
-    double squared = nearest_in(centre, twice, infinity);
+    double squared = nearest_in(centre, twice, Box::inf);
     const double reach = std::min(std::sqrt(squared) / cells_.cell_size(), farthest) + FacetCells::rounding;
     CellRange beside;
     bool inside = true;
@@ -43,7 +42,7 @@ double CellSearch::squared_distance(const Vec3& point) {
         const auto slot = static_cast<std::size_t>(c[0] + 3 * c[1] + 9 * c[2]);
         if (slot != centre) squared = nearest_in(slot, twice, squared);
     });
-    return std::sqrt(squared) <= farthest * cells_.cell_size() ? squared : infinity;
+    return std::sqrt(squared) <= farthest * cells_.cell_size() ? squared : Box::inf;
 }
 
 void CellSearch::enter(const VoxelCoord& cell) {
@@ -69,8 +68,8 @@ double CellSearch::nearest_in(std::size_t slot, const VectorPair& point, double 
         const Double2 beyond =
             max_lanes(max_lanes(arm | b.out[0], arm | b.out[1]), (arm | b.out[2]) - b.across);
         const Double2 low = square(height) + square(max_lanes(beyond, Double2{}));
-        low_[i] = beyond > 0 ? low : Double2{} + infinity;
-        least = min_lanes(least, beyond > 0 ? Double2{} + infinity : low);
+        low_[i] = beyond > 0 ? low : Double2{} + Box::inf;
+        least = min_lanes(least, beyond > 0 ? Double2{} + Box::inf : low);
     }
     squared = std::min(least[0], least[1]);
     for (std::size_t i = slice.begin; i < slice.end; ++i)

@@ -9,9 +9,6 @@
 
 namespace hsdm {
 
-/// The distance of what is not there.
-inline constexpr double infinity = std::numeric_limits<double>::infinity();
-
 struct NearestOfTriangle {
     Vec3 point;
     double squared_distance;

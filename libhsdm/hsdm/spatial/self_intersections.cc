@@ -7,8 +7,6 @@
 #include "hsdm/spatial/triangle_tree.hh"
 #include "hsdm/spatial/triangles_meet.hh"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <numeric>
 
@@ -17,7 +15,6 @@ namespace {
 
 using FacetPair = std::array<Index, 2>;
 constexpr std::size_t blocks_per_chunk = 64;
-constexpr std::size_t cells_per_chunk = 4096;
 
 class Finder {
 public:
@@ -44,9 +41,7 @@ public:
         result.facet_pairs = collected<FacetPair>(tree_.block_count(), blocks_per_chunk, test_blocks);
         result.skipped = static_cast<std::size_t>(std::count(collinear_.begin(), collinear_.end(), 1));
         result.triangle_pairs = result.facet_pairs.size();
-        tbb::parallel_sort(result.facet_pairs.begin(), result.facet_pairs.end());
-        result.facet_pairs.erase(std::unique(result.facet_pairs.begin(), result.facet_pairs.end()),
-                                 result.facet_pairs.end());
+        parallel_sort_unique(result.facet_pairs);
         return result;
     }
 
@@ -113,9 +108,8 @@ std::vector<Index> facets_in_doubt(const PolygonMesh& mesh, const FacetCells& ce
                 doubtful.insert(doubtful.end(), facets.begin(), facets.end());
         }
     };
-    std::vector<Index> doubtful = collected<Index>(cells.size(), cells_per_chunk, add_doubtful);
-    tbb::parallel_sort(doubtful.begin(), doubtful.end());
-    doubtful.erase(std::unique(doubtful.begin(), doubtful.end()), doubtful.end());
+    std::vector<Index> doubtful = collected<Index>(cells.size(), chunks::quick, add_doubtful);
+    parallel_sort_unique(doubtful);
     return doubtful;
 }
 

@@ -1,7 +1,6 @@
 #include "hsdm/spatial/triangle_tree.hh"
 
 #include "hsdm/core/chunks.hh"
-#include "hsdm/spatial/point_triangle.hh"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_invoke.h>
@@ -135,8 +134,8 @@ void TriangleTree::build_levels(std::vector<Boxes>& level) {
         Boxes empty;
         for (std::size_t k = 0; k < 3; ++k)
             for (std::size_t half = 0; half < 2; ++half) {
-                empty.lo[k][half] = Double2{} + infinity;
-                empty.hi[k][half] = Double2{} - infinity;
+                empty.lo[k][half] = Double2{} + Box::inf;
+                empty.hi[k][half] = Double2{} - Box::inf;
             }
         std::vector<Boxes> parents((level.size() + width - 1) / width, empty);
         for (std::size_t i = 0; i < level.size(); ++i)
@@ -159,7 +158,7 @@ public:
 
     /// Triangles farther than `most` need not be found. A point with a coordinate that is not finite is near
     /// nothing.
-    Search(const TriangleTree& tree, const Vec3& given, double most = infinity) : tree_(tree) {
+    Search(const TriangleTree& tree, const Vec3& given, double most = Box::inf) : tree_(tree) {
         const Vec3 point = given - tree.centre_;
         for (unsigned k = 0; k < 3; ++k) point_[k] = Double2{} + point[k];
         rounding_ = 4 * std::numeric_limits<double>::epsilon() * (point.l1_norm() + tree.diagonal_);
@@ -222,8 +221,8 @@ private:
     const TriangleTree& tree_;
     std::array<Double2, 3> point_{}; // each coordinate twice
     double rounding_ = 0;
-    double limit_ = infinity;
-    double squared_ = infinity;
+    double limit_ = Box::inf;
+    double squared_ = Box::inf;
     Index place_ = no_index; // in the tree's order
 };
 
@@ -359,7 +358,7 @@ TriangleTree::Nearest TriangleTree::nearest(const Part& part, const Vec3& point)
     if (part.count_ == 0) return search.result();
     const std::size_t nodes = part.count_ / width;
     std::array<Search::FourSquares, Part::most_nodes> squared;
-    Double2 least = Double2{} + infinity;
+    Double2 least = Double2{} + Box::inf;
     for (std::size_t n = 0; n < nodes; ++n) {
         squared[n] = search.to_children(part.nodes_[n]);
         least = min_lanes(least, min_lanes(squared[n][0], squared[n][1]));
