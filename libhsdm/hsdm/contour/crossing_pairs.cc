@@ -113,33 +113,25 @@ Links pair_crossings(const GridPoints& grid, const Crossings& crossings, const N
                      const RelationTest& related) {
     Links links;
     links.of_crossing.resize(crossings.crossings.size());
-    const std::size_t n = grid.size();
-    std::vector<std::size_t> rims(chunk_count(n, chunks::usual), 0), joined_faces(rims);
-    std::vector<std::vector<FacetSide>> crowded(rims.size());
-    for_chunks(n, chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+    const auto pair = [&](std::size_t c, std::size_t end, std::vector<FacetSide>& crowded) {
         FacePairing face(grid, crossings, sets, related);
         std::vector<FacetSide> in_face;
         auto join = [&](const Stop& a, const Stop& b, bool rim) {
             links.of(a.side) = {b.side, rim};
             links.of(b.side) = {a.side, rim};
-            rims[chunk] += rim;
-            ++joined_faces[chunk];
             in_face.push_back(a.side);
         };
         auto left_open = [&](const Stop& s) { in_face.push_back(s.side); };
-        for (std::size_t c = begin; c < end; ++c)
+        for (; c < end; ++c)
             for (unsigned axis = 0; axis < 3; ++axis) {
                 in_face.clear();
                 face.pair(static_cast<Index>(c), axis, join, left_open);
                 if (in_face.size() < 2) continue;
-                crowded[chunk].insert(crowded[chunk].end(), in_face.begin(), in_face.end());
-                crowded[chunk].push_back(no_side);
+                crowded.insert(crowded.end(), in_face.begin(), in_face.end());
+                crowded.push_back(no_side);
             }
-    });
-    links.crowded = joined(crowded);
-    for (std::size_t r : rims) links.rims += r;
-    links.open = 4 * links.of_crossing.size();
-    for (std::size_t j : joined_faces) links.open -= 2 * j;
+    };
+    links.crowded = collected<FacetSide>(grid.size(), chunks::usual, pair);
     return links;
 }
 

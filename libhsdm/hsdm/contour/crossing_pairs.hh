@@ -22,8 +22,6 @@ struct Link {
 
 struct Links {
     std::vector<std::array<Link, 4>> of_crossing; ///< of the four sides of its facet
-    std::size_t open = 0;                         ///< sides without a twin: boundary half-edges of the mesh
-    std::size_t rims = 0;
     /// For each grid face with two links or more: one side of each pair and every open side, then no_side.
     /// Only there can two mesh edges join the same two vertices.
     std::vector<FacetSide> crowded;

@@ -197,11 +197,9 @@ struct ChunkDualVertices {
     std::vector<std::uint8_t> shared, open;
     std::vector<std::pair<std::size_t, std::size_t>> caps; // first dual vertex, number of dual vertices
     std::vector<std::size_t> after_cut;
-    std::size_t cut = 0;
 
     void add(const Cut& cut_chain, bool closed) {
         const std::size_t pieces = cut_chain.pieces.size();
-        if (pieces > 1) ++cut;
         for (std::size_t i = 1; i < pieces; ++i) after_cut.push_back(sizes.size() + i);
         if (pieces > 2 && closed) caps.emplace_back(sizes.size(), pieces);
         for (const Cut::Piece& piece : cut_chain.pieces) {
@@ -217,7 +215,6 @@ struct ChunkDualVertices {
 
 void append(const ChunkDualVertices& chunk, DualVertices& duals) {
     const auto base = static_cast<Index>(duals.size());
-    duals.cut += chunk.cut;
     duals.corners.insert(duals.corners.end(), chunk.corners.begin(), chunk.corners.end());
     duals.open.insert(duals.open.end(), chunk.open.begin(), chunk.open.end());
     for (Index size : chunk.sizes) duals.first.push_back(duals.first.back() + size);

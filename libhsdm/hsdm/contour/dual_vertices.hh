@@ -19,9 +19,8 @@ struct DualVertices {
     /// (the sides of a thin part and its rims); each of their sides is the twin of one beside it.
     std::vector<std::vector<Index>> caps;
     std::vector<std::uint8_t> open; ///< per dual vertex, is it at a border of the surface (an open chain)?
-    std::vector<Index>
-        after_cut;       ///< dual vertices v that come from the same cut chain, and so voxel, as v - 1
-    std::size_t cut = 0; ///< chains cut into two or more vertices
+    /// Dual vertices v that come from the same cut chain, and so voxel, as v - 1.
+    std::vector<Index> after_cut;
 
     /// The vertices that a side leads from and to.
     Index from(FacetSide side) const { return of_corner[2 * std::size_t{side.number()} + 1]; }
