@@ -2,6 +2,7 @@
 
 #include "hsdm/features/VertexFanT.hh"
 #include "hsdm/mesh/triangle_mesh.hh"
+#include "hsdm/polygon_mesh.hh"
 
 #include <algorithm>
 #include <array>
@@ -45,25 +46,22 @@ void copy_attributes(const PolyMesh& from, Mesh& to) {
 /// The value with which every coordinate, colour or texture coordinate begins.
 template <class Value>
 Value zero() {
-    if constexpr (std::is_arithmetic_v<Value>) {
-        return Value(0);
-    } else {
-        Value value;
-        for (std::size_t i = 0; i < OpenMesh::vector_traits<Value>::size(); ++i) value[i] = 0;
-        return value;
-    }
+    Value value{};
+    if constexpr (!std::is_arithmetic_v<Value>) vectorize(value, 0);
+    return value;
 }
 
 /// A colour of any OpenMesh type as bytes red, green, blue, alpha: fractions of 1 if its numbers are
-/// floating, opaque if it has no fourth.
+/// floating (what is not a number is 0), opaque if it has no fourth.
 template <class Color>
 std::array<std::uint8_t, 4> color_bytes(const Color& color) {
     using Number = typename OpenMesh::vector_traits<Color>::value_type;
     constexpr double full = std::is_floating_point_v<Number> ? 255 : 1;
     std::array<std::uint8_t, 4> bytes{0, 0, 0, 255};
-    for (std::size_t k = 0; k < std::min<std::size_t>(4, OpenMesh::vector_traits<Color>::size()); ++k)
-        bytes[k] = static_cast<std::uint8_t>(
-            std::clamp(std::round(full * static_cast<double>(color[k])), 0.0, 255.0));
+    for (std::size_t k = 0; k < std::min<std::size_t>(4, OpenMesh::vector_traits<Color>::size()); ++k) {
+        const double value = std::round(full * static_cast<double>(color[k]));
+        bytes[k] = value > 0 ? static_cast<std::uint8_t>(std::min(value, 255.0)) : std::uint8_t{0};
+    }
     return bytes;
 }
 
@@ -84,9 +82,8 @@ template <class Mesh>
 void copy_colors(const PolyMesh& from, Mesh& to) {
     if (!to.has_vertex_colors()) return;
     std::array<OpenMesh::VPropHandleT<std::uint8_t>, 4> channels;
-    constexpr std::array<const char*, 4> names{"red", "green", "blue", "alpha"};
     std::array<bool, 4> there{};
-    for (std::size_t k = 0; k < 4; ++k) there[k] = from.get_property_handle(channels[k], names[k]);
+    for (std::size_t k = 0; k < 4; ++k) there[k] = from.get_property_handle(channels[k], color_properties[k]);
     for (const auto v : from.vertices()) {
         std::array<std::uint8_t, 4> bytes{};
         for (std::size_t k = 0; k < 4; ++k)

@@ -6,6 +6,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <limits>
+
 using namespace hsdm;
 using namespace hsdm::test;
 using OpenMesh::VertexHandle;
@@ -98,6 +100,8 @@ TEST_CASE("colours of any kind are read and set", "") {
     using detail::color_bytes, detail::color_of;
     CHECK(color_bytes(OpenMesh::Vec3f(0, 0.5f, 1)) == std::array<std::uint8_t, 4>{0, 128, 255, 255});
     CHECK(color_bytes(OpenMesh::Vec4d(2, -1, 0.2, 0)) == std::array<std::uint8_t, 4>{255, 0, 51, 0});
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    CHECK(color_bytes(OpenMesh::Vec3d(none, 1, none)) == std::array<std::uint8_t, 4>{0, 255, 0, 255});
     CHECK(color_bytes(OpenMesh::Vec4uc(1, 2, 3, 4)) == std::array<std::uint8_t, 4>{1, 2, 3, 4});
     CHECK(color_of<OpenMesh::Vec3f>({0, 51, 255, 7}) == OpenMesh::Vec3f(0, 0.2f, 1));
     CHECK(color_of<OpenMesh::Vec4uc>({1, 2, 3, 4}) == OpenMesh::Vec4uc(1, 2, 3, 4));

@@ -28,6 +28,26 @@ TEST_CASE("cut into triangles, a mesh keeps its features and properties") {
     CHECK_FALSE(OpenMesh::hasProperty<VertexHandle, std::int32_t>(triangles, "hsdm_source"));
 }
 
+TEST_CASE("where vertices go with facets that cancel out, no diagonal gets an edge's mark") {
+    PolygonMesh polygons = support::mesh_of({{7, 0, 0}, {8, 0, 0}, {7, 1, 0}}, {{0, 1, 2}, {2, 1, 0}});
+    PolygonMesh cube = support::unit_cube();
+    for (Vec3& p : cube.positions) p[1] += 0.3 * p[2]; // two of its sides are cut from 2 to 4 and from 3 to 5
+    polygons.positions.insert(polygons.positions.end(), cube.positions.begin(), cube.positions.end());
+    for (std::size_t f = 0; f < cube.facet_count(); ++f) {
+        std::vector<Index> facet(cube.facet(f).begin(), cube.facet(f).end());
+        for (Index& v : facet) v += 3;
+        polygons.add_facet(facet);
+    }
+    PolyMesh quads = to_mesh(polygons).mesh;
+    REQUIRE(quads.n_faces() == 8);
+    for (const auto e : quads.edges()) quads.status(e).set_feature(true);
+    const PolyMesh triangles = triangle_mesh(quads);
+    REQUIRE(triangles.n_vertices() == 8);
+    std::size_t sharp = 0;
+    for (const auto e : triangles.edges()) sharp += triangles.status(e).feature();
+    CHECK(sharp == 12);
+}
+
 TEST_CASE("two facets cut by the same diagonal stay a 2-manifold") {
     // Two quads back to back over the same corners but one: both would be cut from 0 to 2.
     PolygonMesh pillow;

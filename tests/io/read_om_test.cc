@@ -1,6 +1,7 @@
 #include "features/meshes.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/features/features.hh"
+#include "hsdm/io/mesh_readers.hh"
 #include "hsdm/io/read_mesh.hh"
 #include "hsdm/io/write_mesh.hh"
 #include "hsdm/io/write_om.hh"
@@ -12,19 +13,23 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
-#include <fstream>
 #include <initializer_list>
-#include <sstream>
+#include <memory>
 
 using namespace hsdm;
 using namespace hsdm::test;
 
 namespace {
 
-std::string content_of(const std::string& path) {
-    std::ostringstream content;
-    content << std::ifstream(path, std::ios::binary).rdbuf();
-    return content.str();
+/// Has OpenMesh write the mesh, its status bits too.
+template <class Mesh>
+bool write_by_openmesh(const Mesh& mesh, const std::string& path, OpenMesh::IO::Options options) {
+    options += OpenMesh::IO::Options::Binary;
+    options += OpenMesh::IO::Options::Status;
+    omlog().disable();
+    const bool written = OpenMesh::IO::write_mesh(mesh, path, options);
+    omlog().enable();
+    return written;
 }
 
 /// A cube with classes, normals and sharp edges.
@@ -73,19 +78,14 @@ TEST_CASE("a mesh has the feature bits of the polygons it is made of", "[mesh_io
 }
 
 TEST_CASE(".om that OpenMesh writes of other meshes is read", "[mesh_io]") {
-    TriMeshF mesh = build<TriMeshF>(sphere(3));
+    TriMeshF mesh = build<TriMeshF>(support::divided_sphere(3));
     mesh.request_vertex_colors();
     for (const auto v : mesh.vertices()) mesh.set_color(v, {1, 2, static_cast<unsigned char>(v.idx())});
     for (const auto v : mesh.vertices()) mesh.set_normal(v, mesh.point(v));
     mesh.status(OpenMesh::EdgeHandle(5)).set_feature(true);
     const TempFile file("a.om", "");
     using OpenMesh::IO::Options;
-    OpenMesh::IO::Options options = Options::Binary | Options::VertexNormal | Options::VertexColor;
-    options += Options::Status;
-    omlog().disable();
-    const bool written = OpenMesh::IO::write_mesh(mesh, file.path(), options);
-    omlog().enable();
-    REQUIRE(written);
+    REQUIRE(write_by_openmesh(mesh, file.path(), Options::VertexNormal | Options::VertexColor));
     const PolygonMesh read = read_mesh(file.path());
     CHECK(read.vertex_count() == mesh.n_vertices());
     CHECK(read.facet_count() == mesh.n_faces());
@@ -100,6 +100,23 @@ TEST_CASE(".om that OpenMesh writes of other meshes is read", "[mesh_io]") {
     CHECK(points.faces == mesh.n_faces());
     CHECK(points.cloud.positions == read.positions);
     CHECK(points.cloud.normals.size() == mesh.n_vertices());
+}
+
+TEST_CASE("deleted vertices, which OpenMesh writes to .om, are no points", "[mesh_io]") {
+    TriMeshF mesh = build<TriMeshF>(support::divided_sphere(3));
+    for (const auto v : mesh.vertices()) mesh.set_normal(v, mesh.point(v));
+    const OpenMesh::VertexHandle deleted(7);
+    const auto place = OpenMesh::vector_cast<Vec3>(mesh.point(deleted));
+    const std::size_t vertices = mesh.n_vertices(), facets = mesh.n_faces() - mesh.valence(deleted);
+    mesh.delete_vertex(deleted);
+    const TempFile file("a.om", "");
+    REQUIRE(write_by_openmesh(mesh, file.path(), OpenMesh::IO::Options::VertexNormal));
+    REQUIRE(read_mesh(file.path()).vertex_count() == vertices); // faces go by their numbers
+    const PointFile points = read_points(file.path());
+    CHECK(points.faces == facets);
+    CHECK(points.cloud.positions.size() == vertices - 1);
+    CHECK(std::ranges::find(points.cloud.positions, place) == points.cloud.positions.end());
+    CHECK(points.cloud.normals == points.cloud.positions);
 }
 
 TEST_CASE(".om of the first versions, with lists of corners, is read", "[mesh_io]") {
@@ -122,10 +139,13 @@ TEST_CASE(".om of the first versions, with lists of corners, is read", "[mesh_io
 TEST_CASE("a damaged .om is refused or read, never beyond its bytes and never without end", "[mesh_io]") {
     const TempFile whole("a.om", "");
     write_om(whole.path(), to_mesh(support::divided_cube(1)).mesh);
-    const std::string content = content_of(whole.path());
+    const std::string content = support::read_file(whole.path());
     const auto read = [](const std::string& damaged) {
+        auto bytes = std::make_unique<char[]>(damaged.size());
+        damaged.copy(bytes.get(), damaged.size());
         try {
-            const PolygonMesh mesh = read_mesh(TempFile("b.om", damaged).path());
+            const PolygonMesh mesh =
+                io::read_mesh(io::SourceBytes::of(std::move(bytes), damaged.size(), "b.om"));
             CHECK(to_mesh(mesh).mesh.n_faces() <= 6);
             return std::string();
         } catch (const Error& error) {
@@ -137,6 +157,7 @@ TEST_CASE("a damaged .om is refused or read, never beyond its bytes and never wi
         CHECK_FALSE(read(content.substr(0, size)).empty());
     for (std::size_t at = 0; at < content.size(); ++at)
         for (const char value : {'\0', '\1', '\x7f', '\xff'}) {
+            INFO("byte " << at << " is " << int(value));
             std::string damaged = content;
             damaged[at] = value;
             read(damaged);

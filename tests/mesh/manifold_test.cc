@@ -109,6 +109,13 @@ double volume_of(const PolygonMesh& mesh) {
 
 } // namespace
 
+TEST_CASE("sharp edges keep their ends where vertices before them go, and go with their ends", "[manifold]") {
+    PolygonMesh mesh = mesh_of({{9, 9, 9}, {0, 0, 0}, {1, 0, 0}, {8, 8, 8}, {0, 1, 0}}, {{1, 2, 4}});
+    mesh.sharp_edges = {{0, 1}, {1, 2}, {1, 4}, {2, 3}};
+    CHECK(remove_isolated_vertices(mesh) == 2);
+    CHECK(mesh.sharp_edges == std::vector<std::array<Index, 2>>{{0, 1}, {0, 2}});
+}
+
 TEST_CASE("a manifold mesh is left as it is", "[manifold]") {
     PolygonMesh cube = boundary_of_cells({{0, 0, 0}});
     const PolygonMesh before = cube;

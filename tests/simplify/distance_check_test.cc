@@ -1,5 +1,6 @@
 #include "hsdm/simplify/distance_check.hh"
 #include "support/meshes.hh"
+#include "support/pose.hh"
 
 #include <catch2/catch.hpp>
 
@@ -70,8 +71,8 @@ TEST_CASE("what was near a facet that has gone is measured again, in any order o
     PolygonMesh both = quad_over(fine, left);
     for (Index v : right) both.positions.push_back(fine.positions[v]);
     both.origin.insert(both.origin.end(), right.begin(), right.end());
-    both.origin[4] = both.origin[7] = static_cast<Index>(fine.vertex_count()); // each vertex once
-    ++both.origin[7];
+    both.origin[4] = 1; // each vertex once
+    both.origin[7] = 2;
     both.add_facet(std::array<Index, 4>{4, 5, 6, 7});
     CHECK(meshes.find_far(both).size() == 0);
     FarPoints far = check.find_far_points();
@@ -102,6 +103,34 @@ TEST_CASE("what was far from the fine mesh is so each time", "[simplify]") {
     CHECK(first.facets.size() == std::size_t{5} * (fine_side - 1));
     CHECK(second.vertices == first.vertices);
     CHECK(second.facets == first.facets);
+}
+
+TEST_CASE("of places that rounding puts beyond the bound each facet has one, whichever slope is nearer",
+          "[simplify]") {
+    constexpr double bound = 0.1, within = (1 - 1e-9) * bound;
+    std::size_t facets = 0, wrong = 0;
+    for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
+        const support::Pose pose = support::random_pose(seed);
+        const auto placed = [&](double x, double y, double z) { return pose.to_world(Vec3(x, y, z)); };
+        const PolygonMesh valley = support::quad_sheet(
+            2, 1, [&](Index x, Index y) { return placed(4.0 * x - 4, 4.0 * y, std::abs(4.0 * x - 4)); });
+        // The first triangle lies on one slope. The second stands in the valley, its upper side the bound
+        // away from either.
+        const double height = std::sqrt(2) * within;
+        const PolygonMesh mesh =
+            support::mesh_of({placed(-1, 1, 1), placed(-2, 1, 2), placed(-1, 1.3, 1), placed(0, 1, height),
+                              placed(0, 3, height), placed(0, 2, 0)},
+                             {{0, 1, 2}, {3, 4, 5}});
+        DistanceCheck check(valley, nullptr, {}, bound, 0.3);
+        const FarPlaces far = Sequence{check, {}}.find_far(mesh);
+        facets += far.facets.size();
+        wrong += far.on_facets.size() != far.facets.size();
+        for (const Vec3& place : far.on_facets)
+            wrong += std::abs(check.to_fine().tree()(place) - within) > 1e-12;
+    }
+    CHECK(facets > 100);
+    CHECK(facets < 900);
+    CHECK(wrong == 0);
 }
 
 TEST_CASE("the bound is kept with room for rounding", "[simplify]") {

@@ -23,7 +23,7 @@ PointFile read_ptx(const SourceBytes& bytes);
 /// Whether the text begins with the ten header lines of a PTX scan.
 bool is_ptx(const Text& text);
 PointFile read_off(const SourceBytes& bytes);
-/// The vertices and their normals, if one of them is not zero.
+/// The vertices that are not deleted and their normals, if one of them is not zero.
 PointFile read_om(const SourceBytes& bytes);
 /// Whether the bytes begin as those of an .om file.
 bool is_om(const SourceBytes& bytes);

@@ -107,6 +107,9 @@ public:
         return std::move(result_);
     }
 
+    /// OpenMesh writes deleted vertices too, and the mesh has them: faces go by their numbers.
+    bool is_deleted(std::size_t v) const { return has_status(vertex, v, deleted_bit); }
+
 private:
     struct HalfEdge {
         std::int64_t next, to;
@@ -212,9 +215,8 @@ private:
     }
 
     void read_colors(const char* data, std::size_t step, std::size_t count) {
-        constexpr std::array<const char*, 4> names{"red", "green", "blue", "alpha"};
-        for (std::size_t i = 0; i < std::min(step, names.size()); ++i)
-            add_property({names[i], VertexProperty::Type::uint8, std::vector<double>(count)},
+        for (std::size_t i = 0; i < std::min(step, color_properties.size()); ++i)
+            add_property({color_properties[i], VertexProperty::Type::uint8, std::vector<double>(count)},
                          [&](std::size_t v) { return static_cast<unsigned char>(data[v * step + i]); });
     }
 
@@ -286,7 +288,7 @@ private:
     }
 
     bool has_status(Entity entity, std::size_t i, unsigned bit) const {
-        const auto found = status_[entity];
+        const auto& found = status_[entity];
         return i < found.size() && (found[i] & bit) != 0;
     }
 
@@ -345,7 +347,16 @@ PolygonMesh read_mesh_om(const SourceBytes& bytes) {
 }
 
 PointFile read_om(const SourceBytes& bytes) {
-    PolygonMesh mesh = read_mesh_om(bytes);
+    OmReader reader(bytes);
+    PolygonMesh mesh = reader.read();
+    const auto drop_deleted = [&](std::vector<Vec3>& of_vertex) {
+        std::size_t kept = 0;
+        for (std::size_t v = 0; v < of_vertex.size(); ++v)
+            if (!reader.is_deleted(v)) of_vertex[kept++] = of_vertex[v];
+        of_vertex.resize(kept);
+    };
+    drop_deleted(mesh.positions);
+    drop_deleted(mesh.normals);
     PointFile file;
     file.format = "om";
     file.faces = mesh.facet_count();

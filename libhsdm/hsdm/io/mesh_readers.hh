@@ -13,8 +13,8 @@ PolygonMesh read_mesh(const SourceBytes& bytes);
 PolygonMesh read_mesh_off(const SourceBytes& bytes);
 PolygonMesh read_mesh_obj(const SourceBytes& bytes);
 /// OpenMesh's own format, whoever wrote it: vertices, faces, the vertices' normals, colours and properties of
-/// one number, `hsdm_normals`, and the edges marked as features. Deleted faces are left out, and so are
-/// attributes of edges and faces.
+/// one number, `hsdm_normals`, and the edges marked as features. Deleted faces are left out (not
+/// deleted vertices, which have no faces), and so are attributes of edges and faces.
 PolygonMesh read_mesh_om(const SourceBytes& bytes);
 PolygonMesh read_mesh_ply(const SourceBytes& bytes);
 /// Corners at the same position become one vertex, in order of first appearance.

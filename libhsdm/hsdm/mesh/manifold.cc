@@ -13,7 +13,6 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <tuple>
 
 namespace hsdm {
@@ -436,6 +435,10 @@ std::size_t remove_isolated_vertices(PolygonMesh& mesh) {
     if (!mesh.origin.empty()) compact(mesh.origin);
     for (VertexProperty& property : mesh.properties) compact(property.values);
     for (Index& v : mesh.corners) v = renumbered[v];
+    for (auto& ends : mesh.sharp_edges)
+        for (Index& v : ends) v = renumbered[v];
+    std::erase_if(mesh.sharp_edges,
+                  [](const auto& ends) { return ends[0] == no_index || ends[1] == no_index; });
     return removed;
 }
 

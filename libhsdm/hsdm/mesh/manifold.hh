@@ -36,7 +36,8 @@ struct ManifoldCounts {
 /// on the number of threads. 1 million quads take about 0.2 s.
 ManifoldCounts make_manifold(PolygonMesh& mesh);
 
-/// Removes the vertices of no facet; the others keep their order. Returns how many. O(vertices).
+/// Removes the vertices of no facet, and sharp edges that end there; the others keep their order. Returns how
+/// many vertices. O(vertices).
 std::size_t remove_isolated_vertices(PolygonMesh& mesh);
 
 } // namespace hsdm

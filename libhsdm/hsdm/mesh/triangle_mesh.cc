@@ -50,6 +50,7 @@ void copy_status(const PolyMesh& from, const std::vector<OpenMesh::VertexHandle>
 PolyMesh triangle_mesh(const PolyMesh& mesh) {
     const std::vector<OpenMesh::VertexHandle> used = used_vertices(mesh);
     PolygonMesh polygons = to_polygons(mesh);
+    polygons.sharp_edges.clear(); // copy_status sets the marks
     std::vector<double> numbers(used.size());
     std::iota(numbers.begin(), numbers.end(), 0.0);
     polygons.properties.push_back({source_property, VertexProperty::Type::int32, std::move(numbers)});

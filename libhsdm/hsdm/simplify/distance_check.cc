@@ -73,22 +73,6 @@ void add_places(const std::array<Vec3, 3>& corners, const std::array<bool, 3>& t
     }
 }
 
-/// Calls is_near(i, hint, scratch) for each index i that is not known to be near; then `near` says which are.
-template <class IsNear>
-void find_near(std::vector<std::uint8_t>& near, const IsNear& is_near) {
-    for_chunks(near.size(), chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t) {
-        Index hint = no_index;
-        std::vector<Vec3> scratch;
-        for (auto i = static_cast<Index>(begin); i < end; ++i)
-            if (!near[i]) near[i] = is_near(i, hint, scratch);
-    });
-}
-
-/// Indices of what is not near.
-std::vector<Index> far_of(const std::vector<std::uint8_t>& near) {
-    return indices_where(near.size(), chunks::light, [&](Index i) { return !near[i]; });
-}
-
 } // namespace
 
 DistanceCheck::DistanceCheck(const PolygonMesh& fine, const FacetCells* cells, std::span<const Vec3> points,
@@ -100,11 +84,15 @@ DistanceCheck::DistanceCheck(const PolygonMesh& fine, const FacetCells* cells, s
       cut_(triangulate(fine)),
       to_fine_(cells && cells->usable() ? SurfaceWalk(fine, cut_, *cells) : SurfaceWalk(fine, cut_)) {}
 
-FarPlaces DistanceCheck::find_far(const PolygonMesh& mesh, const Unchanged& same) {
+void DistanceCheck::set_mesh(const PolygonMesh& mesh, const Unchanged& same) {
     const Triangulation cut_before = std::exchange(cut_, triangulate(mesh));
     const std::optional<SurfaceWalk> before = std::move(to_mesh_);
     to_mesh_.emplace(mesh, cut_, TriangleTree::Order::given);
     if (before) follow_triangles(*before, cut_before, same);
+}
+
+FarPlaces DistanceCheck::find_far(const PolygonMesh& mesh, const Unchanged& same) {
+    set_mesh(mesh, same);
     FarPlaces far{far_from(fine_.positions, bounds::vertex_share * bound_, near_vertex_),
                   far_vertices(mesh, same),
                   {},
@@ -161,11 +149,17 @@ std::vector<Index> DistanceCheck::far_vertices(const PolygonMesh& mesh, const Un
     std::vector<std::uint8_t> near(mesh.vertex_count(), 0);
     for (Index v = 0; v < near.size(); ++v)
         near[v] = is_own(v) || (same.vertex[v] != no_index && vertex_is_near_[same.vertex[v]]);
-    find_near(near, [&](Index v, Index& hint, std::vector<Vec3>&) {
-        return !to_fine_.is_beyond(mesh.positions[v], bound_, hint);
-    });
+    const auto find = [&](std::size_t begin, std::size_t end, std::vector<Index>& far) {
+        Index hint = no_index;
+        for (auto v = static_cast<Index>(begin); v < end; ++v) {
+            if (near[v]) continue;
+            near[v] = !to_fine_.is_beyond(mesh.positions[v], bound_, hint);
+            if (!near[v]) far.push_back(v);
+        }
+    };
+    std::vector<Index> far = collected<Index>(near.size(), chunks::heavy, find);
     vertex_is_near_ = std::move(near);
-    return far_of(vertex_is_near_);
+    return far;
 }
 
 void DistanceCheck::find_far_facets(const PolygonMesh& mesh, const Unchanged& same, FarPlaces& far) {
@@ -185,15 +179,22 @@ void DistanceCheck::find_far_facets(const PolygonMesh& mesh, const Unchanged& sa
         }
         return nullptr;
     };
-    find_near(near,
-              [&](Index f, Index& hint, std::vector<Vec3>& places) { return !far_place(f, hint, places); });
-    facet_is_near_ = std::move(near);
-    far.facets = far_of(facet_is_near_);
-    std::vector<Vec3> places;
-    for (Index f : far.facets) {
+    using OnFacet = std::pair<Index, Vec3>;
+    const auto find = [&](std::size_t begin, std::size_t end, std::vector<OnFacet>& found) {
         Index hint = no_index;
-        far.on_facets.push_back(*far_place(f, hint, places));
+        std::vector<Vec3> places;
+        for (auto f = static_cast<Index>(begin); f < end; ++f) {
+            if (near[f]) continue;
+            const Vec3* const place = far_place(f, hint, places);
+            near[f] = !place;
+            if (place) found.emplace_back(f, *place);
+        }
+    };
+    for (const auto& [f, place] : collected<OnFacet>(near.size(), chunks::heavy, find)) {
+        far.facets.push_back(f);
+        far.on_facets.push_back(place);
     }
+    facet_is_near_ = std::move(near);
 }
 
 FarPoints DistanceCheck::find_far_points() {

@@ -38,7 +38,11 @@ public:
     /// `same`: what the mesh has of the one last compared.
     FarPlaces find_far(const PolygonMesh& mesh, const Unchanged& same);
 
-    /// Compares the points with the mesh last given to find_far(). To be called once after each.
+    /// For find_far_points() alone; no find_far() may follow, which would miss what this mesh changed.
+    void set_mesh(const PolygonMesh& mesh, const Unchanged& same);
+
+    /// Compares the points with the mesh last given to find_far() or set_mesh(). To be called once after
+    /// each.
     FarPoints find_far_points();
     Index nearest_facet(const Vec3& place) const { return to_mesh_->tree().nearest_facet(place); }
     const Vec3& point(Index p) const { return points_[p]; }

@@ -27,7 +27,7 @@ Findings MeshChecks::look_at(const PolygonMesh& mesh) {
 }
 
 FarPoints MeshChecks::far_points(const PolygonMesh& mesh) {
-    distances_.find_far(mesh, compare_with_last(mesh));
+    distances_.set_mesh(mesh, compare_with_last(mesh));
     return distances_.find_far_points();
 }
 
