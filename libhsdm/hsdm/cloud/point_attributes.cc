@@ -11,9 +11,8 @@ using Type = VertexProperty::Type;
 std::vector<PointAttribute> attributes_of(const PointCloud& cloud) {
     std::vector<PointAttribute> attributes;
     if (!cloud.colors.empty()) {
-        constexpr std::array<const char*, 4> names{"red", "green", "blue", "alpha"};
-        for (std::size_t k = 0; k < names.size(); ++k)
-            attributes.push_back({names[k], Type::uint8, &cloud, k});
+        for (std::size_t k = 0; k < color_properties.size(); ++k)
+            attributes.push_back({color_properties[k], Type::uint8, &cloud, k});
     }
     for (std::size_t s = 0; s < cloud.scalars.size(); ++s) {
         const Scalar& scalar = cloud.scalars[s];
