@@ -132,7 +132,7 @@ public:
     /// by rounding. Squared distances from boxes are sums of as many numbers as the tree is deep, thousands
     /// at most.
     double worstDist() const override {
-        return std::nextafter((full() ? near_.front().first : limit_) * (1 + 0x1p-40), infinity);
+        return std::nextafter((full() ? near_.front().first : limit_) * (1 + 0x1p-40), Box::inf);
     }
     void addPoint(double squared, std::size_t index) override {
         if (!(squared <= limit_)) return;
@@ -315,7 +315,7 @@ NeighborSearch::NeighborSearch(NeighborSearch&& other) noexcept = default;
 NeighborSearch::~NeighborSearch() = default;
 
 NearPoint NeighborSearch::nearest(const Vec3& place) const {
-    Nearest found(1, infinity);
+    Nearest found(1, Box::inf);
     tree_->find(place, found);
     const auto near = found.sorted();
     check_found(near.size(), 1);
@@ -326,7 +326,7 @@ NearPoints NeighborSearch::nearest(std::span<const Vec3> places, int count) cons
     const std::size_t wanted = std::min(positive(count), size());
     check_places(places);
     NearPoints result = room_for(places.size(), wanted);
-    tree_->search(places, tree_->order_of(places), Nearest(wanted, infinity),
+    tree_->search(places, tree_->order_of(places), Nearest(wanted, Box::inf),
                   [&](Index place, std::span<const Near> near, std::size_t) {
                       check_found(near.size(), wanted);
                       tree_->put(near, result.first[place], result);
@@ -345,7 +345,7 @@ NearPoints NeighborSearch::within(std::span<const Vec3> places, double radius) c
 NearPoints NeighborSearch::neighbors(int count) const {
     const std::size_t wanted = std::min(positive(count), size() - 1);
     NearPoints result = room_for(size(), wanted);
-    tree_->search(points_, tree_->order_of(points_), Nearest(wanted + 1, infinity),
+    tree_->search(points_, tree_->order_of(points_), Nearest(wanted + 1, Box::inf),
                   [&](Index point, std::span<const Near> near, std::size_t) {
                       std::size_t at = result.first[point];
                       for (const Near& other : near)
