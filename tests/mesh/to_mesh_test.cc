@@ -83,6 +83,15 @@ TEST_CASE("a property without a name is one like any other") {
     CHECK(out.properties[0].values == in.properties[0].values);
 }
 
+TEST_CASE("a property that has the name of the mesh's points leaves these alone") {
+    PolygonMesh cube = unit_cube();
+    for (const char* name : {"v:points", "v:normals", "v:status"})
+        cube.properties.push_back({name, VertexProperty::Type::float64, std::vector<double>(8, 7)});
+    PolyMesh mesh = to_mesh(cube).mesh;
+    CHECK(to_polygons(mesh).positions == cube.positions);
+    CHECK(is_sound(mesh));
+}
+
 TEST_CASE("a vertex's three normals survive the way to polygons and back") {
     PolyMesh mesh = to_mesh(unit_cube()).mesh;
     {

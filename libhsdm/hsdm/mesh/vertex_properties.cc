@@ -22,9 +22,10 @@ T saturated(double value) {
     }
 }
 
-/// Removes the properties of a name whose values are no T.
+/// Removes the properties of a name whose values are no T, but for OpenMesh's own, such as `v:points`.
 template <class T>
 void remove_others(const std::string& name, PolyMesh& mesh) {
+    if (name.substr(0, 2) == "v:") return;
     int place = 0;
     for (auto it = mesh.vprops_begin(); it != mesh.vprops_end(); ++it, ++place) {
         if (*it == nullptr || (*it)->name() != name || dynamic_cast<OpenMesh::PropertyT<T>*>(*it)) continue;

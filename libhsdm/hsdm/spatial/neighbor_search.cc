@@ -194,7 +194,7 @@ struct NeighborSearch::Tree {
         index.findNeighbors(found, scaled.data(), {});
     }
     template <class Put>
-    void search(std::span<const Vec3> places, std::span<const Index> order, Nearest nearest,
+    void search(std::span<const Vec3> places, std::span<const Index> order, const Nearest& nearest,
                 const Put& put) const;
     NearPoints collect(std::span<const Vec3> places, const Nearest& nearest) const;
     double limit(double radius) const;
@@ -257,8 +257,8 @@ std::vector<Index> NeighborSearch::Tree::order_of(std::span<const Vec3> places) 
 
 /// Calls put(place, nearest points, chunk) for every place: in parallel by chunks, each in the given order.
 template <class Put>
-void NeighborSearch::Tree::search(std::span<const Vec3> places, std::span<const Index> order, Nearest nearest,
-                                  const Put& put) const {
+void NeighborSearch::Tree::search(std::span<const Vec3> places, std::span<const Index> order,
+                                  const Nearest& nearest, const Put& put) const {
     for_chunks(order.size(), chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         Nearest found = nearest;
         for (std::size_t i = begin; i < end; ++i) {
