@@ -80,6 +80,36 @@ HSDM_TUNED double overshoot = 0.3;
 
 } // namespace hsdm::relations
 
+// patches.hh
+namespace hsdm::patches {
+
+/// cosine: of the normals of two sheets that bound a wall or a gap.
+/// Why: 120 degrees: the sides of a groove of 60 degrees part what lies beside it.
+inline constexpr double opposed_cosine = -0.5;
+
+/// voxels: between the two sheets of a wall or gap.
+/// Why: beyond that the sets beside it are no neighbours.
+inline constexpr double widest = 1.5;
+
+/// voxels: from where a point meets the other sheet's plane to the points of it.
+/// Why: a voxel's half diagonal and as much again.
+inline constexpr double beside = 1.0;
+
+/// spacings: of a sheet's points, radius of the discs that stand for its middle surface.
+/// Why: with two, six points of each sheet are expected round a place on its end; that none is has a chance
+/// of a four hundredth.
+inline constexpr double reach = 2;
+
+/// points: of a set that are looked at, evenly taken.
+/// Why: four by four in a voxel.
+inline constexpr unsigned most_samples = 16;
+
+/// ways: the shortest ones between two sets, of which most must be parted.
+/// Why: by trial.
+inline constexpr std::size_t ways = 8;
+
+} // namespace hsdm::patches
+
 // local_sheets.hh, grid_signs.hh
 namespace hsdm::sheets {
 

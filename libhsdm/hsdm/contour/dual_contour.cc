@@ -260,7 +260,7 @@ std::size_t merge_corners(std::span<const EdgeCollapse> edges, PolygonMesh& mesh
 std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
                                        const DualContourOptions& options, DualContour& result) {
     const double h = level.voxel_size;
-    const RelationTest related(options.relation, h);
+    const RelationTest related(options.relation, h, sets);
     DualMesh dual;
     dual.voxel_size = h;
     dual.grid = build_grid_points(level);

@@ -18,6 +18,7 @@ constexpr std::uint8_t unassigned = 0xff;
 struct Scratch {
     std::vector<std::uint8_t> label; // per point of the voxel
     std::vector<std::pair<double, Index>> offsets;
+    std::vector<Index> points; // of a set
 };
 
 /// Finds the sets of one voxel. Labels are positions in `modes_` until finish() orders the sets by count.
@@ -32,7 +33,8 @@ public:
           options_(options),
           cos_cluster_(std::cos(options.cluster_angle)),
           label_(scratch.label),
-          offsets_(scratch.offsets) {
+          offsets_(scratch.offsets),
+          points_(scratch.points) {
         label_.assign(size_, unassigned);
     }
 
@@ -48,31 +50,9 @@ public:
     std::size_t count() const { return modes_.size(); }
 
     NormalSet set(std::size_t k, Index voxel) const {
-        Vec3 position(0, 0, 0), normal(0, 0, 0);
-        Index n = 0;
-        for_each(k, [&](Index i) {
-            position += octree_.positions[i];
-            normal += octree_.normals[i];
-            ++n;
-        });
-        if (n == 0) return {position, normal, 0, voxel, {}};
-        position /= n;
-        const Vec3 mean = normal / n;
-        double below = 0; // curvature times variance, summed over the two tangent directions
-        Spread spread;
-        for_each(k, [&](Index i) {
-            const Vec3 d = octree_.positions[i] - position;
-            below += (octree_.normals[i] - mean) | d;
-            const std::array<double, 6> products{d[0] * d[0], d[1] * d[1], d[2] * d[2],
-                                                 d[0] * d[1], d[1] * d[2], d[2] * d[0]};
-            for (std::size_t m = 0; m < 6; ++m) spread.moments[m] += products[m] / n;
-        });
-        const double length = normal.norm();
-        normal = length > 0 ? normal / length : Vec3(0, 0, 1);
-        // Limited, because noise in the normals must not push the centroid out of its own points.
-        const double lift =
-            std::clamp(0.5 * below / n, -sets::most_lift * voxel_size_, sets::most_lift * voxel_size_);
-        return {position + normal * lift, normal, n, voxel, spread};
+        points_.clear();
+        for_each(k, [&](Index i) { points_.push_back(i); });
+        return measure_set(octree_, points_, voxel, voxel_size_);
     }
 
     std::uint8_t label(Index i) const { return label_[i]; }
@@ -248,6 +228,7 @@ private:
     double cos_cluster_;
     std::vector<std::uint8_t>& label_;
     std::vector<std::pair<double, Index>>& offsets_;
+    std::vector<Index>& points_;
     std::vector<Vec3> modes_;
 };
 
@@ -260,6 +241,33 @@ void validate(const NormalSetOptions& options) {
 }
 
 } // namespace
+
+NormalSet measure_set(const Octree& octree, std::span<const Index> points, Index voxel, double voxel_size) {
+    Vec3 position(0, 0, 0), normal(0, 0, 0);
+    for (Index i : points) {
+        position += octree.positions[i];
+        normal += octree.normals[i];
+    }
+    const auto n = static_cast<Index>(points.size());
+    if (n == 0) return {position, normal, 0, voxel, {}};
+    position /= n;
+    const Vec3 mean = normal / n;
+    double below = 0; // curvature times variance, summed over the two tangent directions
+    Spread spread;
+    for (Index i : points) {
+        const Vec3 d = octree.positions[i] - position;
+        below += (octree.normals[i] - mean) | d;
+        const std::array<double, 6> products{d[0] * d[0], d[1] * d[1], d[2] * d[2],
+                                             d[0] * d[1], d[1] * d[2], d[2] * d[0]};
+        for (std::size_t m = 0; m < 6; ++m) spread.moments[m] += products[m] / n;
+    }
+    const double length = normal.norm();
+    normal = length > 0 ? normal / length : Vec3(0, 0, 1);
+    // Limited, because noise in the normals must not push the centroid out of its own points.
+    const double lift =
+        std::clamp(0.5 * below / n, -sets::most_lift * voxel_size, sets::most_lift * voxel_size);
+    return {position + normal * lift, normal, n, voxel, spread};
+}
 
 NormalSets build_normal_sets(const Octree& octree, const OctreeLevel& level,
                              const NormalSetOptions& options) {

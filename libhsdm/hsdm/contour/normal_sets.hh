@@ -44,11 +44,19 @@ struct NormalSets {
     std::vector<NormalSet> sets;
     std::vector<Index> first{0};
     std::vector<Index> of_point; ///< per octree point, its set; no_index for points without a normal
+    /// Sets that have a wall or gap between them (separate_patches): those of set s, ascending, are
+    /// apart[first_apart[s]] .. apart[first_apart[s + 1]]. Both are empty if there are none.
+    std::vector<Index> apart, first_apart;
+
+    static constexpr std::size_t most_per_voxel = 8;
 
     std::span<const NormalSet> of_voxel(Index v) const {
         return {sets.data() + first[v], sets.data() + first[v + 1]};
     }
 };
+
+/// The set that these points of a voxel make; its normal is (0, 0, 1) if theirs cancel each other.
+NormalSet measure_set(const Octree& octree, std::span<const Index> points, Index voxel, double voxel_size);
 
 /// Sorts each voxel's points into sets: by direction (modes of the normals, mean shift), then by offset where
 /// two parallel sheets share a direction. Does not depend on the order of the points. The centroid of points

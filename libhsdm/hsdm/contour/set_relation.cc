@@ -3,6 +3,7 @@
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/check_option.hh"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hsdm {
@@ -18,6 +19,19 @@ RelationTest::RelationTest(const RelationOptions& options, double voxel_size)
 }
 
 Relation RelationTest::operator()(const NormalSet& a, const NormalSet& b) const {
+    const Relation relation = by_planes(a, b);
+    return relation != Relation::none && sets_ != nullptr && apart(a, b) ? Relation::none : relation;
+}
+
+bool RelationTest::apart(const NormalSet& a, const NormalSet& b) const {
+    const NormalSet* const sets = sets_->sets.data();
+    const auto* const others = sets_->apart.data();
+    return std::binary_search(others + sets_->first_apart[static_cast<std::size_t>(&a - sets)],
+                              others + sets_->first_apart[static_cast<std::size_t>(&a - sets) + 1],
+                              static_cast<Index>(&b - sets));
+}
+
+Relation RelationTest::by_planes(const NormalSet& a, const NormalSet& b) const {
     const double cosine = a.normal | b.normal;
     if (cosine < cos_smooth_) return crease(a, b, cosine);
     const Vec3 sum = a.normal + b.normal;

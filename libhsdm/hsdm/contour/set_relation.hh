@@ -30,13 +30,21 @@ class RelationTest {
 public:
     /// Throws OptionError.
     RelationTest(const RelationOptions& options, double voxel_size);
+    /// The same for sets that must outlive it, whose patches were separated: sets apart have no relation.
+    RelationTest(const RelationOptions& options, double voxel_size, const NormalSets& sets)
+        : RelationTest(options, voxel_size) {
+        if (!sets.first_apart.empty()) sets_ = &sets;
+    }
     Relation operator()(const NormalSet& a, const NormalSet& b) const;
 
 private:
+    bool apart(const NormalSet& a, const NormalSet& b) const;
+    Relation by_planes(const NormalSet& a, const NormalSet& b) const;
     Relation crease(const NormalSet& a, const NormalSet& b, double cosine) const;
     bool ends_at(const NormalSet& set, const Vec3& plane, double above, bool convex, double cosine) const;
 
     double cos_smooth_, gap_, crease_gap_, voxel_size_;
+    const NormalSets* sets_ = nullptr;
 };
 
 } // namespace hsdm

@@ -2,6 +2,7 @@
 
 #include "hsdm/contour/dual_contour.hh"
 #include "hsdm/contour/outlier_sets.hh"
+#include "hsdm/contour/patches.hh"
 #include "hsdm/contour/sheet_features.hh"
 #include "hsdm/pipeline/attributes.hh"
 #include "hsdm/pipeline/constants.hh"
@@ -71,6 +72,7 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
         const Discarded outliers = drop_outlier_sets(in.level, related, all);
         report.rejected["points_stray"] = outliers.count;
         note_dropped("points that no neighbour continues", outliers, in, report);
+        report.rejected["sets_split"] = separate_patches(in.octree, in.level, related, all).split;
         return all;
     });
     report.grid.sets = sets.sets.size();

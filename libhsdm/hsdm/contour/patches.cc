@@ -1,0 +1,393 @@
+#include "hsdm/contour/patches.hh"
+
+#include "hsdm/contour/constants.hh"
+#include "hsdm/core/chunks.hh"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+namespace hsdm {
+namespace {
+
+/// A disc of the middle surface of a wall or gap, seen from a point of one of its two sheets.
+struct Disc {
+    Vec3 middle;
+    Vec3 normal; ///< of that sheet
+    Vec3 point;  ///< of that sheet
+    double squared_radius;
+    bool is_gap; ///< the sheets face each other
+};
+
+/// Working space of one thread.
+struct Scratch {
+    std::vector<Index> sets; // of the voxel and its neighbours, the voxel's own first
+    std::vector<Vec3> samples;
+    std::vector<Index> first_sample;
+    std::vector<Disc> discs;
+    struct Way {
+        double squared_length;
+        std::size_t i, j;
+    };
+    std::vector<Way> ways;
+};
+
+/// What lies round one voxel: the sets of the 27 voxels, samples of their points, and the discs of walls and
+/// gaps.
+class Neighborhood {
+public:
+    Neighborhood(const Octree& octree, const OctreeLevel& level, const NormalSets& sets, Scratch& scratch)
+        : octree_(octree), level_(level), sets_(sets), at_(scratch) {}
+
+    /// False if no wall or gap is near.
+    bool gather(Index voxel) {
+        at_.sets.clear();
+        add_sets(voxel);
+        own_ = at_.sets.size();
+        const VoxelCoord c = level_.coord(voxel);
+        for (const VoxelCoord& o : neighbor_offsets)
+            if (const Index v = level_.find({c[0] + o[0], c[1] + o[1], c[2] + o[2]}); v != no_index)
+                add_sets(v);
+        at_.discs.clear();
+        if (!any_opposed()) return false;
+        take_samples();
+        for (std::size_t i = 0; i < at_.sets.size(); ++i) add_discs(i);
+        return !at_.discs.empty();
+    }
+
+    std::size_t own() const { return own_; }
+    std::size_t size() const { return at_.sets.size(); }
+    Index number(std::size_t i) const { return at_.sets[i]; }
+    const NormalSet& set(std::size_t i) const { return sets_.sets[at_.sets[i]]; }
+    std::span<const Vec3> samples(std::size_t i) const {
+        return {at_.samples.data() + at_.first_sample[i], at_.samples.data() + at_.first_sample[i + 1]};
+    }
+
+    /// Does a wall or gap part two points of surfaces with this normal?
+    bool parted(const Vec3& p, const Vec3& q, const Vec3& normal) const {
+        std::array<unsigned, 2> seen{0, 0}; // sheets of walls, of gaps
+        const Vec3 way = q - p;
+        for (const Disc& disc : at_.discs) {
+            const double dp = disc.normal | (p - disc.middle), dq = disc.normal | (q - disc.middle);
+            if ((dp < 0) == (dq < 0)) continue;
+            const Vec3 x = p + way * (dp / (dp - dq));
+            if ((x - disc.middle).sqrnorm() > disc.squared_radius) continue;
+            // At the mouth of a gap its sheets lie below the surface, on the ground of a wall above it; the
+            // rim of a wall and the bottom of a gap, which join the two sheets, see them on the other side.
+            if (((normal | (disc.point - x)) < 0) != disc.is_gap) continue;
+            unsigned& sheets = seen[disc.is_gap];
+            sheets |= dp < 0 ? 1u : 2u;
+            if (sheets == 3) return true;
+        }
+        return false;
+    }
+
+    /// Of the shortest ways between two sets, are most parted?
+    bool apart(std::size_t i, std::size_t j) {
+        const auto p = samples(i), q = samples(j);
+        auto& ways = at_.ways;
+        ways.clear();
+        for (std::size_t a = 0; a < p.size(); ++a)
+            for (std::size_t b = 0; b < q.size(); ++b) ways.push_back({(q[b] - p[a]).sqrnorm(), a, b});
+        const std::size_t most = std::min(ways.size(), patches::ways);
+        std::partial_sort(ways.begin(), ways.begin() + static_cast<std::ptrdiff_t>(most), ways.end(),
+                          [](const auto& v, const auto& w) {
+                              return std::tuple(v.squared_length, v.i, v.j)
+                                     < std::tuple(w.squared_length, w.i, w.j);
+                          });
+        std::size_t parted_ways = 0;
+        for (std::size_t k = 0; k < most; ++k)
+            parted_ways += parted(p[ways[k].i], q[ways[k].j], set(i).normal)
+                           || parted(p[ways[k].i], q[ways[k].j], set(j).normal);
+        return 2 * parted_ways > most;
+    }
+
+private:
+    void add_sets(Index v) {
+        for (Index s = sets_.first[v]; s < sets_.first[v + 1]; ++s) at_.sets.push_back(s);
+    }
+
+    static bool opposed(const NormalSet& a, const NormalSet& b) {
+        return (a.normal | b.normal) < patches::opposed_cosine;
+    }
+
+    bool any_opposed() const {
+        for (std::size_t i = 0; i < size(); ++i)
+            for (std::size_t j = i + 1; j < size(); ++j)
+                if (opposed(set(i), set(j))) return true;
+        return false;
+    }
+
+    /// At most so many points of each set, evenly taken in their order.
+    void take_samples() {
+        at_.samples.clear();
+        at_.first_sample.assign(1, 0);
+        for (std::size_t i = 0; i < size(); ++i) {
+            const NormalSet& s = set(i);
+            const Index stride = (s.count + patches::most_samples - 1) / patches::most_samples;
+            Index rank = 0;
+            for (Index k = level_.first_point[s.voxel]; k < level_.first_point[s.voxel + 1]; ++k)
+                if (sets_.of_point[k] == at_.sets[i] && rank++ % stride == 0)
+                    at_.samples.push_back(octree_.positions[k]);
+            at_.first_sample.push_back(static_cast<Index>(at_.samples.size()));
+        }
+    }
+
+    /// Spacing of the samples on the sheet of a set, from the fullest of its sets around.
+    double spacing(std::size_t i) const {
+        double points = 0, squares = 0;
+        for (std::size_t j = 0; j < size(); ++j) {
+            if ((set(i).normal | set(j).normal) < relations::same_sheet_cosine) continue;
+            const auto n = static_cast<double>(samples(j).size());
+            points += n;
+            squares += n * n;
+        }
+        return level_.voxel_size * std::sqrt(points / squares);
+    }
+
+    /// The discs between a set and the nearest opposite sheet before it and behind it.
+    void add_discs(std::size_t i) {
+        const NormalSet& a = set(i);
+        const double h = level_.voxel_size;
+        const double radius = patches::reach * spacing(i);
+        for (const Vec3& p : samples(i)) {
+            double nearest[2] = {patches::widest * h, patches::widest * h}; // behind, before
+            for (std::size_t j = 0; j < size(); ++j) {
+                const NormalSet& b = set(j);
+                const double cosine = a.normal | b.normal;
+                if (j == i || cosine >= patches::opposed_cosine) continue;
+                const double t = (b.normal | (b.centroid - p)) / cosine;
+                if ((p + t * a.normal - b.centroid).sqrnorm() > patches::beside * patches::beside * h * h)
+                    continue;
+                double& distance = nearest[t > 0];
+                distance = std::min(distance, std::abs(t));
+            }
+            for (unsigned before : {0u, 1u})
+                if (nearest[before] < patches::widest * h)
+                    at_.discs.push_back({p + a.normal * ((before ? 0.5 : -0.5) * nearest[before]), a.normal,
+                                         p, radius * radius, before == 1});
+        }
+    }
+
+    const Octree& octree_;
+    const OctreeLevel& level_;
+    const NormalSets& sets_;
+    Scratch& at_;
+    std::size_t own_ = 0;
+};
+
+/// Of each point of a set its patch: sampled points are connected that nothing parts, others belong with the
+/// nearest sample. Returns the number of patches.
+std::size_t connect_samples(const Neighborhood& around, std::size_t i, std::vector<std::uint8_t>& patch) {
+    const auto samples = around.samples(i);
+    std::vector<std::uint8_t> pending;
+    constexpr std::uint8_t none = 0xff;
+    patch.assign(samples.size(), none);
+    std::uint8_t count = 0;
+    for (std::size_t start = 0; start < samples.size(); ++start) {
+        if (patch[start] != none) continue;
+        patch[start] = count;
+        pending.assign(1, static_cast<std::uint8_t>(start));
+        while (!pending.empty()) {
+            const std::size_t at = pending.back();
+            pending.pop_back();
+            for (std::size_t j = 0; j < samples.size(); ++j) {
+                if (patch[j] != none || around.parted(samples[at], samples[j], around.set(i).normal))
+                    continue;
+                patch[j] = count;
+                pending.push_back(static_cast<std::uint8_t>(j));
+            }
+        }
+        ++count;
+    }
+    return count;
+}
+
+/// Voxels whose points lie on several sheets, by which alone anything ends.
+std::vector<Index> voxels_with_several(const NormalSets& sets) {
+    return indices_where(sets.first.size() - 1, chunks::usual,
+                         [&](Index v) { return sets.first[v + 1] - sets.first[v] > 1; });
+}
+
+class PatchSeparation {
+public:
+    PatchSeparation(const Octree& octree, const OctreeLevel& level, const RelationTest& related,
+                    NormalSets& sets)
+        : octree_(octree), level_(level), related_(related), sets_(sets) {}
+
+    PatchCounts run() {
+        voxels_ = voxels_with_several(sets_);
+        split();
+        note_apart();
+        return counts_;
+    }
+
+private:
+    /// Voxels that have to be written anew: their sets, and the set of each of their points.
+    struct Split {
+        Index voxel;
+        std::vector<NormalSet> sets;
+        std::vector<Index> of_point; ///< number within the voxel, or no_index
+    };
+
+    void split() {
+        std::vector<std::uint8_t> crowded(voxels_.size(), 0);
+        std::vector<Split> splits =
+            collected<Split>(voxels_.size(), chunks::heavy,
+                             [&](std::size_t begin, std::size_t end, std::vector<Split>& found) {
+                                 Scratch& scratch = scratch_.local();
+                                 Neighborhood around(octree_, level_, sets_, scratch);
+                                 for (std::size_t k = begin; k < end; ++k) {
+                                     if (!around.gather(voxels_[k])) continue;
+                                     crowded[k] = 1;
+                                     split_voxel(around, voxels_[k], found);
+                                 }
+                             });
+        std::size_t kept = 0;
+        for (std::size_t k = 0; k < voxels_.size(); ++k)
+            if (crowded[k]) voxels_[kept++] = voxels_[k];
+        voxels_.resize(kept);
+        counts_.crowded = kept;
+        if (!splits.empty()) insert(splits);
+    }
+
+    void split_voxel(const Neighborhood& around, Index voxel, std::vector<Split>& found) const {
+        const Index begin = level_.first_point[voxel], end = level_.first_point[voxel + 1];
+        Split result{voxel, {}, {}};
+        std::vector<std::uint8_t> patch;
+        std::size_t room = NormalSets::most_per_voxel - around.own();
+        for (std::size_t i = 0; i < around.own(); ++i) {
+            const std::size_t count = connect_samples(around, i, patch);
+            if (count < 2 || count - 1 > room) continue;
+            room -= count - 1;
+            if (result.of_point.empty())
+                result.of_point.assign(sets_.of_point.begin() + begin, sets_.of_point.begin() + end);
+            label_points(around, i, patch, begin, result.of_point);
+        }
+        if (result.of_point.empty()) return;
+        rebuild(begin, result);
+        found.push_back(std::move(result));
+    }
+
+    /// Marks the points of patches by set + (patch << 28); most sets of a scan are fewer.
+    void label_points(const Neighborhood& around, std::size_t i, const std::vector<std::uint8_t>& patch,
+                      Index begin, std::vector<Index>& of_point) const {
+        const auto samples = around.samples(i);
+        for (std::size_t k = 0; k < of_point.size(); ++k) {
+            if (of_point[k] != around.number(i)) continue;
+            const Vec3& p = octree_.positions[begin + k];
+            std::size_t nearest = 0;
+            for (std::size_t s = 1; s < samples.size(); ++s)
+                if ((samples[s] - p).sqrnorm() < (samples[nearest] - p).sqrnorm()) nearest = s;
+            of_point[k] = around.number(i) | static_cast<Index>(patch[nearest]) << 28;
+        }
+    }
+
+    /// Sets anew from labels, by descending count.
+    void rebuild(Index begin, Split& split) const {
+        std::vector<Index> labels;
+        for (Index label : split.of_point)
+            if (label != no_index && std::ranges::find(labels, label) == labels.end())
+                labels.push_back(label);
+        struct Found {
+            NormalSet set;
+            Index label;
+        };
+        std::vector<Found> found;
+        std::vector<Index> points;
+        for (Index label : labels) {
+            points.clear();
+            for (std::size_t k = 0; k < split.of_point.size(); ++k)
+                if (split.of_point[k] == label) points.push_back(begin + static_cast<Index>(k));
+            found.push_back({measure_set(octree_, points, split.voxel, level_.voxel_size), label});
+        }
+        std::ranges::stable_sort(found,
+                                 [](const Found& a, const Found& b) { return a.set.count > b.set.count; });
+        for (Index& label : split.of_point) {
+            if (label == no_index) continue;
+            const auto at = std::ranges::find(found, label, &Found::label);
+            label = static_cast<Index>(at - found.begin());
+        }
+        for (const Found& f : found) split.sets.push_back(f.set);
+    }
+
+    /// Puts the split voxels' sets in place of those before.
+    void insert(const std::vector<Split>& splits) {
+        std::vector<NormalSet> sets;
+        std::vector<Index> first(1, 0), moved(sets_.sets.size());
+        auto next = splits.begin();
+        for (Index v = 0; v + 1 < sets_.first.size(); ++v) {
+            const Index begin = sets_.first[v], end = sets_.first[v + 1];
+            if (next != splits.end() && next->voxel == v) {
+                counts_.split += next->sets.size() - (end - begin);
+                sets.insert(sets.end(), next->sets.begin(), next->sets.end());
+                ++next;
+            } else {
+                for (Index s = begin; s < end; ++s) {
+                    moved[s] = static_cast<Index>(sets.size());
+                    sets.push_back(sets_.sets[s]);
+                }
+            }
+            first.push_back(static_cast<Index>(sets.size()));
+        }
+        for_each_index(sets_.of_point.size(), chunks::light, [&](Index k) {
+            if (sets_.of_point[k] != no_index) sets_.of_point[k] = moved[sets_.of_point[k]];
+        });
+        for (const Split& split : splits)
+            for (std::size_t k = 0; k < split.of_point.size(); ++k)
+                sets_.of_point[level_.first_point[split.voxel] + k] =
+                    split.of_point[k] == no_index ? no_index : first[split.voxel] + split.of_point[k];
+        sets_.sets = std::move(sets);
+        sets_.first = std::move(first);
+    }
+
+    /// Pairs of related sets with a wall or gap between them.
+    void note_apart() {
+        using Pair = std::array<Index, 2>;
+        std::vector<Pair> pairs = collected<Pair>(
+            voxels_.size(), chunks::heavy, [&](std::size_t begin, std::size_t end, std::vector<Pair>& found) {
+                Scratch& scratch = scratch_.local();
+                Neighborhood around(octree_, level_, sets_, scratch);
+                for (std::size_t k = begin; k < end; ++k) {
+                    if (!around.gather(voxels_[k])) continue;
+                    for (std::size_t i = 0; i < around.own(); ++i)
+                        for (std::size_t j = i + 1; j < around.size(); ++j) {
+                            if (related_(around.set(i), around.set(j)) == Relation::none
+                                || !around.apart(i, j))
+                                continue;
+                            found.push_back({around.number(i), around.number(j)});
+                            found.push_back({around.number(j), around.number(i)});
+                        }
+                }
+            });
+        parallel_sort_unique(pairs);
+        counts_.apart = pairs.size() / 2;
+        if (pairs.empty()) return;
+        sets_.first_apart.assign(sets_.sets.size() + 1, 0);
+        for (const Pair& p : pairs) {
+            ++sets_.first_apart[p[0] + 1];
+            sets_.apart.push_back(p[1]);
+        }
+        counts_to_first(sets_.first_apart);
+    }
+
+    const Octree& octree_;
+    const OctreeLevel& level_;
+    const RelationTest& related_;
+    NormalSets& sets_;
+    std::vector<Index> voxels_; // with several sheets; later those near walls and gaps
+    PatchCounts counts_;
+    tbb::enumerable_thread_specific<Scratch> scratch_;
+};
+
+} // namespace
+
+PatchCounts separate_patches(const Octree& octree, const OctreeLevel& level, const RelationTest& related,
+                             NormalSets& sets) {
+    return PatchSeparation(octree, level, related, sets).run();
+}
+
+} // namespace hsdm
