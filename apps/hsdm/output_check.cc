@@ -10,6 +10,7 @@
 #include "hsdm/mesh/triangulate.hh"
 #include "hsdm/quality/mesh_digest.hh"
 
+#include <algorithm>
 #include <filesystem>
 
 namespace hsdm::command {
@@ -41,9 +42,18 @@ std::string fault_of_triangles(const PolygonMesh& mesh, const PolygonMesh& read)
     return "";
 }
 
+/// As the type stores them.
+bool same_values(const VertexProperty& a, const VertexProperty& b) {
+    const bool coarse = a.type == VertexProperty::Type::float32;
+    return std::equal(a.values.begin(), a.values.end(), b.values.begin(), b.values.end(),
+                      [coarse](double x, double y) {
+                          return coarse ? static_cast<float>(x) == static_cast<float>(y) : x == y;
+                      });
+}
+
 bool same_properties(const PolygonMesh& mesh, const PolygonMesh& read) {
     const auto same = [](const VertexProperty& a, const VertexProperty& b) {
-        return a.name == b.name && a.values == b.values;
+        return a.name == b.name && same_values(a, b);
     };
     return std::equal(mesh.properties.begin(), mesh.properties.end(), read.properties.begin(),
                       read.properties.end(), same);

@@ -1,3 +1,5 @@
+cmake_minimum_required(VERSION 3.25) # a script has no policies otherwise
+
 # run(COMMAND...): fails with what the command printed if it fails; that is in `output` afterwards.
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
@@ -12,10 +14,16 @@ macro(take_objects other tree)
   set(ENV{CMAKE_CXX_COMPILER_LAUNCHER} "sh;${CMAKE_CURRENT_LIST_DIR}/take_object.sh;${other};${tree}")
 endmacro()
 
-# configure(FOLDER TREE TYPE FLAGS ARGUMENT...): with hsdm in WORK_DIR/prefix, if it is installed.
+# configure(FOLDER TREE TYPE FLAGS ARGUMENT...): with hsdm in WORK_DIR/prefix, if it is installed. (CMake looks into lib64 of a
+# prefix on some systems only.)
 function(configure folder tree type flags)
+  set(package)
+  if(LIBDIR STREQUAL "lib64")
+    set(package -D hsdm_DIR=${WORK_DIR}/prefix/lib64/cmake/hsdm)
+  endif()
   run(${CMAKE_COMMAND} -S ${folder} -B ${tree} -G ${GENERATOR} -D CMAKE_BUILD_TYPE=${type} -D CMAKE_CXX_FLAGS=${flags}
-    -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix -D HSDM_SOURCE_DIR=${HSDM_SOURCE_DIR} ${ARGN})
+    -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix -D HSDM_SOURCE_DIR=${HSDM_SOURCE_DIR}
+    ${package} ${ARGN})
   set(output "${output}" PARENT_SCOPE)
 endfunction()
 
