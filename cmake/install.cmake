@@ -1,14 +1,23 @@
-# hsdm_install(TARGET FOLDER): installs a program or a module into FOLDER of the prefix. A shared libhsdm is found from there
-# by a relative path, so the prefix can be moved.
-function(hsdm_install target folder)
+# Components of `cmake --install`, each with the licence: runtime (the command), library (a shared libhsdm), development
+# (headers, package files, a static libhsdm), modules, examples.
+
+# hsdm_install(TARGET FOLDER COMPONENT): installs a program or a module into FOLDER of the prefix. A shared libhsdm is found
+# from there by a relative path, so the prefix can be moved.
+function(hsdm_install target folder component)
   if(NOT HSDM_INSTALL)
     return()
   endif()
-  install(TARGETS ${target} RUNTIME DESTINATION ${folder} LIBRARY DESTINATION ${folder})
+  install(TARGETS ${target} RUNTIME DESTINATION ${folder} COMPONENT ${component}
+                            LIBRARY DESTINATION ${folder} COMPONENT ${component})
   get_target_property(type hsdm TYPE)
   if(type STREQUAL "SHARED_LIBRARY")
     cmake_path(ABSOLUTE_PATH folder BASE_DIRECTORY ${CMAKE_INSTALL_PREFIX})
     cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_LIBDIR BASE_DIRECTORY ${folder} OUTPUT_VARIABLE to_library)
     set_property(TARGET ${target} APPEND PROPERTY INSTALL_RPATH "$ORIGIN/${to_library}")
   endif()
+endfunction()
+
+# hsdm_install_files(COMPONENT FOLDER FILE...): files as they are, relative to the caller's folder.
+function(hsdm_install_files component folder)
+  install(FILES ${ARGN} DESTINATION ${folder} COMPONENT ${component})
 endfunction()

@@ -15,23 +15,27 @@ namespace {
 std::atomic<const char*> file_now{""};
 std::atomic<const char*> phase_now{"start"};
 
+// Of cases that run side by side each tells its own; threads that set nothing have the process's.
+thread_local const char* file_here = nullptr;
+thread_local const char* phase_here = nullptr;
+
 } // namespace
 
 void set_activity(const char* file, const char* phase) noexcept {
-    file_now = file;
-    phase_now = phase;
+    file_now = file_here = file;
+    set_phase(phase);
 }
 
 void set_phase(const char* phase) noexcept {
-    phase_now = phase;
+    phase_now = phase_here = phase;
 }
 
 const char* current_file() noexcept {
-    return file_now;
+    return file_here ? file_here : file_now.load();
 }
 
 const char* current_phase() noexcept {
-    return phase_now;
+    return phase_here ? phase_here : phase_now.load();
 }
 
 std::string message_of(const std::exception& error) {

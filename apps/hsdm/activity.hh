@@ -12,7 +12,8 @@ void set_activity(const char* file, const char* phase) noexcept;
 /// Another phase of the same file.
 void set_phase(const char* phase) noexcept;
 
-const char* current_file() noexcept; ///< never null; "" before the first
+/// What this thread has set, else what any thread set last; never null, "" before the first.
+const char* current_file() noexcept;
 const char* current_phase() noexcept;
 
 constexpr const char* memory_advice = "; use a smaller --depth, a larger --max-error or a thinned cloud";

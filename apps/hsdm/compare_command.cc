@@ -1,6 +1,7 @@
 // hsdm compare: how far two meshes, two clouds, or a mesh and a cloud are apart.
 
 #include "command.hh"
+#include "comparison_json.hh"
 #include "file_claims.hh"
 #include "load.hh"
 #include "messages.hh"
@@ -12,18 +13,6 @@
 
 namespace hsdm::command {
 namespace {
-
-void fill(JsonText& json, const Distance& distance, const Percentiles& percentiles, double diagonal) {
-    json.begin_object();
-    json.member("max", distance.max);
-    json.member("mean", distance.mean);
-    json.member("rms", distance.rms);
-    json.member("median", percentiles.median);
-    json.member("p95", percentiles.p95);
-    json.member("p99", percentiles.p99);
-    json.member("normalised_max", diagonal > 0 ? distance.max / diagonal : 0);
-    json.end();
-}
 
 void fill(JsonText& json, const std::string& path, const Loaded& loaded) {
     json.begin_object();
@@ -72,12 +61,7 @@ int run_compare(const std::string& path_a, const std::string& path_b, bool as_js
         fill(json, path_a, a);
         json.key("b");
         fill(json, path_b, b);
-        json.key("a_to_b");
-        fill(json, result.a_to_b, result.a_to_b_percentiles, result.diagonal);
-        json.key("b_to_a");
-        fill(json, result.b_to_a, result.b_to_a_percentiles, result.diagonal);
-        json.member("hausdorff", result.hausdorff());
-        json.member("diagonal", result.diagonal);
+        fill_comparison(json, result, "a_to_b", "b_to_a");
         json.end();
         std::cout << std::move(json).take();
         return done;

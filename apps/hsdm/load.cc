@@ -6,6 +6,7 @@
 #include "hsdm/cloud/cloud_frame.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/read_mesh.hh"
+#include "hsdm/quality/mesh_digest.hh"
 #include "hsdm/quality/topology.hh"
 
 #include <cmath>
@@ -90,6 +91,7 @@ void fill_topology(JsonText& json, const PolygonMesh& mesh) {
     json.member("scaled_jacobian_median", shape.scaled_jacobian_median);
     json.member("scaled_jacobian_min", shape.scaled_jacobian_min);
     json.member("edge_length_mean", shape.edge_length_mean);
+    json.member("digest", mesh_digest(mesh));
     json.end();
 }
 

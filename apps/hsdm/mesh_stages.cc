@@ -11,6 +11,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <mutex>
 
 namespace hsdm::command {
 namespace {
@@ -49,6 +50,8 @@ std::string words_of_unit(const std::string& input, double unit) {
 }
 
 Report::Stage run_stage(const std::string& input, const StageCall& call, PolyMesh& mesh) {
+    static std::mutex one_at_a_time; // there is one ModuleWatch, and a module need not know of threads
+    const std::lock_guard held(one_at_a_time);
     const auto start = std::chrono::steady_clock::now();
     Report::Stage done{call.text, "", 0};
     set_phase(call.text.c_str());

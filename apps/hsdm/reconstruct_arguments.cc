@@ -173,6 +173,13 @@ void add_text_options(CLI::App& app, ReconstructArguments& a) {
         ->group(files);
 }
 
+void add_writing_options(CLI::App& app, ReconstructArguments& a) {
+    const std::string files = "Files";
+    app.add_flag("--ascii", a.ascii, "text instead of binary STL and PLY")->group(files);
+    app.add_flag("--plain", a.plain, "positions and facets only: no normals, no vertex properties")
+        ->group(files);
+}
+
 void add_file_options(CLI::App& app, ReconstructArguments& a) {
     app.add_option(
            "input", a.inputs,
@@ -190,14 +197,15 @@ void add_file_options(CLI::App& app, ReconstructArguments& a) {
         ->check(one_of({"off", "stl", "ply", "obj", "om"}))
         ->type_name("off|stl|ply|obj|om")
         ->group(files);
-    app.add_flag("--ascii", a.ascii, "text instead of binary STL and PLY")->group(files);
-    app.add_flag("--plain", a.plain, "positions and facets only: no normals, no vertex properties")
-        ->group(files);
+    add_writing_options(app, a);
     app.add_option("--features", a.features, "sharp edges (x y z x y z) and corners (c x y z) as text")
         ->type_name("FILE")
         ->group(files);
     app.add_option("--report", a.report, "counts, errors and times as JSON; - is standard output")
         ->type_name("FILE")
+        ->group(files);
+    app.add_flag("--intersections", a.intersections,
+                 "count facets that pass through each other, for summary and report; takes its time")
         ->group(files);
     app.add_option("--debug-dir", a.debug_dir, "write the phases (voxels, graph, facets) as files here")
         ->type_name("DIR")
@@ -263,6 +271,7 @@ CaseOptions case_options(const std::string& name, const std::vector<std::string>
     ReconstructArguments arguments;
     add_method_options(app, arguments);
     add_text_options(app, arguments);
+    add_writing_options(app, arguments);
     std::vector<std::string> last_first(words.rbegin(), words.rend()); // as CLI11 takes them
     try {
         app.parse(last_first);
@@ -271,7 +280,7 @@ CaseOptions case_options(const std::string& name, const std::vector<std::string>
     }
     if (!arguments.levels.empty()) throw Error(name, "args: --levels makes several meshes; give one --depth");
     try {
-        return {arguments.options(), arguments.read, arguments.stages};
+        return {arguments.options(), arguments.read, arguments.stages, arguments.ascii, arguments.plain};
     } catch (const UsageError& error) {
         throw Error(name, error.what());
     }

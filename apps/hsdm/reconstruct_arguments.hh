@@ -37,6 +37,7 @@ struct ReconstructArguments {
     std::string output, out_dir, format;
     bool ascii = false, plain = false;
     std::string features, report;
+    bool intersections = false;
     bool quiet = false, verbose = false;
     Progress progress = Progress::automatic;
 
@@ -50,6 +51,8 @@ struct ReconstructArguments {
 void add_method_options(CLI::App& app, ReconstructArguments& arguments);
 /// How text files are read: shared too.
 void add_text_options(CLI::App& app, ReconstructArguments& arguments);
+/// How a mesh is written, whatever the format: shared too.
+void add_writing_options(CLI::App& app, ReconstructArguments& arguments);
 /// Inputs, outputs and messages.
 void add_file_options(CLI::App& app, ReconstructArguments& arguments);
 
@@ -59,6 +62,7 @@ struct CaseOptions {
     ReconstructOptions reconstruct;
     ReadOptions read;
     std::vector<std::string> stages;
+    bool ascii = false, plain = false; ///< of the mesh that is written, if one is
 };
 CaseOptions case_options(const std::string& name, const std::vector<std::string>& words);
 

@@ -12,6 +12,7 @@
 #include "hsdm/errors.hh"
 #include "hsdm/io/json_text.hh"
 #include "hsdm/io/output_target.hh"
+#include "hsdm/pipeline/measure.hh"
 
 #include <chrono>
 #include <iostream>
@@ -190,6 +191,17 @@ private:
                             levels_ ? std::optional<int>(report.grid.depth) : std::nullopt);
     }
 
+    /// Adds what is told of a mesh only if it is asked for.
+    void measure_more(Reconstruction& result) const {
+        const auto start = Clock::now();
+        if (!arguments_.report.empty()) measure_details(result.mesh, result.report.mesh);
+        if (arguments_.intersections) {
+            set_phase("intersections");
+            count_intersections(result.mesh, result.report.mesh);
+        }
+        result.report.seconds.error += seconds_since(start);
+    }
+
     /// Runs the stages on one level and writes it; a failure does not stop the others. Returns whether the
     /// mesh became text for its precision.
     bool write_one(const std::string& name, std::span<const Vec3> points, Reconstruction& result) const {
@@ -199,6 +211,7 @@ private:
         auto start = Clock::now();
         try {
             run_stages(name, stages_, points, arguments_.quiet, result);
+            measure_more(result);
             set_phase("write");
             start = Clock::now();
             as_text = write_outputs(target(report), result.mesh).text_for_precision;

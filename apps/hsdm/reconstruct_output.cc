@@ -88,6 +88,8 @@ void OutputPlan::check_combinations() const {
     const ReconstructArguments& a = arguments_;
     if (a.output.empty() == a.out_dir.empty())
         throw UsageError("one of -o FILE and --out-dir DIR says where the mesh goes");
+    if (a.intersections && a.quiet && a.report.empty())
+        throw UsageError("--intersections: with --quiet only --report FILE tells them; give it too");
     if (a.inputs.size() > 1 && !a.output.empty())
         throw UsageError("-o FILE holds one mesh; with several inputs use --out-dir DIR");
     if (a.inputs.size() > 1 && !a.features.empty())
@@ -162,19 +164,23 @@ bool OutputPlan::uses_standard_output() const {
            || is_standard_output(arguments_.features);
 }
 
+PolygonMesh polygons_to_write(const PolyMesh& mesh, bool plain) {
+    PolygonMesh polygons = to_polygons(mesh);
+    if (plain) {
+        polygons.normals.clear();
+        polygons.properties.clear();
+        polygons.sharp_edges.clear();
+    }
+    return polygons;
+}
+
 WrittenMesh write_outputs(const MeshTarget& target, const PolyMesh& mesh) {
     WrittenMesh written;
     const WriteOptions options{.ascii = target.ascii};
     if (target.format == MeshFormat::om && !target.plain) {
         write_om(target.mesh, mesh); // with status bits and every property
     } else {
-        PolygonMesh polygons = to_polygons(mesh);
-        if (target.plain) {
-            polygons.normals.clear();
-            polygons.properties.clear();
-            polygons.sharp_edges.clear();
-        }
-        written = write_mesh(target.mesh, polygons, target.format, options);
+        written = write_mesh(target.mesh, polygons_to_write(mesh, target.plain), target.format, options);
     }
     if (!target.features.empty()) write_text(target.features, feature_lines(mesh));
     return written;

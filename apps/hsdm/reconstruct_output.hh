@@ -53,6 +53,9 @@ private:
 /// devices without one. Throws UsageError.
 MeshFormat format_for(const std::string& output, const std::string& format);
 
+/// The mesh for the writers; plain: positions and facets only.
+PolygonMesh polygons_to_write(const PolyMesh& mesh, bool plain);
+
 /// Writes mesh and features. Throws Error.
 WrittenMesh write_outputs(const MeshTarget& target, const PolyMesh& mesh);
 

@@ -5,20 +5,22 @@
 #include "command.hh"
 #include "file_claims.hh"
 #include "interrupt.hh"
-#include "mesh_stages.hh"
 #include "messages.hh"
 #include "outcome.hh"
-#include "reconstruct_arguments.hh"
 #include "suite_file.hh"
+#include "suite_run.hh"
+#include "suite_update.hh"
+#include "threads.hh"
+#include "usage.hh"
 
 #include "hsdm/errors.hh"
 #include "hsdm/io/output_target.hh"
 #include "hsdm/io/source_bytes.hh"
+#include "hsdm/io/write_mesh.hh"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <iomanip>
 #include <iostream>
 #include <regex>
@@ -29,40 +31,11 @@ namespace {
 
 struct Arguments {
     std::string suite, filter, json, junit;
+    int jobs = 1;
+    bool update = false;
 
     bool table_gives_way() const { return is_standard_output(json) || is_standard_output(junit); }
 };
-
-Outcome run_case(const Case& one) {
-    Outcome outcome;
-    outcome.name = one.name;
-    const auto start = std::chrono::steady_clock::now();
-    try {
-        const CaseOptions asked = case_options(one.name, one.arguments);
-        const std::vector<StageCall> stages = parse_stages(asked.stages);
-        ReconstructOptions options = asked.reconstruct;
-        options.progress = [](const char* phase, double) {
-            set_phase(phase);
-            return true;
-        };
-        set_activity(one.input.c_str(), "read");
-        PointFile file = read_points(one.input, asked.read);
-        const std::vector<Vec3> points = stages.empty() ? std::vector<Vec3>() : file.cloud.positions;
-        Reconstruction result = reconstruct(std::move(file.cloud), options);
-        run_stages(one.input, stages, points, false, result);
-        result.report.input.file = one.input;
-        result.report.input.dropped_nonfinite += file.nonfinite;
-        outcome.report = Json::parse(to_json(result.report));
-        for (const auto& [key, expected] : one.expect.items()) {
-            const std::string reason = miss(key, find_key(outcome.report, key), expected);
-            if (!reason.empty()) outcome.misses.push_back(reason);
-        }
-    } catch (const std::exception& error) {
-        outcome.misses.push_back(message_of(error));
-    }
-    outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return outcome;
-}
 
 void print_row(std::ostream& out, const Outcome& outcome, int width) {
     const auto count = [&outcome](const char* key) {
@@ -85,14 +58,21 @@ void print_row(std::ostream& out, const Outcome& outcome, int width) {
 /// cannot be written.
 void check_claims(const Arguments& given, const std::vector<Case>& cases) {
     FileClaims claims;
-    claims.reads("the suite", given.suite);
-    for (const Case& one : cases) claims.reads("the input", one.input);
+    if (given.update)
+        claims.writes("--update of " + given.suite, given.suite);
+    else
+        claims.reads("the suite", given.suite);
+    for (const Case& one : cases) {
+        claims.reads("the input", one.input);
+        if (!one.reference.empty()) claims.reads("the reference", one.reference);
+    }
     if (!given.json.empty()) claims.writes("--json " + given.json, given.json);
     if (!given.junit.empty()) claims.writes("--junit " + given.junit, given.junit);
     if (!given.table_gives_way()) claims.writes("the table", "-");
     claims.check();
     for (const std::string* path : {&given.json, &given.junit})
         if (!path->empty()) check_writable(*path);
+    if (given.update) check_writable(given.suite);
 }
 
 /// Resets the activity, which keeps pointers, to the suite's path before the cases are freed.
@@ -101,11 +81,15 @@ struct SuiteAgain {
     ~SuiteAgain() { set_activity(path.c_str(), current_phase()); }
 };
 
-/// A suite that cannot be read is an input that failed; one that says nothing sensible is wrong usage.
-std::vector<Case> read_suite(const std::string& path) {
-    const io::SourceBytes text = io::SourceBytes::open(path);
+std::string text_of(const std::string& path) {
+    const io::SourceBytes bytes = io::SourceBytes::open(path);
+    return std::string(bytes.view());
+}
+
+/// A suite that says nothing sensible is wrong usage; one that cannot be read is an input that failed.
+std::vector<Case> parse_given(const std::string& text, const std::string& path) {
     try {
-        return parse_suite(std::string(text.view()), path);
+        return parse_suite(text, path);
     } catch (const Error& error) {
         throw UsageError(error.what());
     }
@@ -141,44 +125,68 @@ Arguments with_files_alone(Arguments given) {
     return given;
 }
 
-/// Runs the cases, prints a row for each and writes the results, on a signal those that there are. Returns
-/// how many are within tolerance.
-std::size_t run_cases(const std::vector<Case>& cases, const Arguments& given, std::ostream& out) {
-    std::size_t width = 4, within = 0;
+/// Runs the cases, prints a row for each and writes the results, on a signal those that there are.
+std::vector<Outcome> run_and_tell(const std::vector<Case>& cases, const Arguments& given, std::ostream& out) {
+    std::size_t width = 4;
     for (const Case& one : cases) width = std::max(width, printable(one.name).size());
     out << "      " << std::left << std::setw(static_cast<int>(width)) << "case" << std::right
         << "     faces  closed  genus   error %  seconds" << std::endl;
-    std::vector<Outcome> outcomes;
-    LastWork on_signal([&cases, &outcomes, files = with_files_alone(given)] {
-        if (outcomes.size() < cases.size())
-            outcomes.push_back({cases[outcomes.size()].name, nullptr, {"interrupted"}, 0, true});
-        write_results(files, outcomes);
+    SuiteProgress progress;
+    LastWork on_signal([&cases, &progress, files = with_files_alone(given)] {
+        write_results(files, progress.so_far(cases));
     });
-    for (const Case& one : cases) {
-        const Outcome outcome = run_case(one);
-        within += outcome.misses.empty();
-        {
+    run_cases(
+        cases, given.jobs, progress,
+        [&on_signal](const std::function<void()>& make) {
             const auto held = on_signal.lock();
-            outcomes.push_back(outcome);
-        }
-        print_row(out, outcome, static_cast<int>(width)); // may wait for a reader, so without the lock
-    }
+            make();
+        },
+        // may wait for a reader, so without the lock
+        [&out, width](const Outcome& outcome) { print_row(out, outcome, static_cast<int>(width)); });
+    std::vector<Outcome> outcomes = progress.so_far(cases);
     write_results(given, outcomes);
-    return within;
+    return outcomes;
+}
+
+/// Shows what changes in the suite, then writes it. Throws Error if somebody else changed it meanwhile.
+void update_suite(const Arguments& given, const std::string& text, const std::vector<SuiteChange>& changes,
+                  std::ostream& out) {
+    if (changes.empty()) {
+        out << "no expectation of " << printable(given.suite) << " changes\n";
+        return;
+    }
+    for (const SuiteChange& change : changes) out << "      " << printable(line_of(change)) << '\n';
+    out << std::flush;
+    const std::string renewed = with_changes(text, changes);
+    set_activity(given.suite.c_str(), "write");
+    if (text_of(given.suite) != text)
+        throw Error(given.suite, "was changed while its cases ran; it is left as it is now, run them again");
+    write_text(given.suite, renewed);
+    out << changes.size() << (changes.size() == 1 ? " expectation of " : " expectations of ")
+        << printable(given.suite) << " renewed\n";
 }
 
 int run_regress(const Arguments& given) {
+    if (given.update && find_target(given.suite).kind != OutputTarget::Kind::file)
+        throw UsageError("--update writes the suite anew, so it must be a file; " + given.suite + " is none");
     set_activity(given.suite.c_str(), "read");
-    std::vector<Case> cases = read_suite(given.suite);
+    const std::string text = text_of(given.suite);
+    std::vector<Case> cases = parse_given(text, given.suite);
     const SuiteAgain again{given.suite};
     check_claims(given, cases);
     const std::size_t left_out = leave_out(cases, given);
     std::ostream& out = given.table_gives_way() ? std::cerr : std::cout;
-    const std::size_t within = run_cases(cases, given, out);
+    const std::vector<Outcome> outcomes = run_and_tell(cases, given, out);
+    const auto within =
+        std::count_if(outcomes.begin(), outcomes.end(), [](const Outcome& o) { return o.misses.empty(); });
     out << within << " of " << cases.size() << " within tolerance";
     if (left_out > 0) out << ", " << left_out << " left out by --filter";
     out << '\n';
-    return within == cases.size() ? done : failed;
+    const bool all_within = within == std::ssize(cases);
+    if (!given.update) return all_within ? done : failed;
+    const std::vector<SuiteChange> changes = changes_to(cases, outcomes);
+    update_suite(given, text, changes, out);
+    return all_within || mends_all(changes, cases, outcomes) ? done : failed;
 }
 
 } // namespace
@@ -186,16 +194,25 @@ int run_regress(const Arguments& given) {
 void add_regress(CLI::App& app, Run& run) {
     CLI::App* const sub = app.add_subcommand("regress", "reconstruct a list of clouds and check the reports");
     const auto given = std::make_shared<Arguments>();
-    sub->add_option("suite", given->suite, "a JSON file: root, cases [{name, input, args, expect}]")
+    sub->add_option("suite", given->suite,
+                    "a JSON file: root, cases [{name, input, args, reference, output, expect}]")
         ->required();
     sub->add_option("--filter", given->filter, "run the cases in whose names this is found")
         ->type_name("REGEX");
     sub->add_option("--json", given->json, "write the reports and what missed here")->type_name("FILE");
     sub->add_option("--junit", given->junit, "write what missed here, as JUnit's XML")->type_name("FILE");
+    sub->add_option("--jobs", given->jobs, "run so many cases side by side; the results are the same")
+        ->check(whole_number(1, most_threads, "a whole number from 1 to 256"))
+        ->type_name("N")
+        ->capture_default_str();
+    sub->add_flag("--update", given->update,
+                  "show which expectations change by what was found, and write the suite anew with them");
     sub->footer(
         "A case: {\"name\": \"part\", \"input\": \"part.ply\", \"args\": [\"--depth\", \"5\"],\n"
         "         \"expect\": {\"mesh.closed\": true, \"mesh.faces\": {\"value\": 300, \"tolerance\": 10},\n"
         "                    \"error.normalised_max\": {\"max\": 0.02}}}\n"
+        "`reference`: a file with the true surface; `output`: off, stl, ply, obj or om, written and read "
+        "back.\n"
         "Exit status 1 if any case is out of tolerance, 2 if the suite is not as described.");
     sub->callback([&run, given] { run = [given] { return run_regress(*given); }; });
 }

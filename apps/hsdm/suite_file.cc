@@ -1,10 +1,10 @@
 #include "suite_file.hh"
 
+#include "case_report.hh"
 #include "messages.hh"
 
 #include "hsdm/core/number_of.hh"
 #include "hsdm/errors.hh"
-#include "hsdm/report.hh"
 
 #include <algorithm>
 #include <array>
@@ -95,17 +95,6 @@ std::string text_of(const Json& object, const char* key, const std::string& fall
     return text;
 }
 
-/// A report with every key that one can have, but for those in lists, options and rejected.
-const Json& model_report() {
-    static const Json model = [] {
-        Report report;
-        report.input.bbox = {{0, 0, 0}, {0, 0, 0}}; // what is not finite would be left out
-        report.input.first_nonfinite = 0;
-        return Json::parse(to_json(report));
-    }();
-    return model;
-}
-
 /// False for a key that no report has. What is in lists and counts by stage shows only when a report is
 /// there.
 bool may_lead_somewhere(const std::string& dotted) {
@@ -147,10 +136,41 @@ void check_expectations(const Json& expect, const Place& place) {
     }
 }
 
+/// Whether a key is, or leads into, an object of the report.
+bool is_of(const std::string& key, const std::string& object) {
+    return key == object || key.starts_with(object + '.');
+}
+
+/// A true surface that nothing is expected of is as good as none; and without one, or without a file that is
+/// written, nothing can be expected of it.
+void check_extras(const Case& one, const Place& place) {
+    const auto expected = [&one](const char* object) {
+        for (const auto& [key, value] : one.expect.items())
+            if (is_of(key, object)) return true;
+        return false;
+    };
+    if (one.reference.empty() && expected("reference"))
+        place.fail("expects something of a `reference`, but names none");
+    if (!one.reference.empty() && !expected("reference"))
+        place.fail("names a `reference`, but expects nothing of it, such as `reference.hausdorff`");
+    if (one.output.empty() && expected("output"))
+        place.fail("expects something of an `output`, but names no format");
+}
+
+/// Of the case's `output`; empty if it has none.
+std::string output_format(const Json& entry, const Place& place) {
+    static const std::vector<std::string> known{"off", "stl", "ply", "obj", "om"};
+    std::string format = text_of(entry, "output", "", place);
+    if (entry.contains("output") && std::find(known.begin(), known.end(), format) == known.end())
+        place.fail_at(format, "`output` must be off, stl, ply, obj or om", known);
+    return format;
+}
+
 Case parse_case(const Json& entry, const std::filesystem::path& folder, OtherKeys others,
                 const Place& place) {
     if (!entry.is_object()) place.fail("must be an object with an `input`");
-    if (others == OtherKeys::refused) place.check_keys(entry, {"name", "input", "args", "expect"});
+    if (others == OtherKeys::refused)
+        place.check_keys(entry, {"name", "input", "args", "reference", "output", "expect"});
     const std::string input = text_of(entry, "input", "", place);
     if (input.empty()) place.fail("has no `input`");
     Case one;
@@ -166,7 +186,12 @@ Case parse_case(const Json& entry, const std::filesystem::path& folder, OtherKey
     const Json* const expect = member(entry, "expect");
     one.expect = expect ? *expect : Json::object();
     if (!one.expect.is_object()) place.fail("`expect` must be an object");
-    if (others == OtherKeys::refused) check_expectations(one.expect, place);
+    if (others == OtherKeys::left) return one;
+    check_expectations(one.expect, place);
+    if (const std::string reference = text_of(entry, "reference", "", place); !reference.empty())
+        one.reference = (folder / reference).string();
+    one.output = output_format(entry, place);
+    check_extras(one, place);
     return one;
 }
 
@@ -187,9 +212,11 @@ std::vector<Case> parse_suite(const std::string& text, const std::string& path, 
     const auto folder = std::filesystem::path(path).parent_path() / text_of(suite, "root", ".", place);
     if (entries->empty()) place.fail("has no cases, so it would check nothing");
     std::vector<Case> cases;
-    for (const Json& entry : *entries)
+    for (const Json& entry : *entries) {
         cases.push_back(
             parse_case(entry, folder, others, {path, "case " + std::to_string(cases.size() + 1) + ": "}));
+        cases.back().index = cases.size() - 1;
+    }
     return cases;
 }
 

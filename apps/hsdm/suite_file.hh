@@ -15,7 +15,10 @@ using Json = nlohmann::ordered_json;
 struct Case {
     std::string name, input;
     std::vector<std::string> arguments;
-    Json expect; ///< an object: report key, with dots between levels -> what it must be
+    std::string reference; ///< path of the true surface, a mesh or a cloud of it; empty: none
+    std::string output;    ///< format that the mesh is written in and read again: off, stl, ...; empty: none
+    Json expect;           ///< an object: report key, with dots between levels -> what it must be
+    std::size_t index = 0; ///< in the suite, from 0
 };
 
 /// What is done about keys that suites do not have; `left` is for suites that other programs read, too.

@@ -79,6 +79,10 @@ std::string dropped_words(const Report::Dropped& dropped) {
            + ' ' + number(dropped.where[1], 6) + ' ' + number(dropped.where[2], 6);
 }
 
+std::string intersection_words(const Report::Mesh& mesh) {
+    return mesh.intersections ? ", " + plural(*mesh.intersections, "intersection", "intersections") : "";
+}
+
 } // namespace
 
 std::string grouped(std::size_t value) {
@@ -127,7 +131,7 @@ std::string summary_of(const Report& r, const std::string& written) {
         << plural(r.mesh.vertices, "vertex", "vertices") << ", " << plural(r.mesh.faces, "face", "faces")
         << " (" << grouped(r.mesh.quads) << " quads, " << grouped(r.mesh.triangles) << " triangles), "
         << plural(r.features.sharp_edges, "sharp edge", "sharp edges") << "\ntopology  "
-        << topology_words(r.mesh) << small_component_words(r);
+        << topology_words(r.mesh) << intersection_words(r.mesh) << small_component_words(r);
     for (const Report::Dropped& dropped : r.dropped) out << "\ndropped   " << dropped_words(dropped);
     for (const Report::Stage& stage : r.stages)
         out << "\nstage     " << printable(stage.call + ": " + stage.summary);
@@ -165,8 +169,9 @@ std::string details_of(const Report& r) {
 std::string line_of(const Report& r, const std::string& written) {
     Text out;
     out << printable(written) << ": " << grouped(r.input.points) << " points, depth " << r.grid.depth << ", "
-        << grouped(r.mesh.faces) << " faces, " << topology_words(r.mesh) << small_component_words(r)
-        << ", error " << number(100 * r.error.normalised_max, 3) << " %, " << seconds(r.seconds.total);
+        << grouped(r.mesh.faces) << " faces, " << topology_words(r.mesh) << intersection_words(r.mesh)
+        << small_component_words(r) << ", error " << number(100 * r.error.normalised_max, 3) << " %, "
+        << seconds(r.seconds.total);
     for (const Report::Dropped& dropped : r.dropped) out << "; dropped " << dropped_words(dropped);
     out << "\n";
     return std::move(out).take();

@@ -19,6 +19,7 @@
 #include "hsdm/polygon_mesh.hh"
 #include "hsdm/quality/compare.hh"
 #include "hsdm/quality/distance.hh"
+#include "hsdm/quality/mesh_digest.hh"
 #include "hsdm/quality/percentiles.hh"
 #include "hsdm/quality/sampling.hh"
 #include "hsdm/quality/topology.hh"

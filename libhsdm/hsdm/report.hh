@@ -11,6 +11,15 @@
 
 namespace hsdm {
 
+/// What is measured of a mesh only where it is asked for.
+struct MeshDetails {
+    std::string digest;             ///< mesh_digest()
+    double quad_share = 0,          ///< FacetShape::quad_share
+        scaled_jacobian_median = 0, ///< FacetShape::scaled_jacobian_median
+        scaled_jacobian_min = 0,    ///< FacetShape::scaled_jacobian_min
+        edge_length_mean = 0;       ///< FacetShape::edge_length_mean
+};
+
 /// Counts, errors and times of one reconstruction. Lengths are in the cloud's units, times in seconds.
 struct Report {
     std::map<std::string, std::string> options; ///< as given or chosen, by their command-line names
@@ -55,7 +64,11 @@ struct Report {
         long euler = 0,             ///< V - E + F
             genus = 0;              ///< as Topology::genus()
         bool closed = false;        ///< no boundary edge
-    } mesh;                         ///< the resulting mesh
+        /// Nothing unless measure_details() was called.
+        std::optional<MeshDetails> details;
+        /// Pairs of facets that pass through each other; nothing unless count_intersections() was called.
+        std::optional<std::size_t> intersections;
+    } mesh; ///< the resulting mesh
 
     /// Phase 3; zero without ReconstructOptions::classify.
     struct Features {

@@ -85,7 +85,8 @@ TEST_CASE("info measures meshes of any size", "[cli]") {
         Json expected = box["mesh"];
         expected["edge_length_mean"] = std::ldexp(box["mesh"]["edge_length_mean"].get<double>(), exponent);
         expected["signed_volume"] = std::ldexp(6.0, 3 * exponent);
-        if (std::abs(exponent) == 500) expected.erase("signed_volume"); // no number holds it
+        if (std::abs(exponent) == 500) expected.erase("signed_volume");       // no number holds it
+        for (Json* mesh : {&expected, &other["mesh"]}) mesh->erase("digest"); // of other positions
         CHECK(other["mesh"] == expected);
         CHECK(run(folder, "info other.off").out.find("(outward)") != std::string::npos);
     }

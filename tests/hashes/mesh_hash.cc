@@ -1,53 +1,43 @@
 #include "hashes/mesh_hash.hh"
 
+#include "hsdm/core/hash.hh"
 #include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/quality/mesh_digest.hh"
 
-#include <bit>
+#include <span>
+#include <type_traits>
 
 namespace hsdm::test {
 namespace {
 
-class Hash {
-public:
-    void add(std::uint64_t word) {
-        value_ = (value_ ^ word) * 0x9e3779b97f4a7c15u;
-        value_ ^= value_ >> 32; // what the product moved up reaches the low bits too
-    }
-    void add(double number) { add(std::bit_cast<std::uint64_t>(number)); }
-    void add(const Vec3& p) {
-        for (const double x : p) add(x);
-    }
-    template <class T>
-    void add(const std::vector<T>& all) {
-        add(static_cast<std::uint64_t>(all.size())); // so that no two lists make one
-        for (const T& one : all) add(one);
-    }
-    void add(const std::vector<Index>& all) {
-        add(static_cast<std::uint64_t>(all.size()));
-        for (const Index i : all) add(static_cast<std::uint64_t>(i));
-    }
-    std::uint64_t value() const { return value_; }
+void add(OrderedHash& hash, std::span<const double> all) {
+    for (const double x : all) hash.add(x);
+}
 
-private:
-    std::uint64_t value_ = 0x243f6a8885a308d3u;
-};
+/// With their number, so that no two lists make one.
+template <class T>
+void add_list(OrderedHash& hash, const std::vector<T>& all) {
+    hash.add(std::uint64_t{all.size()});
+    if constexpr (std::is_same_v<T, Vec3>) {
+        for (const Vec3& one : all) add(hash, {one.data(), 3});
+    } else {
+        add(hash, all);
+    }
+}
 
 } // namespace
 
 MeshHash hash_of(const PolyMesh& mesh) {
     const PolygonMesh polygons = to_polygons(mesh);
-    Hash geometry, features;
-    geometry.add(polygons.positions);
-    geometry.add(polygons.corners);
-    geometry.add(polygons.first);
-    features.add(polygons.normals);
+    OrderedHash features;
+    add_list(features, polygons.normals);
     for (const VertexProperty& property : polygons.properties) {
         for (const char c : property.name) features.add(static_cast<std::uint64_t>(c));
-        features.add(property.values);
+        add_list(features, property.values);
     }
     for (const auto e : mesh.edges())
         if (mesh.status(e).feature()) features.add(static_cast<std::uint64_t>(e.idx()));
-    return {geometry.value(), features.value()};
+    return {mesh_hash(polygons), features.value()};
 }
 
 } // namespace hsdm::test

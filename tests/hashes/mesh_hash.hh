@@ -8,7 +8,7 @@
 namespace hsdm::test {
 
 struct MeshHash {
-    std::uint64_t geometry = 0; ///< of the positions' bits, the corners and the facets' sizes
+    std::uint64_t geometry = 0; ///< mesh_hash(): positions, corners and sizes of facets
     std::uint64_t features = 0; ///< of the vertices' normals and properties and the sharp edges: phase 3
 
     bool operator==(const MeshHash&) const = default;

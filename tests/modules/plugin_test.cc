@@ -136,6 +136,18 @@ TEST_CASE("what is no module is refused with the reason") {
     CHECK_THAT(refusal("folder", odd), Contains("is no regular file"));
 }
 
+TEST_CASE("a module with assertions runs in a program without, and the other way about") {
+    PolyMesh mesh = to_mesh(support::divided_cube(2)).mesh;
+    const Plugin other = load_plugin("other_assertions", OwnModules(HSDM_ODD_MODULE_DIR));
+#ifdef NDEBUG
+    CHECK(other.process(mesh) == "96 corners, assertions on");
+#else
+    CHECK(other.process(mesh) == "96 corners, assertions off");
+#endif
+    CHECK(mesh.n_faces() == 48);
+    CHECK(fault_of(mesh).empty());
+}
+
 TEST_CASE("no code of a module runs when it is listed, nor when it is of another build") {
     const OwnModules odd(HSDM_ODD_MODULE_DIR);
     const std::string trace = odd / "loaded";

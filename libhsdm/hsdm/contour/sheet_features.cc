@@ -6,6 +6,7 @@
 #include "hsdm/mesh/facet_normal.hh"
 
 #include <cmath>
+#include <utility>
 
 namespace hsdm {
 namespace {

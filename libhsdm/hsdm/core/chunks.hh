@@ -2,14 +2,12 @@
 // Fixed chunks: the unit of parallel work. Their size never follows the number of threads, so neither do
 // results.
 
-#include "hsdm/core/interruption.hh"
 #include "hsdm/types.hh"
 
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
+#include <memory>
 #include <numeric>
+#include <type_traits>
 #include <vector>
 
 namespace hsdm {
@@ -23,14 +21,18 @@ inline std::size_t chunk_count(std::size_t n, std::size_t chunk_size) {
     return (n + chunk_size - 1) / chunk_size;
 }
 
+/// Calls task(context, i) for each i below n, in parallel. TBB stands behind it alone: its headers take
+/// longer to compile than all else that includes this one, and a call by address costs nothing beside a task.
+void run_tasks(std::size_t n, void (*task)(void* context, std::size_t i), void* context);
+
 /// Calls f(i) for each i below n, in parallel, each a task of its own: they should be few and large. Throws
 /// Cancelled if an Interruption says so.
 template <class F>
 void for_each_task(std::size_t n, F&& f) {
-    tbb::parallel_for(std::size_t{0}, n, [&f](std::size_t i) {
-        Interruption::poll();
-        f(i);
-    });
+    using Function = std::remove_reference_t<F>;
+    run_tasks(
+        n, [](void* function, std::size_t i) { (*static_cast<Function*>(function))(i); },
+        const_cast<void*>(static_cast<const void*>(std::addressof(f))));
 }
 
 /// Calls f(begin, end, chunk) for consecutive ranges of [0, n), in parallel.
@@ -86,14 +88,6 @@ void sort_unique(std::vector<T>& values) {
     std::sort(values.begin(), values.end());
     values.erase(std::unique(values.begin(), values.end()), values.end());
 }
-
-/// The same for many values, in parallel.
-template <class T>
-void parallel_sort_unique(std::vector<T>& values) {
-    tbb::parallel_sort(values.begin(), values.end());
-    values.erase(std::unique(values.begin(), values.end()), values.end());
-}
-
 /// Turns counts stored one place to the right, {0, n0, n1, ...}, into first positions {0, n0, n0 + n1, ...}.
 inline void counts_to_first(std::vector<Index>& first) {
     std::partial_sum(first.begin(), first.end(), first.begin());

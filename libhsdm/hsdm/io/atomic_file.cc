@@ -157,7 +157,7 @@ void AtomicFile::commit() {
     if (has_links) {
         copy_into_target();
     } else if (::rename(temporary_.c_str(), target_.path.c_str()) != 0) {
-        registry.take_back_complete();
+        registry.take_back_complete(path_);
         fail("cannot put the new file in place");
     }
     registry.drop_temporary(temporary_);
@@ -172,7 +172,7 @@ void AtomicFile::copy_into_target() {
             && errno != EOPNOTSUPP)) {
         const int error = errno;
         if (to >= 0) ::close(to);
-        FileRegistry::of_process().take_back_complete();
+        FileRegistry::of_process().take_back_complete(path_);
         errno = error;
         fail("cannot write into the file, which has other names (hard links) too");
     }
@@ -183,7 +183,7 @@ void AtomicFile::copy_into_target() {
         ::unlink(temporary_.c_str());
         return;
     }
-    FileRegistry::of_process().take_back_complete();
+    FileRegistry::of_process().take_back_complete(path_);
     FileRegistry::of_process().drop_temporary(temporary_);
     const std::string kept = std::exchange(temporary_, {});
     errno = error;

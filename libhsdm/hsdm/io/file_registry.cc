@@ -31,12 +31,18 @@ void FileRegistry::end_stream(const std::string& name) {
     if (found != written_.in_part.end()) written_.in_part.erase(found);
 }
 
+bool FileRegistry::is_temporary(const std::string& name) const noexcept {
+    return std::find(temporaries_.begin(), temporaries_.end(), name) != temporaries_.end();
+}
+
 void FileRegistry::note_complete(const std::string& name) {
+    if (is_temporary(name)) return;
     if (written_.complete_count < FilesWritten::most_names) written_.complete.push_back(name);
     ++written_.complete_count;
 }
 
-void FileRegistry::take_back_complete() noexcept {
+void FileRegistry::take_back_complete(const std::string& name) noexcept {
+    if (is_temporary(name)) return;
     if (written_.complete.size() == written_.complete_count) written_.complete.pop_back();
     --written_.complete_count;
 }

@@ -39,15 +39,18 @@ public:
     void drop_temporary(const std::string& path) noexcept;
     void begin_stream(const std::string& name);
     void end_stream(const std::string& name);
-    /// To be called before the file is put in place, since it may throw; take_back() where that fails.
+    /// To be called before the file is put in place, since it may throw; take_back_complete() where that
+    /// fails. A file that is to be removed in the end, such as a ScratchFile, is none that stands.
     void note_complete(const std::string& name);
-    void take_back_complete() noexcept;
+    void take_back_complete(const std::string& name) noexcept;
     void note_leftover(std::string path) { leftovers_.push_back(std::move(path)); }
 
 private:
     friend const FilesWritten& abandon_files() noexcept;
     friend void remove_temporaries_unless_locked() noexcept;
     friend std::vector<std::string> take_removed_leftovers();
+
+    bool is_temporary(const std::string& name) const noexcept;
 
     std::mutex mutex_;
     std::vector<std::string> temporaries_, leftovers_;

@@ -7,6 +7,8 @@
 #include "hsdm/mesh/manifold.hh"
 #include "hsdm/mesh/remove_facets.hh"
 
+#include <atomic>
+
 namespace hsdm {
 namespace {
 

@@ -2,6 +2,8 @@
 
 #include "hsdm/mesh/edge_table.hh"
 
+#include <atomic>
+
 namespace hsdm {
 namespace {
 

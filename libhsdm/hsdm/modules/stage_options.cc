@@ -57,9 +57,9 @@ const ValueKind* find_kind(std::string_view name) {
 
 /// Whether the value is one of the words, which have `|` between them.
 bool is_among(std::string_view words, std::string_view value) {
-    const std::string list = "|" + std::string(words) + "|";
+    const auto barred = [](std::string_view text) { return std::string(1, '|').append(text).append(1, '|'); };
     return value.find('|') == std::string_view::npos
-           && list.find("|" + std::string(value) + "|") != std::string::npos;
+           && barred(words).find(barred(value)) != std::string::npos;
 }
 
 /// Takes what stands before the mark, and the mark, off the text. Throws Error where there is no mark.

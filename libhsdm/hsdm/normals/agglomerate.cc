@@ -1,6 +1,7 @@
 #include "hsdm/normals/agglomerate.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/parallel_sort_unique.hh"
 #include "hsdm/normals/constants.hh"
 
 #include <algorithm>

@@ -3,6 +3,7 @@
 #include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/huge_pages.hh"
+#include "hsdm/core/interruption.hh"
 #include "hsdm/core/lanes.hh"
 #include "hsdm/normals/constants.hh"
 

@@ -7,7 +7,9 @@
 #include "hsdm/pipeline/adaptive_grid.hh"
 #include "hsdm/quality/distance.hh"
 #include "hsdm/quality/distance_to_surface.hh"
+#include "hsdm/quality/mesh_digest.hh"
 #include "hsdm/quality/topology.hh"
+#include "hsdm/spatial/self_intersections.hh"
 
 #include <tbb/parallel_invoke.h>
 
@@ -77,6 +79,14 @@ void count_classes(const PolyMesh& mesh, Report::Features& features) {
     }
 }
 
+/// Divides positions of extreme size by a power of two in which products of lengths are numbers; returns it.
+double into_own_unit(std::vector<Vec3>& positions) {
+    const double unit = CloudFrame(bounds_of(positions)).unit();
+    if (unit != 1)
+        for (Vec3& p : positions) p /= unit;
+    return unit;
+}
+
 } // namespace
 
 std::vector<Vec3> points_as_read(const PointCloud& cloud, const CloudFrame& frame, const Octree& octree) {
@@ -142,6 +152,21 @@ void measure_again(const PolyMesh& mesh, std::span<const Vec3> points, Report& r
     report.error.points_to_mesh_mean = distance.mean * unit;
     report.error.points_to_mesh_rms = distance.rms * unit;
     report.error.normalised_max = report.error.points_to_mesh_max / report.input.bbox.diagonal();
+}
+
+void measure_details(const PolyMesh& mesh, Report::Mesh& report) {
+    PolygonMesh facets = to_polygons(mesh);
+    const std::string digest = mesh_digest(facets);
+    const double unit = into_own_unit(facets.positions);
+    const FacetShape shape = measure_shape(facets);
+    report.details = {digest, shape.quad_share, shape.scaled_jacobian_median, shape.scaled_jacobian_min,
+                      shape.edge_length_mean * unit};
+}
+
+void count_intersections(const PolyMesh& mesh, Report::Mesh& report) {
+    PolygonMesh facets = to_polygons(mesh);
+    into_own_unit(facets.positions);
+    report.intersections = find_self_intersections(facets).facet_pairs.size();
 }
 
 } // namespace hsdm

@@ -19,4 +19,9 @@ void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, Polyg
 /// goes.
 void measure_again(const PolyMesh& mesh, std::span<const Vec3> points, Report& report);
 
+/// Digest and shape of a finished mesh. O(corners).
+void measure_details(const PolyMesh& mesh, Report::Mesh& report);
+/// Its self-intersections, exactly: as long as a few phases of the reconstruction take.
+void count_intersections(const PolyMesh& mesh, Report::Mesh& report);
+
 } // namespace hsdm

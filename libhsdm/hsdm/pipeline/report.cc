@@ -56,6 +56,14 @@ void fill(JsonText& json, const Report::Mesh& mesh) {
     json.member("euler", mesh.euler);
     json.member("genus", mesh.genus);
     json.member("closed", mesh.closed);
+    if (const auto& details = mesh.details) {
+        json.member("digest", details->digest);
+        json.member("quad_share", details->quad_share);
+        json.member("scaled_jacobian_median", details->scaled_jacobian_median);
+        json.member("scaled_jacobian_min", details->scaled_jacobian_min);
+        json.member("edge_length_mean", details->edge_length_mean);
+    }
+    if (mesh.intersections) json.member("intersections", *mesh.intersections);
     json.end();
 }
 

@@ -3,6 +3,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/disjoint_sets.hh"
 #include "hsdm/core/groups.hh"
+#include "hsdm/core/parallel_sort_unique.hh"
 #include "hsdm/simplify/border_vertices.hh"
 #include "hsdm/simplify/divide_by_planes.hh"
 

@@ -4,6 +4,7 @@
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/edge_table.hh"
 
+#include <atomic>
 #include <limits>
 
 namespace hsdm {

@@ -1,6 +1,7 @@
 #include "hsdm/spatial/self_intersections.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/parallel_sort_unique.hh"
 #include "hsdm/mesh/part_of.hh"
 #include "hsdm/mesh/weld.hh"
 #include "hsdm/spatial/flat_fans.hh"

@@ -1,0 +1,196 @@
+#include "suite_run.hh"
+
+#include "activity.hh"
+#include "case_report.hh"
+#include "load.hh"
+#include "mesh_stages.hh"
+#include "output_check.hh"
+#include "reconstruct_arguments.hh"
+
+#include "hsdm/errors.hh"
+#include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/pipeline/measure.hh"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+namespace hsdm::command {
+namespace {
+
+Reconstruction reconstruct_case(const Case& one, const CaseOptions& asked) {
+    const std::vector<StageCall> stages = parse_stages(asked.stages);
+    ReconstructOptions options = asked.reconstruct;
+    options.progress = [](const char* phase, double) {
+        set_phase(phase);
+        return true;
+    };
+    set_activity(one.input.c_str(), "read");
+    PointFile file = read_points(one.input, asked.read);
+    const std::vector<Vec3> points = stages.empty() ? std::vector<Vec3>() : file.cloud.positions;
+    Reconstruction result = reconstruct(std::move(file.cloud), options);
+    run_stages(one.input, stages, points, false, result);
+    result.report.input.file = one.input;
+    result.report.input.dropped_nonfinite += file.nonfinite;
+    return result;
+}
+
+Comparison compare_to_reference(const std::string& path, const PolyMesh& mesh) {
+    const Loaded reference = load(path);
+    set_phase("compare");
+    return compare(to_polygons(mesh), reference.mesh);
+}
+
+/// Measures what the case asks for beyond the report; the misses are those of the file that it wrote.
+CaseReport measure_case(const Case& one, const CaseOptions& asked, Reconstruction&& made,
+                        std::vector<std::string>& misses) {
+    CaseReport all;
+    measure_details(made.mesh, made.report.mesh);
+    set_phase("intersections");
+    if (one.expect.contains("mesh.intersections")) count_intersections(made.mesh, made.report.mesh);
+    if (!one.reference.empty()) all.reference = compare_to_reference(one.reference, made.mesh);
+    set_activity(one.input.c_str(), "write");
+    if (!one.output.empty()) {
+        OutputCheck check = check_output(one, asked, made.mesh);
+        all.output = std::move(check.output);
+        if (!check.fault.empty()) misses.push_back("the " + one.output + " file " + check.fault);
+    }
+    all.report = std::move(made.report);
+    return all;
+}
+
+CaseOptions options_of(const Case& one) {
+    CaseOptions asked = case_options(one.name, one.arguments);
+    if (one.output.empty() && (asked.ascii || asked.plain))
+        throw Error(one.name, std::string("args: ") + (asked.ascii ? "--ascii" : "--plain")
+                                  + " is about a file, but the case has no `output`; add one");
+    return asked;
+}
+
+/// Cases that are taken one by one by several threads.
+class Queue {
+public:
+    Queue(std::span<const Case> cases, SuiteProgress& progress,
+          const std::function<void(const std::function<void()>&)>& change)
+        : cases_(cases), progress_(progress), change_(change) {}
+
+    /// Runs one case after the other while there are any.
+    void work() noexcept {
+        try {
+            for (std::size_t i = next_++; i < cases_.size(); i = next_++) run_one(i);
+        } catch (...) {
+            const std::lock_guard lock(mutex_);
+            error_ = std::current_exception();
+            next_ = cases_.size();
+        }
+        done_.notify_all();
+    }
+
+    /// Runs the next case on this thread.
+    void run_next() { run_one(next_++); }
+
+    /// What has not begun does not begin any more.
+    void close() { next_ = cases_.size(); }
+
+    /// Waits for a case that others run. Throws what ended one of them.
+    void wait_for(std::size_t i) {
+        std::unique_lock lock(mutex_);
+        done_.wait(lock, [&] { return is_done_[i] || error_; });
+        if (!is_done_[i]) std::rethrow_exception(error_);
+    }
+
+private:
+    void run_one(std::size_t i) {
+        change_([&] { progress_.begun[i] = true; });
+        Outcome outcome = run_case(cases_[i]);
+        change_([&] { progress_.outcomes[i] = std::move(outcome); });
+        {
+            const std::lock_guard lock(mutex_);
+            is_done_[i] = true;
+        }
+        done_.notify_all();
+    }
+
+    std::span<const Case> cases_;
+    SuiteProgress& progress_;
+    const std::function<void(const std::function<void()>&)>& change_;
+    std::atomic<std::size_t> next_ = 0;
+    std::mutex mutex_;
+    std::condition_variable done_;
+    std::vector<char> is_done_ = std::vector<char>(cases_.size());
+    std::exception_ptr error_;
+};
+
+/// As many as can be had, up to a number.
+std::vector<std::jthread> start_workers(int count, Queue& queue) {
+    std::vector<std::jthread> threads;
+    threads.reserve(static_cast<std::size_t>(count));
+    try {
+        for (int i = 0; i < count; ++i) threads.emplace_back([&queue] { queue.work(); });
+    } catch (const std::system_error&) { // the others do the work
+    }
+    return threads;
+}
+
+} // namespace
+
+Outcome run_case(const Case& one) {
+    Outcome outcome;
+    outcome.name = one.name;
+    const auto start = std::chrono::steady_clock::now();
+    try {
+        const CaseOptions asked = options_of(one);
+        Reconstruction made = reconstruct_case(one, asked);
+        outcome.report = to_json(measure_case(one, asked, std::move(made), outcome.misses));
+        for (const auto& [key, expected] : one.expect.items()) {
+            const std::string reason = miss(key, find_key(outcome.report, key), expected);
+            if (!reason.empty()) outcome.misses.push_back(reason);
+        }
+    } catch (const std::exception& error) {
+        outcome.misses.push_back(message_of(error));
+    }
+    outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return outcome;
+}
+
+std::vector<Outcome> SuiteProgress::so_far(std::span<const Case> cases) const {
+    std::vector<Outcome> all;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        if (outcomes[i])
+            all.push_back(*outcomes[i]);
+        else if (begun[i])
+            all.push_back({cases[i].name, nullptr, {"interrupted"}, 0, true});
+    }
+    return all;
+}
+
+void run_cases(std::span<const Case> cases, int jobs, SuiteProgress& progress,
+               const std::function<void(const std::function<void()>& make)>& change,
+               const std::function<void(const Outcome&)>& show) {
+    progress.outcomes.assign(cases.size(), std::nullopt);
+    progress.begun.assign(cases.size(), 0);
+    Queue queue(cases, progress, change);
+    const int threads = std::min(jobs, static_cast<int>(std::min<std::size_t>(cases.size(), 256)));
+    const std::vector<std::jthread> others =
+        threads > 1 ? start_workers(threads, queue) : std::vector<std::jthread>();
+    struct Closing {
+        Queue& queue;
+        ~Closing() { queue.close(); } // the threads are waited for next, also where something was thrown
+    } const closing{queue};
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        if (others.empty()) {
+            queue.run_next();
+        } else {
+            queue.wait_for(i);
+        }
+        show(*progress.outcomes[i]);
+    }
+}
+
+} // namespace hsdm::command
