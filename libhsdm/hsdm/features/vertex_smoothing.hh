@@ -8,9 +8,9 @@
 namespace hsdm {
 
 struct VertexSmoothingOptions {
-    int rounds = 3;           ///< >= 0: each filters the facets' normals and moves the vertices towards them
-    int normal_rounds = 5;    ///< >= 0: of filtering in each round
-    int position_rounds = 10; ///< >= 0: of moving in each round
+    int rounds = 3;          ///< >= 0: each filters the facets' normals and moves the vertices towards them
+    int normal_rounds = 5;   ///< >= 0: of filtering in each round
+    int position_rounds = 5; ///< >= 0: of moving in each round
     /// Radians, in (0, pi): neighbours whose normals differ by this count for 0.61 of one that agrees, by
     /// twice this for 0.14. Larger is smoother, smaller keeps unmarked folds better. 20 degrees.
     double similarity_angle = 0.35;
@@ -18,7 +18,7 @@ struct VertexSmoothingOptions {
     /// turns by more. 60 degrees.
     double corner_angle = 1.05;
     /// The mesh's units, > 0: no vertex moves farther; without it `max_drift_share` says how far.
-    std::optional<double> max_drift;
+    std::optional<double> max_drift = std::nullopt;
     /// Mean edges, > 0: the same as a share of their length.
     double max_drift_share = 0.25;
     /// Share of the volume, >= 0, by which that of a closed mesh may change. One with a boundary encloses
