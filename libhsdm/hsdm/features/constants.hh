@@ -17,7 +17,8 @@ HSDM_TUNED double most_of_own = 2;
 namespace hsdm::vertex_smoothings {
 
 /// share: of a facet's area, as seen along its filtered normal, that one step has to leave.
-/// Why: by trial; steps go along normals, so a facet that loses nine tenths is about to turn over.
-HSDM_TUNED double least_area_left = 0.1;
+/// Why: steps go along normals, so a facet that loses nine tenths is about to turn over. No reconstruction
+/// asks for it.
+inline constexpr double least_area_left = 0.1;
 
 } // namespace hsdm::vertex_smoothings
