@@ -69,7 +69,7 @@ double radius_of(const Vec3& p) {
     return std::hypot(p[0], p[1]);
 }
 
-void mark(PolyMeshD& mesh, int a, int b) {
+void mark_edge(PolyMeshD& mesh, int a, int b) {
     const auto h = mesh.find_halfedge(VertexHandle(a), VertexHandle(b));
     REQUIRE(h.is_valid());
     mesh.status(h.edge()).set_feature(true);
@@ -174,7 +174,7 @@ TEMPLATE_TEST_CASE("a prism with marked rims comes to a cylinder between flat ca
 TEST_CASE("a crease of which nothing else is known is a uniform cubic B-spline", "[subdivision]") {
     const auto bumpy = sheet(6, [](Index x, Index y) { return 0.3 * ((x * y + x) % 3); });
     auto mesh = build<PolyMeshD>(bumpy);
-    for (int x = 0; x < 6; ++x) mark(mesh, 21 + x, 22 + x);
+    for (int x = 0; x < 6; ++x) mark_edge(mesh, 21 + x, 22 + x);
     const auto before = mesh;
     divide(mesh);
     for (int v = 22; v < 27; ++v) {
@@ -195,8 +195,8 @@ TEST_CASE("a dart moves as a smooth vertex does, the edge it ends stays sharp", 
     for (const auto scheme : {SubdivisionScheme::catmull_clark, SubdivisionScheme::loop}) {
         auto plain = build<PolyMeshD>(scheme == SubdivisionScheme::loop ? support::cut_in_two(bumpy) : bumpy);
         auto marked = plain;
-        mark(marked, 23, 24);
-        mark(marked, 24, 25);
+        mark_edge(marked, 23, 24);
+        mark_edge(marked, 24, 25);
         const auto before = marked;
         const auto sharp = before.find_halfedge(VertexHandle(24), VertexHandle(25)).edge();
         divide(plain, {.scheme = scheme});

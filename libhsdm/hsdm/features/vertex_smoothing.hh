@@ -8,7 +8,9 @@
 namespace hsdm {
 
 struct VertexSmoothingOptions {
-    int rounds = 3;          ///< >= 0: each filters the facets' normals and moves the vertices towards them
+    /// >= 0: each filters the facets' normals and moves the vertices towards them. 3 for noise of a fifth of
+    /// an edge; more round what is coarse.
+    int rounds = 1;
     int normal_rounds = 5;   ///< >= 0: of filtering in each round
     int position_rounds = 5; ///< >= 0: of moving in each round
     /// Radians, in (0, pi): neighbours whose normals differ by this count for 0.61 of one that agrees, by

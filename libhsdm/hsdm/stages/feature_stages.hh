@@ -16,7 +16,7 @@
 #define HSDM_SMOOTH_DESCRIPTION                                                                              \
     "moves vertices along filtered normals; sharp edges marked, corners and the boundary are kept"
 #define HSDM_SMOOTH_OPTIONS                                                                                  \
-    "rounds=3 (count): of filtering normals and moving vertices; "                                           \
+    "rounds=1 (count): of filtering normals and moving vertices, more for noise; "                           \
     "normal-rounds=5 (count): of filtering in each; position-rounds=5 (count): of moving in each; "          \
     "similarity-degrees=20 (angle): normals that differ by more hardly count; "                              \
     "corner-degrees=60 (angle): turn of a crease that makes a corner; "                                      \
