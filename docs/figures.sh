@@ -1,5 +1,5 @@
 #!/bin/sh
-# sh docs/figures.sh: builds hsdm_figures and draws the figures of docs/sheets.md and docs/adaptive.md into docs/images.
+# sh docs/figures.sh: builds hsdm_figures and draws the figures of docs/sheets.md, docs/adaptive.md and docs/features.md into docs/images.
 # With a folder as argument, into that. Takes the tree build/release (cmake --preset release).
 set -eu
 images=$(realpath "${1:-$(dirname "$0")/images}")

@@ -31,6 +31,8 @@ int main(int argc, char** argv) {
         {"adaptive-collapses", draw_collapses},
         {"adaptive-flips", draw_flips},
         {"adaptive-bound", draw_error_bound},
+        {"features-smoothed", draw_smoothed},
+        {"features-divided", draw_divided},
     };
     try {
         for (const auto& [name, draw] : figures) draw().save(std::string(argv[1]) + "/" + name + ".svg");

@@ -1,5 +1,5 @@
 #pragma once
-// The figures of docs/sheets.md and docs/adaptive.md, by name.
+// The figures of docs/sheets.md, docs/adaptive.md and docs/features.md, by name.
 
 #include "canvas.hh"
 
@@ -21,5 +21,8 @@ Canvas draw_patches();
 Canvas draw_collapses();
 Canvas draw_flips();
 Canvas draw_error_bound();
+
+Canvas draw_smoothed();
+Canvas draw_divided();
 
 } // namespace hsdm::figures

@@ -4,16 +4,20 @@
 #include "hsdm/mesh/check_links.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/quality/topology.hh"
+#include "hsdm/reconstruct.hh"
 #include "hsdm/stages/decimate_mesh.hh"
 #include "hsdm/stages/pair_triangles.hh"
 #include "hsdm/stages/stages.hh"
+#include "support/check.hh"
 #include "support/meshes.hh"
+#include "support/sample.hh"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <map>
 #include <numbers>
+#include <set>
 
 using namespace hsdm;
 using Catch::Matchers::Contains;
@@ -29,6 +33,17 @@ double marked_length(const PolyMesh& mesh) {
     for (const auto e : mesh.edges())
         if (e.feature()) length += mesh.calc_edge_length(e);
     return length;
+}
+
+/// Where the vertices of the class corner are.
+std::set<std::array<double, 3>> corner_places(const PolyMesh& mesh) {
+    OpenMesh::VPropHandleT<std::uint8_t> classes;
+    REQUIRE(mesh.get_property_handle(classes, vertex_class_property));
+    std::set<std::array<double, 3>> places;
+    for (const auto v : mesh.vertices())
+        if (mesh.property(classes, v) == static_cast<std::uint8_t>(VertexClass::corner))
+            places.insert({mesh.point(v)[0], mesh.point(v)[1], mesh.point(v)[2]});
+    return places;
 }
 
 PolyMesh classified(const PolygonMesh& shape) {
@@ -122,6 +137,52 @@ TEST_CASE("triangles of a cube become its quads again, and none crosses a crease
     CHECK(measure_topology(to_polygons(mesh)).euler == 2);
     CHECK_THROWS_AS(pair_triangles(mesh, {.max_bend = 0}), OptionError);
     CHECK_THROWS_AS(pair_triangles(mesh, {.max_skew = 2}), OptionError);
+}
+
+TEST_CASE("decimated, smoothed and divided, a part keeps its creases, its corners and its topology") {
+    const PointCloud scan = support::sample(support::mechanical_part(), {.points = 60000});
+    PolyMesh mesh = reconstruct(scan, {.depth = 5}).mesh;
+    const double length = marked_length(mesh);
+    const Topology before = measure_topology(to_polygons(mesh));
+    const std::set<std::array<double, 3>> corners = corner_places(mesh);
+    REQUIRE(corners.size() > 20);
+    for (const char* call : {"decimate:ratio=0.125", "smooth", "subdivide"}) {
+        INFO(call << ": " << run(mesh, call));
+        CHECK(fault_of(mesh) == "");
+        CHECK(support::faults(to_polygons(mesh)) == "");
+        CHECK(marked_length(mesh) > 0.98 * length);
+        CHECK(corner_places(mesh) == corners);
+        const Topology after = measure_topology(to_polygons(mesh));
+        CHECK(after.euler == before.euler);
+        CHECK(after.signed_volume == Approx(before.signed_volume).epsilon(0.03));
+    }
+}
+
+TEST_CASE("smoothing and division do what their options ask for, and tell what they did") {
+    PolyMesh mesh = classified(test::noisy(test::sphere(12), 0.01));
+    PolyMesh held = mesh;
+    CHECK_THAT(run(mesh, "smooth:rounds=2,max-drift=0.5"), Contains(" vertices moved, by "));
+    run(held, "smooth:rounds=2,max-drift=0.001");
+    PolyMesh none = held;
+    CHECK_THAT(run(none, "smooth:rounds=0"), Contains("0 of "));
+    double farthest = 0, far_apart = 0;
+    for (const auto v : held.vertices()) {
+        farthest = std::max(farthest, (held.point(v) - none.point(v)).norm());
+        far_apart = std::max(far_apart, (held.point(v) - mesh.point(v)).norm());
+    }
+    CHECK(farthest == 0);
+    CHECK(far_apart > 0.001);
+
+    PolyMesh cube = classified(support::divided_cube(2));
+    CHECK(run(cube, "subdivide:rounds=2")
+          == "24 facets divided into 384 by catmull-clark; 96 sharp edges, 8 corners kept");
+    CHECK_THROWS_WITH(run(cube, "subdivide:scheme=loop"), Contains("subdivide: scheme loop: facet 0"));
+    run(cube, "triangulate");
+    CHECK_THAT(run(cube, "subdivide"), Contains(" by loop; "));
+    CHECK_THAT(run(cube, "subdivide:scheme=catmull-clark"), Contains(" by catmull-clark; "));
+    CHECK(marked_length(cube) == Approx(24));
+    CHECK_THROWS_AS(run(cube, "subdivide:rounds=11"), OptionError);
+    CHECK_THROWS_AS(run(cube, "smooth:max-drift-share=0"), OptionError);
 }
 
 TEST_CASE("small components go, by facets or by share, and the largest stays") {

@@ -12,3 +12,13 @@ namespace hsdm::normal_filters {
 HSDM_TUNED double most_of_own = 2;
 
 } // namespace hsdm::normal_filters
+
+// vertex_smoothing.hh
+namespace hsdm::vertex_smoothings {
+
+/// share: of a facet's area, as seen along its filtered normal, that one step has to leave.
+/// Why: steps go along normals, so a facet that loses nine tenths is about to turn over. No reconstruction
+/// asks for it.
+inline constexpr double least_area_left = 0.1;
+
+} // namespace hsdm::vertex_smoothings

@@ -2,7 +2,9 @@
 
 #include "hsdm/errors.hh"
 #include "hsdm/features/AnisotropicNormalSmootherT.hh"
+#include "hsdm/features/AnisotropicSmootherT.hh"
 #include "hsdm/features/FeatureClassifierT.hh"
+#include "hsdm/features/FeatureSubdividerT.hh"
 
 #include <algorithm>
 #include <charconv>
@@ -11,6 +13,8 @@ namespace hsdm {
 
 template class FeatureClassifierT<PolyMesh>;
 template class AnisotropicNormalSmootherT<PolyMesh>;
+template class AnisotropicSmootherT<PolyMesh>;
+template class FeatureSubdividerT<PolyMesh>;
 
 namespace {
 
@@ -55,6 +59,18 @@ std::size_t smooth_normals(PolyMesh& mesh, const NormalSmoothingOptions& options
     AnisotropicNormalSmootherT<PolyMesh> smoother(mesh);
     smoother.initialize(options);
     return smoother.smooth(options.rounds);
+}
+
+VertexSmoothingResult smooth_vertices(PolyMesh& mesh, const VertexSmoothingOptions& options) {
+    AnisotropicSmootherT<PolyMesh> smoother(mesh);
+    smoother.initialize(options);
+    return smoother.smooth();
+}
+
+SubdivisionCounts subdivide(PolyMesh& mesh, const SubdivisionOptions& options) {
+    FeatureSubdividerT<PolyMesh> subdivider(mesh);
+    subdivider.initialize(options);
+    return subdivider.divide();
 }
 
 namespace {

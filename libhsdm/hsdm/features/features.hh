@@ -1,8 +1,10 @@
 #pragma once
 // Phase 3 on a reconstruction's mesh (section 3.3). For meshes of your own type: FeatureClassifierT,
-// AnisotropicNormalSmootherT.
+// AnisotropicNormalSmootherT, AnisotropicSmootherT, FeatureSubdividerT.
 
 #include "hsdm/features/feature_options.hh"
+#include "hsdm/features/subdivision.hh"
+#include "hsdm/features/vertex_smoothing.hh"
 #include "hsdm/mesh/feature_hints.hh"
 #include "hsdm/mesh_types.hh"
 
@@ -19,6 +21,14 @@ FeatureCounts classify_features(PolyMesh& mesh, const FeatureOptions& options = 
 /// Smooths normals within the sharp edges marked, `options.rounds` times, and sets the standard vertex
 /// normals: see AnisotropicNormalSmootherT. Returns the number of facets whose normal still turned.
 std::size_t smooth_normals(PolyMesh& mesh, const NormalSmoothingOptions& options = {});
+
+/// Moves vertices along filtered normals; sharp edges marked, corners and the boundary are kept: see
+/// AnisotropicSmootherT. Throws OptionError.
+VertexSmoothingResult smooth_vertices(PolyMesh& mesh, const VertexSmoothingOptions& options = {});
+
+/// Divides facets, with sharp edges marked and the boundary as creases: see FeatureSubdividerT. Throws
+/// OptionError.
+SubdivisionCounts subdivide(PolyMesh& mesh, const SubdivisionOptions& options = {});
 
 /// Marks the edges that the classes and normals of their vertices tell of, on a mesh where no edge is marked,
 /// as of a file that holds `hsdm_vertex_class`, `hsdm_normal_count` and `hsdm_normals` but no status bits:

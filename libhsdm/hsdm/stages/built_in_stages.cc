@@ -114,6 +114,8 @@ const std::vector<Stage>& built_in_stages() {
                  "crease-degrees=35 (angle): no unmarked edge becomes sharper; "
                  "corner-degrees=60 (angle): no crease or boundary turns by more where a vertex goes",
                  decimate_stage),
+        built_in("smooth", HSDM_SMOOTH_DESCRIPTION, HSDM_SMOOTH_OPTIONS, smooth_stage),
+        built_in("subdivide", HSDM_SUBDIVIDE_DESCRIPTION, HSDM_SUBDIVIDE_OPTIONS, subdivide_stage),
         built_in(
             "fill-holes", "closes holes by facets over their own vertices",
             "max-edges= (count): holes of more stay, 3 or more; max-diameter= (length): larger holes stay",
