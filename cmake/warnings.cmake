@@ -84,9 +84,10 @@ function(hsdm_instrument_for_fuzzers library)
   endif()
 endfunction()
 
-# hsdm_trace_comparisons(SOURCE...): what the current folder's sources compare is recorded after all.
+# hsdm_trace_comparisons(SOURCE...): what the current folder's sources compare is recorded after all, unless they are
+# compiled together: a file with options of its own would be compiled alone, in three times the time.
 function(hsdm_trace_comparisons)
-  if(HSDM_BUILD_FUZZERS)
+  if(HSDM_BUILD_FUZZERS AND NOT HSDM_UNITY)
     list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE sources)
     set_property(SOURCE ${sources} TARGET_DIRECTORY hsdm
                  APPEND PROPERTY COMPILE_OPTIONS -fsanitize-coverage=trace-cmp)

@@ -18,7 +18,7 @@ using namespace hsdm::test;
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 using Catch::Matchers::Contains;
 
 /// The members of a case of the sphere's scan, but for its `expect`.
@@ -29,13 +29,13 @@ CommandResult regress(const Folder& folder, const std::string& cases, const std:
     return run(folder, "regress suite.json " + arguments);
 }
 
-Json results_of(const Folder& folder, const std::string& name = "r.json") {
-    return Json::parse(read_file(folder / name));
+OrderedJson results_of(const Folder& folder, const std::string& name = "r.json") {
+    return OrderedJson::parse(read_file(folder / name));
 }
 
 /// Without what differs from run to run.
-Json without_times(Json results) {
-    for (Json& one : results) {
+OrderedJson without_times(OrderedJson results) {
+    for (OrderedJson& one : results) {
         one.erase("seconds");
         if (one["report"].is_null()) continue;
         for (const char* key : {"seconds", "peak_memory_bytes", "threads"}) one["report"].erase(key);
@@ -44,7 +44,7 @@ Json without_times(Json results) {
 }
 
 std::string digest_of(const Folder& folder, const std::string& mesh) {
-    return Json::parse(run(folder, "info --json " + mesh).out)["mesh"]["digest"];
+    return OrderedJson::parse(run(folder, "info --json " + mesh).out)["mesh"]["digest"];
 }
 
 class ScanFolder : public Folder {
@@ -79,14 +79,14 @@ TEST_CASE("a mesh has one digest, whatever it is written as, and a case can expe
 TEST_CASE("a case can expect shape as info tells it, and a count of intersections", "[cli]") {
     const ScanFolder folder;
     REQUIRE(run(folder, "reconstruct scan.xyz --depth 3 --quiet -o a.off").status == 0);
-    const Json told = Json::parse(run(folder, "info --json a.off").out)["mesh"];
+    const OrderedJson told = OrderedJson::parse(run(folder, "info --json a.off").out)["mesh"];
     REQUIRE(regress(folder,
                     "{" + sphere_case + R"(, "expect": {"mesh.scaled_jacobian_min": {"min": -1}}},{)"
                         + sphere_case + R"(, "expect": {"mesh.intersections": 0}})",
                     "--json r.json")
                 .status
             == 0);
-    const Json results = results_of(folder);
+    const OrderedJson results = results_of(folder);
     for (const char* key :
          {"quad_share", "scaled_jacobian_median", "scaled_jacobian_min", "edge_length_mean", "digest"})
         CHECK(results[0]["report"]["mesh"][key] == told[key]);
@@ -109,8 +109,9 @@ TEST_CASE("a case can be held against the true surface, a mesh or a cloud", "[cl
         INFO(result.out << result.err);
         CHECK(result.status == 0);
         REQUIRE(run(folder, "reconstruct scan.xyz --depth 3 --quiet -o a.off").status == 0);
-        const Json compared = Json::parse(run(folder, std::string("compare --json a.off ") + reference).out);
-        const Json said = results_of(folder)[0]["report"]["reference"];
+        const OrderedJson compared =
+            OrderedJson::parse(run(folder, std::string("compare --json a.off ") + reference).out);
+        const OrderedJson said = results_of(folder)[0]["report"]["reference"];
         CHECK(said["mesh_to_reference"] == compared["a_to_b"]);
         CHECK(said["reference_to_mesh"] == compared["b_to_a"]);
     }
@@ -137,7 +138,7 @@ TEST_CASE("a case can have its mesh written in a format and read back", "[cli]")
                 "--json r.json");
             INFO(result.out << result.err);
             CHECK(result.status == 0);
-            const Json report = results_of(folder)[0]["report"];
+            const OrderedJson report = results_of(folder)[0]["report"];
             CHECK(report["output"]["format"] == format);
             CHECK((report["output"]["digest"] == report["mesh"]["digest"]) == (format != std::string("stl")));
         }
@@ -226,7 +227,7 @@ TEST_CASE("an update writes what was found and leaves every other byte", "[cli]"
     const CommandResult updated = run(folder, "regress suite.json --update --json r.json");
     INFO(updated.out << updated.err);
     CHECK(updated.status == 0);
-    const Json mesh = results_of(folder)[0]["report"]["mesh"];
+    const OrderedJson mesh = results_of(folder)[0]["report"]["mesh"];
     const std::string error = results_of(folder)[0]["report"]["error"]["normalised_max"].dump();
     std::string expected = before;
     const auto replace = [&expected](const std::string& from, const std::string& to) {
@@ -258,7 +259,7 @@ TEST_CASE("an update keeps to the cases of the filter, and to what it can mend",
     const std::string wrong = sphere_case + R"(, "expect": {"mesh.genus": 5})";
     const std::string cases = R"({"name": "a", )" + wrong + R"(}, {"name": "b", )" + wrong + "}";
     CHECK(regress(folder, cases, "--update --filter b").status == 0);
-    const Json suite = results_of(folder, "suite.json");
+    const OrderedJson suite = results_of(folder, "suite.json");
     CHECK(suite["cases"][0]["expect"]["mesh.genus"] == 5);
     CHECK(suite["cases"][1]["expect"]["mesh.genus"] == 0);
     for (const char* hopeless :

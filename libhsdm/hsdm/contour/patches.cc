@@ -2,6 +2,7 @@
 
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/parallel_sort_unique.hh"
 
 #include <tbb/enumerable_thread_specific.h>
 

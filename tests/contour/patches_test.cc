@@ -1,0 +1,145 @@
+#include "hsdm/contour/patches.hh"
+#include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/reconstruct.hh"
+#include "support/check.hh"
+#include "support/sample.hh"
+
+#include <catch2/catch.hpp>
+
+#include <set>
+
+using namespace hsdm;
+using namespace hsdm::support;
+
+namespace {
+
+constexpr double voxel = 1.0 / 16;
+
+/// Eight points to a squared voxel, as the scans have on which walls and gaps were measured.
+PointCloud scan(const Solid& solid, double area, std::uint64_t seed) {
+    return sample(solid, {.points = static_cast<std::size_t>(8 * area / (voxel * voxel)), .seed = seed});
+}
+
+Solid fin(double width) {
+    return box({2, 1, 0.3}) | box({width, 0.8, 0.8}).placed(turned({0, 0, 1}, 0, {0, 0, 0.4}));
+}
+
+Solid slot(double width) {
+    return box({2, 1, 0.8}) - box({width, 2, 0.8}).placed(turned({0, 0, 1}, 0, {0, 0, 0.4}));
+}
+
+/// Two boxes that face each other.
+Solid pair(double gap) {
+    const double away = 0.5 + 0.5 * gap;
+    return box({1, 1, 0.5}).placed(turned({0, 0, 1}, 0, {-away, 0, 0}))
+           | box({1, 1, 0.5}).placed(turned({0, 0, 1}, 0, {away, 0, 0}));
+}
+
+/// The sets of a scan, before and after their patches were separated.
+struct Separated {
+    explicit Separated(const PointCloud& cloud)
+        : octree(build_octree(cloud)),
+          level(extract_level(octree, 5)),
+          related({}, level.voxel_size),
+          before(build_normal_sets(octree, level)),
+          after(before),
+          counts(separate_patches(octree, level, related, after)) {}
+
+    Octree octree;
+    OctreeLevel level;
+    RelationTest related;
+    NormalSets before, after;
+    PatchCounts counts;
+};
+
+/// Which points are in one set, whatever its number.
+std::set<std::set<Index>> partition(const NormalSets& sets) {
+    std::vector<std::set<Index>> members(sets.sets.size());
+    for (std::size_t i = 0; i < sets.of_point.size(); ++i)
+        if (sets.of_point[i] != no_index) members[sets.of_point[i]].insert(static_cast<Index>(i));
+    return {members.begin(), members.end()};
+}
+
+PointCloud turned_inside_out(PointCloud cloud) {
+    for (Vec3& n : cloud.normals) n = -n;
+    return cloud;
+}
+
+} // namespace
+
+TEST_CASE("the ground on both sides of a wall below a voxel is two patches", "[contour]") {
+    const Separated fins(scan(fin(0.5 * voxel).placed(random_pose(1)), 8, 1));
+    CHECK(fins.counts.split > 10);
+    CHECK(fins.counts.apart > 50);
+    REQUIRE(fins.after.sets.size() == fins.before.sets.size() + fins.counts.split);
+    REQUIRE(fins.after.first.back() == fins.after.sets.size());
+    REQUIRE(fins.after.first_apart.size() == fins.after.sets.size() + 1);
+    // Each set is what its points make, and no two sets share one.
+    std::vector<std::vector<Index>> points(fins.after.sets.size());
+    for (std::size_t i = 0; i < fins.octree.size(); ++i)
+        if (fins.after.of_point[i] != no_index)
+            points[fins.after.of_point[i]].push_back(static_cast<Index>(i));
+    for (Index v = 0; v < fins.level.size(); ++v)
+        for (Index s = fins.after.first[v]; s < fins.after.first[v + 1]; ++s) {
+            CHECK(fins.after.sets[s].voxel == v);
+            const NormalSet again = measure_set(fins.octree, points[s], v, fins.level.voxel_size);
+            CHECK(fins.after.sets[s].count == again.count);
+            CHECK((fins.after.sets[s].centroid - again.centroid).norm() == 0);
+        }
+}
+
+TEST_CASE("sets apart have no relation, whichever is asked first, and others keep theirs", "[contour]") {
+    const Separated slots(scan(slot(0.5 * voxel).placed(random_pose(2)), 8, 2));
+    REQUIRE(slots.counts.apart > 0);
+    const RelationTest patches({}, slots.level.voxel_size, slots.after);
+    const auto& sets = slots.after.sets;
+    for (Index a = 0; a < sets.size(); ++a) {
+        const auto first = slots.after.apart.begin() + slots.after.first_apart[a];
+        const auto last = slots.after.apart.begin() + slots.after.first_apart[a + 1];
+        for (Index b = 0; b < sets.size(); ++b) {
+            const bool apart = std::find(first, last, b) != last;
+            if (apart) CHECK(patches(sets[a], sets[b]) == Relation::none);
+            if (apart) CHECK(patches(sets[b], sets[a]) == Relation::none);
+            if (!apart && patches(sets[a], sets[b]) != slots.related(sets[a], sets[b]))
+                FAIL(a << " and " << b);
+        }
+    }
+}
+
+TEST_CASE("a gap is a wall of what is around it: turned normals make the same patches", "[contour]") {
+    for (const Solid& solid : {fin(0.5 * voxel), slot(0.4 * voxel), pair(0.5 * voxel)}) {
+        const PointCloud cloud = scan(solid.placed(random_pose(3)), 8, 3);
+        const Separated out(cloud), in(turned_inside_out(cloud));
+        CHECK(out.counts.split > 0);
+        CHECK(partition(out.after) == partition(in.after));
+        CHECK(out.after.first_apart == in.after.first_apart);
+        CHECK(out.after.apart == in.after.apart);
+    }
+}
+
+TEST_CASE("thick parts have no walls, and the rim of a plate is one patch", "[contour]") {
+    const Separated block(scan(box({1, 0.9, 0.8}).placed(random_pose(4)), 5, 4));
+    CHECK(block.counts.crowded == 0);
+    CHECK(partition(block.before) == partition(block.after));
+    const Separated plate(scan(box({1, 0.9, 0.7 * voxel}).placed(random_pose(5)), 2, 5));
+    CHECK(plate.counts.crowded > 50);
+    CHECK(plate.counts.split == 0);
+    CHECK(plate.counts.apart == 0);
+}
+
+TEST_CASE("walls on a ground and gaps of three quarters of a voxel have the topology of the solid",
+          "[contour]") {
+    for (std::uint64_t seed : {1u, 2u, 3u, 4u}) {
+        INFO("seed " << seed);
+        for (const auto& [solid, pieces] :
+             {std::pair(fin(0.75 * voxel), std::size_t{1}), std::pair(slot(0.75 * voxel), std::size_t{1}),
+              std::pair(pair(0.75 * voxel), std::size_t{2})}) {
+            const Reconstruction part =
+                reconstruct(scan(solid.placed(random_pose(seed)), 8, seed), {.voxel_size = voxel});
+            CHECK(faults(to_polygons(part.mesh)).empty());
+            CHECK(part.report.mesh.closed);
+            CHECK(part.report.mesh.components == pieces);
+            CHECK(part.report.mesh.euler == 2 * static_cast<long>(pieces));
+        }
+    }
+}
