@@ -8,6 +8,7 @@
 
 #include "hsdm/features/features.hh"
 #include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/reconstruct.hh"
 #include "hsdm/stages/decimate_mesh.hh"
 
@@ -17,15 +18,16 @@
 namespace hsdm::figures {
 namespace {
 
-/// A cube whose corners a sphere cuts off: its creases are straight, round, and both.
-PolyMesh round_cube() {
-    return reconstruct(scan(support::box({1, 1, 1}) & support::sphere(0.64), 60000), {.depth = 4}).mesh;
+/// A slice of a shaft: creases that are straight, and round ones, which meet in eight corners.
+PolyMesh slice() {
+    return reconstruct(scan(support::box({1.2, 0.6, 0.6}) & support::cylinder(0.5, 1), 60000), {.depth = 4})
+        .mesh;
 }
 
 const std::string ground = "#ececec";
 const Style edge_style{.stroke = "#777777", .width = 0.6};
 const Style crease_style{.stroke = colour::red, .width = 1.8};
-const Vec3 towards(0.9, 0.5, 0.8);
+const Vec3 towards(0.7, 0.9, 0.75);
 
 /// A mesh with its marks; those that do not face the viewer are left out.
 void draw_marked(Canvas& canvas, const PolyMesh& mesh, const std::vector<Vec3>& frame, double left,
@@ -52,7 +54,7 @@ std::vector<Vec3> places_of(const PolyMesh& mesh) {
 } // namespace
 
 Canvas draw_smoothed() {
-    PolyMesh mesh = round_cube();
+    PolyMesh mesh = slice();
     const std::vector<Vec3> frame = places_of(mesh);
     support::Random random(3);
     OpenMesh::VPropHandleT<std::uint8_t> classes;
@@ -63,13 +65,13 @@ Canvas draw_smoothed() {
     mesh.update_face_normals();
     Canvas canvas(620, 340);
     draw_marked(canvas, mesh, frame, 14, "noise of a seventh of an edge");
-    smooth_vertices(mesh);
+    smooth_vertices(mesh, {.rounds = 3, .corner_angle = 2}); // noise turns creases by more than 60 degrees
     draw_marked(canvas, mesh, frame, 319, "smoothed");
     return canvas;
 }
 
 Canvas draw_divided() {
-    PolyMesh mesh = round_cube();
+    PolyMesh mesh = slice();
     const std::vector<Vec3> frame = places_of(mesh);
     decimate_mesh(mesh, {.facets = mesh.n_faces() / 4});
     Canvas canvas(930, 340);
