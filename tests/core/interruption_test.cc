@@ -1,4 +1,5 @@
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/interruption.hh"
 #include "hsdm/errors.hh"
 
 #include <catch2/catch.hpp>
