@@ -38,7 +38,7 @@ SubdivisionCounts divide(Mesh& mesh, const SubdivisionOptions& options = {}) {
 }
 
 template <class Mesh>
-void classify(Mesh& mesh) {
+void mark_features(Mesh& mesh) {
     FeatureClassifierT<Mesh> classifier(mesh);
     classifier.initialize();
     classifier.classify();
@@ -82,7 +82,7 @@ void mark_edge(PolyMeshD& mesh, int a, int b) {
 TEMPLATE_TEST_CASE("a cube with its edges marked stays the cube to the last bit", "[subdivision]",
                    EVERY_KIND_OF_MESH) {
     auto mesh = build<TestType>(support::divided_cube(2));
-    classify(mesh);
+    mark_features(mesh);
     const auto before = mesh;
     const SubdivisionCounts counts = divide(mesh, {.rounds = 3});
     CHECK(counts.corners == 8);
@@ -105,7 +105,7 @@ TEMPLATE_TEST_CASE("a cube with its edges marked stays the cube to the last bit"
     CHECK(topology.closed());
     CHECK(topology.signed_volume == Approx(8));
     // By the classifier's own judgement nothing else is sharp.
-    classify(mesh);
+    mark_features(mesh);
     CHECK(marked_length_of(mesh) == 24);
 }
 
@@ -142,7 +142,7 @@ TEMPLATE_TEST_CASE("Loop's weights: a tetrahedron without marks", "[subdivision]
 TEMPLATE_TEST_CASE("a prism with marked rims comes to a cylinder between flat caps", "[subdivision]",
                    EVERY_KIND_OF_MESH) {
     auto mesh = build<TestType>(capped_cylinder(24, 4));
-    classify(mesh);
+    mark_features(mesh);
     double last = 1;
     for (int round = 0; round < 3; ++round) {
         divide(mesh);
