@@ -39,7 +39,7 @@ OrderedJson without_times(OrderedJson results) {
         one.erase("seconds");
         if (one["report"].is_null()) continue;
         for (const char* key : {"seconds", "peak_memory_bytes", "threads"}) one["report"].erase(key);
-        for (Json& stage : one["report"]["stages"]) stage.erase("seconds");
+        for (OrderedJson& stage : one["report"]["stages"]) stage.erase("seconds");
     }
     return results;
 }

@@ -13,11 +13,12 @@ using namespace hsdm::support;
 
 namespace {
 
-constexpr double voxel = 1.0 / 16;
+constexpr double voxel_edge = 1.0 / 16;
 
 /// Eight points to a squared voxel, as the scans have on which walls and gaps were measured.
-PointCloud scan(const Solid& solid, double area, std::uint64_t seed) {
-    return sample(solid, {.points = static_cast<std::size_t>(8 * area / (voxel * voxel)), .seed = seed});
+PointCloud evenly_scanned(const Solid& solid, double area, std::uint64_t seed) {
+    return sample(solid,
+                  {.points = static_cast<std::size_t>(8 * area / (voxel_edge * voxel_edge)), .seed = seed});
 }
 
 Solid fin(double width) {
@@ -68,7 +69,7 @@ PointCloud turned_inside_out(PointCloud cloud) {
 } // namespace
 
 TEST_CASE("the ground on both sides of a wall below a voxel is two patches", "[contour]") {
-    const Separated fins(scan(fin(0.5 * voxel).placed(random_pose(1)), 8, 1));
+    const Separated fins(evenly_scanned(fin(0.5 * voxel_edge).placed(random_pose(1)), 8, 1));
     CHECK(fins.counts.split > 10);
     CHECK(fins.counts.apart > 50);
     REQUIRE(fins.after.sets.size() == fins.before.sets.size() + fins.counts.split);
@@ -89,7 +90,7 @@ TEST_CASE("the ground on both sides of a wall below a voxel is two patches", "[c
 }
 
 TEST_CASE("sets apart have no relation, whichever is asked first, and others keep theirs", "[contour]") {
-    const Separated slots(scan(slot(0.5 * voxel).placed(random_pose(2)), 8, 2));
+    const Separated slots(evenly_scanned(slot(0.5 * voxel_edge).placed(random_pose(2)), 8, 2));
     REQUIRE(slots.counts.apart > 0);
     const RelationTest patches({}, slots.level.voxel_size, slots.after);
     const auto& sets = slots.after.sets;
@@ -107,8 +108,8 @@ TEST_CASE("sets apart have no relation, whichever is asked first, and others kee
 }
 
 TEST_CASE("a gap is a wall of what is around it: turned normals make the same patches", "[contour]") {
-    for (const Solid& solid : {fin(0.5 * voxel), slot(0.4 * voxel), pair(0.5 * voxel)}) {
-        const PointCloud cloud = scan(solid.placed(random_pose(3)), 8, 3);
+    for (const Solid& solid : {fin(0.5 * voxel_edge), slot(0.4 * voxel_edge), pair(0.5 * voxel_edge)}) {
+        const PointCloud cloud = evenly_scanned(solid.placed(random_pose(3)), 8, 3);
         const Separated out(cloud), in(turned_inside_out(cloud));
         CHECK(out.counts.split > 0);
         CHECK(partition(out.after) == partition(in.after));
@@ -118,10 +119,10 @@ TEST_CASE("a gap is a wall of what is around it: turned normals make the same pa
 }
 
 TEST_CASE("thick parts have no walls, and the rim of a plate is one patch", "[contour]") {
-    const Separated block(scan(box({1, 0.9, 0.8}).placed(random_pose(4)), 5, 4));
+    const Separated block(evenly_scanned(box({1, 0.9, 0.8}).placed(random_pose(4)), 5, 4));
     CHECK(block.counts.crowded == 0);
     CHECK(partition(block.before) == partition(block.after));
-    const Separated plate(scan(box({1, 0.9, 0.7 * voxel}).placed(random_pose(5)), 2, 5));
+    const Separated plate(evenly_scanned(box({1, 0.9, 0.7 * voxel_edge}).placed(random_pose(5)), 2, 5));
     CHECK(plate.counts.crowded > 50);
     CHECK(plate.counts.split == 0);
     CHECK(plate.counts.apart == 0);
@@ -131,11 +132,11 @@ TEST_CASE("walls on a ground and gaps of three quarters of a voxel have the topo
           "[contour]") {
     for (std::uint64_t seed : {1u, 2u, 3u, 4u}) {
         INFO("seed " << seed);
-        for (const auto& [solid, pieces] :
-             {std::pair(fin(0.75 * voxel), std::size_t{1}), std::pair(slot(0.75 * voxel), std::size_t{1}),
-              std::pair(pair(0.75 * voxel), std::size_t{2})}) {
-            const Reconstruction part =
-                reconstruct(scan(solid.placed(random_pose(seed)), 8, seed), {.voxel_size = voxel});
+        for (const auto& [solid, pieces] : {std::pair(fin(0.75 * voxel_edge), std::size_t{1}),
+                                            std::pair(slot(0.75 * voxel_edge), std::size_t{1}),
+                                            std::pair(pair(0.75 * voxel_edge), std::size_t{2})}) {
+            const Reconstruction part = reconstruct(evenly_scanned(solid.placed(random_pose(seed)), 8, seed),
+                                                    {.voxel_size = voxel_edge});
             CHECK(faults(to_polygons(part.mesh)).empty());
             CHECK(part.report.mesh.closed);
             CHECK(part.report.mesh.components == pieces);
