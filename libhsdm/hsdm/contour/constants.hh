@@ -100,6 +100,18 @@ inline constexpr double beside = 1.0;
 /// of a four hundredth.
 inline constexpr double reach = 2;
 
+/// cosine: of the normals of a wall and of the surface that it parts.
+/// Why: 45 degrees: less steep, they are parts of one curved surface or the two sides of a blade.
+inline constexpr double most_along = 0.7;
+
+/// points: of a sheet in the voxels round one; fewer are strays with odd normals and no wall.
+/// Why: by trial; a sheet that passes two voxels has more in any scan that shows walls.
+inline constexpr double least_points = 8;
+
+/// share: the same, of the points of the fullest set there.
+/// Why: a wall that fills half of a voxel's width in three voxels has more, odd normals of noise have not.
+inline constexpr double least_share = 0.5;
+
 /// points: of a set that are looked at, evenly taken.
 /// Why: four by four in a voxel.
 inline constexpr unsigned most_samples = 16;

@@ -40,8 +40,9 @@ struct Scratch {
 /// gaps.
 class Neighborhood {
 public:
-    Neighborhood(const Octree& octree, const OctreeLevel& level, const NormalSets& sets, Scratch& scratch)
-        : octree_(octree), level_(level), sets_(sets), at_(scratch) {}
+    Neighborhood(const Octree& octree, const OctreeLevel& level, const RelationTest& related,
+                 const NormalSets& sets, Scratch& scratch)
+        : octree_(octree), level_(level), related_(related), sets_(sets), at_(scratch) {}
 
     /// False if no wall or gap is near.
     bool gather(Index voxel) {
@@ -76,6 +77,8 @@ public:
             if ((dp < 0) == (dq < 0)) continue;
             const Vec3 x = p + way * (dp / (dp - dq));
             if ((x - disc.middle).sqrnorm() > disc.squared_radius) continue;
+            if (std::abs(normal | disc.normal) > patches::most_along)
+                continue; // it does not stand on the surface
             // At the mouth of a gap its sheets lie below the surface, on the ground of a wall above it; the
             // rim of a wall and the bottom of a gap, which join the two sheets, see them on the other side.
             if (((normal | (disc.point - x)) < 0) != disc.is_gap) continue;
@@ -137,16 +140,21 @@ private:
         }
     }
 
-    /// Spacing of the samples on the sheet of a set, from the fullest of its sets around.
+    /// Spacing of the samples on the sheet of a set, from the fullest of its sets around; 0 if they are too
+    /// few for a sheet.
     double spacing(std::size_t i) const {
         double points = 0, squares = 0;
+        Index scanned = 0, most = 0; // points of the sheet, of the fullest set
         for (std::size_t j = 0; j < size(); ++j) {
-            if ((set(i).normal | set(j).normal) < relations::same_sheet_cosine) continue;
+            most = std::max(most, set(j).count);
+            if (j != i && related_(set(i), set(j)) != Relation::smooth) continue;
             const auto n = static_cast<double>(samples(j).size());
             points += n;
             squares += n * n;
+            scanned += set(j).count;
         }
-        return level_.voxel_size * std::sqrt(points / squares);
+        const double least = std::max(patches::least_points, patches::least_share * most);
+        return scanned < least ? 0 : level_.voxel_size * std::sqrt(points / squares);
     }
 
     /// The discs between a set and the nearest opposite sheet before it and behind it.
@@ -154,6 +162,7 @@ private:
         const NormalSet& a = set(i);
         const double h = level_.voxel_size;
         const double radius = patches::reach * spacing(i);
+        if (radius == 0) return;
         for (const Vec3& p : samples(i)) {
             double nearest[2] = {patches::widest * h, patches::widest * h}; // behind, before
             for (std::size_t j = 0; j < size(); ++j) {
@@ -175,6 +184,7 @@ private:
 
     const Octree& octree_;
     const OctreeLevel& level_;
+    const RelationTest& related_;
     const NormalSets& sets_;
     Scratch& at_;
     std::size_t own_ = 0;
@@ -240,7 +250,7 @@ private:
             collected<Split>(voxels_.size(), chunks::heavy,
                              [&](std::size_t begin, std::size_t end, std::vector<Split>& found) {
                                  Scratch& scratch = scratch_.local();
-                                 Neighborhood around(octree_, level_, sets_, scratch);
+                                 Neighborhood around(octree_, level_, related_, sets_, scratch);
                                  for (std::size_t k = begin; k < end; ++k) {
                                      if (!around.gather(voxels_[k])) continue;
                                      crowded[k] = 1;
@@ -351,7 +361,7 @@ private:
         std::vector<Pair> pairs = collected<Pair>(
             voxels_.size(), chunks::heavy, [&](std::size_t begin, std::size_t end, std::vector<Pair>& found) {
                 Scratch& scratch = scratch_.local();
-                Neighborhood around(octree_, level_, sets_, scratch);
+                Neighborhood around(octree_, level_, related_, sets_, scratch);
                 for (std::size_t k = begin; k < end; ++k) {
                     if (!around.gather(voxels_[k])) continue;
                     for (std::size_t i = 0; i < around.own(); ++i)
