@@ -129,6 +129,9 @@ void check_expectations(const Json& expect, const Place& place) {
         place.check_keys(expected, {"min", "max", "value", "tolerance", "relative"}, quoted + ' ');
         for (const auto& [bound, limit] : expected.items())
             if (!limit.is_number()) place.fail(quoted + ": `" + bound + "` must be a number");
+        for (const char* slack : {"tolerance", "relative"})
+            if (expected.contains(slack) && expected[slack] < 0)
+                place.fail(quoted + ": `" + slack + "` must be 0 or more, nothing is within less");
         if (!expected.contains("min") && !expected.contains("max") && !expected.contains("value"))
             place.fail(quoted + " has no bound: `min`, `max` or `value`");
         if (!expected.contains("value") && (expected.contains("tolerance") || expected.contains("relative")))

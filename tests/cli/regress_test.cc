@@ -182,10 +182,11 @@ TEST_CASE("cases side by side give the rows and results of cases one by one", "[
     folder.write("large.xyz", xyz(sphere_scan(20000)));
     std::string cases = R"({"name": "first", "input": "large.xyz", "args": ["--depth", "6"],
                             "expect": {"mesh.closed": true}})";
-    for (int i = 0; i < 7; ++i)
-        cases += R"(, {"name": "case )" + std::to_string(i) + "\", " + sphere_case
-                 + (i == 3 ? R"(, "expect": {"mesh.closed": false}})"
-                           : R"(, "output": "stl", "expect": {"mesh.intersections": 0}})");
+    for (int i = 0; i < 7; ++i) {
+        cases += R"(, {"name": "case )" + std::to_string(i) + "\", " + sphere_case + R"(, "output": ")"
+                 + (i % 2 == 0 ? "om" : "stl") + R"(", "expect": )"
+                 + (i == 3 ? R"({"mesh.closed": false}})" : R"({"mesh.intersections": 0}})");
+    }
     cases += R"(, {"name": "broken", "input": "missing.xyz", "expect": {"mesh.closed": true}})";
     cases += R"(, {"name": "staged", "input": "scan.xyz", "args": ["--depth", "3", "--stage", "quads"],
                    "expect": {"mesh.closed": true}})";

@@ -129,6 +129,14 @@ TEST_CASE("a signal during a suite leaves the rows and results of the cases that
         CHECK(read_file(folder / "r.xml").find("<error message=\"interrupted\">") != std::string::npos);
         CHECK(list(folder) == "err\nout\nr.json\nr.xml\nscan.xyz\nstuck.xyz\nsuite.json\n");
     }
+    // Side by side each keeps its place, whichever was done first.
+    CHECK(end_after_first("INT", "regress suite.json --jobs 2 --json r.json").status == 130);
+    const auto results = nlohmann::json::parse(read_file(folder / "r.json"));
+    REQUIRE(results.size() >= 2);
+    CHECK(results[0]["name"] == "first");
+    CHECK(results[1]["name"] == "second");
+    CHECK(results[1]["interrupted"] == true);
+    if (results.size() > 2) CHECK(results[2]["name"] == "third");
     // What goes into a pipe may have to wait for a reader, and a signal does not.
     const CommandResult piped = end_after_first("INT", "regress suite.json --json wait");
     CHECK(piped.status == 130);

@@ -61,6 +61,10 @@ TEST_CASE("a suite that checks nothing is refused", "[cli]") {
     CHECK(contains(refused(R"({"tolerance": 3})"), "case 1: `mesh.faces` has no bound"));
     CHECK(contains(refused(R"({"max": 3, "relative": 1})"), "`mesh.faces` has a tolerance but no `value`"));
     CHECK(contains(refused(R"({"max": "3"})"), "`mesh.faces`: `max` must be a number"));
+    CHECK(
+        contains(refused(R"({"value": 3, "tolerance": -1})"), "`mesh.faces`: `tolerance` must be 0 or more"));
+    CHECK(
+        contains(refused(R"({"value": 3, "relative": -0.5})"), "`mesh.faces`: `relative` must be 0 or more"));
 }
 
 TEST_CASE("a misspelt key is refused by file, case and name with the nearest that is known", "[cli]") {

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <exception>
+#include <mutex>
 #include <ostream>
 #include <streambuf>
 
@@ -76,11 +77,15 @@ void write_om(const std::string& path, const PolyMesh& mesh) {
     options += Options::VertexNormal;
     options += Options::Status;
     options += Options::Custom;
-    const QuietLog quiet;
     AtomicFile file(path);
     FileBuffer buffer(file);
     std::ostream stream(&buffer);
-    const bool written = OpenMesh::IO::write_mesh(mesh, stream, ".om", options);
+    const bool written = [&] {
+        static std::mutex one_at_a_time; // the log is the process's
+        const std::lock_guard held(one_at_a_time);
+        const QuietLog quiet;
+        return OpenMesh::IO::write_mesh(mesh, stream, ".om", options);
+    }();
     buffer.finish();
     if (!written) throw Error(path, "OpenMesh could not write this mesh as .om; write OFF or PLY instead");
     file.commit();
