@@ -15,7 +15,7 @@ struct PatchCounts {
 /// Splits sets at the walls and gaps that pass between their points, and notes in `sets.apart` which sets of
 /// neighbouring voxels have one between them, so that RelationTest relates them no more. A wall or gap is a
 /// pair of opposite sheets less than a voxel and a half apart; its middle surface parts what lies on its two
-/// sides where both sheets end: on the ground of a wall, at the mouth of a gap. Its own rim is not parted.
+/// sides where both sheets end: on the ground of a wall, at the mouth of a gap. Its own rim is not split.
 /// The rule is the same for walls and gaps with all normals turned. O(sets), parallel.
 PatchCounts separate_patches(const Octree& octree, const OctreeLevel& level, const RelationTest& related,
                              NormalSets& sets);
