@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 tree=$1 least=${2:-0}
 llvm-profdata-14 merge -sparse "$tree"/profile/*.profraw -o "$tree/profile/all.profdata"
 set -- "$tree/tests/hsdm_tests"
-for program in "$tree/apps/hsdm/hsdm" "$tree/tests/cli/hsdm_cli_tests"; do
+for program in "$tree"/libhsdm/libhsdm.so "$tree/apps/hsdm/hsdm" "$tree/tests/cli/hsdm_cli_tests"; do
     if [ -x "$program" ]; then set -- "$@" -object "$program"; fi
 done
 llvm-cov-14 report -instr-profile "$tree/profile/all.profdata" "$@" libhsdm/hsdm | awk -v least="$least" '

@@ -40,8 +40,8 @@ function(hsdm_hardly_optimised target)
   endif()
 endfunction()
 
-# hsdm_unoptimised_with_sanitizers(TARGET...): these take a third of the time to compile then. Of inline functions
-# the linker may take their copies for the library too, so it is not for targets that compute much.
+# hsdm_unoptimised_with_sanitizers(TARGET...): these take a third of the time to compile then. In a shared library, as the
+# sanitizers' presets build it, inline functions are its own; into a static one the linker may take these targets' copies.
 function(hsdm_unoptimised_with_sanitizers)
   if(HSDM_SANITIZE)
     foreach(target ${ARGN})

@@ -16,7 +16,7 @@ namespace hsdm::command {
 namespace {
 
 /// Deeper than any suite; what prints and compares JSON goes as deep on the stack.
-constexpr int deepest = 32;
+constexpr int most_nested = 32;
 /// More than any case expects: finding a key takes the time of all before it.
 constexpr std::size_t most_keys = 1000;
 /// As long as paths can be; names are matched by a recursion over their bytes.
@@ -48,10 +48,10 @@ struct Place {
 };
 
 Json parse_json(const std::string& text, const std::string& path) {
-    std::array<std::set<std::string>, deepest + 2> keys; // of the object that is open at each depth
+    std::array<std::set<std::string>, most_nested + 2> keys; // of the object that is open at each depth
     const auto check = [&](int depth, Json::parse_event_t event, Json& parsed) {
-        if (depth > deepest)
-            throw Error(path, "is nested more than " + std::to_string(deepest)
+        if (depth > most_nested)
+            throw Error(path, "is nested more than " + std::to_string(most_nested)
                                   + " deep, which no suite is; see docs/command.md");
         const auto level = static_cast<std::size_t>(depth);
         if (event == Json::parse_event_t::object_start) keys[level + 1].clear();

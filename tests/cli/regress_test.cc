@@ -195,9 +195,8 @@ TEST_CASE("cases side by side give the rows and results of cases one by one", "[
         for (std::size_t begin = 0; begin < out.size();) {
             const std::size_t end = out.find('\n', begin);
             const std::string line = out.substr(begin, end - begin);
-            text +=
-                (line.starts_with("ok") || line.starts_with("MISS") ? line.substr(0, line.rfind(' ')) : line)
-                + '\n';
+            const bool is_row = line.starts_with("ok") || line.starts_with("MISS");
+            text += (is_row ? line.substr(0, line.find_last_not_of(' ', line.rfind(' ')) + 1) : line) + '\n';
             begin = end + 1;
         }
         return text;

@@ -1,7 +1,4 @@
 #include "hsdm/contour/patches.hh"
-#include "hsdm/mesh/to_mesh.hh"
-#include "hsdm/reconstruct.hh"
-#include "support/check.hh"
 #include "support/sample.hh"
 
 #include <catch2/catch.hpp>
@@ -125,19 +122,4 @@ TEST_CASE("thick parts have no walls, and the rim of a plate is not split", "[co
     const Separated plate(evenly_scanned(box({1, 0.9, 0.7 * voxel_edge}).placed(random_pose(5)), 2, 5));
     CHECK(plate.counts.crowded > 50);
     CHECK(plate.counts.split == 0);
-}
-
-TEST_CASE("walls on a ground and slots of three quarters of a voxel have the topology of the solid",
-          "[contour]") {
-    for (std::uint64_t seed : {1u, 2u, 3u, 4u}) {
-        INFO("seed " << seed);
-        for (const Solid& solid : {fin(0.75 * voxel_edge), slot(0.75 * voxel_edge)}) {
-            const Reconstruction part = reconstruct(evenly_scanned(solid.placed(random_pose(seed)), 8, seed),
-                                                    {.voxel_size = voxel_edge});
-            CHECK(faults(to_polygons(part.mesh)).empty());
-            CHECK(part.report.mesh.closed);
-            CHECK(part.report.mesh.components == 1);
-            CHECK(part.report.mesh.euler == 2);
-        }
-    }
 }

@@ -120,6 +120,11 @@ inline constexpr unsigned most_samples = 16;
 /// Why: by trial.
 inline constexpr std::size_t ways = 8;
 
+/// spacings: from a crease, points of a sheet that goes on beyond it.
+/// Why: ...
+inline constexpr double most_rounded = 0.25, goes_on = 1.5;
+inline constexpr unsigned fewest_beyond = 3;
+
 } // namespace hsdm::patches
 
 // local_sheets.hh, grid_signs.hh

@@ -29,6 +29,7 @@ struct Scratch {
     std::vector<Vec3> samples;
     std::vector<Index> first_sample;
     std::vector<Disc> discs;
+    std::vector<std::pair<double, double>> places; // along a crease, and off its plane
     struct Way {
         double squared_length;
         std::size_t i, j;
@@ -45,7 +46,7 @@ public:
         : octree_(octree), level_(level), related_(related), sets_(sets), at_(scratch) {}
 
     /// False if no wall or gap is near.
-    bool gather(Index voxel) {
+    bool gather(Index voxel, bool beside = false) {
         at_.sets.clear();
         add_sets(voxel);
         own_ = at_.sets.size();
@@ -54,8 +55,10 @@ public:
             if (const Index v = level_.find({c[0] + o[0], c[1] + o[1], c[2] + o[2]}); v != no_index)
                 add_sets(v);
         at_.discs.clear();
-        if (!any_opposed()) return false;
+        const bool opposed = any_opposed();
+        if (!opposed && !beside) return false;
         take_samples();
+        if (!opposed) return false;
         for (std::size_t i = 0; i < at_.sets.size(); ++i) add_discs(i);
         return !at_.discs.empty();
     }
@@ -107,6 +110,52 @@ public:
             parted_ways += parted(p[ways[k].i], q[ways[k].j], set(i).normal)
                            || parted(p[ways[k].i], q[ways[k].j], set(j).normal);
         return 2 * parted_ways > most;
+    }
+
+    /// Does the sheet of a set go on beyond the plane of another that it would meet in a crease, beside that
+    /// one's sheet? Both sheets end at a crease: the face across a gap from an edge goes on.
+    bool goes_on(std::size_t i, std::size_t j, Relation crease) {
+        const NormalSet &a = set(i), &b = set(j);
+        const double step = spacing(i);
+        if (step == 0) return false;
+        const Vec3 cross = a.normal % b.normal;
+        const double sine = cross.norm();
+        const Vec3 along = cross / sine;
+        const double outward = (crease == Relation::convex ? 1 : -1) / sine;
+        // Where the other sheet is near the crease: the place along it, and how far off the plane, for
+        // normals have errors.
+        auto& places = at_.places;
+        places.clear();
+        for (std::size_t k = 0; k < size(); ++k) {
+            if (k != j && related_(b, set(k)) != Relation::smooth) continue;
+            for (const Vec3& q : samples(k))
+                if (std::abs(a.normal | (q - a.centroid)) < patches::beside * level_.voxel_size)
+                    places.emplace_back(along | q, outward * (b.normal | (q - b.centroid)));
+        }
+        std::sort(places.begin(), places.end());
+        const double here = along | b.centroid, far = patches::beside * level_.voxel_size;
+        const double least = patches::most_rounded * step, most = patches::goes_on * step;
+        unsigned beyond = 0, before = 0;
+        for (std::size_t k = 0; k < size(); ++k) {
+            if (k != i && related_(a, set(k)) != Relation::smooth) continue;
+            for (const Vec3& p : samples(k)) {
+                const double s = along | p, t = outward * (b.normal | (p - b.centroid));
+                if (std::abs(s - here) > far || std::abs(t) > most) continue;
+                if (std::abs(a.normal | (p - a.centroid)) > relations::smooth_gap * level_.voxel_size)
+                    continue;
+                double lowest = most, highest = -most;
+                for (auto place =
+                         std::lower_bound(places.begin(), places.end(), std::pair(s - 0.5 * step, -most));
+                     place != places.end() && place->first <= s + 0.5 * step; ++place) {
+                    lowest = std::min(lowest, place->second);
+                    highest = std::max(highest, place->second);
+                }
+                if (lowest > highest) continue; // the other sheet is not there
+                before += t < lowest - least;
+                beyond += t > highest + least && !parted(a.centroid, p, a.normal);
+            }
+        }
+        return beyond >= patches::fewest_beyond && 2 * beyond >= before;
     }
 
 private:
@@ -355,19 +404,37 @@ private:
         sets_.first = std::move(first);
     }
 
+    /// Adds the voxels round those that are crowded: an edge before a face may lie in the next one.
+    void add_neighbors() {
+        std::vector<Index> all = voxels_;
+        for (const Index voxel : voxels_) {
+            const VoxelCoord c = level_.coord(voxel);
+            for (const VoxelCoord& o : neighbor_offsets)
+                if (const Index v = level_.find({c[0] + o[0], c[1] + o[1], c[2] + o[2]}); v != no_index)
+                    all.push_back(v);
+        }
+        std::sort(all.begin(), all.end());
+        all.erase(std::unique(all.begin(), all.end()), all.end());
+        voxels_ = std::move(all);
+    }
+
     /// Pairs of related sets with a wall or gap between them.
     void note_apart() {
         using Pair = std::array<Index, 2>;
+        add_neighbors();
         std::vector<Pair> pairs = collected<Pair>(
             voxels_.size(), chunks::heavy, [&](std::size_t begin, std::size_t end, std::vector<Pair>& found) {
                 Scratch& scratch = scratch_.local();
                 Neighborhood around(octree_, level_, related_, sets_, scratch);
                 for (std::size_t k = begin; k < end; ++k) {
-                    if (!around.gather(voxels_[k])) continue;
+                    around.gather(voxels_[k], true);
                     for (std::size_t i = 0; i < around.own(); ++i)
                         for (std::size_t j = i + 1; j < around.size(); ++j) {
-                            if (related_(around.set(i), around.set(j)) == Relation::none
-                                || !around.apart(i, j))
+                            const Relation relation = related_(around.set(i), around.set(j));
+                            if (relation == Relation::none) continue;
+                            if (!around.apart(i, j)
+                                && (relation == Relation::smooth
+                                    || !(around.goes_on(i, j, relation) || around.goes_on(j, i, relation))))
                                 continue;
                             found.push_back({around.number(i), around.number(j)});
                             found.push_back({around.number(j), around.number(i)});
