@@ -57,7 +57,8 @@ private:
     void gather() {
         for (auto begin = links_.crowded.begin(); begin != links_.crowded.end();) {
             const auto end = std::find(begin, links_.crowded.end(), no_side);
-            if (end - begin == 2) add(begin[0], begin[1]);
+            for (auto a = begin; a != end; ++a)
+                for (auto b = a + 1; b != end; ++b) add(*a, *b);
             begin = end + 1;
         }
         for (Index f = 0; f < faces_.size(); ++f)
@@ -96,8 +97,8 @@ private:
             if (is_touched(f)) continue;
             const Chains& chains = faces_[f].chains[end];
             if (is_one(chains)) {
-                change_row(f);
-                found = true;
+                found = changes_once(f);
+                if (found) change_row(f);
                 break;
             }
             for (auto at = std::lower_bound(places_.begin(), places_.end(), Place{chains, 0, 0});
@@ -110,6 +111,18 @@ private:
         }
         for (const Index f : seen) came_from_[f] = no_index;
         return found;
+    }
+
+    /// Is each link of the row in one of its faces only?
+    bool changes_once(Index last) {
+        row_.clear();
+        for (Index f = last;; f = came_from_[f]) {
+            row_.push_back(faces_[f].exit);
+            row_.push_back(faces_[f].other_exit);
+            if (came_from_[f] == f) break;
+        }
+        std::sort(row_.begin(), row_.end());
+        return std::adjacent_find(row_.begin(), row_.end()) == row_.end();
     }
 
     /// The row's faces, from its last one back to the first.
@@ -140,6 +153,7 @@ private:
     std::vector<Face> faces_;
     std::vector<Place> places_;    // sorted
     std::vector<Index> came_from_; // per face during a search, the one before it
+    std::vector<FacetSide> row_;   // links of a row
 };
 
 } // namespace
