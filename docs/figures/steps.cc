@@ -1,7 +1,9 @@
 #include "steps.hh"
 
 #include "hsdm/contour/dual_contour.hh"
+#include "hsdm/contour/patches.hh"
 #include "hsdm/contour/trim_crossings.hh"
+#include "hsdm/contour/webs.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +21,8 @@ Steps::Steps(const PointCloud& cloud, int depth)
       level(extract_level(octree, depth)),
       sets(build_normal_sets(octree, level)),
       related({}, level.voxel_size) {
+    separate_patches(octree, level, related, sets);
+    related = RelationTest({}, level.voxel_size, sets);
     voxel_size = level.voxel_size;
     grid = build_grid_points(level);
     local = group_local_sheets(grid, sets, related, h());
@@ -32,6 +36,7 @@ Steps::Steps(const PointCloud& cloud, int depth)
     for (int round = 0; round < 3 && drop_tips(sets, related, links, crossings) > 0; ++round)
         links = pair_crossings(grid, crossings, sets, related);
     duals = build_dual_vertices(grid, crossings, links);
+    open_all_webs(*this);
     placed = place_vertices(*this, sets, related);
     DualContour result = dual_contour(octree, level, sets);
     mesh = std::move(result.mesh);
@@ -41,7 +46,9 @@ Steps::Steps(const PointCloud& cloud, int depth)
 Fine::Fine(const support::Solid& solid, std::size_t points, int deepest)
     : octree(build_octree(scan(solid, points))), depth(deepest) {
     const OctreeLevel level = extract_level(octree, depth);
-    mesh = dual_contour(octree, level, build_normal_sets(octree, level)).mesh;
+    NormalSets sets = build_normal_sets(octree, level);
+    separate_patches(octree, level, RelationTest({}, level.voxel_size), sets);
+    mesh = dual_contour(octree, level, sets).mesh;
 }
 
 Vec2 Layer::grid_point(Index c) const {

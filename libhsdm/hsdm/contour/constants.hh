@@ -120,9 +120,16 @@ inline constexpr unsigned most_samples = 16;
 /// Why: by trial.
 inline constexpr std::size_t ways = 8;
 
-/// spacings: from a crease, points of a sheet that goes on beyond it.
-/// Why: ...
-inline constexpr double most_rounded = 0.25, goes_on = 1.5;
+/// spacings: from the crease that a sheet may go on beyond, to the points of it that tell so.
+/// Why: a sheet that goes on has its next points there; those of the ground behind a wall are farther.
+inline constexpr double goes_on_within = 1.5;
+
+/// spacings: points nearer to the crease tell nothing.
+/// Why: by trial; fits of the other sheet are off by less.
+inline constexpr double goes_on_from = 0.25;
+
+/// points: beyond the crease, and at least half as many as before it.
+/// Why: by trial; on a sheet that goes on nine are expected along a voxel of it.
 inline constexpr unsigned fewest_beyond = 3;
 
 } // namespace hsdm::patches

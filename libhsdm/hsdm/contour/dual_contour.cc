@@ -281,10 +281,7 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
          round < pairing::trim_rounds && drop_tips(sets, related, dual.links, dual.crossings) > 0; ++round)
         pair();
     dual.duals = build_dual_vertices(dual.grid, dual.crossings, dual.links);
-    while (const std::size_t opened = open_webs(dual.crossings, dual.duals, dual.links)) {
-        result.webs_opened += opened;
-        dual.duals = build_dual_vertices(dual.grid, dual.crossings, dual.links);
-    }
+    result.webs_opened = open_all_webs(dual);
     PlacedVertices vertices = place_vertices(dual, sets, related);
     dual.grid.index = {}; // place_vertices was the last to look for grid points
     extend_borders(dual, sets, vertices);

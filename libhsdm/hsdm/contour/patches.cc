@@ -134,7 +134,7 @@ public:
         }
         std::sort(places.begin(), places.end());
         const double here = along | b.centroid, far = patches::beside * level_.voxel_size;
-        const double least = patches::most_rounded * step, most = patches::goes_on * step;
+        const double least = patches::goes_on_from * step, most = patches::goes_on_within * step;
         unsigned beyond = 0, before = 0;
         for (std::size_t k = 0; k < size(); ++k) {
             if (k != i && related_(a, set(k)) != Relation::smooth) continue;

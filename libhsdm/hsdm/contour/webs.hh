@@ -1,7 +1,7 @@
 #pragma once
 // Handles too small for the grid: a web over the mouth of a slot, a tunnel through the foot of a wall.
 
-#include "hsdm/contour/dual_vertices.hh"
+#include "hsdm/contour/dual_mesh.hh"
 
 namespace hsdm {
 
@@ -14,5 +14,8 @@ namespace hsdm {
 /// repeating it comes to an end. Rows that share a chain are changed one at a time. Returns how many were; if
 /// it is not 0 the dual vertices must be built again. O(links log links).
 std::size_t open_webs(const Crossings& crossings, const DualVertices& duals, Links& links);
+
+/// Opens webs, and builds the dual vertices anew, until there are no more. Returns how many there were.
+std::size_t open_all_webs(DualMesh& dual);
 
 } // namespace hsdm
