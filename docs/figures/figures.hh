@@ -22,6 +22,10 @@ Canvas draw_collapses();
 Canvas draw_flips();
 Canvas draw_error_bound();
 
+Canvas draw_classes();
+Canvas draw_normals();
+Canvas draw_decimated();
+Canvas draw_filled();
 Canvas draw_smoothed();
 Canvas draw_divided();
 
