@@ -63,13 +63,17 @@ int main() try {
     const hsdm::TransferCounts carried = hsdm::transfer_attributes(labelled, mesh, {.neighbors = 1});
 
     const hsdm::NeighborSearch search({mesh.points(), mesh.n_vertices()});
-    const hsdm::NearPoints nearest = search.nearest(labelled.positions, 8);
+    const hsdm::NearPoints eight = search.nearest(labelled.positions, 8);
+    const hsdm::NearPoints round = search.within(labelled.positions, 0.5); // all within 0.5 of each
+    const hsdm::NearPoints others = search.neighbors(8);                   // of every point, itself left out
 
     const auto red = OpenMesh::getProperty<OpenMesh::VertexHandle, std::uint8_t>(mesh, "red");
     const auto pole = OpenMesh::getProperty<OpenMesh::VertexHandle, std::int32_t>(mesh, "pole");
-    const OpenMesh::VertexHandle top(static_cast<int>(nearest.of(0)[0]));
+    const OpenMesh::VertexHandle top(static_cast<int>(eight.of(0)[0]));
     std::cout << mesh.n_faces() << " facets, " << holes.closed << " hole closed, " << carried.properties
-              << " property carried; at the top: red " << int(red[top]) << ", pole " << pole[top] << '\n';
+              << " property carried; at the top: red " << int(red[top]) << ", pole " << pole[top] << ", "
+              << round.of(0).size() << " vertices within 0.5, " << others.places()
+              << " with their neighbours\n";
     return red[top] == 255 && pole[top] == 1 ? 0 : 1;
 } catch (const hsdm::Cancelled&) {
     return 3;

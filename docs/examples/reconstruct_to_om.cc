@@ -56,6 +56,7 @@ int main(int argc, char** argv) {
     hsdm::ModFeatureT<Mesh>::Handle features;
     decimater.add(quadrics);
     decimater.add(features);
+    decimater.module(features).set_options({.crease_angle = 0.7}); // radians
     decimater.initialize();
     decimater.decimate_to_faces(0, fine / 8);
     mesh.garbage_collection();

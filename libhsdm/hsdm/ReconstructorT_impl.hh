@@ -81,12 +81,14 @@ Color color_of(const std::array<std::uint8_t, 4>& bytes) {
 template <class Vector, bool is_color = false>
 constexpr bool is_readable() {
     using Number = typename OpenMesh::vector_traits<Vector>::value_type;
-    constexpr auto size = OpenMesh::vector_traits<Vector>::size();
-    constexpr bool floating = std::is_same_v<Number, float> || std::is_same_v<Number, double>;
-    if (is_color) return (floating || std::is_same_v<Number, std::uint8_t>)&&(size == 3 || size == 4);
-    return floating && size == 3;
+    constexpr std::size_t size = OpenMesh::vector_traits<Vector>::size_;
+    constexpr bool is_floating = std::is_same_v<Number, float> || std::is_same_v<Number, double>;
+    constexpr bool is_byte = std::is_same_v<Number, std::uint8_t>;
+    return is_floating ? size == 3 || (is_color && size == 4)
+                       : is_color && is_byte && (size == 3 || size == 4);
 }
 
+/// Whether it reads all of a mesh that it looks at.
 template <class Mesh>
 inline constexpr bool has_readable_rows = is_readable<typename Mesh::Point>()
                                           && is_readable<typename Mesh::Normal>()
