@@ -18,7 +18,7 @@ bool is_seen(const PolyMesh& mesh, OpenMesh::SmartVertexHandle v, const SolidVie
 }
 
 /// The listed normals of the vertices that are seen.
-void draw_normals(Canvas& canvas, const PolyMesh& mesh, const SolidView& view) {
+void draw_needles(Canvas& canvas, PolyMesh& mesh, const SolidView& view) {
     constexpr double length = 0.07; // a little more than an edge
     const auto count =
         OpenMesh::getProperty<OpenMesh::VertexHandle, std::uint8_t>(mesh, normal_count_property);
@@ -35,7 +35,7 @@ void draw_normals(Canvas& canvas, const PolyMesh& mesh, const SolidView& view) {
 } // namespace
 
 Canvas draw_classes() {
-    const PolyMesh mesh = slice();
+    PolyMesh mesh = slice();
     const std::vector<Vec3> frame = places_of(mesh);
     Canvas canvas(470, 340);
     draw_marked(canvas, mesh, frame, 14, "sharp edges and classes of vertices");
@@ -68,7 +68,7 @@ Canvas draw_normals() {
         const double left = rounds == 0 ? 14 : 319;
         draw_marked(canvas, mesh, frame, left,
                     rounds == 0 ? "normals of a noisy mesh" : "after five rounds; no point has moved");
-        draw_normals(canvas, mesh, marked_view(frame, left));
+        draw_needles(canvas, mesh, marked_view(frame, left));
     }
     return canvas;
 }

@@ -70,7 +70,7 @@ private:
 };
 
 /// Bits of the mesh, and the values of its properties.
-void check_same(const Reconstruction& a, const Reconstruction& b) {
+void check_same_result(const Reconstruction& a, const Reconstruction& b) {
     const PolygonMesh of_a = to_polygons(a.mesh), of_b = to_polygons(b.mesh);
     REQUIRE(of_a.facet_count() > 100);
     CHECK(mesh_digest(of_a) == mesh_digest(of_b));
@@ -101,9 +101,9 @@ TEMPLATE_TEST_CASE("points in the caller's own structs give the bits of a cloud 
     ways[3].max_error = MaxError{0.01, true};
     for (const ReconstructOptions& options : ways) {
         const Reconstruction viewed = reconstruct(packed.view(), options);
-        check_same(viewed, reconstruct(packed.copied(), options));
+        check_same_result(viewed, reconstruct(packed.copied(), options));
         const PointCloud kept = packed.copied();
-        check_same(viewed, reconstruct(kept, options));
+        check_same_result(viewed, reconstruct(kept, options));
     }
     CHECK(packed.bytes() == before);
 }
@@ -121,7 +121,7 @@ TEST_CASE("points that are not finite are skipped where they stand", "[pipeline]
     const PointView view = view_of(spoilt);
     for (const Reconstruction& result : {reconstruct(view, {.depth = 5}), reconstruct(spoilt, {.depth = 5}),
                                          reconstruct(PointCloud(spoilt), {.depth = 5})}) {
-        check_same(result, whole);
+        check_same_result(result, whole);
         CHECK(result.report.input.dropped_nonfinite == 1000);
         CHECK(result.report.input.first_nonfinite == 5);
         CHECK(result.report.input.bbox.lo == whole.report.input.bbox.lo);
@@ -134,7 +134,7 @@ TEST_CASE("levels of a view are those of a cloud", "[pipeline][point_view]") {
     const auto of_view = reconstruct_levels(view_of(cloud), 4, 5);
     const auto of_cloud = reconstruct_levels(cloud, 4, 5);
     REQUIRE(of_view.size() == 2);
-    for (std::size_t i = 0; i < 2; ++i) check_same(of_view[i], of_cloud[i]);
+    for (std::size_t i = 0; i < 2; ++i) check_same_result(of_view[i], of_cloud[i]);
 }
 
 TEST_CASE("a view that cannot be read is refused before anything is", "[pipeline][point_view]") {
