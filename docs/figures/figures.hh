@@ -1,5 +1,5 @@
 #pragma once
-// The figures of docs/sheets.md, docs/adaptive.md and docs/features.md, by name.
+// The figures of docs/sheets.md, docs/adaptive.md, docs/features.md and docs/stages.md, by name.
 
 #include "canvas.hh"
 
