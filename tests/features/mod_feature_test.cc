@@ -120,19 +120,3 @@ TEST_CASE("angles out of range are refused") {
     CHECK_THROWS_AS(module.set_options({.crease_angle = 0}), OptionError);
     CHECK_THROWS_AS(module.set_options({.corner_angle = 4}), OptionError);
 }
-
-TEST_CASE("points of a straight crease make no facet of their own") {
-    // a block of long sides: what is flat collapses at no cost, whatever the facets' shape
-    PolygonMesh block = support::cut_in_two(support::divided_cube(24));
-    for (Vec3& p : block.positions) p = Vec3(p[0] + 0.5 * p[2], 0.7 * p[1] + 0.3 * p[0], 0.2 * p[2]);
-    TriMeshD mesh = classified<TriMeshD>(block);
-    decimate_to(mesh, mesh.n_faces() / 8);
-    CHECK(mesh.n_faces() <= block.facet_count() / 8);
-    double thinnest = 1;
-    for (const auto f : mesh.faces()) {
-        std::vector<Vec3> p;
-        for (const auto v : f.vertices()) p.push_back(mesh.point(v));
-        thinnest = std::min(thinnest, detail::thickness_of(p[0], p[1], p[2]));
-    }
-    CHECK(thinnest >= detail::least_thickness);
-}

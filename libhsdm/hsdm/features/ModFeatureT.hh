@@ -28,9 +28,8 @@ namespace hsdm {
 /// end of one, where three meet, where two turn by more than `corner_angle`, of the class corner
 /// (`hsdm_vertex_class`), or with the bit but on no marked edge stays where it is; other vertices of creases
 /// move along their crease, those of the boundary along the boundary. No unmarked edge becomes sharper than
-/// `crease_angle`, unless one beside it was before, and no facet becomes thinner than a thousandth of its
-/// longest side, unless one there was. Of FeatureOptions the two angles count. For meshes of triangles, with
-/// status bits of edges and vertices.
+/// `crease_angle`, unless one beside it was before, and no facet loses its area. Of FeatureOptions the two
+/// angles count. For meshes of triangles, with status bits of edges and vertices.
 template <class MeshT>
 class ModFeatureT : public OpenMesh::Decimater::ModBaseT<MeshT> {
 public:

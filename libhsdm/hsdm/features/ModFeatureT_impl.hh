@@ -9,32 +9,17 @@
 
 namespace hsdm {
 
-/// The sharpest of the unmarked edges among some facets, and the thinnest of these.
+/// The sharpest of the unmarked edges among some facets, and whether all of these have an area.
 template <class MeshT>
 struct ModFeatureT<MeshT>::Bend {
     double least_cosine = 1; ///< of the angle between the normals on both sides
-    double thinnest = 1;     ///< thickness_of a facet
+    bool has_areas = true;
 
     /// Of an edge between two facets; a normal is zero where there is no facet.
     void add(const Vec3& a, const Vec3& b, bool marked) {
         if (!marked && a.sqrnorm() > 0 && b.sqrnorm() > 0) least_cosine = std::min(least_cosine, a | b);
     }
 };
-
-namespace detail {
-
-/// share: of its longest side that the height of a facet above it must not come below, unless one was lower.
-/// Why: three points of a straight crease make a facet of less than 1e-9, whose parts lie over each other
-/// when it is divided; those of a round one of a hundred edges 0.01.
-inline constexpr double least_thickness = 1e-3;
-
-/// The height of a triangle over its longest side, as a share of that; 0 without area.
-inline double thickness_of(const Vec3& a, const Vec3& b, const Vec3& c) {
-    const double longest = std::max({(b - a).sqrnorm(), (c - b).sqrnorm(), (a - c).sqrnorm()});
-    return longest > 0 ? ((b - a) % (c - a)).norm() / longest : 0;
-}
-
-} // namespace detail
 
 template <class MeshT>
 void ModFeatureT<MeshT>::set_options(const FeatureOptions& options) {
@@ -106,11 +91,8 @@ typename ModFeatureT<MeshT>::Bend ModFeatureT<MeshT>::bend_before(const Collapse
         const auto rim = mesh_.next_halfedge_handle(h);
         const Vec3 normal = normal_of(mesh_.face_handle(h));
         bend.add(normal, normal_of(mesh_.opposite_face_handle(h)), is_marked(h));
-        if (!mesh_.face_handle(h).is_valid()) continue;
-        bend.thinnest = std::min(bend.thinnest, detail::thickness_of(corner_at(collapse.v0),
-                                                                     corner_at(mesh_.to_vertex_handle(h)),
-                                                                     corner_at(mesh_.to_vertex_handle(rim))));
-        bend.add(normal, normal_of(mesh_.opposite_face_handle(rim)), is_marked(rim));
+        if (mesh_.face_handle(h).is_valid())
+            bend.add(normal, normal_of(mesh_.opposite_face_handle(rim)), is_marked(rim));
     }
     return bend;
 }
@@ -130,10 +112,9 @@ typename ModFeatureT<MeshT>::Bend ModFeatureT<MeshT>::bend_after(const CollapseI
         if (spoke == collapse.v0v1) { // the facet on the right of the collapse vanishes
             if (collapse.vr.is_valid()) normal = normal_of(mesh_.face_handle(collapse.v1vr));
         } else if (mesh_.face_handle(h).is_valid()) {
-            const Vec3 a = corner_at(mesh_.to_vertex_handle(h)), b = corner_at(mesh_.to_vertex_handle(rim));
-            normal = unit_or_zero((a - tip) % (b - tip));
-            bend.thinnest =
-                std::min(bend.thinnest, normal.sqrnorm() > 0 ? detail::thickness_of(tip, a, b) : 0);
+            const Vec3 a = corner_at(mesh_.to_vertex_handle(h));
+            normal = unit_or_zero((a - tip) % (corner_at(mesh_.to_vertex_handle(rim)) - tip));
+            bend.has_areas = bend.has_areas && normal.sqrnorm() > 0;
             bend.add(normal, normal_of(mesh_.opposite_face_handle(rim)), is_marked(rim));
         }
         const bool merges = spoke == collapse.v0v1 && collapse.vr.is_valid() && is_marked(collapse.v1vr);
@@ -148,14 +129,10 @@ template <class MeshT>
 float ModFeatureT<MeshT>::collapse_priority(const CollapseInfo& collapse) {
     if (!keeps_curve(collapse) || !keeps_curves_apart(collapse)) return float(Base::ILLEGAL_COLLAPSE);
     const Bend after = bend_after(collapse);
-    if (!(after.thinnest > 0)) return float(Base::ILLEGAL_COLLAPSE);
-    const bool is_blunt = after.least_cosine >= std::cos(options_.crease_angle);
-    const bool is_thick = after.thinnest >= detail::least_thickness;
-    if (is_blunt && is_thick) return float(Base::LEGAL_COLLAPSE);
-    const Bend before = bend_before(collapse);
-    const bool no_worse = (is_blunt || after.least_cosine >= before.least_cosine)
-                          && (is_thick || after.thinnest >= before.thinnest);
-    return float(no_worse ? Base::LEGAL_COLLAPSE : Base::ILLEGAL_COLLAPSE);
+    if (!after.has_areas) return float(Base::ILLEGAL_COLLAPSE);
+    const bool is_blunt = after.least_cosine >= std::cos(options_.crease_angle)
+                          || after.least_cosine >= bend_before(collapse).least_cosine;
+    return float(is_blunt ? Base::LEGAL_COLLAPSE : Base::ILLEGAL_COLLAPSE);
 }
 
 template <class MeshT>
