@@ -7,9 +7,9 @@
 
 #include <iostream>
 
-using Mesh = OpenMesh::PolyMesh_ArrayKernelT<>;
-
 int main(int argc, char** argv) {
+    using Mesh = OpenMesh::PolyMesh_ArrayKernelT<>;
+
     Mesh mesh;
     mesh.request_vertex_status(); // yours to keep: the modules release what they request
     mesh.request_edge_status();

@@ -31,6 +31,10 @@ int main(int argc, char** argv) {
         {"adaptive-collapses", draw_collapses},
         {"adaptive-flips", draw_flips},
         {"adaptive-bound", draw_error_bound},
+        {"features-classes", draw_classes},
+        {"features-normals", draw_normals},
+        {"features-decimated", draw_decimated},
+        {"features-filled", draw_filled},
         {"features-smoothed", draw_smoothed},
         {"features-divided", draw_divided},
     };

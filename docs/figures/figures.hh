@@ -1,5 +1,5 @@
 #pragma once
-// The figures of docs/sheets.md, docs/adaptive.md and docs/features.md, by name.
+// The figures of docs/sheets.md, docs/adaptive.md, docs/features.md and docs/stages.md, by name.
 
 #include "canvas.hh"
 
@@ -22,6 +22,10 @@ Canvas draw_collapses();
 Canvas draw_flips();
 Canvas draw_error_bound();
 
+Canvas draw_classes();
+Canvas draw_normals();
+Canvas draw_decimated();
+Canvas draw_filled();
 Canvas draw_smoothed();
 Canvas draw_divided();
 

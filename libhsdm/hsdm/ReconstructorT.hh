@@ -12,9 +12,11 @@ namespace hsdm {
 ///     reconstructor.initialize({.depth = 7});
 ///     hsdm::Report report = reconstructor.reconstruct();
 ///
-/// Faces the mesh had are not looked at. Vertex normals count as the scanner's if the mesh has them and one
-/// of them is not zero; vertex colours count as the scanner's if the mesh has them, and come out as means.
-/// The mesh's properties stay, with the values that OpenMesh gives new elements; the results'
+/// Points, normals and colours are read where the mesh keeps them; only if it has deleted vertices, or
+/// numbers other than float, double and colours in bytes, are they copied first. Faces the mesh had are not
+/// looked at. Vertex normals count as the scanner's if the mesh has them and one of them is not zero; vertex
+/// colours count as the scanner's if the mesh has them, and come out as means. The mesh's properties stay,
+/// with the values that OpenMesh gives new elements; the results'
 /// (`hsdm_vertex_class`, `hsdm_normal_count`, `hsdm_normals` ...) are added, and normals, colours and status
 /// bits are set where the mesh has these attributes: request them to get them. Other standard attributes that
 /// it has are zero. Float traits hold seven digits: shift coordinates far from the origin before.
@@ -34,7 +36,10 @@ public:
     Report reconstruct();
 
 private:
-    PointCloud read_cloud() const;
+    bool has_normals() const;
+    bool can_be_viewed() const;
+    PointView view() const;
+    PointCloud copied() const;
 
     Mesh& mesh_;
     ReconstructOptions options_;

@@ -77,6 +77,29 @@ Color color_of(const std::array<std::uint8_t, 4>& bytes) {
     return color;
 }
 
+/// Whether the library reads the numbers of these vectors where they are.
+template <class Vector, bool is_color = false>
+constexpr bool is_readable() {
+    using Number = typename OpenMesh::vector_traits<Vector>::value_type;
+    constexpr std::size_t size = OpenMesh::vector_traits<Vector>::size_;
+    constexpr bool is_floating = std::is_same_v<Number, float> || std::is_same_v<Number, double>;
+    constexpr bool is_byte = std::is_same_v<Number, std::uint8_t>;
+    return is_floating ? size == 3 || (is_color && size == 4)
+                       : is_color && is_byte && (size == 3 || size == 4);
+}
+
+/// Whether it reads all of a mesh that it looks at.
+template <class Mesh>
+inline constexpr bool has_readable_rows = is_readable<typename Mesh::Point>()
+                                          && is_readable<typename Mesh::Normal>()
+                                          && is_readable<typename Mesh::Color, true>();
+
+/// Vectors one after the other, as OpenMesh keeps them.
+template <class Vector>
+StridedSpan rows_of_vectors(const Vector* first, std::size_t count) {
+    return {&(*first)[0], count, sizeof(Vector)};
+}
+
 /// Vertex colours from the properties that averaged colours are in; black, transparent where there are none.
 template <class Mesh>
 void copy_colors(const PolyMesh& from, Mesh& to) {
@@ -162,25 +185,56 @@ void ReconstructorT<Mesh>::initialize(const ReconstructOptions& options) {
     is_initialized_ = true;
 }
 
+/// Whether one of the vertices has a normal that is not zero: a mesh may have room for them and none.
 template <class Mesh>
-PointCloud ReconstructorT<Mesh>::read_cloud() const {
+bool ReconstructorT<Mesh>::has_normals() const {
+    if (!mesh_.has_vertex_normals()) return false;
+    const auto vertices = mesh_.vertices();
+    return std::any_of(vertices.begin(), vertices.end(),
+                       [&](const auto v) { return to_vec3(mesh_.normal(v)).sqrnorm() > 0; });
+}
+
+/// Deleted vertices stand among the others until garbage is collected.
+template <class Mesh>
+bool ReconstructorT<Mesh>::can_be_viewed() const {
+    if (!detail::has_readable_rows<Mesh> || mesh_.n_vertices() == 0) return false;
+    if (!mesh_.has_vertex_status()) return true;
+    for (int v = 0; v < static_cast<int>(mesh_.n_vertices()); ++v)
+        if (mesh_.status(OpenMesh::VertexHandle(v)).deleted()) return false;
+    return true;
+}
+
+template <class Mesh>
+PointView ReconstructorT<Mesh>::view() const {
+    PointView view;
+    if constexpr (detail::has_readable_rows<Mesh>) {
+        using Color = typename Mesh::Color;
+        view.positions = detail::rows_of_vectors(mesh_.points(), mesh_.n_vertices());
+        if (has_normals()) view.normals = detail::rows_of_vectors(mesh_.vertex_normals(), mesh_.n_vertices());
+        if (mesh_.has_vertex_colors())
+            view.colors = detail::rows_of_vectors(mesh_.vertex_colors(), mesh_.n_vertices());
+        view.color_channels = static_cast<int>(OpenMesh::vector_traits<Color>::size());
+    }
+    return view;
+}
+
+template <class Mesh>
+PointCloud ReconstructorT<Mesh>::copied() const {
     PointCloud cloud;
     cloud.positions.reserve(mesh_.n_vertices());
     for (const auto v : mesh_.vertices()) cloud.positions.push_back(to_vec3(mesh_.point(v)));
     if (mesh_.has_vertex_colors())
         for (const auto v : mesh_.vertices()) cloud.colors.push_back(detail::color_bytes(mesh_.color(v)));
-    if (!mesh_.has_vertex_normals()) return cloud;
-    for (const auto v : mesh_.vertices()) cloud.normals.push_back(to_vec3(mesh_.normal(v)));
-    const bool given = std::any_of(cloud.normals.begin(), cloud.normals.end(),
-                                   [](const Vec3& normal) { return normal.sqrnorm() > 0; });
-    if (!given) cloud.normals.clear();
+    if (has_normals())
+        for (const auto v : mesh_.vertices()) cloud.normals.push_back(to_vec3(mesh_.normal(v)));
     return cloud;
 }
 
 template <class Mesh>
 Report ReconstructorT<Mesh>::reconstruct() {
     if (!is_initialized_) throw std::logic_error("ReconstructorT: reconstruct() called before initialize()");
-    Reconstruction result = hsdm::reconstruct(read_cloud(), options_);
+    Reconstruction result =
+        can_be_viewed() ? hsdm::reconstruct(view(), options_) : hsdm::reconstruct(copied(), options_);
     result.mesh.garbage_collection();
     if constexpr (Mesh::is_trimesh())
         copy_mesh(triangle_mesh(result.mesh), mesh_);

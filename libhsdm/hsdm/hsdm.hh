@@ -18,6 +18,7 @@
 #include "hsdm/modules/plugin_loader.hh"
 #include "hsdm/plugin.hh"
 #include "hsdm/point_cloud.hh"
+#include "hsdm/point_view.hh"
 #include "hsdm/polygon_mesh.hh"
 #include "hsdm/quality/compare.hh"
 #include "hsdm/quality/distance.hh"

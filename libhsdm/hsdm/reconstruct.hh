@@ -2,7 +2,7 @@
 // The whole method, Figure 1: cloud -> octree -> graph -> facets -> mesh -> features.
 
 #include "hsdm/mesh_types.hh"
-#include "hsdm/point_cloud.hh"
+#include "hsdm/point_view.hh"
 #include "hsdm/report.hh"
 
 #include <functional>
@@ -100,6 +100,9 @@ void check_options(const ReconstructOptions& options, int first_depth, int last_
 /// Throws OptionError for an option out of range, also of this cloud's (voxel_size), Error for a cloud
 /// without a surface in it or whose arrays do not fit together, Cancelled.
 Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& options = {});
+/// The same of points in the caller's own arrays, which are read where they are, coordinates that are not
+/// finite skipped; with the same numbers, the same bits. Throws as check_view() too.
+Reconstruction reconstruct(const PointView& cloud, const ReconstructOptions& options = {});
 /// The same in less memory, by a third for given normals: each array of a cloud that is moved is freed as
 /// soon as nobody asks for it. What is left of the cloud is unspecified, whatever is thrown.
 Reconstruction reconstruct(PointCloud&& cloud, const ReconstructOptions& options = {});
@@ -108,6 +111,9 @@ Reconstruction reconstruct(PointCloud&& cloud, const ReconstructOptions& options
 /// since no facet comes out of it or the memory ends, does not stop the others: its result has an empty mesh
 /// and the reason in report.failure. Throws as reconstruct() does; what the last level failed of, if all do.
 std::vector<Reconstruction> reconstruct_levels(const PointCloud& cloud, int first_depth, int last_depth,
+                                               const ReconstructOptions& options = {});
+/// The same of the caller's own arrays.
+std::vector<Reconstruction> reconstruct_levels(const PointView& cloud, int first_depth, int last_depth,
                                                const ReconstructOptions& options = {});
 /// The same in less memory, as reconstruct() of a cloud that is moved.
 std::vector<Reconstruction> reconstruct_levels(PointCloud&& cloud, int first_depth, int last_depth,

@@ -5,6 +5,7 @@
 #include "hsdm/features/features.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/quality/topology.hh"
+#include "hsdm/spatial/self_intersections.hh"
 
 #include <catch2/catch.hpp>
 #include <tbb/global_control.h>
@@ -317,4 +318,32 @@ TEST_CASE("a mesh without facets is smoothed to itself", "[smoothing]") {
     mesh.add_vertex(Vec3(1, 2, 3));
     CHECK(smooth_vertices(mesh).moved == 0);
     CHECK(mesh.point(VertexHandle(0)) == Vec3(1, 2, 3));
+}
+
+TEST_CASE("a mesh that does not pass through itself does not after smoothing either") {
+    constexpr Index n = 20;
+    support::Random random(5);
+    std::vector<double> rough;
+    for (Index i = 0; i < (n + 1) * (n + 1); ++i) rough.push_back(random.uniform(-0.2, 0.2));
+    // two rough sheets that nearly touch; the lower one is locked, so the upper one sinks into its peaks
+    PolygonMesh both =
+        support::cut_in_two(sheet(n, [&](Index x, Index y) { return rough[y * (n + 1) + x]; }));
+    const PolygonMesh lower = both;
+    const auto count = static_cast<Index>(lower.vertex_count());
+    for (const Vec3& p : lower.positions) both.positions.push_back(p + Vec3(0, 0, 0.01));
+    for (std::size_t f = 0; f < lower.facet_count(); ++f) {
+        const auto ring = lower.facet(f);
+        both.add_facet(std::array{ring[0] + count, ring[1] + count, ring[2] + count});
+    }
+    REQUIRE(find_self_intersections(both).facet_pairs.empty());
+    const auto smoothed = [&](bool keep_apart) {
+        PolyMesh mesh = to_mesh(both).mesh;
+        for (int v = 0; v < static_cast<int>(count); ++v) mesh.status(VertexHandle(v)).set_locked(true);
+        const VertexSmoothingResult result = smooth_vertices(mesh, {.rounds = 2, .keep_apart = keep_apart});
+        CHECK(result.moved > 50);
+        CHECK((result.taken_back > 0) == keep_apart);
+        return find_self_intersections(to_polygons(mesh)).facet_pairs.size();
+    };
+    CHECK(smoothed(false) > 10);
+    CHECK(smoothed(true) == 0);
 }

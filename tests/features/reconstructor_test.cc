@@ -96,6 +96,77 @@ TEMPLATE_TEST_CASE("colours come out as means, and no attribute is left uninitia
     for (const auto f : mesh.faces()) CHECK(mesh.texture_index(f) == 0);
 }
 
+namespace {
+
+struct FractionTraits : OpenMesh::DefaultTraits {
+    using Color = OpenMesh::Vec4f;
+};
+using FractionMesh = OpenMesh::TriMesh_ArrayKernelT<FractionTraits>;
+struct WholeTraits : OpenMesh::DefaultTraitsDouble {
+    using Color = OpenMesh::Vec4i; // read nowhere but in a copy
+};
+using WholeMesh = OpenMesh::TriMesh_ArrayKernelT<WholeTraits>;
+
+/// A scan with normals and colours; with_deleted: in which every third vertex is one deleted.
+template <class Mesh>
+Mesh scanned(bool with_deleted) {
+    Mesh mesh;
+    mesh.request_vertex_status();
+    mesh.request_vertex_normals();
+    mesh.request_vertex_colors();
+    for (const Vec3& p : sphere(30).positions) {
+        if (with_deleted && mesh.n_vertices() % 3 == 0) {
+            const auto gone = mesh.add_vertex(typename Mesh::Point(9, 9, 9));
+            mesh.set_normal(gone, typename Mesh::Normal(1, 0, 0));
+            mesh.set_color(gone, detail::color_of<typename Mesh::Color>({1, 2, 3, 4}));
+            mesh.status(gone).set_deleted(true);
+        }
+        const auto v = mesh.add_vertex(to_normal<typename Mesh::Point>(p));
+        mesh.set_normal(v, to_normal<typename Mesh::Normal>(p));
+        const std::uint8_t green = p[2] > 0 ? 250 : 50;
+        mesh.set_color(v, detail::color_of<typename Mesh::Color>({100, green, 0, 200}));
+    }
+    return mesh;
+}
+
+template <class Mesh>
+Report surface_of(Mesh& mesh) {
+    ReconstructorT<Mesh> reconstructor(mesh);
+    ReconstructOptions options;
+    options.depth = 3;
+    reconstructor.initialize(options);
+    return reconstructor.reconstruct();
+}
+
+} // namespace
+
+TEMPLATE_TEST_CASE("points are read where the mesh keeps them, and without those deleted", "", TriMeshF,
+                   FractionMesh, WholeMesh) {
+    PointCloud same; // what the library would be given in a copy
+    TestType mesh = scanned<TestType>(false);
+    for (const auto v : mesh.vertices()) {
+        same.positions.push_back(to_vec3(mesh.point(v)));
+        same.normals.push_back(to_vec3(mesh.normal(v)));
+        same.colors.push_back(detail::color_bytes(mesh.color(v)));
+    }
+    const Reconstruction expected = hsdm::reconstruct(same, {.depth = 3});
+    for (const bool with_deleted : {false, true}) {
+        mesh = scanned<TestType>(with_deleted);
+        const Report report = surface_of(mesh);
+        CHECK(report.input.points == same.size());
+        CHECK(report.rejected == expected.report.rejected);
+        REQUIRE(mesh.n_vertices() == expected.mesh.n_vertices());
+        std::size_t others = 0;
+        for (const auto v : mesh.vertices())
+            others += mesh.point(v) != to_normal<typename TestType::Point>(expected.mesh.point(v));
+        CHECK(others == 0);
+        std::size_t greens = 0;
+        for (const auto v : mesh.vertices()) greens += detail::color_bytes(mesh.color(v))[1] == 250;
+        CHECK(greens > 20);
+        CHECK(greens < mesh.n_vertices() - 20);
+    }
+}
+
 TEST_CASE("colours of any kind are read and set", "") {
     using detail::color_bytes, detail::color_of;
     CHECK(color_bytes(OpenMesh::Vec3f(0, 0.5f, 1)) == std::array<std::uint8_t, 4>{0, 128, 255, 255});

@@ -5,7 +5,7 @@
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/modules/plugin_loader.hh"
-#include "support/folder.hh"
+#include "modules/own_modules.hh"
 #include "support/meshes.hh"
 
 #include <catch2/catch.hpp>
@@ -20,25 +20,12 @@
 
 using namespace hsdm;
 using Catch::Matchers::Contains;
+using hsdm::test::OwnModules;
 using Options = StageArguments;
 
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The modules of a folder, copied into one of this user's alone: where the build tree lies others may write.
-class OwnModules : public support::Folder {
-public:
-    explicit OwnModules(const std::string& from) {
-        for (const auto& file : fs::directory_iterator(from)) {
-            if (file.path().extension() != ".so") continue;
-            const std::string copy = *this / file.path().filename().string();
-            fs::copy_file(file.path(), copy);
-            fs::permissions(copy, fs::perms::owner_all);
-        }
-    }
-    operator std::vector<std::string>() const { return {path()}; }
-};
 
 std::string refusal(const std::string& name, const std::vector<std::string>& folders) {
     try {

@@ -31,14 +31,14 @@ TEST_CASE("points far away from all others go first, the others lose no digit", 
     Octree octree = build_octree(cloud, centred);
     const Octree clean = octree;
     CloudFrame frame;
-    CHECK(drop_far_outliers(octree, cloud, frame).count == 0);
+    CHECK(drop_far_outliers(octree, view_of(cloud), frame).count == 0);
     CHECK(octree.positions == clean.positions);
     for (int i = 0; i < 10; ++i) {
         cloud.positions.emplace_back(i % 2 ? 1e9 : -1e6, 4, std::pow(10.0, i));
         cloud.normals.emplace_back(1, 0, 0);
     }
     octree = build_octree(cloud, centred);
-    const Discarded strays = drop_far_outliers(octree, cloud, frame);
+    const Discarded strays = drop_far_outliers(octree, view_of(cloud), frame);
     CHECK(strays.count == 10);
     CHECK(std::find(cloud.positions.end() - 10, cloud.positions.end(), strays.first)
           != cloud.positions.end());
@@ -61,7 +61,7 @@ TEST_CASE("a small part far from a large one is no stray, whatever strays there 
     }
     Octree octree = build_octree(cloud);
     CloudFrame frame;
-    CHECK(drop_far_outliers(octree, cloud, frame).count == 10);
+    CHECK(drop_far_outliers(octree, view_of(cloud), frame).count == 10);
     CHECK(octree.size() == 40400);
 }
 
@@ -75,7 +75,7 @@ TEST_CASE("strays all over the place are no part however many they are", "[octre
     }
     Octree octree = build_octree(cloud);
     CloudFrame frame;
-    CHECK(drop_far_outliers(octree, cloud, frame).count == 300);
+    CHECK(drop_far_outliers(octree, view_of(cloud), frame).count == 300);
 }
 
 TEST_CASE("a part is told wherever the planes of the grid run through it", "[octree]") {
@@ -84,7 +84,7 @@ TEST_CASE("a part is told wherever the planes of the grid run through it", "[oct
         Octree octree = build_octree(cloud, {.placement = CubePlacement::centred});
         CloudFrame frame;
         INFO(at);
-        CHECK(drop_far_outliers(octree, cloud, frame).count == 0);
+        CHECK(drop_far_outliers(octree, view_of(cloud), frame).count == 0);
     }
 }
 
@@ -101,7 +101,7 @@ TEST_CASE("a lattice is no crowd of parts, however often its points are there", 
         }
     Octree octree = build_octree(cloud);
     CloudFrame frame;
-    CHECK(cut_empty_space(octree, cloud, frame).count == 0);
+    CHECK(cut_empty_space(octree, view_of(cloud), frame).count == 0);
     CHECK_FALSE(frame.has_cuts());
 }
 
@@ -113,7 +113,7 @@ TEST_CASE("a few strays between parts far from each other go, so that space can 
     }
     Octree octree = build_octree(cloud);
     CloudFrame frame;
-    const Discarded strays = cut_empty_space(octree, cloud, frame);
+    const Discarded strays = cut_empty_space(octree, view_of(cloud), frame);
     CHECK(strays.count == 20);
     CHECK(strays.first[1] == Approx(1e5));
     CHECK(frame.has_cuts());
@@ -125,7 +125,7 @@ TEST_CASE("empty space between parts is cut until their spacing can be followed"
     PointCloud cloud = joined(sphere_cloud(5000), sphere_cloud(5000, Vec3(apart, apart / 3, 0)));
     CloudFrame frame;
     Octree octree = build_octree(cloud);
-    cut_empty_space(octree, cloud, frame);
+    cut_empty_space(octree, view_of(cloud), frame);
     INFO(apart << " apart, cube " << octree.extent);
     CHECK(frame.has_cuts());
     CHECK(octree.extent < 1000);
@@ -139,10 +139,11 @@ TEST_CASE("empty space between parts is cut until their spacing can be followed"
     CHECK(worst <= 1e-15 * apart);
     CHECK(shift < 1e-9);
 
-    Octree ordinary = build_octree(sphere_cloud(5000));
+    const PointCloud sphere = sphere_cloud(5000);
+    Octree ordinary = build_octree(sphere);
     const Octree before = ordinary;
     CloudFrame none;
-    cut_empty_space(ordinary, sphere_cloud(5000), none);
+    cut_empty_space(ordinary, view_of(sphere), none);
     CHECK_FALSE(none.has_cuts());
     CHECK(ordinary.positions == before.positions);
 }

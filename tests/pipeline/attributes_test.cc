@@ -24,7 +24,7 @@ std::vector<VertexProperty> attributes_of(const PointCloud& cloud) {
     const OctreeLevel level = extract_level(octree, 1);
     REQUIRE(level.size() == 2);
     const std::vector<Index> voxel = {1, 0}; // vertices need not come in the order of their voxels
-    return average_attributes(cloud, octree, level, voxel);
+    return average_attributes(view_of(cloud), octree, level, voxel);
 }
 
 } // namespace

@@ -6,6 +6,7 @@
 #include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/quality/topology.hh"
 #include "hsdm/reconstruct.hh"
+#include "hsdm/spatial/self_intersections.hh"
 #include "hsdm/stages/decimate_mesh.hh"
 #include "hsdm/stages/pair_triangles.hh"
 #include "hsdm/stages/stages.hh"
@@ -13,12 +14,14 @@
 #include "support/meshes.hh"
 #include "support/sample.hh"
 
+#include <OpenMesh/Tools/Utils/MeshCheckerT.hh>
 #include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <map>
 #include <numbers>
 #include <set>
+#include <sstream>
 
 using namespace hsdm;
 using Catch::Matchers::Contains;
@@ -150,7 +153,12 @@ TEST_CASE("decimated, smoothed and divided, a part keeps its creases, its corner
     for (const char* call : {"decimate:ratio=0.125", "smooth", "subdivide"}) {
         INFO(call << ": " << run(mesh, call));
         CHECK(fault_of(mesh) == "");
+        std::ostringstream said;
+        CHECK(OpenMesh::Utils::MeshCheckerT<PolyMesh>(mesh).check(
+            OpenMesh::Utils::MeshCheckerT<PolyMesh>::CHECK_ALL, said));
+        CHECK(said.str() == "");
         CHECK(support::faults(to_polygons(mesh)) == "");
+        CHECK(find_self_intersections(to_polygons(mesh)).facet_pairs.empty());
         CHECK(marked_length(mesh) > 0.98 * length);
         CHECK(corner_places(mesh) == corners);
         const Topology after = measure_topology(to_polygons(mesh));

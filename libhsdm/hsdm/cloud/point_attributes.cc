@@ -1,5 +1,7 @@
 #include "hsdm/cloud/point_attributes.hh"
 
+#include "hsdm/cloud/strided.hh"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,18 +10,26 @@ namespace hsdm {
 
 using Type = VertexProperty::Type;
 
-std::vector<PointAttribute> attributes_of(const PointCloud& cloud) {
+double PointAttribute::operator()(Index point) const {
+    constexpr double opaque = 255;
+    if (is_constant) return opaque;
+    return type == Type::uint8 ? channel_at(rows, point, place) : number_at(rows, point, 0);
+}
+
+std::vector<PointAttribute> attributes_of(const PointView& cloud) {
     std::vector<PointAttribute> attributes;
-    if (!cloud.colors.empty()) {
+    if (cloud.colors.count > 0) {
+        const auto channels = static_cast<std::size_t>(cloud.color_channels);
         for (std::size_t k = 0; k < color_properties.size(); ++k)
-            attributes.push_back({color_properties[k], Type::uint8, &cloud, k});
+            attributes.push_back({color_properties[k], Type::uint8, cloud.colors, k, k >= channels});
     }
     for (std::size_t s = 0; s < cloud.scalars.size(); ++s) {
-        const Scalar& scalar = cloud.scalars[s];
+        const ScalarView& scalar = cloud.scalars[s];
         const auto has_name = [&](const PointAttribute& a) { return a.name == scalar.name; };
         if (scalar.name.starts_with("hsdm_") || std::any_of(attributes.begin(), attributes.end(), has_name))
             continue;
-        attributes.push_back({scalar.name, scalar.is_label ? Type::int32 : Type::float64, &cloud, s});
+        attributes.push_back(
+            {scalar.name, scalar.is_label ? Type::int32 : Type::float64, scalar.values, s, false});
     }
     return attributes;
 }

@@ -1,7 +1,7 @@
 #pragma once
 // Colours and further scalars of points, one number at a time, and what several of them are together.
 
-#include "hsdm/point_cloud.hh"
+#include "hsdm/point_view.hh"
 #include "hsdm/polygon_mesh.hh"
 
 namespace hsdm {
@@ -10,20 +10,18 @@ namespace hsdm {
 struct PointAttribute {
     std::string name;
     VertexProperty::Type type = VertexProperty::Type::float64; ///< uint8: a channel; int32: labels
-    const PointCloud* cloud = nullptr;
-    std::size_t place = 0; ///< among the channels or the scalars
+    StridedSpan rows;                                          ///< the colours, or the scalar's values
+    std::size_t place = 0;                                     ///< among the channels or the scalars
+    bool is_constant = false;                                  ///< alpha of colours that have none: opaque
 
     /// A point's value.
-    double operator()(Index point) const {
-        return type == VertexProperty::Type::uint8 ? cloud->colors[point][place]
-                                                   : cloud->scalars[place].values[point];
-    }
+    double operator()(Index point) const;
 };
 
 /// Red, green, blue and alpha if the cloud has colours, and its scalars but for those that begin with `hsdm_`
-/// (results of a reconstruction, whose names are those of the next) or have another's name. The cloud must
-/// outlive them.
-std::vector<PointAttribute> attributes_of(const PointCloud& cloud);
+/// (results of a reconstruction, whose names are those of the next) or have another's name. The cloud's
+/// arrays must outlive them.
+std::vector<PointAttribute> attributes_of(const PointView& cloud);
 
 struct WeightedValue {
     double value;

@@ -5,6 +5,7 @@
 #include "hsdm/features/constants.hh"
 #include "hsdm/features/normal_filter.hh"
 #include "hsdm/mesh/facet_normal.hh"
+#include "hsdm/spatial/self_intersections.hh"
 
 #include <array>
 #include <cmath>
@@ -90,11 +91,41 @@ public:
             filter();
             for (int i = 0; i < options_.position_rounds && !result_.volume_bound_met; ++i) step();
         }
+        if (options_.keep_apart) keep_apart();
         report();
         return result_;
     }
 
 private:
+    /// The facets that are there.
+    PolygonMesh polygons(const std::vector<Vec3>& positions) const {
+        PolygonMesh result;
+        result.positions = positions;
+        for (Index f = 0; f < mesh_.facet_count(); ++f) {
+            if (mesh_.side[f] == no_index) continue;
+            mesh_.for_each_side(f, [&](Index h) { result.corners.push_back(mesh_.to[h]); });
+            result.first.push_back(static_cast<Index>(result.corners.size()));
+        }
+        return result;
+    }
+
+    /// Takes back what has moved of facets that meet, until none of these has: some goes each time. If facets
+    /// met before, what has moved may well be better than what was.
+    void keep_apart() {
+        PolygonMesh moved = polygons(mesh_.positions);
+        auto pairs = find_self_intersections(moved).facet_pairs;
+        if (pairs.empty() || !find_self_intersections(polygons(start_)).facet_pairs.empty()) return;
+        for (; !pairs.empty(); pairs = find_self_intersections(moved).facet_pairs)
+            for (const auto& pair : pairs)
+                for (const Index f : pair)
+                    for (const Index v : moved.facet(f)) {
+                        result_.taken_back += moved.positions[v] != start_[v];
+                        moved.positions[v] = start_[v];
+                    }
+        const bool kept = std::abs(volume(moved.positions) - result_.volume_before) <= volume_bound_;
+        mesh_.positions = kept ? std::move(moved.positions) : start_;
+    }
+
     double mean_edge() const {
         const auto length = [&](Index e) {
             const Index a = mesh_.to[2 * e];

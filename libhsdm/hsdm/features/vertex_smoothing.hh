@@ -26,6 +26,9 @@ struct VertexSmoothingOptions {
     /// Share of the volume, >= 0, by which that of a closed mesh may change. One with a boundary encloses
     /// none, but its boundary stays.
     double max_volume_change = 0.01;
+    /// A mesh that does not pass through itself still does not in the end: facets that would are taken back
+    /// to where they were. False saves the search for them.
+    bool keep_apart = true;
 };
 
 struct VertexSmoothingResult {
@@ -37,6 +40,7 @@ struct VertexSmoothingResult {
     double volume_before = 0, volume_after = 0;
     /// Facets that a step would have turned over, and whose vertices it therefore left; summed over steps.
     std::size_t refused = 0;
+    std::size_t taken_back = 0;    ///< vertices put back in the end, of facets that met others
     bool volume_bound_met = false; ///< smoothing ended there
     bool operator==(const VertexSmoothingResult&) const = default;
 };
@@ -49,8 +53,9 @@ void validate(const VertexSmoothingOptions& options);
 /// planes, along filtered normals through the centroids, of its facets (Sun, Rosin, Martin, Langbein 2007);
 /// departs in weighting them by area. On a crease, where sectors meet, the step meets the mean planes of
 /// both. Corners (curve_roles) and boundary vertices stay. Filters never average across a sharp edge. A step
-/// that would leave the volume's bound is made shorter, and the last one. O(corners) a round, parallel; the
-/// same bits for any number of threads.
+/// that would leave the volume's bound is made shorter, and the last one. In the end facets that meet
+/// others go back to where they began, if none met before. O(corners) a round and a search for
+/// self-intersections, parallel; the same bits for any number of threads.
 VertexSmoothingResult smooth_positions(HalfEdges& mesh, const VertexSmoothingOptions& options);
 
 } // namespace hsdm

@@ -1,5 +1,6 @@
 #include "hsdm/octree/far_outliers.hh"
 
+#include "hsdm/cloud/strided.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/octree/constants.hh"
 #include "hsdm/octree/spacing.hh"
@@ -12,7 +13,7 @@ namespace hsdm {
 namespace {
 
 /// The box of all but the outer two percent of a sample along each axis.
-Box box_of_most(const Octree& octree, const PointCloud& cloud) {
+Box box_of_most(const Octree& octree, const PointView& cloud) {
     constexpr std::size_t samples = 1 << 12;
     const std::size_t stride = octree.size() / samples + 1;
     Box box{Vec3(0, 0, 0), Vec3(0, 0, 0)};
@@ -20,7 +21,7 @@ Box box_of_most(const Octree& octree, const PointCloud& cloud) {
     for (unsigned axis = 0; axis < 3; ++axis) {
         values.clear();
         for (std::size_t i = 0; i < octree.size(); i += stride)
-            values.push_back(cloud.positions[octree.source[i]][axis]);
+            values.push_back(vec3_at(cloud.positions, octree.source[i])[axis]);
         std::sort(values.begin(), values.end());
         const std::size_t outer = std::max<std::size_t>(1, values.size() / far_points::one_outer_in);
         if (2 * outer >= values.size()) return box;
@@ -82,18 +83,19 @@ void spare_parts(const Octree& octree, std::vector<std::uint8_t>& far) {
 }
 
 /// A frame for the points left: the removed ones may alone have made it large.
-CloudFrame frame_of_rest(const Octree& octree, const PointCloud& cloud) {
+CloudFrame frame_of_rest(const Octree& octree, const PointView& cloud) {
     Box left;
-    for (Index point : octree.source) left.add(cloud.positions[point]);
+    for (Index point : octree.source) left.add(vec3_at(cloud.positions, point));
     return CloudFrame(left);
 }
 
 /// Takes all positions again, in the frame, in a cube about their box. False, and nothing done, if that box
 /// has no voxels, as for parts 2^1000 times as far apart as they are large.
-bool take_anew(Octree& octree, const PointCloud& cloud, const CloudFrame& frame) {
+bool take_anew(Octree& octree, const PointView& cloud, const CloudFrame& frame) {
     std::vector<Vec3> positions(octree.size());
-    for_each_index(positions.size(), chunks::light,
-                   [&](Index i) { positions[i] = frame.to_work(cloud.positions[octree.source[i]]); });
+    for_each_index(positions.size(), chunks::light, [&](Index i) {
+        positions[i] = frame.to_work(vec3_at(cloud.positions, octree.source[i]));
+    });
     const Box bounds = bounds_of(positions);
     if (!has_voxels(bounds)) return false;
     octree.bounds = bounds;
@@ -105,13 +107,13 @@ bool take_anew(Octree& octree, const PointCloud& cloud, const CloudFrame& frame)
 }
 
 /// Cuts gaps along every axis. Returns the longest stretch between cuts.
-double cut_gaps(const Octree& octree, const PointCloud& cloud, double widest, CloudFrame& frame) {
+double cut_gaps(const Octree& octree, const PointView& cloud, double widest, CloudFrame& frame) {
     const CloudFrame uncut = frame = frame.without_cuts();
     std::vector<double> coordinates(octree.size());
     double longest = 0;
     for (unsigned axis = 0; axis < 3; ++axis) {
         for_each_index(coordinates.size(), chunks::light, [&](Index i) {
-            coordinates[i] = uncut.to_work(cloud.positions[octree.source[i]])[axis];
+            coordinates[i] = uncut.to_work(vec3_at(cloud.positions, octree.source[i]))[axis];
         });
         longest = std::max(longest, frame.cut_gaps(axis, coordinates, widest));
     }
@@ -119,12 +121,12 @@ double cut_gaps(const Octree& octree, const PointCloud& cloud, double widest, Cl
 }
 
 /// Marks the points of stretches between cuts that hold too few to be a part. Returns how many.
-std::size_t mark_scraps(const Octree& octree, const PointCloud& cloud, const CloudFrame& frame,
+std::size_t mark_scraps(const Octree& octree, const PointView& cloud, const CloudFrame& frame,
                         std::vector<std::uint8_t>& marks) {
     const CloudFrame uncut = frame.without_cuts();
     std::vector<std::pair<std::array<Index, 3>, Index>> points(octree.size());
     for_each_index(points.size(), chunks::light, [&](Index i) {
-        points[i] = {frame.stretch_of_uncut(uncut.to_work(cloud.positions[octree.source[i]])), i};
+        points[i] = {frame.stretch_of_uncut(uncut.to_work(vec3_at(cloud.positions, octree.source[i]))), i};
     });
     tbb::parallel_sort(points.begin(), points.end());
     std::size_t count = 0;
@@ -139,7 +141,7 @@ std::size_t mark_scraps(const Octree& octree, const PointCloud& cloud, const Clo
 }
 
 /// The frame with all gaps cut that are wide compared with parts; without cuts if there are none.
-CloudFrame with_cuts(const Octree& octree, const PointCloud& cloud, CloudFrame frame, double least_gap) {
+CloudFrame with_cuts(const Octree& octree, const PointView& cloud, CloudFrame frame, double least_gap) {
     double widest = std::max(octree.extent / far_points::gaps_per_extent, least_gap);
     for (;;) {
         const double longest = cut_gaps(octree, cloud, widest, frame);
@@ -151,14 +153,14 @@ CloudFrame with_cuts(const Octree& octree, const PointCloud& cloud, CloudFrame f
 
 } // namespace
 
-Discarded drop_far_outliers(Octree& octree, const PointCloud& cloud, CloudFrame& frame) {
+Discarded drop_far_outliers(Octree& octree, const PointView& cloud, CloudFrame& frame) {
     // in the cloud's own units: outliers may have made the frame's unit huge
     const Box core = box_of_most(octree, cloud);
     const double extent = core.extent();
     if (!(extent > 0) || far_points::boxes_across * extent >= octree.extent * frame.unit()) return {};
     std::vector<std::uint8_t> far(octree.size(), 0);
     for (std::size_t i = 0; i < far.size(); ++i) {
-        const Vec3& p = cloud.positions[octree.source[i]];
+        const Vec3 p = vec3_at(cloud.positions, octree.source[i]);
         const Vec3 below = core.lo - p, above = p - core.hi;
         far[i] = std::max(below.max(), above.max()) > far_points::margin * extent;
     }
@@ -170,7 +172,7 @@ Discarded drop_far_outliers(Octree& octree, const PointCloud& cloud, CloudFrame&
     return discarded;
 }
 
-Discarded cut_empty_space(Octree& octree, const PointCloud& cloud, CloudFrame& frame, double least_gap) {
+Discarded cut_empty_space(Octree& octree, const PointView& cloud, CloudFrame& frame, double least_gap) {
     Discarded discarded;
     while (spacings::spacings_per_voxel * estimate_spacing(octree) < octree.voxel_size(deepest_level)) {
         const CloudFrame cut = with_cuts(octree, cloud, frame, least_gap / frame.unit());

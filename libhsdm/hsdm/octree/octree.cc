@@ -1,5 +1,6 @@
 #include "hsdm/octree/octree.hh"
 
+#include "hsdm/cloud/strided.hh"
 #include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/radix_sort.hh"
@@ -41,14 +42,24 @@ Vec3 unit_with_one_zero(const Vec3& n) {
     return length > 0 ? directed / length + zero : zero;
 }
 
-/// change(value) of the values at these places.
-template <class T, class Change>
-std::vector<T> gathered(const std::vector<T>& values, const std::vector<Index>& places,
-                        const Change& change) {
+/// The values at these places.
+template <class T>
+std::vector<T> gathered(const std::vector<T>& values, const std::vector<Index>& places) {
     std::vector<T> result(places.size());
     for_each_index(places.size(), chunks::light, [&](Index i) {
         if (i + ahead < places.size()) __builtin_prefetch(&values[places[i + ahead]]);
-        result[i] = change(values[places[i]]);
+        result[i] = values[places[i]];
+    });
+    return result;
+}
+
+/// change(vector) of the vectors at these places.
+template <class Change>
+std::vector<Vec3> gathered(const StridedSpan& rows, const std::vector<Index>& places, const Change& change) {
+    std::vector<Vec3> result(places.size());
+    for_each_index(places.size(), chunks::light, [&](Index i) {
+        if (i + ahead < places.size()) __builtin_prefetch(row_of(rows, places[i + ahead]));
+        result[i] = change(vec3_at(rows, places[i]));
     });
     return result;
 }
@@ -80,12 +91,11 @@ int sort_by_cells(std::vector<CodeIndex>& keys) {
 
 /// Orders points by code, then position, then normal if there are some. Cells are sorted by digits; few
 /// points of a surface share one, and those few are compared.
-void order_points(std::span<const Vec3> positions, std::span<const Vec3> normals,
-                  std::vector<CodeIndex>& keys) {
+void order_points(const StridedSpan& positions, const StridedSpan& normals, std::vector<CodeIndex>& keys) {
     const int in_cell = sort_by_cells(keys);
     const auto key = [&](Index i) {
-        const Vec3& p = positions[i];
-        const Vec3 n = normals.empty() ? zero : directed_or_zero(normals[i]); // NaN has no order
+        const Vec3 p = vec3_at(positions, i);
+        const Vec3 n = normals.count == 0 ? zero : directed_or_zero(vec3_at(normals, i)); // NaN has no order
         return std::tuple(p[0], p[1], p[2], n[0], n[1], n[2], i);
     };
     const auto same_cell = [in_cell](const CodeIndex& a, const CodeIndex& b) {
@@ -114,12 +124,14 @@ void order_points(std::span<const Vec3> positions, std::span<const Vec3> normals
 
 /// Removes points equal to their predecessor in position and normal; equal points are neighbours by now, the
 /// first in the cloud before the others. Adds the others to `duplicates` if it is not null. Returns how many.
-std::size_t merge_equal(std::span<const Vec3> positions, std::span<const Vec3> normals,
+std::size_t merge_equal(const StridedSpan& positions, const StridedSpan& normals,
                         std::vector<CodeIndex>& keys, std::vector<Octree::Duplicate>* duplicates) {
+    const auto direction = [&](const CodeIndex& key) {
+        return directed_or_zero(vec3_at(normals, key.index));
+    };
     const auto equal = [&](const CodeIndex& a, const CodeIndex& b) {
-        return a.code == b.code && positions[a.index] == positions[b.index]
-               && (normals.empty()
-                   || directed_or_zero(normals[a.index]) == directed_or_zero(normals[b.index]));
+        return a.code == b.code && vec3_at(positions, a.index) == vec3_at(positions, b.index)
+               && (normals.count == 0 || direction(a) == direction(b));
     };
     std::size_t kept = 0;
     for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -159,10 +171,10 @@ void keep_unmarked(std::vector<T>& values, std::span<const std::uint8_t> marked)
 }
 
 /// The octree's box, its cube and where that lies. Throws Error, OptionError.
-void place_cube(const PointCloud& cloud, const OctreeOptions& options, Octree& octree) {
-    if (!all_finite(cloud.positions))
+void place_cube(const PointView& cloud, const OctreeOptions& options, Octree& octree) {
+    if (!options.skip_nonfinite && find_nonfinite(cloud.positions).count > 0)
         throw Error("the cloud holds coordinates that are not finite; call drop_nonfinite first");
-    const Box bounds = cloud.bounds();
+    const Box bounds = finite_bounds(cloud.positions);
     octree.bounds = {bounds.lo * (1 / options.unit) + zero, bounds.hi * (1 / options.unit) + zero};
     octree.origin = octree.bounds.lo;
     octree.extent = octree.bounds.extent();
@@ -178,27 +190,35 @@ void place_cube(const PointCloud& cloud, const OctreeOptions& options, Octree& o
         octree.origin = centred_origin(octree.bounds, octree.extent);
 }
 
+/// The codes of the cloud's points, in their order.
+std::vector<CodeIndex> keys_of(const PointView& cloud, const OctreeOptions& options, const Octree& octree) {
+    const double scale = cells / octree.extent, per_unit = 1 / options.unit;
+    std::vector<CodeIndex> keys(cloud.size());
+    for_each_index(keys.size(), chunks::light, [&](Index i) {
+        keys[i] = {code_of(vec3_at(cloud.positions, i) * per_unit - octree.origin, scale), i};
+    });
+    if (options.skip_nonfinite)
+        std::erase_if(keys,
+                      [&](const CodeIndex& key) { return !is_finite(vec3_at(cloud.positions, key.index)); });
+    return keys;
+}
+
 /// `ours`: the cloud's normals if we may take them, or null.
-Octree build(const PointCloud& cloud, std::vector<Vec3>* ours, const OctreeOptions& options) {
+Octree build(const PointView& cloud, std::vector<Vec3>* ours, const OctreeOptions& options) {
     if (cloud.size() == 0) throw Error("the cloud holds no point; nothing can be reconstructed");
     Octree octree;
     place_cube(cloud, options, octree);
-    const std::size_t n = cloud.size();
-    const bool with_normals = options.use_normals && cloud.has_normals();
-    const bool with_values = !cloud.colors.empty() || !cloud.scalars.empty();
-    const double scale = cells / octree.extent, per_unit = 1 / options.unit;
-    std::vector<CodeIndex> keys(n);
-    for_each_index(n, chunks::light, [&](Index i) {
-        keys[i] = {code_of(cloud.positions[i] * per_unit - octree.origin, scale), i};
-    });
-    const std::span<const Vec3> normals = with_normals ? cloud.normals : std::span<const Vec3>();
+    const bool with_values = cloud.colors.count > 0 || !cloud.scalars.empty();
+    const StridedSpan normals = options.use_normals ? cloud.normals : StridedSpan();
+    std::vector<CodeIndex> keys = keys_of(cloud, options, octree);
     order_points(cloud.positions, normals, keys);
     if (options.merge_duplicates)
         octree.merged_duplicates =
             merge_equal(cloud.positions, normals, keys, with_values ? &octree.duplicates : nullptr);
     octree.source = take_order(keys, octree.codes);
-    if (with_normals) octree.normals = gathered(cloud.normals, octree.source, unit_with_one_zero);
+    if (normals.count > 0) octree.normals = gathered(normals, octree.source, unit_with_one_zero);
     if (ours) *ours = std::vector<Vec3>();
+    const double per_unit = 1 / options.unit;
     octree.positions = gathered(cloud.positions, octree.source,
                                 [&](const Vec3& p) { return p * per_unit - octree.origin + zero; });
     return octree;
@@ -206,12 +226,16 @@ Octree build(const PointCloud& cloud, std::vector<Vec3>* ours, const OctreeOptio
 
 } // namespace
 
-Octree build_octree(const PointCloud& cloud, const OctreeOptions& options) {
+Octree build_octree(const PointView& cloud, const OctreeOptions& options) {
     return build(cloud, nullptr, options);
 }
 
+Octree build_octree(const PointCloud& cloud, const OctreeOptions& options) {
+    return build(view_of(cloud), nullptr, options);
+}
+
 Octree build_octree_taking_normals(PointCloud& cloud, const OctreeOptions& options) {
-    return build(cloud, &cloud.normals, options);
+    return build(view_of(cloud), &cloud.normals, options);
 }
 
 void rearrange(Octree& octree, std::vector<Vec3> positions, double extent) {
@@ -226,12 +250,11 @@ void rearrange(Octree& octree, std::vector<Vec3> positions, double extent) {
         positions[i] += shift;
         keys[i] = {code_of(positions[i], scale), i};
     });
-    order_points(positions, octree.normals, keys);
+    order_points(rows_of(positions), rows_of(octree.normals), keys);
     const std::vector<Index> order = take_order(keys, octree.codes);
-    const auto same = [](const auto& value) { return value; };
-    octree.source = gathered(octree.source, order, same);
-    if (octree.has_normals()) octree.normals = gathered(octree.normals, order, same);
-    octree.positions = gathered(positions, order, same);
+    octree.source = gathered(octree.source, order);
+    if (octree.has_normals()) octree.normals = gathered(octree.normals, order);
+    octree.positions = gathered(positions, order);
 }
 
 Discarded remove_points(Octree& octree, std::span<const std::uint8_t> marked) {

@@ -3,7 +3,7 @@
 
 #include "hsdm/core/discarded.hh"
 #include "hsdm/core/morton_index.hh"
-#include "hsdm/point_cloud.hh"
+#include "hsdm/point_view.hh"
 
 #include <span>
 
@@ -21,6 +21,7 @@ constexpr int deepest_level = 16;
 struct OctreeOptions {
     bool merge_duplicates = true; ///< points equal in position and normal count once
     bool use_normals = true;      ///< false: the octree has none, whether the cloud has or not
+    bool skip_nonfinite = false;  ///< leave out points with a coordinate that is not finite
     double cube_extent = 0; ///< edge of the bounding cube, at least the cloud's longest side; 0: that side
     /// Every length of the octree, cube_extent too, is in multiples of this many of the cloud's units; a
     /// power of two, for clouds whose own numbers are extreme (CloudFrame).
@@ -57,9 +58,10 @@ Vec3 centred_origin(const Box& bounds, double extent);
 /// Sorts the cloud into its HSDM. O(n) time and space (radix sort of 63-bit codes), parallel; the result does
 /// not depend on the order of the points, nor on the number of threads. Ties of the code are ordered by
 /// position, then normal, so each voxel's points come in one canonical order; normals that are zero or not
-/// finite are (0, 0, 0) from here on. Throws Error if the cloud is empty, holds a non-finite coordinate, all
-/// its points are equal, or its extent times 2^21 over the unit is no number;
-/// OptionError if cube_extent is given but smaller than the cloud.
+/// finite are (0, 0, 0) from here on. Reads the arrays where they are. Throws Error if the cloud is empty,
+/// holds a non-finite coordinate that is not to be skipped, all its points are equal, or its extent times
+/// 2^21 over the unit is no number; OptionError if cube_extent is given but smaller than the cloud.
+Octree build_octree(const PointView& cloud, const OctreeOptions& options = {});
 Octree build_octree(const PointCloud& cloud, const OctreeOptions& options = {});
 /// The same in less memory: the cloud loses its normals, used or not, and keeps all else.
 Octree build_octree_taking_normals(PointCloud& cloud, const OctreeOptions& options = {});

@@ -50,7 +50,7 @@ private:
 
 } // namespace
 
-std::vector<VertexProperty> average_attributes(const PointCloud& cloud, const Octree& octree,
+std::vector<VertexProperty> average_attributes(const PointView& cloud, const Octree& octree,
                                                const OctreeLevel& level, std::span<const Index> voxel) {
     using Type = VertexProperty::Type;
     const VoxelAverages averages(octree, level, voxel);

@@ -10,7 +10,7 @@ namespace hsdm {
 /// scalar of the cloud under its own name, but for those that begin with `hsdm_` or have another's name; of
 /// labels the majority's (the least of those in a tie). Beside them `hsdm_level`, the octree level. O(n) per
 /// attribute, parallel.
-std::vector<VertexProperty> average_attributes(const PointCloud& cloud, const Octree& octree,
+std::vector<VertexProperty> average_attributes(const PointView& cloud, const Octree& octree,
                                                const OctreeLevel& level, std::span<const Index> voxel);
 
 /// The same properties for vertices that each stand for many: vertex v's values go into vertex `into[v]` of

@@ -1,43 +1,46 @@
 #pragma once
 // The cloud that came in, whoever owns it.
 
+#include "hsdm/cloud/strided.hh"
 #include "hsdm/octree/octree.hh"
 
 namespace hsdm {
 
-/// The caller's cloud, or one that we own and whose memory is freed as soon as it is no longer needed.
+/// The caller's arrays, read where they are, or a cloud that we own and whose memory is freed as soon as it
+/// is no longer needed. Points that are not finite stay where they are and are skipped.
 class InputCloud {
 public:
-    explicit InputCloud(const PointCloud& kept) : cloud_(&kept) {}
-    explicit InputCloud(PointCloud&& left) : cloud_(&left), ours_(&left) {}
+    explicit InputCloud(const PointView& kept) : view_(kept) {}
+    explicit InputCloud(PointCloud&& left) : view_(view_of(left)), ours_(&left) {}
     InputCloud(const InputCloud&) = delete;
     InputCloud& operator=(const InputCloud&) = delete;
 
-    /// Throws Error if the arrays of the cloud are of different lengths, so that one would be read beyond its
-    /// end.
+    /// Throws Error if the arrays of the cloud do not fit together, so that one would be read where it is
+    /// not.
     void check() const;
-    /// Drops points with coordinates that are not finite; if the caller's cloud has such, in a copy.
-    void drop_nonfinite_points();
-    const PointCloud& operator*() const { return *cloud_; }
-    const Dropped& dropped() const { return dropped_; }
-    /// Builds the octree; takes the normals along if we own the cloud.
-    Octree take_octree(const OctreeOptions& options) {
-        return ours_ ? build_octree_taking_normals(*ours_, options) : build_octree(*cloud_, options);
-    }
+    /// Looks for points with coordinates that are not finite. Throws Error if most are such.
+    void find_nonfinite_points();
+    const PointView& operator*() const { return view_; }
+    const NonfiniteRows& nonfinite() const { return nonfinite_; }
+    /// Points that are finite.
+    std::size_t finite_size() const { return view_.size() - nonfinite_.count; }
+    /// Builds the octree of the finite points; takes the normals along if we own the cloud.
+    Octree take_octree(OctreeOptions options);
     void release_positions() {
-        if (ours_) ours_->positions = std::vector<Vec3>();
+        if (ours_) forget(ours_->positions, view_.positions);
     }
-    void release_attributes() {
-        if (!ours_) return;
-        ours_->colors = decltype(ours_->colors)();
-        ours_->scalars = std::vector<Scalar>();
-    }
+    void release_attributes();
 
 private:
-    const PointCloud* cloud_;
+    template <class Array>
+    static void forget(Array& array, StridedSpan& rows) {
+        array = Array();
+        rows = StridedSpan();
+    }
+
+    PointView view_;
     PointCloud* ours_ = nullptr;
-    PointCloud copy_;
-    Dropped dropped_;
+    NonfiniteRows nonfinite_;
 };
 
 } // namespace hsdm

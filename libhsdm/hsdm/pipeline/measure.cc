@@ -1,5 +1,6 @@
 #include "hsdm/pipeline/measure.hh"
 
+#include "hsdm/cloud/strided.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/small_components.hh"
 #include "hsdm/mesh/to_mesh.hh"
@@ -89,10 +90,10 @@ double into_own_unit(std::vector<Vec3>& positions) {
 
 } // namespace
 
-std::vector<Vec3> points_as_read(const PointCloud& cloud, const CloudFrame& frame, const Octree& octree) {
+std::vector<Vec3> points_as_read(const PointView& cloud, const CloudFrame& frame, const Octree& octree) {
     std::vector<Vec3> points(octree.size());
     for_each_index(points.size(), chunks::light, [&](Index i) {
-        points[i] = frame.to_work(cloud.positions[octree.source[i]]) - octree.origin;
+        points[i] = frame.to_work(vec3_at(cloud.positions, octree.source[i])) - octree.origin;
     });
     return points;
 }

@@ -7,7 +7,7 @@
 namespace hsdm {
 
 /// The octree's points at the positions that they have in the cloud, relative to its origin.
-std::vector<Vec3> points_as_read(const PointCloud& cloud, const CloudFrame& frame, const Octree& octree);
+std::vector<Vec3> points_as_read(const PointView& cloud, const CloudFrame& frame, const Octree& octree);
 
 /// Drops small components if asked to, and measures the rest. An error bound is checked before, because it
 /// covers the points of dropped components too.

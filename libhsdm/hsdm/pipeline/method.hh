@@ -16,7 +16,7 @@ namespace hsdm {
 /// The input of a method: one level of a prepared cloud.
 struct MethodInput {
     const CloudFrame& frame; ///< of the octree's coordinates
-    const PointCloud& cloud; ///< for its colours and scalars: the rest may have been freed
+    const PointView& cloud;  ///< for its colours and scalars: the rest may have been freed
     const Octree& octree;
     const OctreeLevel& level;
     const ReconstructOptions& options;

@@ -32,7 +32,7 @@ Method method_for(const ReconstructOptions& options) {
     return options.method == Method::basic ? Method::basic : Method::extended;
 }
 
-bool must_estimate(const PointCloud& cloud, const ReconstructOptions& options) {
+bool must_estimate(const PointView& cloud, const ReconstructOptions& options) {
     if (method_for(options) == Method::basic) return false;
     return options.normals == NormalSource::estimate || !cloud.has_normals();
 }

@@ -1,7 +1,7 @@
 #pragma once
 // What follows from the caller's options.
 
-#include "hsdm/point_cloud.hh"
+#include "hsdm/point_view.hh"
 #include "hsdm/reconstruct.hh"
 
 namespace hsdm {
@@ -13,7 +13,7 @@ std::string text_of(double value);
 Method method_for(const ReconstructOptions& options);
 
 /// Does the cloud need normals and has none, or none that the options want used?
-bool must_estimate(const PointCloud& cloud, const ReconstructOptions& options);
+bool must_estimate(const PointView& cloud, const ReconstructOptions& options);
 bool wants_adaptive(const ReconstructOptions& options);
 
 void note_options(bool estimate, const ReconstructOptions& options, Report& report);

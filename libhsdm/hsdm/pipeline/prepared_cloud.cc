@@ -43,12 +43,12 @@ void check_spread(const Octree& octree) {
 } // namespace
 
 PreparedCloud::PreparedCloud(InputCloud& input, const ReconstructOptions& options, const Phases& phases) {
-    const PointCloud& cloud = *input;
+    const PointView& cloud = *input;
     report.input.has_normals = cloud.has_normals(); // before the octree takes them
     OctreeOptions octree_options;
     octree_options.placement = CubePlacement::centred;
     octree_options.use_normals = options.normals != NormalSource::estimate;
-    frame = CloudFrame(cloud.bounds());
+    frame = CloudFrame(finite_bounds(cloud.positions));
     octree_options.unit = frame.unit();
     octree =
         phases.run("octree", 0, report.seconds.octree, [&] { return input.take_octree(octree_options); });
@@ -61,13 +61,13 @@ PreparedCloud::PreparedCloud(InputCloud& input, const ReconstructOptions& option
     if (far_away_ > 0) report.rejected["points_outlying"] = far_away_;
     note_dropped("points far from all others", far, CloudFrame(), report);
     check_spread(octree);
-    report.input.points = cloud.size();
+    report.input.points = input.finite_size();
     report.input.merged_duplicates = octree.merged_duplicates;
     report.input.bbox = octree.bounds;
     report.input.spacing = estimate_spacing(octree);
 }
 
-void PreparedCloud::provide_normals(const PointCloud& cloud, const Phases& phases) {
+void PreparedCloud::provide_normals(const PointView& cloud, const Phases& phases) {
     NormalsOptions normals_options;
     normals_options.orient.sensor = sensor_of(cloud);
     const NormalsReport made = phases.run("normals", 0.05, report.seconds.normals,
@@ -79,7 +79,7 @@ void PreparedCloud::provide_normals(const PointCloud& cloud, const Phases& phase
     report.rejected["normals_by_volume"] = made.orientation.by_volume;
 }
 
-void PreparedCloud::check_given_normals(const PointCloud& cloud, const Phases& phases) {
+void PreparedCloud::check_given_normals(const PointView& cloud, const Phases& phases) {
     report.rejected["normals_mended"] = phases.run("normals", 0.05, report.seconds.normals, [&] {
         const NormalConsistency consistency = check_normals(octree);
         if (consistency.rough() && octree.size() > 1)
@@ -131,7 +131,7 @@ void PreparedCloud::note_outliers(const Discarded& outliers) {
     report.input.spacing = estimate_spacing(octree);
 }
 
-std::optional<Vec3> PreparedCloud::sensor_of(const PointCloud& cloud) const {
+std::optional<Vec3> PreparedCloud::sensor_of(const PointView& cloud) const {
     if (!cloud.sensor) return std::nullopt;
     return frame.to_work(*cloud.sensor) - octree.origin;
 }

@@ -17,11 +17,11 @@ public:
     PreparedCloud(InputCloud& input, const ReconstructOptions& options, const Phases& phases);
 
     /// Estimates normals if the method needs them and the cloud has none or they are not wanted.
-    void provide_normals(const PointCloud& cloud, const Phases& phases);
+    void provide_normals(const PointView& cloud, const Phases& phases);
 
     /// Turns given normals to one side if their signs contradict each other, and measures the noise where
     /// there seems to be much.
-    void check_given_normals(const PointCloud& cloud, const Phases& phases);
+    void check_given_normals(const PointView& cloud, const Phases& phases);
 
     /// Chooses the depth that the options ask for or that spacing and noise suggest, with a cube that fits;
     /// enters it in the report.
@@ -48,7 +48,7 @@ private:
     /// sparser and larger.
     void note_outliers(const Discarded& outliers);
 
-    std::optional<Vec3> sensor_of(const PointCloud& cloud) const;
+    std::optional<Vec3> sensor_of(const PointView& cloud) const;
 
     void note_smoothing(const SmoothReport& smoothed);
 

@@ -159,14 +159,14 @@ void run(InputCloud& cloud, const ReconstructOptions& options, std::optional<std
          std::span<Reconstruction> results) {
     const auto start = std::chrono::steady_clock::now();
     cloud.check();
-    cloud.drop_nonfinite_points();
+    cloud.find_nonfinite_points();
     if (options.normals == NormalSource::given && !(*cloud).has_normals())
         throw Error("normals given were asked for, but the cloud has none");
     const bool estimate = must_estimate(*cloud, options); // before the octree takes the normals
     PreparedCloud prepared(cloud, options, Phases(options, 0, 1));
     Report& report = prepared.report;
-    report.input.dropped_nonfinite = cloud.dropped().nonfinite;
-    if (cloud.dropped().nonfinite > 0) report.input.first_nonfinite = cloud.dropped().first_nonfinite;
+    report.input.dropped_nonfinite = cloud.nonfinite().count;
+    if (cloud.nonfinite().count > 0) report.input.first_nonfinite = cloud.nonfinite().first;
     report.threads = tbb::this_task_arena::max_concurrency();
     note_options(estimate, options, report);
     if (estimate)
@@ -232,17 +232,26 @@ std::vector<Reconstruction> run_levels(InputCloud cloud, int first_depth, int la
 
 } // namespace
 
-Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& options) {
+Reconstruction reconstruct(const PointView& cloud, const ReconstructOptions& options) {
     return run_once(InputCloud(cloud), options);
+}
+
+Reconstruction reconstruct(const PointCloud& cloud, const ReconstructOptions& options) {
+    return run_once(InputCloud(view_of(cloud)), options);
 }
 
 Reconstruction reconstruct(PointCloud&& cloud, const ReconstructOptions& options) {
     return run_once(InputCloud(std::move(cloud)), options);
 }
 
-std::vector<Reconstruction> reconstruct_levels(const PointCloud& cloud, int first_depth, int last_depth,
+std::vector<Reconstruction> reconstruct_levels(const PointView& cloud, int first_depth, int last_depth,
                                                const ReconstructOptions& options) {
     return run_levels(InputCloud(cloud), first_depth, last_depth, options);
+}
+
+std::vector<Reconstruction> reconstruct_levels(const PointCloud& cloud, int first_depth, int last_depth,
+                                               const ReconstructOptions& options) {
+    return run_levels(InputCloud(view_of(cloud)), first_depth, last_depth, options);
 }
 
 std::vector<Reconstruction> reconstruct_levels(PointCloud&& cloud, int first_depth, int last_depth,

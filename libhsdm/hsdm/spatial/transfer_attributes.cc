@@ -120,7 +120,7 @@ Carried carry(const PointCloud& cloud, std::span<const Vec3> places, const Trans
     if (!all_finite(places)) throw Error("the mesh has vertices that are not finite; move or remove them");
     const Sources sources(cloud, places, options);
     Carried carried;
-    for (const PointAttribute& attribute : attributes_of(cloud))
+    for (const PointAttribute& attribute : attributes_of(view_of(cloud)))
         if (attribute.type == Type::uint8 ? options.colors : options.scalars)
             carried.properties.push_back(property_of(attribute, sources, missing(attribute, options)));
     if (options.normals && cloud.has_normals()) carried.normals = normals_of(cloud, sources);

@@ -43,6 +43,9 @@ std::string smooth_stage(PolyMesh& mesh, const PluginOptions& options) {
          << result.drift_mean << " on average, at most " << result.drift_max << "; volume "
          << std::setprecision(6) << result.volume_before << " to " << result.volume_after << "; "
          << result.refused << " facets kept from turning over"
+         << (result.taken_back > 0
+                 ? ", " + std::to_string(result.taken_back) + " vertices back where they were"
+                 : "")
          << (result.volume_bound_met ? "; ended at max-volume-change" : "");
     return line.str();
 }
