@@ -1,4 +1,5 @@
 #include "hsdm/contour/patches.hh"
+#include "hsdm/contour/sheet_widths.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/reconstruct.hh"
 #include "support/check.hh"
@@ -140,4 +141,59 @@ TEST_CASE("walls on a ground and slots of three quarters of a voxel have the top
             CHECK(part.report.mesh.euler == 2);
         }
     }
+}
+
+TEST_CASE("the two sheets of a voxel are as far apart as the solid says, in spacings of their points",
+          "[contour]") {
+    for (const double density : {8.0, 16.0})
+        for (const double width : {0.3, 0.6}) {
+            INFO(density << " points to a squared voxel, " << width << " voxels");
+            const Solid plate = box({1, 0.9, width * voxel_edge}).placed(random_pose(7));
+            const Separated thin(evenly_scanned(plate, 2 * density / 8, 7));
+            double sum = 0, voxels = 0;
+            for (Index v = 0; v < thin.level.size(); ++v)
+                if (const auto pair = nearest_pair(thin.level, thin.after, v))
+                    sum += pair->spacings, ++voxels;
+            REQUIRE(voxels > 50);
+            // The octree's voxels are those of its own cube: lengths are compared, not voxels.
+            const double spacing = voxel_edge / std::sqrt(density);
+            CHECK(sum / voxels == Approx(width * voxel_edge / spacing).epsilon(0.1));
+        }
+}
+
+TEST_CASE("walls and gaps too narrow for their points are doubtful where they stand, told by place",
+          "[contour]") {
+    const Pose moved{.shift = Vec3(0.013, 0.021, 0.007)};
+    for (const double width : {0.3, 0.5}) {
+        const Separated fins(evenly_scanned(fin(width * voxel_edge).placed(moved), 8, 8));
+        const Separated slots(evenly_scanned(slot(width * voxel_edge).placed(moved), 8, 8));
+        const Doubts foot = crowded_sheets(fins.level, fins.after);
+        const Doubts mouth = crowded_sheets(slots.level, slots.after);
+        CHECK(foot.count > 5);
+        CHECK(mouth.count > 5);
+        const Vec3 at_foot = foot.first + fins.octree.origin - moved.shift;
+        const Vec3 at_mouth = mouth.first + slots.octree.origin - moved.shift;
+        CHECK(std::abs(at_foot[0]) < 2 * voxel_edge); // between the two sides
+        CHECK(std::abs(at_mouth[0]) < 2 * voxel_edge);
+        CHECK(std::abs(at_foot[2] - 0.15) < 2 * voxel_edge); // on the ground
+        CHECK(mouth.first == crowded_sheets(slots.level, slots.after).first);
+    }
+}
+
+TEST_CASE("free walls of any width and wide ones on a ground are not doubtful", "[contour]") {
+    for (const double width : {0.2, 0.5, 1.0}) {
+        const Separated plate(evenly_scanned(box({1, 0.9, width * voxel_edge}).placed(random_pose(9)), 2, 9));
+        CHECK(crowded_sheets(plate.level, plate.after).count == 0);
+    }
+    for (const Solid& solid : {fin(1.2 * voxel_edge), slot(1.2 * voxel_edge), box({1, 0.9, 0.8})}) {
+        const Separated wide(evenly_scanned(solid.placed(random_pose(9)), 8, 9));
+        CHECK(crowded_sheets(wide.level, wide.after).count == 0);
+    }
+}
+
+TEST_CASE("a gap is as doubtful as a wall: turned normals change nothing", "[contour]") {
+    const PointCloud cloud = evenly_scanned(fin(0.4 * voxel_edge).placed(random_pose(10)), 8, 10);
+    const Separated out(cloud), in(turned_inside_out(cloud));
+    REQUIRE(crowded_sheets(out.level, out.after).count > 0);
+    CHECK(crowded_sheets(out.level, out.after).count == crowded_sheets(in.level, in.after).count);
 }

@@ -4,10 +4,12 @@
 #include "hsdm/contour/outlier_sets.hh"
 #include "hsdm/contour/patches.hh"
 #include "hsdm/contour/sheet_features.hh"
+#include "hsdm/contour/sheet_widths.hh"
 #include "hsdm/pipeline/attributes.hh"
 #include "hsdm/pipeline/constants.hh"
 #include "hsdm/pipeline/extended_graph.hh"
 #include "hsdm/pipeline/phase_geometry.hh"
+#include "hsdm/pipeline/warnings.hh"
 #include "hsdm/quality/topology.hh"
 
 #include <algorithm>
@@ -73,6 +75,9 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
         report.rejected["points_stray"] = outliers.count;
         note_dropped("points that no neighbour continues", outliers, in, report);
         report.rejected["sets_split"] = separate_patches(in.octree, in.level, related, all).split;
+        Doubts crowded = crowded_sheets(in.level, all);
+        crowded.first += in.octree.origin;
+        warn(warning_of::crowded_sheets, crowded, in.frame, report);
         return all;
     });
     report.grid.sets = sets.sets.size();
@@ -95,6 +100,7 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
         known.hints = std::move(features.hints);
     }
     known.cells = std::move(facets.cells);
+    known.intersections = {facets.intersections.after, facets.intersections.first};
     facets.mesh.properties = average_attributes(in.cloud, in.octree, in.level, facets.voxel);
     if (!in.options.debug_dir.empty()) {
         PolygonMesh placed = facets.mesh;
