@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 using namespace hsdm;
 using namespace hsdm::test;
@@ -73,7 +74,7 @@ TEST_CASE("--strict lets pass what there is nothing to warn of, and knows of int
 
 TEST_CASE("of several inputs the totals say how many have warnings", "[cli]") {
     const Folder folder;
-    folder.write("scan.xyz", xyz(sphere_scan()));
+    folder.write("scan.xyz", xyz(sphere_scan(20000)));
     write_slotted(folder, "slot.ply");
     const std::string command = std::string("reconstruct slot.ply scan.xyz --out-dir d") + at_voxels;
     const CommandResult result = run(folder, command);
@@ -85,7 +86,7 @@ TEST_CASE("of several inputs the totals say how many have warnings", "[cli]") {
 TEST_CASE("a case may expect how many warnings there are, and one that is strict misses with any", "[cli]") {
     const Folder folder;
     write_slotted(folder, "slot.ply");
-    folder.write("scan.xyz", xyz(sphere_scan()));
+    folder.write("scan.xyz", xyz(sphere_scan(20000)));
     const auto status = [&](const std::string& input, const std::string& arguments,
                             const std::string& expected) {
         folder.write("suite.json", R"({"cases": [{"input": ")" + input

@@ -43,8 +43,8 @@ TEST_CASE("a warning has its place in the cloud's coordinates, and none is said 
     CHECK(report.warnings[0].what == warning_of::sides);
     CHECK(report.warnings[0].how_much == 3);
     CHECK(report.warnings[0].where == Vec3(1, 2, 3) * frame.unit());
-    warn(warning_of::intersections, {1, {}}, frame, report);
-    warn_anew(warning_of::sides, {2, {}}, frame, report);
+    warn(warning_of::intersections, {1, {0, 0, 0}}, frame, report);
+    warn_anew(warning_of::sides, {2, {0, 0, 0}}, frame, report);
     REQUIRE(report.warnings.size() == 2);
     CHECK(report.warnings[0].what == warning_of::intersections);
     CHECK(report.warnings[1].how_much == 2);

@@ -131,7 +131,7 @@ inline constexpr double least = 2;
 
 /// points: of a set that tells where its sheet is.
 /// Why: as many as a plane has.
-inline constexpr Index least_points = 3;
+inline constexpr unsigned least_points = 3;
 
 } // namespace hsdm::widths
 

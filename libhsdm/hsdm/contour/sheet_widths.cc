@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hsdm {
 namespace {
@@ -17,17 +18,31 @@ double area_in_voxel(const OctreeLevel& level, const NormalSet& set) {
     return plane_area(set.normal, set.normal | set.centroid, lo, level.voxel_size, {});
 }
 
-bool is_opposed(const NormalSet& a, const NormalSet& b) {
-    return (a.normal | b.normal) < patches::opposed_cosine
-           && std::min(a.count, b.count) >= widths::least_points;
+/// Do two sets face each other or turn their backs, one before the other?
+bool is_facing(const NormalSet& a, const NormalSet& b, double voxel_size) {
+    if ((a.normal | b.normal) >= patches::opposed_cosine) return false;
+    if (std::min(a.count, b.count) < widths::least_points) return false;
+    const Vec3 way = b.centroid - a.centroid, across = (a.normal - b.normal).normalized();
+    const double beside = patches::beside * voxel_size;
+    return way.sqrnorm() - (across | way) * (across | way) < beside * beside;
 }
 
-SheetPair measure_pair(const OctreeLevel& level, const NormalSet& a, const NormalSet& b) {
-    const Vec3 across = (a.normal - b.normal).normalized();
-    const double width = std::abs(across | (b.centroid - a.centroid));
-    const double area = area_in_voxel(level, a) + area_in_voxel(level, b);
-    const double spacing = std::sqrt(area / (a.count + b.count));
-    return {width / spacing, 0.5 * (a.centroid + b.centroid)};
+double width_between(const NormalSet& a, const NormalSet& b) {
+    return std::abs((a.normal - b.normal).normalized() | (b.centroid - a.centroid));
+}
+
+/// The pairs that the sets of a voxel make with those of the same voxel and of its neighbours.
+template <class Visit>
+void for_facing_pairs(const OctreeLevel& level, const NormalSets& sets, Index voxel, const Visit& visit) {
+    const auto visit_with = [&](Index other) {
+        for (const NormalSet& a : sets.of_voxel(voxel))
+            for (const NormalSet& b : sets.of_voxel(other))
+                if (is_facing(a, b, level.voxel_size)) visit(a, b);
+    };
+    visit_with(voxel);
+    const VoxelCoord c = level.coord(voxel);
+    for (const VoxelCoord& o : neighbor_offsets)
+        if (const Index v = level.find({c[0] + o[0], c[1] + o[1], c[2] + o[2]}); v != no_index) visit_with(v);
 }
 
 /// Does a wall or gap part one of the voxel's sets from another?
@@ -38,15 +53,18 @@ bool parts_something(const NormalSets& sets, Index voxel) {
 } // namespace
 
 std::optional<SheetPair> nearest_pair(const OctreeLevel& level, const NormalSets& sets, Index voxel) {
-    std::optional<SheetPair> nearest;
-    const auto own = sets.of_voxel(voxel);
-    for (std::size_t i = 0; i < own.size(); ++i)
-        for (std::size_t j = i + 1; j < own.size(); ++j) {
-            if (!is_opposed(own[i], own[j])) continue;
-            const SheetPair pair = measure_pair(level, own[i], own[j]);
-            if (!nearest || pair.spacings < nearest->spacings) nearest = pair;
-        }
-    return nearest;
+    double least = std::numeric_limits<double>::infinity(), area = 0, points = 0;
+    Vec3 middle(0, 0, 0);
+    for_facing_pairs(level, sets, voxel, [&](const NormalSet& a, const NormalSet& b) {
+        area += area_in_voxel(level, a) + area_in_voxel(level, b);
+        points += a.count + b.count;
+        const double width = width_between(a, b);
+        if (width >= least) return;
+        least = width;
+        middle = 0.5 * (a.centroid + b.centroid);
+    });
+    if (points == 0 || area == 0) return std::nullopt;
+    return SheetPair{least / std::sqrt(area / points), middle};
 }
 
 Doubts crowded_sheets(const OctreeLevel& level, const NormalSets& sets, double least) {

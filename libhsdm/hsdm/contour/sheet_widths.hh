@@ -8,13 +8,14 @@
 
 namespace hsdm {
 
-/// Two sheets of one voxel that face each other or turn their backs.
+/// Two sheets that face each other or turn their backs.
 struct SheetPair {
     double spacings; ///< from one to the other, in spacings of their points there
     Vec3 middle;     ///< relative to the octree's origin
 };
 
-/// The pair of a voxel's sets with the fewest spacings in between; nothing if none of them are opposed.
+/// The least distance of a voxel's sets from opposite ones in it or beside it, in spacings of all of these;
+/// nothing if there are none.
 std::optional<SheetPair> nearest_pair(const OctreeLevel& level, const NormalSets& sets, Index voxel);
 
 /// The voxels where walls or gaps that stand on something are nearer than `least` spacings: which of the
