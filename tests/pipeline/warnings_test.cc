@@ -13,7 +13,7 @@ using namespace hsdm;
 
 namespace {
 
-/// Two sheets of 12 x 12 unit quads that cross where x = 6; one of them at the height z = slope (x - 6).
+/// Two sheets of 12 x 12 unit quads that cross where x = 6.3; one of them at the height z = slope (x - 6.3).
 PolygonMesh crossing_sheets(double slope) {
     PolygonMesh mesh;
     for (const double tilt : {0.0, slope}) {

@@ -99,17 +99,15 @@ NormalConsistency check_normals(const Octree& octree) {
     const double farthest = contradictions::farthest * estimate_spacing(octree);
     const double highest =
         contradictions::most_rises * mean_rise(octree, farthest) + contradictions::added_rise;
-    return sum_pairs<NormalConsistency>(octree, farthest,
-                                        [&](const Pair& pair, Index at, NormalConsistency& sum) {
-                                            if (pair.kind == Pair::flat && pair.rise < highest) {
-                                                ++sum.flat, sum.flat_opposed += pair.opposed;
-                                                if (pair.opposed)
-                                                    sum.first_opposed = std::min(sum.first_opposed, at);
-                                            }
-                                            if (pair.kind == Pair::steep) ++sum.steep;
-                                            if (pair.kind == Pair::creased)
-                                                ++sum.creased, sum.creased_opposed += pair.opposed;
-                                        });
+    const auto add = [&](const Pair& pair, Index at, NormalConsistency& sum) {
+        if (pair.kind == Pair::flat && pair.rise < highest) {
+            ++sum.flat, sum.flat_opposed += pair.opposed;
+            if (pair.opposed) sum.first_opposed = std::min(sum.first_opposed, at);
+        }
+        if (pair.kind == Pair::steep) ++sum.steep;
+        if (pair.kind == Pair::creased) ++sum.creased, sum.creased_opposed += pair.opposed;
+    };
+    return sum_pairs<NormalConsistency>(octree, farthest, add);
 }
 
 std::size_t mend_normals(Octree& octree, const std::optional<Vec3>& sensor) {
