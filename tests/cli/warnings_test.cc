@@ -44,8 +44,10 @@ TEST_CASE("a warning stands last in the summary and in the report, and costs no 
         for (int k = 0; k < 3; ++k) CHECK(std::abs(one["where"][k].get<double>()) < 1.1);
         CHECK(result.out.find(one["what"].get<std::string>()) != std::string::npos);
     }
-    CHECK(static_cast<std::size_t>(std::count(result.out.begin(), result.out.end(), '\n'))
-          == 6 + warnings.size());
+    const auto first = result.out.find("warning   ");
+    CHECK(static_cast<std::size_t>(
+              std::count(result.out.begin() + static_cast<std::ptrdiff_t>(first), result.out.end(), '\n'))
+          == warnings.size()); // nothing else stands behind the first
 }
 
 TEST_CASE("--strict makes a warning status 1, says why, and changes no file", "[cli]") {
