@@ -157,6 +157,9 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
            "given (hsdm stages)")
         ->type_name("STAGE")
         ->group(method);
+    app.add_flag("--strict", a.strict,
+                 "a warning is a failure: status 1, though files are written; counts intersections")
+        ->group(method);
     app.add_option("--memory", a.memory, "not available yet: upper bound on memory")
         ->type_name("SIZE")
         ->group(method);
@@ -280,7 +283,8 @@ CaseOptions case_options(const std::string& name, const std::vector<std::string>
     }
     if (!arguments.levels.empty()) throw Error(name, "args: --levels makes several meshes; give one --depth");
     try {
-        return {arguments.options(), arguments.read, arguments.stages, arguments.ascii, arguments.plain};
+        return {arguments.options(), arguments.read,  arguments.stages,
+                arguments.strict,    arguments.ascii, arguments.plain};
     } catch (const UsageError& error) {
         throw Error(name, error.what());
     }

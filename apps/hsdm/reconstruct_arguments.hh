@@ -30,6 +30,7 @@ struct ReconstructArguments {
     double crease_degrees = 35;
     int smoothing = 3;
     std::vector<std::string> stages;
+    bool strict = false;
     std::string memory;
     int threads = 0;
     std::string debug_dir;
@@ -62,6 +63,7 @@ struct CaseOptions {
     ReconstructOptions reconstruct;
     ReadOptions read;
     std::vector<std::string> stages;
+    bool strict = false;               ///< a warning is a miss
     bool ascii = false, plain = false; ///< of the mesh that is written, if one is
 };
 CaseOptions case_options(const std::string& name, const std::vector<std::string>& words);

@@ -78,9 +78,10 @@ public:
         if (inputs > 1 && !arguments_.quiet)
             text_ << grouped(inputs - failed_inputs_) << " of " << grouped(inputs) << " inputs done, "
                   << grouped(failed_inputs_) << " failed, " << grouped(points_) << " points, "
-                  << grouped(faces_) << " faces\n";
+                  << grouped(faces_) << " faces"
+                  << (doubtful_ > 0 ? "; " + grouped(doubtful_) + " with warnings" : "") << '\n';
         write_report();
-        return failed_inputs_ == 0 ? done : failed;
+        return failed_inputs_ == 0 && !(arguments_.strict && doubtful_ > 0) ? done : failed;
     }
 
 private:
@@ -195,9 +196,9 @@ private:
     void measure_more(Reconstruction& result) const {
         const auto start = Clock::now();
         if (!arguments_.report.empty()) measure_details(result.mesh, result.report.mesh);
-        if (arguments_.intersections) {
+        if (arguments_.intersections || arguments_.strict) {
             set_phase("intersections");
-            count_intersections(result.mesh, result.report.mesh);
+            count_intersections(result.mesh, result.report);
         }
         result.report.seconds.error += seconds_since(start);
     }
@@ -232,7 +233,15 @@ private:
             return false;
         }
         faces_ += report.mesh.faces;
-        if (arguments_.quiet) return true;
+        doubtful_ += !report.warnings.empty();
+        if (!arguments_.quiet) print(made);
+        if (arguments_.strict && !report.warnings.empty())
+            complain(name + ": " + strict_words(report) + "; the mesh is written");
+        return true;
+    }
+
+    void print(const Made& made) const {
+        const Report& report = made.report;
         const std::string written = spoken_name(target(report).mesh);
         if (arguments_.inputs.size() == 1 && !levels_) {
             text_ << summary_of(report, written);
@@ -241,7 +250,7 @@ private:
         }
         if (made.text_for_precision) text_ << text_for_precision;
         if (arguments_.verbose) text_ << details_of(report);
-        return true;
+        text_ << warnings_of(report);
     }
 
     /// One mesh: its report; several: a list of them in the order they were made.
@@ -266,6 +275,7 @@ private:
     std::ostream& text_;
     std::vector<std::string> reports_;
     std::size_t failed_inputs_ = 0, points_ = 0, faces_ = 0;
+    std::size_t doubtful_ = 0; // meshes with warnings
 };
 
 } // namespace

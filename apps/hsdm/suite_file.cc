@@ -238,8 +238,8 @@ std::string miss(const std::string& key, const Json* value, const Json& expected
     if (value == nullptr) return key + " is not in the report";
     const std::string found = key + " is " + value->dump();
     if (!expected.is_object()) return *value == expected ? "" : found + ", expected " + expected.dump();
-    if (!value->is_number()) return found + ", a number was expected";
-    const double x = value->get<double>();
+    if (!value->is_number() && !value->is_array()) return found + ", a number was expected";
+    const double x = value->is_array() ? static_cast<double>(value->size()) : value->get<double>();
     if (expected.contains("min") && !(x >= expected["min"].get<double>()))
         return found + ", at least " + expected["min"].dump() + " expected";
     if (expected.contains("max") && !(x <= expected["max"].get<double>()))

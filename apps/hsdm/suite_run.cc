@@ -6,6 +6,7 @@
 #include "mesh_stages.hh"
 #include "output_check.hh"
 #include "reconstruct_arguments.hh"
+#include "summary.hh"
 
 #include "hsdm/errors.hh"
 #include "hsdm/mesh/to_mesh.hh"
@@ -53,7 +54,9 @@ CaseReport measure_case(const Case& one, const CaseOptions& asked, Reconstructio
     CaseReport all;
     measure_details(made.mesh, made.report.mesh);
     set_phase("intersections");
-    if (one.expect.contains("mesh.intersections")) count_intersections(made.mesh, made.report.mesh);
+    if (asked.strict || one.expect.contains("mesh.intersections"))
+        count_intersections(made.mesh, made.report);
+    if (asked.strict && !made.report.warnings.empty()) misses.push_back(strict_words(made.report));
     if (!one.reference.empty()) all.reference = compare_to_reference(one.reference, made.mesh);
     set_activity(one.input.c_str(), "write");
     if (!one.output.empty()) {

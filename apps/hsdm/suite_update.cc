@@ -126,6 +126,9 @@ std::vector<SuiteChange> changes_to(std::span<const Case> cases, std::span<const
                 changes.push_back(change);
             else if (found->is_number())
                 add_bounds(change, expected, *found, changes);
+            else if (found->is_array())
+                add_bounds({cases[i].index, cases[i].name, key, "", expected, found->size()}, expected,
+                           *found, changes);
         }
     }
     return changes;

@@ -79,6 +79,11 @@ std::string dropped_words(const Report::Dropped& dropped) {
            + ' ' + number(dropped.where[1], 6) + ' ' + number(dropped.where[2], 6);
 }
 
+std::string warning_words(const Report::Warning& warning) {
+    return warning.what + ": " + number(warning.how_much, 6) + ", the first at " + number(warning.where[0], 6)
+           + ' ' + number(warning.where[1], 6) + ' ' + number(warning.where[2], 6);
+}
+
 std::string intersection_words(const Report::Mesh& mesh) {
     return mesh.intersections ? ", " + plural(*mesh.intersections, "intersection", "intersections") : "";
 }
@@ -164,6 +169,18 @@ std::string details_of(const Report& r) {
     out << "memory    " << grouped(r.peak_memory_bytes / 1000000) << " MB at most, " << r.threads
         << " threads\n";
     return std::move(out).take();
+}
+
+std::string warnings_of(const Report& r) {
+    Text out;
+    for (const Report::Warning& warning : r.warnings) out << "warning   " << warning_words(warning) << "\n";
+    return std::move(out).take();
+}
+
+std::string strict_words(const Report& r) {
+    const std::size_t more = r.warnings.size() - 1;
+    return "a warning, which --strict makes a failure: " + warning_words(r.warnings.front())
+           + (more > 0 ? "; and " + grouped(more) + " more" : "");
 }
 
 std::string line_of(const Report& r, const std::string& written) {

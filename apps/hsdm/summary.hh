@@ -14,6 +14,11 @@ std::string details_of(const Report& report);
 /// One line, for many inputs.
 std::string line_of(const Report& report, const std::string& written);
 
+/// A line for each warning, to stand last; empty if there is none.
+std::string warnings_of(const Report& report);
+/// Why --strict lets a report with warnings not pass.
+std::string strict_words(const Report& report);
+
 /// "closed, genus 3", "open, 2 boundary loops of 40 edges, genus 0".
 std::string topology_words(const Report::Mesh& mesh);
 

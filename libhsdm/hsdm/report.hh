@@ -100,6 +100,14 @@ struct Report {
     };
     std::vector<Dropped> dropped; ///< in the order of the stages
 
+    /// What the surface may be wrong for, and where: docs/quality.md#warnings.
+    struct Warning {
+        std::string what;    ///< of what there are `how_much`, e.g. "pairs of facets that pass ..."
+        Vec3 where{0, 0, 0}; ///< the first of them, in the cloud's coordinates
+        double how_much = 0; ///< > 0
+    };
+    std::vector<Warning> warnings; ///< in the order of the stages; empty: nothing is known to be doubtful
+
     /// A stage that the mesh went through afterwards.
     struct Stage {
         std::string call;    ///< as it was asked for, `name:key=value,...`

@@ -1,8 +1,10 @@
 #include "hsdm/contour/patches.hh"
+#include "hsdm/contour/sheet_widths.hh"
 #include "support/sample.hh"
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <set>
 
 using namespace hsdm;
@@ -122,4 +124,56 @@ TEST_CASE("thick parts have no walls, and the rim of a plate is not split", "[co
     const Separated plate(evenly_scanned(box({1, 0.9, 0.7 * voxel_edge}).placed(random_pose(5)), 2, 5));
     CHECK(plate.counts.crowded > 50);
     CHECK(plate.counts.split == 0);
+}
+
+TEST_CASE("the two sheets of a voxel are as far apart as the solid says, in spacings of their points",
+          "[contour]") {
+    for (const double density : {24.0, 48.0})
+        for (const double width : {0.3, 0.6}) {
+            INFO(density << " points to a squared voxel, " << width << " voxels");
+            const Solid plate = box({1, 0.9, width * voxel_edge}).placed(random_pose(7));
+            const Separated thin(evenly_scanned(plate, 2 * density / 8, 7));
+            double sum = 0, voxels = 0;
+            for (Index v = 0; v < thin.level.size(); ++v)
+                if (const auto pair = nearest_pair(thin.level, thin.after, v))
+                    sum += pair->spacings, ++voxels;
+            REQUIRE(voxels > 50);
+            // The octree's voxels are those of its own cube: lengths are compared, not voxels.
+            const double spacing = voxel_edge / std::sqrt(density);
+            CHECK(sum / voxels == Approx(width * voxel_edge / spacing).epsilon(0.15));
+        }
+}
+
+TEST_CASE("walls and gaps too narrow for their points are doubtful where they stand, told by place",
+          "[contour]") {
+    const Pose pose = random_pose(8);
+    for (const double width : {0.4, 0.5}) {
+        const Separated fins(evenly_scanned(fin(width * voxel_edge).placed(pose), 8, 8));
+        const Separated slots(evenly_scanned(slot(width * voxel_edge).placed(pose), 8, 8));
+        const Doubts foot = crowded_sheets(fins.level, fins.after);
+        const Doubts mouth = crowded_sheets(slots.level, slots.after);
+        CHECK(foot.count > 5);
+        CHECK(mouth.count > 5);
+        // Between the two sides, which are at x = 0 of the solid.
+        CHECK(std::abs(pose.to_local(foot.first + fins.octree.origin)[0]) < 2 * voxel_edge);
+        CHECK(std::abs(pose.to_local(mouth.first + slots.octree.origin)[0]) < 2 * voxel_edge);
+    }
+}
+
+TEST_CASE("free walls of any width are next to never doubtful, wide ones on a ground never", "[contour]") {
+    for (const double width : {0.2, 0.5, 1.0}) {
+        const Separated plate(evenly_scanned(box({1, 0.9, width * voxel_edge}).placed(random_pose(9)), 2, 9));
+        CHECK(crowded_sheets(plate.level, plate.after).count < 3); // of some 200 voxels
+    }
+    for (const Solid& solid : {fin(1.2 * voxel_edge), slot(1.2 * voxel_edge), box({1, 0.9, 0.8})}) {
+        const Separated wide(evenly_scanned(solid.placed(random_pose(9)), 8, 9));
+        CHECK(crowded_sheets(wide.level, wide.after).count == 0);
+    }
+}
+
+TEST_CASE("a gap is as doubtful as a wall: turned normals change nothing", "[contour]") {
+    const PointCloud cloud = evenly_scanned(fin(0.4 * voxel_edge).placed(random_pose(10)), 8, 10);
+    const Separated out(cloud), in(turned_inside_out(cloud));
+    REQUIRE(crowded_sheets(out.level, out.after).count > 0);
+    CHECK(crowded_sheets(out.level, out.after).count == crowded_sheets(in.level, in.after).count);
 }

@@ -4,6 +4,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
+
 using namespace hsdm;
 
 namespace {
@@ -68,6 +70,9 @@ TEST_CASE("intersections that moving vertices cannot end are counted, and never 
     CHECK(counts.after == find_self_intersections(mesh).triangle_pairs);
     CHECK(counts.after <= before);
     CHECK(counts.after > 0);
+    // The sheets cross where z = x - 3.2; a facet there has its corners within a facet's diagonal.
+    CHECK(std::abs(counts.first[0] - 3.2) < 1.5);
+    CHECK(std::abs(counts.first[2]) < 1.5);
 }
 
 TEST_CASE("no vertex moves farther than its reach", "[untangle]") {

@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
+
 using namespace hsdm;
 using support::in_general_pose;
 using support::Solid;
@@ -119,4 +121,26 @@ TEST_CASE("points without a normal are left without when the others are mended",
         CHECK((octree.normals[i] | (octree.positions[i] + octree.origin)) >= 0);
     }
     CHECK(none == 200);
+}
+
+TEST_CASE("sides are in doubt where neighbours on one plane face opposite ways, and not for one stray",
+          "[normals]") {
+    PointCloud cloud = support::sample(support::sphere(1), {.points = 6000});
+    const auto doubts_of = [&](bool estimated) {
+        const Octree octree = build_octree(cloud);
+        Doubts doubts = doubtful_sides(octree, check_normals(octree), estimated);
+        doubts.first += octree.origin;
+        return doubts;
+    };
+    CHECK(doubts_of(true).count == 0);
+    CHECK(doubts_of(false).count == 0);
+    cloud.normals[17] = -cloud.normals[17];
+    CHECK(doubts_of(true).count == 0);
+    cloud.normals[17] = -cloud.normals[17];
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+        if (cloud.positions[i][2] > 0.5) cloud.normals[i] = -cloud.normals[i];
+    const Doubts cut = doubts_of(true);
+    CHECK(cut.count >= 10);
+    CHECK(std::abs(cut.first[2] - 0.5) < 0.1);
+    CHECK(doubts_of(false).count == cut.count);
 }

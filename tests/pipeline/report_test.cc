@@ -13,6 +13,7 @@ TEST_CASE("the report holds every key that scripts rely on, numbers plain", "[re
     report.input.file = "a \"quoted\" name \xff.xyz"; // not UTF-8
     report.input.bbox.add(Vec3(1, 2, 3));
     report.rejected["hit_test"] = 7;
+    report.warnings.push_back({"doubtful places", {4, 5, 6}, 9});
     const auto json = nlohmann::json::parse(to_json(report));
     const std::vector<std::pair<const char*, std::vector<const char*>>> expected = {
         {"input",
@@ -40,6 +41,8 @@ TEST_CASE("the report holds every key that scripts rely on, numbers plain", "[re
     CHECK(json["input"]["bbox_min"] == nlohmann::json{1, 2, 3});
     CHECK(json["rejected"]["hit_test"] == 7);
     CHECK(json["options"]["depth"] == "5");
+    CHECK(json["warnings"]
+          == nlohmann::json::array({{{"what", "doubtful places"}, {"where", {4, 5, 6}}, {"how_much", 9}}}));
 }
 
 TEST_CASE("a report leaves out what is not finite instead of writing null", "[report]") {
@@ -48,6 +51,7 @@ TEST_CASE("a report leaves out what is not finite instead of writing null", "[re
     const std::string text = to_json(report);
     CHECK(text.find("null") == std::string::npos);
     const auto json = nlohmann::json::parse(text);
+    CHECK(json["warnings"] == nlohmann::json::array()); // there, if there are none
     CHECK_FALSE(json["input"].contains("bbox_min"));
     CHECK_FALSE(json["error"].contains("points_to_mesh_max"));
     CHECK(json["error"]["points_to_mesh_mean"] == 0);

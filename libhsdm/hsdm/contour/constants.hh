@@ -134,6 +134,19 @@ inline constexpr unsigned fewest_beyond = 3;
 
 } // namespace hsdm::patches
 
+// sheet_widths.hh
+namespace hsdm::widths {
+
+/// spacings: between the two sheets of a wall or gap that stands on something; nearer ones are doubtful.
+/// Why: where a sheet ends is known to a spacing; two that end on each other's ground need one each.
+inline constexpr double least = 2;
+
+/// points: of a set that tells where its sheet is.
+/// Why: as many as a plane has.
+inline constexpr unsigned least_points = 3;
+
+} // namespace hsdm::widths
+
 // local_sheets.hh, grid_signs.hh
 namespace hsdm::sheets {
 

@@ -100,13 +100,17 @@ UntangleCounts untangle(PolygonMesh& mesh, const UntangleOptions& options, const
     SelfIntersections found = cells ? find_self_intersections(mesh, *cells) : find_self_intersections(mesh);
     UntangleCounts counts;
     counts.before = counts.after = found.triangle_pairs;
-    if (found.triangle_pairs == 0 || options.rounds == 0) return counts;
+    if (found.triangle_pairs == 0) return counts;
+    Index first = mesh.facet(found.facet_pairs[0][0])[0];
+    counts.first = mesh.positions[first];
+    if (options.rounds == 0) return counts;
 
     Neighbourhood around(mesh, found.facet_pairs, options.nearby);
     const std::vector<Vec3> start = around.part.positions;
     found = find_self_intersections(around.part);
     std::vector<Vec3> best = start;
     std::size_t fewest = found.triangle_pairs;
+    if (fewest > 0) first = around.part.facet(found.facet_pairs[0][0])[0];
     for (int round = 0; round < options.rounds && found.triangle_pairs > 0; ++round) {
         const std::vector<Vec3> means = neighbour_means(around.part);
         std::vector<std::uint8_t> due(around.part.vertex_count(), 0);
@@ -125,11 +129,13 @@ UntangleCounts untangle(PolygonMesh& mesh, const UntangleOptions& options, const
         if (found.triangle_pairs >= fewest) continue;
         fewest = found.triangle_pairs;
         best = around.part.positions;
+        if (fewest > 0) first = around.part.facet(found.facet_pairs[0][0])[0];
     }
     around.part.positions = best;
     for (std::size_t v = 0; v < best.size(); ++v) counts.moved += best[v] != start[v];
     around.write_back(mesh);
     counts.after = fewest;
+    if (fewest > 0) counts.first = best[first];
     return counts;
 }
 

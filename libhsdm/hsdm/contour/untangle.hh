@@ -20,6 +20,7 @@ struct UntangleCounts {
     std::size_t before = 0; ///< pairs of triangles that intersected
     std::size_t after = 0;  ///< pairs that still do
     std::size_t moved = 0;  ///< vertices moved
+    Vec3 first{0, 0, 0};    ///< a corner of the first facet that still meets another; anything if none does
 };
 
 /// Moves the vertices of facets that intersect others towards the mean of their neighbours, round by round,

@@ -377,6 +377,10 @@ inline constexpr double added_rise = 0.01;
 /// Why: by trial; outliers cause some.
 inline constexpr std::size_t fewest = 10;
 
+/// pairs: opposed ones on one plane, of normals that were estimated, that leave their sides in doubt.
+/// Why: a point is in four pairs, so that one stray does not make five.
+inline constexpr std::size_t fewest_of_estimated = 5;
+
 /// pairs: flat ones to each that is opposed.
 /// Why: 0.05 %; measured clouds with right normals have less than 0.02 %.
 inline constexpr std::size_t flat_per_opposed = 2000;

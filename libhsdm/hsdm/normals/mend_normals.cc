@@ -44,7 +44,7 @@ Sum sum_pairs(const Octree& octree, double farthest, const F& add) {
     for_chunks(octree.size(), chunks::light, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         for (std::size_t i = begin; i < end; i += stride)
             for (std::size_t j = i + 1; j < std::min(octree.size(), i + 3); ++j)
-                add(compare(octree, i, j, farthest), parts[chunk]);
+                add(compare(octree, i, j, farthest), static_cast<Index>(i), parts[chunk]);
     });
     Sum sum;
     for (const Sum& part : parts) sum += part;
@@ -58,7 +58,7 @@ struct Rise {
 
 /// Mean rise of the flat pairs that agree: what curvature and noise make of points on one plane.
 double mean_rise(const Octree& octree, double farthest) {
-    const Rise rise = sum_pairs<Rise>(octree, farthest, [](const Pair& pair, Rise& sum) {
+    const Rise rise = sum_pairs<Rise>(octree, farthest, [](const Pair& pair, Index, Rise& sum) {
         if (pair.kind == Pair::flat && !pair.opposed) sum.sum += pair.rise, sum.pairs += 1;
     });
     return rise.pairs > 0 ? rise.sum / rise.pairs : 0;
@@ -81,8 +81,16 @@ double NormalConsistency::contradiction() const {
 
 void NormalConsistency::operator+=(const NormalConsistency& other) {
     flat += other.flat, flat_opposed += other.flat_opposed;
+    first_opposed = std::min(first_opposed, other.first_opposed);
     creased += other.creased, creased_opposed += other.creased_opposed;
     steep += other.steep;
+}
+
+Doubts doubtful_sides(const Octree& octree, const NormalConsistency& consistency, bool estimated) {
+    const bool in_doubt = estimated ? consistency.flat_opposed >= contradictions::fewest_of_estimated
+                                    : consistency.flat_opposed > 0 && consistency.doubtful();
+    if (!in_doubt) return {};
+    return {consistency.flat_opposed, octree.positions[consistency.first_opposed]};
 }
 
 NormalConsistency check_normals(const Octree& octree) {
@@ -91,11 +99,15 @@ NormalConsistency check_normals(const Octree& octree) {
     const double farthest = contradictions::farthest * estimate_spacing(octree);
     const double highest =
         contradictions::most_rises * mean_rise(octree, farthest) + contradictions::added_rise;
-    return sum_pairs<NormalConsistency>(octree, farthest, [&](const Pair& pair, NormalConsistency& sum) {
-        if (pair.kind == Pair::flat && pair.rise < highest) ++sum.flat, sum.flat_opposed += pair.opposed;
+    const auto add = [&](const Pair& pair, Index at, NormalConsistency& sum) {
+        if (pair.kind == Pair::flat && pair.rise < highest) {
+            ++sum.flat, sum.flat_opposed += pair.opposed;
+            if (pair.opposed) sum.first_opposed = std::min(sum.first_opposed, at);
+        }
         if (pair.kind == Pair::steep) ++sum.steep;
         if (pair.kind == Pair::creased) ++sum.creased, sum.creased_opposed += pair.opposed;
-    });
+    };
+    return sum_pairs<NormalConsistency>(octree, farthest, add);
 }
 
 std::size_t mend_normals(Octree& octree, const std::optional<Vec3>& sensor) {

@@ -1,6 +1,7 @@
 #pragma once
 // Finds given normals whose signs contradict each other, and turns them to one side.
 
+#include "hsdm/core/doubts.hh"
 #include "hsdm/octree/octree.hh"
 
 #include <optional>
@@ -10,6 +11,7 @@ namespace hsdm {
 /// Counts of pairs of points next to each other in octree order that say something about signs.
 struct NormalConsistency {
     std::size_t flat = 0, flat_opposed = 0; ///< on one plane; of these, with opposite normals
+    Index first_opposed = no_index;         ///< a point of the first of the latter
     std::size_t creased = 0,
                 creased_opposed = 0; ///< on two planes that meet; of these, out on one and in on the other
     std::size_t steep = 0; ///< whose normals agree while their chord rises clearly out of both planes
@@ -24,6 +26,11 @@ struct NormalConsistency {
     double contradiction() const;
     void operator+=(const NormalConsistency& other);
 };
+
+/// The pairs on one plane with opposite normals, and where the first of them is, relative to the octree's
+/// origin. None as long as strays and thin parts may be to blame: of estimated normals there are next to none
+/// where their sides are right, of given ones there are as many as doubtful() allows.
+Doubts doubtful_sides(const Octree& octree, const NormalConsistency& consistency, bool estimated);
 
 /// Compares points, or 131,072 of them, with their two successors in octree order. O(n), parallel.
 NormalConsistency check_normals(const Octree& octree);

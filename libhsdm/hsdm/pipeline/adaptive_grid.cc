@@ -3,6 +3,8 @@
 #include "hsdm/errors.hh"
 #include "hsdm/pipeline/attributes.hh"
 #include "hsdm/pipeline/constants.hh"
+#include "hsdm/pipeline/measure.hh"
+#include "hsdm/pipeline/warnings.hh"
 #include "hsdm/reconstruct.hh"
 #include "hsdm/simplify/simplify.hh"
 
@@ -30,16 +32,22 @@ std::vector<VertexProperty> properties_of(const PolygonMesh& fine, const Adaptiv
 } // namespace
 
 PolygonMesh adaptive_grid(const MethodInput& in, std::span<const Vec3> points, const PolygonMesh& fine,
-                          const FacetCells* cells, Report& report) {
+                          FacetKnowledge& known, Report& report) {
     const double bound = error_bound(in);
-    AdaptiveMesh coarse = simplify(fine, points, in.octree.extent, in.level.depth,
-                                   {.max_error = bound, .measure = in.options.measure}, cells);
+    AdaptiveMesh coarse =
+        simplify(fine, points, in.octree.extent, in.level.depth,
+                 {.max_error = bound, .measure = in.options.measure}, known.cells ? &*known.cells : nullptr);
+    known = {};
+    if (coarse.intersecting > 0) known.intersections = facets_that_meet(coarse.mesh);
     report.grid.kind = "adaptive";
     report.grid.leaves_per_level = coarse.leaves_per_level;
     report.grid.balance_splits = coarse.balance_splits;
     report.grid.merged = coarse.merged;
     report.grid.max_error = bound;
     report.grid.points_beyond = coarse.unreachable;
+    if (in.options.max_error && coarse.unreachable > 0)
+        warn(warning_of::beyond, {coarse.unreachable, points[coarse.first_unreachable] + in.octree.origin},
+             in.frame, report);
     report.rejected["leaves_split_for_topology"] = coarse.topology_splits;
     report.rejected["leaves_split_for_error"] = coarse.error_splits;
     report.rejected["leaves_split_for_intersections"] = coarse.intersection_splits;

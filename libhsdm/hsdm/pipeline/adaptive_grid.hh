@@ -2,7 +2,6 @@
 // The adaptive grid as a step of the pipeline, with its part of the report.
 
 #include "hsdm/pipeline/method.hh"
-#include "hsdm/spatial/facet_cells.hh"
 
 #include <span>
 
@@ -12,9 +11,10 @@ namespace hsdm {
 /// Vertex properties are means over the fine vertices that a vertex stands for, labels the majority's. The
 /// error bound is kept at `points`, from which the error is measured: their positions as read, even if the
 /// octree's points have been moved. The report gets the bound, how many points the fine mesh misses by more,
-/// and the distance of the result from it. `cells`, those of the fine mesh, save time if they are known.
+/// and the distance of the result from it. `known`, of the fine mesh before, is of the result then: the cells
+/// save time, how often facets meet is counted anew.
 PolygonMesh adaptive_grid(const MethodInput& input, std::span<const Vec3> points, const PolygonMesh& fine,
-                          const FacetCells* cells, Report& report);
+                          FacetKnowledge& known, Report& report);
 
 /// Throws Error if a point was measured farther from the final mesh than the bound and the report had not
 /// said so; the message gives lengths times `unit`.

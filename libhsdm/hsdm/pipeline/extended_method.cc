@@ -4,10 +4,12 @@
 #include "hsdm/contour/outlier_sets.hh"
 #include "hsdm/contour/patches.hh"
 #include "hsdm/contour/sheet_features.hh"
+#include "hsdm/contour/sheet_widths.hh"
 #include "hsdm/pipeline/attributes.hh"
 #include "hsdm/pipeline/constants.hh"
 #include "hsdm/pipeline/extended_graph.hh"
 #include "hsdm/pipeline/phase_geometry.hh"
+#include "hsdm/pipeline/warnings.hh"
 #include "hsdm/quality/topology.hh"
 
 #include <algorithm>
@@ -55,6 +57,20 @@ void note_counts(const DualContour& facets, Report& report) {
     report.rejected["vertices_split"] = facets.manifold.split_vertices;
 }
 
+/// The level's sets without outliers, parted at walls and gaps; notes what was dropped or is doubtful.
+NormalSets separated_sets(const MethodInput& in, Report& report) {
+    NormalSets all = build_normal_sets(in.octree, in.level, {.merge_layers = in.options.merge_layers});
+    const RelationTest related({}, in.level.voxel_size);
+    const Discarded outliers = drop_outlier_sets(in.level, related, all);
+    report.rejected["points_stray"] = outliers.count;
+    note_dropped("points that no neighbour continues", outliers, in, report);
+    report.rejected["sets_split"] = separate_patches(in.octree, in.level, related, all).split;
+    Doubts crowded = crowded_sheets(in.level, all);
+    crowded.first += in.octree.origin;
+    warn(warning_of::crowded_sheets, crowded, in.frame, report);
+    return all;
+}
+
 /// Facets face where the points' normals point. If these point into a closed solid, the whole surface is
 /// turned.
 bool turn_solid_outward(PolygonMesh& mesh) {
@@ -67,15 +83,8 @@ bool turn_solid_outward(PolygonMesh& mesh) {
 } // namespace
 
 PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledge& known) {
-    const NormalSets sets = in.phases.run("sets", 0.2, report.seconds.graph, [&] {
-        NormalSets all = build_normal_sets(in.octree, in.level, {.merge_layers = in.options.merge_layers});
-        const RelationTest related({}, in.level.voxel_size);
-        const Discarded outliers = drop_outlier_sets(in.level, related, all);
-        report.rejected["points_stray"] = outliers.count;
-        note_dropped("points that no neighbour continues", outliers, in, report);
-        report.rejected["sets_split"] = separate_patches(in.octree, in.level, related, all).split;
-        return all;
-    });
+    const NormalSets sets =
+        in.phases.run("sets", 0.2, report.seconds.graph, [&] { return separated_sets(in, report); });
     report.grid.sets = sets.sets.size();
     DualContour facets = in.phases.run("facets", 0.3, report.seconds.facets, [&] {
         const double spacing = report.input.spacing / in.level.voxel_size;
@@ -96,6 +105,7 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
         known.hints = std::move(features.hints);
     }
     known.cells = std::move(facets.cells);
+    known.intersections = {facets.intersections.after, facets.intersections.first};
     facets.mesh.properties = average_attributes(in.cloud, in.octree, in.level, facets.voxel);
     if (!in.options.debug_dir.empty()) {
         PolygonMesh placed = facets.mesh;

@@ -2,10 +2,12 @@
 
 #include "hsdm/cloud/strided.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/mesh/fill_holes.hh"
 #include "hsdm/mesh/small_components.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/pipeline/adaptive_grid.hh"
+#include "hsdm/pipeline/warnings.hh"
 #include "hsdm/quality/distance.hh"
 #include "hsdm/quality/distance_to_surface.hh"
 #include "hsdm/quality/mesh_digest.hh"
@@ -155,6 +157,18 @@ void measure_again(const PolyMesh& mesh, std::span<const Vec3> points, Report& r
     report.error.normalised_max = report.error.points_to_mesh_max / report.input.bbox.diagonal();
 }
 
+Doubts facets_that_meet(const PolygonMesh& facets) {
+    const auto pairs = find_self_intersections(facets).facet_pairs;
+    if (pairs.empty()) return {};
+    return {pairs.size(), facets.positions[facets.facet(pairs[0][0])[0]]};
+}
+
+Doubts open_loops(const PolygonMesh& facets) {
+    const BoundaryLoops loops = boundary_loops(facets);
+    if (loops.size() == 0) return {};
+    return {loops.size(), facets.positions[loops[0][0]]};
+}
+
 void measure_details(const PolyMesh& mesh, Report::Mesh& report) {
     PolygonMesh facets = to_polygons(mesh);
     const std::string digest = mesh_digest(facets);
@@ -164,10 +178,13 @@ void measure_details(const PolyMesh& mesh, Report::Mesh& report) {
                       shape.edge_length_mean * unit};
 }
 
-void count_intersections(const PolyMesh& mesh, Report::Mesh& report) {
+void count_intersections(const PolyMesh& mesh, Report& report) {
     PolygonMesh facets = to_polygons(mesh);
-    into_own_unit(facets.positions);
-    report.intersections = find_self_intersections(facets).facet_pairs.size();
+    const double unit = into_own_unit(facets.positions);
+    Doubts found = facets_that_meet(facets);
+    found.first *= unit;
+    report.mesh.intersections = found.count;
+    warn_anew(warning_of::intersections, found, CloudFrame(), report);
 }
 
 } // namespace hsdm

@@ -3,6 +3,7 @@
 
 #include "hsdm/cloud/cloud_frame.hh"
 #include "hsdm/core/discarded.hh"
+#include "hsdm/core/doubts.hh"
 #include "hsdm/mesh/facet_links.hh"
 #include "hsdm/mesh/feature_hints.hh"
 #include "hsdm/octree/octree.hh"
@@ -28,6 +29,7 @@ struct FacetKnowledge {
     FeatureHints hints;
     std::optional<FacetLinks> links;
     std::optional<FacetCells> cells; ///< the voxels as cells of the facets
+    Doubts intersections; ///< pairs that meet, as far as the method knows; relative to the octree's origin
 };
 
 /// Adds an entry to the report's list, unless nothing was dropped. `discarded.first` lies in the frame.

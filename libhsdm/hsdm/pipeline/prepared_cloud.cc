@@ -1,7 +1,6 @@
 #include "hsdm/pipeline/prepared_cloud.hh"
 
 #include "hsdm/errors.hh"
-#include "hsdm/normals/mend_normals.hh"
 #include "hsdm/normals/noise.hh"
 #include "hsdm/normals/normals.hh"
 #include "hsdm/octree/far_outliers.hh"
@@ -9,6 +8,7 @@
 #include "hsdm/pipeline/constants.hh"
 #include "hsdm/pipeline/method.hh"
 #include "hsdm/pipeline/options.hh"
+#include "hsdm/pipeline/warnings.hh"
 
 #include <algorithm>
 #include <cstdio>
@@ -77,14 +77,19 @@ void PreparedCloud::provide_normals(const PointView& cloud, const Phases& phases
     report.rejected["normals_near_creases"] = made.bent;
     report.rejected["normals_missing"] = made.missing;
     report.rejected["normals_by_volume"] = made.orientation.by_volume;
+    phases.run("normals", 0.1, report.seconds.normals, [&] { warn_of_sides(check_normals(octree), true); });
 }
 
 void PreparedCloud::check_given_normals(const PointView& cloud, const Phases& phases) {
     report.rejected["normals_mended"] = phases.run("normals", 0.05, report.seconds.normals, [&] {
-        const NormalConsistency consistency = check_normals(octree);
+        NormalConsistency consistency = check_normals(octree);
         if (consistency.rough() && octree.size() > 1)
             noise_ = noise_deviation(octree, find_neighbors(octree));
-        return consistency.doubtful() ? mend_normals(octree, sensor_of(cloud)) : std::size_t{0};
+        if (!consistency.doubtful()) return std::size_t{0};
+        const std::size_t mended = mend_normals(octree, sensor_of(cloud));
+        if (mended > 0) consistency = check_normals(octree);
+        warn_of_sides(consistency, false);
+        return mended;
     });
     note_outliers(phases.run("strays", 0.08, report.seconds.normals, [&] {
         const Discarded outliers = drop_outliers_by_normals(octree);
@@ -134,6 +139,12 @@ void PreparedCloud::note_outliers(const Discarded& outliers) {
 std::optional<Vec3> PreparedCloud::sensor_of(const PointView& cloud) const {
     if (!cloud.sensor) return std::nullopt;
     return frame.to_work(*cloud.sensor) - octree.origin;
+}
+
+void PreparedCloud::warn_of_sides(const NormalConsistency& consistency, bool estimated) {
+    Doubts sides = doubtful_sides(octree, consistency, estimated);
+    sides.first += octree.origin;
+    warn(warning_of::sides, sides, frame, report);
 }
 
 void PreparedCloud::note_smoothing(const SmoothReport& smoothed) {

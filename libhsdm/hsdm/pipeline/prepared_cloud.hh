@@ -2,6 +2,7 @@
 // Phase 1 of a reconstruction: a cloud's frame, its octree and what has been found out about it.
 
 #include "hsdm/cloud/cloud_frame.hh"
+#include "hsdm/normals/mend_normals.hh"
 #include "hsdm/normals/smooth_points.hh"
 #include "hsdm/octree/octree.hh"
 #include "hsdm/pipeline/input_cloud.hh"
@@ -47,6 +48,9 @@ private:
     /// Enters outliers in the report, and measures spacing and size again, because outliers make a cloud look
     /// sparser and larger.
     void note_outliers(const Discarded& outliers);
+
+    /// Enters what normals contradict each other.
+    void warn_of_sides(const NormalConsistency& consistency, bool estimated);
 
     std::optional<Vec3> sensor_of(const PointView& cloud) const;
 

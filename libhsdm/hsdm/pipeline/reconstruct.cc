@@ -9,6 +9,7 @@
 #include "hsdm/pipeline/measure.hh"
 #include "hsdm/pipeline/options.hh"
 #include "hsdm/pipeline/prepared_cloud.hh"
+#include "hsdm/pipeline/warnings.hh"
 #include "hsdm/quality/degenerate_facets.hh"
 
 #include <tbb/global_control.h>
@@ -74,6 +75,12 @@ void leave_out_unsound(const MethodInput& in, PolygonMesh& facets, FacetKnowledg
     note_dropped("facets that enclose nothing or have no area", unsound, in.frame, report);
 }
 
+/// Of what lies relative to the octree's origin.
+void warn_of(const char* what, Doubts relative, const MethodInput& in, Report& report) {
+    relative.first += in.octree.origin;
+    warn(what, relative, in.frame, report);
+}
+
 /// Turns facets outward in the cloud's own coordinates: far from the origin these may have fewer digits than
 /// those without the empty space. Returns how many were turned.
 std::size_t face_outward(const CloudFrame& frame, PolygonMesh& facets, FacetKnowledge& known) {
@@ -115,13 +122,13 @@ void reconstruct_level(InputCloud& cloud, PreparedCloud& prepared, int depth, bo
     if (last) cloud.release_positions();
     const std::span<const Vec3> points = prepared.has_moved() ? as_read : octree.positions;
     if (wants_adaptive(options)) {
-        facets = phases.run("adaptive", 0.5, seconds.facets, [&] {
-            return adaptive_grid(input, points, facets, known.cells ? &*known.cells : nullptr, report);
-        });
-        known = {}; // what was known applies to the fine facets only
+        facets = phases.run("adaptive", 0.5, seconds.facets,
+                            [&] { return adaptive_grid(input, points, facets, known, report); });
     }
+    warn_of(warning_of::intersections, known.intersections, input, report);
     leave_out_unsound(input, facets, known, report);
     check_facets(facets, level);
+    if (options.holes == Holes::close) warn_of(warning_of::open_loops, open_loops(facets), input, report);
     phases.run("error", 0.6, seconds.error, [&] { drop_and_measure(points, input, facets, known, report); });
 
     as_read = std::vector<Vec3>();

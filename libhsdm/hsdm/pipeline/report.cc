@@ -114,6 +114,18 @@ void fill(JsonText& json, const std::vector<Report::Dropped>& dropped) {
     json.end();
 }
 
+void fill(JsonText& json, const std::vector<Report::Warning>& warnings) {
+    json.begin_array();
+    for (const Report::Warning& w : warnings) {
+        json.begin_object();
+        json.member("what", w.what);
+        json.member("where", w.where);
+        json.member("how_much", w.how_much);
+        json.end();
+    }
+    json.end();
+}
+
 void fill(JsonText& json, const std::vector<Report::Stage>& stages) {
     json.begin_array();
     for (const Report::Stage& stage : stages) {
@@ -157,6 +169,8 @@ std::string to_json(const Report& report) {
     fill(json, report.rejected);
     json.key("dropped");
     fill(json, report.dropped);
+    json.key("warnings");
+    fill(json, report.warnings);
     json.key("stages");
     fill(json, report.stages);
     json.key("seconds");

@@ -213,6 +213,7 @@ FarPoints DistanceCheck::find_far_points() {
     }
     found.beyond = far.size();
     found.unreachable = missed.size();
+    if (!missed.empty()) found.first_unreachable = missed.front();
     // If the fine mesh misses points by more than the bound, such a point counts only if the mesh is farther
     // from it than the fine mesh is from any.
     std::vector<double> off(missed.size());

@@ -22,8 +22,9 @@ struct FarPoints {
     /// Points that the coarse mesh is to blame for: farther than the bound although the fine mesh is not; and
     /// of those that the fine mesh misses too the ones farther than any of these is from the fine mesh.
     std::vector<Index> points;
-    std::size_t beyond = 0;      ///< number of all points farther than the bound
-    std::size_t unreachable = 0; ///< of these, farther than the bound from the fine mesh too
+    std::size_t beyond = 0;             ///< number of all points farther than the bound
+    std::size_t unreachable = 0;        ///< of these, farther than the bound from the fine mesh too
+    Index first_unreachable = no_index; ///< the first of the latter
 };
 
 /// Compares one mesh after the other with the same fine mesh and points, and measures again only what has

@@ -10,6 +10,7 @@
 #include "hsdm/simplify/nonmanifold_vertices.hh"
 #include "hsdm/simplify/planar_patches.hh"
 #include "hsdm/simplify/remesh_by_flips.hh"
+#include "hsdm/spatial/self_intersections.hh"
 
 #include <tbb/parallel_invoke.h>
 
@@ -102,6 +103,7 @@ private:
         result_.mesh = std::move(merged.mesh);
         result_.merged = leaves.mesh.vertex_count() - result_.mesh.vertex_count();
         set_beyond(merged.far_points);
+        result_.intersecting = merged.faults.intersecting;
         vertex_ = std::move(leaves.vertex);
         std::vector<Index> number(coarse_.size(), no_index);
         const std::vector<Index> nearest = nearest_leaves(leaves.mesh, merged.vertex);
@@ -126,6 +128,7 @@ private:
     void set_beyond(const FarPoints& far) {
         result_.points_beyond = far.beyond;
         result_.unreachable = far.unreachable;
+        result_.first_unreachable = far.first_unreachable;
     }
 
     void settle_for_fine() {
@@ -133,6 +136,7 @@ private:
             if (&level != &tree_.levels.back()) level.whole.assign(level.whole.size(), 0);
         mesh_over_leaves();
         set_beyond(checks_->far_points(result_.mesh));
+        result_.intersecting = find_self_intersections(result_.mesh).facet_pairs.size();
     }
 
     /// Finds the leaf and the cluster of every fine vertex.

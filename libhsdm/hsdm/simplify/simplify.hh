@@ -33,7 +33,9 @@ struct AdaptiveMesh {
     std::size_t points_beyond = 0;             ///< points farther than max_error from the result
     /// of points_beyond, those that the fine mesh misses too: all of them
     std::size_t unreachable = 0;
-    Distance to_fine; ///< distance of points spread over the mesh from the fine one
+    Index first_unreachable = no_index; ///< one of these
+    std::size_t intersecting = 0;       ///< pairs of facets of the result that pass through each other
+    Distance to_fine;                   ///< distance of points spread over the mesh from the fine one
 };
 
 /// Puts one vertex for each piece of a fine mesh in each leaf of a balanced octree. Edges between cells stay

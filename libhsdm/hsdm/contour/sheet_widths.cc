@@ -1,0 +1,81 @@
+#include "hsdm/contour/sheet_widths.hh"
+
+#include "hsdm/contour/constants.hh"
+#include "hsdm/contour/plane_area.hh"
+#include "hsdm/core/chunks.hh"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hsdm {
+namespace {
+
+/// Of the set's plane, inside its voxel.
+double area_in_voxel(const OctreeLevel& level, const NormalSet& set) {
+    const VoxelCoord c = level.coord(set.voxel);
+    const Vec3 lo = Vec3(c[0], c[1], c[2]) * level.voxel_size;
+    return plane_area(set.normal, set.normal | set.centroid, lo, level.voxel_size, {});
+}
+
+/// Do two sets face each other or turn their backs, one before the other?
+bool is_facing(const NormalSet& a, const NormalSet& b, double voxel_size) {
+    if ((a.normal | b.normal) >= patches::opposed_cosine) return false;
+    if (std::min(a.count, b.count) < widths::least_points) return false;
+    const Vec3 way = b.centroid - a.centroid, across = (a.normal - b.normal).normalized();
+    const double beside = patches::beside * voxel_size;
+    return way.sqrnorm() - (across | way) * (across | way) < beside * beside;
+}
+
+double width_between(const NormalSet& a, const NormalSet& b) {
+    return std::abs((a.normal - b.normal).normalized() | (b.centroid - a.centroid));
+}
+
+/// The pairs that the sets of a voxel make with those of the same voxel and of its neighbours.
+template <class Visit>
+void for_facing_pairs(const OctreeLevel& level, const NormalSets& sets, Index voxel, const Visit& visit) {
+    const auto visit_with = [&](Index other) {
+        for (const NormalSet& a : sets.of_voxel(voxel))
+            for (const NormalSet& b : sets.of_voxel(other))
+                if (is_facing(a, b, level.voxel_size)) visit(a, b);
+    };
+    visit_with(voxel);
+    const VoxelCoord c = level.coord(voxel);
+    for (const VoxelCoord& o : neighbor_offsets)
+        if (const Index v = level.find({c[0] + o[0], c[1] + o[1], c[2] + o[2]}); v != no_index) visit_with(v);
+}
+
+/// Does a wall or gap part one of the voxel's sets from another?
+bool parts_something(const NormalSets& sets, Index voxel) {
+    return sets.first_apart[sets.first[voxel]] < sets.first_apart[sets.first[voxel + 1]];
+}
+
+} // namespace
+
+std::optional<SheetPair> nearest_pair(const OctreeLevel& level, const NormalSets& sets, Index voxel) {
+    double least = std::numeric_limits<double>::infinity(), area = 0, points = 0;
+    Vec3 middle(0, 0, 0);
+    for_facing_pairs(level, sets, voxel, [&](const NormalSet& a, const NormalSet& b) {
+        area += area_in_voxel(level, a) + area_in_voxel(level, b);
+        points += a.count + b.count;
+        const double width = width_between(a, b);
+        if (width >= least) return;
+        least = width;
+        middle = 0.5 * (a.centroid + b.centroid);
+    });
+    if (points == 0 || area == 0) return std::nullopt;
+    return SheetPair{least / std::sqrt(area / points), middle};
+}
+
+Doubts crowded_sheets(const OctreeLevel& level, const NormalSets& sets, double least) {
+    if (sets.first_apart.empty()) return {};
+    const std::vector<Index> found = indices_where(level.size(), chunks::usual, [&](Index v) {
+        if (!parts_something(sets, v)) return false;
+        const auto pair = nearest_pair(level, sets, v);
+        return pair && pair->spacings < least;
+    });
+    if (found.empty()) return {};
+    return {found.size(), nearest_pair(level, sets, found.front())->middle};
+}
+
+} // namespace hsdm

@@ -1,0 +1,27 @@
+#pragma once
+// How far the two sheets of a wall or gap are from each other, against what their points can tell.
+
+#include "hsdm/contour/normal_sets.hh"
+#include "hsdm/core/doubts.hh"
+
+#include <optional>
+
+namespace hsdm {
+
+/// Two sheets that face each other or turn their backs.
+struct SheetPair {
+    double spacings; ///< from one to the other, in spacings of their points there
+    Vec3 middle;     ///< relative to the octree's origin
+};
+
+/// The least distance of a voxel's sets from opposite ones in it or beside it, in spacings of all of these;
+/// nothing if there are none.
+std::optional<SheetPair> nearest_pair(const OctreeLevel& level, const NormalSets& sets, Index voxel);
+
+/// The voxels where walls or gaps that stand on something are nearer than `least` spacings: which of the
+/// sheets ends there, and which passes on, is for more points to tell. To be called after separate_patches,
+/// which finds what stands on something; walls that stand free have nothing to be confused with and are told
+/// apart by their normals, however thin. O(sets), parallel.
+Doubts crowded_sheets(const OctreeLevel& level, const NormalSets& sets, double least = widths::least);
+
+} // namespace hsdm
