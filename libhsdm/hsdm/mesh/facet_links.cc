@@ -1,6 +1,7 @@
 #include "hsdm/mesh/facet_links.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/interruption.hh"
 
 #include <algorithm>
 #include <atomic>
@@ -84,10 +85,10 @@ private:
 
     template <class Body>
     void for_each_accepted_side(const Body& body) const {
-        for (Index f = 0; f < facets_.facet_count(); ++f) {
-            if (!links_.accepted[f]) continue;
+        for_each_in_order(facets_.facet_count(), [&](std::size_t f) {
+            if (!links_.accepted[f]) return;
             for (Index c = facets_.first[f]; c < facets_.first[f + 1]; ++c) body(c);
-        }
+        });
     }
 
     /// Whether two facets run along an edge the same way.
@@ -104,15 +105,15 @@ private:
     /// The earlier facet keeps the edge; the later one is rejected whole and frees its other edges.
     void accept_in_order() {
         std::vector<char> taken(out_.size(), 0);
-        for (Index f = 0; f < facets_.facet_count(); ++f) {
-            if (!links_.accepted[f]) continue;
+        for_each_in_order(facets_.facet_count(), [&](std::size_t f) {
+            if (!links_.accepted[f]) return;
             bool free = true;
             for (Index c = facets_.first[f]; c < facets_.first[f + 1]; ++c)
                 free = free && !taken[slot(start(c), end(c))];
             links_.accepted[f] = free;
-            if (!free) continue;
+            if (!free) return;
             for (Index c = facets_.first[f]; c < facets_.first[f + 1]; ++c) taken[slot(start(c), end(c))] = 1;
-        }
+        });
         count_rejected();
         list_sides_out();
     }
@@ -158,8 +159,10 @@ private:
     }
 
     void find_fans() {
-        for (Index v = 0; v < facets_.vertex_count(); ++v)
+        for_each_in_order(facets_.vertex_count(), [&](std::size_t place) {
+            const auto v = static_cast<Index>(place);
             if (!sides_out(v).empty()) links_.source.push_back(v);
+        });
         const std::size_t count = links_.source.size();
         links_.vertex.assign(facets_.corners.size(), no_index);
         links_.side_out.resize(count);
@@ -169,8 +172,9 @@ private:
             const Index v = links_.source[i];
             several[i] = assign_fan(fan_start(v), i) < sides_out(v).size();
         });
-        for (std::size_t i = 0; i < count; ++i)
+        for_each_in_order(count, [&](std::size_t i) {
             if (several[i]) split_vertex(links_.source[i]);
+        });
     }
 
     /// The first fan has its vertex already; each of the others gets a new one.
