@@ -3,6 +3,7 @@
 #include "hsdm/basic/false_facets.hh"
 #include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/interruption.hh"
 #include "hsdm/mesh/split_polygon.hh"
 
 #include <algorithm>
@@ -175,6 +176,7 @@ private:
 
     void spread(int max_edges) {
         for (; head_ < queue_.size(); ++head_) {
+            if (head_ % chunks::heavy == 0) Interruption::poll();
             const Index h = queue_[head_];
             if (facet_of_[h] != no_index) continue;
             gather(h, max_edges);

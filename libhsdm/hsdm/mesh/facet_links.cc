@@ -2,6 +2,7 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/interruption.hh"
+#include "hsdm/core/large_vector.hh"
 
 #include <algorithm>
 #include <atomic>
@@ -56,8 +57,8 @@ private:
     }
 
     void find_proper_facets() {
-        links_.accepted.resize(facets_.facet_count());
-        links_.facet.resize(facets_.corners.size());
+        resize_large(links_.accepted, facets_.facet_count());
+        resize_large(links_.facet, facets_.corners.size());
         for_each_index(facets_.facet_count(), chunks::quick, [&](Index f) {
             links_.accepted[f] = is_proper(facets_.facet(f), facets_.vertex_count());
             for (Index c = facets_.first[f]; c < facets_.first[f + 1]; ++c) links_.facet[c] = f;
@@ -71,10 +72,10 @@ private:
     }
 
     void list_sides_out() {
-        first_out_.assign(facets_.vertex_count() + 1, 0);
+        assign_large(first_out_, facets_.vertex_count() + 1, 0);
         for_each_accepted_side([&](Index c) { ++first_out_[start(c) + 1]; });
         for (std::size_t v = 0; v < facets_.vertex_count(); ++v) first_out_[v + 1] += first_out_[v];
-        out_.resize(first_out_.back());
+        resize_large(out_, first_out_.back());
         std::vector<Index> fill(first_out_.begin(), first_out_.end() - 1);
         for_each_accepted_side(
             [&](Index c) { out_[fill[start(c)]++] = static_cast<std::uint64_t>(end(c)) << 32 | c; });
@@ -119,7 +120,7 @@ private:
     }
 
     void find_twins() {
-        links_.twin.assign(facets_.corners.size(), no_index);
+        assign_large(links_.twin, facets_.corners.size(), no_index);
         for_each_index(facets_.facet_count(), chunks::quick, [&](Index f) {
             if (!links_.accepted[f]) return;
             for (Index c = facets_.first[f]; c < facets_.first[f + 1]; ++c) {
@@ -164,9 +165,9 @@ private:
             if (!sides_out(v).empty()) links_.source.push_back(v);
         });
         const std::size_t count = links_.source.size();
-        links_.vertex.assign(facets_.corners.size(), no_index);
-        links_.side_out.resize(count);
-        links_.open_in.resize(count);
+        assign_large(links_.vertex, facets_.corners.size(), no_index);
+        resize_large(links_.side_out, count);
+        resize_large(links_.open_in, count);
         std::vector<char> several(count, 0);
         for_each_index(count, chunks::quick, [&](Index i) {
             const Index v = links_.source[i];

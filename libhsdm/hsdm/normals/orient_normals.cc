@@ -2,6 +2,7 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/interruption.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/normals/constants.hh"
 #include "hsdm/normals/outside.hh"
 #include "hsdm/octree/spacing.hh"
@@ -73,7 +74,7 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
     std::vector<std::int8_t> turn = free_signs(patches, signs, options);
     const bool seen = views_agree(patches, view, signs);
     if (seen) turn[signs.component[outside]] = signs.sign[outside];
-    result.turns.resize(octree.size());
+    resize_large(result.turns, octree.size());
     for_each_index(octree.size(), chunks::light, [&](Index i) {
         const Index p = patches.of_point[i];
         result.turns[i] = p != no_index && patches.sign[i] * signs.sign[p] * turn[signs.component[p]] < 0;

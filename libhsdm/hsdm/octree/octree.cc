@@ -2,6 +2,7 @@
 
 #include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/core/radix_sort.hh"
 #include "hsdm/errors.hh"
 
@@ -45,7 +46,7 @@ Vec3 unit_with_one_zero(const Vec3& n) {
 template <class T, class Change>
 std::vector<T> gathered(const std::vector<T>& values, const std::vector<Index>& places,
                         const Change& change) {
-    std::vector<T> result(places.size());
+    std::vector<T> result = large_vector<T>(places.size());
     for_each_index(places.size(), chunks::light, [&](Index i) {
         if (i + ahead < places.size()) __builtin_prefetch(&values[places[i + ahead]]);
         result[i] = change(values[places[i]]);
@@ -139,8 +140,8 @@ std::size_t merge_equal(std::span<const Vec3> positions, std::span<const Vec3> n
 
 /// The points in sorted order, and their codes; frees the keys, because here large clouds need most memory.
 std::vector<Index> take_order(std::vector<CodeIndex>& keys, std::vector<MortonCode>& codes) {
-    std::vector<Index> order(keys.size());
-    codes.resize(keys.size());
+    std::vector<Index> order = large_vector<Index>(keys.size());
+    resize_large(codes, keys.size());
     for_each_index(keys.size(), chunks::light, [&](Index i) {
         codes[i] = keys[i].code;
         order[i] = keys[i].index;
@@ -187,7 +188,7 @@ Octree build(const PointCloud& cloud, std::vector<Vec3>* ours, const OctreeOptio
     const bool with_normals = options.use_normals && cloud.has_normals();
     const bool with_values = !cloud.colors.empty() || !cloud.scalars.empty();
     const double scale = cells / octree.extent, per_unit = 1 / options.unit;
-    std::vector<CodeIndex> keys(n);
+    std::vector<CodeIndex> keys = large_vector<CodeIndex>(n);
     for_each_index(n, chunks::light, [&](Index i) {
         keys[i] = {code_of(cloud.positions[i] * per_unit - octree.origin, scale), i};
     });
@@ -221,7 +222,7 @@ void rearrange(Octree& octree, std::vector<Vec3> positions, double extent) {
     octree.extent = extent;
     const Vec3 shift = before - octree.origin;
     const double scale = cells / extent;
-    std::vector<CodeIndex> keys(positions.size());
+    std::vector<CodeIndex> keys = large_vector<CodeIndex>(positions.size());
     for_each_index(keys.size(), chunks::light, [&](Index i) {
         positions[i] += shift;
         keys[i] = {code_of(positions[i], scale), i};
@@ -277,7 +278,7 @@ std::vector<Index> find_runs(const std::vector<MortonCode>& codes, int shift) {
 /// The voxels of a level from its runs of points or of finer voxels.
 void fill_level(const std::vector<MortonCode>& codes, int shift, const std::vector<Index>& runs,
                 OctreeLevel& level) {
-    level.codes.resize(runs.size() - 1);
+    resize_large(level.codes, runs.size() - 1);
     for_each_index(level.codes.size(), chunks::light,
                    [&](Index v) { level.codes[v] = codes[runs[v]] >> shift; });
     level.build_index();

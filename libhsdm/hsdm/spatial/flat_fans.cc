@@ -2,6 +2,7 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/hash.hh"
+#include "hsdm/core/large_vector.hh"
 
 #include <atomic>
 
@@ -27,7 +28,7 @@ struct Sight {
 
 /// Per vertex its first facet, no_index if it has none.
 std::vector<Index> first_facets(const PolygonMesh& mesh, const std::vector<Index>& vertex) {
-    std::vector<Index> first(mesh.vertex_count(), no_index);
+    std::vector<Index> first = large_vector<Index>(mesh.vertex_count(), no_index);
     for_each_index(mesh.facet_count(), chunks::usual, [&](Index f) {
         for (Index v : mesh.facet(f)) {
             const std::atomic_ref least(first[vertex[v]]);
@@ -41,7 +42,7 @@ std::vector<Index> first_facets(const PolygonMesh& mesh, const std::vector<Index
 
 std::vector<Sight> find_sights(const PolygonMesh& mesh, const std::vector<Index>& vertex) {
     const std::vector<Index> first = first_facets(mesh, vertex);
-    std::vector<Sight> sights(first.size());
+    std::vector<Sight> sights = large_vector<Sight>(first.size());
     for_each_index(first.size(), 2 * chunks::usual, [&](Index v) {
         if (first[v] == no_index) return;
         const auto facet = mesh.facet(first[v]);
@@ -105,7 +106,7 @@ std::vector<std::uint8_t> flat_fans(const PolygonMesh& mesh, const std::vector<I
             if (turns > 0) fans[v].turns.fetch_add(turns, std::memory_order_relaxed);
         }
     });
-    std::vector<std::uint8_t> flat(fans.size());
+    std::vector<std::uint8_t> flat = large_vector<std::uint8_t>(fans.size());
     for (std::size_t v = 0; v < flat.size(); ++v) flat[v] = fans[v].turns == 1 && fans[v].ends == 0;
     return flat;
 }
