@@ -179,9 +179,9 @@ std::vector<std::int8_t> classify(std::size_t regions, const std::vector<Sights>
         for (std::size_t side : {0u, 1u}) {
             const Index q = patch_ahead(seen[p][side], patches);
             if (q == no_index || q == p || seen[p][1 - side].region == no_index) continue;
-            const Index beyond = far_sight(seen, patches, q, p).region;
+            const Index farther = far_sight(seen, patches, q, p).region;
             const auto surely = static_cast<float>(std::abs(facing(patches, p, q)));
-            if (beyond != no_index) relate(seen[p][1 - side].region, beyond, weight * surely);
+            if (farther != no_index) relate(seen[p][1 - side].region, farther, weight * surely);
         }
     });
     const Signs signs = agglomerate(regions, std::move(between));

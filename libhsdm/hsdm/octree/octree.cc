@@ -2,6 +2,7 @@
 
 #include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/interruption.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/core/radix_sort.hh"
 #include "hsdm/errors.hh"
@@ -123,12 +124,12 @@ std::size_t merge_equal(std::span<const Vec3> positions, std::span<const Vec3> n
                    || directed_or_zero(normals[a.index]) == directed_or_zero(normals[b.index]));
     };
     std::size_t kept = 0;
-    for (std::size_t i = 0; i < keys.size(); ++i) {
+    for_each_in_order(keys.size(), [&](std::size_t i) {
         if (kept == 0 || !equal(keys[kept - 1], keys[i]))
             keys[kept++] = keys[i];
         else if (duplicates)
             duplicates->push_back({keys[kept - 1].index, keys[i].index});
-    }
+    });
     const std::size_t merged = keys.size() - kept;
     keys.resize(kept);
     if (duplicates)
