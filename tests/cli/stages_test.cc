@@ -129,17 +129,17 @@ TEST_CASE("a mesh gets what a scan carries, in every command that runs stages", 
     INFO(processed.err);
     REQUIRE(processed.status == 0);
     CHECK(processed.out.find("transfer: 1 property from 4000 points to ") != std::string::npos);
-    CHECK(height_error(folder / "part.ply") < 0.05);
+    CHECK(height_error(folder / "part.ply") < 0.1);
     REQUIRE(run(folder, "reconstruct bare.xyz --depth 4 --quiet -o own.ply --stage transfer:cloud=scan.csv")
                 .status
             == 0);
-    CHECK(height_error(folder / "own.ply") < 0.05);
+    CHECK(height_error(folder / "own.ply") < 0.1);
     // Without a file, from the points that were read.
     REQUIRE(run(folder, "reconstruct scan.csv --levels 3:4 --quiet -o l.ply --stage subdivide --stage "
                         "transfer:neighbors=6")
                 .status
             == 0);
-    for (const char* name : {"l.d3.ply", "l.d4.ply"}) CHECK(height_error(folder / name) < 0.05);
+    for (const char* name : {"l.d3.ply", "l.d4.ply"}) CHECK(height_error(folder / name) < 0.1);
 
     // Files of a suite are named from its folder, those of its stages too.
     std::filesystem::create_directory(folder / "suites");

@@ -89,17 +89,22 @@ TEST_CASE("a transfer carries what its options ask for", "[transfer]") {
     cloud.scalars[0].values.push_back(1e9);
     PolyMesh mesh = cube_of(4);
     for (const auto v : mesh.vertices()) mesh.set_normal(v, Vec3(0, 0, 0));
-    const auto farther = mesh.add_vertex(Vec3(0, 0, 30));
+    const std::size_t near = mesh.n_vertices();
+    mesh.add_face(mesh.add_vertex(Vec3(0, 0, 30)), mesh.add_vertex(Vec3(1, 0, 30)),
+                  mesh.add_vertex(Vec3(0, 1, 30)));
+    for (std::size_t v = near; v < mesh.n_vertices(); ++v)
+        mesh.set_normal(mesh.vertex_handle(static_cast<unsigned>(v)), Vec3(0, 0, 0));
     const std::string words =
         transfer(mesh, ":colors=no,normals=yes,neighbors=3,max-distance=0.5,missing-value=-4", {&cloud});
     CHECK_THAT(words, Contains("1 property and 98 normals from 5000 points (1 more are not finite)"));
-    CHECK_THAT(words, Contains("1 of them are too far"));
+    CHECK_THAT(words, Contains("3 of them are too far"));
     CHECK(values_of(mesh, "red").empty());
     const std::vector<double> height = values_of(mesh, "height");
-    CHECK(height[static_cast<std::size_t>(farther.idx())] == -4);
+    CHECK(std::count(height.begin(), height.end(), -4) == 3);
+    CHECK(height.back() == -4);
     CHECK(*std::max_element(height.begin(), height.end()) < 1.1);
     for (const auto v : mesh.vertices())
-        if (v != farther) CHECK(mesh.normal(v).norm() == Approx(1));
+        CHECK(mesh.normal(v).norm() == Approx(static_cast<std::size_t>(v.idx()) < near ? 1 : 0));
     transfer(mesh, ":scalars=no", {&cloud});
     CHECK(values_of(mesh, "red").size() == mesh.n_vertices());
 }
@@ -138,6 +143,6 @@ TEST_CASE("a transfer that cannot be done is refused, as early as that is known"
     CHECK_THROWS_WITH(transfer(mesh, ":cloud=" + no_points), Contains("none.xyz: no point"));
     CHECK(to_polygons(mesh).properties.empty());
     const std::string four = folder.write("four", "0 0 0 5\n1 0 0 5\n0 1 0 5\n");
-    transfer(mesh, ":cloud=" + four + R"(,format=xyz,columns=x\,y\,z\,rust)");
-    CHECK(values_of(mesh, "rust") == std::vector<double>(mesh.n_vertices(), 5));
+    transfer(mesh, ":cloud=" + four + R"(,format=xyz,columns=x\,y\,z\,intensity)");
+    CHECK(values_of(mesh, "intensity") == std::vector<double>(mesh.n_vertices(), 5));
 }

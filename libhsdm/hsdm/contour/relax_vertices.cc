@@ -41,7 +41,8 @@ public:
     }
 
     void round(double step) {
-        next_ = vertices_.positions;
+        resize_large(next_, vertices_.positions.size());
+        for_each_index(next_.size(), chunks::light, [&](Index v) { next_[v] = vertices_.positions[v]; });
         for_each_index(duals_.size(), chunks::slow, [&](Index v) {
             if (duals_.open[v]) return;
             if (vertices_.classes[v] == VertexClass::smooth)
