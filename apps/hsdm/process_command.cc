@@ -42,8 +42,8 @@ FileClaims mesh_claims(const ProcessArguments& a) {
     return claims;
 }
 
-/// Throws UsageError for an output that would destroy the mesh, unless that is what was asked for, or a
-/// module.
+/// Throws UsageError for an output that would destroy the mesh, unless that is what was asked for, a module
+/// or what a stage reads.
 void check_claims(const ProcessArguments& a, const std::vector<StageCall>& stages) {
     FileClaims claims = mesh_claims(a);
     try {
@@ -52,9 +52,17 @@ void check_claims(const ProcessArguments& a, const std::vector<StageCall>& stage
         if (a.input == "-") throw;
         throw UsageError(std::string(error.what()) + ", or overwrite the mesh with --in-place");
     }
-    claim_modules(stages, claims);
+    claim_stage_files(stages, claims);
     if (!a.quiet && !is_standard_output(a.in_place ? a.input : a.output)) claims.writes("the summary", "-");
     claims.check();
+}
+
+/// A mesh that is read has no scan with it.
+void check_scans(const std::vector<StageCall>& stages) {
+    for (const StageCall& call : stages)
+        if (call.takes_scan())
+            throw OptionError(call.stage.name + ": " + call.stage.instead_of_scan
+                              + ": not given, and a mesh that is read has no scan with it; name a file");
 }
 
 PolygonMesh read_input(const std::string& input) {
@@ -95,6 +103,7 @@ int run_process(const ProcessArguments& a) {
     const std::string& output = a.in_place ? a.input : a.output;
     const MeshFormat format = format_for(output, a.format);
     const std::vector<StageCall> stages = parse_stages(a.stages);
+    check_scans(stages);
     check_claims(a, stages);
     check_writable(output);
     PolygonMesh facets = read_input(a.input);
@@ -103,7 +112,7 @@ int run_process(const ProcessArguments& a) {
     facets = {};
     std::ostream& text = is_standard_output(output) ? std::cerr : std::cout;
     for (const StageCall& stage : stages) {
-        const std::string summary = run_stage(a.input, stage, built.mesh).summary;
+        const std::string summary = run_stage(a.input, stage, built.mesh, {nullptr, unit}).summary;
         if (!a.quiet) text << printable(stage.stage.name + ": " + summary) << std::endl;
     }
     set_phase("write");

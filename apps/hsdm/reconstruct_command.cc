@@ -154,8 +154,7 @@ private:
         bar.show("read", 0);
         PointFile file = read_points(input, arguments_.read);
         const double read_seconds = seconds_since(start);
-        std::vector<Vec3> points; // for the stages' mesh to be measured
-        if (options_.measure && !stages_.empty()) points = file.cloud.positions;
+        const PointCloud scan = scan_for_stages(stages_, file.cloud, options_.measure);
         ReconstructOptions options = options_;
         options.debug_dir = plan_.debug_dir(input);
         options.progress = [&bar](const char* phase, double share) {
@@ -171,7 +170,7 @@ private:
                 result.report.input.dropped_nonfinite += file.nonfinite;
                 result.report.seconds.read = read_seconds;
                 if (!file.columns.empty()) result.report.options["columns"] = file.columns;
-                const bool as_text = write_one(name, points, result);
+                const bool as_text = write_one(name, scan, result);
                 result.report.seconds.total = seconds_since(start);
                 made.push_back({std::move(result.report), as_text});
             }
@@ -205,13 +204,13 @@ private:
 
     /// Runs the stages on one level and writes it; a failure does not stop the others. Returns whether the
     /// mesh became text for its precision.
-    bool write_one(const std::string& name, std::span<const Vec3> points, Reconstruction& result) const {
+    bool write_one(const std::string& name, const PointCloud& scan, Reconstruction& result) const {
         Report& report = result.report;
         if (!report.failure.empty()) return false;
         bool as_text = false;
         auto start = Clock::now();
         try {
-            run_stages(name, stages_, points, arguments_.quiet, result);
+            run_stages(name, stages_, scan, options_.measure, arguments_.quiet, result);
             measure_more(result);
             set_phase("write");
             start = Clock::now();

@@ -100,7 +100,7 @@ void OutputPlan::check_combinations() const {
 
 void OutputPlan::check_claims(const std::vector<StageCall>& stages) const {
     FileClaims claims;
-    claim_modules(stages, claims);
+    claim_stage_files(stages, claims);
     for (const std::string& input : arguments_.inputs) {
         claims.reads("the input", input);
         claim_outputs(input, claims);

@@ -178,6 +178,7 @@ Case parse_case(const Json& entry, const std::filesystem::path& folder, OtherKey
     if (input.empty()) place.fail("has no `input`");
     Case one;
     one.input = (folder / input).string();
+    one.folder = folder.string();
     one.name = text_of(entry, "name", input, place);
     if (const Json* const arguments = member(entry, "args")) {
         const bool words = arguments->is_array()

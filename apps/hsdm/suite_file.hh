@@ -14,6 +14,7 @@ using Json = nlohmann::ordered_json;
 /// A reconstruction and what its report must say.
 struct Case {
     std::string name, input;
+    std::string folder; ///< that its files are named from: the suite's, or its `root`
     std::vector<std::string> arguments;
     std::string reference; ///< path of the true surface, a mesh or a cloud of it; empty: none
     std::string output;    ///< format that the mesh is written in and read again: off, stl, ...; empty: none

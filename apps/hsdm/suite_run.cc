@@ -26,7 +26,7 @@ namespace hsdm::command {
 namespace {
 
 Reconstruction reconstruct_case(const Case& one, const CaseOptions& asked) {
-    const std::vector<StageCall> stages = parse_stages(asked.stages);
+    const std::vector<StageCall> stages = parse_stages(asked.stages, one.folder);
     ReconstructOptions options = asked.reconstruct;
     options.progress = [](const char* phase, double) {
         set_phase(phase);
@@ -34,9 +34,9 @@ Reconstruction reconstruct_case(const Case& one, const CaseOptions& asked) {
     };
     set_activity(one.input.c_str(), "read");
     PointFile file = read_points(one.input, asked.read);
-    const std::vector<Vec3> points = stages.empty() ? std::vector<Vec3>() : file.cloud.positions;
+    const PointCloud scan = scan_for_stages(stages, file.cloud, true);
     Reconstruction result = reconstruct(std::move(file.cloud), options);
-    run_stages(one.input, stages, points, false, result);
+    run_stages(one.input, stages, scan, true, false, result);
     result.report.input.file = one.input;
     result.report.input.dropped_nonfinite += file.nonfinite;
     return result;

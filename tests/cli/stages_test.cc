@@ -8,6 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
 #include <set>
 
 using namespace hsdm;
@@ -85,6 +88,93 @@ TEST_CASE("a stage that is wrong ends the command before anything is read", "[cl
     CHECK(late.status == 2);
     CHECK(late.err.find("facets, ratio and max-error") != std::string::npos);
     CHECK_FALSE(exists(folder / "a.off"));
+}
+
+namespace {
+
+/// A scan of the unit sphere, each point with its height.
+std::string scan_with_heights(std::size_t points = 4000) {
+    std::string text = "x,y,z,height\n";
+    for (const Vec3& p : sphere_scan(points).positions) {
+        char line[120];
+        std::snprintf(line, sizeof line, "%.17g,%.17g,%.17g,%.17g\n", p[0], p[1], p[2], p[2]);
+        text += line;
+    }
+    return text;
+}
+
+/// How far the heights of the mesh are from its vertices' own; huge where there are none.
+double height_error(const std::string& path) {
+    const PolygonMesh mesh = read_mesh(path);
+    double worst = 1e9;
+    for (const VertexProperty& property : mesh.properties)
+        if (property.name == "height") {
+            worst = 0;
+            for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
+                worst = std::max(worst, std::abs(property.values[v] - mesh.positions[v][2]));
+        }
+    return worst;
+}
+
+} // namespace
+
+TEST_CASE("a mesh gets what a scan carries, in every command that runs stages", "[cli]") {
+    const Folder folder;
+    folder.write("bare.xyz", xyz(sphere_scan()));
+    folder.write("scan.csv", scan_with_heights());
+    REQUIRE(run(folder, "reconstruct bare.xyz --depth 4 --quiet -o bare.ply").status == 0);
+    CHECK(height_error(folder / "bare.ply") == 1e9);
+    const CommandResult processed =
+        run(folder, "process bare.ply --stage subdivide --stage transfer:cloud=scan.csv -o part.ply");
+    INFO(processed.err);
+    REQUIRE(processed.status == 0);
+    CHECK(processed.out.find("transfer: 1 property from 4000 points to ") != std::string::npos);
+    CHECK(height_error(folder / "part.ply") < 0.1);
+    REQUIRE(run(folder, "reconstruct bare.xyz --depth 4 --quiet -o own.ply --stage transfer:cloud=scan.csv")
+                .status
+            == 0);
+    CHECK(height_error(folder / "own.ply") < 0.1);
+    // Without a file, from the points that were read.
+    REQUIRE(run(folder, "reconstruct scan.csv --levels 3:4 --quiet -o l.ply --stage subdivide --stage "
+                        "transfer:neighbors=6")
+                .status
+            == 0);
+    for (const char* name : {"l.d3.ply", "l.d4.ply"}) CHECK(height_error(folder / name) < 0.1);
+
+    // Files of a suite are named from its folder, those of its stages too.
+    std::filesystem::create_directory(folder / "suites");
+    folder.write("suites/suite.json", R"({"root": "..", "cases": [{"input": "bare.xyz",
+        "args": ["--depth", "3", "--stage", "transfer:cloud=scan.csv", "--stage", "triangulate"],
+        "expect": {"mesh.quads": 0, "stages.0.call": "transfer:cloud=scan.csv"}}]})");
+    const CommandResult suite = run(folder, "regress suites/suite.json");
+    INFO(suite.out << suite.err);
+    CHECK(suite.status == 0);
+}
+
+TEST_CASE("a transfer's cloud that is not there is told before anything is read", "[cli]") {
+    const Folder folder;
+    for (const std::string command : {"reconstruct no.xyz -o a.ply ", "process no.ply -o a.ply "}) {
+        const CommandResult missing = run(folder, command + "--stage transfer:cloud=gone.ply");
+        CHECK(missing.status == 1);
+        CHECK(missing.err.find("gone.ply: no such file; check the path") != std::string::npos);
+        CHECK(run(folder, command + "--stage transfer:cloud=.").err.find("is a directory")
+              != std::string::npos);
+        CHECK(run(folder, command + "--stage transfer:cloud=").status == 2);
+    }
+    const CommandResult none = run(folder, "process no.ply -o a.ply --stage transfer");
+    CHECK(none.status == 2);
+    CHECK(none.err.find("transfer: cloud: not given") != std::string::npos);
+    folder.write("scan.csv", scan_with_heights(500));
+    const CommandResult same =
+        run(folder, "process no.ply -o scan.csv --format ply --stage transfer:cloud=scan.csv");
+    CHECK(same.status == 2);
+    CHECK(same.err.find("which would be destroyed") != std::string::npos);
+    folder.write("bare.xyz", xyz(sphere_scan(500)));
+    const CommandResult nothing =
+        run(folder, "reconstruct bare.xyz --depth 3 -o a.ply --stage transfer:cloud=bare.xyz");
+    CHECK(nothing.status == 1);
+    CHECK(nothing.err.find("bare.xyz: its points have nothing of what is asked for") != std::string::npos);
+    CHECK_FALSE(exists(folder / "a.ply"));
 }
 
 TEST_CASE("a case of a suite goes through stages", "[cli]") {

@@ -274,6 +274,8 @@ TEST_CASE("a request reads name:key=value,key=value") {
 TEST_CASE("a colon in a module's path is told from the one before the options") {
     CHECK(parse_plugin_request(R"(./a\:b/x.so:c=1)").name == "./a:b/x.so");
     CHECK(parse_plugin_request(R"(a\\b:c=1)").name == R"(a\b)");
+    const auto commas = parse_plugin_request(R"(a:b=x\,y,c=\d\\,e=\)").arguments;
+    CHECK(commas == StageArguments{{"b", "x,y"}, {"c", R"(\d\)"}, {"e", "\\"}});
     const OwnModules folder(HSDM_EXAMPLE_DIR);
     fs::create_directory(folder / "a:b");
     fs::rename(folder / "scale.so", folder / "a:b/scale:2.so");

@@ -28,8 +28,8 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-std::string run(PolyMesh& mesh, const std::string& call) {
-    return parse_stage_call(call, {})(mesh);
+std::string run(PolyMesh& mesh, const std::string& call, const StageContext& context = {}) {
+    return parse_stage_call(call, {})(mesh, context);
 }
 
 double marked_length(const PolyMesh& mesh) {
@@ -61,19 +61,22 @@ PolyMesh classified(const PolygonMesh& shape) {
 TEST_CASE("every stage that is built in takes its declared values, which are what it does without them") {
     const std::map<std::string, std::string> needed{{"decimate", "ratio=0.5"},
                                                     {"drop-components", "facets=2"}};
+    PointCloud scan;
+    scan.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0)};
+    scan.colors = {{1, 2, 3, 4}, {5, 6, 7, 8}};
     for (const Stage& stage : built_in_stages()) {
         INFO(stage.name);
         const auto given = needed.find(stage.name);
         std::string call = stage.name + (given == needed.end() ? "" : ":" + given->second);
         PolyMesh without = classified(support::divided_cube(6)), with = without;
-        run(without, call);
+        run(without, call, {&scan});
         CHECK(fault_of(without) == "");
         for (const StageOption& option : stage.options) {
             CHECK_FALSE(option.help.empty());
             if (option.fallback.empty()) continue;
             call += (call.find(':') == std::string::npos ? ":" : ",") + option.key + "=" + option.fallback;
         }
-        run(with, call);
+        run(with, call, {&scan});
         CHECK(with.n_faces() == without.n_faces());
         CHECK(marked_length(with) == Approx(marked_length(without)));
     }

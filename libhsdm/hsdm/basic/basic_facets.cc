@@ -3,6 +3,8 @@
 #include "hsdm/basic/false_facets.hh"
 #include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/interruption.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/split_polygon.hh"
 
 #include <algorithm>
@@ -75,23 +77,26 @@ private:
 
     /// Per half-edge, the candidates that run along it, ascending.
     void index_loops() {
-        first_candidate_.assign(graph_.half_edge_count() + 1, 0);
-        for (Index h : loops_.half_edges) {
+        assign_large(first_candidate_, graph_.half_edge_count() + 1, 0);
+        for_each_in_order(loops_.half_edges.size(), [&](std::size_t k) {
+            const Index h = loops_.half_edges[k];
             ++first_candidate_[h + 1];
             ++first_candidate_[graph_.twin[h] + 1];
-        }
+        });
         counts_to_first(first_candidate_);
-        candidates_.resize(first_candidate_.back());
+        resize_large(candidates_, first_candidate_.back());
         std::vector<Index> next(first_candidate_.begin(), first_candidate_.end() - 1);
-        for (Index i = 0; i < loops_.size(); ++i)
+        for_each_in_order(loops_.size(), [&](std::size_t place) {
+            const auto i = static_cast<Index>(place);
             for (Index h : loops_[i]) {
                 candidates_[next[h]++] = 2 * i;
                 candidates_[next[graph_.twin[h]]++] = 2 * i + 1;
             }
+        });
     }
 
     void test_hits() {
-        hit_.resize(2 * loops_.size());
+        resize_large(hit_, 2 * loops_.size());
         for_each_index(hit_.size(), chunks::usual, [&](std::size_t c) {
             hit_[c] = hits_neighbor_voxel(level_, graph_, candidate(static_cast<Index>(c)).corners());
         });
@@ -110,7 +115,8 @@ private:
             Facet seed;
             seen[root] = 1;
             stack.push_back(root);
-            while (!stack.empty()) {
+            for (std::size_t looks = 0; !stack.empty(); ++looks) {
+                if (looks % chunks::heavy == 0) Interruption::poll();
                 const Index v = stack.back();
                 stack.pop_back();
                 if (top == no_index || higher(v, top)) {
@@ -175,6 +181,7 @@ private:
 
     void spread(int max_edges) {
         for (; head_ < queue_.size(); ++head_) {
+            if (head_ % chunks::heavy == 0) Interruption::poll();
             const Index h = queue_[head_];
             if (facet_of_[h] != no_index) continue;
             gather(h, max_edges);

@@ -1,6 +1,7 @@
 #include "hsdm/basic/voxel_centroid.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 
 namespace hsdm {
 
@@ -12,7 +13,7 @@ Vec3 voxel_centroid(const Octree& octree, const OctreeLevel& level, Index voxel)
 }
 
 std::vector<Vec3> voxel_centroids(const Octree& octree, const OctreeLevel& level) {
-    std::vector<Vec3> positions(level.size());
+    std::vector<Vec3> positions = large_vector<Vec3>(level.size());
     for_each_index(level.size(), chunks::quick,
                    [&](Index v) { positions[v] = voxel_centroid(octree, level, v); });
     return positions;

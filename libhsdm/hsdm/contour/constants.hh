@@ -139,7 +139,7 @@ namespace hsdm::widths {
 
 /// spacings: between the two sheets of a wall or gap that stands on something; nearer ones are doubtful.
 /// Why: where a sheet ends is known to a spacing; two that end on each other's ground need one each.
-inline constexpr double least = 2;
+inline constexpr double least = 1;
 
 /// points: of a set that tells where its sheet is.
 /// Why: as many as a plane has.

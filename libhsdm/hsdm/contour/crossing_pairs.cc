@@ -1,6 +1,7 @@
 #include "hsdm/contour/crossing_pairs.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -112,7 +113,7 @@ private:
 Links pair_crossings(const GridPoints& grid, const Crossings& crossings, const NormalSets& sets,
                      const RelationTest& related) {
     Links links;
-    links.of_crossing.resize(crossings.crossings.size());
+    resize_large(links.of_crossing, crossings.crossings.size());
     const auto pair = [&](std::size_t c, std::size_t end, std::vector<FacetSide>& crowded) {
         FacePairing face(grid, crossings, sets, related);
         std::vector<FacetSide> in_face;

@@ -3,6 +3,7 @@
 #include "hsdm/contour/constants.hh"
 #include "hsdm/contour/plane_area.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -301,7 +302,7 @@ CrossingCandidates find_crossings(const GridPoints& grid, const LocalSheets& loc
                                   const CrossingOptions& options) {
     CrossingCandidates result;
     const std::size_t n = grid.size();
-    result.crossings.first.assign(3 * n + 1, 0);
+    assign_large(result.crossings.first, 3 * n + 1, 0);
     const std::size_t chunks = chunk_count(n, chunks::slow);
     std::vector<std::vector<Crossing>> found(chunks);
     std::vector<std::vector<std::uint8_t>> standing(chunks);

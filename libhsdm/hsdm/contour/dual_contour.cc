@@ -7,6 +7,7 @@
 #include "hsdm/contour/trim_crossings.hh"
 #include "hsdm/contour/webs.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/doublets.hh"
 
 #include <algorithm>
@@ -202,8 +203,8 @@ PolygonMesh joined_facets(const std::vector<PolygonMesh>& parts) {
         corner[i + 1] = corner[i] + parts[i].corners.size();
         facet[i + 1] = facet[i] + parts[i].facet_count();
     }
-    mesh.corners.resize(corner.back());
-    mesh.first.resize(facet.back() + 1);
+    resize_large(mesh.corners, corner.back());
+    resize_large(mesh.first, facet.back() + 1);
     for_each_task(parts.size(), [&](std::size_t i) {
         std::ranges::copy(parts[i].corners, mesh.corners.begin() + static_cast<std::ptrdiff_t>(corner[i]));
         for (std::size_t f = 0; f < parts[i].facet_count(); ++f)
@@ -233,7 +234,7 @@ PolygonMesh facets_of(const DualMesh& dual, const Midpoints& midpoints, const Pl
 /// Per vertex, the value of the vertex that it originated from.
 template <class T>
 std::vector<T> of_origins(const std::vector<T>& values, const std::vector<Index>& origin) {
-    std::vector<T> result(origin.size());
+    std::vector<T> result = large_vector<T>(origin.size());
     for_each_index(result.size(), chunks::light, [&](Index i) { result[i] = values[origin[i]]; });
     return result;
 }
@@ -298,7 +299,7 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
         result.mesh = facets_of(dual, midpoints, vertices);
         result.mesh.positions = std::move(vertices.positions);
     }
-    result.mesh.origin.resize(result.mesh.vertex_count());
+    resize_large(result.mesh.origin, result.mesh.vertex_count());
     std::iota(result.mesh.origin.begin(), result.mesh.origin.end(), Index(0));
     result.classes = std::move(vertices.classes);
     result.voxel = std::move(vertices.voxel);

@@ -2,6 +2,7 @@
 
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -230,7 +231,7 @@ void append(const ChunkDualVertices& chunk, DualVertices& duals) {
 /// Fills of_corner: both sides of a corner belong to its dual vertex; of a corner shared by two dual
 /// vertices, one side to each.
 void number_sides(const Crossings& crossings, std::span<const std::uint8_t> shared, DualVertices& duals) {
-    duals.of_corner.assign(8 * crossings.crossings.size(), no_index);
+    assign_large(duals.of_corner, 8 * crossings.crossings.size(), no_index);
     for_each_index(duals.size(), chunks::quick, [&](Index v) {
         const auto corners = duals.corners_of(v);
         for (std::size_t i = 0; i < corners.size(); ++i) {

@@ -1,6 +1,7 @@
 #include "hsdm/contour/grid_points.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/core/radix_sort.hh"
 
 #include <bitset>
@@ -75,7 +76,7 @@ std::vector<MortonCode> grid_point_codes(const OctreeLevel& level) {
 
 /// Enters each voxel at its eight corners.
 void connect_voxels(const OctreeLevel& level, GridPoints& grid) {
-    grid.voxels.resize(grid.size(), no_voxels);
+    resize_large(grid.voxels, grid.size(), no_voxels);
     for_blocks(level,
                [&](BlockGridPoints& points, MortonCode block, std::size_t begin, std::size_t end, auto) {
                    std::array<Index, 125> point_at;
@@ -100,7 +101,8 @@ void connect_grid_point(GridPoints& grid, std::size_t i) {
 } // namespace
 
 std::vector<std::array<Index, 3>> grid_points_below(const GridPoints& grid) {
-    std::vector<std::array<Index, 3>> below(grid.size(), {no_index, no_index, no_index});
+    std::vector<std::array<Index, 3>> below =
+        large_vector<std::array<Index, 3>>(grid.size(), {no_index, no_index, no_index});
     for_each_index(grid.size(), chunks::usual, [&](Index c) {
         for (unsigned axis = 0; axis < 3; ++axis)
             if (const Index next = grid.next[c][axis]; next != no_index) below[next][axis] = c;
@@ -108,22 +110,35 @@ std::vector<std::array<Index, 3>> grid_points_below(const GridPoints& grid) {
     return below;
 }
 
+namespace {
+
+/// Appends values: a copy, as any vector makes that grows, but by all threads.
+template <class T>
+void lengthen(std::vector<T>& values, std::size_t n, const T& value) {
+    std::vector<T> longer = large_vector<T>(n, value);
+    for_each_index(values.size(), chunks::light, [&](Index i) { longer[i] = values[i]; });
+    values.swap(longer);
+}
+
+} // namespace
+
 GridPoints build_grid_points(const OctreeLevel& level) {
     GridPoints grid;
     grid.codes = grid_point_codes(level);
     grid.index.build(grid.codes);
     connect_voxels(level, grid);
-    grid.next.resize(grid.size());
+    resize_large(grid.next, grid.size());
     for_each_index(grid.size(), chunks::usual, [&](Index i) { connect_grid_point(grid, i); });
     return grid;
 }
 
 void add_grid_points(GridPoints& grid, std::span<const MortonCode> codes) {
     const std::size_t n = grid.size();
-    grid.codes.insert(grid.codes.end(), codes.begin(), codes.end());
+    lengthen(grid.codes, n + codes.size(), MortonCode{0});
+    std::copy(codes.begin(), codes.end(), grid.codes.begin() + static_cast<std::ptrdiff_t>(n));
     grid.index.build(grid.codes);
-    grid.voxels.resize(grid.size(), no_voxels);
-    grid.next.resize(grid.size());
+    lengthen(grid.voxels, grid.size(), no_voxels);
+    lengthen(grid.next, grid.size(), {});
     for_chunks(codes.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = n + begin; i < n + end; ++i) {
             connect_grid_point(grid, i);

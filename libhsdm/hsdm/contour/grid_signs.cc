@@ -2,6 +2,7 @@
 
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -197,7 +198,7 @@ private:
     /// of a chessboard share no edge, so they can change in any order.
     void flip_doubtful() {
         const std::vector<Index> grid_points = doubtful();
-        std::vector<std::uint8_t> changed(grid_points.size());
+        std::vector<std::uint8_t> changed = large_vector<std::uint8_t>(grid_points.size());
         for (int round = 0; round < signs::settle_rounds; ++round) {
             std::fill(changed.begin(), changed.end(), 0);
             for (int colour : {0, 1})
@@ -272,7 +273,7 @@ private:
     Crossings chosen() const {
         Crossings result;
         result.dropped_beyond_crease = list_.dropped_beyond_crease;
-        result.first.assign(3 * grid_.size() + 1, 0);
+        assign_large(result.first, 3 * grid_.size() + 1, 0);
         std::vector<std::vector<Crossing>> parts(chunk_count(grid_.size(), chunks::usual));
         std::vector<std::size_t> changes(parts.size());
         for_chunks(grid_.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t chunk) {

@@ -2,6 +2,7 @@
 
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/core/parallel_sort_unique.hh"
 
 #include <algorithm>
@@ -109,7 +110,7 @@ struct SheetsAtPoint {
 LocalSheets connect_members(const GridPoints& grid, const NormalSets& sets, const RelationTest& related) {
     LocalSheets result;
     const std::size_t n = grid.size();
-    result.first_member.assign(n + 1, 0);
+    assign_large(result.first_member, n + 1, 0);
     const auto connect = [&](std::size_t i, std::size_t end, std::vector<SheetMember>& members) {
         SheetsAtPoint grid_point;
         for (; i < end; ++i) {
@@ -236,7 +237,7 @@ LocalSheets group_local_sheets(const GridPoints& grid, const NormalSets& sets, c
     LocalSheets result = connect_members(grid, sets, related);
     close_sheets(grid, sets, result);
     const std::size_t n = grid.size();
-    result.first_sheet.assign(n + 1, 0);
+    assign_large(result.first_sheet, n + 1, 0);
     std::vector<std::vector<LocalSheet>> sheets(chunk_count(n, chunks::usual));
     for_chunks(n, chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         SheetsAtPoint grid_point;

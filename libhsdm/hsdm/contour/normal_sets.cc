@@ -3,6 +3,7 @@
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 
 #include <tbb/enumerable_thread_specific.h>
 
@@ -273,8 +274,8 @@ NormalSets build_normal_sets(const Octree& octree, const OctreeLevel& level,
                              const NormalSetOptions& options) {
     validate(options);
     NormalSets result;
-    result.first.assign(level.size() + 1, 0);
-    result.of_point.assign(octree.size(), no_index);
+    assign_large(result.first, level.size() + 1, 0);
+    assign_large(result.of_point, octree.size(), no_index);
     if (!octree.has_normals()) return result;
 
     tbb::enumerable_thread_specific<Scratch> scratch;

@@ -2,6 +2,7 @@
 
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 
 #include <Eigen/Eigenvalues>
 
@@ -406,11 +407,11 @@ void separate_sides(const DualMesh& mesh, std::vector<Vec3>& positions) {
 PlacedVertices place_vertices(const DualMesh& mesh, const NormalSets& sets, const RelationTest& related) {
     PlacedVertices result;
     const std::size_t count = mesh.duals.size();
-    result.positions.resize(count);
-    result.classes.resize(count);
-    result.directions.resize(count);
-    result.voxel.resize(count);
-    result.is_clamped.resize(count);
+    resize_large(result.positions, count);
+    resize_large(result.classes, count);
+    resize_large(result.directions, count);
+    resize_large(result.voxel, count);
+    resize_large(result.is_clamped, count);
     const auto crosses = sets_that_cross(mesh, sets, related);
     std::vector<std::vector<PlacedVertices::Beyond>> beyond(chunk_count(count, chunks::slow));
     std::vector<std::vector<PlacedVertices::OnCrease>> on_creases(beyond.size());

@@ -2,6 +2,7 @@
 
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/spatial/point_triangle.hh"
 
 #include <cmath>
@@ -87,7 +88,7 @@ void PointFit::gather_beside(Index voxel, std::vector<Index>& duals) const {
 }
 
 PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
-    Measure result{std::vector<double>(level_.size(), 0), std::vector<Heights>(duals_.size())};
+    Measure result{large_vector<double>(level_.size(), 0), large_vector<Heights>(duals_.size())};
     // Contributions to vertices in other chunks' voxels are added afterwards, in the order of the chunks.
     std::vector<std::vector<Foreign>> foreign(chunk_count(level_.size(), 2 * chunks::heavy));
     for_chunks(level_.size(), 2 * chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
@@ -133,11 +134,11 @@ std::vector<double> PointFit::rises(const std::vector<Heights>& heights) const {
     struct Moments {
         double square, variance; // of the mean
     };
-    std::vector<Moments> of_mean(duals_.size());
+    std::vector<Moments> of_mean = large_vector<Moments>(duals_.size());
     for_each_index(duals_.size(), 2 * chunks::heavy, [&](Index v) {
         of_mean[v] = {heights[v].mean() * heights[v].mean(), heights[v].variance()};
     });
-    std::vector<double> rises(duals_.size(), 0);
+    std::vector<double> rises = large_vector<double>(duals_.size(), 0);
     for_each_index(duals_.size(), 2 * chunks::heavy, [&](Index v) {
         Moments sum{0, 0};
         for (FacetCorner corner : duals_.corners_of(v))

@@ -4,6 +4,7 @@
 #include "hsdm/contour/point_fit.hh"
 #include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/area_vector.hh"
 
 #include <algorithm>
@@ -40,7 +41,8 @@ public:
     }
 
     void round(double step) {
-        next_ = vertices_.positions;
+        resize_large(next_, vertices_.positions.size());
+        for_each_index(next_.size(), chunks::light, [&](Index v) { next_[v] = vertices_.positions[v]; });
         for_each_index(duals_.size(), chunks::slow, [&](Index v) {
             if (duals_.open[v]) return;
             if (vertices_.classes[v] == VertexClass::smooth)
@@ -80,8 +82,8 @@ private:
     }
 
     void list_neighbours() {
-        neighbours_.resize(2 * duals_.corners.size());
-        neighbour_count_.resize(duals_.size());
+        resize_large(neighbours_, 2 * duals_.corners.size());
+        resize_large(neighbour_count_, duals_.size());
         for_each_index(duals_.size(), chunks::slow, [&](Index v) {
             Neighbour* const first = neighbours_.data() + 2 * std::size_t{duals_.first[v]};
             Neighbour* last = first;

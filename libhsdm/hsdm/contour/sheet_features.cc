@@ -2,6 +2,7 @@
 
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/facet_normal.hh"
 
@@ -206,7 +207,7 @@ SheetFeatures sheet_features(const Octree& octree, const OctreeLevel& level, con
                              double crease_angle, bool turned) {
     SheetFeatures result;
     auto& sides = result.hints.sides;
-    sides.assign(mesh.corners.size(), EdgeHint::none);
+    assign_large(sides, mesh.corners.size(), EdgeHint::none);
     const SheetFacets facets(level, sets, mesh, voxel, turned);
     std::vector<Tally> tallies(chunk_count(sides.size(), 4 * chunks::slow));
     for_chunks(sides.size(), 4 * chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t chunk) {

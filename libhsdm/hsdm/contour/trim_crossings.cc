@@ -1,5 +1,7 @@
 #include "hsdm/contour/trim_crossings.hh"
 
+#include "hsdm/core/large_vector.hh"
+
 #include <algorithm>
 #include <utility>
 
@@ -25,7 +27,7 @@ OpenLoops find_open_loops(const Crossings& crossings, const Links& links) {
         }
     };
     OpenLoops loops;
-    loops.of_side.assign(4 * links.of_crossing.size(), no_index);
+    assign_large(loops.of_side, 4 * links.of_crossing.size(), no_index);
     for (Index x = 0; x < links.of_crossing.size(); ++x)
         for (const FacetSide start : corners_of_facet(x)) {
             if (!links.of(start).open() || loops.of_side[start.number()] != no_index) continue;

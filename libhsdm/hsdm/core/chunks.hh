@@ -2,6 +2,7 @@
 // Fixed chunks: the unit of parallel work. Their size never follows the number of threads, so neither do
 // results.
 
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/types.hh"
 
 #include <algorithm>
@@ -56,7 +57,7 @@ template <class T>
 std::vector<T> joined(const std::vector<std::vector<T>>& parts) {
     std::vector<std::size_t> offset(parts.size() + 1, 0);
     for (std::size_t i = 0; i < parts.size(); ++i) offset[i + 1] = offset[i] + parts[i].size();
-    std::vector<T> whole(offset.back());
+    std::vector<T> whole = large_vector<T>(offset.back());
     for_each_task(parts.size(), [&](std::size_t i) {
         std::copy(parts[i].begin(), parts[i].end(), whole.begin() + static_cast<std::ptrdiff_t>(offset[i]));
     });

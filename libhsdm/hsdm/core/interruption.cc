@@ -2,6 +2,8 @@
 
 #include "hsdm/errors.hh"
 
+#include <tbb/task_group.h>
+
 #include <utility>
 
 namespace hsdm {
@@ -29,6 +31,22 @@ void Interruption::poll() {
     const bool goes_on = one->goes_on_();
     one->next_ = Clock::now() + asking_interval;
     if (!goes_on) throw Cancelled();
+}
+
+void run_both(const std::function<void()>& here, const std::function<void()>& elsewhere) {
+    tbb::task_group group;
+    group.run(elsewhere);
+    try {
+        here();
+    } catch (...) {
+        group.cancel();
+        try {
+            group.wait();
+        } catch (...) { // of two failures the first is told
+        }
+        throw;
+    }
+    group.wait();
 }
 
 } // namespace hsdm

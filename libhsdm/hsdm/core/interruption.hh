@@ -1,7 +1,9 @@
 #pragma once
 // Lets whoever started long work stop it while its parallel loops run.
 
+#include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <functional>
 
 namespace hsdm {
@@ -26,5 +28,21 @@ private:
     Clock::time_point next_;
     Interruption* outer_;
 };
+
+/// Calls f(i) for each i below n, in order, on this thread, which asks in between: for loops over all of a
+/// cloud or mesh that are not parallel. Throws Cancelled.
+template <class F>
+void for_each_in_order(std::size_t n, F&& f) {
+    constexpr std::size_t block = 1 << 13; // far less than asking_interval, far more than the look at a clock
+    for (std::size_t begin = 0; begin < n; begin += block) {
+        Interruption::poll();
+        for (std::size_t i = begin, end = std::min(n, begin + block); i < end; ++i) f(i);
+    }
+}
+
+/// Calls both, at the same time if threads are free; `here` on this thread, as it is the one that asks, so
+/// this should be the one that is less parallel. If one throws the other is given up, and so do its loops:
+/// what it leaves is not to be used.
+void run_both(const std::function<void()>& here, const std::function<void()>& elsewhere);
 
 } // namespace hsdm

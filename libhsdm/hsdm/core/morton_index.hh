@@ -2,6 +2,7 @@
 // Code -> position in a sorted array of codes, by open addressing: neighbour search in O(1).
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/core/morton.hh"
 
 #include <atomic>
@@ -15,7 +16,7 @@ public:
     /// The codes must be different from each other. O(n), parallel; answers do not depend on who came first.
     void build(const std::vector<MortonCode>& codes) {
         const std::size_t slots = std::bit_ceil(std::max<std::size_t>(2 * codes.size(), 2 * siblings));
-        slots_.assign(slots, Slot{});
+        assign_large(slots_, slots, Slot{});
         shift_ = 64 - std::countr_zero(slots / siblings);
         for_chunks(codes.size(), chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t i = begin; i < end; ++i) slots_[take_slot(codes[i], i)].code = codes[i];

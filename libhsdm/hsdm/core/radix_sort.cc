@@ -1,6 +1,7 @@
 #include "hsdm/core/radix_sort.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 
 #include <algorithm>
 #include <array>
@@ -50,7 +51,7 @@ bool counts_to_offsets(std::vector<Histogram>& histograms, std::size_t n) {
 void radix_sort(std::vector<CodeIndex>& keys, int high, int low) {
     const std::size_t n = keys.size();
     const std::size_t chunks = (n + chunk_size - 1) / chunk_size;
-    std::vector<CodeIndex> buffer(n);
+    std::vector<CodeIndex> buffer = large_vector<CodeIndex>(n);
     std::vector<Histogram> histograms(chunks);
     for (int shift = low; shift < high; shift += digit_bits) {
         const Digit digit(shift, high);

@@ -151,4 +151,11 @@ SourceBytes SourceBytes::read(std::istream& stream, const std::string& name) {
     return source;
 }
 
+void check_readable(const std::string& path) {
+    struct stat status {};
+    // Not opened: a pipe would wait for whoever writes it, and then be told that nobody reads.
+    if (::stat(path.c_str(), &status) != 0 || ::access(path.c_str(), R_OK) != 0) fail(path, errno);
+    if (S_ISDIR(status.st_mode)) fail(path, EISDIR);
+}
+
 } // namespace hsdm::io

@@ -53,4 +53,8 @@ private:
     int descriptor_ = -1; ///< of the regular file that the rest is read from
 };
 
+/// Throws Error, as SourceBytes::open() does, for a path that cannot be opened, and reads nothing: for files
+/// that are asked for long before they are read.
+void check_readable(const std::string& path);
+
 } // namespace hsdm::io

@@ -1,5 +1,7 @@
 #include "hsdm/mesh/edge_table.hh"
 
+#include "hsdm/core/large_vector.hh"
+
 namespace hsdm {
 
 EdgeTable::EdgeTable(const PolygonMesh& mesh)
@@ -12,7 +14,7 @@ EdgeTable::EdgeTable(const PolygonMesh& mesh)
       }) {}
 
 std::vector<Index> next_sides(const PolygonMesh& mesh) {
-    std::vector<Index> next(mesh.corners.size());
+    std::vector<Index> next = large_vector<Index>(mesh.corners.size());
     for_each_index(mesh.facet_count(), chunks::quick, [&](Index f) {
         for (Index side = mesh.first[f]; side < mesh.first[f + 1]; ++side)
             next[side] = side + 1 < mesh.first[f + 1] ? side + 1 : mesh.first[f];

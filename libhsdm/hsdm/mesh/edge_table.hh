@@ -3,6 +3,7 @@
 // that may not be 2-manifolds. For 2-manifolds FacetLinks hold more.
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/polygon_mesh.hh"
 
 #include <algorithm>
@@ -45,12 +46,12 @@ std::vector<Index> next_sides(const PolygonMesh& mesh);
 
 template <class ForEachSide>
 EdgeTable::EdgeTable(std::size_t vertex_count, const ForEachSide& for_each_side)
-    : first_(vertex_count + 1, 0) {
+    : first_(large_vector<Index>(vertex_count + 1, 0)) {
     for_each_side([&](Index from, Index to, Index) {
         std::atomic_ref(first_[std::min(from, to) + 1]).fetch_add(1, std::memory_order_relaxed);
     });
     counts_to_first(first_);
-    sides_.resize(first_.back());
+    resize_large(sides_, first_.back());
     std::vector<Index> next(first_.begin(), first_.end() - 1);
     for_each_side([&](Index from, Index to, Index side) {
         sides_[std::atomic_ref(next[std::min(from, to)]).fetch_add(1, std::memory_order_relaxed)] = {

@@ -1,6 +1,8 @@
 #include "hsdm/mesh/facet_links.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/interruption.hh"
+#include "hsdm/core/large_vector.hh"
 
 #include <algorithm>
 #include <atomic>
@@ -55,8 +57,8 @@ private:
     }
 
     void find_proper_facets() {
-        links_.accepted.resize(facets_.facet_count());
-        links_.facet.resize(facets_.corners.size());
+        resize_large(links_.accepted, facets_.facet_count());
+        resize_large(links_.facet, facets_.corners.size());
         for_each_index(facets_.facet_count(), chunks::quick, [&](Index f) {
             links_.accepted[f] = is_proper(facets_.facet(f), facets_.vertex_count());
             for (Index c = facets_.first[f]; c < facets_.first[f + 1]; ++c) links_.facet[c] = f;
@@ -70,10 +72,10 @@ private:
     }
 
     void list_sides_out() {
-        first_out_.assign(facets_.vertex_count() + 1, 0);
+        assign_large(first_out_, facets_.vertex_count() + 1, 0);
         for_each_accepted_side([&](Index c) { ++first_out_[start(c) + 1]; });
         for (std::size_t v = 0; v < facets_.vertex_count(); ++v) first_out_[v + 1] += first_out_[v];
-        out_.resize(first_out_.back());
+        resize_large(out_, first_out_.back());
         std::vector<Index> fill(first_out_.begin(), first_out_.end() - 1);
         for_each_accepted_side(
             [&](Index c) { out_[fill[start(c)]++] = static_cast<std::uint64_t>(end(c)) << 32 | c; });
@@ -84,10 +86,10 @@ private:
 
     template <class Body>
     void for_each_accepted_side(const Body& body) const {
-        for (Index f = 0; f < facets_.facet_count(); ++f) {
-            if (!links_.accepted[f]) continue;
+        for_each_in_order(facets_.facet_count(), [&](std::size_t f) {
+            if (!links_.accepted[f]) return;
             for (Index c = facets_.first[f]; c < facets_.first[f + 1]; ++c) body(c);
-        }
+        });
     }
 
     /// Whether two facets run along an edge the same way.
@@ -104,21 +106,21 @@ private:
     /// The earlier facet keeps the edge; the later one is rejected whole and frees its other edges.
     void accept_in_order() {
         std::vector<char> taken(out_.size(), 0);
-        for (Index f = 0; f < facets_.facet_count(); ++f) {
-            if (!links_.accepted[f]) continue;
+        for_each_in_order(facets_.facet_count(), [&](std::size_t f) {
+            if (!links_.accepted[f]) return;
             bool free = true;
             for (Index c = facets_.first[f]; c < facets_.first[f + 1]; ++c)
                 free = free && !taken[slot(start(c), end(c))];
             links_.accepted[f] = free;
-            if (!free) continue;
+            if (!free) return;
             for (Index c = facets_.first[f]; c < facets_.first[f + 1]; ++c) taken[slot(start(c), end(c))] = 1;
-        }
+        });
         count_rejected();
         list_sides_out();
     }
 
     void find_twins() {
-        links_.twin.assign(facets_.corners.size(), no_index);
+        assign_large(links_.twin, facets_.corners.size(), no_index);
         for_each_index(facets_.facet_count(), chunks::quick, [&](Index f) {
             if (!links_.accepted[f]) return;
             for (Index c = facets_.first[f]; c < facets_.first[f + 1]; ++c) {
@@ -158,19 +160,22 @@ private:
     }
 
     void find_fans() {
-        for (Index v = 0; v < facets_.vertex_count(); ++v)
+        for_each_in_order(facets_.vertex_count(), [&](std::size_t place) {
+            const auto v = static_cast<Index>(place);
             if (!sides_out(v).empty()) links_.source.push_back(v);
+        });
         const std::size_t count = links_.source.size();
-        links_.vertex.assign(facets_.corners.size(), no_index);
-        links_.side_out.resize(count);
-        links_.open_in.resize(count);
+        assign_large(links_.vertex, facets_.corners.size(), no_index);
+        resize_large(links_.side_out, count);
+        resize_large(links_.open_in, count);
         std::vector<char> several(count, 0);
         for_each_index(count, chunks::quick, [&](Index i) {
             const Index v = links_.source[i];
             several[i] = assign_fan(fan_start(v), i) < sides_out(v).size();
         });
-        for (std::size_t i = 0; i < count; ++i)
+        for_each_in_order(count, [&](std::size_t i) {
             if (several[i]) split_vertex(links_.source[i]);
+        });
     }
 
     /// The first fan has its vertex already; each of the others gets a new one.

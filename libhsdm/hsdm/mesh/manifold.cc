@@ -1,6 +1,7 @@
 #include "hsdm/mesh/manifold.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/core/radix_sort.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/constants.hh"
@@ -178,7 +179,7 @@ private:
 
     void link_corners() {
         next_ = next_sides(mesh_);
-        facet_.resize(mesh_.corners.size());
+        resize_large(facet_, mesh_.corners.size());
         for_each_index(mesh_.facet_count(), chunks::quick, [&](std::size_t f) {
             std::fill(facet_.begin() + mesh_.first[f], facet_.begin() + mesh_.first[f + 1],
                       static_cast<Index>(f));
@@ -189,7 +190,7 @@ private:
 
     /// Pairs the two half-edges of simple edges; gathers complex edges and pairs their half-edges by angle.
     void pair_edges() {
-        twin_.assign(mesh_.corners.size(), no_index);
+        assign_large(twin_, mesh_.corners.size(), no_index);
         const EdgeTable edges(mesh_);
         std::vector<std::vector<Index>> sizes(edges.chunks()), half_edges(edges.chunks());
         edges.for_edges([&](Index, std::span<const EdgeSide> edge, std::size_t c) {
@@ -209,7 +210,7 @@ private:
             complex_.push_back({begin, begin + size});
             begin += size;
         }
-        if (!complex_.empty()) angle_.resize(mesh_.corners.size());
+        if (!complex_.empty()) resize_large(angle_, mesh_.corners.size());
         for (ComplexEdge& edge : complex_) order_by_angle(edge);
         for (ComplexEdge& edge : complex_) {
             edge.outside = bend(edge, true) < bend(edge, false) - 1e-6;
@@ -287,7 +288,7 @@ private:
     /// One vertex per fan: corners that follow each other around a vertex through paired half-edges share
     /// one. The first fan keeps the vertex; the others get new ones, numbered from vertex_count() on.
     void assign_vertices() {
-        vertex_of_.assign(mesh_.corners.size(), no_index);
+        assign_large(vertex_of_, mesh_.corners.size(), no_index);
         source_.clear();
         std::vector<std::uint8_t> claimed(mesh_.vertex_count(), 0);
         for (Index h = 0; h < mesh_.corners.size(); ++h) {

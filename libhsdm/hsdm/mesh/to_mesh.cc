@@ -1,6 +1,8 @@
 #include "hsdm/mesh/to_mesh.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/interruption.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/mesh/facet_normal.hh"
 #include "hsdm/mesh/vertex_normals.hh"
@@ -32,22 +34,34 @@ HalfedgeHandle half_edge_handle(Index i) {
 /// Half-edges numbered in the order of the sides, twins 2e and 2e + 1; returns the number of edges.
 Index number_half_edges(const FacetLinks& links, std::vector<Index>& half_edge) {
     Index edges = 0;
-    half_edge.resize(links.twin.size());
-    for (Index c = 0; c < links.twin.size(); ++c) {
+    resize_large(half_edge, links.twin.size());
+    for_each_in_order(links.twin.size(), [&](std::size_t c) {
         const Index twin = links.twin[c];
-        if (links.vertex[c] == no_index || (twin != no_index && twin < c)) continue;
+        if (links.vertex[c] == no_index || (twin != no_index && twin < c)) return;
         half_edge[c] = 2 * edges;
         if (twin != no_index) half_edge[twin] = 2 * edges + 1;
         ++edges;
-    }
+    });
     return edges;
 }
 
 Index number_faces(const FacetLinks& links, std::vector<Index>& face) {
     Index count = 0;
-    face.resize(links.accepted.size());
+    resize_large(face, links.accepted.size());
     for (std::size_t f = 0; f < face.size(); ++f) face[f] = links.accepted[f] ? count++ : no_index;
     return count;
+}
+
+/// Makes a mesh of so many elements, step by step: its memory is touched here for the first time.
+void resize_mesh(std::size_t vertices, std::size_t edges, std::size_t faces, PolyMesh& mesh) {
+    constexpr std::size_t step = std::size_t{1} << 17; // edges
+    mesh.reserve(vertices, edges, faces);
+    const std::size_t steps = edges / step;
+    for (std::size_t k = 1; k <= steps; ++k) {
+        Interruption::poll();
+        mesh.resize(vertices * k / (steps + 1), edges * k / (steps + 1), faces * k / (steps + 1));
+    }
+    mesh.resize(vertices, edges, faces);
 }
 
 /// Writes the connectivity through the kernel's setters: it is complete, so OpenMesh need not search for
@@ -56,7 +70,7 @@ void write_connectivity(const PolygonMesh& facets, const FacetLinks& links, Poly
     std::vector<Index> half_edge, face;
     const Index edges = number_half_edges(links, half_edge);
     const Index faces = number_faces(links, face);
-    mesh.resize(links.source.size(), edges, faces);
+    resize_mesh(links.source.size(), edges, faces, mesh);
     for_each_index(facets.facet_count(), chunks::quick, [&](Index f) {
         if (face[f] == no_index) return;
         for (Index c = facets.first[f]; c < facets.first[f + 1]; ++c) {

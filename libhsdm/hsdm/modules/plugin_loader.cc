@@ -102,19 +102,19 @@ std::vector<fs::path> shared_libraries(const std::string& folder) {
     return files;
 }
 
-/// The next ':' that no backslash stands before; the end if there is none.
-std::size_t find_colon(std::string_view text, std::size_t from) {
-    for (; from < text.size() && text[from] != ':'; ++from)
+/// The next mark that no backslash stands before; the end if there is none.
+std::size_t find_mark(std::string_view text, std::size_t from, char mark) {
+    for (; from < text.size() && text[from] != mark; ++from)
         if (text[from] == '\\' && from + 1 < text.size()) ++from;
     return std::min(from, text.size());
 }
 
-/// `\:` -> `:`, `\\` -> `\`; a backslash before anything else stays.
-std::string unescaped(std::string_view text) {
+/// A backslash before a mark or another one goes; before anything else it stays.
+std::string unescaped(std::string_view text, char mark) {
     std::string result;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const bool escape =
-            text[i] == '\\' && i + 1 < text.size() && (text[i + 1] == ':' || text[i + 1] == '\\');
+            text[i] == '\\' && i + 1 < text.size() && (text[i + 1] == mark || text[i + 1] == '\\');
         result += text[escape ? ++i : i];
     }
     return result;
@@ -128,8 +128,8 @@ std::pair<std::string, std::size_t> split_name(const std::string& text) {
         for (std::size_t end = text.size(); end != std::string::npos && end > 0;
              end = text.rfind(':', end - 1))
             if (std::string path = text.substr(0, end); fs::is_regular_file(path, error)) return {path, end};
-    const std::size_t end = find_colon(text, 0);
-    return {unescaped(text.substr(0, end)), end};
+    const std::size_t end = find_mark(text, 0, ':');
+    return {unescaped(text.substr(0, end), ':'), end};
 }
 
 std::string not_found(const std::string& name, const std::vector<std::string>& folders) {
@@ -173,8 +173,8 @@ std::vector<std::string> plugin_folders() {
     std::vector<std::string> folders;
     if (const char* given = ::secure_getenv("HSDM_PLUGIN_PATH"))
         for (std::string_view rest = given; !rest.empty();) {
-            const std::size_t end = find_colon(rest, 0);
-            if (end > 0) folders.push_back(unescaped(rest.substr(0, end)));
+            const std::size_t end = find_mark(rest, 0, ':');
+            if (end > 0) folders.push_back(unescaped(rest.substr(0, end), ':'));
             rest.remove_prefix(std::min(end + 1, rest.size()));
         }
     folders.emplace_back(HSDM_PLUGIN_FOLDER);
@@ -231,8 +231,8 @@ PluginRequest parse_plugin_request(const std::string& text) {
     if (colon == text.size()) return request;
     std::size_t begin = colon + 1;
     while (begin <= text.size()) {
-        const std::size_t end = std::min(text.find(',', begin), text.size());
-        const std::string part = text.substr(begin, end - begin);
+        const std::size_t end = find_mark(text, begin, ',');
+        const std::string part = unescaped(text.substr(begin, end - begin), ',');
         const std::size_t equals = part.find('=');
         if (equals == 0 || equals == std::string::npos)
             throw OptionError("module " + text + ": `" + part + "` must read key=value");

@@ -72,7 +72,7 @@ struct PluginListing {
 std::vector<PluginListing> list_plugins(const std::vector<std::string>& folders = plugin_folders());
 
 /// `name` or `name:key=value,key=value`. A colon in the name is written `\:`; of a path it may stand as it
-/// is, if there is a file so far.
+/// is, if there is a file so far. A comma in a value is written `\,`.
 struct PluginRequest {
     std::string name;         ///< or path
     StageArguments arguments; ///< in the order given

@@ -38,7 +38,7 @@ bool is_angle(std::string_view text) {
     return radians > 0 && radians < std::numbers::pi;
 }
 
-constexpr std::array<ValueKind, 6> value_kinds{{
+constexpr std::array<ValueKind, 7> value_kinds{{
     {"number", "a finite number", [](std::string_view v) { return std::isfinite(number_in(v)); }},
     {"length", "a finite number above 0",
      [](std::string_view v) { return std::isfinite(number_in(v)) && number_in(v) > 0; }},
@@ -46,6 +46,7 @@ constexpr std::array<ValueKind, 6> value_kinds{{
      [](std::string_view v) { return number_in(v) >= 0 && number_in(v) <= 1; }},
     {"count", "a whole number, 0 or more", is_count},
     {"angle", "an angle above 0 and below 180 degrees", is_angle},
+    {"file", "the name of a file", [](std::string_view v) { return !v.empty() && v != "-"; }},
     {"text", "text", [](std::string_view) { return true; }},
 }};
 

@@ -13,8 +13,8 @@ struct StageOption {
     std::string key;
     std::string fallback; ///< the value it has if it is not given; empty: none
     /// What values may be: `number` (finite), `length` (a number above 0), `share` (a number from 0 to 1),
-    /// `count` (a whole number, 0 or more), `angle` (degrees above 0 and below 180), `text`, or the words
-    /// themselves with `|` between them.
+    /// `count` (a whole number, 0 or more), `angle` (degrees above 0 and below 180), `file` (one that is
+    /// read, not standard input), `text`, or the words themselves with `|` between them.
     std::string kind;
     std::string help; ///< one line
 };

@@ -1,6 +1,7 @@
 #include "hsdm/normals/agglomerate.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/interruption.hh"
 #include "hsdm/core/parallel_sort_unique.hh"
 #include "hsdm/normals/constants.hh"
 
@@ -62,23 +63,24 @@ private:
 /// Sorts by both ends and adds up edges between the same nodes.
 void sort_and_merge(std::vector<SignedEdge>& edges, std::size_t nodes) {
     std::vector<Index> end(nodes + 1, 0); // of each node's edges, once they are there
-    for (const SignedEdge& e : edges) ++end[e.a + 1];
+    for_each_in_order(edges.size(), [&](std::size_t e) { ++end[edges[e].a + 1]; });
     counts_to_first(end);
     std::vector<SignedEdge> sorted(edges.size());
-    for (const SignedEdge& e : edges) sorted[end[e.a]++] = e;
+    for_each_in_order(edges.size(), [&](std::size_t e) { sorted[end[edges[e].a]++] = edges[e]; });
     for_each_index(nodes, chunks::quick, [&](Index v) {
         std::sort(sorted.begin() + (v == 0 ? 0 : end[v - 1]), sorted.begin() + end[v],
                   [](const SignedEdge& e, const SignedEdge& f) { return e.b < f.b; });
     });
     std::size_t kept = 0;
-    for (const SignedEdge& e : sorted) {
+    for_each_in_order(sorted.size(), [&](std::size_t i) {
+        const SignedEdge& e = sorted[i];
         if (kept == 0 || sorted[kept - 1].a != e.a || sorted[kept - 1].b != e.b) {
             sorted[kept++] = e;
         } else {
             sorted[kept - 1].weight += e.weight;
             sorted[kept - 1].total += e.total;
         }
-    }
+    });
     sorted.resize(kept);
     edges.swap(sorted);
 }
@@ -93,10 +95,10 @@ std::uint64_t rank_of(const SignedEdge& e, std::size_t place) {
 std::vector<Index> picked_edges(const std::vector<SignedEdge>& edges, std::size_t nodes) {
     const std::uint64_t none = rank_of({}, 0);
     std::vector<std::uint64_t> best(nodes, none);
-    for (std::size_t e = 0; e < edges.size(); ++e) {
+    for_each_in_order(edges.size(), [&](std::size_t e) {
         const std::uint64_t rank = rank_of(edges[e], e);
         for (Index v : {edges[e].a, edges[e].b}) best[v] = std::min(best[v], rank);
-    }
+    });
     std::erase(best, none);
     parallel_sort_unique(best);
     return {best.begin(), best.end()};
@@ -107,15 +109,16 @@ std::vector<Index> picked_edges(const std::vector<SignedEdge>& edges, std::size_
 std::vector<SignedEdge> contracted(const std::vector<SignedEdge>& edges, SignedForest& forest) {
     std::vector<SignedEdge> result;
     result.reserve(edges.size());
-    for (SignedEdge e : edges) {
+    for_each_in_order(edges.size(), [&](std::size_t i) {
+        SignedEdge e = edges[i];
         int sign_a = 1, sign_b = 1;
         e.a = forest.find(e.a, sign_a);
         e.b = forest.find(e.b, sign_b);
-        if (e.a == e.b) continue;
+        if (e.a == e.b) return;
         if (e.b < e.a) std::swap(e.a, e.b);
         e.weight *= static_cast<float>(sign_a * sign_b);
         result.push_back(e);
-    }
+    });
     return result;
 }
 
@@ -124,10 +127,12 @@ std::vector<Round> join_all(SignedForest& forest, std::vector<SignedEdge> edges,
     while (!edges.empty()) {
         sort_and_merge(edges, nodes);
         std::vector<Joint> joints;
-        for (Index e : picked_edges(edges, nodes)) {
-            const Joint joint = forest.join(edges[e].a, edges[e].b, edges[e].weight < 0 ? -1 : 1);
+        const std::vector<Index> picked = picked_edges(edges, nodes);
+        for_each_in_order(picked.size(), [&](std::size_t i) {
+            const SignedEdge& e = edges[picked[i]];
+            const Joint joint = forest.join(e.a, e.b, e.weight < 0 ? -1 : 1);
             if (joint.root != joint.joined) joints.push_back(joint);
-        }
+        });
         if (joints.empty()) break;
         std::vector<SignedEdge> rest = contracted(edges, forest);
         rounds.push_back({std::move(edges), std::move(joints)});
@@ -144,12 +149,14 @@ public:
         : sign_(sign), support_(sign.size()), mark_(sign.size(), Mark::stays) {}
 
     void run(const std::vector<SignedEdge>& edges) {
-        for (const SignedEdge& e : edges) support_[e.a] = support_[e.b] = 0;
-        for (const SignedEdge& e : edges) {
+        for_each_in_order(edges.size(),
+                          [&](std::size_t e) { support_[edges[e].a] = support_[edges[e].b] = 0; });
+        for_each_in_order(edges.size(), [&](std::size_t i) {
+            const SignedEdge& e = edges[i];
             const double agreement = agreement_of(e);
             support_[e.a] += agreement;
             support_[e.b] += agreement;
-        }
+        });
         for (int sweep = 0; sweep < turning::sweeps && find_contradicted(edges); ++sweep) {
             mark();
             turn();
@@ -165,8 +172,10 @@ private:
     /// Collects the edges of contradicted nodes: no others matter to a turn.
     bool find_contradicted(const std::vector<SignedEdge>& edges) {
         contradicted_.clear();
-        for (const SignedEdge& e : edges)
-            if (support_[e.a] < 0 || support_[e.b] < 0) contradicted_.push_back(e);
+        for_each_in_order(edges.size(), [&](std::size_t i) {
+            if (const SignedEdge& e = edges[i]; support_[e.a] < 0 || support_[e.b] < 0)
+                contradicted_.push_back(e);
+        });
         return !contradicted_.empty();
     }
     void mark() {
@@ -207,19 +216,20 @@ Signs agglomerate(std::size_t nodes, std::vector<SignedEdge> edges) {
     Improvement improvement(result.sign);
     for (; !rounds.empty(); rounds.pop_back()) {
         const std::vector<Joint>& joints = rounds.back().joints;
-        std::for_each(joints.rbegin(), joints.rend(), [&](const Joint& joint) {
+        for_each_in_order(joints.size(), [&](std::size_t i) {
+            const Joint& joint = joints[joints.size() - 1 - i];
             result.sign[joint.joined] = static_cast<std::int8_t>(result.sign[joint.root] * joint.sign);
         });
         improvement.run(rounds.back().edges);
     }
     result.component.resize(nodes);
     std::vector<Index> number(nodes, no_index);
-    for (Index v = 0; v < nodes; ++v) {
+    for_each_in_order(nodes, [&](std::size_t v) {
         int sign = 1;
-        const Index root = forest.find(v, sign);
+        const Index root = forest.find(static_cast<Index>(v), sign);
         if (number[root] == no_index) number[root] = static_cast<Index>(result.components++);
         result.component[v] = number[root];
-    }
+    });
     return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/normals/constants.hh"
 #include "hsdm/normals/height_fit.hh"
 #include "hsdm/normals/neighborhood.hh"
@@ -46,7 +47,7 @@ public:
 
     /// For points away from creases that are not too flat, the results of curved().
     std::vector<Vec3> all_curved() const {
-        std::vector<Vec3> renewed(octree_.size());
+        std::vector<Vec3> renewed = large_vector<Vec3>(octree_.size());
         for_chunks(octree_.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
             std::array<Index, chunks::slow + 1> bent;
             std::size_t count = 0;
@@ -66,7 +67,7 @@ public:
     /// normal_of(point) of all points.
     template <class NormalOf>
     std::vector<Vec3> all(const NormalOf& normal_of) const {
-        std::vector<Vec3> renewed(octree_.size());
+        std::vector<Vec3> renewed = large_vector<Vec3>(octree_.size());
         for_each_index(octree_.size(), chunks::slow, [&](Index i) { renewed[i] = normal_of(i); });
         return renewed;
     }
@@ -129,9 +130,9 @@ public:
           renewal_(octree, neighbors, result, result.normals) {}
 
     void run(const EstimateOptions& options) {
-        result_.normals.resize(octree_.size());
-        result_.tolerance.resize(octree_.size());
-        result_.spread.resize(octree_.size());
+        resize_large(result_.normals, octree_.size());
+        resize_large(result_.tolerance, octree_.size());
+        resize_large(result_.spread, octree_.size());
         fit_all();
         result_.noise = estimate_noise(octree_, neighbors_);
         choose_tolerance(options);
@@ -204,7 +205,7 @@ private:
     template <class NormalOf>
     void renew(const NormalOf& normal_of) {
         const std::vector<Index>& bent = result_.bent;
-        std::vector<Vec3> renewed(bent.size());
+        std::vector<Vec3> renewed = large_vector<Vec3>(bent.size());
         for_each_index(bent.size(), chunks::heavy, [&](Index b) { renewed[b] = normal_of(bent[b]); });
         for (std::size_t b = 0; b < bent.size(); ++b) result_.normals[bent[b]] = renewed[b];
     }

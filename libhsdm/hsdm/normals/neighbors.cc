@@ -2,9 +2,9 @@
 
 #include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
-#include "hsdm/core/huge_pages.hh"
 #include "hsdm/core/interruption.hh"
 #include "hsdm/core/lanes.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/normals/constants.hh"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -371,10 +371,8 @@ Neighbors search(const Octree& octree, const std::vector<Index>* points, const N
     Neighbors result;
     result.count = std::min(static_cast<std::size_t>(options.count), octree.size() - 1);
     const std::size_t size = points ? points->size() : octree.size();
-    result.index.reserve(size * result.count);
-    advise_huge_pages(result.index.data(), size * result.count * sizeof(Index));
-    result.index.resize(size * result.count);
-    result.reach.resize(size);
+    resize_large(result.index, size * result.count);
+    resize_large(result.reach, size);
     const Search done(octree, points, result);
     return result;
 }

@@ -1,9 +1,8 @@
 #include "hsdm/normals/normals.hh"
 
+#include "hsdm/core/interruption.hh"
 #include "hsdm/normals/noise.hh"
 #include "hsdm/normals/vote_on_normals.hh"
-
-#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 
@@ -35,8 +34,8 @@ NormalsReport make_normals(Octree& octree, const NormalsOptions& options) {
     EstimatedNormals estimate = estimate_normals(octree, neighbors, options.estimate);
     Orientation orientation;
     std::vector<Vec3> refined;
-    tbb::parallel_invoke([&] { orientation = orient_normals(octree, neighbors, estimate, orient); },
-                         [&] { refined = refined_normals(octree, neighbors, estimate); });
+    run_both([&] { orientation = orient_normals(octree, neighbors, estimate, orient); },
+             [&] { refined = refined_normals(octree, neighbors, estimate); });
     turn_normals(orientation, refined);
     estimate.normals = std::move(refined);
     report.orientation = orientation.report;

@@ -1,11 +1,11 @@
 #include "hsdm/normals/orient_normals.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/interruption.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/normals/constants.hh"
 #include "hsdm/normals/outside.hh"
 #include "hsdm/octree/spacing.hh"
-
-#include <tbb/parallel_invoke.h>
 
 #include <cmath>
 
@@ -18,19 +18,20 @@ std::vector<std::int8_t> free_signs(const Patches& patches, const Signs& signs,
                                     const OrientOptions& options) {
     std::vector<Vec3> centre(signs.components, Vec3(0, 0, 0));
     std::vector<double> points(signs.components, 0), side(signs.components, 0);
-    for (std::size_t p = 0; p < patches.size(); ++p) {
+    for_each_in_order(patches.size(), [&](std::size_t p) {
         centre[signs.component[p]] += patches.centroids[p] * patches.counts[p];
         points[signs.component[p]] += patches.counts[p];
-    }
-    for (std::size_t p = 0; p < patches.size() && !options.signs_count; ++p) {
+    });
+    for_each_in_order(options.signs_count ? 0 : patches.size(), [&](std::size_t p) {
         const Index c = signs.component[p];
         const Vec3 from = options.sensor ? *options.sensor - patches.centroids[p]
                                          : patches.centroids[p] - centre[c] / points[c];
         side[c] += (patches.normals[p] | from) * signs.sign[p] * patches.counts[p];
-    }
-    for (std::size_t i = 0; i < patches.of_point.size() && options.signs_count; ++i)
+    });
+    for_each_in_order(options.signs_count ? patches.of_point.size() : 0, [&](std::size_t i) {
         if (const Index p = patches.of_point[i]; p != no_index)
             side[signs.component[p]] += patches.sign[i] * signs.sign[p];
+    });
     std::vector<std::int8_t> sign(signs.components, 1);
     for (std::size_t c = 0; c < sign.size(); ++c)
         if (side[c] < 0) sign[c] = -1;
@@ -42,11 +43,11 @@ std::vector<std::int8_t> free_signs(const Patches& patches, const Signs& signs,
 bool views_agree(const Patches& patches, const OutsideView& view, const Signs& signs) {
     const auto outside = static_cast<Index>(patches.size());
     double sum = 0, total = 0;
-    for (std::size_t p = 0; p < patches.size(); ++p) {
-        if (view.votes[p] == 0 || signs.component[p] != signs.component[outside]) continue;
+    for_each_in_order(patches.size(), [&](std::size_t p) {
+        if (view.votes[p] == 0 || signs.component[p] != signs.component[outside]) return;
         sum += view.votes[p] * signs.sign[p] * signs.sign[outside] * static_cast<double>(patches.counts[p]);
         total += patches.counts[p];
-    }
+    });
     return sum >= turning::clear_views * total;
 }
 
@@ -57,23 +58,23 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
     const Patches patches = build_patches(octree, neighbors, estimate);
     OutsideView view;
     std::vector<SignedEdge> edges;
-    tbb::parallel_invoke([&] { view = view_outside(octree, patches, estimate_spacing(octree)); },
-                         [&] { edges = patch_evidence(octree, neighbors, estimate, patches); });
+    run_both([&] { view = view_outside(octree, patches, estimate_spacing(octree)); },
+             [&] { edges = patch_evidence(octree, neighbors, estimate, patches); });
     const auto outside = static_cast<Index>(patches.size());
     edges.insert(edges.end(), view.facing.begin(), view.facing.end());
     Orientation result;
     OrientReport& report = result.report;
-    for (Index p = 0; p < patches.size(); ++p) {
-        if (view.votes[p] == 0) continue;
+    for_each_in_order(patches.size(), [&](std::size_t p) {
+        if (view.votes[p] == 0) return;
         const auto weight = turning::view_weight * static_cast<float>(patches.counts[p]);
-        edges.push_back({p, outside, view.votes[p] * weight, weight});
+        edges.push_back({static_cast<Index>(p), outside, view.votes[p] * weight, weight});
         report.seen_from_outside += patches.counts[p];
-    }
+    });
     const Signs signs = agglomerate(patches.size() + 1, std::move(edges));
     std::vector<std::int8_t> turn = free_signs(patches, signs, options);
     const bool seen = views_agree(patches, view, signs);
     if (seen) turn[signs.component[outside]] = signs.sign[outside];
-    result.turns.resize(octree.size());
+    resize_large(result.turns, octree.size());
     for_each_index(octree.size(), chunks::light, [&](Index i) {
         const Index p = patches.of_point[i];
         result.turns[i] = p != no_index && patches.sign[i] * signs.sign[p] * turn[signs.component[p]] < 0;

@@ -1,6 +1,7 @@
 #include "hsdm/normals/outliers.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/normals/constants.hh"
 #include "hsdm/normals/plane_fit.hh"
 #include "hsdm/octree/spacing.hh"
@@ -31,9 +32,10 @@ bool is_off_surface(const Octree& octree, const Neighbors& neighbors, std::size_
 
 std::vector<std::uint8_t> find_outliers(const Octree& octree, const Neighbors& neighbors,
                                         const OutlierOptions& options) {
-    std::vector<double> all = neighbors.reach;
+    std::vector<double> all = large_vector<double>(octree.size());
+    for_each_index(all.size(), chunks::light, [&](Index i) { all[i] = neighbors.reach[i]; });
     const double typical = median(all);
-    std::vector<std::uint8_t> found(octree.size(), 0);
+    std::vector<std::uint8_t> found = large_vector<std::uint8_t>(octree.size(), 0);
     for_each_index(octree.size(), chunks::quick, [&](Index i) {
         const double reach = neighbors.reach[i], sparseness = reach / typical;
         const auto around = neighbors.of(i);
@@ -115,13 +117,13 @@ Discarded drop_outliers_by_normals(Octree& octree, const NormalOutlierOptions& o
     const std::vector<Index>& first = density.first_point;
     const auto most = static_cast<Index>(std::max(1.0, options.most_share * density.typical));
     std::vector<Index> sparse;
-    std::vector<std::uint8_t> is_sparse(octree.size(), 0);
+    std::vector<std::uint8_t> is_sparse = large_vector<std::uint8_t>(octree.size(), 0);
     for (std::size_t v = 0; v + 1 < first.size(); ++v)
         if (first[v + 1] - first[v] <= most)
             for (Index i = first[v]; i < first[v + 1]; ++i) sparse.push_back(i), is_sparse[i] = 1;
     const Neighbors neighbors = find_neighbors_of(octree, sparse, {.count = options.neighbors});
     const double farthest = options.most_distance * octree.voxel_size(density.depth);
-    std::vector<std::uint8_t> stray(octree.size(), 0);
+    std::vector<std::uint8_t> stray = large_vector<std::uint8_t>(octree.size(), 0);
     for_each_index(sparse.size(), chunks::quick, [&](Index k) {
         stray[sparse[k]] =
             support(octree, sparse[k], neighbors.of(k), is_sparse, farthest, options) < options.least_support;

@@ -1,6 +1,7 @@
 #include "hsdm/normals/outside.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/interruption.hh"
 #include "hsdm/normals/constants.hh"
 
 #include <algorithm>
@@ -17,9 +18,12 @@ class EmptySpace {
 public:
     explicit EmptySpace(const OctreeLevel& level)
         : side_((std::size_t{1} << level.depth) + 2), label_(side_ * side_ * side_, unlabelled) {
-        for (Index v = 0; v < level.size(); ++v) label_[cell(level.coord(v))] = occupied;
-        for (std::size_t start = 0; start < label_.size(); ++start)
+        for_each_in_order(level.size(), [&](std::size_t v) {
+            label_[cell(level.coord(static_cast<Index>(v)))] = occupied;
+        });
+        for_each_in_order(label_.size(), [&](std::size_t start) {
             if (label_[start] == unlabelled) flood(start);
+        });
     }
     std::size_t regions() const { return regions_; }
     /// The region at a voxel, or `occupied`.
@@ -39,7 +43,8 @@ private:
     void flood(std::size_t start) {
         const auto region = static_cast<Index>(regions_++);
         stack_.assign(1, start);
-        while (!stack_.empty()) {
+        for (std::size_t looks = 0; !stack_.empty(); ++looks) {
+            if (looks % chunks::slow == 0) Interruption::poll();
             const std::size_t seed = stack_.back();
             stack_.pop_back();
             if (label_[seed] != unlabelled) continue;
@@ -167,7 +172,8 @@ std::vector<std::int8_t> classify(std::size_t regions, const std::vector<Sights>
         if (a != b && relation != 0)
             between.push_back({std::min(a, b), std::max(a, b), relation, std::abs(relation)});
     };
-    for (Index p = 0; p < seen.size(); ++p) {
+    for_each_in_order(seen.size(), [&](std::size_t place) {
+        const auto p = static_cast<Index>(place);
         const auto weight = static_cast<float>(patches.counts[p]);
         if (between_regions(seen[p])) relate(seen[p][0].region, seen[p][1].region, -weight);
         for (std::size_t side : {0u, 1u}) {
@@ -177,7 +183,7 @@ std::vector<std::int8_t> classify(std::size_t regions, const std::vector<Sights>
             const auto surely = static_cast<float>(std::abs(facing(patches, p, q)));
             if (farther != no_index) relate(seen[p][1 - side].region, farther, weight * surely);
         }
-    }
+    });
     const Signs signs = agglomerate(regions, std::move(between));
     std::vector<std::int8_t> kind(regions, 0);
     for (std::size_t r = 0; r < regions; ++r)
@@ -188,13 +194,15 @@ std::vector<std::int8_t> classify(std::size_t regions, const std::vector<Sights>
 
 std::vector<SignedEdge> facing_patches(const std::vector<Sights>& seen, const Patches& patches) {
     std::vector<SignedEdge> edges;
-    for (Index p = 0; p < seen.size(); ++p)
+    for_each_in_order(seen.size(), [&](std::size_t place) {
+        const auto p = static_cast<Index>(place);
         for (const Sight& sight : seen[p]) {
             const Index q = patch_ahead(sight, patches);
             if (q == no_index || q == p) continue;
             const auto weight = static_cast<float>(patches.counts[p] * facing(patches, p, q));
             if (weight != 0) edges.push_back({std::min(p, q), std::max(p, q), weight, std::abs(weight)});
         }
+    });
     return edges;
 }
 

@@ -1,6 +1,7 @@
 #include "hsdm/normals/patches.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/normals/constants.hh"
 
 #include <algorithm>
@@ -17,8 +18,8 @@ public:
 
     Patches run() {
         const std::size_t leaves = neighbors_.leaf_first.size() - 1;
-        result_.of_point.assign(octree_.size(), no_index);
-        result_.sign.assign(octree_.size(), 1);
+        assign_large(result_.of_point, octree_.size(), no_index);
+        assign_large(result_.sign, octree_.size(), 1);
         std::vector<Index> first(chunk_count(leaves, chunks::heavy) + 1, 0);
         for_chunks(leaves, chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
             Index count = 0;
@@ -26,9 +27,9 @@ public:
             first[chunk + 1] = count;
         });
         counts_to_first(first);
-        result_.centroids.assign(first.back(), Vec3(0, 0, 0));
-        result_.normals.assign(first.back(), Vec3(0, 0, 0));
-        result_.counts.assign(first.back(), 0);
+        assign_large(result_.centroids, first.back(), Vec3(0, 0, 0));
+        assign_large(result_.normals, first.back(), Vec3(0, 0, 0));
+        assign_large(result_.counts, first.back(), 0);
         for_chunks(leaves, chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
             sum_points(neighbors_.leaf_first[begin], neighbors_.leaf_first[end], first[chunk]);
             for (Index p = first[chunk]; p < first[chunk + 1]; ++p) {

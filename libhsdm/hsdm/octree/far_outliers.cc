@@ -2,6 +2,7 @@
 
 #include "hsdm/cloud/strided.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/octree/constants.hh"
 #include "hsdm/octree/spacing.hh"
 
@@ -92,7 +93,7 @@ CloudFrame frame_of_rest(const Octree& octree, const PointView& cloud) {
 /// Takes all positions again, in the frame, in a cube about their box. False, and nothing done, if that box
 /// has no voxels, as for parts 2^1000 times as far apart as they are large.
 bool take_anew(Octree& octree, const PointView& cloud, const CloudFrame& frame) {
-    std::vector<Vec3> positions(octree.size());
+    std::vector<Vec3> positions = large_vector<Vec3>(octree.size());
     for_each_index(positions.size(), chunks::light, [&](Index i) {
         positions[i] = frame.to_work(vec3_at(cloud.positions, octree.source[i]));
     });
@@ -109,7 +110,7 @@ bool take_anew(Octree& octree, const PointView& cloud, const CloudFrame& frame) 
 /// Cuts gaps along every axis. Returns the longest stretch between cuts.
 double cut_gaps(const Octree& octree, const PointView& cloud, double widest, CloudFrame& frame) {
     const CloudFrame uncut = frame = frame.without_cuts();
-    std::vector<double> coordinates(octree.size());
+    std::vector<double> coordinates = large_vector<double>(octree.size());
     double longest = 0;
     for (unsigned axis = 0; axis < 3; ++axis) {
         for_each_index(coordinates.size(), chunks::light, [&](Index i) {
@@ -158,7 +159,7 @@ Discarded drop_far_outliers(Octree& octree, const PointView& cloud, CloudFrame& 
     const Box core = box_of_most(octree, cloud);
     const double extent = core.extent();
     if (!(extent > 0) || far_points::boxes_across * extent >= octree.extent * frame.unit()) return {};
-    std::vector<std::uint8_t> far(octree.size(), 0);
+    std::vector<std::uint8_t> far = large_vector<std::uint8_t>(octree.size(), 0);
     for (std::size_t i = 0; i < far.size(); ++i) {
         const Vec3 p = vec3_at(cloud.positions, octree.source[i]);
         const Vec3 below = core.lo - p, above = p - core.hi;

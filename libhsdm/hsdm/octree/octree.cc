@@ -3,6 +3,8 @@
 #include "hsdm/cloud/strided.hh"
 #include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/interruption.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/core/radix_sort.hh"
 #include "hsdm/errors.hh"
 
@@ -45,7 +47,7 @@ Vec3 unit_with_one_zero(const Vec3& n) {
 /// The values at these places.
 template <class T>
 std::vector<T> gathered(const std::vector<T>& values, const std::vector<Index>& places) {
-    std::vector<T> result(places.size());
+    std::vector<T> result = large_vector<T>(places.size());
     for_each_index(places.size(), chunks::light, [&](Index i) {
         if (i + ahead < places.size()) __builtin_prefetch(&values[places[i + ahead]]);
         result[i] = values[places[i]];
@@ -56,7 +58,7 @@ std::vector<T> gathered(const std::vector<T>& values, const std::vector<Index>& 
 /// change(vector) of the vectors at these places.
 template <class Change>
 std::vector<Vec3> gathered(const StridedSpan& rows, const std::vector<Index>& places, const Change& change) {
-    std::vector<Vec3> result(places.size());
+    std::vector<Vec3> result = large_vector<Vec3>(places.size());
     for_each_index(places.size(), chunks::light, [&](Index i) {
         if (i + ahead < places.size()) __builtin_prefetch(row_of(rows, places[i + ahead]));
         result[i] = change(vec3_at(rows, places[i]));
@@ -134,12 +136,12 @@ std::size_t merge_equal(const StridedSpan& positions, const StridedSpan& normals
                && (normals.count == 0 || direction(a) == direction(b));
     };
     std::size_t kept = 0;
-    for (std::size_t i = 0; i < keys.size(); ++i) {
+    for_each_in_order(keys.size(), [&](std::size_t i) {
         if (kept == 0 || !equal(keys[kept - 1], keys[i]))
             keys[kept++] = keys[i];
         else if (duplicates)
             duplicates->push_back({keys[kept - 1].index, keys[i].index});
-    }
+    });
     const std::size_t merged = keys.size() - kept;
     keys.resize(kept);
     if (duplicates)
@@ -151,8 +153,8 @@ std::size_t merge_equal(const StridedSpan& positions, const StridedSpan& normals
 
 /// The points in sorted order, and their codes; frees the keys, because here large clouds need most memory.
 std::vector<Index> take_order(std::vector<CodeIndex>& keys, std::vector<MortonCode>& codes) {
-    std::vector<Index> order(keys.size());
-    codes.resize(keys.size());
+    std::vector<Index> order = large_vector<Index>(keys.size());
+    resize_large(codes, keys.size());
     for_each_index(keys.size(), chunks::light, [&](Index i) {
         codes[i] = keys[i].code;
         order[i] = keys[i].index;
@@ -193,7 +195,7 @@ void place_cube(const PointView& cloud, const OctreeOptions& options, Octree& oc
 /// The codes of the cloud's points, in their order.
 std::vector<CodeIndex> keys_of(const PointView& cloud, const OctreeOptions& options, const Octree& octree) {
     const double scale = cells / octree.extent, per_unit = 1 / options.unit;
-    std::vector<CodeIndex> keys(cloud.size());
+    std::vector<CodeIndex> keys = large_vector<CodeIndex>(cloud.size());
     for_each_index(keys.size(), chunks::light, [&](Index i) {
         keys[i] = {code_of(vec3_at(cloud.positions, i) * per_unit - octree.origin, scale), i};
     });
@@ -245,7 +247,7 @@ void rearrange(Octree& octree, std::vector<Vec3> positions, double extent) {
     octree.extent = extent;
     const Vec3 shift = before - octree.origin;
     const double scale = cells / extent;
-    std::vector<CodeIndex> keys(positions.size());
+    std::vector<CodeIndex> keys = large_vector<CodeIndex>(positions.size());
     for_each_index(keys.size(), chunks::light, [&](Index i) {
         positions[i] += shift;
         keys[i] = {code_of(positions[i], scale), i};
@@ -300,7 +302,7 @@ std::vector<Index> find_runs(const std::vector<MortonCode>& codes, int shift) {
 /// The voxels of a level from its runs of points or of finer voxels.
 void fill_level(const std::vector<MortonCode>& codes, int shift, const std::vector<Index>& runs,
                 OctreeLevel& level) {
-    level.codes.resize(runs.size() - 1);
+    resize_large(level.codes, runs.size() - 1);
     for_each_index(level.codes.size(), chunks::light,
                    [&](Index v) { level.codes[v] = codes[runs[v]] >> shift; });
     level.build_index();

@@ -2,6 +2,7 @@
 
 #include "hsdm/cloud/strided.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/interruption.hh"
 #include "hsdm/mesh/fill_holes.hh"
 #include "hsdm/mesh/small_components.hh"
 #include "hsdm/mesh/to_mesh.hh"
@@ -13,8 +14,6 @@
 #include "hsdm/quality/mesh_digest.hh"
 #include "hsdm/quality/topology.hh"
 #include "hsdm/spatial/self_intersections.hh"
-
-#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <numbers>
@@ -126,13 +125,12 @@ void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, Polyg
         report.error = {};
         return;
     }
-    tbb::parallel_invoke(
-        [&] {
-            if (measured) return;
-            const Discarded left_out = measure_error(points, in, facets, known, 0, report);
-            if (!options.min_component) off = left_out;
-        },
-        [&] { measure_mesh(facets, report); });
+    run_both([&] { measure_mesh(facets, report); },
+             [&] {
+                 if (measured) return;
+                 const Discarded left_out = measure_error(points, in, facets, known, 0, report);
+                 if (!options.min_component) off = left_out;
+             });
     note_dropped("points more than a voxel's diagonal off the mesh", off, in.frame, report);
 }
 

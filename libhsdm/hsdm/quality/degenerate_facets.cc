@@ -1,6 +1,7 @@
 #include "hsdm/quality/degenerate_facets.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/remove_facets.hh"
 #include "hsdm/quality/topology.hh"
 
@@ -56,7 +57,7 @@ bool spans_cut(const PolygonMesh& mesh, const Vec3& origin, const CloudFrame& fr
 
 Discarded drop_degenerate_facets(PolygonMesh& mesh, const Vec3& origin, const CloudFrame& frame,
                                  FacetLinks& links, FeatureHints& hints) {
-    std::vector<std::uint8_t> unsound(mesh.facet_count());
+    std::vector<std::uint8_t> unsound = large_vector<std::uint8_t>(mesh.facet_count());
     for_chunks(mesh.facet_count(), chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t) {
         std::vector<Vec3> ring;
         for (std::size_t f = begin; f < end; ++f) {

@@ -3,6 +3,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/disjoint_sets.hh"
 #include "hsdm/core/hash.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/edge_table.hh"
 #include "hsdm/mesh/triangulate.hh"
 
@@ -27,7 +28,7 @@ Loops clean_loops(const PolygonMesh& mesh) {
     loops.vertex.reserve(mesh.corners.size());
     loops.next.reserve(mesh.corners.size());
     loops.facet.reserve(mesh.corners.size());
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+    for_each_in_order(mesh.facet_count(), [&](std::size_t f) {
         const std::size_t begin = loops.vertex.size();
         for (Index v : mesh.facet(f))
             if (loops.vertex.size() == begin || loops.vertex.back() != v) loops.vertex.push_back(v);
@@ -35,7 +36,7 @@ Loops clean_loops(const PolygonMesh& mesh) {
             loops.vertex.pop_back();
         if (loops.vertex.size() < begin + 3) {
             loops.vertex.resize(begin);
-            continue;
+            return;
         }
         ++loops.count;
         for (std::size_t c = begin; c < loops.vertex.size(); ++c) {
@@ -43,7 +44,7 @@ Loops clean_loops(const PolygonMesh& mesh) {
             loops.facet.push_back(static_cast<Index>(f));
         }
         loops.next.back() = static_cast<Index>(begin);
-    }
+    });
     return loops;
 }
 
@@ -141,7 +142,7 @@ bool is_degenerate(const PolygonMesh& mesh, std::span<const Index> facet, std::v
 }
 
 std::size_t count_degenerate(const PolygonMesh& mesh) {
-    std::vector<unsigned char> degenerate(mesh.facet_count());
+    std::vector<unsigned char> degenerate = large_vector<unsigned char>(mesh.facet_count());
     for_chunks(degenerate.size(), chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t) {
         std::vector<Vec3> ring;
         for (std::size_t f = begin; f != end; ++f) degenerate[f] = is_degenerate(mesh, mesh.facet(f), ring);
@@ -155,7 +156,7 @@ std::size_t count_duplicates(const PolygonMesh& mesh) {
         Index facet;
         auto operator<=>(const Key&) const = default;
     };
-    std::vector<Key> keys(mesh.facet_count());
+    std::vector<Key> keys = large_vector<Key>(mesh.facet_count());
     for_each_index(keys.size(), chunks::quick, [&](Index f) {
         keys[f] = {mesh.facet(f).size(), f};
         for (Index v : mesh.facet(f)) keys[f].set += hash_index(v);
@@ -229,14 +230,14 @@ Topology measure_connectivity(const PolygonMesh& mesh) {
         topology.larger += corners > 4;
     }
     const std::size_t vertices = mesh.vertex_count();
-    std::vector<unsigned char> used(vertices, 0);
+    std::vector<unsigned char> used = large_vector<unsigned char>(vertices, 0);
     for (Index v : mesh.corners) used[v] = 1;
     topology.vertices = static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
     topology.isolated_vertices = vertices - topology.vertices;
 
     const Loops loops = clean_loops(mesh);
     Fans fans{DisjointSets(loops.vertex.size()), DisjointSets(topology.faces),
-              std::vector<Index>(vertices, 0), std::vector<unsigned char>(vertices, 0)};
+              large_vector<Index>(vertices, 0), large_vector<unsigned char>(vertices, 0)};
     const std::vector<Index> boundary = measure_edges(loops, vertices, fans, topology);
     topology.boundary_edges = boundary.size();
     std::size_t on_surface = 0;

@@ -1,5 +1,6 @@
 #include "hsdm/spatial/facet_cells.hh"
 
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/core/radix_sort.hh"
 #include "hsdm/point_cloud.hh"
 
@@ -26,7 +27,7 @@ FacetCells::FacetCells(const PolygonMesh& mesh, double size) : size_(size), per_
     if (mesh.facet_count() == 0 || !fit(bounds_of(mesh.positions))) return;
     const std::vector<std::size_t> offset = count(mesh);
     if (offset.empty()) return;
-    std::vector<CodeIndex> entries(offset.back());
+    std::vector<CodeIndex> entries = large_vector<CodeIndex>(offset.back());
     for_chunks(mesh.facet_count(), chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         std::size_t at = offset[chunk];
         for (std::size_t f = begin; f < end; ++f)
@@ -68,7 +69,7 @@ std::vector<std::size_t> FacetCells::count(const PolygonMesh& mesh) const {
 }
 
 void FacetCells::group(const std::vector<CodeIndex>& entries) {
-    facet_.resize(entries.size());
+    resize_large(facet_, entries.size());
     first_ = indices_where(entries.size(), chunks::light, [&](Index i) {
         facet_[i] = entries[i].index;
         return i == 0 || entries[i].code != entries[i - 1].code;

@@ -2,6 +2,7 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/hash.hh"
+#include "hsdm/core/large_vector.hh"
 
 #include <atomic>
 
@@ -12,11 +13,11 @@ namespace {
 /// below shapes in use.
 constexpr double least_area = 1e-6;
 
-/// Sums over the facets round a vertex, in any order.
+/// Sums over the facets round a vertex, in any order: they are added to by several threads.
 struct Fan {
     // hash of the sides that leave the vertex less that of those that come back: 0 for closed fans
-    std::atomic<std::uint64_t> ends = 0;
-    std::atomic<std::uint32_t> turns = 0; // how often the fan turns past the side of its first facet
+    std::uint64_t ends = 0;
+    std::uint32_t turns = 0; // how often the fan turns past the side of its first facet
 };
 
 /// The direction from which a fan is seen: the normal of its first facet at the vertex; and that facet's
@@ -27,7 +28,7 @@ struct Sight {
 
 /// Per vertex its first facet, no_index if it has none.
 std::vector<Index> first_facets(const PolygonMesh& mesh, const std::vector<Index>& vertex) {
-    std::vector<Index> first(mesh.vertex_count(), no_index);
+    std::vector<Index> first = large_vector<Index>(mesh.vertex_count(), no_index);
     for_each_index(mesh.facet_count(), chunks::usual, [&](Index f) {
         for (Index v : mesh.facet(f)) {
             const std::atomic_ref least(first[vertex[v]]);
@@ -41,7 +42,7 @@ std::vector<Index> first_facets(const PolygonMesh& mesh, const std::vector<Index
 
 std::vector<Sight> find_sights(const PolygonMesh& mesh, const std::vector<Index>& vertex) {
     const std::vector<Index> first = first_facets(mesh, vertex);
-    std::vector<Sight> sights(first.size());
+    std::vector<Sight> sights = large_vector<Sight>(first.size());
     for_each_index(first.size(), 2 * chunks::usual, [&](Index v) {
         if (first[v] == no_index) return;
         const auto facet = mesh.facet(first[v]);
@@ -92,7 +93,7 @@ std::uint32_t turns_at(const PolygonMesh& mesh, std::span<const Index> facet, st
 /// the left.
 std::vector<std::uint8_t> flat_fans(const PolygonMesh& mesh, const std::vector<Index>& vertex) {
     const std::vector<Sight> sights = find_sights(mesh, vertex);
-    std::vector<Fan> fans(mesh.vertex_count());
+    std::vector<Fan> fans = large_vector<Fan>(mesh.vertex_count());
     for_each_index(mesh.facet_count(), chunks::usual, [&](Index f) {
         const auto facet = mesh.facet(f);
         const std::size_t n = facet.size();
@@ -100,13 +101,13 @@ std::vector<std::uint8_t> flat_fans(const PolygonMesh& mesh, const std::vector<I
             const Index v = vertex[facet[k]];
             const std::uint64_t next = hash_index(vertex[facet[(k + 1) % n]]),
                                 last = hash_index(vertex[facet[(k + n - 1) % n]]);
-            fans[v].ends.fetch_add(next - last, std::memory_order_relaxed);
+            std::atomic_ref(fans[v].ends).fetch_add(next - last, std::memory_order_relaxed);
             const std::uint32_t turns = turns_at(mesh, facet, k, sights[v]);
-            if (turns > 0) fans[v].turns.fetch_add(turns, std::memory_order_relaxed);
+            if (turns > 0) std::atomic_ref(fans[v].turns).fetch_add(turns, std::memory_order_relaxed);
         }
     });
-    std::vector<std::uint8_t> flat(fans.size());
-    for (std::size_t v = 0; v < flat.size(); ++v) flat[v] = fans[v].turns == 1 && fans[v].ends == 0;
+    std::vector<std::uint8_t> flat = large_vector<std::uint8_t>(fans.size());
+    for_each_in_order(flat.size(), [&](std::size_t v) { flat[v] = fans[v].turns == 1 && fans[v].ends == 0; });
     return flat;
 }
 

@@ -7,6 +7,7 @@
 #include "hsdm/stages/feature_stages.hh"
 #include "hsdm/stages/pair_triangles.hh"
 #include "hsdm/stages/stages.hh"
+#include "hsdm/stages/transfer_stage.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -83,20 +84,45 @@ std::string quads_stage(PolyMesh& mesh, const PluginOptions& options) {
     return counted(quads, "pair") + " of triangles joined, " + counted(mesh.n_faces(), "facet") + " left";
 }
 
+/// Calls function(options) with arguments that fit; messages on options begin with the stage's name.
+template <class Function>
+auto with_options(const std::string& name, const std::vector<StageOption>& declared,
+                  const StageArguments& given, const Function& function) {
+    check_stage_arguments(name, declared, given);
+    std::vector<PluginOption> plain;
+    for (const auto& [key, value] : given) plain.push_back({key.c_str(), value.c_str()});
+    try {
+        return function(PluginOptions(plain.data(), plain.size()));
+    } catch (const OptionError& error) {
+        throw OptionError(name + ": " + error.what());
+    }
+}
+
 Stage built_in(const std::string& name, const std::string& description, std::string_view options,
                PluginFunction function) {
     const auto declared = parse_stage_options(options);
-    const auto run = [name, declared, function](PolyMesh& mesh, const StageArguments& given) {
-        check_stage_arguments(name, declared, given);
-        std::vector<PluginOption> plain;
-        for (const auto& [key, value] : given) plain.push_back({key.c_str(), value.c_str()});
-        try {
-            return function(mesh, PluginOptions(plain.data(), plain.size()));
-        } catch (const OptionError& error) {
-            throw OptionError(name + ": " + error.what());
-        }
+    const auto run = [name, declared, function](PolyMesh& mesh, const StageArguments& given,
+                                                const StageContext&) {
+        return with_options(name, declared, given,
+                            [&](const PluginOptions& checked) { return function(mesh, checked); });
     };
     return {name, description, declared, "", run};
+}
+
+Stage transfer_as_stage() {
+    const std::string name = "transfer";
+    const auto declared = parse_stage_options(HSDM_TRANSFER_OPTIONS);
+    Stage stage{name, HSDM_TRANSFER_DESCRIPTION, declared, "", {}, "cloud", {}};
+    stage.run = [name, declared](PolyMesh& mesh, const StageArguments& given, const StageContext& context) {
+        return with_options(name, declared, given, [&](const PluginOptions& options) {
+            return transfer_stage(mesh, options, context);
+        });
+    };
+    stage.check = [name, declared](const StageArguments& given) {
+        with_options(name, declared, given,
+                     [](const PluginOptions& options) { check_transfer_options(options); });
+    };
+    return stage;
 }
 
 } // namespace
@@ -129,6 +155,7 @@ const std::vector<Stage>& built_in_stages() {
                  "bend-degrees=20 (angle): pairs that bend more stay triangles; "
                  "skew-degrees=60 (angle): a quad's corners differ by less from right angles",
                  quads_stage),
+        transfer_as_stage(),
     };
     return stages;
 }
