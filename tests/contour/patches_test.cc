@@ -147,7 +147,7 @@ TEST_CASE("the two sheets of a voxel are as far apart as the solid says, in spac
 TEST_CASE("walls and gaps too narrow for their points are doubtful where they stand, told by place",
           "[contour]") {
     const Pose pose = random_pose(8);
-    for (const double width : {0.4, 0.5}) {
+    for (const double width : {0.15, 0.25}) {
         const Separated fins(evenly_scanned(fin(width * voxel_edge).placed(pose), 8, 8));
         const Separated slots(evenly_scanned(slot(width * voxel_edge).placed(pose), 8, 8));
         const Doubts foot = crowded_sheets(fins.level, fins.after);
@@ -172,7 +172,7 @@ TEST_CASE("free walls of any width are next to never doubtful, wide ones on a gr
 }
 
 TEST_CASE("a gap is as doubtful as a wall: turned normals change nothing", "[contour]") {
-    const PointCloud cloud = evenly_scanned(fin(0.4 * voxel_edge).placed(random_pose(10)), 8, 10);
+    const PointCloud cloud = evenly_scanned(fin(0.2 * voxel_edge).placed(random_pose(10)), 8, 10);
     const Separated out(cloud), in(turned_inside_out(cloud));
     REQUIRE(crowded_sheets(out.level, out.after).count > 0);
     CHECK(crowded_sheets(out.level, out.after).count == crowded_sheets(in.level, in.after).count);
