@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
         {"adaptive-collapses", draw_collapses},
         {"adaptive-flips", draw_flips},
         {"adaptive-bound", draw_error_bound},
+        {"features-carried", draw_carried},
         {"features-classes", draw_classes},
         {"features-normals", draw_normals},
         {"features-decimated", draw_decimated},

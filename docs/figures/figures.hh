@@ -1,5 +1,6 @@
 #pragma once
-// The figures of docs/sheets.md, docs/adaptive.md, docs/features.md and docs/stages.md, by name.
+// The figures of docs/sheets.md, docs/adaptive.md, docs/features.md, docs/stages.md and
+// docs/neighbors.md, by name.
 
 #include "canvas.hh"
 
@@ -22,6 +23,7 @@ Canvas draw_collapses();
 Canvas draw_flips();
 Canvas draw_error_bound();
 
+Canvas draw_carried();
 Canvas draw_classes();
 Canvas draw_normals();
 Canvas draw_decimated();

@@ -325,12 +325,13 @@ TEST_CASE("a mesh that does not pass through itself does not after smoothing eit
     support::Random random(5);
     std::vector<double> rough;
     for (Index i = 0; i < (n + 1) * (n + 1); ++i) rough.push_back(random.uniform(-0.2, 0.2));
-    // two rough sheets that nearly touch; the lower one is locked, so the upper one sinks into its peaks
+    // Two rough sheets of which a quarter nearly touches; the lower one is locked, so there the upper one
+    // sinks into its peaks.
     PolygonMesh both =
         support::cut_in_two(sheet(n, [&](Index x, Index y) { return rough[y * (n + 1) + x]; }));
     const PolygonMesh lower = both;
     const auto count = static_cast<Index>(lower.vertex_count());
-    for (const Vec3& p : lower.positions) both.positions.push_back(p + Vec3(0, 0, 0.01));
+    for (const Vec3& p : lower.positions) both.positions.push_back(p + Vec3(0, 0, p[0] < 5.5 ? 0.01 : 2));
     for (std::size_t f = 0; f < lower.facet_count(); ++f) {
         const auto ring = lower.facet(f);
         both.add_facet(std::array{ring[0] + count, ring[1] + count, ring[2] + count});
@@ -340,10 +341,10 @@ TEST_CASE("a mesh that does not pass through itself does not after smoothing eit
         PolyMesh mesh = to_mesh(both).mesh;
         for (int v = 0; v < static_cast<int>(count); ++v) mesh.status(VertexHandle(v)).set_locked(true);
         const VertexSmoothingResult result = smooth_vertices(mesh, {.rounds = 2, .keep_apart = keep_apart});
-        CHECK(result.moved > 50);
+        CHECK(result.moved > 20);
         CHECK((result.taken_back > 0) == keep_apart);
         return find_self_intersections(to_polygons(mesh)).facet_pairs.size();
     };
-    CHECK(smoothed(false) > 10);
+    CHECK(smoothed(false) > 3);
     CHECK(smoothed(true) == 0);
 }
