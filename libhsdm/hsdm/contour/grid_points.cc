@@ -110,18 +110,6 @@ std::vector<std::array<Index, 3>> grid_points_below(const GridPoints& grid) {
     return below;
 }
 
-namespace {
-
-/// Appends values: a copy, as any vector makes that grows, but by all threads.
-template <class T>
-void lengthen(std::vector<T>& values, std::size_t n, const T& value) {
-    std::vector<T> longer = large_vector<T>(n, value);
-    for_each_index(values.size(), chunks::light, [&](Index i) { longer[i] = values[i]; });
-    values.swap(longer);
-}
-
-} // namespace
-
 GridPoints build_grid_points(const OctreeLevel& level) {
     GridPoints grid;
     grid.codes = grid_point_codes(level);
@@ -134,11 +122,10 @@ GridPoints build_grid_points(const OctreeLevel& level) {
 
 void add_grid_points(GridPoints& grid, std::span<const MortonCode> codes) {
     const std::size_t n = grid.size();
-    lengthen(grid.codes, n + codes.size(), MortonCode{0});
-    std::copy(codes.begin(), codes.end(), grid.codes.begin() + static_cast<std::ptrdiff_t>(n));
+    grid.codes.insert(grid.codes.end(), codes.begin(), codes.end());
     grid.index.build(grid.codes);
-    lengthen(grid.voxels, grid.size(), no_voxels);
-    lengthen(grid.next, grid.size(), {});
+    resize_large(grid.voxels, grid.size(), no_voxels);
+    resize_large(grid.next, grid.size());
     for_chunks(codes.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = n + begin; i < n + end; ++i) {
             connect_grid_point(grid, i);

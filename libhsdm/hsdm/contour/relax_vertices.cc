@@ -41,8 +41,7 @@ public:
     }
 
     void round(double step) {
-        resize_large(next_, vertices_.positions.size());
-        for_each_index(next_.size(), chunks::light, [&](Index v) { next_[v] = vertices_.positions[v]; });
+        next_ = vertices_.positions;
         for_each_index(duals_.size(), chunks::slow, [&](Index v) {
             if (duals_.open[v]) return;
             if (vertices_.classes[v] == VertexClass::smooth)

@@ -32,8 +32,7 @@ bool is_off_surface(const Octree& octree, const Neighbors& neighbors, std::size_
 
 std::vector<std::uint8_t> find_outliers(const Octree& octree, const Neighbors& neighbors,
                                         const OutlierOptions& options) {
-    std::vector<double> all = large_vector<double>(octree.size());
-    for_each_index(all.size(), chunks::light, [&](Index i) { all[i] = neighbors.reach[i]; });
+    std::vector<double> all = neighbors.reach;
     const double typical = median(all);
     std::vector<std::uint8_t> found = large_vector<std::uint8_t>(octree.size(), 0);
     for_each_index(octree.size(), chunks::quick, [&](Index i) {
