@@ -24,7 +24,7 @@ struct Disc {
 };
 
 /// Working space of one thread.
-struct Scratch {
+struct PatchScratch {
     std::vector<Index> sets; // of the voxel and its neighbours, the voxel's own first
     std::vector<Vec3> samples;
     std::vector<Index> first_sample;
@@ -42,7 +42,7 @@ struct Scratch {
 class Neighborhood {
 public:
     Neighborhood(const Octree& octree, const OctreeLevel& level, const RelationTest& related,
-                 const NormalSets& sets, Scratch& scratch)
+                 const NormalSets& sets, PatchScratch& scratch)
         : octree_(octree), level_(level), related_(related), sets_(sets), at_(scratch) {}
 
     /// False if no wall or gap is near.
@@ -235,7 +235,7 @@ private:
     const OctreeLevel& level_;
     const RelationTest& related_;
     const NormalSets& sets_;
-    Scratch& at_;
+    PatchScratch& at_;
     std::size_t own_ = 0;
 };
 
@@ -298,7 +298,7 @@ private:
         std::vector<Split> splits =
             collected<Split>(voxels_.size(), chunks::heavy,
                              [&](std::size_t begin, std::size_t end, std::vector<Split>& found) {
-                                 Scratch& scratch = scratch_.local();
+                                 PatchScratch& scratch = scratch_.local();
                                  Neighborhood around(octree_, level_, related_, sets_, scratch);
                                  for (std::size_t k = begin; k < end; ++k) {
                                      if (!around.gather(voxels_[k])) continue;
@@ -424,7 +424,7 @@ private:
         add_neighbors();
         std::vector<Pair> pairs = collected<Pair>(
             voxels_.size(), chunks::heavy, [&](std::size_t begin, std::size_t end, std::vector<Pair>& found) {
-                Scratch& scratch = scratch_.local();
+                PatchScratch& scratch = scratch_.local();
                 Neighborhood around(octree_, level_, related_, sets_, scratch);
                 for (std::size_t k = begin; k < end; ++k) {
                     around.gather(voxels_[k], true);
@@ -458,7 +458,7 @@ private:
     NormalSets& sets_;
     std::vector<Index> voxels_; // with several sheets; later those near walls and gaps
     PatchCounts counts_;
-    tbb::enumerable_thread_specific<Scratch> scratch_;
+    tbb::enumerable_thread_specific<PatchScratch> scratch_;
 };
 
 } // namespace
