@@ -50,6 +50,15 @@ bool parts_something(const NormalSets& sets, Index voxel) {
     return sets.first_apart[sets.first[voxel]] < sets.first_apart[sets.first[voxel + 1]];
 }
 
+/// Is one of the voxels round this one in the ascending list?
+bool has_neighbor(const OctreeLevel& level, Index voxel, const std::vector<Index>& list) {
+    const VoxelCoord c = level.coord(voxel);
+    return std::ranges::any_of(neighbor_offsets, [&](const VoxelCoord& o) {
+        const Index v = level.find({c[0] + o[0], c[1] + o[1], c[2] + o[2]});
+        return v != no_index && std::ranges::binary_search(list, v);
+    });
+}
+
 } // namespace
 
 std::optional<SheetPair> nearest_pair(const OctreeLevel& level, const NormalSets& sets, Index voxel) {
@@ -74,8 +83,12 @@ Doubts crowded_sheets(const OctreeLevel& level, const NormalSets& sets, double l
         const auto pair = nearest_pair(level, sets, v);
         return pair && pair->spacings < least;
     });
-    if (found.empty()) return {};
-    return {found.size(), nearest_pair(level, sets, found.front())->middle};
+    Doubts doubts;
+    for (const Index v : found) {
+        if (!has_neighbor(level, v, found)) continue;
+        if (doubts.count++ == 0) doubts.first = nearest_pair(level, sets, v)->middle;
+    }
+    return doubts;
 }
 
 } // namespace hsdm

@@ -21,7 +21,8 @@ std::optional<SheetPair> nearest_pair(const OctreeLevel& level, const NormalSets
 /// The voxels where walls or gaps that stand on something are nearer than `least` spacings: which of the
 /// sheets ends there, and which passes on, is for more points to tell. To be called after separate_patches,
 /// which finds what stands on something; walls that stand free have nothing to be confused with and are told
-/// apart by their normals, however thin. O(sets), parallel.
+/// apart by their normals, however thin. A voxel with no such voxel beside it does not count: there points
+/// lie unevenly, for what is narrow goes on. O(sets), parallel.
 Doubts crowded_sheets(const OctreeLevel& level, const NormalSets& sets, double least = widths::least);
 
 } // namespace hsdm
