@@ -50,7 +50,7 @@ TEST_CASE("a warning stands last in the summary and in the report, and costs no 
           == warnings.size()); // nothing else stands behind the first
 }
 
-TEST_CASE("--strict makes a warning status 1, says why, and changes no file", "[cli]") {
+TEST_CASE("with --strict a warning is status 1, is told, and changes no file", "[cli]") {
     const Folder folder;
     write_slotted(folder, "slot.ply");
     REQUIRE(run(folder, std::string("reconstruct slot.ply -o a.off --quiet") + at_voxels).status == 0);
@@ -62,7 +62,7 @@ TEST_CASE("--strict makes a warning status 1, says why, and changes no file", "[
     CHECK(read_file(folder / "a.off") == read_file(folder / "b.off"));
 }
 
-TEST_CASE("--strict lets pass what there is nothing to warn of, and knows of intersections", "[cli]") {
+TEST_CASE("with --strict a mesh without warnings passes, and intersections are counted", "[cli]") {
     const Folder folder;
     folder.write("scan.xyz", xyz(sphere_scan()));
     const CommandResult result =
