@@ -48,7 +48,7 @@ std::vector<double> values_of(const PolyMesh& mesh, const std::string& name) {
     return {};
 }
 
-PolyMesh cube_of(int side) {
+PolyMesh cube_of(Index side) {
     return to_mesh(support::divided_cube(side)).mesh;
 }
 

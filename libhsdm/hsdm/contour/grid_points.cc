@@ -20,9 +20,10 @@ public:
     /// axis k.
     static std::size_t place(MortonCode voxel, unsigned corner) {
         const VoxelCoord c = morton_decode(voxel & (voxels - 1));
-        return static_cast<std::size_t>(c[0] + static_cast<int>(corner & 1)
-                                        + 5 * (c[1] + static_cast<int>(corner >> 1 & 1))
-                                        + 25 * (c[2] + static_cast<int>(corner >> 2)));
+        const int x = c[0] + static_cast<int>(corner & 1), y = c[1] + static_cast<int>(corner >> 1 & 1),
+                  z = c[2] + static_cast<int>(corner >> 2);
+        return static_cast<std::size_t>(x) + 5 * static_cast<std::size_t>(y)
+               + 25 * static_cast<std::size_t>(z);
     }
 
     void add(MortonCode voxel) {
