@@ -41,7 +41,7 @@ TEST_CASE("a warning stands last in the summary and in the report, and costs no 
     REQUIRE(!warnings.empty());
     for (const auto& one : warnings) {
         CHECK(one["how_much"] > 0);
-        for (int k = 0; k < 3; ++k) CHECK(std::abs(one["where"][k].get<double>()) < 1.1);
+        for (std::size_t k = 0; k < 3; ++k) CHECK(std::abs(one["where"][k].get<double>()) < 1.1);
         CHECK(result.out.find(one["what"].get<std::string>()) != std::string::npos);
     }
     const auto first = result.out.find("warning   ");
