@@ -113,16 +113,29 @@ private:
         return found;
     }
 
-    /// Is each link of the row in one of its faces only?
+    /// Is each link of the row in one of its faces only, and each chain in one of its voxels' pairs? Else a
+    /// change would meet what another has made.
     bool changes_once(Index last) {
         row_.clear();
+        ends_.clear();
         for (Index f = last;; f = came_from_[f]) {
             row_.push_back(faces_[f].exit);
             row_.push_back(faces_[f].other_exit);
+            ends_.insert(ends_.end(), faces_[f].chains.begin(), faces_[f].chains.end());
             if (came_from_[f] == f) break;
         }
-        std::sort(row_.begin(), row_.end());
-        return std::adjacent_find(row_.begin(), row_.end()) == row_.end();
+        const auto repeats = [](auto& list) {
+            std::sort(list.begin(), list.end());
+            return std::adjacent_find(list.begin(), list.end()) != list.end();
+        };
+        if (repeats(row_)) return false;
+        std::sort(ends_.begin(), ends_.end());
+        ends_.erase(std::unique(ends_.begin(), ends_.end()), ends_.end());
+        if (std::count_if(ends_.begin(), ends_.end(), is_one) != 2) return false;
+        met_.clear();
+        for (const Chains& chains : ends_)
+            met_.insert(met_.end(), chains.begin() + is_one(chains), chains.end());
+        return !repeats(met_);
     }
 
     /// The row's faces, from its last one back to the first.
@@ -154,6 +167,8 @@ private:
     std::vector<Place> places_;    // sorted
     std::vector<Index> came_from_; // per face during a search, the one before it
     std::vector<FacetSide> row_;   // links of a row
+    std::vector<Chains> ends_;     // its chains by voxel
+    std::vector<Index> met_;       // and one by one
 };
 
 } // namespace
