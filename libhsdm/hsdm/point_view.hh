@@ -14,12 +14,12 @@ enum class NumberType : std::uint8_t { uint8, uint16, int32, float32, float64 };
 /// The NumberType of a type.
 template <class Number>
 constexpr NumberType number_type() {
-    static_assert(
+    constexpr bool is_integer =
         std::is_same_v<
             Number,
-            std::
-                uint8_t> || std::is_same_v<Number, std::uint16_t> || std::is_same_v<Number, std::int32_t> || std::is_same_v<Number, float> || std::is_same_v<Number, double>,
-        "numbers are std::uint8_t, std::uint16_t, std::int32_t, float or double");
+            std::uint8_t> || std::is_same_v<Number, std::uint16_t> || std::is_same_v<Number, std::int32_t>;
+    static_assert(is_integer || std::is_same_v<Number, float> || std::is_same_v<Number, double>,
+                  "numbers are std::uint8_t, std::uint16_t, std::int32_t, float or double");
     if constexpr (std::is_same_v<Number, std::uint8_t>) return NumberType::uint8;
     if constexpr (std::is_same_v<Number, std::uint16_t>) return NumberType::uint16;
     if constexpr (std::is_same_v<Number, std::int32_t>) return NumberType::int32;

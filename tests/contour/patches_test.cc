@@ -150,8 +150,8 @@ TEST_CASE("walls and gaps too narrow for their points are doubtful where they st
     for (const double width : {0.15, 0.25}) {
         const Separated fins(evenly_scanned(fin(width * voxel_edge).placed(pose), 8, 8));
         const Separated slots(evenly_scanned(slot(width * voxel_edge).placed(pose), 8, 8));
-        const Doubts foot = crowded_sheets(fins.level, fins.after);
-        const Doubts mouth = crowded_sheets(slots.level, slots.after);
+        const Occurrences foot = crowded_sheets(fins.level, fins.after);
+        const Occurrences mouth = crowded_sheets(slots.level, slots.after);
         CHECK(foot.count > 5);
         CHECK(mouth.count > 5);
         // Between the two sides, which are at x = 0 of the solid.

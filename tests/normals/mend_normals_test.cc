@@ -128,7 +128,7 @@ TEST_CASE("sides are in doubt where neighbours on one plane face opposite ways, 
     PointCloud cloud = support::sample(support::sphere(1), {.points = 6000});
     const auto doubts_of = [&](bool estimated) {
         const Octree octree = build_octree(cloud);
-        Doubts doubts = doubtful_sides(octree, check_normals(octree), estimated);
+        Occurrences doubts = doubtful_sides(octree, check_normals(octree), estimated);
         doubts.first += octree.origin;
         return doubts;
     };
@@ -139,7 +139,7 @@ TEST_CASE("sides are in doubt where neighbours on one plane face opposite ways, 
     cloud.normals[17] = -cloud.normals[17];
     for (std::size_t i = 0; i < cloud.size(); ++i)
         if (cloud.positions[i][2] > 0.43) cloud.normals[i] = -cloud.normals[i]; // not between two voxels
-    const Doubts cut = doubts_of(true);
+    const Occurrences cut = doubts_of(true);
     CHECK(cut.count >= 10);
     CHECK(std::abs(cut.first[2] - 0.43) < 0.1);
     CHECK(doubts_of(false).count == cut.count);

@@ -38,7 +38,7 @@ TEST_CASE("points far away from all others go first, the others lose no digit", 
         cloud.normals.emplace_back(1, 0, 0);
     }
     octree = build_octree(cloud, centred);
-    const Discarded strays = drop_far_outliers(octree, view_of(cloud), frame);
+    const Occurrences strays = drop_far_outliers(octree, view_of(cloud), frame);
     CHECK(strays.count == 10);
     CHECK(std::find(cloud.positions.end() - 10, cloud.positions.end(), strays.first)
           != cloud.positions.end());
@@ -113,7 +113,7 @@ TEST_CASE("a few strays between parts far from each other go, so that space can 
     }
     Octree octree = build_octree(cloud);
     CloudFrame frame;
-    const Discarded strays = cut_empty_space(octree, view_of(cloud), frame);
+    const Occurrences strays = cut_empty_space(octree, view_of(cloud), frame);
     CHECK(strays.count == 20);
     CHECK(strays.first[1] == Approx(1e5));
     CHECK(frame.has_cuts());

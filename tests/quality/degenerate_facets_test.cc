@@ -23,10 +23,10 @@ PolygonMesh square_and_pillow() {
     return mesh;
 }
 
-Discarded dropped(PolygonMesh& mesh, const Vec3& origin = {0, 0, 0}) {
+Occurrences dropped(PolygonMesh& mesh, const Vec3& origin = {0, 0, 0}) {
     FacetLinks links = link_facets(mesh);
     FeatureHints hints;
-    const Discarded result = drop_degenerate_facets(mesh, origin, {}, links, hints);
+    const Occurrences result = drop_degenerate_facets(mesh, origin, {}, links, hints);
     CHECK(links.twin == link_facets(mesh).twin);
     return result;
 }
@@ -35,7 +35,7 @@ Discarded dropped(PolygonMesh& mesh, const Vec3& origin = {0, 0, 0}) {
 
 TEST_CASE("both facets of a pillow go", "[quality]") {
     PolygonMesh mesh = square_and_pillow();
-    const Discarded pillow = dropped(mesh);
+    const Occurrences pillow = dropped(mesh);
     CHECK(pillow.count == 2);
     CHECK(pillow.first[0] == 5);
     CHECK(mesh.facet_count() == 2);

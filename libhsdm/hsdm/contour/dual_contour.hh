@@ -36,7 +36,7 @@ struct DualContour {
     std::size_t corners_merged = 0;
     std::size_t midpoints = 0; ///< vertices added so that no two mesh edges join the same two vertices
     std::size_t doublets = 0;  ///< pairs of facets round one vertex merged into one facet
-    Discarded splinters;       ///< facets of splinters, removed
+    Occurrences splinters;     ///< facets of splinters, removed
     FillHolesCounts holes;
     UntangleCounts intersections;
     std::optional<FacetCells> cells; ///< the mesh's facets by voxel; empty if untangling moved vertices

@@ -64,8 +64,8 @@ void remove(const std::vector<std::uint8_t>& is_outlier, NormalSets& sets) {
 
 } // namespace
 
-Discarded drop_outlier_sets(const OctreeLevel& level, const RelationTest& related, NormalSets& sets,
-                            const OutlierSetOptions& options) {
+Occurrences drop_outlier_sets(const OctreeLevel& level, const RelationTest& related, NormalSets& sets,
+                              const OutlierSetOptions& options) {
     const double most = std::max(1.0, options.most_share * typical_count(sets));
     std::vector<std::uint8_t> is_outlier(sets.sets.size(), 0);
     for_chunks(sets.sets.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -75,7 +75,7 @@ Discarded drop_outlier_sets(const OctreeLevel& level, const RelationTest& relate
                 sets.sets[s].count <= most
                 && reaches_few(level, related, sets, most, options.most_sets, static_cast<Index>(s), group);
     });
-    Discarded points;
+    Occurrences points;
     for (std::size_t s = 0; s < is_outlier.size(); ++s)
         if (is_outlier[s]) points.add({sets.sets[s].count, middle_of(level, sets.sets[s].voxel)});
     if (points.count > 0) remove(is_outlier, sets);

@@ -2,7 +2,7 @@
 // Outliers: sets of a few points that no neighbour continues.
 
 #include "hsdm/contour/set_relation.hh"
-#include "hsdm/core/discarded.hh"
+#include "hsdm/core/occurrences.hh"
 
 namespace hsdm {
 
@@ -18,7 +18,7 @@ struct OutlierSetOptions {
 /// smooth relations to sets of the 26 voxels around, and on from there, reach neither a set of more points
 /// nor more than a few others: a surface covers more voxels or holds more points. Returns the number of
 /// points, and where they are relative to the octree's origin. O(sets), parallel.
-Discarded drop_outlier_sets(const OctreeLevel& level, const RelationTest& related, NormalSets& sets,
-                            const OutlierSetOptions& options = {});
+Occurrences drop_outlier_sets(const OctreeLevel& level, const RelationTest& related, NormalSets& sets,
+                              const OutlierSetOptions& options = {});
 
 } // namespace hsdm

@@ -28,7 +28,16 @@ struct PatchScratch {
     std::vector<Index> sets; // of the voxel and its neighbours, the voxel's own first
     std::vector<Vec3> samples;
     std::vector<Index> first_sample;
+    std::vector<double> spacings;        // per set; below 0: not measured yet
+    std::vector<std::uint8_t> one_sheet; // per set a row of all, from has_row on
+    std::vector<std::uint8_t> has_row;
+    struct Facing {
+        const NormalSet* set;
+        double cosine;
+    };
+    std::vector<Facing> facing; // a set
     std::vector<Disc> discs;
+    std::array<std::vector<const Disc*>, 2> standing;
     std::vector<std::pair<double, double>> places; // along a crease, and off its plane
     struct Way {
         double squared_length;
@@ -50,14 +59,14 @@ public:
         at_.sets.clear();
         add_sets(voxel);
         own_ = at_.sets.size();
-        const VoxelCoord c = level_.coord(voxel);
-        for (const VoxelCoord& o : neighbor_offsets)
-            if (const Index v = level_.find({c[0] + o[0], c[1] + o[1], c[2] + o[2]}); v != no_index)
-                add_sets(v);
+        for_neighbors(level_, voxel, [&](Index v) { add_sets(v); });
         at_.discs.clear();
         const bool opposed = any_opposed();
         if (!opposed && !beside) return false;
         take_samples();
+        at_.spacings.assign(size(), -1);
+        at_.has_row.assign(size(), 0);
+        at_.one_sheet.resize(size() * size());
         if (!opposed) return false;
         for (std::size_t i = 0; i < at_.sets.size(); ++i) add_discs(i);
         return !at_.discs.empty();
@@ -71,17 +80,25 @@ public:
         return {at_.samples.data() + at_.first_sample[i], at_.samples.data() + at_.first_sample[i + 1]};
     }
 
-    /// Does a wall or gap part two points of surfaces with this normal?
-    bool parted(const Vec3& p, const Vec3& q, const Vec3& normal) const {
+    /// The walls and gaps that stand on surfaces with this normal; `which`: of two that are kept.
+    std::span<const Disc* const> standing_on(const Vec3& normal, std::size_t which = 0) const {
+        auto& list = at_.standing[which];
+        list.clear();
+        for (const Disc& disc : at_.discs)
+            if (std::abs(normal | disc.normal) <= patches::most_along) list.push_back(&disc);
+        return list;
+    }
+
+    /// Does one of them part two points of a surface with this normal?
+    static bool parted(const Vec3& p, const Vec3& q, const Vec3& normal, std::span<const Disc* const> discs) {
         std::array<unsigned, 2> seen{0, 0}; // sheets of walls, of gaps
         const Vec3 way = q - p;
-        for (const Disc& disc : at_.discs) {
+        for (const Disc* one : discs) {
+            const Disc& disc = *one;
             const double dp = disc.normal | (p - disc.middle), dq = disc.normal | (q - disc.middle);
             if ((dp < 0) == (dq < 0)) continue;
             const Vec3 x = p + way * (dp / (dp - dq));
             if ((x - disc.middle).sqrnorm() > disc.squared_radius) continue;
-            if (std::abs(normal | disc.normal) > patches::most_along)
-                continue; // it does not stand on the surface
             // At the mouth of a gap its sheets lie below the surface, on the ground of a wall above it; the
             // rim of a wall and the bottom of a gap, which join the two sheets, see them on the other side.
             if (((normal | (disc.point - x)) < 0) != disc.is_gap) continue;
@@ -94,6 +111,9 @@ public:
 
     /// Of the shortest ways between two sets, are most parted?
     bool apart(std::size_t i, std::size_t j) {
+        const Vec3 &n = set(i).normal, &m = set(j).normal;
+        const auto on_i = standing_on(n, 0), on_j = standing_on(m, 1);
+        if (on_i.empty() && on_j.empty()) return false;
         const auto p = samples(i), q = samples(j);
         auto& ways = at_.ways;
         ways.clear();
@@ -107,8 +127,8 @@ public:
                           });
         std::size_t parted_ways = 0;
         for (std::size_t k = 0; k < most; ++k)
-            parted_ways += parted(p[ways[k].i], q[ways[k].j], set(i).normal)
-                           || parted(p[ways[k].i], q[ways[k].j], set(j).normal);
+            parted_ways +=
+                parted(p[ways[k].i], q[ways[k].j], n, on_i) || parted(p[ways[k].i], q[ways[k].j], m, on_j);
         return 2 * parted_ways > most;
     }
 
@@ -127,7 +147,7 @@ public:
         auto& places = at_.places;
         places.clear();
         for (std::size_t k = 0; k < size(); ++k) {
-            if (k != j && related_(b, set(k)) != Relation::smooth) continue;
+            if (!one_sheet(j, k)) continue;
             for (const Vec3& q : samples(k))
                 if (std::abs(a.normal | (q - a.centroid)) < patches::beside * level_.voxel_size)
                     places.emplace_back(along | q, outward * (b.normal | (q - b.centroid)));
@@ -135,9 +155,10 @@ public:
         std::sort(places.begin(), places.end());
         const double here = along | b.centroid, far = patches::beside * level_.voxel_size;
         const double least = patches::goes_on_from * step, most = patches::goes_on_within * step;
+        const auto discs = standing_on(a.normal);
         unsigned beyond = 0, before = 0;
         for (std::size_t k = 0; k < size(); ++k) {
-            if (k != i && related_(a, set(k)) != Relation::smooth) continue;
+            if (!one_sheet(i, k)) continue;
             for (const Vec3& p : samples(k)) {
                 const double s = along | p, t = outward * (b.normal | (p - b.centroid));
                 if (std::abs(s - here) > far || std::abs(t) > most) continue;
@@ -152,7 +173,7 @@ public:
                 }
                 if (lowest > highest) continue; // the other sheet is not there
                 before += t < lowest - least;
-                beyond += t > highest + least && !parted(a.centroid, p, a.normal);
+                beyond += t > highest + least && !parted(a.centroid, p, a.normal, discs);
             }
         }
         return beyond >= patches::fewest_beyond && 2 * beyond >= before;
@@ -191,19 +212,32 @@ private:
 
     /// Spacing of the samples on the sheet of a set, from the fullest of its sets around; 0 if they are too
     /// few for a sheet.
-    double spacing(std::size_t i) const {
+    double spacing(std::size_t i) {
+        double& known = at_.spacings[i];
+        if (known >= 0) return known;
         double points = 0, squares = 0;
         Index scanned = 0, most = 0; // points of the sheet, of the fullest set
         for (std::size_t j = 0; j < size(); ++j) {
             most = std::max(most, set(j).count);
-            if (j != i && related_(set(i), set(j)) != Relation::smooth) continue;
+            if (!one_sheet(i, j)) continue;
             const auto n = static_cast<double>(samples(j).size());
             points += n;
             squares += n * n;
             scanned += set(j).count;
         }
         const double least = std::max(patches::least_points, patches::least_share * most);
-        return scanned < least ? 0 : level_.voxel_size * std::sqrt(points / squares);
+        return known = scanned < least ? 0 : level_.voxel_size * std::sqrt(points / squares);
+    }
+
+    /// Is the other set of this one's sheet: the same, or smooth with it?
+    bool one_sheet(std::size_t i, std::size_t j) {
+        std::uint8_t* const row = at_.one_sheet.data() + i * size();
+        if (!at_.has_row[i]) {
+            for (std::size_t k = 0; k < size(); ++k)
+                row[k] = k == i || related_(set(i), set(k)) == Relation::smooth;
+            at_.has_row[i] = 1;
+        }
+        return row[j];
     }
 
     /// The discs between a set and the nearest opposite sheet before it and behind it.
@@ -212,14 +246,15 @@ private:
         const double h = level_.voxel_size;
         const double radius = patches::reach * spacing(i);
         if (radius == 0) return;
+        at_.facing.clear();
+        for (std::size_t j = 0; j < size(); ++j)
+            if (const double cosine = a.normal | set(j).normal; j != i && cosine < patches::opposed_cosine)
+                at_.facing.push_back({&set(j), cosine});
         for (const Vec3& p : samples(i)) {
             double nearest[2] = {patches::widest * h, patches::widest * h}; // behind, before
-            for (std::size_t j = 0; j < size(); ++j) {
-                const NormalSet& b = set(j);
-                const double cosine = a.normal | b.normal;
-                if (j == i || cosine >= patches::opposed_cosine) continue;
-                const double t = (b.normal | (b.centroid - p)) / cosine;
-                if ((p + t * a.normal - b.centroid).sqrnorm() > patches::beside * patches::beside * h * h)
+            for (const auto& [b, cosine] : at_.facing) {
+                const double t = (b->normal | (b->centroid - p)) / cosine;
+                if ((p + t * a.normal - b->centroid).sqrnorm() > patches::beside * patches::beside * h * h)
                     continue;
                 double& distance = nearest[t > 0];
                 distance = std::min(distance, std::abs(t));
@@ -243,6 +278,8 @@ private:
 /// nearest sample. Returns the number of patches.
 std::size_t connect_samples(const Neighborhood& around, std::size_t i, std::vector<std::uint8_t>& patch) {
     const auto samples = around.samples(i);
+    const Vec3& normal = around.set(i).normal;
+    const auto discs = around.standing_on(normal);
     std::vector<std::uint8_t> pending;
     constexpr std::uint8_t none = 0xff;
     patch.assign(samples.size(), none);
@@ -255,7 +292,7 @@ std::size_t connect_samples(const Neighborhood& around, std::size_t i, std::vect
             const std::size_t at = pending.back();
             pending.pop_back();
             for (std::size_t j = 0; j < samples.size(); ++j) {
-                if (patch[j] != none || around.parted(samples[at], samples[j], around.set(i).normal))
+                if (patch[j] != none || Neighborhood::parted(samples[at], samples[j], normal, discs))
                     continue;
                 patch[j] = count;
                 pending.push_back(static_cast<std::uint8_t>(j));
@@ -407,12 +444,7 @@ private:
     /// Adds the voxels round those that are crowded: an edge before a face may lie in the next one.
     void add_neighbors() {
         std::vector<Index> all = voxels_;
-        for (const Index voxel : voxels_) {
-            const VoxelCoord c = level_.coord(voxel);
-            for (const VoxelCoord& o : neighbor_offsets)
-                if (const Index v = level_.find({c[0] + o[0], c[1] + o[1], c[2] + o[2]}); v != no_index)
-                    all.push_back(v);
-        }
+        for (const Index voxel : voxels_) for_neighbors(level_, voxel, [&](Index v) { all.push_back(v); });
         std::sort(all.begin(), all.end());
         all.erase(std::unique(all.begin(), all.end()), all.end());
         voxels_ = std::move(all);

@@ -40,9 +40,7 @@ void for_facing_pairs(const OctreeLevel& level, const NormalSets& sets, Index vo
                 if (is_facing(a, b, level.voxel_size)) visit(a, b);
     };
     visit_with(voxel);
-    const VoxelCoord c = level.coord(voxel);
-    for (const VoxelCoord& o : neighbor_offsets)
-        if (const Index v = level.find({c[0] + o[0], c[1] + o[1], c[2] + o[2]}); v != no_index) visit_with(v);
+    for_neighbors(level, voxel, visit_with);
 }
 
 /// Does a wall or gap part one of the voxel's sets from another?
@@ -52,11 +50,9 @@ bool parts_something(const NormalSets& sets, Index voxel) {
 
 /// Is one of the voxels round this one in the ascending list?
 bool has_neighbor(const OctreeLevel& level, Index voxel, const std::vector<Index>& list) {
-    const VoxelCoord c = level.coord(voxel);
-    return std::ranges::any_of(neighbor_offsets, [&](const VoxelCoord& o) {
-        const Index v = level.find({c[0] + o[0], c[1] + o[1], c[2] + o[2]});
-        return v != no_index && std::ranges::binary_search(list, v);
-    });
+    bool any = false;
+    for_neighbors(level, voxel, [&](Index v) { any = any || std::ranges::binary_search(list, v); });
+    return any;
 }
 
 } // namespace
@@ -76,14 +72,14 @@ std::optional<SheetPair> nearest_pair(const OctreeLevel& level, const NormalSets
     return SheetPair{least / std::sqrt(area / points), middle};
 }
 
-Doubts crowded_sheets(const OctreeLevel& level, const NormalSets& sets, double least) {
+Occurrences crowded_sheets(const OctreeLevel& level, const NormalSets& sets, double least) {
     if (sets.first_apart.empty()) return {};
     const std::vector<Index> found = indices_where(level.size(), chunks::usual, [&](Index v) {
         if (!parts_something(sets, v)) return false;
         const auto pair = nearest_pair(level, sets, v);
         return pair && pair->spacings < least;
     });
-    Doubts doubts;
+    Occurrences doubts;
     for (const Index v : found) {
         if (!has_neighbor(level, v, found)) continue;
         if (doubts.count++ == 0) doubts.first = nearest_pair(level, sets, v)->middle;

@@ -2,7 +2,7 @@
 // How far the two sheets of a wall or gap are from each other, against what their points can tell.
 
 #include "hsdm/contour/normal_sets.hh"
-#include "hsdm/core/doubts.hh"
+#include "hsdm/core/occurrences.hh"
 
 #include <optional>
 
@@ -23,6 +23,6 @@ std::optional<SheetPair> nearest_pair(const OctreeLevel& level, const NormalSets
 /// which finds what stands on something; walls that stand free have nothing to be confused with and are told
 /// apart by their normals, however thin. A voxel with no such voxel beside it does not count: there points
 /// lie unevenly, for what is narrow goes on. O(sets), parallel.
-Doubts crowded_sheets(const OctreeLevel& level, const NormalSets& sets, double least = widths::least);
+Occurrences crowded_sheets(const OctreeLevel& level, const NormalSets& sets, double least = widths::least);
 
 } // namespace hsdm

@@ -1,7 +1,7 @@
 #pragma once
 // Removes facets from a mesh, together with the hints of their sides.
 
-#include "hsdm/core/discarded.hh"
+#include "hsdm/core/occurrences.hh"
 #include "hsdm/mesh/feature_hints.hh"
 #include "hsdm/polygon_mesh.hh"
 
@@ -10,8 +10,8 @@ namespace hsdm {
 /// Removes the facets f for which is_out(f), with the hints of their sides (none, or one per side); vertices
 /// stay. Returns how many went and a vertex of the first. O(corners).
 template <class IsOut>
-Discarded remove_facets(PolygonMesh& mesh, std::vector<EdgeHint>& hints, IsOut is_out) {
-    Discarded removed;
+Occurrences remove_facets(PolygonMesh& mesh, std::vector<EdgeHint>& hints, IsOut is_out) {
+    Occurrences removed;
     PolygonMesh kept;
     std::vector<EdgeHint> sides;
     for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
@@ -31,7 +31,7 @@ Discarded remove_facets(PolygonMesh& mesh, std::vector<EdgeHint>& hints, IsOut i
 
 /// The same of a mesh without hints.
 template <class IsOut>
-Discarded remove_facets(PolygonMesh& mesh, IsOut is_out) {
+Occurrences remove_facets(PolygonMesh& mesh, IsOut is_out) {
     std::vector<EdgeHint> none;
     return remove_facets(mesh, none, is_out);
 }

@@ -90,7 +90,7 @@ SmallComponents remove_components(PolygonMesh& mesh, std::vector<EdgeHint>& hint
 
 } // namespace
 
-Discarded drop_splinters(PolygonMesh& mesh, const SplinterOptions& options) {
+Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options) {
     if (mesh.facet_count() == 0) return {};
     Components components(mesh);
     const std::vector<std::size_t>& sizes = components.facets();

@@ -1,7 +1,7 @@
 #pragma once
 // Connected components that are too small to be a part.
 
-#include "hsdm/core/discarded.hh"
+#include "hsdm/core/occurrences.hh"
 #include "hsdm/mesh/constants.hh"
 #include "hsdm/mesh/feature_hints.hh"
 #include "hsdm/polygon_mesh.hh"
@@ -21,7 +21,7 @@ struct SplinterOptions {
 /// Removes the components (facets joined by shared vertices) that are splinters beside the largest one: a few
 /// facets on their own beside a surface of many. Vertices stay. Returns the number of facets removed, and
 /// where. O(facets), parallel.
-Discarded drop_splinters(PolygonMesh& mesh, const SplinterOptions& options = {});
+Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options = {});
 
 struct SmallComponentOptions {
     double least_facets = 0; ///< smaller components go
@@ -30,7 +30,7 @@ struct SmallComponentOptions {
 
 struct SmallComponents {
     std::size_t components = 0; ///< removed
-    Discarded facets;
+    Occurrences facets;
 };
 
 /// Which components are smaller than asked for.

@@ -86,7 +86,7 @@ void NormalConsistency::operator+=(const NormalConsistency& other) {
     steep += other.steep;
 }
 
-Doubts doubtful_sides(const Octree& octree, const NormalConsistency& consistency, bool estimated) {
+Occurrences doubtful_sides(const Octree& octree, const NormalConsistency& consistency, bool estimated) {
     const bool in_doubt = estimated ? consistency.flat_opposed >= contradictions::fewest_of_estimated
                                     : consistency.flat_opposed > 0 && consistency.doubtful();
     if (!in_doubt) return {};

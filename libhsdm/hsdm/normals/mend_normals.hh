@@ -1,7 +1,7 @@
 #pragma once
 // Finds given normals whose signs contradict each other, and turns them to one side.
 
-#include "hsdm/core/doubts.hh"
+#include "hsdm/core/occurrences.hh"
 #include "hsdm/octree/octree.hh"
 
 #include <optional>
@@ -30,7 +30,7 @@ struct NormalConsistency {
 /// The pairs on one plane with opposite normals, and where the first of them is, relative to the octree's
 /// origin. None as long as strays and thin parts may be to blame: of estimated normals there are next to none
 /// where their sides are right, of given ones there are as many as doubtful() allows.
-Doubts doubtful_sides(const Octree& octree, const NormalConsistency& consistency, bool estimated);
+Occurrences doubtful_sides(const Octree& octree, const NormalConsistency& consistency, bool estimated);
 
 /// Compares points, or 131,072 of them, with their two successors in octree order. O(n), parallel.
 NormalConsistency check_normals(const Octree& octree);

@@ -16,7 +16,7 @@ struct NormalsOptions {
 };
 
 struct NormalsReport {
-    Discarded outliers;      ///< points far from all others, removed first
+    Occurrences outliers;    ///< points far from all others, removed first
     SmoothReport smoothed;   ///< what was done about noise after that
     double noise = 0;        ///< see EstimatedNormals
     std::size_t bent = 0;    ///< points whose neighbours are not all of one plane: near creases, mostly

@@ -99,10 +99,10 @@ int support(const Octree& octree, Index i, std::span<const Index> neighbors,
 
 } // namespace
 
-Discarded drop_outliers_by_distance(Octree& octree, Neighbors& neighbors, const OutlierOptions& options) {
-    Discarded total;
+Occurrences drop_outliers_by_distance(Octree& octree, Neighbors& neighbors, const OutlierOptions& options) {
+    Occurrences total;
     for (int round = 0; round < options.rounds && neighbors.count > 0; ++round) {
-        const Discarded some = remove_points(octree, find_outliers(octree, neighbors, options));
+        const Occurrences some = remove_points(octree, find_outliers(octree, neighbors, options));
         if (some.count == 0) break;
         total.add(some);
         neighbors = find_neighbors(octree, {.count = static_cast<int>(neighbors.count)});
@@ -111,7 +111,7 @@ Discarded drop_outliers_by_distance(Octree& octree, Neighbors& neighbors, const 
     return total;
 }
 
-Discarded drop_outliers_by_normals(Octree& octree, const NormalOutlierOptions& options) {
+Occurrences drop_outliers_by_normals(Octree& octree, const NormalOutlierOptions& options) {
     const Density density = level_of_density(octree, options.points_per_voxel);
     const std::vector<Index>& first = density.first_point;
     const auto most = static_cast<Index>(std::max(1.0, options.most_share * density.typical));

@@ -1,7 +1,7 @@
 #pragma once
 // Points that are of no surface: outliers between and around the surfaces.
 
-#include "hsdm/core/discarded.hh"
+#include "hsdm/core/occurrences.hh"
 #include "hsdm/normals/constants.hh"
 #include "hsdm/normals/neighbors.hh"
 
@@ -30,7 +30,8 @@ struct OutlierOptions {
 /// of its farthest neighbour; along a sampled surface it changes slowly, as does the plane, however sparse
 /// the sampling. Returns how many, and where in the coordinates of the octree's bounds; `neighbors` becomes
 /// that of the points left. O(n) per round, parallel.
-Discarded drop_outliers_by_distance(Octree& octree, Neighbors& neighbors, const OutlierOptions& options = {});
+Occurrences drop_outliers_by_distance(Octree& octree, Neighbors& neighbors,
+                                      const OutlierOptions& options = {});
 
 struct NormalOutlierOptions {
     /// points in a typical point's voxel on the level where sparse voxels are looked for
@@ -52,6 +53,6 @@ struct NormalOutlierOptions {
 /// The same if normals are known: removes those points in sparse voxels that too few neighbours agree with.
 /// O(n), parallel; little more than one pass over the points if hardly any voxel is sparse. Throws
 /// OptionError.
-Discarded drop_outliers_by_normals(Octree& octree, const NormalOutlierOptions& options = {});
+Occurrences drop_outliers_by_normals(Octree& octree, const NormalOutlierOptions& options = {});
 
 } // namespace hsdm

@@ -1,7 +1,7 @@
 #pragma once
 // A noisy cloud's points moved onto the surface that they scatter about.
 
-#include "hsdm/core/discarded.hh"
+#include "hsdm/core/occurrences.hh"
 #include "hsdm/normals/constants.hh"
 #include "hsdm/normals/neighbors.hh"
 
@@ -16,8 +16,8 @@ struct SmoothOptions {
 };
 
 struct SmoothReport {
-    double noise = 0;  ///< standard deviation in the cloud's units; 0 if no point was moved
-    Discarded between; ///< points removed because they came to lie on no sheet
+    double noise = 0;    ///< standard deviation in the cloud's units; 0 if no point was moved
+    Occurrences between; ///< points removed because they came to lie on no sheet
 };
 
 /// Takes the noise out of a noisy cloud and renews its neighbours; leaves other clouds alone. O(n), parallel.

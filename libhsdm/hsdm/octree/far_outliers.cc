@@ -154,7 +154,7 @@ CloudFrame with_cuts(const Octree& octree, const PointView& cloud, CloudFrame fr
 
 } // namespace
 
-Discarded drop_far_outliers(Octree& octree, const PointView& cloud, CloudFrame& frame) {
+Occurrences drop_far_outliers(Octree& octree, const PointView& cloud, CloudFrame& frame) {
     // in the cloud's own units: outliers may have made the frame's unit huge
     const Box core = box_of_most(octree, cloud);
     const double extent = core.extent();
@@ -166,15 +166,15 @@ Discarded drop_far_outliers(Octree& octree, const PointView& cloud, CloudFrame& 
         far[i] = std::max(below.max(), above.max()) > far_points::margin * extent;
     }
     spare_parts(octree, far);
-    Discarded discarded = remove_points(octree, far);
+    Occurrences discarded = remove_points(octree, far);
     if (discarded.count == 0) return {};
     discarded.first = frame.to_cloud(discarded.first);
     if (const CloudFrame rest = frame_of_rest(octree, cloud); take_anew(octree, cloud, rest)) frame = rest;
     return discarded;
 }
 
-Discarded cut_empty_space(Octree& octree, const PointView& cloud, CloudFrame& frame, double least_gap) {
-    Discarded discarded;
+Occurrences cut_empty_space(Octree& octree, const PointView& cloud, CloudFrame& frame, double least_gap) {
+    Occurrences discarded;
     while (spacings::spacings_per_voxel * estimate_spacing(octree) < octree.voxel_size(deepest_level)) {
         const CloudFrame cut = with_cuts(octree, cloud, frame, least_gap / frame.unit());
         if (!cut.has_cuts()) return discarded;
@@ -186,7 +186,7 @@ Discarded cut_empty_space(Octree& octree, const PointView& cloud, CloudFrame& fr
             if (take_anew(octree, cloud, cut)) frame = cut;
             return discarded;
         }
-        Discarded some = remove_points(octree, marks);
+        Occurrences some = remove_points(octree, marks);
         some.first = frame.to_cloud(some.first);
         discarded.add(some);
         const CloudFrame rest = frame_of_rest(octree, cloud);

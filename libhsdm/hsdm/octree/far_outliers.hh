@@ -13,7 +13,7 @@ namespace hsdm {
 /// other points are taken again from the cloud that the octree was built of, because near a far origin they
 /// were rounded, and fitted to a cube and frame of their own. Returns how many were removed, and where in the
 /// cloud. O(1) if nothing is far, else O(n log n).
-Discarded drop_far_outliers(Octree& octree, const PointView& cloud, CloudFrame& frame);
+Occurrences drop_far_outliers(Octree& octree, const PointView& cloud, CloudFrame& frame);
 
 /// Where the spacing of the points is finer than the finest depth can follow, shortens the empty space
 /// between parts (CloudFrame::cut_gaps): gaps along an axis of 2^-12 of the cube, then narrower ones too, to
@@ -22,6 +22,6 @@ Discarded drop_far_outliers(Octree& octree, const PointView& cloud, CloudFrame& 
 /// together, and else nothing is cut: a lattice is no crowd of parts. The octree's positions are then those
 /// of the frame. Returns how many went, and where in the cloud. O(1) if the spacing is not too fine, else O(n
 /// log n) a round; rounds halve the gaps.
-Discarded cut_empty_space(Octree& octree, const PointView& cloud, CloudFrame& frame, double least_gap = 0);
+Occurrences cut_empty_space(Octree& octree, const PointView& cloud, CloudFrame& frame, double least_gap = 0);
 
 } // namespace hsdm

@@ -259,11 +259,11 @@ void rearrange(Octree& octree, std::vector<Vec3> positions, double extent) {
     octree.positions = gathered(positions, order);
 }
 
-Discarded remove_points(Octree& octree, std::span<const std::uint8_t> marked) {
+Occurrences remove_points(Octree& octree, std::span<const std::uint8_t> marked) {
     const auto first = std::find(marked.begin(), marked.end(), 1) - marked.begin();
     const auto count = static_cast<std::size_t>(std::count(marked.begin(), marked.end(), 1));
     if (count == 0) return {};
-    const Discarded discarded{count, octree.positions[static_cast<std::size_t>(first)] + octree.origin};
+    const Occurrences discarded{count, octree.positions[static_cast<std::size_t>(first)] + octree.origin};
     tbb::parallel_invoke(
         [&] { keep_unmarked(octree.codes, marked); }, [&] { keep_unmarked(octree.positions, marked); },
         [&] { keep_unmarked(octree.normals, marked); }, [&] { keep_unmarked(octree.source, marked); });

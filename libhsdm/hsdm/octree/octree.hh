@@ -1,8 +1,8 @@
 #pragma once
 // Phase 1, section 3.1: the Hierarchical Space Decomposition Model (HSDM), a linear octree.
 
-#include "hsdm/core/discarded.hh"
 #include "hsdm/core/morton_index.hh"
+#include "hsdm/core/occurrences.hh"
 #include "hsdm/point_view.hh"
 
 #include <span>
@@ -74,7 +74,7 @@ void rearrange(Octree& octree, std::vector<Vec3> positions, double extent);
 
 /// Removes the points that are marked, per point; the cube stays. Returns how many, and where in the
 /// coordinates of `bounds`. O(n), parallel.
-Discarded remove_points(Octree& octree, std::span<const std::uint8_t> marked);
+Occurrences remove_points(Octree& octree, std::span<const std::uint8_t> marked);
 
 /// Can a cube as large as this box have voxels: are all coordinates finite and all edges of voxels positive
 /// numbers?
@@ -118,5 +118,13 @@ std::vector<Index> first_points(const Octree& octree, int depth);
 
 /// Offsets of the 6 face, 12 edge and 8 corner neighbours: 6-, 18- and 26-adjacency is the first 6, 18, 26.
 extern const std::array<VoxelCoord, 26> neighbor_offsets;
+
+/// visit(voxel) for the occupied ones of the 26 round a voxel, in the order of neighbor_offsets.
+template <class Visit>
+void for_neighbors(const OctreeLevel& level, Index voxel, const Visit& visit) {
+    const VoxelCoord c = level.coord(voxel);
+    for (const VoxelCoord& o : neighbor_offsets)
+        if (const Index v = level.find({c[0] + o[0], c[1] + o[1], c[2] + o[2]}); v != no_index) visit(v);
+}
 
 } // namespace hsdm

@@ -30,7 +30,7 @@ DualContourOptions extended_options(const ReconstructOptions& options, double sp
     return result;
 }
 
-void note_dropped(const std::string& what, Discarded relative, const MethodInput& in, Report& report) {
+void note_dropped(const std::string& what, Occurrences relative, const MethodInput& in, Report& report) {
     relative.first += in.octree.origin;
     note_dropped(what, relative, in.frame, report);
 }
@@ -61,11 +61,11 @@ void note_counts(const DualContour& facets, Report& report) {
 NormalSets separated_sets(const MethodInput& in, Report& report) {
     NormalSets all = build_normal_sets(in.octree, in.level, {.merge_layers = in.options.merge_layers});
     const RelationTest related({}, in.level.voxel_size);
-    const Discarded outliers = drop_outlier_sets(in.level, related, all);
+    const Occurrences outliers = drop_outlier_sets(in.level, related, all);
     report.rejected["points_stray"] = outliers.count;
     note_dropped("points that no neighbour continues", outliers, in, report);
     report.rejected["sets_split"] = separate_patches(in.octree, in.level, related, all).split;
-    Doubts crowded = crowded_sheets(in.level, all);
+    Occurrences crowded = crowded_sheets(in.level, all);
     crowded.first += in.octree.origin;
     warn(warning_of::crowded_sheets, crowded, in.frame, report);
     return all;

@@ -53,8 +53,8 @@ Distance distance_of(std::span<const Vec3> points, const PolygonMesh& facets, Fa
 
 /// Measures the error. Returns the points that the mesh leaves out: those farther from it than a voxel's
 /// diagonal, or than the bound, and not because of their noise.
-Discarded measure_error(std::span<const Vec3> points, const MethodInput& in, const PolygonMesh& facets,
-                        FacetKnowledge& known, double enough, Report& report) {
+Occurrences measure_error(std::span<const Vec3> points, const MethodInput& in, const PolygonMesh& facets,
+                          FacetKnowledge& known, double enough, Report& report) {
     DistanceOptions options{.enough = enough};
     options.beyond = std::max(std::numbers::sqrt3 * report.grid.voxel_size, report.grid.max_error);
     Distance distance = distance_of(points, facets, known, options, report);
@@ -105,7 +105,7 @@ void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, Polyg
     const ReconstructOptions& options = in.options;
     const double enough = options.measure ? 0 : report.grid.max_error;
     bool measured = report.grid.max_error > 0 || (options.measure && options.min_component);
-    Discarded off; // of all components; those to be dropped are reported separately
+    Occurrences off; // of all components; those to be dropped are reported separately
     if (measured) off = measure_error(points, in, facets, known, enough, report);
     check_error_kept(report, in.frame.unit());
     if (options.min_component) {
@@ -128,7 +128,7 @@ void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, Polyg
     run_both([&] { measure_mesh(facets, report); },
              [&] {
                  if (measured) return;
-                 const Discarded left_out = measure_error(points, in, facets, known, 0, report);
+                 const Occurrences left_out = measure_error(points, in, facets, known, 0, report);
                  if (!options.min_component) off = left_out;
              });
     note_dropped("points more than a voxel's diagonal off the mesh", off, in.frame, report);
@@ -155,13 +155,13 @@ void measure_again(const PolyMesh& mesh, std::span<const Vec3> points, Report& r
     report.error.normalised_max = report.error.points_to_mesh_max / report.input.bbox.diagonal();
 }
 
-Doubts facets_that_meet(const PolygonMesh& facets) {
+Occurrences facets_that_meet(const PolygonMesh& facets) {
     const auto pairs = find_self_intersections(facets).facet_pairs;
     if (pairs.empty()) return {};
     return {pairs.size(), facets.positions[facets.facet(pairs[0][0])[0]]};
 }
 
-Doubts open_loops(const PolygonMesh& facets) {
+Occurrences open_loops(const PolygonMesh& facets) {
     const BoundaryLoops loops = boundary_loops(facets);
     if (loops.size() == 0) return {};
     return {loops.size(), facets.positions[loops[0][0]]};
@@ -179,7 +179,7 @@ void measure_details(const PolyMesh& mesh, Report::Mesh& report) {
 void count_intersections(const PolyMesh& mesh, Report& report) {
     PolygonMesh facets = to_polygons(mesh);
     const double unit = into_own_unit(facets.positions);
-    Doubts found = facets_that_meet(facets);
+    Occurrences found = facets_that_meet(facets);
     found.first *= unit;
     report.mesh.intersections = found.count;
     warn_anew(warning_of::intersections, found, CloudFrame(), report);

@@ -1,7 +1,7 @@
 #pragma once
 // The report's part on facets: their topology and how far the points are from them.
 
-#include "hsdm/core/doubts.hh"
+#include "hsdm/core/occurrences.hh"
 #include "hsdm/mesh_types.hh"
 #include "hsdm/pipeline/method.hh"
 
@@ -21,10 +21,10 @@ void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, Polyg
 void measure_again(const PolyMesh& mesh, std::span<const Vec3> points, Report& report);
 
 /// Pairs of facets that pass through each other, and a corner of the first.
-Doubts facets_that_meet(const PolygonMesh& facets);
+Occurrences facets_that_meet(const PolygonMesh& facets);
 
 /// Boundary loops, and a vertex of the first.
-Doubts open_loops(const PolygonMesh& facets);
+Occurrences open_loops(const PolygonMesh& facets);
 
 /// Digest and shape of a finished mesh. O(corners).
 void measure_details(const PolyMesh& mesh, Report::Mesh& report);

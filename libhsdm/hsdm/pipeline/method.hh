@@ -2,8 +2,7 @@
 // The common input and output of both methods.
 
 #include "hsdm/cloud/cloud_frame.hh"
-#include "hsdm/core/discarded.hh"
-#include "hsdm/core/doubts.hh"
+#include "hsdm/core/occurrences.hh"
 #include "hsdm/mesh/facet_links.hh"
 #include "hsdm/mesh/feature_hints.hh"
 #include "hsdm/octree/octree.hh"
@@ -29,11 +28,12 @@ struct FacetKnowledge {
     FeatureHints hints;
     std::optional<FacetLinks> links;
     std::optional<FacetCells> cells; ///< the voxels as cells of the facets
-    Doubts intersections; ///< pairs that meet, as far as the method knows; relative to the octree's origin
+    Occurrences
+        intersections; ///< pairs that meet, as far as the method knows; relative to the octree's origin
 };
 
 /// Adds an entry to the report's list, unless nothing was dropped. `discarded.first` lies in the frame.
-void note_dropped(const std::string& what, const Discarded& discarded, const CloudFrame& frame,
+void note_dropped(const std::string& what, const Occurrences& discarded, const CloudFrame& frame,
                   Report& report);
 
 } // namespace hsdm

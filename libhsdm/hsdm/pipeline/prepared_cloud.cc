@@ -52,7 +52,7 @@ PreparedCloud::PreparedCloud(InputCloud& input, const ReconstructOptions& option
     octree_options.unit = frame.unit();
     octree =
         phases.run("octree", 0, report.seconds.octree, [&] { return input.take_octree(octree_options); });
-    Discarded far = drop_far_outliers(octree, cloud, frame);
+    Occurrences far = drop_far_outliers(octree, cloud, frame);
     frame.check_reach();
     constexpr double voxels_between_parts = 16; // more than any stage reaches from voxel to voxel
     far.add(cut_empty_space(octree, cloud, frame, voxels_between_parts * options.voxel_size.value_or(0)));
@@ -92,7 +92,7 @@ void PreparedCloud::check_given_normals(const PointView& cloud, const Phases& ph
         return mended;
     });
     note_outliers(phases.run("strays", 0.08, report.seconds.normals, [&] {
-        const Discarded outliers = drop_outliers_by_normals(octree);
+        const Occurrences outliers = drop_outliers_by_normals(octree);
         if (outliers.count > 0) fit_to_points(octree);
         return outliers;
     }));
@@ -128,7 +128,7 @@ void PreparedCloud::smooth_for_depth(int depth, const Phases& phases) {
     }));
 }
 
-void PreparedCloud::note_outliers(const Discarded& outliers) {
+void PreparedCloud::note_outliers(const Occurrences& outliers) {
     report.rejected["points_outlying"] = far_away_ + outliers.count;
     note_dropped("points off every surface", outliers, frame, report);
     if (outliers.count == 0) return;
@@ -142,7 +142,7 @@ std::optional<Vec3> PreparedCloud::sensor_of(const PointView& cloud) const {
 }
 
 void PreparedCloud::warn_of_sides(const NormalConsistency& consistency, bool estimated) {
-    Doubts sides = doubtful_sides(octree, consistency, estimated);
+    Occurrences sides = doubtful_sides(octree, consistency, estimated);
     sides.first += octree.origin;
     warn(warning_of::sides, sides, frame, report);
 }

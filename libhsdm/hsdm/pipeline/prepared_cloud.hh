@@ -47,7 +47,7 @@ public:
 private:
     /// Enters outliers in the report, and measures spacing and size again, because outliers make a cloud look
     /// sparser and larger.
-    void note_outliers(const Discarded& outliers);
+    void note_outliers(const Occurrences& outliers);
 
     /// Enters what normals contradict each other.
     void warn_of_sides(const NormalConsistency& consistency, bool estimated);

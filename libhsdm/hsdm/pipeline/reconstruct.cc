@@ -67,7 +67,8 @@ void check_facets(const PolygonMesh& facets, const OctreeLevel& level) {
 
 void leave_out_unsound(const MethodInput& in, PolygonMesh& facets, FacetKnowledge& known, Report& report) {
     if (!known.links) known.links = link_facets(facets);
-    Discarded unsound = drop_degenerate_facets(facets, in.octree.origin, in.frame, *known.links, known.hints);
+    Occurrences unsound =
+        drop_degenerate_facets(facets, in.octree.origin, in.frame, *known.links, known.hints);
     report.rejected["facets_unsound"] = unsound.count;
     if (unsound.count == 0) return;
     known.cells.reset();
@@ -76,7 +77,7 @@ void leave_out_unsound(const MethodInput& in, PolygonMesh& facets, FacetKnowledg
 }
 
 /// Of what lies relative to the octree's origin.
-void warn_of(const char* what, Doubts relative, const MethodInput& in, Report& report) {
+void warn_of(const char* what, Occurrences relative, const MethodInput& in, Report& report) {
     relative.first += in.octree.origin;
     warn(what, relative, in.frame, report);
 }

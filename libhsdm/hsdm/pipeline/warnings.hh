@@ -2,7 +2,7 @@
 // What a run warns of: the report's list of places where the surface may be wrong (docs/quality.md#warnings).
 
 #include "hsdm/cloud/cloud_frame.hh"
-#include "hsdm/core/doubts.hh"
+#include "hsdm/core/occurrences.hh"
 #include "hsdm/report.hh"
 
 namespace hsdm {
@@ -17,9 +17,9 @@ inline constexpr const char* open_loops = "boundary loops that stay open though 
 } // namespace warning_of
 
 /// Adds an entry to the report's list, unless there is no doubt. `doubts.first` lies in the frame.
-void warn(const char* what, const Doubts& doubts, const CloudFrame& frame, Report& report);
+void warn(const char* what, const Occurrences& doubts, const CloudFrame& frame, Report& report);
 
 /// In the place of what was said of it before, if anything was.
-void warn_anew(const char* what, const Doubts& doubts, const CloudFrame& frame, Report& report);
+void warn_anew(const char* what, const Occurrences& doubts, const CloudFrame& frame, Report& report);
 
 } // namespace hsdm

@@ -55,8 +55,8 @@ bool spans_cut(const PolygonMesh& mesh, const Vec3& origin, const CloudFrame& fr
 
 } // namespace
 
-Discarded drop_degenerate_facets(PolygonMesh& mesh, const Vec3& origin, const CloudFrame& frame,
-                                 FacetLinks& links, FeatureHints& hints) {
+Occurrences drop_degenerate_facets(PolygonMesh& mesh, const Vec3& origin, const CloudFrame& frame,
+                                   FacetLinks& links, FeatureHints& hints) {
     std::vector<std::uint8_t> unsound = large_vector<std::uint8_t>(mesh.facet_count());
     for_chunks(mesh.facet_count(), chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t) {
         std::vector<Vec3> ring;
@@ -69,7 +69,7 @@ Discarded drop_degenerate_facets(PolygonMesh& mesh, const Vec3& origin, const Cl
         }
     });
     if (std::find(unsound.begin(), unsound.end(), 1) == unsound.end()) return {};
-    const Discarded dropped =
+    const Occurrences dropped =
         remove_facets(mesh, hints.sides, [&](std::size_t f) { return unsound[f] != 0; });
     links = link_facets(mesh);
     return dropped;

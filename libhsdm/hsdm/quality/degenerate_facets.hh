@@ -2,7 +2,7 @@
 // The last look at facets before they become a mesh.
 
 #include "hsdm/cloud/cloud_frame.hh"
-#include "hsdm/core/discarded.hh"
+#include "hsdm/core/occurrences.hh"
 #include "hsdm/mesh/facet_links.hh"
 #include "hsdm/mesh/feature_hints.hh"
 
@@ -14,7 +14,7 @@ namespace hsdm {
 /// points or of extreme shape leave such. Hints go with their facets; `links` are the mesh's, and are linked
 /// anew if something is removed. Returns how many were removed, and where relative to the origin. O(corners),
 /// parallel.
-Discarded drop_degenerate_facets(PolygonMesh& mesh, const Vec3& origin, const CloudFrame& frame,
-                                 FacetLinks& links, FeatureHints& hints);
+Occurrences drop_degenerate_facets(PolygonMesh& mesh, const Vec3& origin, const CloudFrame& frame,
+                                   FacetLinks& links, FeatureHints& hints);
 
 } // namespace hsdm
