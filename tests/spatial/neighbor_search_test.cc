@@ -28,12 +28,20 @@ NearPoints none_for(std::size_t places) {
     return none;
 }
 
-/// The first `count` of those within the radius, found one by one.
-NearPoints brute_force(const std::vector<Vec3>& points, const std::vector<Vec3>& places, std::size_t count,
-                       double radius = 1e300) {
-    NearPoints result = none_for(places.size());
-    for (std::size_t p = 0; p < places.size(); ++p) {
-        for (const auto& [squared, index] : by_distance(points, places[p])) {
+/// For each place all points in that order.
+using AllNear = std::vector<std::vector<Near>>;
+
+AllNear all_by_distance(const std::vector<Vec3>& points, const std::vector<Vec3>& places) {
+    AllNear all;
+    for (const Vec3& place : places) all.push_back(by_distance(points, place));
+    return all;
+}
+
+/// The first `count` of those within the radius.
+NearPoints first_of(const AllNear& all, std::size_t count, double radius = 1e300) {
+    NearPoints result = none_for(all.size());
+    for (std::size_t p = 0; p < all.size(); ++p) {
+        for (const auto& [squared, index] : all[p]) {
             if (result.index.size() - result.first[p] == count || squared > radius * radius) break;
             result.index.push_back(index);
             result.distance.push_back(std::sqrt(squared));
@@ -85,33 +93,32 @@ TEST_CASE("nearest points are those that a look at every point finds, equally ne
     for (const Vec3& p : in_a_box(60, 6, points.front())) places.push_back(p);
     for (const Vec3& p : in_a_box(20, 7)) places.push_back(points.front() + p * 1e5);
     const NeighborSearch search(points);
+    const AllNear all = all_by_distance(points, places);
     for (const int count : {1, 2, 8, 40, 5000})
-        CHECK(equal(search.nearest(places, count),
-                    brute_force(points, places, static_cast<std::size_t>(count))));
+        CHECK(equal(search.nearest(places, count), first_of(all, static_cast<std::size_t>(count))));
     for (const double radius : {0.0, 0.11, 1.0, 2.0, 1e4})
         for (const int count : {1, 7, 5000}) {
             const auto most = static_cast<std::size_t>(count);
-            CHECK(equal(search.nearest_within(places, count, radius),
-                        brute_force(points, places, most, radius)));
-            if (count == 5000)
-                CHECK(equal(search.within(places, radius), brute_force(points, places, most, radius)));
+            CHECK(equal(search.nearest_within(places, count, radius), first_of(all, most, radius)));
+            if (count == 5000) CHECK(equal(search.within(places, radius), first_of(all, most, radius)));
         }
-    for (const Vec3& place : places) {
-        const auto [squared, index] = by_distance(points, place).front();
-        CHECK(search.nearest(place).index == index);
-        CHECK(search.nearest(place).distance == std::sqrt(squared));
+    for (std::size_t p = 0; p < places.size(); ++p) {
+        const auto [squared, index] = all[p].front();
+        CHECK(search.nearest(places[p]).index == index);
+        CHECK(search.nearest(places[p]).distance == std::sqrt(squared));
     }
 }
 
 TEST_CASE("neighbours are all others at the same place first, never the point itself", "[neighbors]") {
     const std::vector<Vec3> points = GENERATE(in_a_box(800, 8), on_a_grid(800, 9), on_a_grid(6, 10));
     const NeighborSearch search(points);
+    const AllNear all = all_by_distance(points, points);
     for (const int count : {1, 5, 1000}) {
         const NearPoints found = search.neighbors(count);
         REQUIRE(found.places() == points.size());
         std::size_t wrong = 0;
         for (Index i = 0; i < points.size(); ++i) {
-            std::vector<Near> others = by_distance(points, points[i]);
+            std::vector<Near> others = all[i];
             std::erase_if(others, [i](const Near& near) { return near.second == i; });
             others.resize(std::min<std::size_t>(others.size(), static_cast<std::size_t>(count)));
             for (std::size_t k = 0; k < others.size(); ++k)
