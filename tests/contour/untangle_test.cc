@@ -1,5 +1,6 @@
 #include "hsdm/contour/untangle.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/quality/topology.hh"
 #include "hsdm/spatial/self_intersections.hh"
 
 #include <catch2/catch.hpp>
@@ -86,6 +87,32 @@ TEST_CASE("no vertex moves farther than its reach", "[untangle]") {
     untangle(mesh, short_reach);
     for (std::size_t v = 0; v < before.size(); ++v)
         CHECK((mesh.positions[v] - before[v]).norm() <= 0.25 + 1e-12);
+}
+
+TEST_CASE("what still sticks through another sheet is merged into its neighbours, and the rest stays",
+          "[untangle]") {
+    PolygonMesh mesh;
+    add_sheet(mesh, 8, 0);
+    add_sheet(mesh, 8, 0.4);
+    const std::size_t spike = 4 * 9 + 4;
+    mesh.positions[spike][2] = 0.6;
+    const std::vector<Vec3> before = mesh.positions;
+    const std::size_t facets = mesh.facet_count();
+
+    const UntangleCounts none = collapse_tangles(mesh, 1, 0);
+    CHECK(none.after == none.before);
+    CHECK(mesh.facet_count() == facets);
+
+    const UntangleCounts counts = collapse_tangles(mesh, 1);
+    CHECK(counts.before > 0);
+    CHECK(counts.after == 0);
+    CHECK(counts.moved >= 1);
+    CHECK(find_self_intersections(mesh).triangle_pairs == 0);
+    CHECK(mesh.positions == before);
+    remove_isolated_vertices(mesh);
+    CHECK(mesh.vertex_count() == before.size() - counts.moved);
+    CHECK(measure_topology(mesh).euler == 2); // of two discs
+    CHECK(measure_topology(mesh).boundary_loops == 2);
 }
 
 TEST_CASE("options of untangling out of range are refused", "[untangle]") {

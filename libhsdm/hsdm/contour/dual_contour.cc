@@ -2,6 +2,7 @@
 
 #include "hsdm/contour/grid_signs.hh"
 #include "hsdm/contour/move_to_creases.hh"
+#include "hsdm/contour/rims.hh"
 #include "hsdm/contour/shared_corners.hh"
 
 #include "hsdm/contour/trim_crossings.hh"
@@ -286,7 +287,9 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     PlacedVertices vertices = place_vertices(dual, sets, related);
     dual.grid.index = {}; // place_vertices was the last to look for grid points
     extend_borders(dual, sets, vertices);
+    draw_in_rims(octree, level, sets, dual, vertices);
     relax_vertices(octree, level, dual, options.relax, vertices);
+    draw_in_rims(octree, level, sets, dual, vertices);
     separate_sides(dual, vertices.positions);
     std::vector<EdgeCollapse> to_corners = shared_corners(dual, vertices);
 
@@ -336,6 +339,13 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     untangle_options.nearby *= h;
     result.cells.emplace(result.mesh, h);
     result.intersections = untangle(result.mesh, untangle_options, &*result.cells);
+    if (result.intersections.after > 0) {
+        const UntangleCounts merged = collapse_tangles(result.mesh, untangle_options.nearby);
+        result.intersections.moved += merged.moved;
+        result.intersections.after = merged.after;
+        result.intersections.first = merged.first;
+        if (merged.moved > 0) remove_isolated_vertices(result.mesh);
+    }
     if (result.intersections.moved > 0) result.cells.reset();
     settle_origins(result);
     return result;

@@ -1,10 +1,14 @@
 #include "hsdm/contour/untangle.hh"
 
 #include "hsdm/core/check_option.hh"
+#include "hsdm/core/chunks.hh"
+#include "hsdm/mesh/collapse_edges.hh"
 #include "hsdm/mesh/part_of.hh"
 #include "hsdm/spatial/self_intersections.hh"
 
 #include <algorithm>
+#include <tuple>
+#include <utility>
 
 namespace hsdm {
 namespace {
@@ -56,6 +60,14 @@ public:
     /// Per vertex of the part: may it move?
     bool inner(Index v) const { return inner_[v] != 0; }
 
+    /// Per vertex of the part, that of the mesh.
+    std::vector<Index> whole() const {
+        std::vector<Index> numbers(part.vertex_count());
+        for (std::size_t v = 0; v < of_vertex_.size(); ++v)
+            if (of_vertex_[v] != no_index) numbers[of_vertex_[v]] = static_cast<Index>(v);
+        return numbers;
+    }
+
     void write_back(PolygonMesh& mesh) const {
         for (std::size_t v = 0; v < of_vertex_.size(); ++v)
             if (of_vertex_[v] != no_index) mesh.positions[v] = part.positions[of_vertex_[v]];
@@ -84,6 +96,46 @@ std::vector<Vec3> neighbour_means(const PolygonMesh& mesh) {
     for (std::size_t v = 0; v < sums.size(); ++v)
         sums[v] = counts[v] > 0 ? sums[v] / counts[v] : mesh.positions[v];
     return sums;
+}
+
+/// The edges that end at facets that intersect others, either way round, shortest first, if both ends may move.
+std::vector<EdgeCollapse> tangled_edges(const Neighbourhood& around,
+                                        const std::vector<std::array<Index, 2>>& pairs) {
+    const PolygonMesh& mesh = around.part;
+    std::vector<std::uint8_t> tangled(mesh.vertex_count(), 0);
+    for (const auto& pair : pairs)
+        for (Index f : pair)
+            for (Index v : mesh.facet(f)) tangled[v] = 1;
+    std::vector<std::tuple<double, Index, Index>> edges;
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+        const auto ring = mesh.facet(f);
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            const Index a = ring[i], b = ring[(i + 1) % ring.size()];
+            if (!(tangled[a] || tangled[b]) || !around.inner(a) || !around.inner(b)) continue;
+            const double length = (mesh.positions[a] - mesh.positions[b]).sqrnorm();
+            edges.emplace_back(length, a, b);
+            edges.emplace_back(length, b, a);
+        }
+    }
+    sort_unique(edges);
+    std::vector<EdgeCollapse> collapses;
+    for (const auto& [length, from, to] : edges) collapses.push_back({from, to, mesh.positions[to]});
+    return collapses;
+}
+
+/// Collapses the first of the edges that leaves fewer intersections than were found; false if none does.
+bool collapse_one(Neighbourhood& around, SelfIntersections& found, EdgeCollapse& done) {
+    for (const EdgeCollapse& edge : tangled_edges(around, found.facet_pairs)) {
+        PolygonMesh trial = around.part;
+        if (!collapse_edges(trial, {{edge}})[0]) continue;
+        SelfIntersections left = find_self_intersections(trial);
+        if (left.triangle_pairs >= found.triangle_pairs) continue;
+        around.part = std::move(trial);
+        found = std::move(left);
+        done = edge;
+        return true;
+    }
+    return false;
 }
 
 void validate(const UntangleOptions& options) {
@@ -136,6 +188,27 @@ UntangleCounts untangle(PolygonMesh& mesh, const UntangleOptions& options, const
     around.write_back(mesh);
     counts.after = fewest;
     if (fewest > 0) counts.first = best[first];
+    return counts;
+}
+
+UntangleCounts collapse_tangles(PolygonMesh& mesh, double nearby, std::size_t most_pairs) {
+    check_option(nearby > 0, "nearby", nearby, "be positive");
+    SelfIntersections found = find_self_intersections(mesh);
+    UntangleCounts counts;
+    counts.before = counts.after = found.triangle_pairs;
+    if (found.triangle_pairs == 0) return counts;
+    counts.first = mesh.positions[mesh.facet(found.facet_pairs[0][0])[0]];
+    if (found.facet_pairs.size() > most_pairs) return counts;
+    Neighbourhood around(mesh, found.facet_pairs, nearby);
+    const std::vector<Index> whole = around.whole();
+    found = find_self_intersections(around.part);
+    std::vector<EdgeCollapse> edges;
+    for (EdgeCollapse edge{}; found.triangle_pairs > 0 && collapse_one(around, found, edge);)
+        edges.push_back({whole[edge.from], whole[edge.to], edge.position});
+    collapse_edges(mesh, edges);
+    counts.moved = edges.size();
+    counts.after = found.triangle_pairs;
+    if (counts.after > 0) counts.first = around.part.positions[around.part.facet(found.facet_pairs[0][0])[0]];
     return counts;
 }
 

@@ -19,7 +19,7 @@ struct UntangleOptions {
 struct UntangleCounts {
     std::size_t before = 0; ///< pairs of triangles that intersected
     std::size_t after = 0;  ///< pairs that still do
-    std::size_t moved = 0;  ///< vertices moved
+    std::size_t moved = 0;  ///< vertices moved or merged
     Vec3 first{0, 0, 0};    ///< a corner of the first facet that still meets another; anything if none does
 };
 
@@ -29,5 +29,12 @@ struct UntangleCounts {
 /// same for any number of threads. `cells`: those of the mesh, which speed up the search if facets are about
 /// as large as cells; they stay valid if no vertex moves. Throws OptionError.
 UntangleCounts untangle(PolygonMesh& mesh, const UntangleOptions& options, const FacetCells* cells = nullptr);
+
+/// Merges vertices of the facets that still intersect others, one edge at a time, as long as each leaves
+/// fewer intersections: facets go, the topology stays (collapse_edges). Nothing is tried if more than
+/// `most_pairs` pairs of facets intersect. Merged vertices become isolated. `nearby`: as above. O(t log t +
+/// facets near by * edges tried).
+UntangleCounts collapse_tangles(PolygonMesh& mesh, double nearby,
+                                std::size_t most_pairs = untangling::most_pairs);
 
 } // namespace hsdm
