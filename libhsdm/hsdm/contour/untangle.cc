@@ -98,7 +98,8 @@ std::vector<Vec3> neighbour_means(const PolygonMesh& mesh) {
     return sums;
 }
 
-/// The edges that end at facets that intersect others, either way round, shortest first, if both ends may move.
+/// The edges that end at facets that intersect others, either way round, shortest first, if both ends may
+/// move.
 std::vector<EdgeCollapse> tangled_edges(const Neighbourhood& around,
                                         const std::vector<std::array<Index, 2>>& pairs) {
     const PolygonMesh& mesh = around.part;
