@@ -100,6 +100,7 @@ void draw_in_rims(const Octree& octree, const OctreeLevel& level, const NormalSe
         return vertices.positions[v] != placed[v];
     });
     std::vector<Vec3> drawn;
+    drawn.reserve(moved.size());
     for (const Index v : moved) drawn.push_back(vertices.positions[v]);
     // Those round which a facet turns over go back, a quarter of the way at a time.
     std::vector<std::uint8_t> quarters(moved.size(), 4), turning(moved.size());

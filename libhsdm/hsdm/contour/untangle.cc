@@ -120,6 +120,7 @@ std::vector<EdgeCollapse> tangled_edges(const Neighbourhood& around,
     }
     sort_unique(edges);
     std::vector<EdgeCollapse> collapses;
+    collapses.reserve(edges.size());
     for (const auto& [length, from, to] : edges) collapses.push_back({from, to, mesh.positions[to]});
     return collapses;
 }
