@@ -93,9 +93,8 @@ TEST_CASE("totals count the inputs that are done alone", "[cli]") {
 #if !defined(HSDM_SANITIZED) // whose shadow memory needs the address space
 TEST_CASE("the end of memory is told with file and phase, and the other inputs go on", "[cli]") {
     const Folder folder;
-    folder.write(
-        "large.xyz",
-        xyz(sphere_scan(300000))); // needs far more than the limits, where memory is managed otherwise too
+    // Needs far more than the limits, also where memory is managed otherwise.
+    folder.write("large.xyz", xyz(sphere_scan(300000)));
     folder.write("small.xyz", xyz(sphere_scan(500)));
     for (const char* megabytes : {"40", "55"}) {
         const CommandResult result =

@@ -22,6 +22,18 @@ void add_sheet(PolygonMesh& mesh, int side, double z) {
             mesh.add_facet(std::array{at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k + 1)});
 }
 
+/// A vertex of the lower sheet.
+constexpr std::size_t spike = 4 * 9 + 4;
+
+/// The lower one sticks through the upper one at the spike.
+PolygonMesh two_sheets_that_meet() {
+    PolygonMesh mesh;
+    add_sheet(mesh, 8, 0);
+    add_sheet(mesh, 8, 0.4);
+    mesh.positions[spike][2] = 0.6;
+    return mesh;
+}
+
 UntangleOptions options() {
     const UntangleOptions result{.nearby = 1};
     return result;
@@ -30,11 +42,7 @@ UntangleOptions options() {
 } // namespace
 
 TEST_CASE("a vertex that sticks through another sheet is taken back", "[untangle]") {
-    PolygonMesh mesh;
-    add_sheet(mesh, 8, 0);
-    add_sheet(mesh, 8, 0.4);
-    const std::size_t spike = 4 * 9 + 4;
-    mesh.positions[spike][2] = 0.6;
+    PolygonMesh mesh = two_sheets_that_meet();
     const std::vector<Vec3> before = mesh.positions;
     const std::vector<Index> corners = mesh.corners;
     REQUIRE(find_self_intersections(mesh).triangle_pairs > 0);
@@ -91,11 +99,7 @@ TEST_CASE("no vertex moves farther than its reach", "[untangle]") {
 
 TEST_CASE("what still sticks through another sheet is merged into its neighbours, and the rest stays",
           "[untangle]") {
-    PolygonMesh mesh;
-    add_sheet(mesh, 8, 0);
-    add_sheet(mesh, 8, 0.4);
-    const std::size_t spike = 4 * 9 + 4;
-    mesh.positions[spike][2] = 0.6;
+    PolygonMesh mesh = two_sheets_that_meet();
     const std::vector<Vec3> before = mesh.positions;
     const std::size_t facets = mesh.facet_count();
 

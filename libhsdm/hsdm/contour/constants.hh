@@ -429,6 +429,7 @@ inline constexpr double nearby = 1;
 /// Pairs of facets: of more intersecting ones none is tried to be merged.
 /// Why: each try looks at all facets near them again; so many are no local mishap.
 inline constexpr std::size_t most_pairs = 100;
+
 } // namespace hsdm::untangling
 
 // which holes dual_contour.hh closes
