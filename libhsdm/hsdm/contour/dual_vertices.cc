@@ -267,9 +267,17 @@ DualVertices build_dual_vertices(const GridPoints& grid, const Crossings& crossi
                 chunks[c].add(cut, chain.closed);
             }
     });
+    std::size_t corners = 0, vertices = 0;
+    for (const ChunkDualVertices& chunk : chunks)
+        corners += chunk.corners.size(), vertices += chunk.sizes.size();
     DualVertices duals;
+    reserve_large(duals.corners, corners);
+    reserve_large(duals.first, vertices + 1);
+    reserve_large(duals.open, vertices);
     std::vector<std::uint8_t> shared;
+    reserve_large(shared, vertices);
     for (const ChunkDualVertices& chunk : chunks) {
+        Interruption::poll();
         append(chunk, duals);
         shared.insert(shared.end(), chunk.shared.begin(), chunk.shared.end());
     }

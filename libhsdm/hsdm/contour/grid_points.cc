@@ -69,9 +69,10 @@ std::vector<MortonCode> grid_point_codes(const OctreeLevel& level) {
     std::vector<CodeIndex> points = joined(parts);
     radix_sort(points, 3 * (level.depth + 2));
     std::vector<MortonCode> codes;
-    codes.reserve(points.size());
-    for (const CodeIndex& point : points)
-        if (codes.empty() || codes.back() != point.code) codes.push_back(point.code);
+    reserve_large(codes, points.size());
+    for_each_in_order(points.size(), [&](std::size_t i) {
+        if (codes.empty() || codes.back() != points[i].code) codes.push_back(points[i].code);
+    });
     return codes;
 }
 
@@ -123,6 +124,7 @@ GridPoints build_grid_points(const OctreeLevel& level) {
 
 void add_grid_points(GridPoints& grid, std::span<const MortonCode> codes) {
     const std::size_t n = grid.size();
+    reserve_large(grid.codes, n + codes.size());
     grid.codes.insert(grid.codes.end(), codes.begin(), codes.end());
     grid.index.build(grid.codes);
     resize_large(grid.voxels, grid.size(), no_voxels);

@@ -88,7 +88,7 @@ void PointFit::gather_beside(Index voxel, std::vector<Index>& duals) const {
 }
 
 PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
-    Measure result{std::vector<double>(level_.size(), 0), std::vector<Heights>(duals_.size())};
+    Measure result{large_vector<double>(level_.size(), 0), large_vector<Heights>(duals_.size())};
     // Contributions to vertices in other chunks' voxels are added afterwards, in the order of the chunks.
     std::vector<std::vector<Foreign>> foreign(chunk_count(level_.size(), 2 * chunks::heavy));
     for_chunks(level_.size(), 2 * chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
@@ -125,8 +125,10 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
             }
         }
     });
-    for (const std::vector<Foreign>& share : foreign)
+    for (const std::vector<Foreign>& share : foreign) {
+        Interruption::poll();
         for (const Foreign& f : share) result.heights[f.dual].add(f.weight, f.height);
+    }
     return result;
 }
 

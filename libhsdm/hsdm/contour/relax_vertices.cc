@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace hsdm {
 namespace {
@@ -30,19 +29,22 @@ Vec3 within_voxel(const DualMesh& mesh, Index dual, const Vec3& from, const Vec3
 }
 
 double sum_of(const std::vector<double>& all) {
-    return std::accumulate(all.begin(), all.end(), 0.0);
+    double sum = 0;
+    for_each_in_order(all.size(), [&](std::size_t i) { sum += all[i]; });
+    return sum;
 }
 
 class Relaxation {
 public:
     Relaxation(const DualMesh& mesh, PlacedVertices& vertices)
-        : mesh_(mesh), duals_(mesh.duals), vertices_(vertices), placed_(vertices.positions) {
+        : mesh_(mesh), duals_(mesh.duals), vertices_(vertices), placed_(copy_of_large(vertices.positions)) {
         list_neighbours();
     }
 
     void round(double step) {
-        next_ = vertices_.positions;
+        resize_large(next_, duals_.size());
         for_each_index(duals_.size(), chunks::slow, [&](Index v) {
+            next_[v] = vertices_.positions[v];
             if (duals_.open[v]) return;
             if (vertices_.classes[v] == VertexClass::smooth)
                 next_[v] = kept_in(v, on_sheet(v, moved_on_sheet(v, step)));
@@ -60,15 +62,15 @@ public:
         rise(fit.rises(before.heights));
         const PointFit::Measure after = fit.measure(vertices_.positions);
         if (sum_of(after.misfit) > sum_of(before.misfit)) {
-            vertices_.positions = placed_;
+            vertices_.positions = copy_of_large(placed_);
             return;
         }
         rise(fit.rises(after.heights));
-        for (std::size_t v = 0; v < duals_.size(); ++v) {
+        for_each_index(duals_.size(), chunks::light, [&](Index v) {
             const Index voxel = vertices_.voxel[v];
             if (after.misfit[voxel] > (1 + relaxation::farther) * before.misfit[voxel])
                 vertices_.positions[v] = placed_[v];
-        }
+        });
     }
 
 private:
@@ -185,7 +187,7 @@ const NormalSet* own_set(const NormalSets& sets, Index voxel, const Vec3& normal
 } // namespace
 
 void extend_borders(const DualMesh& mesh, const NormalSets& sets, PlacedVertices& vertices) {
-    const std::vector<Vec3> placed = vertices.positions;
+    const std::vector<Vec3> placed = copy_of_large(vertices.positions);
     const DualVertices& duals = mesh.duals;
     for_each_index(duals.size(), chunks::slow, [&](Index v) {
         if (!duals.open[v] || vertices.classes[v] != VertexClass::smooth) return;

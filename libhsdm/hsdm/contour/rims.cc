@@ -90,7 +90,7 @@ bool turns_over(const DualMesh& mesh, Index dual, const std::vector<Vec3>& befor
 
 void draw_in_rims(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
                   const DualMesh& mesh, PlacedVertices& vertices) {
-    const std::vector<Vec3> placed = vertices.positions;
+    const std::vector<Vec3> placed = copy_of_large(vertices.positions);
     const EndFinder end_of(octree, level, sets, mesh);
     const std::vector<Index> moved = indices_where(mesh.duals.size(), chunks::slow, [&](Index v) {
         if (vertices.classes[v] == VertexClass::corner || !(mesh.duals.open[v] || is_at_rim(mesh, v)))

@@ -1,11 +1,11 @@
 #pragma once
 // Disjoint sets of indices: union by least member, path halving; from any number of threads at once.
 
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/types.hh"
 
 #include <algorithm>
 #include <atomic>
-#include <numeric>
 #include <vector>
 
 namespace hsdm {
@@ -14,7 +14,9 @@ namespace hsdm {
 /// order of the joins. Threads may join and find at the same time: a member's parent only ever becomes less.
 class DisjointSets {
 public:
-    explicit DisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
+    explicit DisjointSets(std::size_t n) : parent_(large_vector<Index>(n)) {
+        for_each_in_order(n, [&](std::size_t i) { parent_[i] = static_cast<Index>(i); });
+    }
 
     Index find(Index i) {
         for (;;) {

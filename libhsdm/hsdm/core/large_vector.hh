@@ -15,14 +15,50 @@ namespace hsdm {
 /// yet; in parallel, and asks in between (Interruption). Does nothing for small blocks.
 void touch_pages(void* memory, std::size_t bytes);
 
+/// Values that are written between two questions whether to go on: far less than 50 ms.
+template <class T>
+inline constexpr std::size_t values_at_once = std::max<std::size_t>(1, (std::size_t{1} << 22) / sizeof(T));
+
+/// Appends the values of another vector.
+template <class T>
+void append_large(std::vector<T>& values, const std::vector<T>& more) {
+    for (std::size_t begin = 0; begin < more.size(); begin += values_at_once<T>) {
+        Interruption::poll();
+        const std::size_t end = std::min(more.size(), begin + values_at_once<T>);
+        values.insert(values.end(), more.begin() + static_cast<std::ptrdiff_t>(begin),
+                      more.begin() + static_cast<std::ptrdiff_t>(end));
+    }
+}
+
+/// Makes room for n values, as reserve(n) does.
+template <class T>
+void reserve_large(std::vector<T>& values, std::size_t n) {
+    if (n <= values.capacity()) return;
+    if constexpr (std::is_trivially_copyable_v<T>) {
+        std::vector<T> larger;
+        larger.reserve(n);
+        touch_pages(larger.data(), n * sizeof(T));
+        append_large(larger, values);
+        values.swap(larger);
+    } else {
+        values.reserve(n);
+    }
+}
+
+/// The same values again.
+template <class T>
+std::vector<T> copy_of_large(const std::vector<T>& values) {
+    std::vector<T> copy;
+    reserve_large(copy, values.size());
+    append_large(copy, values);
+    return copy;
+}
+
 /// Makes the vector n values long, as resize(n, value) does.
 template <class T>
 void resize_large(std::vector<T>& values, std::size_t n, const std::type_identity_t<T>& value = T()) {
-    constexpr std::size_t step = std::max<std::size_t>(1, (std::size_t{1} << 22) / sizeof(T));
-    if (n > values.capacity()) {
-        values.reserve(n);
-        touch_pages(values.data() + values.size(), (n - values.size()) * sizeof(T));
-    }
+    constexpr std::size_t step = values_at_once<T>;
+    reserve_large(values, n);
     for (std::size_t size = values.size() + step; size < n; size += step) {
         Interruption::poll();
         values.resize(size, value);

@@ -90,12 +90,12 @@ void cut(const std::vector<Vec3>& positions, std::span<const Index> facet, Trian
 Triangulation triangulate(const PolygonMesh& mesh) {
     const std::size_t facets = mesh.facet_count();
     Triangulation result;
-    result.first.assign(facets + 1, 0);
-    for (std::size_t f = 0; f < facets; ++f) {
+    assign_large(result.first, facets + 1, 0);
+    for_each_in_order(facets, [&](std::size_t f) {
         const Index corners = mesh.first[f + 1] - mesh.first[f];
         result.first[f + 1] = result.first[f] + (corners < 3 ? 0 : corners - 2);
-    }
-    result.triangles.resize(result.first.back());
+    });
+    resize_large(result.triangles, result.first.back());
     for_each_index(facets, chunks::quick, [&](Index f) {
         cut(mesh.positions, mesh.facet(f), result.triangles.data() + result.first[f]);
     });
@@ -103,7 +103,7 @@ Triangulation triangulate(const PolygonMesh& mesh) {
 }
 
 std::vector<Index> facet_of_triangle(const Triangulation& triangulation) {
-    std::vector<Index> facet(triangulation.size());
+    std::vector<Index> facet = large_vector<Index>(triangulation.size());
     for_each_index(triangulation.first.size() - 1, chunks::quick, [&](Index f) {
         std::fill(facet.begin() + triangulation.first[f], facet.begin() + triangulation.first[f + 1], f);
     });

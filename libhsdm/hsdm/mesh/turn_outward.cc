@@ -27,8 +27,8 @@ ComponentVolumes find_components(const PolygonMesh& mesh, const FacetLinks& link
         for (Index v : mesh.facet(f)) sets.join(mesh.facet(f)[0], v);
     });
     ComponentVolumes result;
-    result.of_facet.resize(mesh.facet_count());
-    result.open.assign(mesh.vertex_count(), 0);
+    resize_large(result.of_facet, mesh.facet_count());
+    assign_large(result.open, mesh.vertex_count(), 0);
     for_each_index(mesh.facet_count(), chunks::quick, [&](Index f) {
         const Index c = result.of_facet[f] = sets.find(mesh.facet(f)[0]);
         for (Index side = mesh.first[f]; side < mesh.first[f + 1]; ++side)
@@ -40,7 +40,7 @@ ComponentVolumes find_components(const PolygonMesh& mesh, const FacetLinks& link
 
 /// Sums volumes about each component's own first vertex, so that small components far away lose no digits.
 void measure_volumes(const PolygonMesh& mesh, const Triangulation& cut, ComponentVolumes& components) {
-    std::vector<double> of_facet(mesh.facet_count());
+    std::vector<double> of_facet = large_vector<double>(mesh.facet_count());
     for_each_index(mesh.facet_count(), chunks::quick, [&](Index f) {
         const Vec3& centre = mesh.positions[components.of_facet[f]];
         double sum = 0;
@@ -51,9 +51,9 @@ void measure_volumes(const PolygonMesh& mesh, const Triangulation& cut, Componen
         }
         of_facet[f] = sum;
     });
-    components.volume.assign(mesh.vertex_count(), 0);
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f)
-        components.volume[components.of_facet[f]] += of_facet[f];
+    assign_large(components.volume, mesh.vertex_count(), 0);
+    for_each_in_order(mesh.facet_count(),
+                      [&](std::size_t f) { components.volume[components.of_facet[f]] += of_facet[f]; });
 }
 
 /// Counts the closed components that enclose given points: the crossings of a ray along x from each point,
@@ -160,15 +160,16 @@ std::vector<int> sum_around(const PolygonMesh& mesh, const Triangulation& cut,
 /// these all that then does not face against what encloses it, as walls of cavities and what is in them do.
 std::vector<std::uint8_t> find_turns(const PolygonMesh& mesh, const Triangulation& cut,
                                      const ComponentVolumes& components) {
-    std::vector<std::uint8_t> turns(mesh.vertex_count(), 0);
+    std::vector<std::uint8_t> turns = large_vector<std::uint8_t>(mesh.vertex_count());
     std::vector<Index> closed;
     bool any_inward = false;
     const auto is_inward = [&](Index c) { return components.volume[c] < 0; };
-    for (Index c = 0; c < components.volume.size(); ++c)
-        if (!components.open[c] && components.volume[c] != 0) {
-            closed.push_back(c);
-            any_inward |= is_inward(c);
-        }
+    for_each_in_order(components.volume.size(), [&](std::size_t i) {
+        const auto c = static_cast<Index>(i);
+        if (components.open[c] || components.volume[c] == 0) return;
+        closed.push_back(c);
+        any_inward |= is_inward(c);
+    });
     if (!any_inward) return turns;
     const auto sum = [&](const auto& weight) { return sum_around(mesh, cut, components, closed, weight); };
     const auto one_each = [&](Index c) { return components.open[c] ? 0 : is_inward(c) ? -1 : 1; };
@@ -201,15 +202,16 @@ std::size_t turn_outward(PolygonMesh& mesh, FacetLinks& links, FeatureHints& hin
     // If components pass through each other, each may be enclosed by another; the whole must face outward all
     // the same.
     double volume = 0;
-    for (std::size_t c = 0; c < turns.size(); ++c) {
+    for_each_in_order(turns.size(), [&](std::size_t c) {
         if (components.open[c]) volume = std::numeric_limits<double>::infinity();
         volume += turns[c] ? -components.volume[c] : components.volume[c];
-    }
+    });
     if (volume < 0)
         for (std::size_t c = 0; c < turns.size(); ++c) turns[c] = components.volume[c] < 0;
     std::size_t turned = 0;
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f)
+    for_each_in_order(mesh.facet_count(), [&](std::size_t f) {
         if (turns[components.of_facet[f]]) turn(mesh, f, hints), ++turned;
+    });
     if (turned > 0) links = link_facets(mesh);
     return turned;
 }

@@ -32,7 +32,7 @@ bool is_off_surface(const Octree& octree, const Neighbors& neighbors, std::size_
 
 std::vector<std::uint8_t> find_outliers(const Octree& octree, const Neighbors& neighbors,
                                         const OutlierOptions& options) {
-    std::vector<double> all = neighbors.reach;
+    std::vector<double> all = copy_of_large(neighbors.reach);
     const double typical = median(all);
     std::vector<std::uint8_t> found = large_vector<std::uint8_t>(octree.size(), 0);
     for_each_index(octree.size(), chunks::quick, [&](Index i) {
@@ -71,10 +71,10 @@ Density level_of_density(const Octree& octree, double points_per_voxel) {
     for (;; --depth) {
         std::vector<Index> first = first_points(octree, depth);
         double squares = 0;
-        for (std::size_t v = 0; v + 1 < first.size(); ++v) {
+        for_each_in_order(first.size() - 1, [&](std::size_t v) {
             const auto count = static_cast<double>(first[v + 1] - first[v]);
             squares += count * count;
-        }
+        });
         const double typical = squares / static_cast<double>(octree.size());
         if (typical >= points_per_voxel || depth == 0) return {depth, std::move(first), typical};
     }
@@ -117,9 +117,10 @@ Occurrences drop_outliers_by_normals(Octree& octree, const NormalOutlierOptions&
     const auto most = static_cast<Index>(std::max(1.0, options.most_share * density.typical));
     std::vector<Index> sparse;
     std::vector<std::uint8_t> is_sparse = large_vector<std::uint8_t>(octree.size(), 0);
-    for (std::size_t v = 0; v + 1 < first.size(); ++v)
+    for_each_in_order(first.size() - 1, [&](std::size_t v) {
         if (first[v + 1] - first[v] <= most)
             for (Index i = first[v]; i < first[v + 1]; ++i) sparse.push_back(i), is_sparse[i] = 1;
+    });
     const Neighbors neighbors = find_neighbors_of(octree, sparse, {.count = options.neighbors});
     const double farthest = options.most_distance * octree.voxel_size(density.depth);
     std::vector<std::uint8_t> stray = large_vector<std::uint8_t>(octree.size(), 0);

@@ -25,9 +25,8 @@ struct Loops {
 
 Loops clean_loops(const PolygonMesh& mesh) {
     Loops loops;
-    loops.vertex.reserve(mesh.corners.size());
-    loops.next.reserve(mesh.corners.size());
-    loops.facet.reserve(mesh.corners.size());
+    for (std::vector<Index>* values : {&loops.vertex, &loops.next, &loops.facet})
+        reserve_large(*values, mesh.corners.size());
     for_each_in_order(mesh.facet_count(), [&](std::size_t f) {
         const std::size_t begin = loops.vertex.size();
         for (Index v : mesh.facet(f))
@@ -100,13 +99,16 @@ std::vector<Index> measure_edges(const Loops& loops, std::size_t vertices, Fans&
         topology.misoriented_edges += sum.misoriented;
         topology.nonmanifold_edges += sum.branching;
     }
-    for (Index c = 0; c < loops.vertex.size(); ++c) fans.fans[loops.vertex[c]] += fans.corners.find(c) == c;
+    for_each_in_order(loops.vertex.size(), [&](std::size_t c) {
+        fans.fans[loops.vertex[c]] += fans.corners.find(static_cast<Index>(c)) == c;
+    });
     return joined(boundary);
 }
 
 /// Counts boundary loops: the two boundary edges of one fan follow each other along a loop.
 std::size_t count_boundary_loops(const Loops& loops, const std::vector<Index>& boundary, Fans& fans) {
-    std::vector<Index> seen(loops.vertex.size(), no_index); // by fan: the boundary edge met first
+    std::vector<Index> seen =
+        large_vector<Index>(loops.vertex.size(), no_index); // by fan: the boundary edge met first
     DisjointSets chains(boundary.size());
     std::size_t count = boundary.size();
     for (Index i = 0; i < boundary.size(); ++i)
@@ -223,15 +225,15 @@ double signed_volume(const PolygonMesh& mesh) {
 Topology measure_connectivity(const PolygonMesh& mesh) {
     Topology topology;
     topology.faces = mesh.facet_count();
-    for (std::size_t f = 0; f < topology.faces; ++f) {
+    for_each_in_order(topology.faces, [&](std::size_t f) {
         const std::size_t corners = mesh.facet(f).size();
         topology.triangles += corners == 3;
         topology.quads += corners == 4;
         topology.larger += corners > 4;
-    }
+    });
     const std::size_t vertices = mesh.vertex_count();
     std::vector<unsigned char> used = large_vector<unsigned char>(vertices, 0);
-    for (Index v : mesh.corners) used[v] = 1;
+    for_each_in_order(mesh.corners.size(), [&](std::size_t c) { used[mesh.corners[c]] = 1; });
     topology.vertices = static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
     topology.isolated_vertices = vertices - topology.vertices;
 
@@ -241,14 +243,14 @@ Topology measure_connectivity(const PolygonMesh& mesh) {
     const std::vector<Index> boundary = measure_edges(loops, vertices, fans, topology);
     topology.boundary_edges = boundary.size();
     std::size_t on_surface = 0;
-    for (std::size_t v = 0; v < vertices; ++v) {
+    for_each_in_order(vertices, [&](std::size_t v) {
         on_surface += fans.fans[v] > 0;
         topology.nonmanifold_vertices += fans.fans[v] > 1 || fans.branches[v] != 0;
-    }
-    for (std::size_t c = 0; c < loops.vertex.size(); ++c) {
+    });
+    for_each_in_order(loops.vertex.size(), [&](std::size_t c) {
         const bool begins_facet = c == 0 || loops.facet[c] != loops.facet[c - 1];
         topology.components += begins_facet && fans.facets.find(loops.facet[c]) == loops.facet[c];
-    }
+    });
     topology.boundary_loops = count_boundary_loops(loops, boundary, fans);
     topology.euler =
         static_cast<long>(on_surface) - static_cast<long>(topology.edges) + static_cast<long>(loops.count);
