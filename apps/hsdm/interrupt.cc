@@ -36,15 +36,14 @@ public:
     }
 
     /// Past a progress bar on a terminal, and the last: whatever else is written to the stream from now on
-    /// waits for it for ever. A reader that reads no more does not keep the process alive.
+    /// waits for it for ever, unless a thread that holds the stream got no time for so long. A reader that
+    /// reads no more does not keep the process alive.
     void say() {
         constexpr std::string_view wipe = "\r\033[K";
         constexpr int patience = 50; // milliseconds, twice
         text_[length_++] = '\n';
-        for (int waited = 0; ftrylockfile(stderr) != 0; ++waited) {
-            if (waited == patience) return;
+        for (int waited = 0; ftrylockfile(stderr) != 0 && waited < patience; ++waited)
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        }
         pollfd error{STDERR_FILENO, POLLOUT, 0};
         if (poll(&error, 1, patience) != 1) return;
         if (isatty(STDERR_FILENO) == 1) write_some(wipe);

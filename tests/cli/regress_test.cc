@@ -179,8 +179,8 @@ TEST_CASE("what a case expects of a file or a surface that it does not name is r
 
 TEST_CASE("cases side by side give the rows and results of cases one by one", "[cli]") {
     const ScanFolder folder;
-    folder.write("large.xyz", xyz(sphere_scan(20000)));
-    std::string cases = R"({"name": "first", "input": "large.xyz", "args": ["--depth", "6"],
+    folder.write("large.xyz", xyz(sphere_scan(6000)));
+    std::string cases = R"({"name": "first", "input": "large.xyz", "args": ["--depth", "5"],
                             "expect": {"mesh.closed": true}})";
     for (int i = 0; i < 7; ++i) {
         cases += R"(, {"name": "case )" + std::to_string(i) + "\", " + sphere_case + R"(, "output": ")"

@@ -9,7 +9,7 @@
 
 using namespace hsdm;
 
-TEST_CASE("creases of a box are sharp between its corners", "[contour]") {
+TEST_CASE("creases of a box are sharp between its corners", "[contour][accuracy]") {
     std::size_t off = 0, count = 0, clamped = 0;
     for (std::uint64_t seed = 1; seed <= 12; ++seed) {
         INFO("seed " << seed);

@@ -127,7 +127,7 @@ TEST_CASE("thick parts have no walls, and the rim of a plate is not split", "[co
 }
 
 TEST_CASE("the two sheets of a voxel are as far apart as the solid says, in spacings of their points",
-          "[contour]") {
+          "[contour][accuracy]") {
     for (const double density : {24.0, 48.0})
         for (const double width : {0.3, 0.6}) {
             INFO(density << " points to a squared voxel, " << width << " voxels");

@@ -18,7 +18,7 @@ PolygonMesh facets_of_scan(const PointCloud& cloud) {
 
 } // namespace
 
-TEST_CASE("a thin plate ends less than a voxel from where it should", "[contour]") {
+TEST_CASE("a thin plate ends less than a voxel from where it should", "[contour][accuracy]") {
     for (const std::uint64_t seed : {1u, 2u, 3u, 4u})
         for (const double width : {0.25, 0.5}) {
             INFO(width << ", seed " << seed);

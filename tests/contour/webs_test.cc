@@ -74,7 +74,7 @@ TEST_CASE("parts without walls or gaps have no webs", "[contour]") {
 }
 
 TEST_CASE("walls, slots and gaps of 0.4 voxels and more have the topology of the solid in any pose",
-          "[contour]") {
+          "[contour][accuracy]") {
     for (const std::uint64_t seed : {1u, 2u, 3u})
         for (const double width : {0.4, 0.7}) {
             const auto check = [&](const char* what, const PointCloud& cloud, std::size_t components) {

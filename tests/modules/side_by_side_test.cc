@@ -43,7 +43,7 @@ std::string reconstruct_cloud() {
 
 /// Stages one after the other on a cube, each found by its name.
 std::string run_stages(const std::vector<std::string>& calls, const std::vector<std::string>& folders) {
-    PolyMesh mesh = to_mesh(support::divided_cube(12)).mesh;
+    PolyMesh mesh = to_mesh(support::divided_cube(6)).mesh;
     std::string text;
     for (const std::string& call : calls) text += parse_stage_call(call, folders)(mesh) + '\n';
     return text + results_of(mesh);

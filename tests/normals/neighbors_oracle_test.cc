@@ -88,7 +88,7 @@ PointCloud heaps(std::size_t points) {
 
 } // namespace
 
-TEST_CASE("on evenly sampled surfaces the octree finds the nearest points", "[normals]") {
+TEST_CASE("on evenly sampled surfaces the octree finds the nearest points", "[normals][accuracy]") {
     support::Random random(10);
     const PointCloud torus = support::sample(support::torus(1, 0.4).placed(support::random_pose(random)),
                                              {.points = 20000, .normals = false});
@@ -101,7 +101,8 @@ TEST_CASE("on evenly sampled surfaces the octree finds the nearest points", "[no
         }
 }
 
-TEST_CASE("where the density varies the octree finds nearly all of the nearest points", "[normals]") {
+TEST_CASE("where the density varies the octree finds nearly all of the nearest points",
+          "[normals][accuracy]") {
     CHECK(compare_with_exact(build_octree(graded_square(20000, 100)), 16).recall > 0.99);
     CHECK(compare_with_exact(build_octree(heaps(20000)), 16).recall > 0.99);
     CHECK(compare_with_exact(build_octree(volume(20000)), 16).recall > 0.9);

@@ -39,7 +39,7 @@ TEST_CASE("normals of closed surfaces point outward", "[normals]") {
     CHECK(share_flipped(support::sample(support::mechanical_part(), {.points = 15000})) < 0.01);
 }
 
-TEST_CASE("the normals of a shell's cavity point into the cavity", "[normals]") {
+TEST_CASE("the normals of a shell's cavity point into the cavity", "[normals][accuracy]") {
     CHECK(share_flipped(support::sample(support::nested_spheres(1, 0.5), {.points = 10000})) == 0);
     for (double inner : {0.85, 0.9, 0.92}) // 5 to 2.5 spacings thick: here and there the space shines through
         for (std::uint64_t seed = 1; seed <= 4; ++seed)
@@ -48,7 +48,7 @@ TEST_CASE("the normals of a shell's cavity point into the cavity", "[normals]") 
                   == 0);
 }
 
-TEST_CASE("the report says whose side only the volume told", "[normals]") {
+TEST_CASE("the report says whose side only the volume told", "[normals][accuracy]") {
     const auto share_by_volume = [](const Solid& solid) {
         Octree octree = without_normals(support::sample(solid, {.points = 20000}));
         const NormalsReport report = make_normals(octree);

@@ -54,16 +54,13 @@ std::string topology_of(const Reconstruction& result) {
 
 } // namespace
 
-TEST_CASE("which axis is which, and on which side normals are, does not change the part", "[pipeline]") {
+TEST_CASE("which axis is which, and on which side normals are, does not change the part",
+          "[pipeline][accuracy]") {
     const support::TrialOptions options{.voxel = 1.0 / 12, .points_per_voxel = 12};
     const ReconstructOptions how{.voxel_size = options.voxel};
     std::size_t of_other_topology = 0; // one in six hundred has a hole where the other has none
     constexpr double few = 0.01;       // of all: facets at creases and corners, worked on in Morton order
-#if defined(HSDM_SANITIZED)
-    constexpr std::size_t solids = 1; // each takes ten times as long
-#else
     constexpr std::size_t solids = 5;
-#endif
     for (const PointCloud& cloud : large_solids(solids, options)) {
         const Reconstruction expected = reconstruct(cloud, how);
         for (const Change& change : changes) {

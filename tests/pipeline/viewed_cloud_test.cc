@@ -84,15 +84,15 @@ void check_same_result(const Reconstruction& a, const Reconstruction& b) {
     CHECK(a.report.rejected == b.report.rejected);
 }
 
-PointCloud scan_to_view() {
-    return support::sample(support::mechanical_part(), {.points = 8000});
+PointCloud scan_to_view(std::size_t points = 8000) {
+    return support::sample(support::mechanical_part(), {.points = points});
 }
 
 } // namespace
 
 TEMPLATE_TEST_CASE("points in the caller's own structs give the bits of a cloud with the same numbers",
                    "[pipeline][point_view]", double, float) {
-    const PackedPoints<TestType> packed(scan_to_view());
+    const PackedPoints<TestType> packed(scan_to_view(4000));
     const std::vector<std::byte> before = packed.bytes();
     std::vector<ReconstructOptions> ways(4);
     ways[0].depth = 5;

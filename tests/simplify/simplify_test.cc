@@ -105,7 +105,7 @@ TEST_CASE("an axis-parallel box becomes as few quads as its corners allow", "[si
     CHECK(measure_topology(result.mesh).euler == 2);
 }
 
-TEST_CASE("sparse boxes in general pose have sharp corners and take few facets", "[simplify]") {
+TEST_CASE("sparse boxes in general pose have sharp corners and take few facets", "[simplify][accuracy]") {
     constexpr std::uint64_t poses = 20;
     std::size_t facets = 0, blunt = 0;
     for (std::uint64_t seed = 1; seed <= poses; ++seed) {

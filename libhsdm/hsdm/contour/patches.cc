@@ -32,12 +32,14 @@ struct PatchScratch {
     std::vector<std::uint8_t> one_sheet; // per set a row of all, from has_row on
     std::vector<std::uint8_t> has_row;
     struct Facing {
-        const NormalSet* set;
+        Vec3 normal, centroid;
         double cosine;
     };
     std::vector<Facing> facing; // a set
     std::vector<Disc> discs;
-    std::array<std::vector<const Disc*>, 2> standing;
+    std::vector<const Disc*> standing; // on each set that was asked for, one after the other
+    std::vector<std::array<std::size_t, 2>>
+        on; // per set, where in there; the end is 0 if it was not asked for
     std::vector<std::pair<double, double>> places; // along a crease, and off its plane
     struct Way {
         double squared_length;
@@ -61,6 +63,8 @@ public:
         own_ = at_.sets.size();
         for_neighbors(level_, voxel, [&](Index v) { add_sets(v); });
         at_.discs.clear();
+        at_.standing.assign(1, nullptr); // so that no list ends at 0
+        at_.on.assign(size(), {0, 0});
         const bool opposed = any_opposed();
         if (!opposed && !beside) return false;
         take_samples();
@@ -80,13 +84,17 @@ public:
         return {at_.samples.data() + at_.first_sample[i], at_.samples.data() + at_.first_sample[i + 1]};
     }
 
-    /// The walls and gaps that stand on surfaces with this normal; `which`: of two that are kept.
-    std::span<const Disc* const> standing_on(const Vec3& normal, std::size_t which = 0) const {
-        auto& list = at_.standing[which];
-        list.clear();
-        for (const Disc& disc : at_.discs)
-            if (std::abs(normal | disc.normal) <= patches::most_along) list.push_back(&disc);
-        return list;
+    /// The walls and gaps that stand on a set. The span holds until another set is asked for the first time.
+    std::span<const Disc* const> standing_on(std::size_t i) const {
+        auto& [begin, end] = at_.on[i];
+        if (end == 0) {
+            begin = at_.standing.size();
+            for (const Disc& disc : at_.discs)
+                if (std::abs(set(i).normal | disc.normal) <= patches::most_along)
+                    at_.standing.push_back(&disc);
+            end = at_.standing.size();
+        }
+        return {at_.standing.data() + begin, at_.standing.data() + end};
     }
 
     /// Does one of them part two points of a surface with this normal?
@@ -112,7 +120,8 @@ public:
     /// Of the shortest ways between two sets, are most parted?
     bool apart(std::size_t i, std::size_t j) {
         const Vec3 &n = set(i).normal, &m = set(j).normal;
-        const auto on_i = standing_on(n, 0), on_j = standing_on(m, 1);
+        standing_on(j);
+        const auto on_i = standing_on(i), on_j = standing_on(j);
         if (on_i.empty() && on_j.empty()) return false;
         const auto p = samples(i), q = samples(j);
         auto& ways = at_.ways;
@@ -155,7 +164,7 @@ public:
         std::sort(places.begin(), places.end());
         const double here = along | b.centroid, far = patches::beside * level_.voxel_size;
         const double least = patches::goes_on_from * step, most = patches::goes_on_within * step;
-        const auto discs = standing_on(a.normal);
+        const auto discs = standing_on(i);
         unsigned beyond = 0, before = 0;
         for (std::size_t k = 0; k < size(); ++k) {
             if (!one_sheet(i, k)) continue;
@@ -249,15 +258,15 @@ private:
         at_.facing.clear();
         for (std::size_t j = 0; j < size(); ++j)
             if (const double cosine = a.normal | set(j).normal; j != i && cosine < patches::opposed_cosine)
-                at_.facing.push_back({&set(j), cosine});
+                at_.facing.push_back({set(j).normal, set(j).centroid, cosine});
         for (const Vec3& p : samples(i)) {
             double nearest[2] = {patches::widest * h, patches::widest * h}; // behind, before
-            for (const auto& [b, cosine] : at_.facing) {
-                const double t = (b->normal | (b->centroid - p)) / cosine;
-                if ((p + t * a.normal - b->centroid).sqrnorm() > patches::beside * patches::beside * h * h)
-                    continue;
+            for (const auto& [normal, centroid, cosine] : at_.facing) {
+                const double t = (normal | (centroid - p)) / cosine;
                 double& distance = nearest[t > 0];
-                distance = std::min(distance, std::abs(t));
+                if (std::abs(t) < distance
+                    && !((p + t * a.normal - centroid).sqrnorm() > patches::beside * patches::beside * h * h))
+                    distance = std::abs(t);
             }
             for (unsigned before : {0u, 1u})
                 if (nearest[before] < patches::widest * h)
@@ -279,7 +288,7 @@ private:
 std::size_t connect_samples(const Neighborhood& around, std::size_t i, std::vector<std::uint8_t>& patch) {
     const auto samples = around.samples(i);
     const Vec3& normal = around.set(i).normal;
-    const auto discs = around.standing_on(normal);
+    const auto discs = around.standing_on(i);
     std::vector<std::uint8_t> pending;
     constexpr std::uint8_t none = 0xff;
     patch.assign(samples.size(), none);
