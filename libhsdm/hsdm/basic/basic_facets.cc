@@ -33,8 +33,10 @@ public:
           counts_(result.counts),
           mesh_(result.mesh),
           loops_(find_short_loops(graph)),
-          facet_of_(graph.half_edge_count(), no_index) {
+          facet_of_(large_vector<Index>(graph.half_edge_count(), no_index)) {
         counts_.short_loops = loops_.size();
+        reserve_large(mesh_.corners, 4 * graph.vertex_count()); // quads, about as many as vertices
+        reserve_large(mesh_.first, graph.vertex_count() + 1);
         index_loops();
         if (options.hit_test) test_hits();
     }
@@ -49,14 +51,14 @@ public:
         // that the facets of narrow grooves come back; then longer and longer loops.
         if (options_.hit_test) {
             enqueue_open_sides();
-            hit_.assign(hit_.size(), 0);
+            assign_large(hit_, hit_.size(), 0);
             spread(4);
         }
         for (int length = 5; length <= options_.max_loop_edges; ++length) {
             enqueue_open_sides();
             spread(length);
         }
-        mesh_.positions = graph_.positions;
+        mesh_.positions = copy_of_large(graph_.positions);
     }
 
 private:
@@ -85,7 +87,7 @@ private:
         });
         counts_to_first(first_candidate_);
         resize_large(candidates_, first_candidate_.back());
-        std::vector<Index> next(first_candidate_.begin(), first_candidate_.end() - 1);
+        std::vector<Index> next = copy_of_large(first_candidate_);
         for_each_in_order(loops_.size(), [&](std::size_t place) {
             const auto i = static_cast<Index>(place);
             for (Index h : loops_[i]) {
@@ -171,11 +173,11 @@ private:
 
     void lay(const Facet& facet) {
         const auto f = static_cast<Index>(facets_.size());
-        facets_.push_back(facet);
+        push_large(facets_, facet);
         mesh_.add_facet(facet.corners());
         for (Index h : facet.edges()) {
             facet_of_[h] = f;
-            if (facet_of_[graph_.twin[h]] == no_index) queue_.push_back(graph_.twin[h]);
+            if (facet_of_[graph_.twin[h]] == no_index) push_large(queue_, graph_.twin[h]);
         }
     }
 
@@ -211,8 +213,10 @@ private:
     }
 
     void enqueue_open_sides() {
-        for (Index h = 0; h < graph_.half_edge_count(); ++h)
-            if (facet_of_[h] == no_index && facet_of_[graph_.twin[h]] != no_index) queue_.push_back(h);
+        for_each_in_order(graph_.half_edge_count(), [&](std::size_t h) {
+            if (facet_of_[h] == no_index && facet_of_[graph_.twin[h]] != no_index)
+                push_large(queue_, static_cast<Index>(h));
+        });
     }
 
     std::size_t choose(Index h) {
@@ -272,7 +276,8 @@ BasicFacets reconstruct_facets(const Octree& octree, const OctreeLevel& level, c
     BasicFacets result;
     Propagation(octree, level, graph, options, result).run();
     result.mesh.properties = std::move(properties);
-    for (Vec3& p : result.mesh.positions) p += octree.origin;
+    for_each_index(result.mesh.vertex_count(), chunks::light,
+                   [&](Index v) { result.mesh.positions[v] += octree.origin; });
     if (options.max_hole_edges > 0) {
         FillHolesOptions holes;
         holes.max_edges = options.max_hole_edges;

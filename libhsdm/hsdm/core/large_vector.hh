@@ -45,6 +45,14 @@ void reserve_large(std::vector<T>& values, std::size_t n) {
     }
 }
 
+/// Appends one value, as push_back does, to a vector that becomes large.
+template <class T>
+void push_large(std::vector<T>& values, const T& value) {
+    if (values.size() == values.capacity())
+        reserve_large(values, std::max<std::size_t>(16, 2 * values.size()));
+    values.push_back(value);
+}
+
 /// The same values again.
 template <class T>
 std::vector<T> copy_of_large(const std::vector<T>& values) {

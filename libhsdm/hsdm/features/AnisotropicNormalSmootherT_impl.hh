@@ -36,7 +36,7 @@ void AnisotropicNormalSmootherT<Mesh>::initialize(const NormalSmoothingOptions& 
 template <class Mesh>
 void AnisotropicNormalSmootherT<Mesh>::read_facets() {
     normals_ = facet_area_vectors(mesh_);
-    area_.resize(normals_.size());
+    resize_large(area_, normals_.size());
     for_each_handle<OpenMesh::FaceHandle>(normals_.size(), [&](OpenMesh::FaceHandle f) {
         Vec3& normal = normals_[index_of(f)];
         area_[index_of(f)] = 0.5 * normal.norm();

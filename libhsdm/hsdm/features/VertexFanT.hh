@@ -2,6 +2,7 @@
 // Flat views of any OpenMesh mesh that both modules of phase 3 start from.
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/features/normal_filter.hh"
 #include "hsdm/features/sectors.hh"
 #include "hsdm/mesh/facet_normal.hh"

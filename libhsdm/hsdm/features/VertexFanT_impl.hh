@@ -4,7 +4,7 @@ namespace hsdm {
 
 template <class Mesh>
 std::vector<Vec3> facet_area_vectors(const Mesh& mesh) {
-    std::vector<Vec3> areas(mesh.n_faces(), Vec3(0, 0, 0));
+    std::vector<Vec3> areas = large_vector<Vec3>(mesh.n_faces(), Vec3(0, 0, 0));
     for_each_handle<OpenMesh::FaceHandle>(mesh.n_faces(), [&](OpenMesh::FaceHandle f) {
         if (mesh.has_face_status() && mesh.status(f).deleted()) return;
         const auto last = mesh.halfedge_handle(f);
@@ -23,12 +23,12 @@ FacetNeighbours facet_neighbours(const Mesh& mesh, StatusBits bits, const std::v
                || (bits == StatusBits::obey && mesh.status(f).locked());
     };
     FacetNeighbours result;
-    result.first.assign(mesh.n_faces() + 1, 0);
+    assign_large(result.first, mesh.n_faces() + 1, 0);
     for_each_handle<OpenMesh::FaceHandle>(mesh.n_faces(), [&](OpenMesh::FaceHandle f) {
         if (!is_fixed(f)) result.first[index_of(f) + 1] = static_cast<Index>(mesh.valence(f));
     });
-    for (std::size_t f = 0; f < mesh.n_faces(); ++f) result.first[f + 1] += result.first[f];
-    result.neighbour.resize(result.first.back());
+    for_each_in_order(mesh.n_faces(), [&](std::size_t f) { result.first[f + 1] += result.first[f]; });
+    resize_large(result.neighbour, result.first.back());
     for_each_handle<OpenMesh::FaceHandle>(mesh.n_faces(), [&](OpenMesh::FaceHandle f) {
         if (is_fixed(f)) return;
         Index slot = result.first[index_of(f)];

@@ -1,24 +1,28 @@
 #include "hsdm/mesh/edge_set.hh"
 
+#include "hsdm/core/interruption.hh"
+#include "hsdm/core/large_vector.hh"
+#include "hsdm/core/parallel_sort_unique.hh"
+
 #include <algorithm>
 
 namespace hsdm {
 
 EdgeSet::EdgeSet(const PolygonMesh& mesh, std::span<const Index> vertices) {
-    std::vector<std::uint8_t> marked(mesh.vertex_count(), 0);
-    shared_.assign(mesh.vertex_count(), 0);
+    std::vector<std::uint8_t> marked = large_vector<std::uint8_t>(mesh.vertex_count());
+    assign_large(shared_, mesh.vertex_count(), 0);
     for (Index v : vertices) {
         shared_[v] |= marked[v];
         marked[v] = 1;
     }
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+    for_each_in_order(mesh.facet_count(), [&](std::size_t f) {
         const auto facet = mesh.facet(f);
         for (std::size_t i = 0; i < facet.size(); ++i) {
             const Index a = facet[i], b = facet[i + 1 < facet.size() ? i + 1 : 0];
-            if (marked[a] && marked[b]) edges_.push_back(key(a, b));
+            if (marked[a] && marked[b]) push_large(edges_, key(a, b));
         }
-    }
-    std::sort(edges_.begin(), edges_.end());
+    });
+    parallel_sort_unique(edges_);
 }
 
 std::uint64_t EdgeSet::key(Index a, Index b) {

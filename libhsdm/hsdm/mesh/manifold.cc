@@ -369,7 +369,7 @@ private:
 Index copy_vertex(PolygonMesh& mesh, Index source) {
     const auto copy = [source](auto& values) {
         const auto value = values[source];
-        values.push_back(value);
+        push_large(values, value);
     };
     copy(mesh.positions);
     if (!mesh.normals.empty()) copy(mesh.normals);

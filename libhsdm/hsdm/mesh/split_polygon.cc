@@ -1,6 +1,8 @@
 #include "hsdm/mesh/split_polygon.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/interruption.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/constants.hh"
 #include "hsdm/mesh/facet_links.hh"
@@ -254,12 +256,12 @@ Pieces split_polygon(const PolygonMesh& mesh, std::span<const Index> polygon,
 
 std::size_t split_large_facets(PolygonMesh& mesh) {
     std::vector<Index> large, corners;
-    for (Index f = 0; f < mesh.facet_count(); ++f) {
+    for_each_in_order(mesh.facet_count(), [&](std::size_t f) {
         const auto facet = mesh.facet(f);
-        if (facet.size() <= 4) continue;
-        large.push_back(f);
+        if (facet.size() <= 4) return;
+        large.push_back(static_cast<Index>(f));
         corners.insert(corners.end(), facet.begin(), facet.end());
-    }
+    });
     if (large.empty()) return 0;
     const FacetLinks links = link_facets(mesh);
     EdgeSet edges(mesh, corners);
@@ -272,11 +274,13 @@ std::size_t split_large_facets(PolygonMesh& mesh) {
     // Two polygons may both want a diagonal between vertices they share: the later one is split again
     // without.
     PolygonMesh out;
+    reserve_large(out.corners, mesh.corners.size() + 2 * corners.size());
+    reserve_large(out.first, mesh.first.size() + corners.size());
     std::size_t next = 0, count = 0;
-    for (Index f = 0; f < mesh.facet_count(); ++f) {
+    for_each_in_order(mesh.facet_count(), [&](std::size_t f) {
         if (next == large.size() || large[next] != f) {
             out.add_facet(mesh.facet(f));
-            continue;
+            return;
         }
         if (collides(pieces[next], mesh.facet(f), edges)) split(next);
         const Pieces& parts = pieces[next++];
@@ -286,7 +290,7 @@ std::size_t split_large_facets(PolygonMesh& mesh) {
             out.add_facet(piece);
             edges.add(piece);
         }
-    }
+    });
     mesh.corners.swap(out.corners);
     mesh.first.swap(out.first);
     return count;

@@ -1,6 +1,7 @@
 #pragma once
 // What phase 3 leaves on the mesh's vertices: class, and one to three normals (section 3.3, Fig. 11).
 
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/vertex_class.hh"
 
 #include <OpenMesh/Core/IO/SR_store.hh>
@@ -9,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <iostream>
+#include <memory>
 #include <string>
 
 namespace hsdm {
@@ -31,9 +33,16 @@ using NormalTriple = std::array<Normal, 3>;
 template <class Mesh>
 using VertexNormalsT = NormalTriple<typename Mesh::Normal>;
 
-/// The named property, added if the mesh does not have it, and kept in .om files.
+/// The named property, added if the mesh does not have it, and kept in .om files. The memory of a new one is
+/// touched by all threads, which OpenMesh's own way to add it would do on one, unasked.
 template <class T, class Mesh>
 OpenMesh::VProp<T> kept_vertex_property(Mesh& mesh, const char* name) {
+    if (OpenMesh::VPropHandleT<T> handle; !mesh.get_property_handle(handle, name)) {
+        auto property = std::make_unique<OpenMesh::PropertyT<T>>(name, OpenMesh::get_type_name<T>());
+        resize_large(property->data_vector(), mesh.n_vertices());
+        mesh._add_vprop(property.get());
+        property.release(); // the mesh has it now
+    }
     OpenMesh::VProp<T> property(mesh, name);
     mesh.property(property.getRawProperty()).set_persistent(true);
     return property;

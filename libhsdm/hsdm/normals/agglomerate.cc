@@ -2,6 +2,7 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/interruption.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/core/parallel_sort_unique.hh"
 #include "hsdm/normals/constants.hh"
 
@@ -27,8 +28,9 @@ struct Round {
 /// Union-find that knows every node's sign relative to its root.
 class SignedForest {
 public:
-    explicit SignedForest(std::size_t nodes) : parent_(nodes), sign_(nodes, 1) {
-        std::iota(parent_.begin(), parent_.end(), Index{0});
+    explicit SignedForest(std::size_t nodes)
+        : parent_(large_vector<Index>(nodes)), sign_(large_vector<std::int8_t>(nodes, 1)) {
+        for_each_index(nodes, chunks::light, [&](Index i) { parent_[i] = i; });
     }
     Index find(Index node, int& sign) {
         Index root = node;
@@ -62,10 +64,10 @@ private:
 
 /// Sorts by both ends and adds up edges between the same nodes.
 void sort_and_merge(std::vector<SignedEdge>& edges, std::size_t nodes) {
-    std::vector<Index> end(nodes + 1, 0); // of each node's edges, once they are there
+    std::vector<Index> end = large_vector<Index>(nodes + 1); // of each node's edges, once they are there
     for_each_in_order(edges.size(), [&](std::size_t e) { ++end[edges[e].a + 1]; });
     counts_to_first(end);
-    std::vector<SignedEdge> sorted(edges.size());
+    std::vector<SignedEdge> sorted = large_vector<SignedEdge>(edges.size());
     for_each_in_order(edges.size(), [&](std::size_t e) { sorted[end[edges[e].a]++] = edges[e]; });
     for_each_index(nodes, chunks::quick, [&](Index v) {
         std::sort(sorted.begin() + (v == 0 ? 0 : end[v - 1]), sorted.begin() + end[v],
@@ -94,7 +96,7 @@ std::uint64_t rank_of(const SignedEdge& e, std::size_t place) {
 /// Per node, the edge with its strongest evidence; the strongest edges first.
 std::vector<Index> picked_edges(const std::vector<SignedEdge>& edges, std::size_t nodes) {
     const std::uint64_t none = rank_of({}, 0);
-    std::vector<std::uint64_t> best(nodes, none);
+    std::vector<std::uint64_t> best = large_vector<std::uint64_t>(nodes, none);
     for_each_in_order(edges.size(), [&](std::size_t e) {
         const std::uint64_t rank = rank_of(edges[e], e);
         for (Index v : {edges[e].a, edges[e].b}) best[v] = std::min(best[v], rank);
@@ -108,7 +110,7 @@ std::vector<Index> picked_edges(const std::vector<SignedEdge>& edges, std::size_
 /// inside one tree.
 std::vector<SignedEdge> contracted(const std::vector<SignedEdge>& edges, SignedForest& forest) {
     std::vector<SignedEdge> result;
-    result.reserve(edges.size());
+    reserve_large(result, edges.size());
     for_each_in_order(edges.size(), [&](std::size_t i) {
         SignedEdge e = edges[i];
         int sign_a = 1, sign_b = 1;
@@ -131,7 +133,7 @@ std::vector<Round> join_all(SignedForest& forest, std::vector<SignedEdge> edges,
         for_each_in_order(picked.size(), [&](std::size_t i) {
             const SignedEdge& e = edges[picked[i]];
             const Joint joint = forest.join(e.a, e.b, e.weight < 0 ? -1 : 1);
-            if (joint.root != joint.joined) joints.push_back(joint);
+            if (joint.root != joint.joined) push_large(joints, joint);
         });
         if (joints.empty()) break;
         std::vector<SignedEdge> rest = contracted(edges, forest);
@@ -146,7 +148,9 @@ std::vector<Round> join_all(SignedForest& forest, std::vector<SignedEdge> edges,
 class Improvement {
 public:
     explicit Improvement(std::vector<std::int8_t>& sign)
-        : sign_(sign), support_(sign.size()), mark_(sign.size(), Mark::stays) {}
+        : sign_(sign),
+          support_(large_vector<double>(sign.size())),
+          mark_(large_vector<Mark>(sign.size(), Mark::stays)) {}
 
     void run(const std::vector<SignedEdge>& edges) {
         for_each_in_order(edges.size(),
@@ -174,30 +178,35 @@ private:
         contradicted_.clear();
         for_each_in_order(edges.size(), [&](std::size_t i) {
             if (const SignedEdge& e = edges[i]; support_[e.a] < 0 || support_[e.b] < 0)
-                contradicted_.push_back(e);
+                push_large(contradicted_, e);
         });
         return !contradicted_.empty();
     }
     void mark() {
-        for (const SignedEdge& e : contradicted_) {
+        for_each_contradicted([&](const SignedEdge& e) {
             for (Index v : {e.a, e.b})
                 if (support_[v] < 0 && mark_[v] == Mark::stays) mark_[v] = Mark::turns;
             if (support_[e.a] < 0 && support_[e.b] < 0)
                 mark_[support_[e.b] < support_[e.a] ? e.a : e.b] = Mark::held;
-        }
+        });
     }
     void turn() {
-        for (const SignedEdge& e : contradicted_) {
-            if (mark_[e.a] != Mark::turns && mark_[e.b] != Mark::turns) continue;
+        for_each_contradicted([&](const SignedEdge& e) {
+            if (mark_[e.a] != Mark::turns && mark_[e.b] != Mark::turns) return;
             const double change = 2 * agreement_of(e);
             support_[e.a] -= change;
             support_[e.b] -= change;
-        }
-        for (const SignedEdge& e : contradicted_)
+        });
+        for_each_contradicted([&](const SignedEdge& e) {
             for (Index v : {e.a, e.b}) {
                 if (mark_[v] == Mark::turns) sign_[v] = static_cast<std::int8_t>(-sign_[v]);
                 mark_[v] = Mark::stays;
             }
+        });
+    }
+    template <class F>
+    void for_each_contradicted(F&& f) const {
+        for_each_in_order(contradicted_.size(), [&](std::size_t i) { f(contradicted_[i]); });
     }
 
     std::vector<std::int8_t>& sign_;
@@ -212,7 +221,7 @@ Signs agglomerate(std::size_t nodes, std::vector<SignedEdge> edges) {
     SignedForest forest(nodes);
     std::vector<Round> rounds = join_all(forest, std::move(edges), nodes);
     Signs result;
-    result.sign.assign(nodes, 1);
+    assign_large(result.sign, nodes, 1);
     Improvement improvement(result.sign);
     for (; !rounds.empty(); rounds.pop_back()) {
         const std::vector<Joint>& joints = rounds.back().joints;
@@ -222,8 +231,8 @@ Signs agglomerate(std::size_t nodes, std::vector<SignedEdge> edges) {
         });
         improvement.run(rounds.back().edges);
     }
-    result.component.resize(nodes);
-    std::vector<Index> number(nodes, no_index);
+    resize_large(result.component, nodes);
+    std::vector<Index> number = large_vector<Index>(nodes, no_index);
     for_each_in_order(nodes, [&](std::size_t v) {
         int sign = 1;
         const Index root = forest.find(static_cast<Index>(v), sign);

@@ -61,7 +61,8 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
     run_both([&] { view = view_outside(octree, patches, estimate_spacing(octree)); },
              [&] { edges = patch_evidence(octree, neighbors, estimate, patches); });
     const auto outside = static_cast<Index>(patches.size());
-    edges.insert(edges.end(), view.facing.begin(), view.facing.end());
+    reserve_large(edges, edges.size() + view.facing.size() + patches.size());
+    append_large(edges, view.facing);
     Orientation result;
     OrientReport& report = result.report;
     for_each_in_order(patches.size(), [&](std::size_t p) {
@@ -81,8 +82,9 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
     });
     report.patches = patches.size();
     report.components = signs.components; // the outside's node is a component too if no patch sees it
-    for (std::size_t p = 0; p < patches.size(); ++p)
+    for_each_in_order(patches.size(), [&](std::size_t p) {
         if (!seen || signs.component[p] != signs.component[outside]) report.by_volume += patches.counts[p];
+    });
     return result;
 }
 

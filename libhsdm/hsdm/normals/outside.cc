@@ -2,6 +2,7 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/interruption.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/normals/constants.hh"
 
 #include <algorithm>
@@ -200,7 +201,8 @@ std::vector<SignedEdge> facing_patches(const std::vector<Sights>& seen, const Pa
             const Index q = patch_ahead(sight, patches);
             if (q == no_index || q == p) continue;
             const auto weight = static_cast<float>(patches.counts[p] * facing(patches, p, q));
-            if (weight != 0) edges.push_back({std::min(p, q), std::max(p, q), weight, std::abs(weight)});
+            if (weight != 0)
+                push_large(edges, SignedEdge{std::min(p, q), std::max(p, q), weight, std::abs(weight)});
         }
     });
     return edges;
@@ -215,19 +217,19 @@ OutsideView view_outside(const Octree& octree, const Patches& patches, double sp
     const OctreeLevel level = extract_level(octree, depth);
     const EmptySpace space(level);
     const View view(octree, level, space, spacing);
-    std::vector<Sights> seen(patches.size());
+    std::vector<Sights> seen = large_vector<Sights>(patches.size());
     for_each_index(patches.size(), chunks::slow, [&](Index p) {
         seen[p] = {view.look(patches.centroids[p], patches.normals[p]),
                    view.look(patches.centroids[p], -patches.normals[p])};
     });
     const std::vector<std::int8_t> kind = classify(space.regions(), seen, patches);
     OutsideView result;
-    result.votes.assign(patches.size(), 0);
-    for (std::size_t p = 0; p < seen.size(); ++p) {
-        if (!between_regions(seen[p])) continue;
+    assign_large(result.votes, patches.size(), 0);
+    for_each_index(patches.size(), chunks::light, [&](Index p) {
+        if (!between_regions(seen[p])) return;
         const std::int8_t front = kind[seen[p][0].region];
         if (front * kind[seen[p][1].region] == -1) result.votes[p] = front;
-    }
+    });
     result.facing = facing_patches(seen, patches);
     return result;
 }

@@ -43,11 +43,16 @@ void measure_mesh(const PolygonMesh& facets, Report& report) {
     m.closed = t.closed();
 }
 
-/// Distances of the points from the facets; on a uniform grid by voxels, because facets are about as large.
+/// On a uniform grid facets are about as large as voxels.
+void make_cells(const PolygonMesh& facets, FacetKnowledge& known, const Report& report) {
+    if (report.grid.kind == "uniform" && !known.cells) known.cells.emplace(facets, report.grid.voxel_size);
+}
+
+/// Distances of the points from the facets, by cells where there are any.
 Distance distance_of(std::span<const Vec3> points, const PolygonMesh& facets, FacetKnowledge& known,
                      const DistanceOptions& options, const Report& report) {
     if (report.grid.kind != "uniform") return points_to_mesh(points, facets, options);
-    if (!known.cells) known.cells.emplace(facets, report.grid.voxel_size);
+    make_cells(facets, known, report);
     return points_to_mesh_by_cells(points, facets, *known.cells, options.beyond);
 }
 
@@ -125,6 +130,7 @@ void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, Polyg
         report.error = {};
         return;
     }
+    if (!measured) make_cells(facets, known, report); // here: only this thread asks whether to go on
     run_both([&] { measure_mesh(facets, report); },
              [&] {
                  if (measured) return;
