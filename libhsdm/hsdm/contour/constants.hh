@@ -433,6 +433,38 @@ inline constexpr std::size_t most_pairs = 100;
 } // namespace hsdm::untangling
 
 // which holes dual_contour.hh closes
+namespace hsdm::handles {
+
+/// cosine: of the normals of a facet and of a set that speaks for it.
+/// Why: 60 degrees: a facet at a crease lies between the two faces, no farther than that from one.
+inline constexpr double agreeing_cosine = 0.5;
+
+/// voxels: from a facet's middle to the plane of a set that speaks for it.
+/// Why: a vertex lies on its sets' planes, a facet's middle not farther off than it is bent.
+inline constexpr double agreeing_gap = 0.5;
+
+/// points: nearest to a facet, that are asked whether they face its way, and fewest that must.
+/// Why: eight lie within one and a half spacings; one of them may be a stray or stand at a crease.
+inline constexpr std::size_t witnesses = 8, fewest_witnesses = 2;
+
+/// share: of the facets beside a ring, that no points speak for.
+/// Why: a web has four sides, above, below and at its ends, and below at least there are no points.
+inline constexpr double least_contradicted = 0.25;
+
+/// edges: from a vertex to the farthest of a ring through it.
+/// Why: a web that one voxel decides has rings of four to six edges; half as many more for those of several.
+inline constexpr int reach = 4;
+
+/// facets: seen on both sides of a ring that do not meet; then they are two parts, or meet far off.
+/// Why: a pin that a ring of nine edges goes round is shorter than that, unless it is a rod.
+inline constexpr std::size_t far = 4096;
+
+/// rounds: of cutting rings that do not touch each other.
+/// Why: bounds the work; a round that cuts none ends it.
+inline constexpr int rounds = 8;
+
+} // namespace hsdm::handles
+
 namespace hsdm::holes {
 
 /// edges: longer loops stay open.

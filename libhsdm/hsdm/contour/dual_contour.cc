@@ -1,6 +1,7 @@
 #include "hsdm/contour/dual_contour.hh"
 
 #include "hsdm/contour/grid_signs.hh"
+#include "hsdm/contour/handles.hh"
 #include "hsdm/contour/move_to_creases.hh"
 #include "hsdm/contour/rims.hh"
 #include "hsdm/contour/shared_corners.hh"
@@ -324,6 +325,8 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     const std::vector<EdgeCollapse> to_corners = build_facets(octree, level, sets, options, result);
     result.corners_merged = merge_corners(to_corners, result.mesh, result.classes);
     result.splinters = drop_splinters(result.mesh, options.splinters);
+    result.handles_cut =
+        cut_handles(octree, level, sets, result.voxel, result.mesh); // holes have no data yet
     if (options.fill) {
         FillHolesOptions holes = options.holes;
         holes.max_diameter *= h;

@@ -1,0 +1,102 @@
+#include "contour/stages.hh"
+
+#include "hsdm/contour/dual_contour.hh"
+#include "hsdm/contour/handles.hh"
+#include "hsdm/mesh/remove_facets.hh"
+#include "hsdm/quality/topology.hh"
+#include "hsdm/reconstruct.hh"
+#include "support/check.hh"
+
+#include <catch2/catch.hpp>
+
+#include <numeric>
+
+using namespace hsdm;
+using namespace hsdm::support;
+
+namespace {
+
+/// Two boxes that face each other across a gap in x, or with all normals turned a wall in a cavity.
+PointCloud facing_boxes(bool turned_normals, std::uint64_t seed) {
+    const Solid boxes = box({0.5, 1, 1}).placed(turned({0, 0, 1}, 0, {-0.32, 0, 0}))
+                        | box({0.5, 1, 1}).placed(turned({0, 0, 1}, 0, {0.32, 0, 0}));
+    PointCloud cloud = sample(boxes, {.points = 12000, .seed = seed});
+    if (turned_normals)
+        for (Vec3& n : cloud.normals) n = -n;
+    return cloud;
+}
+
+/// The quad on the plane x = `plane` nearest to the x axis.
+std::size_t quad_at(const PolygonMesh& mesh, double plane) {
+    std::size_t best = mesh.facet_count();
+    double least = Box::inf;
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+        if (mesh.facet(f).size() != 4) continue;
+        double away = 0;
+        for (const Index v : mesh.facet(f)) away += (mesh.positions[v] - Vec3(plane, 0, 0)).sqrnorm();
+        if (away < least) least = away, best = f;
+    }
+    return best;
+}
+
+/// Takes both quads out, and leads four others from the one's sides to the other's.
+void bridge(PolygonMesh& mesh, std::size_t from, std::size_t to) {
+    std::array<Index, 4> a{}, b{};
+    for (unsigned i = 0; i < 4; ++i) a[i] = mesh.facet(from)[i], b[i] = mesh.facet(to)[3 - i];
+    const auto distance = [&](unsigned shift) {
+        double sum = 0;
+        for (unsigned i = 0; i < 4; ++i)
+            sum += (mesh.positions[a[i]] - mesh.positions[b[(i + shift) % 4]]).sqrnorm();
+        return sum;
+    };
+    unsigned shift = 0;
+    for (const unsigned other : {1u, 2u, 3u})
+        if (distance(other) < distance(shift)) shift = other;
+    for (unsigned i = 0; i < 4; ++i)
+        mesh.add_facet(std::array{a[i], a[(i + 1) % 4], b[(i + 1 + shift) % 4], b[(i + shift) % 4]});
+    remove_facets(mesh, [&](std::size_t f) { return f == from || f == to; });
+}
+
+} // namespace
+
+TEST_CASE("a bridge through the air is taken away, and a tunnel that no points speak for filled",
+          "[contour]") {
+    for (const bool turned_normals : {false, true}) {
+        INFO((turned_normals ? "tunnel" : "bridge"));
+        const Stages stages(facing_boxes(turned_normals, 5), 5);
+        DualContour part = dual_contour(stages.octree, stages.level, stages.sets);
+        PolygonMesh& mesh = part.mesh;
+        for (Vec3& p : mesh.positions) p += stages.octree.origin;
+        REQUIRE(measure_topology(mesh).euler == 4);
+        mesh.origin.resize(mesh.vertex_count());
+        std::iota(mesh.origin.begin(), mesh.origin.end(), Index{0});
+        bridge(mesh, quad_at(mesh, -0.07), quad_at(mesh, 0.07));
+        for (Vec3& p : mesh.positions) p -= stages.octree.origin;
+        REQUIRE(measure_topology(mesh).euler == 2);
+        REQUIRE(measure_topology(mesh).components == 1);
+        CHECK(cut_handles(stages.octree, stages.level, stages.sets, part.voxel, mesh) == 1);
+        const Topology topology = measure_topology(mesh);
+        CHECK(topology.euler == 4);
+        CHECK(topology.components == 2);
+        CHECK(topology.closed());
+        CHECK(faults(mesh) == (turned_normals ? "closed but not outward; " : ""));
+        CHECK(cut_handles(stages.octree, stages.level, stages.sets, part.voxel, mesh) == 0);
+    }
+}
+
+TEST_CASE("holes and rods of the part that points speak for stay, however short the way round", "[contour]") {
+    const double voxel = 1.0 / 16;
+    for (const double diameter : {1.2, 2.0}) { // voxels
+        INFO("diameter " << diameter);
+        const Solid hole = box({1, 1, 0.3}) - cylinder(0.5 * diameter * voxel, 1);
+        const Solid rod = box({1, 1, 0.2}).placed(turned({0, 0, 1}, 0, {0, 0, 0.3}))
+                          | box({1, 1, 0.2}).placed(turned({0, 0, 1}, 0, {0, 0, -0.3}))
+                          | cylinder(0.5 * diameter * voxel, 0.6);
+        for (const auto& [solid, euler] : {std::pair{hole, 0L}, std::pair{rod, 2L}}) {
+            const PointCloud cloud = sample(solid.placed(random_pose(3)), {.points = 16000, .seed = 3});
+            const Report report = reconstruct(cloud, {.voxel_size = voxel}).report;
+            CHECK(report.rejected.at("handles_cut") == 0);
+            CHECK(report.mesh.euler == euler);
+        }
+    }
+}
