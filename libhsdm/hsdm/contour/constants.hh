@@ -459,6 +459,11 @@ inline constexpr int reach = 4;
 /// Why: a pin that a ring of nine edges goes round is shorter than that, unless it is a rod.
 inline constexpr std::size_t far = 4096;
 
+/// facets: looked at for each of the mesh, in all; after that no more rings are looked for.
+/// Why: bounds the time where normals are at random to that of the rest; a scan of the suites takes less than
+/// one.
+inline constexpr std::size_t most_work = 32;
+
 /// rounds: of cutting rings that do not touch each other.
 /// Why: bounds the work; a round that cuts none ends it.
 inline constexpr int rounds = 8;

@@ -230,8 +230,11 @@ private:
 class Round {
 public:
     Round(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
-          std::span<const Index> voxel, PolygonMesh& mesh)
-        : mesh_(mesh), witnesses_(octree, level, voxel, mesh) {
+          std::span<const Index> voxel, std::size_t& work, PolygonMesh& mesh)
+        : mesh_(mesh),
+          witnesses_(octree, level, voxel, mesh),
+          work_(work),
+          most_work_(handles::most_work * mesh.facet_count()) {
         const double voxel_size = level.voxel_size;
         assign_large(contradicted_, mesh.facet_count(), 0);
         for_each_index(mesh.facet_count(), chunks::quick, [&](Index f) {
@@ -252,8 +255,10 @@ public:
         std::sort(roots.begin(), roots.end());
         roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
         for_each_in_order(roots.size(), [&](std::size_t i) {
+            if (work_ > most_work_) return;
+            if (i % chunks::heavy == 0) Interruption::poll();
             const std::vector<Index> ring = vicinity.ring_at(roots[i]);
-            if (share_contradicted(vicinity, ring) >= handles::least_contradicted
+            if (share_contradicted(vicinity, ring) >= handles::least_contradicted && !bounds()
                 && are_contradicted_beside(vicinity, ring))
                 keep(vicinity, ring);
         });
@@ -267,6 +272,9 @@ private:
         std::vector<Index> vertices, sides;
     };
 
+    /// Facets within four edges of a vertex, and the points that are asked about a ring: about so many.
+    static constexpr std::size_t work_at_vertex = 64;
+
     Index facet_of(Index side) const { return links_.facet[side]; }
 
     /// The ring's sides, on its left; false if one has none on its right, or another ring has come near.
@@ -277,12 +285,15 @@ private:
             if (touched_[ring[i]] || side == no_index || links_.twin[side] == no_index) return false;
             sides_.push_back(side);
         }
+        for (std::size_t i = 0; i < ring.size(); ++i) // a vertex may have other fans of facets, too
+            if (corners_left_of(sides_, i).empty() || corners_right_of(sides_, i).empty()) return false;
         return true;
     }
 
-    /// Of the facets beside a ring, the share that no points speak for; below 0 if it is none to be cut.
+    /// Of the facets beside a ring, the share that no points speak for; below 0 if it cannot be cut.
     double share_contradicted(const Vicinity& vicinity, const std::vector<Index>& ring) {
-        if (ring.size() < 3 || !list_sides(vicinity, ring) || bounds()) return -1;
+        work_ += work_at_vertex;
+        if (ring.size() < 3 || !list_sides(vicinity, ring)) return -1;
         std::size_t count = 0;
         for (const Index side : sides_)
             for (const Index c : {side, links_.twin[side]}) count += !witnesses_.speak_for(facet_of(c));
@@ -303,7 +314,7 @@ private:
         for (const Index v : beside) {
             const std::vector<Index> other = vicinity.ring_at(v);
             const double share = share_contradicted(vicinity, other);
-            if (share < 0) continue;
+            if (share < 0 || bounds()) continue;
             sum += share;
             ++count;
         }
@@ -344,6 +355,7 @@ private:
             }
         }
         for (const Index f : all) seen_[f] = 0;
+        work_ += all.size();
         return ended;
     }
 
@@ -362,12 +374,11 @@ private:
         std::vector<Index> left(n);
         std::vector<std::vector<Index>> corners(n); // on the left
         for (std::size_t i = 0; i < n; ++i) {
-            corners[i] = corners_between(sides[i], ring[(i + n - 1) % n]);
+            corners[i] = corners_left_of(sides, i);
             draw_back(ring[i], ring, corners[i]);
             left[i] = copy_of(ring[i]);
             if (!moves_.empty() && moves_.back().first == ring[i]) moves_.back().first = left[i];
-            const Index back = links_.twin[sides[(i + n - 1) % n]]; // from here to the vertex before
-            draw_back(ring[i], ring, corners_between(back, ring[(i + 1) % n]));
+            draw_back(ring[i], ring, corners_right_of(sides, i));
         }
         for (std::size_t i = 0; i < n; ++i)
             for (const Index c : corners[i]) mesh_.corners[c] = left[i];
@@ -376,17 +387,26 @@ private:
         close(left);
     }
 
-    /// The corners at the start of a side, of the facets on its left one after the other, until one has the
-    /// side that comes from `last`.
+    /// The corners of a ring's vertex on the left of the ring, one after the other.
+    std::vector<Index> corners_left_of(const std::vector<Index>& sides, std::size_t i) const {
+        return corners_between(sides[i], sides[(i == 0 ? sides.size() : i) - 1]);
+    }
+    std::vector<Index> corners_right_of(const std::vector<Index>& sides, std::size_t i) const {
+        return corners_between(links_.twin[sides[(i == 0 ? sides.size() : i) - 1]], links_.twin[sides[i]]);
+    }
+
+    /// The corners at the start of a side, of the facets on its left one after the other, until one has
+    /// `last` before it; none if none has.
     std::vector<Index> corners_between(Index side, Index last) const {
         std::vector<Index> corners;
         for (Index c = side; c != no_index;) {
             corners.push_back(c);
             const Index before = previous_side(mesh_, facet_of(c), c);
-            if (mesh_.corners[before] == last) break;
+            if (before == last) return corners;
             c = links_.twin[before];
+            if (c == side) break;
         }
-        return corners;
+        return {};
     }
 
     /// A vertex of the ring goes half of the way to its neighbours on one side, so that the sides part.
@@ -423,6 +443,8 @@ private:
 
     PolygonMesh& mesh_;
     Witnesses witnesses_;
+    std::size_t& work_; // facets looked at, in all rounds
+    std::size_t most_work_;
     FacetLinks links_;
     std::vector<std::uint8_t> contradicted_; // per facet
     std::vector<std::uint8_t> touched_;      // per vertex, near a ring that is to be cut
@@ -436,9 +458,9 @@ private:
 
 std::size_t cut_handles(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
                         std::span<const Index> voxel, PolygonMesh& mesh) {
-    std::size_t cut = 0;
+    std::size_t cut = 0, work = 0;
     for (int round = 0; round < handles::rounds; ++round) {
-        const std::size_t rings = Round(octree, level, sets, voxel, mesh).cut();
+        const std::size_t rings = Round(octree, level, sets, voxel, work, mesh).cut();
         cut += rings;
         if (rings == 0) break;
     }

@@ -12,7 +12,8 @@ namespace hsdm {
 /// and none of them has a plane there that faces the same way. A bridge through the air is taken away like
 /// that, and a tunnel filled. Each cut raises the Euler characteristic by two, so it comes to an end. A
 /// 2-manifold remains one; vertices are copied with their origins. `voxel`: per origin of the vertices.
-/// Returns how many rings were cut. O(facets), and O(1) for each facet that is contradicted.
+/// Returns how many rings were cut. O(facets): rings are looked for
+/// near facets that are contradicted, and no more of them once that has taken so much work.
 std::size_t cut_handles(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
                         std::span<const Index> voxel, PolygonMesh& mesh);
 
