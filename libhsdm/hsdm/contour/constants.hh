@@ -460,8 +460,7 @@ inline constexpr int reach = 4;
 inline constexpr std::size_t far = 4096;
 
 /// facets: looked at for each of the mesh, in all; after that no more rings are looked for.
-/// Why: bounds the time where normals are at random to that of the rest; a scan of the suites takes less than
-/// one.
+/// Why: bounds the time where normals are at random.
 inline constexpr std::size_t most_work = 32;
 
 /// rounds: of cutting rings that do not touch each other.
