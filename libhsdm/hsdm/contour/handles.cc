@@ -5,8 +5,8 @@
 #include "hsdm/core/interruption.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/area_vector.hh"
+#include "hsdm/mesh/copy_vertex.hh"
 #include "hsdm/mesh/facet_links.hh"
-#include "hsdm/mesh/facet_normal.hh"
 #include "hsdm/mesh/split_polygon.hh"
 
 #include <algorithm>
@@ -24,9 +24,7 @@ bool is_contradicted(const PolygonMesh& mesh, Index f, const NormalSets& sets, s
     const Vec3 area = area_vector(mesh, facet);
     const double length = area.norm();
     if (!(length > 0)) return false;
-    Vec3 centre(0, 0, 0);
-    for (const Index v : facet) centre += mesh.positions[v];
-    centre /= static_cast<double>(facet.size());
+    const Vec3 centre = centroid(mesh, facet);
     bool any = false;
     for (const Index v : facet)
         for (const NormalSet& set : sets.of_voxel(voxel[mesh.origin[v]])) {
@@ -197,10 +195,8 @@ public:
 
     bool speak_for(Index f) {
         const auto facet = mesh_.facet(f);
-        const Vec3 normal = unit_or_zero(area_vector(mesh_, facet));
-        Vec3 centre(0, 0, 0);
-        for (const Index v : facet) centre += mesh_.positions[v];
-        centre /= static_cast<double>(facet.size());
+        const Vec3 normal = unit(area_vector(mesh_, facet));
+        const Vec3 centre = centroid(mesh_, facet);
         near_.clear();
         const Index own = voxel_[mesh_.origin[facet[0]]];
         gather(own, centre);
@@ -256,7 +252,7 @@ public:
         roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
         for_each_in_order(roots.size(), [&](std::size_t i) {
             if (work_ > most_work_) return;
-            if (i % chunks::heavy == 0) Interruption::poll();
+            Interruption::poll();
             const std::vector<Index> ring = vicinity.ring_at(roots[i]);
             if (share_contradicted(vicinity, ring) >= handles::least_contradicted && !bounds()
                 && are_contradicted_beside(vicinity, ring))
@@ -376,7 +372,7 @@ private:
         for (std::size_t i = 0; i < n; ++i) {
             corners[i] = corners_left_of(sides, i);
             draw_back(ring[i], ring, corners[i]);
-            left[i] = copy_of(ring[i]);
+            left[i] = copy_vertex(mesh_, ring[i]);
             if (!moves_.empty() && moves_.back().first == ring[i]) moves_.back().first = left[i];
             draw_back(ring[i], ring, corners_right_of(sides, i));
         }
@@ -420,17 +416,6 @@ private:
             ++count;
         }
         if (count > 0) moves_.emplace_back(v, 0.5 * (mesh_.positions[v] + sum / count));
-    }
-
-    Index copy_of(Index v) {
-        const auto copy = [v](auto& values) {
-            if (!values.empty()) values.push_back(values[v]);
-        };
-        copy(mesh_.positions);
-        copy(mesh_.normals);
-        copy(mesh_.origin);
-        for (VertexProperty& property : mesh_.properties) copy(property.values);
-        return static_cast<Index>(mesh_.vertex_count() - 1);
     }
 
     void close(const std::vector<Index>& ring) {

@@ -49,7 +49,7 @@ void reserve_large(std::vector<T>& values, std::size_t n) {
 template <class T>
 void push_large(std::vector<T>& values, const T& value) {
     if (values.size() == values.capacity())
-        reserve_large(values, std::max<std::size_t>(16, 2 * values.size()));
+        reserve_large(values, std::max<std::size_t>(16, values.size() + values.size() / 2)); // all touched
     values.push_back(value);
 }
 

@@ -5,6 +5,7 @@
 #include "hsdm/core/radix_sort.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/constants.hh"
+#include "hsdm/mesh/copy_vertex.hh"
 #include "hsdm/mesh/edge_table.hh"
 #include "hsdm/mesh/remove_facets.hh"
 
@@ -364,19 +365,6 @@ private:
     std::vector<Index> source_;                   ///< per new vertex, the one it copies
     std::vector<std::pair<Index, Index>> middle_; ///< edges to halve, by their half-edges
 };
-
-/// Appends a copy of vertex `source`, its normal and properties; returns the new vertex.
-Index copy_vertex(PolygonMesh& mesh, Index source) {
-    const auto copy = [source](auto& values) {
-        const auto value = values[source];
-        push_large(values, value);
-    };
-    copy(mesh.positions);
-    if (!mesh.normals.empty()) copy(mesh.normals);
-    if (!mesh.origin.empty()) copy(mesh.origin);
-    for (VertexProperty& property : mesh.properties) copy(property.values);
-    return static_cast<Index>(mesh.vertex_count() - 1);
-}
 
 void FanSplitter::write_back() {
     mesh_.corners.swap(vertex_of_);
