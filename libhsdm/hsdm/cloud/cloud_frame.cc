@@ -1,8 +1,7 @@
 #include "hsdm/cloud/cloud_frame.hh"
 
+#include "hsdm/core/parallel_sort.hh"
 #include "hsdm/errors.hh"
-
-#include <tbb/parallel_sort.h>
 
 #include <cmath>
 
@@ -85,7 +84,7 @@ Vec3 CloudFrame::to_cloud(const Vec3& work) const {
 
 double CloudFrame::cut_gaps(unsigned axis, std::vector<double>& coordinates, double widest) {
     if (coordinates.empty()) return 0;
-    tbb::parallel_sort(coordinates.begin(), coordinates.end());
+    parallel_sort(coordinates);
     widest_ = widest;
     double shift = 0, begin = coordinates.front(), longest = 0;
     for (std::size_t i = 1; i < coordinates.size(); ++i) {

@@ -3,7 +3,7 @@
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
-#include "hsdm/core/parallel_sort_unique.hh"
+#include "hsdm/core/parallel_sort.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -275,8 +275,8 @@ std::size_t extend_grid_points(GridPoints& grid, LocalSheets& sheets, const Octr
     if (missing.empty()) return 0;
     parallel_sort_unique(missing);
     add_grid_points(grid, missing);
-    sheets.first_member.resize(grid.size() + 1, sheets.first_member.back());
-    sheets.first_sheet.resize(grid.size() + 1, sheets.first_sheet.back());
+    resize_large(sheets.first_member, grid.size() + 1, sheets.first_member.back());
+    resize_large(sheets.first_sheet, grid.size() + 1, sheets.first_sheet.back());
     return missing.size();
 }
 

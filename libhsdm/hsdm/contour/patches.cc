@@ -2,7 +2,7 @@
 
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
-#include "hsdm/core/parallel_sort_unique.hh"
+#include "hsdm/core/parallel_sort.hh"
 
 #include <tbb/enumerable_thread_specific.h>
 

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <numeric>
 #include <type_traits>
 #include <vector>
 
@@ -74,6 +73,13 @@ std::vector<T> collected(std::size_t n, std::size_t chunk_size, F&& f) {
     return joined(parts);
 }
 
+/// 0, 1, ... n - 1.
+inline std::vector<Index> indices_below(std::size_t n) {
+    std::vector<Index> indices = large_vector<Index>(n);
+    for_each_index(n, chunks::light, [&](Index i) { indices[i] = i; });
+    return indices;
+}
+
 /// The indices below n that pass a test, ascending; tested in parallel by chunks.
 template <class Test>
 std::vector<Index> indices_where(std::size_t n, std::size_t chunk_size, Test&& test) {
@@ -91,7 +97,8 @@ void sort_unique(std::vector<T>& values) {
 }
 /// Turns counts stored one place to the right, {0, n0, n1, ...}, into first positions {0, n0, n0 + n1, ...}.
 inline void counts_to_first(std::vector<Index>& first) {
-    std::partial_sum(first.begin(), first.end(), first.begin());
+    Index sum = 0;
+    for_each_in_order(first.size(), [&](std::size_t i) { first[i] = sum += first[i]; });
 }
 
 } // namespace hsdm

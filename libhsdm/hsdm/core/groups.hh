@@ -11,14 +11,16 @@ namespace hsdm {
 class Groups {
 public:
     /// `group`: per member, below `count`, or no_index for one that is in none. O(members + count).
-    Groups(std::span<const Index> group, std::size_t count) : first_(count + 1, 0) {
-        for (Index g : group)
-            if (g != no_index) ++first_[g + 1];
+    Groups(std::span<const Index> group, std::size_t count) : first_(large_vector<Index>(count + 1)) {
+        for_each_in_order(group.size(), [&](std::size_t i) {
+            if (group[i] != no_index) ++first_[group[i] + 1];
+        });
         counts_to_first(first_);
-        members_.resize(first_.back());
-        std::vector<Index> next(first_.begin(), first_.end() - 1);
-        for (Index i = 0; i < group.size(); ++i)
-            if (group[i] != no_index) members_[next[group[i]]++] = i;
+        resize_large(members_, first_.back());
+        std::vector<Index> next = copy_of_large(first_);
+        for_each_in_order(group.size(), [&](std::size_t i) {
+            if (group[i] != no_index) members_[next[group[i]]++] = static_cast<Index>(i);
+        });
     }
     std::span<const Index> of(std::size_t group) const {
         return {members_.data() + first_[group], members_.data() + first_[group + 1]};

@@ -62,9 +62,9 @@ std::vector<T> copy_of_large(const std::vector<T>& values) {
     return copy;
 }
 
-/// Makes the vector n values long, as resize(n, value) does.
+/// Makes the vector n values long, as resize(n, value) does, also if `value` is one of its own.
 template <class T>
-void resize_large(std::vector<T>& values, std::size_t n, const std::type_identity_t<T>& value = T()) {
+void resize_large(std::vector<T>& values, std::size_t n, std::type_identity_t<T> value = T()) {
     constexpr std::size_t step = values_at_once<T>;
     reserve_large(values, n);
     for (std::size_t size = values.size() + step; size < n; size += step) {

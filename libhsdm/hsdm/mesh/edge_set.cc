@@ -2,7 +2,7 @@
 
 #include "hsdm/core/interruption.hh"
 #include "hsdm/core/large_vector.hh"
-#include "hsdm/core/parallel_sort_unique.hh"
+#include "hsdm/core/parallel_sort.hh"
 
 #include <algorithm>
 

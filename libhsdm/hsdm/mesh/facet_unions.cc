@@ -20,8 +20,8 @@ std::vector<Index> without(std::span<const Index> ring, Index v) {
 
 VertexFacets facets_at_vertices(const PolygonMesh& mesh) {
     const std::size_t n = mesh.vertex_count();
-    VertexFacets at{std::vector<std::array<Index, 2>>(n), std::vector<std::uint8_t>(n)};
-    std::vector<Index> counts(n, 0);
+    VertexFacets at{large_vector<std::array<Index, 2>>(n), large_vector<std::uint8_t>(n)};
+    std::vector<Index> counts = large_vector<Index>(n);
     for_each_index(mesh.facet_count(), chunks::light, [&](Index f) {
         for (Index v : mesh.facet(f)) {
             const Index place = std::atomic_ref(counts[v]).fetch_add(1, std::memory_order_relaxed);
@@ -60,12 +60,15 @@ void FacetUnions::unite(Index f, Index g, std::vector<Index> ring) {
 std::size_t FacetUnions::apply(PolygonMesh& mesh) const {
     if (count_ == 0) return 0;
     PolygonMesh kept;
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+    reserve_large(kept.corners,
+                  mesh.corners.size() + count_); // two facets have two corners more than their union
+    reserve_large(kept.first, mesh.first.size());
+    for_each_in_order(mesh.facet_count(), [&](std::size_t f) {
         if (fate_[f] == stays)
             kept.add_facet(mesh.facet(f));
         else if (fate_[f] != goes)
             kept.add_facet(unions_[fate_[f]]);
-    }
+    });
     mesh.corners = std::move(kept.corners);
     mesh.first = std::move(kept.first);
     return count_;

@@ -118,14 +118,16 @@ void thin_out(const PolygonMesh& mesh, std::span<const CodeIndex> group, std::ve
 }
 
 void remove_duplicates(PolygonMesh& mesh, ManifoldCounts& counts) {
-    std::vector<CodeIndex> keys(mesh.facet_count());
+    std::vector<CodeIndex> keys = large_vector<CodeIndex>(mesh.facet_count());
     for_each_index(keys.size(), chunks::quick, [&](std::size_t f) {
         keys[f] = {vertex_set_hash(mesh.facet(f)), static_cast<Index>(f)};
     });
     radix_sort(keys, 32);
-    std::vector<std::uint8_t> removed(keys.size(), 0);
-    for (std::size_t begin = 0, end = 0; begin < keys.size(); begin = end) {
-        while (end < keys.size() && keys[end].code == keys[begin].code) ++end;
+    std::vector<std::uint8_t> removed = large_vector<std::uint8_t>(keys.size());
+    std::size_t begin = 0;
+    for_each_in_order(keys.size(), [&](std::size_t last) {
+        const std::size_t end = last + 1;
+        if (end < keys.size() && keys[end].code == keys[begin].code) return;
         // Different vertex sets with the same hash are separated first; groups of more than one facet are
         // rare.
         for (std::size_t i = begin; end - i > 1;) {
@@ -138,7 +140,8 @@ void remove_duplicates(PolygonMesh& mesh, ManifoldCounts& counts) {
             if (mid - first > 1) thin_out(mesh, {first, mid}, removed, counts);
             i += static_cast<std::size_t>(mid - first);
         }
-    }
+        begin = end;
+    });
     if (counts.cancelled + counts.duplicates > 0)
         remove_facets(mesh, [&](std::size_t f) { return removed[f] != 0; });
 }
@@ -407,23 +410,26 @@ void FanSplitter::cut_halved_facets() {
 } // namespace
 
 std::size_t remove_isolated_vertices(PolygonMesh& mesh) {
-    std::vector<Index> renumbered(mesh.vertex_count(), no_index);
-    for (Index v : mesh.corners) renumbered[v] = 0;
+    std::vector<Index> renumbered = large_vector<Index>(mesh.vertex_count(), no_index);
+    for_each_in_order(mesh.corners.size(), [&](std::size_t c) { renumbered[mesh.corners[c]] = 0; });
     Index count = 0;
-    for (Index& v : renumbered)
-        if (v != no_index) v = count++;
+    for_each_in_order(renumbered.size(), [&](std::size_t v) {
+        if (renumbered[v] != no_index) renumbered[v] = count++;
+    });
     const std::size_t removed = mesh.vertex_count() - count;
     if (removed == 0) return 0;
     const auto compact = [&](auto& values) {
-        for (std::size_t v = 0; v < renumbered.size(); ++v)
+        for_each_in_order(renumbered.size(), [&](std::size_t v) {
             if (renumbered[v] != no_index) values[renumbered[v]] = values[v];
+        });
         values.resize(count);
     };
     compact(mesh.positions);
     if (!mesh.normals.empty()) compact(mesh.normals);
     if (!mesh.origin.empty()) compact(mesh.origin);
     for (VertexProperty& property : mesh.properties) compact(property.values);
-    for (Index& v : mesh.corners) v = renumbered[v];
+    for_each_index(mesh.corners.size(), chunks::light,
+                   [&](Index c) { mesh.corners[c] = renumbered[mesh.corners[c]]; });
     for (auto& ends : mesh.sharp_edges)
         for (Index& v : ends) v = renumbered[v];
     std::erase_if(mesh.sharp_edges,

@@ -1,5 +1,5 @@
 #pragma once
-// Some facets of a mesh as a mesh of their own.
+// Facets of a mesh as a mesh of their own, and facets of several as those of one.
 
 #include "hsdm/polygon_mesh.hh"
 
@@ -10,5 +10,11 @@ namespace hsdm {
 /// of the mesh + facets of the part).
 PolygonMesh part_of(const PolygonMesh& mesh, const std::vector<Index>& facets,
                     std::vector<Index>* number = nullptr);
+
+/// The facets, positions and origins of a large mesh again, without properties and normals.
+PolygonMesh copy_of(const PolygonMesh& mesh);
+
+/// Appends the facets of parts, one part after the other, to a mesh whose vertices theirs are. Parallel.
+void append_facets(PolygonMesh& mesh, const std::vector<PolygonMesh>& parts);
 
 } // namespace hsdm

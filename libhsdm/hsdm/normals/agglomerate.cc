@@ -3,7 +3,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/interruption.hh"
 #include "hsdm/core/large_vector.hh"
-#include "hsdm/core/parallel_sort_unique.hh"
+#include "hsdm/core/parallel_sort.hh"
 #include "hsdm/normals/constants.hh"
 
 #include <algorithm>

@@ -3,10 +3,9 @@
 #include "hsdm/cloud/strided.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
+#include "hsdm/core/parallel_sort.hh"
 #include "hsdm/octree/constants.hh"
 #include "hsdm/octree/spacing.hh"
-
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 
@@ -48,7 +47,7 @@ Places shifted_places(const Octree& octree) {
         }
         places[i] = {morton_encode(c[0], c[1], c[2]), i};
     });
-    tbb::parallel_sort(places.begin(), places.end());
+    parallel_sort(places);
     return places;
 }
 
@@ -129,7 +128,7 @@ std::size_t mark_scraps(const Octree& octree, const PointView& cloud, const Clou
     for_each_index(points.size(), chunks::light, [&](Index i) {
         points[i] = {frame.stretch_of_uncut(uncut.to_work(vec3_at(cloud.positions, octree.source[i]))), i};
     });
-    tbb::parallel_sort(points.begin(), points.end());
+    parallel_sort(points);
     std::size_t count = 0;
     marks.assign(points.size(), 0);
     for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {

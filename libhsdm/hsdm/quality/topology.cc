@@ -4,10 +4,9 @@
 #include "hsdm/core/disjoint_sets.hh"
 #include "hsdm/core/hash.hh"
 #include "hsdm/core/large_vector.hh"
+#include "hsdm/core/parallel_sort.hh"
 #include "hsdm/mesh/edge_table.hh"
 #include "hsdm/mesh/triangulate.hh"
-
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <atomic>
@@ -163,7 +162,7 @@ std::size_t count_duplicates(const PolygonMesh& mesh) {
         keys[f] = {mesh.facet(f).size(), f};
         for (Index v : mesh.facet(f)) keys[f].set += hash_index(v);
     });
-    tbb::parallel_sort(keys.begin(), keys.end());
+    parallel_sort(keys);
     std::size_t count = 0;
     for (std::size_t i = 1; i < keys.size(); ++i) {
         if (keys[i].set != keys[i - 1].set) continue;

@@ -1,8 +1,7 @@
 #include "hsdm/simplify/cell_tree.hh"
 
 #include "hsdm/core/chunks.hh"
-
-#include <tbb/parallel_sort.h>
+#include "hsdm/core/parallel_sort.hh"
 
 #include <algorithm>
 #include <array>
@@ -45,23 +44,24 @@ CellTree build_cell_tree(std::span<const Vec3> positions, double extent, int dep
     CellTree tree;
     tree.extent = extent;
     tree.levels.resize(static_cast<std::size_t>(depth) + 1);
-    std::vector<MortonCode> of_vertex(positions.size());
+    std::vector<MortonCode> of_vertex = large_vector<MortonCode>(positions.size());
     for_each_index(positions.size(), chunks::quick,
                    [&](Index v) { of_vertex[v] = tree.code_at(positions[v]); });
-    std::vector<MortonCode> codes = of_vertex;
-    tbb::parallel_sort(codes.begin(), codes.end());
+    std::vector<MortonCode> codes = copy_of_large(of_vertex);
+    parallel_sort(codes);
     for (std::size_t level = tree.levels.size(); level-- > 0;) {
         codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
         CellLevel& here = tree.levels[level];
-        here.codes = codes;
-        here.whole.assign(codes.size(), 1);
-        for (MortonCode& code : codes) code >>= 3;
+        here.codes = copy_of_large(codes);
+        assign_large(here.whole, codes.size(), 1);
+        for_each_index(codes.size(), chunks::light, [&](Index c) { codes[c] >>= 3; });
         if (level == 0) break;
-        here.parent.resize(codes.size());
-        for (std::size_t c = 1; c < codes.size(); ++c)
-            here.parent[c] = here.parent[c - 1] + (codes[c] != codes[c - 1]);
+        resize_large(here.parent, codes.size());
+        for_each_in_order(codes.size(), [&](std::size_t c) {
+            here.parent[c] = c == 0 ? 0 : here.parent[c - 1] + (codes[c] != codes[c - 1]);
+        });
     }
-    tree.of_vertex.resize(positions.size());
+    resize_large(tree.of_vertex, positions.size());
     for_each_index(positions.size(), chunks::quick,
                    [&](Index v) { tree.of_vertex[v] = tree.find(depth, of_vertex[v]); });
     return tree;
@@ -72,8 +72,8 @@ std::size_t balance(CellTree& tree) {
     for (int level = tree.depth() - 1; level > 0; --level) {
         const CellLevel& here = tree.levels[static_cast<std::size_t>(level)];
         CellLevel& above = tree.levels[static_cast<std::size_t>(level) - 1];
-        for (std::size_t c = 0; c < here.codes.size(); ++c) {
-            if (here.whole[c]) continue;
+        for_each_in_order(here.codes.size(), [&](std::size_t c) {
+            if (here.whole[c]) return;
             const VoxelCoord at = morton_decode(here.codes[c]);
             for (int k = 0; k < 27; ++k) {
                 const std::array<int, 3> step{k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
@@ -87,7 +87,7 @@ std::size_t balance(CellTree& tree) {
                 above.whole[cell] = 0;
                 splits += k != 13; // not counted: the cell's own parent was subdivided with it
             }
-        }
+        });
     }
     return splits;
 }

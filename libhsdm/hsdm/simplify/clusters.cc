@@ -3,13 +3,12 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/disjoint_sets.hh"
 #include "hsdm/core/groups.hh"
-#include "hsdm/core/parallel_sort_unique.hh"
+#include "hsdm/core/parallel_sort.hh"
 #include "hsdm/simplify/border_vertices.hh"
 #include "hsdm/simplify/divide_by_planes.hh"
 
 #include <algorithm>
 #include <atomic>
-#include <numeric>
 #include <span>
 
 namespace hsdm {
@@ -36,18 +35,16 @@ public:
         : mesh_(mesh),
           tree_(tree),
           tolerance_(tolerance),
-          current_(mesh.vertex_count()),
+          current_(indices_below(mesh.vertex_count())),
+          facets_(indices_below(mesh.facet_count())),
           planes_(planes),
-          euler_(mesh.vertex_count(), 1) {
-        for (Index v = 0; v < current_.size(); ++v) current_[v] = v;
-        facets_.resize(mesh.facet_count());
-        std::iota(facets_.begin(), facets_.end(), Index{0});
+          euler_(large_vector<int>(mesh.vertex_count(), 1)) {
         gather_edges();
     }
 
     std::vector<ClusterLevel> run() {
         std::vector<ClusterLevel> levels(tree_.levels.size());
-        levels.back() = {tree_.of_vertex, {}, mesh_.positions};
+        levels.back() = {copy_of_large(tree_.of_vertex), {}, copy_of_large(mesh_.positions)};
         for (std::size_t level = levels.size() - 1; level-- > 0;)
             levels[level] = gather(levels[level + 1], level);
         return levels;
@@ -75,16 +72,17 @@ private:
                    });
         edges_ = joined(parts);
         Edges beside = joined(at_border); // edges that may be at the border, some twice
-        std::sort(beside.begin(), beside.end());
-        edges_.insert(edges_.end(), beside.begin(), std::unique(beside.begin(), beside.end()));
+        parallel_sort_unique(beside);
+        append_large(edges_, beside);
     }
 
     /// Per cell, are all its children whole?
     std::vector<std::uint8_t> eligible_cells(std::size_t level) const {
         const CellLevel& below = tree_.levels[level + 1];
-        std::vector<std::uint8_t> eligible(tree_.levels[level].codes.size(), 1);
-        for (std::size_t c = 0; c < below.codes.size(); ++c)
+        std::vector<std::uint8_t> eligible = large_vector<std::uint8_t>(tree_.levels[level].codes.size(), 1);
+        for_each_in_order(below.codes.size(), [&](std::size_t c) {
             if (!below.whole[c]) eligible[below.parent[c]] = 0;
+        });
         return eligible;
     }
 
@@ -99,17 +97,18 @@ private:
         });
         const std::vector<Index> part = divide(joined, below, eligible, level);
         ClusterLevel here;
-        below.parent.assign(below.size(), no_index);
-        for (Index i = 0; i < below.size(); ++i) {
-            if (!eligible[cell_of(i)]) continue;
+        assign_large(below.parent, below.size(), no_index);
+        for_each_in_order(below.size(), [&](std::size_t k) {
+            const auto i = static_cast<Index>(k);
+            if (!eligible[cell_of(i)]) return;
             if (part[i] == i) {
                 below.parent[i] = static_cast<Index>(here.cell.size());
-                here.cell.push_back(cell_of(i));
+                push_large(here.cell, cell_of(i));
             } else {
                 below.parent[i] = below.parent[part[i]];
             }
-        }
-        here.positions.resize(here.cell.size());
+        });
+        resize_large(here.positions, here.cell.size());
         carry_up(below, here.cell.size());
         decide(here, eligible, level);
         return here;
@@ -120,10 +119,10 @@ private:
     std::vector<Index> divide(DisjointSets& joined, const ClusterLevel& below,
                               const std::vector<std::uint8_t>& eligible, std::size_t level) {
         const auto& parent_cell = tree_.levels[level + 1].parent;
-        std::vector<Index> part(below.size());
+        std::vector<Index> part = large_vector<Index>(below.size());
         for_each_index(part.size(), chunks::slow, [&](Index i) { part[i] = joined.find(i); });
         const Groups members(part, part.size());
-        std::vector<std::uint8_t> missed(below.size(), 0);
+        std::vector<std::uint8_t> missed = large_vector<std::uint8_t>(below.size());
         for_chunks(below.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t i = begin; i < end; ++i) {
                 const Index cell = parent_cell[below.cell[i]];
@@ -143,10 +142,12 @@ private:
             const Index i = current_[edge.first], j = current_[edge.second];
             return i != no_index && j != no_index && i != j && part[i] == part[j] && missed[part[i]];
         };
-        for (const Edge& edge : kept(edges_, is_inside)) {
-            const Index i = current_[edge.first], j = current_[edge.second];
-            sides.push_back({part[i], std::min(i, j), std::max(i, j)});
-        }
+        const Edges inside = kept(edges_, is_inside);
+        resize_large(sides, inside.size());
+        for_each_index(sides.size(), chunks::light, [&](Index e) {
+            const Index i = current_[inside[e].first], j = current_[inside[e].second];
+            sides[e] = {part[i], std::min(i, j), std::max(i, j)};
+        });
         parallel_sort_unique(sides);
         std::vector<std::pair<Index, std::size_t>> pieces; // piece, and where its sides begin
         std::size_t s = 0;
@@ -187,8 +188,8 @@ private:
     /// lie in one cluster (counted) or touch a vertex without a cluster.
     void carry_up(const ClusterLevel& below, std::size_t count) {
         const Groups members(below.parent, count);
-        std::vector<Quadric> sums(count);
-        std::vector<int> euler(count, 0);
+        std::vector<Quadric> sums = large_vector<Quadric>(count);
+        std::vector<int> euler = large_vector<int>(count);
         for_each_index(count, chunks::slow, [&](Index i) {
             sums[i] = sum_of(members.of(i));
             for (Index member : members.of(i)) euler[i] += euler_[member];
@@ -228,14 +229,15 @@ private:
 
     void decide(ClusterLevel& here, const std::vector<std::uint8_t>& eligible, std::size_t level) {
         CellLevel& cells = tree_.levels[level];
-        std::vector<std::uint8_t> fits(here.size());
+        std::vector<std::uint8_t> fits = large_vector<std::uint8_t>(here.size());
         for_each_index(here.size(), chunks::slow, [&](Index i) {
             here.positions[i] = place_in(planes_[i], box_of(here.cell[i], level));
             fits[i] = euler_[i] == 1 && planes_[i].rms(here.positions[i]) <= tolerance_;
         });
         cells.whole = eligible;
-        for (std::size_t i = 0; i < here.size(); ++i)
+        for_each_in_order(here.size(), [&](std::size_t i) {
             if (!fits[i]) cells.whole[here.cell[i]] = 0;
+        });
     }
 
     Box box_of(Index cell, std::size_t level) const {

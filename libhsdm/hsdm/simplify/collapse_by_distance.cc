@@ -2,11 +2,10 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/hash.hh"
+#include "hsdm/core/parallel_sort.hh"
 #include "hsdm/simplify/constants.hh"
 #include "hsdm/simplify/triangle_shape.hh"
 #include "hsdm/spatial/point_triangle.hh"
-
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 
@@ -71,7 +70,7 @@ private:
     /// chosen: half of the candidates have to wait.
     bool drop_once() {
         std::vector<Collapse> collapses = find_collapses();
-        tbb::parallel_sort(collapses.begin(), collapses.end(), [](const Collapse& a, const Collapse& b) {
+        parallel_sort(collapses, [](const Collapse& a, const Collapse& b) {
             return a.length != b.length ? a.length < b.length : a.side < b.side;
         });
         keep_apart(collapses);

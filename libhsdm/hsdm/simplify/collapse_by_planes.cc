@@ -1,10 +1,9 @@
 #include "hsdm/simplify/collapse_by_planes.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/parallel_sort.hh"
 #include "hsdm/simplify/constants.hh"
 #include "hsdm/simplify/remove_flat_vertices.hh"
-
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <optional>
@@ -115,7 +114,7 @@ private:
     /// facets of even size.
     std::size_t merge_once() {
         std::vector<Candidate> candidates = find_candidates();
-        tbb::parallel_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+        parallel_sort(candidates, [](const Candidate& a, const Candidate& b) {
             return a.length != b.length ? a.length < b.length : a.side < b.side;
         });
         is_first_ = false;

@@ -1,6 +1,8 @@
 #include "hsdm/simplify/decimate.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/interruption.hh"
+#include "hsdm/mesh/part_of.hh"
 #include "hsdm/simplify/collapse_by_distance.hh"
 #include "hsdm/simplify/collapse_by_planes.hh"
 #include "hsdm/simplify/constants.hh"
@@ -8,13 +10,10 @@
 #include "hsdm/simplify/nonmanifold_vertices.hh"
 #include "hsdm/simplify/remesh_by_flips.hh"
 
-#include <tbb/parallel_invoke.h>
-
 #include <algorithm>
 #include <array>
 #include <functional>
 #include <iterator>
-#include <numeric>
 
 namespace hsdm {
 namespace {
@@ -66,9 +65,8 @@ public:
                 for (Index source : sources) vertices.push_back(result_.vertex[source]);
             if (keep_closer(vertices) == 0) break;
         }
-        result_.mesh = input_.mesh;
-        result_.vertex.resize(input_.mesh.vertex_count());
-        std::iota(result_.vertex.begin(), result_.vertex.end(), Index{0});
+        result_.mesh = copy_of(input_.mesh);
+        result_.vertex = indices_below(input_.mesh.vertex_count());
         result_.faults = find_faults().counts;
         return std::move(result_);
     }
@@ -77,10 +75,12 @@ private:
     void merge_once(const DecimationStep& step) {
         auto [mesh, stands_for, flipped] = step.merge(tolerance_);
         result_.mesh = std::move(mesh);
-        std::vector<std::uint8_t> merged(stands_for.size(), 0);
-        for (Index v = 0; v < stands_for.size(); ++v)
+        std::vector<std::uint8_t> merged = large_vector<std::uint8_t>(stands_for.size());
+        const auto mark = [&, &stands_for = stands_for, &flipped = flipped](std::size_t v) {
             merged[stands_for[v]] |= stands_for[v] != v || flipped[v] != 0
                                      || result_.mesh.positions[v] != input_.mesh.positions[v];
+        };
+        for_each_in_order(stands_for.size(), mark);
         const std::vector<Index> source = drop_replaced(result_.mesh, stands_for);
         result_.vertex = std::move(stands_for);
         has_merged_ = picked(merged, source);
@@ -94,11 +94,11 @@ private:
     static std::vector<Index> with_neighbours(const PolygonMesh& mesh,
                                               const std::vector<std::uint8_t>& marked) {
         std::vector<Index> found;
-        for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+        for_each_in_order(mesh.facet_count(), [&](std::size_t f) {
             const auto ring = mesh.facet(f);
             if (std::any_of(ring.begin(), ring.end(), [&](Index v) { return marked[v]; }))
                 found.insert(found.end(), ring.begin(), ring.end());
-        }
+        });
         return found;
     }
 
@@ -106,8 +106,8 @@ private:
         const PolygonMesh& mesh = result_.mesh;
         Findings found;
         Faults faults;
-        tbb::parallel_invoke([&] { faults.vertices = nonmanifold_vertices(mesh); },
-                             [&] { found = checks_.look_at(mesh); });
+        run_both([&] { found = checks_.look_at(mesh); },
+                 [&] { faults.vertices = nonmanifold_vertices(mesh); });
         faults.manifold = faults.vertices.empty();
         faults.counts = found.count();
         for (Index v : found.far.fine_vertices) {
@@ -116,7 +116,9 @@ private:
         }
         for (Index v : found.far.vertices) add_sources(mesh.positions[v], faults.sources);
         for (const Vec3& place : found.far.on_facets) add_sources(place, faults.sources);
-        for (Index p : found.far_points.points) add_sources(checks_.distances().point(p), faults.sources);
+        for_each_in_order(found.far_points.points.size(), [&](std::size_t i) {
+            add_sources(checks_.distances().point(found.far_points.points[i]), faults.sources);
+        });
         for (const auto& [f, g] : found.intersecting)
             for (Index v : mesh.facet(diagonal(g) < diagonal(f) ? g : f))
                 add_sources(mesh.positions[v], faults.sources);
@@ -187,10 +189,11 @@ private:
 
     std::size_t lower_tolerances(const std::vector<std::uint8_t>& wrong) {
         std::vector<Index> concerned;
-        for (Index source = 0; source < tolerance_.size(); ++source) {
+        for_each_in_order(tolerance_.size(), [&](std::size_t source) {
             const Index v = result_.vertex[source];
-            if (wrong[v] && has_merged_[v] && tolerance_[source] > 0) concerned.push_back(source);
-        }
+            if (wrong[v] && has_merged_[v] && tolerance_[source] > 0)
+                concerned.push_back(static_cast<Index>(source));
+        });
         const bool few = static_cast<double>(concerned.size())
                          < decimation::few_leaves * static_cast<double>(tolerance_.size());
         for (Index source : concerned) {
@@ -213,8 +216,8 @@ private:
 
 /// Composes two maps: per item of the first, what stands for it after both.
 std::vector<Index> through(const std::vector<Index>& first, const std::vector<Index>& second) {
-    std::vector<Index> result(first.size());
-    std::transform(first.begin(), first.end(), result.begin(), [&](Index v) { return second[v]; });
+    std::vector<Index> result = large_vector<Index>(first.size());
+    for_each_index(first.size(), chunks::light, [&](Index v) { result[v] = second[first[v]]; });
     return result;
 }
 

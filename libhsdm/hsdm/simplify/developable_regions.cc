@@ -1,5 +1,7 @@
 #include "hsdm/simplify/developable_regions.hh"
 
+#include "hsdm/core/chunks.hh"
+#include "hsdm/core/parallel_sort.hh"
 #include "hsdm/simplify/constants.hh"
 
 #include <algorithm>
@@ -54,6 +56,7 @@ DevelopableRegion grow(const FacetField& field, Index seed, const std::vector<In
     NormalSum normals;
     std::size_t refit = developable::first_refit;
     for (std::size_t next = 0; next < region.facets.size(); ++next) {
+        if (next % chunks::quick == 0) Interruption::poll();
         const Index f = region.facets[next];
         normals.add(field.mean_normal[f], field.area[f].norm());
         if (next + 1 == refit) {
@@ -76,24 +79,28 @@ DevelopableRegion grow(const FacetField& field, Index seed, const std::vector<In
 
 std::vector<DevelopableRegion> find_developable_regions(const FacetField& field,
                                                         const std::vector<Index>& taken) {
-    std::vector<std::pair<double, Index>> seeds;
-    for (Index f = 0; f < field.size(); ++f)
-        if (taken[f] == no_index && field.next_spread[f] <= developable::most_ratio * field.spread[f])
-            seeds.emplace_back(field.next_spread[f] / std::max(field.spread[f], 1e-12), f);
-    std::sort(seeds.begin(), seeds.end());
+    using Seed = std::pair<double, Index>;
+    const auto add_bent = [&](std::size_t begin, std::size_t end, std::vector<Seed>& part) {
+        for (auto f = static_cast<Index>(begin); f < end; ++f)
+            if (taken[f] == no_index && field.next_spread[f] <= developable::most_ratio * field.spread[f])
+                part.emplace_back(field.next_spread[f] / std::max(field.spread[f], 1e-12), f);
+    };
+    std::vector<Seed> seeds = collected<Seed>(field.size(), chunks::light, add_bent);
+    parallel_sort(seeds);
     std::vector<DevelopableRegion> regions;
     std::vector<std::uint8_t> seen(field.size(), 0), trims(field.size(), 0);
-    for (const auto& [ratio, seed] : seeds) {
-        if (seen[seed]) continue;
+    for_each_in_order(seeds.size(), [&](std::size_t s) {
+        const Index seed = seeds[s].second;
+        if (seen[seed]) return;
         DevelopableRegion region = grow(field, seed, taken, seen);
         const std::vector<Index> trimmed = trim(field, region);
         if (region.facets.size() < developable::least_facets
             || region.axis.deviation > developable::most_deviation)
-            continue;
+            return;
         regions.push_back(std::move(region));
         for (Index f : trimmed)
             if (++trims[f] <= developable::most_trims) seen[f] = 0; // free for another region
-    }
+    });
     return regions;
 }
 

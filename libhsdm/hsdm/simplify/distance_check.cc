@@ -103,7 +103,7 @@ FarPlaces DistanceCheck::find_far(const PolygonMesh& mesh, const Unchanged& same
 
 void DistanceCheck::follow_triangles(const SurfaceWalk& before, const Triangulation& cut_before,
                                      const Unchanged& same) {
-    followed_.resize(cut_before.size());
+    resize_large(followed_, cut_before.size());
     for_chunks(same.facet_now.size(), chunks::slow, [&](std::size_t f, std::size_t end, std::size_t) {
         Index hint = no_index;
         for (; f < end; ++f)
@@ -123,7 +123,7 @@ void DistanceCheck::follow_triangles(const SurfaceWalk& before, const Triangulat
 /// before is still near it if this mesh has the same triangle.
 std::vector<Index> DistanceCheck::far_from(std::span<const Vec3> places, double bound,
                                            std::vector<Index>& near) const {
-    near.resize(places.size(), no_index);
+    resize_large(near, places.size(), no_index);
     const auto find = [&](std::size_t begin, std::size_t end, std::vector<Index>& far) {
         Index hint = no_index;
         for (std::size_t i = begin; i < end; ++i) {
@@ -146,9 +146,10 @@ std::vector<Index> DistanceCheck::far_vertices(const PolygonMesh& mesh, const Un
     const auto is_own = [&](Index v) {
         return !mesh.origin.empty() && mesh.positions[v] == fine_.positions[mesh.origin[v]];
     };
-    std::vector<std::uint8_t> near(mesh.vertex_count(), 0);
-    for (Index v = 0; v < near.size(); ++v)
+    std::vector<std::uint8_t> near = large_vector<std::uint8_t>(mesh.vertex_count());
+    for_each_index(near.size(), chunks::light, [&](Index v) {
         near[v] = is_own(v) || (same.vertex[v] != no_index && vertex_is_near_[same.vertex[v]]);
+    });
     const auto find = [&](std::size_t begin, std::size_t end, std::vector<Index>& far) {
         Index hint = no_index;
         for (auto v = static_cast<Index>(begin); v < end; ++v) {
@@ -164,11 +165,14 @@ std::vector<Index> DistanceCheck::far_vertices(const PolygonMesh& mesh, const Un
 
 void DistanceCheck::find_far_facets(const PolygonMesh& mesh, const Unchanged& same, FarPlaces& far) {
     const std::vector<std::uint8_t> border_before = std::exchange(border_, border_vertices(mesh));
-    std::vector<std::uint8_t> near(mesh.facet_count(), 0);
-    for (Index f = 0; f < near.size(); ++f) // which sides are sampled depends on borders too
-        near[f] = same.facet[f] != no_index && facet_is_near_[same.facet[f]]
-                  && std::ranges::all_of(
-                      mesh.facet(f), [&](Index v) { return border_[v] == border_before[same.vertex[v]]; });
+    std::vector<std::uint8_t> near = large_vector<std::uint8_t>(mesh.facet_count());
+    for_each_index(near.size(), chunks::light,
+                   [&](Index f) { // which sides are sampled depends on borders too
+                       near[f] = same.facet[f] != no_index && facet_is_near_[same.facet[f]]
+                                 && std::ranges::all_of(mesh.facet(f), [&](Index v) {
+                                        return border_[v] == border_before[same.vertex[v]];
+                                    });
+                   });
     const auto far_place = [&](Index f, Index& hint, std::vector<Vec3>& places) -> const Vec3* {
         for (Index t = cut_.first[f]; t < cut_.first[f + 1]; ++t) {
             const Triangle& triangle = cut_.triangles[t];
@@ -203,20 +207,21 @@ FarPoints DistanceCheck::find_far_points() {
     measure_to_fine(far);
     std::vector<Index> missed; // points that the fine mesh misses by more than the bound
     double farthest = 0;
-    for (Index p : far) {
+    for_each_in_order(far.size(), [&](std::size_t i) {
+        const Index p = far[i];
         if (const double off = off_fine_[p]; off > bound_) {
             missed.push_back(p);
             farthest = std::max(farthest, off);
         } else {
             found.points.push_back(p);
         }
-    }
+    });
     found.beyond = far.size();
     found.unreachable = missed.size();
     if (!missed.empty()) found.first_unreachable = missed.front();
     // If the fine mesh misses points by more than the bound, such a point counts only if the mesh is farther
     // from it than the fine mesh is from any.
-    std::vector<double> off(missed.size());
+    std::vector<double> off = large_vector<double>(missed.size());
     for_each_index(missed.size(), far_per_chunk,
                    [&](Index i) { off[i] = to_mesh_->tree()(points_[missed[i]]); });
     for (std::size_t i = 0; i < missed.size(); ++i)
@@ -226,7 +231,7 @@ FarPoints DistanceCheck::find_far_points() {
 
 /// Measures the distances of points from the fine mesh that no round before has measured.
 void DistanceCheck::measure_to_fine(const std::vector<Index>& far) {
-    if (!far.empty()) off_fine_.resize(points_.size(), -1);
+    if (!far.empty()) resize_large(off_fine_, points_.size(), -1);
     for_chunks(far.size(), far_per_chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
         Index hint = no_index;
         for (std::size_t i = begin; i < end; ++i)

@@ -14,9 +14,9 @@ namespace hsdm {
 namespace {
 
 void measure_facets(const PolygonMesh& mesh, FacetField& field) {
-    field.area.resize(mesh.facet_count());
-    field.centre.resize(field.size());
-    field.normal.resize(field.size());
+    resize_large(field.area, mesh.facet_count());
+    resize_large(field.centre, field.size());
+    resize_large(field.normal, field.size());
     for_each_index(field.size(), chunks::usual, [&](Index f) {
         const auto ring = mesh.facet(f);
         field.area[f] = area_vector(mesh, ring);
@@ -26,11 +26,11 @@ void measure_facets(const PolygonMesh& mesh, FacetField& field) {
 }
 
 void link_facets(const PolygonMesh& mesh, FacetField& field) {
-    std::vector<Index> facet_of(mesh.corners.size());
+    std::vector<Index> facet_of = large_vector<Index>(mesh.corners.size());
     for_each_index(field.size(), chunks::usual, [&](Index f) {
         std::fill(facet_of.begin() + mesh.first[f], facet_of.begin() + mesh.first[f + 1], f);
     });
-    field.beside.assign(mesh.corners.size(), no_index);
+    assign_large(field.beside, mesh.corners.size(), no_index);
     EdgeTable(mesh).for_edges([&](Index, std::span<const EdgeSide> edge, std::size_t) {
         if (edge.size() != 2) return;
         const Index a = edge[0].side, b = edge[1].side, f = facet_of[a], g = facet_of[b];
@@ -40,9 +40,9 @@ void link_facets(const PolygonMesh& mesh, FacetField& field) {
 }
 
 void gather_normals(FacetField& field) {
-    std::vector<double> bend(field.size(), 0), wider_bend(field.size());
-    std::vector<NormalSum> wider(field.size());
-    field.around.resize(field.size());
+    std::vector<double> bend = large_vector<double>(field.size()), wider_bend = copy_of_large(bend);
+    std::vector<NormalSum> wider = large_vector<NormalSum>(field.size());
+    resize_large(field.around, field.size());
     for_each_index(field.size(), chunks::usual, [&](Index f) {
         field.around[f].add(field.normal[f], field.area[f].norm());
         field.for_beside(f, [&](Index g) {
@@ -61,14 +61,14 @@ void gather_normals(FacetField& field) {
         field.around.swap(wider);
         bend.swap(wider_bend);
     }
-    field.convex.resize(field.size());
+    resize_large(field.convex, field.size());
     for_each_index(field.size(), chunks::usual, [&](Index f) { field.convex[f] = bend[f] > 0; });
 }
 
 void measure_bend(FacetField& field) {
-    field.spread.resize(field.size());
-    field.next_spread.resize(field.size());
-    field.mean_normal.resize(field.size());
+    resize_large(field.spread, field.size());
+    resize_large(field.next_spread, field.size());
+    resize_large(field.mean_normal, field.size());
     for_each_index(field.size(), chunks::usual, [&](Index f) {
         const std::array<double, 3> deviation = field.around[f].deviation();
         field.spread[f] = deviation[2];

@@ -80,8 +80,9 @@ private:
 /// Marked facets and those whose boxes may touch theirs, ascending.
 std::vector<Index> with_touching(const PolygonMesh& mesh, const std::vector<std::uint8_t>& marked) {
     BoxGrid grid(bounds_of(mesh.positions), mesh.facet_count());
-    for (std::size_t f = 0; f < marked.size(); ++f)
+    for_each_in_order(marked.size(), [&](std::size_t f) {
         if (marked[f]) grid.add(box_of(mesh, f));
+    });
     grid.sum_up();
     return indices_where(marked.size(), chunks::quick,
                          [&](Index f) { return marked[f] || grid.touches(box_of(mesh, f)); });
@@ -90,9 +91,9 @@ std::vector<Index> with_touching(const PolygonMesh& mesh, const std::vector<std:
 } // namespace
 
 std::vector<std::array<Index, 2>> IntersectionCheck::find(const PolygonMesh& mesh, const Unchanged& same) {
-    std::vector<std::uint8_t> changed(mesh.facet_count());
-    for (std::size_t f = 0; f < changed.size(); ++f)
-        changed[f] = same.facet[f] == no_index || !is_clear_[same.facet[f]];
+    std::vector<std::uint8_t> changed = large_vector<std::uint8_t>(mesh.facet_count());
+    for_each_index(changed.size(), chunks::light,
+                   [&](Index f) { changed[f] = same.facet[f] == no_index || !is_clear_[same.facet[f]]; });
     const std::vector<Index> due = with_touching(mesh, changed);
     auto pairs = find_self_intersections(part_of(mesh, due)).facet_pairs;
     is_clear_.assign(mesh.facet_count(), 1);

@@ -1,6 +1,7 @@
 #include "hsdm/simplify/mesh_checks.hh"
 
-#include <tbb/parallel_invoke.h>
+#include "hsdm/core/interruption.hh"
+#include "hsdm/mesh/part_of.hh"
 
 namespace hsdm {
 
@@ -10,19 +11,20 @@ MeshChecks::MeshChecks(const PolygonMesh& fine, const FacetCells* cells, std::sp
 
 Unchanged MeshChecks::compare_with_last(const PolygonMesh& mesh) {
     Unchanged same = find_unchanged(last_, mesh);
-    last_ = mesh;
+    last_ = copy_of(mesh);
     return same;
 }
 
-/// The two in parallel, because each has steps that run on one thread.
+/// Both at once, because each has steps that run on one thread.
 Findings MeshChecks::look_at(const PolygonMesh& mesh) {
     const Unchanged same = compare_with_last(mesh);
     Findings found;
-    tbb::parallel_invoke([&] { found.intersecting = intersections_.find(mesh, same); },
-                         [&] {
-                             found.far = distances_.find_far(mesh, same);
-                             found.far_points = distances_.find_far_points();
-                         });
+    run_both(
+        [&] {
+            found.far = distances_.find_far(mesh, same);
+            found.far_points = distances_.find_far_points();
+        },
+        [&] { found.intersecting = intersections_.find(mesh, same); });
     return found;
 }
 

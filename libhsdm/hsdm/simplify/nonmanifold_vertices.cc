@@ -30,7 +30,7 @@ std::vector<Index> flat_facets(const PolygonMesh& mesh) {
 } // namespace
 
 std::vector<Index> nonmanifold_vertices(const PolygonMesh& mesh) {
-    std::vector<std::uint8_t> troubled(mesh.vertex_count(), 0), border(mesh.vertex_count(), 0);
+    std::vector<std::uint8_t> troubled = large_vector<std::uint8_t>(mesh.vertex_count()), border = troubled;
     DisjointSets fans(mesh.corners.size());
     // Edges of other chunks may end at the same vertex.
     const auto mark = [](std::vector<std::uint8_t>& marks, Index v, Index w) {
@@ -48,20 +48,20 @@ std::vector<Index> nonmanifold_vertices(const PolygonMesh& mesh) {
             mark(troubled, lower, edge[0].upper);
         }
     });
-    std::vector<Index> root(mesh.vertex_count(), no_index), facets(mesh.vertex_count(), 0);
-    for (Index c = 0; c < mesh.corners.size(); ++c) {
+    std::vector<Index> root = large_vector<Index>(mesh.vertex_count(), no_index),
+                       facets = large_vector<Index>(mesh.vertex_count());
+    for_each_in_order(mesh.corners.size(), [&](std::size_t c) {
         const Index v = mesh.corners[c];
-        const Index r = fans.find(c);
+        const Index r = fans.find(static_cast<Index>(c));
         if (root[v] != no_index && root[v] != r) troubled[v] = 1;
         root[v] = r;
         ++facets[v];
-    }
+    });
     for (Index f : flat_facets(mesh))
         for (Index v : mesh.facet(f)) troubled[v] = 1;
-    std::vector<Index> result;
-    for (Index v = 0; v < troubled.size(); ++v)
-        if (troubled[v] || (facets[v] > 0 && facets[v] < 3 && !border[v])) result.push_back(v);
-    return result;
+    return indices_where(troubled.size(), chunks::light, [&](Index v) {
+        return troubled[v] || (facets[v] > 0 && facets[v] < 3 && !border[v]);
+    });
 }
 
 } // namespace hsdm

@@ -1,6 +1,7 @@
 #include "hsdm/simplify/planar_patches.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/parallel_sort.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/simplify/constants.hh"
 #include "hsdm/simplify/developable_regions.hh"
@@ -36,8 +37,10 @@ private:
 class Patching {
 public:
     Patching(const PolygonMesh& mesh, double tolerance)
-        : field_(facet_field(mesh)), tolerance_(tolerance), margin_(mesh.facet_count(), 0) {
-        patches_.patch.assign(mesh.facet_count(), no_index);
+        : field_(facet_field(mesh)),
+          tolerance_(tolerance),
+          margin_(large_vector<std::uint8_t>(mesh.facet_count())) {
+        assign_large(patches_.patch, mesh.facet_count(), no_index);
     }
 
     PlanarPatches run() {
@@ -51,19 +54,24 @@ public:
 private:
     /// Grows patches of flat ground, from the flattest facets first.
     void find_flat_ground() {
-        std::vector<std::pair<double, Index>> seeds;
-        for (Index f = 0; f < field_.size(); ++f)
-            if (field_.spread[f] <= flat_ground::flat_spread) seeds.emplace_back(field_.spread[f], f);
-        std::sort(seeds.begin(), seeds.end());
-        std::vector<std::uint8_t> seen(field_.size(), 0); // facets of cores that turned out not to be flat
-        for (const auto& [spread, seed] : seeds) {
-            if (patches_.patch[seed] != no_index || seen[seed]) continue;
+        using Seed = std::pair<double, Index>;
+        const auto add_flat = [&](std::size_t begin, std::size_t end, std::vector<Seed>& part) {
+            for (auto f = static_cast<Index>(begin); f < end; ++f)
+                if (field_.spread[f] <= flat_ground::flat_spread) part.emplace_back(field_.spread[f], f);
+        };
+        std::vector<Seed> seeds = collected<Seed>(field_.size(), chunks::light, add_flat);
+        parallel_sort(seeds);
+        // facets of cores that turned out not to be flat
+        std::vector<std::uint8_t> seen = large_vector<std::uint8_t>(field_.size());
+        for_each_in_order(seeds.size(), [&](std::size_t s) {
+            const Index seed = seeds[s].second;
+            if (patches_.patch[seed] != no_index || seen[seed]) return;
             std::vector<Index> facets;
             const Plane plane = grow_core(seed, facets);
             const std::size_t core = facets.size();
             if (core >= flat_ground::least_facets && add_margin(facets, plane)) {
                 patches_.planes.push_back(plane);
-                continue;
+                return;
             }
             for (std::size_t i = 0; i < facets.size(); ++i) {
                 patches_.patch[facets[i]] = no_index;
@@ -72,7 +80,7 @@ private:
                 else
                     margin_[facets[i]] = 0;
             }
-        }
+        });
     }
 
     /// A facet in the queue for a plane, ordered by distance, nearest first.
@@ -90,7 +98,8 @@ private:
         GrowingPlane growing;
         std::priority_queue<Waiting> waiting;
         waiting.push({0, seed});
-        while (!waiting.empty()) {
+        for (std::size_t looked_at = 0; !waiting.empty(); ++looked_at) {
+            if (looked_at % chunks::quick == 0) Interruption::poll();
             const auto [before, f] = waiting.top();
             waiting.pop();
             if (patches_.patch[f] != no_index) continue;
@@ -119,7 +128,8 @@ private:
     /// tangent grows with the square of the way along it.
     bool add_margin(std::vector<Index>& facets, const Plane& plane) {
         const std::size_t most = facets.size() + facets.size() / 2;
-        for (std::size_t next = 0; next < facets.size() && facets.size() <= most; ++next)
+        for (std::size_t next = 0; next < facets.size() && facets.size() <= most; ++next) {
+            if (next % chunks::quick == 0) Interruption::poll();
             field_.for_beside(facets[next], [&](Index g) {
                 if (patches_.patch[g] != no_index
                     || (field_.normal[g] | plane.normal) <= flat_ground::along_cosine
@@ -129,6 +139,7 @@ private:
                 margin_[g] = 1;
                 facets.push_back(g);
             });
+        }
         return facets.size() <= most;
     }
 
@@ -148,17 +159,17 @@ private:
 
     /// Takes margin facets close to facets without a patch out of theirs: vertices there need freedom.
     void release_margins() {
-        std::vector<Index> released;
-        for (Index f = 0; f < field_.size(); ++f)
-            if (patches_.patch[f] == no_index) released.push_back(f);
+        std::vector<Index> released = indices_where(field_.size(), chunks::light,
+                                                    [&](Index f) { return patches_.patch[f] == no_index; });
         for (int away = 0; away < flat_ground::released_sides; ++away) {
             std::vector<Index> next;
-            for (Index f : released)
-                field_.for_beside(f, [&](Index g) {
+            for_each_in_order(released.size(), [&](std::size_t i) {
+                field_.for_beside(released[i], [&](Index g) {
                     if (!margin_[g] || patches_.patch[g] == no_index) return;
                     patches_.patch[g] = no_index;
                     next.push_back(g);
                 });
+            });
             released.swap(next);
         }
     }
@@ -181,20 +192,20 @@ std::vector<Quadric> vertex_planes(const PolygonMesh& mesh) {
 }
 
 std::vector<Quadric> vertex_planes(const PolygonMesh& mesh, const PlanarPatches& patches, double tolerance) {
-    std::vector<Quadric> planes(mesh.vertex_count());
-    for (std::size_t v = 0; v < planes.size(); ++v) planes[v].add_point(mesh.positions[v]);
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+    std::vector<Quadric> planes = large_vector<Quadric>(mesh.vertex_count());
+    for_each_index(planes.size(), chunks::light, [&](Index v) { planes[v].add_point(mesh.positions[v]); });
+    for_each_in_order(mesh.facet_count(), [&](std::size_t f) {
         const auto ring = mesh.facet(f);
         const Vec3 area = area_vector(mesh, ring);
         const double length = area.norm(), share = length / static_cast<double>(ring.size());
-        if (!(length > 0)) continue;
+        if (!(length > 0)) return;
         if (const Index p = patches.patch[f]; p != no_index) {
             for (Index v : ring) planes[v].add_shared(patches.planes[p], share);
-            continue;
+            return;
         }
         const Vec3 centre = centroid(mesh, ring);
         for (Index v : ring) planes[v].add_plane(area / length, centre, share);
-    }
+    });
     for_each_index(planes.size(), chunks::slow,
                    [&](Index v) { planes[v].drop_shared(mesh.positions[v], tolerance); });
     return planes;

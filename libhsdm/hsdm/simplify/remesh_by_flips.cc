@@ -3,12 +3,11 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/disjoint_sets.hh"
 #include "hsdm/core/groups.hh"
+#include "hsdm/core/parallel_sort.hh"
 #include "hsdm/mesh/editable_triangles.hh"
 #include "hsdm/mesh/straight_corners.hh"
 #include "hsdm/simplify/constants.hh"
 #include "hsdm/simplify/triangle_shape.hh"
-
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
@@ -310,7 +309,7 @@ private:
 
     std::size_t join() {
         std::vector<Quad> quads = possible_quads();
-        tbb::parallel_sort(quads.begin(), quads.end(), [](const Quad& p, const Quad& q) {
+        parallel_sort(quads, [](const Quad& p, const Quad& q) {
             return p.score != q.score ? p.score > q.score : p.side < q.side;
         });
         // per triangle, the side across which it is joined, or no_index

@@ -1,7 +1,9 @@
 #include "hsdm/simplify/simplify.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/interruption.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/mesh/part_of.hh"
 #include "hsdm/quality/distance_to_surface.hh"
 #include "hsdm/simplify/clusters.hh"
 #include "hsdm/simplify/constants.hh"
@@ -11,8 +13,6 @@
 #include "hsdm/simplify/planar_patches.hh"
 #include "hsdm/simplify/remesh_by_flips.hh"
 #include "hsdm/spatial/self_intersections.hh"
-
-#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +38,7 @@ public:
           points_(points),
           options_(options),
           tree_(build_cell_tree(fine.positions, extent, depth)) {
-        tbb::parallel_invoke( // in parallel, because each has steps that run on one thread
+        run_both( // each has steps that run on one thread
             [&] {
                 patches_ = find_planar_patches(fine, bounds::patch_share * options.max_error);
                 planes_ = vertex_planes(fine, patches_, tolerance());
@@ -92,11 +92,12 @@ private:
     /// Merges vertices of leaves (decimate).
     void decimate_leaves() {
         ClusteredMesh leaves{std::move(result_.mesh), std::move(vertex_)};
-        std::vector<Quadric> leaf_planes(leaves.mesh.vertex_count());
-        for (std::size_t v = 0; v < planes_.size(); ++v) leaf_planes[leaves.vertex[v]] += planes_[v];
+        std::vector<Quadric> leaf_planes = large_vector<Quadric>(leaves.mesh.vertex_count());
+        for_each_in_order(planes_.size(),
+                          [&](std::size_t v) { leaf_planes[leaves.vertex[v]] += planes_[v]; });
         // A vertex that stands for a dropped doublet has that one's planes too.
-        for (std::size_t v = 0; v < leaf_planes.size(); ++v)
-            leaf_planes[v].drop_shared(leaves.mesh.positions[v], tolerance());
+        for_each_index(leaf_planes.size(), chunks::slow,
+                       [&](Index v) { leaf_planes[v].drop_shared(leaves.mesh.positions[v], tolerance()); });
         planes_ = std::vector<Quadric>();
         DecimatedMesh merged = decimate(leaves, std::move(leaf_planes), *checks_,
                                         {.faults = faults_, .rounds = options_.rounds});
@@ -105,23 +106,24 @@ private:
         set_beyond(merged.far_points);
         result_.intersecting = merged.faults.intersecting;
         vertex_ = std::move(leaves.vertex);
-        std::vector<Index> number(coarse_.size(), no_index);
+        std::vector<Index> number = large_vector<Index>(coarse_.size(), no_index);
         const std::vector<Index> nearest = nearest_leaves(leaves.mesh, merged.vertex);
         for (Index v = 0; v < nearest.size(); ++v) number[nearest[v]] = v;
-        for (Index& v : vertex_) v = number[v];
+        for_each_index(vertex_.size(), chunks::light, [&](Index v) { vertex_[v] = number[vertex_[v]]; });
         coarse_ = picked(coarse_, nearest);
     }
 
     /// Per vertex of the result, the nearest of the leaves' vertices that were merged there.
     std::vector<Index> nearest_leaves(const PolygonMesh& leaves, const std::vector<Index>& vertex) const {
-        std::vector<Index> nearest(result_.mesh.vertex_count(), no_index);
-        for (Index leaf = 0; leaf < vertex.size(); ++leaf) {
+        std::vector<Index> nearest = large_vector<Index>(result_.mesh.vertex_count(), no_index);
+        for_each_in_order(vertex.size(), [&](std::size_t i) {
+            const auto leaf = static_cast<Index>(i);
             Index& best = nearest[vertex[leaf]];
             const Vec3& place = result_.mesh.positions[vertex[leaf]];
             if (best == no_index
                 || (leaves.positions[leaf] - place).sqrnorm() < (leaves.positions[best] - place).sqrnorm())
                 best = leaf;
-        }
+        });
         return nearest;
     }
 
@@ -141,7 +143,7 @@ private:
 
     /// Finds the leaf and the cluster of every fine vertex.
     void locate() {
-        places_.resize(fine_.vertex_count());
+        resize_large(places_, fine_.vertex_count());
         for_chunks(places_.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
             for (std::size_t v = begin; v < end; ++v) {
                 LeafCluster place{tree_.depth(), static_cast<Index>(v), tree_.of_vertex[v]};
@@ -163,22 +165,22 @@ private:
         locate();
         std::vector<std::vector<Index>> number(clusters_.size());
         for (std::size_t level = 0; level < clusters_.size(); ++level)
-            number[level].assign(clusters_[level].size(), no_index);
+            assign_large(number[level], clusters_[level].size(), no_index);
         PolygonMesh& mesh = result_.mesh = PolygonMesh();
         coarse_.clear();
-        vertex_.resize(fine_.vertex_count());
-        for (std::size_t v = 0; v < places_.size(); ++v) {
+        resize_large(vertex_, fine_.vertex_count());
+        for_each_in_order(places_.size(), [&](std::size_t v) {
             const LeafCluster& place = places_[v];
             Index& n = number[static_cast<std::size_t>(place.level)][place.cluster];
             if (n == no_index) {
                 n = static_cast<Index>(coarse_.size());
-                coarse_.push_back(place);
-                mesh.origin.push_back(static_cast<Index>(v));
-                mesh.positions.push_back(
-                    clusters_[static_cast<std::size_t>(place.level)].positions[place.cluster]);
+                push_large(coarse_, place);
+                push_large(mesh.origin, static_cast<Index>(v));
+                push_large(mesh.positions,
+                           clusters_[static_cast<std::size_t>(place.level)].positions[place.cluster]);
             }
             vertex_[v] = n;
-        }
+        });
         std::vector<PolygonMesh> parts(chunk_count(fine_.facet_count(), chunks::quick));
         std::vector<std::vector<Index>> pinched(parts.size());
         for_chunks(fine_.facet_count(), chunks::quick,
@@ -191,8 +193,7 @@ private:
                                pinched[chunk].push_back(static_cast<Index>(f));
                        }
                    });
-        for (const PolygonMesh& part : parts)
-            for (std::size_t f = 0; f < part.facet_count(); ++f) mesh.add_facet(part.facet(f));
+        append_facets(mesh, parts);
         pinched_ = joined(pinched);
     }
 
@@ -200,15 +201,16 @@ private:
     void drop_doublets() {
         std::vector<Index> stands_for = dissolve_doublets(result_.mesh);
         coarse_ = picked(coarse_, drop_replaced(result_.mesh, stands_for));
-        for (Index& v : vertex_) v = stands_for[v];
+        for_each_index(vertex_.size(), chunks::light, [&](Index v) { vertex_[v] = stands_for[vertex_[v]]; });
     }
 
     double tolerance() const { return bounds::planes_share * options_.max_error; }
 
     /// Per vertex of the result, is it a vertex of the fine mesh?
     std::vector<std::uint8_t> own() const {
-        std::vector<std::uint8_t> result(coarse_.size());
-        for (std::size_t v = 0; v < result.size(); ++v) result[v] = coarse_[v].level == tree_.depth();
+        std::vector<std::uint8_t> result = large_vector<std::uint8_t>(coarse_.size());
+        for_each_index(result.size(), chunks::light,
+                       [&](Index v) { result[v] = coarse_[v].level == tree_.depth(); });
         return result;
     }
 
@@ -238,45 +240,50 @@ private:
 
     std::size_t split_troubled() {
         std::size_t splits = 0;
-        std::vector<std::uint8_t> due(result_.mesh.vertex_count(), 0);
+        std::vector<std::uint8_t> due = large_vector<std::uint8_t>(result_.mesh.vertex_count());
         std::vector<Index> troubled = nonmanifold_vertices(result_.mesh);
-        add_lost(troubled);
-        for (Index v : troubled) splits += split_at(coarse_[v]);
-        for (Index f : pinched_)
-            for (Index v : fine_.facet(f)) splits += split_at(places_[v]);
+        append_large(troubled, lost());
+        for_each_in_order(troubled.size(), [&](std::size_t i) { splits += split_at(coarse_[troubled[i]]); });
+        for_each_in_order(pinched_.size(), [&](std::size_t i) {
+            for (Index v : fine_.facet(pinched_[i])) splits += split_at(places_[v]);
+        });
         if (splits > 0 || troubled.empty()) return splits;
         // Leaves of the deepest level cannot be subdivided: subdivide those of their neighbours.
         for (Index v : troubled) due[v] = 1;
-        for (std::size_t f = 0; f < result_.mesh.facet_count(); ++f) {
+        for_each_in_order(result_.mesh.facet_count(), [&](std::size_t f) {
             const auto ring = result_.mesh.facet(f);
-            if (std::none_of(ring.begin(), ring.end(), [&](Index v) { return due[v]; })) continue;
+            if (std::none_of(ring.begin(), ring.end(), [&](Index v) { return due[v]; })) return;
             for (Index v : ring) splits += split_at(coarse_[v]);
-        }
+        });
         return splits;
     }
 
-    /// Adds vertices that have lost all facets: a piece of the surface as small as a leaf.
-    void add_lost(std::vector<Index>& troubled) const {
-        std::vector<std::uint8_t> lost(coarse_.size(), 0);
-        for (Index v : fine_.corners) lost[vertex_[v]] = 1;
-        for (Index v : result_.mesh.corners) lost[v] = 0;
-        for (Index v = 0; v < lost.size(); ++v)
-            if (lost[v]) troubled.push_back(v);
+    /// The vertices that have lost all facets: a piece of the surface as small as a leaf.
+    std::vector<Index> lost() const {
+        std::vector<std::uint8_t> lost = large_vector<std::uint8_t>(coarse_.size());
+        for_each_in_order(fine_.corners.size(), [&](std::size_t c) { lost[vertex_[fine_.corners[c]]] = 1; });
+        const std::vector<Index>& kept = result_.mesh.corners;
+        for_each_in_order(kept.size(), [&](std::size_t c) { lost[kept[c]] = 0; });
+        return indices_where(lost.size(), chunks::light, [&](Index v) { return lost[v] != 0; });
     }
 
     std::size_t split_intersecting(const Findings& found) {
         std::size_t splits = 0;
-        for (const auto& pair : found.intersecting)
-            for (Index f : pair) splits += split_facet(f);
+        for_each_in_order(found.intersecting.size(), [&](std::size_t i) {
+            for (Index f : found.intersecting[i]) splits += split_facet(f);
+        });
         return splits;
     }
 
     std::size_t split_distant(const Findings& found) {
         std::size_t splits = 0;
-        for (Index v : found.far.fine_vertices) splits += split_at(places_[v]);
-        for (Index v : found.far.vertices) splits += split_at(coarse_[v]);
-        for (Index f : found.far.facets) splits += split_facet(f);
-        for (Index p : found.far_points.points) splits += split_near(points_[p]);
+        const auto split_each = [&](const std::vector<Index>& at, const auto& split) {
+            for_each_in_order(at.size(), [&](std::size_t i) { splits += split(at[i]); });
+        };
+        split_each(found.far.fine_vertices, [&](Index v) { return split_at(places_[v]); });
+        split_each(found.far.vertices, [&](Index v) { return split_at(coarse_[v]); });
+        split_each(found.far.facets, [&](Index f) { return split_facet(f); });
+        split_each(found.far_points.points, [&](Index p) { return split_near(points_[p]); });
         return splits;
     }
 
@@ -316,11 +323,13 @@ private:
     void count_leaves() {
         result_.leaves_per_level.assign(tree_.levels.size(), 0);
         for (int level = 0; level <= tree_.depth(); ++level)
-            for (Index c = 0; c < tree_.levels[static_cast<std::size_t>(level)].codes.size(); ++c)
-                result_.leaves_per_level[static_cast<std::size_t>(level)] += tree_.is_leaf(level, c);
-        result_.level.clear();
-        for (const LeafCluster& place : coarse_)
-            result_.level.push_back(static_cast<std::uint8_t>(place.level));
+            for_each_in_order(tree_.levels[static_cast<std::size_t>(level)].codes.size(), [&](std::size_t c) {
+                result_.leaves_per_level[static_cast<std::size_t>(level)] +=
+                    tree_.is_leaf(level, static_cast<Index>(c));
+            });
+        assign_large(result_.level, coarse_.size(), 0);
+        for_each_index(coarse_.size(), chunks::light,
+                       [&](Index v) { result_.level[v] = static_cast<std::uint8_t>(coarse_[v].level); });
     }
 
     const PolygonMesh& fine_;

@@ -15,15 +15,19 @@ void find_vertices(const PolygonMesh& before, const PolygonMesh& now, Unchanged&
     const std::size_t origins = before.origin.empty()
                                     ? before.vertex_count()
                                     : std::size_t{*std::ranges::max_element(before.origin)} + 1;
-    std::vector<Index> vertex_of(origins, no_index);
-    for (Index v = 0; v < before.vertex_count(); ++v) vertex_of[origin_of(before, v)] = v;
-    for (Index v = 0; v < now.vertex_count(); ++v) {
+    std::vector<Index> vertex_of = large_vector<Index>(origins, no_index);
+    for_each_in_order(before.vertex_count(), [&](std::size_t i) {
+        const auto v = static_cast<Index>(i);
+        vertex_of[origin_of(before, v)] = v;
+    });
+    for_each_in_order(now.vertex_count(), [&](std::size_t i) {
+        const auto v = static_cast<Index>(i);
         const Index origin = origin_of(now, v);
         const Index was = origin < origins ? vertex_of[origin] : no_index;
-        if (was == no_index || before.positions[was] != now.positions[v]) continue;
+        if (was == no_index || before.positions[was] != now.positions[v]) return;
         same.vertex[v] = was;
         same.vertex_now[was] = v;
-    }
+    });
 }
 
 /// Turns a triangle to begin at its least vertex. How a larger polygon is cut depends on where it begins.
@@ -33,11 +37,11 @@ void normalise(std::vector<Index>& ring) {
 
 /// Per facet, the first vertex of its normalised ring.
 std::vector<Index> first_vertices(const PolygonMesh& mesh) {
-    std::vector<Index> first(mesh.facet_count());
-    for (std::size_t f = 0; f < first.size(); ++f) {
+    std::vector<Index> first = large_vector<Index>(mesh.facet_count());
+    for_each_index(first.size(), chunks::light, [&](Index f) {
         const auto ring = mesh.facet(f);
         first[f] = ring.size() == 3 ? *std::min_element(ring.begin(), ring.end()) : ring[0];
-    }
+    });
     return first;
 }
 
@@ -59,23 +63,24 @@ void find_facets(const PolygonMesh& before, const PolygonMesh& now, Unchanged& s
             }
         }
     });
-    for (Index f = 0; f < now.facet_count(); ++f) {
-        if (same.facet[f] == no_index) continue;
+    for_each_in_order(now.facet_count(), [&](std::size_t i) {
+        const auto f = static_cast<Index>(i);
+        if (same.facet[f] == no_index) return;
         Index& twice = same.facet_now[same.facet[f]];
         if (twice == no_index)
             twice = f;
         else
             same.facet[f] = no_index;
-    }
+    });
 }
 
 } // namespace
 
 Unchanged find_unchanged(const PolygonMesh& before, const PolygonMesh& now) {
-    Unchanged same{std::vector<Index>(now.vertex_count(), no_index),
-                   std::vector<Index>(now.facet_count(), no_index),
-                   std::vector<Index>(before.vertex_count(), no_index),
-                   std::vector<Index>(before.facet_count(), no_index)};
+    Unchanged same{large_vector<Index>(now.vertex_count(), no_index),
+                   large_vector<Index>(now.facet_count(), no_index),
+                   large_vector<Index>(before.vertex_count(), no_index),
+                   large_vector<Index>(before.facet_count(), no_index)};
     find_vertices(before, now, same);
     find_facets(before, now, same);
     return same;

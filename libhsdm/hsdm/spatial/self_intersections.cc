@@ -1,7 +1,7 @@
 #include "hsdm/spatial/self_intersections.hh"
 
 #include "hsdm/core/chunks.hh"
-#include "hsdm/core/parallel_sort_unique.hh"
+#include "hsdm/core/parallel_sort.hh"
 #include "hsdm/mesh/part_of.hh"
 #include "hsdm/mesh/weld.hh"
 #include "hsdm/spatial/flat_fans.hh"
@@ -9,7 +9,6 @@
 #include "hsdm/spatial/triangles_meet.hh"
 
 #include <algorithm>
-#include <numeric>
 
 namespace hsdm {
 namespace {
@@ -99,9 +98,7 @@ bool share_flat_vertex(const PolygonMesh& mesh, std::span<const Index> facets,
 /// The facets, ascending, of all cells except those whose facets all share such a vertex. Two facets that
 /// intersect do so in a cell that lists both, so all that intersect are among them.
 std::vector<Index> facets_in_doubt(const PolygonMesh& mesh, const FacetCells& cells) {
-    std::vector<Index> own(mesh.vertex_count());
-    std::iota(own.begin(), own.end(), Index{0});
-    const std::vector<std::uint8_t> flat = flat_fans(mesh, own);
+    const std::vector<std::uint8_t> flat = flat_fans(mesh, indices_below(mesh.vertex_count()));
     const auto add_doubtful = [&](std::size_t c, std::size_t end, std::vector<Index>& doubtful) {
         for (; c < end; ++c) {
             const auto facets = cells.facets(static_cast<Index>(c));
