@@ -1,6 +1,7 @@
 #include "hsdm/mesh/doublets.hh"
 #include "hsdm/mesh/manifold.hh"
 #include "hsdm/quality/topology.hh"
+#include "hsdm/spatial/self_intersections.hh"
 #include "support/meshes.hh"
 
 #include <catch2/catch.hpp>
@@ -42,6 +43,46 @@ TEST_CASE("facets folded onto each other become one whoever the vertex between t
     mesh.positions[8] = Vec3(0.5, 0.5, 3); // a sharp roof over the diagonal: its two sides face apart
     CHECK(merge_doublets(mesh, never) == 1);
     CHECK(measure_topology(mesh).closed());
+}
+
+TEST_CASE("a flap goes with all the vertices between its two facets", "[mesh]") {
+    // The top of a cube reaches out to vertices 8 and 9, and a facet lies folded back under it there.
+    PolygonMesh mesh = support::mesh_of(support::cube_corners(), {{0, 2, 3, 1},
+                                                                  {0, 1, 5, 4},
+                                                                  {1, 3, 7, 5},
+                                                                  {3, 2, 6, 7},
+                                                                  {2, 0, 4, 6},
+                                                                  {4, 5, 9, 8, 7, 6},
+                                                                  {5, 7, 8, 9}});
+    mesh.positions.emplace_back(1.4, 0.8, 1);
+    mesh.positions.emplace_back(1.4, 0.2, 1);
+    REQUIRE(measure_topology(mesh).euler == 2);
+    CHECK(merge_doublets(mesh, never) == 1);
+    CHECK(remove_isolated_vertices(mesh) == 2);
+    const Topology t = measure_topology(mesh);
+    CHECK(t.closed());
+    CHECK(t.manifold());
+    CHECK(t.quads == 6);
+    CHECK(t.euler == 2);
+    CHECK(find_self_intersections(mesh).triangle_pairs == 0);
+}
+
+TEST_CASE("a doublet that a merger leaves is merged as well", "[mesh]") {
+    PolygonMesh mesh = support::mesh_of(support::cube_corners(), {{0, 2, 3, 1},
+                                                                  {0, 1, 5, 4},
+                                                                  {1, 3, 7, 5},
+                                                                  {3, 2, 6, 7},
+                                                                  {2, 0, 4, 6},
+                                                                  {4, 5, 9},
+                                                                  {5, 7, 8, 9},
+                                                                  {9, 8, 7, 6, 4}});
+    mesh.positions.emplace_back(0.6, 0.6, 1);
+    mesh.positions.emplace_back(0.3, 0.3, 1); // has two facets once those round 8 are one
+    REQUIRE(measure_topology(mesh).closed());
+    CHECK(merge_doublets(mesh, [](Index v) { return v >= 8; }) == 2);
+    CHECK(remove_isolated_vertices(mesh) == 2);
+    CHECK(measure_topology(mesh).quads == 6);
+    CHECK(measure_topology(mesh).euler == 2);
 }
 
 TEST_CASE("a doublet whose union repeats a vertex is left alone", "[mesh]") {

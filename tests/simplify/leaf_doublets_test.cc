@@ -33,6 +33,20 @@ TEST_CASE("two facets round one vertex become one", "[simplify]") {
     CHECK(t.euler == 2);
 }
 
+TEST_CASE("a flap goes, and one vertex stands for those between its facets", "[simplify]") {
+    PolygonMesh mesh = cube_without_top();
+    mesh.positions.emplace_back(1.4, 0.8, 1); // the top reaches out to these, and a facet lies back under it
+    mesh.positions.emplace_back(1.4, 0.2, 1);
+    mesh.add_facet(std::array<Index, 6>{4, 5, 9, 8, 7, 6});
+    mesh.add_facet(std::array<Index, 4>{5, 7, 8, 9});
+    const std::vector<Index> stands_for = dissolve_doublets(mesh);
+    CHECK(stands_for[8] == stands_for[9]);
+    CHECK((stands_for[8] == 5 || stands_for[8] == 7));
+    CHECK(remove_isolated_vertices(mesh) == 2);
+    CHECK(measure_topology(mesh).quads == 6);
+    CHECK(measure_topology(mesh).closed());
+}
+
 TEST_CASE("triangles back to back go, and the edge that they doubled is one again", "[simplify]") {
     PolygonMesh mesh = cube_without_top();
     mesh.positions.emplace_back(0.5, 0, 1); // a flap of two triangles beyond the edge 4, 5

@@ -7,7 +7,9 @@
 #include <algorithm>
 
 namespace hsdm {
-std::size_t merge_doublets(PolygonMesh& mesh, const std::function<bool(Index)>& expendable) {
+namespace {
+
+std::size_t merge_once(PolygonMesh& mesh, const std::function<bool(Index)>& expendable) {
     const VertexFacets at = facets_at_vertices(mesh);
     FacetUnions unions(mesh);
     for (Index v = 0; v < mesh.vertex_count(); ++v) {
@@ -16,14 +18,23 @@ std::size_t merge_doublets(PolygonMesh& mesh, const std::function<bool(Index)>& 
         const Vec3 one = unit(area_vector(mesh, mesh.facet(f))),
                    other = unit(area_vector(mesh, mesh.facet(g)));
         if (!expendable(v) && (one | other) > doublets::folded_cosine) continue;
-        std::vector<Index> ring = united_ring(mesh, f, g, v);
+        UnitedFacets whole = united(mesh, f, g, v);
         // Beside another vertex of only two facets the union might be the reverse of a third facet.
-        if (ring.size() < 3
-            || std::any_of(ring.begin(), ring.end(), [&](Index u) { return at.count[u] == 2; }))
+        if (whole.ring.size() < 3
+            || std::ranges::any_of(whole.ring, [&](Index u) { return at.count[u] == 2; })
+            || std::ranges::any_of(whole.between, [&](Index u) { return at.count[u] != 2; }))
             continue;
-        unions.unite(f, g, std::move(ring));
+        unions.unite(f, g, std::move(whole.ring));
     }
     return unions.apply(mesh);
+}
+
+} // namespace
+
+std::size_t merge_doublets(PolygonMesh& mesh, const std::function<bool(Index)>& expendable) {
+    std::size_t merged = 0;
+    while (const std::size_t count = merge_once(mesh, expendable)) merged += count; // facets get fewer
+    return merged;
 }
 
 } // namespace hsdm

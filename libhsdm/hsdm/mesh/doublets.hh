@@ -1,5 +1,5 @@
 #pragma once
-// Doublets: two facets that share two sides in a row, with a vertex between that no other facet has.
+// Doublets: two facets that share two sides in a row or more, with vertices between that no other facet has.
 
 #include "hsdm/polygon_mesh.hh"
 
@@ -9,8 +9,9 @@ namespace hsdm {
 
 /// Merges the two facets around every inner vertex that has no third, if `expendable(vertex)`, or if the two
 /// are folded onto each other by more than 107 degrees, so that they would intersect when cut into triangles.
-/// The vertex stays, isolated. A 2-manifold stays one: doublets whose union would have fewer than three
-/// corners or a vertex twice are left alone. Returns how many were merged. O(facets).
+/// The vertices stay, isolated. A 2-manifold stays one: doublets whose union would have fewer than three
+/// corners or a vertex twice are left alone. Returns how many were merged. O(facets) for each time that a
+/// merger leaves another doublet.
 std::size_t merge_doublets(PolygonMesh& mesh, const std::function<bool(Index)>& expendable);
 
 } // namespace hsdm

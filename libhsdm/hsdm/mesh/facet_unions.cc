@@ -37,16 +37,26 @@ VertexFacets facets_at_vertices(const PolygonMesh& mesh) {
     return at;
 }
 
-std::vector<Index> united_ring(const PolygonMesh& mesh, Index f, Index g, Index between) {
-    std::vector<Index> ring = without(mesh.facet(f), between);
-    const std::vector<Index> other = without(mesh.facet(g), between);
+UnitedFacets united(const PolygonMesh& mesh, Index f, Index g, Index between) {
+    const std::vector<Index> ring = without(mesh.facet(f), between), other = without(mesh.facet(g), between);
     // The vertex is inner if g goes on where f comes from, and the other way round.
     if (ring.front() != other.back() || ring.back() != other.front()) return {};
-    ring.insert(ring.end(), other.begin() + 1, other.end() - 1);
-    std::vector<Index> sorted = ring;
+    UnitedFacets whole{{}, {between}};
+    // where the shared path ends: f keeps [begin, end), g as many less on either side
+    std::size_t begin = 0, end = ring.size(), last = other.size();
+    for (; end - begin > 2 && last > 2 && ring[begin + 1] == other[last - 2]; ++begin, --last)
+        whole.between.push_back(ring[begin]);
+    std::size_t first = 0;
+    for (; end - begin > 2 && last - first > 2 && ring[end - 2] == other[first + 1]; --end, ++first)
+        whole.between.push_back(ring[end - 1]);
+    whole.ring.assign(ring.begin() + static_cast<std::ptrdiff_t>(begin),
+                      ring.begin() + static_cast<std::ptrdiff_t>(end));
+    whole.ring.insert(whole.ring.end(), other.begin() + static_cast<std::ptrdiff_t>(first) + 1,
+                      other.begin() + static_cast<std::ptrdiff_t>(last) - 1);
+    std::vector<Index> sorted = whole.ring;
     std::sort(sorted.begin(), sorted.end());
-    const bool simple = std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
-    return simple ? ring : std::vector<Index>();
+    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) return {};
+    return whole;
 }
 
 void FacetUnions::unite(Index f, Index g, std::vector<Index> ring) {

@@ -1,5 +1,5 @@
 #pragma once
-// Unions of two facets round a vertex that has no other facet.
+// Unions of two facets round vertices that have no other facet.
 
 #include "hsdm/polygon_mesh.hh"
 
@@ -14,9 +14,18 @@ struct VertexFacets {
 };
 VertexFacets facets_at_vertices(const PolygonMesh& mesh);
 
-/// The rings of two facets as one, without the vertex between them; two vertices if both are triangles. Empty
-/// if the vertex lies on a border, or if the union has another vertex twice.
-std::vector<Index> united_ring(const PolygonMesh& mesh, Index f, Index g, Index between);
+/// Two facets as one.
+struct UnitedFacets {
+    std::vector<Index> ring;
+    /// The vertices that lie between the two: the sides that they share are one path, these its inner
+    /// vertices.
+    std::vector<Index> between;
+};
+
+/// Unites two facets that share the sides on either side of vertex `between`, and with these all that follow.
+/// The ring has two vertices if the facets lie back to back. It is empty if the vertex lies on a border, if
+/// the facets share all their sides, or if the union has a vertex twice.
+UnitedFacets united(const PolygonMesh& mesh, Index f, Index g, Index between);
 
 /// Facets to be replaced two by two, each once.
 class FacetUnions {

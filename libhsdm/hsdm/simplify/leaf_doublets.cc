@@ -14,12 +14,13 @@ std::size_t dissolve_once(PolygonMesh& mesh, std::vector<Index>& stands_for) {
         const auto v = static_cast<Index>(i);
         const auto [f, g] = at.facets[v];
         if (at.count[v] != 2 || !unions.is_free(f, g)) return;
-        std::vector<Index> ring = united_ring(mesh, f, g, v);
+        UnitedFacets whole = united(mesh, f, g, v);
+        std::vector<Index>& ring = whole.ring;
         // Two triangles back to back may be removed only if they are not all there is at their other
         // vertices.
         if (ring.empty() || (ring.size() < 3 && (at.count[ring.front()] < 3 || at.count[ring.back()] < 3)))
             return;
-        stands_for[v] = ring.front();
+        for (const Index u : whole.between) stands_for[u] = ring.front();
         unions.unite(f, g, std::move(ring));
     });
     return unions.apply(mesh);

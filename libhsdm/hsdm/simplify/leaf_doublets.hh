@@ -8,9 +8,9 @@ namespace hsdm {
 /// Removes inner vertices with only two facets: the two are merged into one, or removed if they are triangles
 /// back to back. Half-edges go in opposite pairs, so closedness, orientation and Euler characteristic of what
 /// is left do not change, and an edge that had four facets only because of such triangles has two afterwards.
-/// Vertices whose two facets share more stay, as in a component of two facets. Returns per vertex the one
-/// that stands for it now: itself, or a neighbour if it was removed (it is isolated then). O(facets) in each
-/// of a few rounds.
+/// Vertices between facets that share all their sides stay, as in a component of two facets. Returns per
+/// vertex the one that stands for it now: itself, or a neighbour if it was removed (it is isolated then).
+/// O(facets) in each of a few rounds.
 std::vector<Index> dissolve_doublets(PolygonMesh& mesh);
 
 /// The values at the indices `kept`.
