@@ -1,5 +1,5 @@
 // How thin may walls and gaps be? Shapes of many widths in many poses, normals given and estimated: the table
-// of docs/sheets.md.
+// and the plot of docs/sheets.md.
 
 #include "hsdm/errors.hh"
 #include "hsdm/reconstruct.hh"
@@ -8,9 +8,13 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <functional>
+#include <sstream>
+#include <string>
 
 using namespace hsdm;
 using support::Solid;
@@ -81,7 +85,10 @@ bool is_right(const Shape& shape, double width, std::uint64_t pose, NormalSource
     }
 }
 
-void print_table(NormalSource normals, const std::vector<double>& widths, std::uint64_t poses) {
+/// Prints a row for each width; returns the percentages of all shapes.
+std::vector<double> print_table(NormalSource normals, const std::vector<double>& widths,
+                                std::uint64_t poses) {
+    std::vector<double> percents;
     std::printf("| width |");
     for (const Shape& shape : shapes) std::printf(" %s |", shape.name);
     std::printf(" all |\n|---|");
@@ -97,11 +104,72 @@ void print_table(NormalSource normals, const std::vector<double>& widths, std::u
             std::printf(" %.0f |", 100.0 * static_cast<double>(right) / static_cast<double>(poses));
             all += right;
         }
-        std::printf(" %.1f |\n",
-                    100.0 * static_cast<double>(all) / static_cast<double>(poses * shapes.size()));
+        percents.push_back(100.0 * static_cast<double>(all) / static_cast<double>(poses * shapes.size()));
+        std::printf(" %.1f |\n", percents.back());
         std::fflush(stdout);
     }
+    return percents;
 }
+
+/// Draws percentages over the width, to a logarithmic scale, and where the width is a spacing of the points.
+class Plot {
+public:
+    explicit Plot(const std::vector<double>& widths) : widths_(widths) {
+        const auto [least, most] = std::ranges::minmax(widths);
+        least_ = least, most_ = std::max(most, 1.001 * least);
+    }
+
+    void add(const std::vector<double>& percents, const char* name, const char* colour) {
+        lines_ << "<polyline fill='none' stroke='" << colour << "' stroke-width='2' points='";
+        for (std::size_t i = 0; i < widths_.size(); ++i)
+            lines_ << x(widths_[i]) << ',' << y(percents[i]) << ' ';
+        lines_ << "'/>\n";
+        for (std::size_t i = 0; i < widths_.size(); ++i)
+            lines_ << "<circle cx='" << x(widths_[i]) << "' cy='" << y(percents[i]) << "' r='3' fill='"
+                   << colour << "'/>\n";
+        text(right - 150, bottom - 44 + 18 * names_++, name, colour);
+    }
+
+    void write(const std::string& path) {
+        const double spacing = 1 / std::sqrt(per_voxel);
+        lines_ << "<path stroke='#777' stroke-dasharray='4 3' d='M" << x(spacing) << ' ' << top << "V"
+               << bottom << "'/>\n";
+        text(x(spacing) + 4, bottom - 90, "a spacing", "#777");
+        for (const double percent : {0.0, 50.0, 95.0, 100.0}) {
+            lines_ << "<path stroke='#ddd' d='M" << left << ' ' << y(percent) << "H" << right << "'/>\n";
+            text(4, y(percent) + (percent == 95 ? 10 : 2), (number(percent) + " %").c_str(), "#333");
+        }
+        for (const double width : widths_) text(x(width) - 6, bottom + 16, number(width).c_str(), "#333");
+        text(left, bottom + 32, "width in voxels", "#333");
+        std::ofstream file(path);
+        file << "<svg xmlns='http://www.w3.org/2000/svg' width='560' height='300' font-family='sans-serif' "
+                "font-size='12'>\n<rect width='560' height='300' fill='white'/>\n"
+             << lines_.str() << "</svg>\n";
+        if (!file.flush()) throw Error(path, "cannot be written");
+    }
+
+private:
+    static constexpr double left = 50, right = 545, top = 10, bottom = 255;
+
+    static std::string number(double value) {
+        std::ostringstream out;
+        out << value;
+        return out.str();
+    }
+    double x(double width) const {
+        return left + (right - left) * std::log(width / least_) / std::log(most_ / least_);
+    }
+    static double y(double percent) { return bottom - (bottom - top) * percent / 100; }
+    void text(double at_x, double at_y, const char* what, const char* colour) {
+        lines_ << "<text x='" << at_x << "' y='" << at_y << "' fill='" << colour << "'>" << what
+               << "</text>\n";
+    }
+
+    const std::vector<double>& widths_;
+    double least_, most_;
+    int names_ = 0;
+    std::ostringstream lines_;
+};
 
 } // namespace
 
@@ -109,12 +177,16 @@ int main(int argc, char** argv) {
     CLI::App app(
         "Percent of meshes with the topology of the shape, and without intersections, by width in voxels.");
     std::uint64_t poses = 20;
+    std::string plot_file;
     std::vector<double> widths{0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1, 1.4, 2};
     app.add_option("--poses", poses, "of each shape and width");
     app.add_option("--widths", widths, "in voxels; a spacing is 0.35");
+    app.add_option("--plot", plot_file, "an SVG file: what is right of all shapes, by width");
     CLI11_PARSE(app, argc, argv);
+    Plot plot(widths);
     std::printf("Normals given:\n\n");
-    print_table(NormalSource::given, widths, poses);
+    plot.add(print_table(NormalSource::given, widths, poses), "normals given", "#1f5fa8");
     std::printf("\nNormals estimated:\n\n");
-    print_table(NormalSource::estimate, widths, poses);
+    plot.add(print_table(NormalSource::estimate, widths, poses), "normals estimated", "#c4611a");
+    if (!plot_file.empty()) plot.write(plot_file);
 }

@@ -61,9 +61,11 @@ void bridge(PolygonMesh& mesh, std::size_t from, std::size_t to) {
 
 TEST_CASE("a bridge through the air is taken away, and a tunnel that no points speak for filled",
           "[contour]") {
-    for (const bool turned_normals : {false, true}) {
-        INFO((turned_normals ? "tunnel" : "bridge"));
-        const Stages stages(facing_boxes(turned_normals, 5), 5);
+    // Two depths: the ring round the bridge cuts off what has fewer facets than are looked at, and more.
+    for (const auto& [turned_normals, depth] :
+         {std::pair{false, 5}, std::pair{true, 5}, std::pair{false, 4}, std::pair{true, 4}}) {
+        INFO((turned_normals ? "tunnel" : "bridge") << ", depth " << depth);
+        const Stages stages(facing_boxes(turned_normals, 5), depth);
         DualContour part = dual_contour(stages.octree, stages.level, stages.sets);
         PolygonMesh& mesh = part.mesh;
         for (Vec3& p : mesh.positions) p += stages.octree.origin;

@@ -459,6 +459,10 @@ inline constexpr int reach = 4;
 /// Why: a pin that a ring of nine edges goes round is shorter than that, unless it is a rod.
 inline constexpr std::size_t far = 4096;
 
+/// facets: of a part that a ring cuts off, fewest.
+/// Why: those of a cube of six voxels; what is smaller may be a knob or a spike of the part that it is on.
+inline constexpr std::size_t fewest_of_part = 216;
+
 /// facets: looked at for each of the mesh, in all; after that no more rings are looked for.
 /// Why: bounds the time where normals are at random.
 inline constexpr std::size_t most_work = 32;

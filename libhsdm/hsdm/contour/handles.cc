@@ -317,8 +317,8 @@ private:
         return sum >= handles::least_contradicted * count;
     }
 
-    /// Does the ring bound a part of its own? Facets are gathered on both sides by turns, until they meet
-    /// behind the ring, or one side has no more.
+    /// Does the ring bound a small part of its own, a knob rather than one of two parts that a bridge joins?
+    /// Facets are gathered on both sides by turns, until they meet behind the ring, or one side has no more.
     bool bounds() {
         std::array<std::vector<Index>, 2> pending;
         std::vector<Index> all;
@@ -338,7 +338,7 @@ private:
         }
         std::array<std::size_t, 2> next{0, 0};
         bool ended = false;
-        for (unsigned side = 0; !met && !ended && all.size() < handles::far; side = 1 - side) {
+        for (unsigned side = 0; !met && all.size() < handles::far; side = 1 - side) {
             ended = next[side] == pending[side].size();
             if (ended) break;
             const Index f = pending[side][next[side]++];
@@ -352,7 +352,8 @@ private:
         }
         for (const Index f : all) seen_[f] = 0;
         work_ += all.size();
-        return ended;
+        const std::size_t smaller = std::min(pending[0].size(), pending[1].size());
+        return ended && smaller < handles::fewest_of_part;
     }
 
     void keep(const Vicinity& vicinity, const std::vector<Index>& ring) {
