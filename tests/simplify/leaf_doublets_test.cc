@@ -47,6 +47,22 @@ TEST_CASE("a flap goes, and one vertex stands for those between its facets", "[s
     CHECK(measure_topology(mesh).closed());
 }
 
+TEST_CASE("a vertex that a third facet has stays, though two share the sides round it", "[simplify]") {
+    PolygonMesh mesh = cube_without_top();
+    mesh.positions.emplace_back(1.4, 0.8, 1);
+    mesh.positions.emplace_back(1.4, 0.2, 1);
+    mesh.positions.emplace_back(2, 1, 1); // a bubble of two quads hangs on vertex 8
+    mesh.positions.emplace_back(2, 1, 2);
+    mesh.positions.emplace_back(2, 2, 1);
+    mesh.add_facet(std::array<Index, 6>{4, 5, 9, 8, 7, 6});
+    mesh.add_facet(std::array<Index, 4>{5, 7, 8, 9});
+    mesh.add_facet(std::array<Index, 4>{8, 10, 11, 12});
+    mesh.add_facet(std::array<Index, 4>{8, 12, 11, 10});
+    const std::vector<Index> stands_for = dissolve_doublets(mesh);
+    CHECK(stands_for[8] == 8);
+    for (const Index v : mesh.corners) CHECK(stands_for[v] == v);
+}
+
 TEST_CASE("triangles back to back go, and the edge that they doubled is one again", "[simplify]") {
     PolygonMesh mesh = cube_without_top();
     mesh.positions.emplace_back(0.5, 0, 1); // a flap of two triangles beyond the edge 4, 5

@@ -432,7 +432,6 @@ inline constexpr std::size_t most_pairs = 100;
 
 } // namespace hsdm::untangling
 
-// which holes dual_contour.hh closes
 namespace hsdm::handles {
 
 /// cosine: of the normals of a facet and of a set that speaks for it.
@@ -473,6 +472,7 @@ inline constexpr int rounds = 8;
 
 } // namespace hsdm::handles
 
+// which holes dual_contour.hh closes
 namespace hsdm::holes {
 
 /// edges: longer loops stay open.

@@ -18,11 +18,10 @@ std::size_t merge_once(PolygonMesh& mesh, const std::function<bool(Index)>& expe
         const Vec3 one = unit(area_vector(mesh, mesh.facet(f))),
                    other = unit(area_vector(mesh, mesh.facet(g)));
         if (!expendable(v) && (one | other) > doublets::folded_cosine) continue;
-        UnitedFacets whole = united(mesh, f, g, v);
+        UnitedFacets whole = united(mesh, at, v);
         // Beside another vertex of only two facets the union might be the reverse of a third facet.
         if (whole.ring.size() < 3
-            || std::ranges::any_of(whole.ring, [&](Index u) { return at.count[u] == 2; })
-            || std::ranges::any_of(whole.between, [&](Index u) { return at.count[u] != 2; }))
+            || std::ranges::any_of(whole.ring, [&](Index u) { return at.count[u] == 2; }))
             continue;
         unions.unite(f, g, std::move(whole.ring));
     }

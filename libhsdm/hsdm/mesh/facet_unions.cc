@@ -37,17 +37,22 @@ VertexFacets facets_at_vertices(const PolygonMesh& mesh) {
     return at;
 }
 
-UnitedFacets united(const PolygonMesh& mesh, Index f, Index g, Index between) {
+UnitedFacets united(const PolygonMesh& mesh, const VertexFacets& at, Index between) {
+    const auto [f, g] = at.facets[between];
     const std::vector<Index> ring = without(mesh.facet(f), between), other = without(mesh.facet(g), between);
     // The vertex is inner if g goes on where f comes from, and the other way round.
     if (ring.front() != other.back() || ring.back() != other.front()) return {};
     UnitedFacets whole{{}, {between}};
     // where the shared path ends: f keeps [begin, end), g as many less on either side
     std::size_t begin = 0, end = ring.size(), last = other.size();
-    for (; end - begin > 2 && last > 2 && ring[begin + 1] == other[last - 2]; ++begin, --last)
+    const auto is_inner = [&](Index v) { return at.count[v] == 2; };
+    for (; end - begin > 2 && last > 2 && is_inner(ring[begin]) && ring[begin + 1] == other[last - 2];
+         ++begin, --last)
         whole.between.push_back(ring[begin]);
     std::size_t first = 0;
-    for (; end - begin > 2 && last - first > 2 && ring[end - 2] == other[first + 1]; --end, ++first)
+    for (;
+         end - begin > 2 && last - first > 2 && is_inner(ring[end - 1]) && ring[end - 2] == other[first + 1];
+         --end, ++first)
         whole.between.push_back(ring[end - 1]);
     whole.ring.assign(ring.begin() + static_cast<std::ptrdiff_t>(begin),
                       ring.begin() + static_cast<std::ptrdiff_t>(end));
@@ -70,8 +75,7 @@ void FacetUnions::unite(Index f, Index g, std::vector<Index> ring) {
 std::size_t FacetUnions::apply(PolygonMesh& mesh) const {
     if (count_ == 0) return 0;
     PolygonMesh kept;
-    reserve_large(kept.corners,
-                  mesh.corners.size() + count_); // two facets have two corners more than their union
+    reserve_large(kept.corners, mesh.corners.size());
     reserve_large(kept.first, mesh.first.size());
     for_each_in_order(mesh.facet_count(), [&](std::size_t f) {
         if (fate_[f] == stays)

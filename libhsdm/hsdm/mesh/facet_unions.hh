@@ -22,10 +22,10 @@ struct UnitedFacets {
     std::vector<Index> between;
 };
 
-/// Unites two facets that share the sides on either side of vertex `between`, and with these all that follow.
-/// The ring has two vertices if the facets lie back to back. It is empty if the vertex lies on a border, if
-/// the facets share all their sides, or if the union has a vertex twice.
-UnitedFacets united(const PolygonMesh& mesh, Index f, Index g, Index between);
+/// Unites the two facets at a vertex that has no third (`at`), along all such vertices in a row. The ring has
+/// two vertices if the facets lie back to back. It is empty if the vertex lies on a border, if the facets
+/// share all their sides, or if the union has a vertex twice.
+UnitedFacets united(const PolygonMesh& mesh, const VertexFacets& at, Index between);
 
 /// Facets to be replaced two by two, each once.
 class FacetUnions {

@@ -14,7 +14,7 @@ std::size_t dissolve_once(PolygonMesh& mesh, std::vector<Index>& stands_for) {
         const auto v = static_cast<Index>(i);
         const auto [f, g] = at.facets[v];
         if (at.count[v] != 2 || !unions.is_free(f, g)) return;
-        UnitedFacets whole = united(mesh, f, g, v);
+        UnitedFacets whole = united(mesh, at, v);
         std::vector<Index>& ring = whole.ring;
         // Two triangles back to back may be removed only if they are not all there is at their other
         // vertices.
