@@ -1,5 +1,6 @@
 #include "hsdm/contour/untangle.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/mesh/manifold.hh"
 #include "hsdm/quality/topology.hh"
 #include "hsdm/spatial/self_intersections.hh"
 

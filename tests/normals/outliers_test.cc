@@ -167,3 +167,18 @@ TEST_CASE("a cube that fits again is that of the points left", "[normals]") {
     CHECK((octree.origin - clean.origin).norm() < 1e-12);
     CHECK(octree.source == clean.source);
 }
+
+TEST_CASE("noise as wide as the neighbourhoods makes no outliers of sparse places", "[normals]") {
+    // A square of a hundred spacings, noise of one and a half, a third of the density on one half.
+    support::Random random(11);
+    PointCloud cloud;
+    for (int i = 0; i < 10000; ++i) {
+        const Vec3 p(random.uniform(0, 100), random.uniform(0, 100), 1.5 * random.gauss());
+        if (p[0] < 50 || random.uniform() < 1.0 / 3) cloud.positions.push_back(p);
+    }
+    Octree octree = build_octree(cloud);
+    Neighbors neighbors = find_neighbors(octree);
+    const std::size_t dropped = drop_outliers_by_distance(octree, neighbors).count;
+    INFO("dropped " << dropped << " of " << cloud.positions.size());
+    CHECK(dropped < cloud.positions.size() / 200);
+}

@@ -18,13 +18,33 @@ double median(std::vector<double>& values) {
     return *middle;
 }
 
+/// The plane of a point's neighbours, without the point, relative to it.
+PlaneFit plane_around(const Octree& octree, const Neighbors& neighbors, std::size_t i) {
+    PlaneSums sums;
+    for (Index n : neighbors.of(i)) sums.add(octree.positions[n] - octree.positions[i], 1);
+    return fit_plane(sums);
+}
+
+double deviation_from(const PlaneFit& plane) {
+    return std::sqrt(std::max(0.0, plane.variance));
+}
+
+/// Do the neighbours of most points fill a volume? Then the noise is as wide as the neighbourhoods, and a
+/// volume is no sign of an outlier. A sample tells.
+bool is_volume(const Octree& octree, const Neighbors& neighbors, double least_volume) {
+    constexpr std::size_t sample = 4096; // its share is off by a hundredth
+    const std::size_t step = std::max<std::size_t>(1, octree.size() / sample);
+    std::size_t volumes = 0, looked_at = 0;
+    for (std::size_t i = 0; i < octree.size(); i += step, ++looked_at)
+        volumes += deviation_from(plane_around(octree, neighbors, i)) > least_volume * neighbors.reach[i];
+    return 2 * volumes > looked_at;
+}
+
 /// Do the neighbours, without the point, fill a volume, or lie on a plane that the point is off?
 bool is_off_surface(const Octree& octree, const Neighbors& neighbors, std::size_t i,
                     const OutlierOptions& options) {
-    PlaneSums sums;
-    for (Index n : neighbors.of(i)) sums.add(octree.positions[n] - octree.positions[i], 1);
-    const PlaneFit plane = fit_plane(sums);
-    const double deviation = std::sqrt(std::max(0.0, plane.variance)), reach = neighbors.reach[i];
+    const PlaneFit plane = plane_around(octree, neighbors, i);
+    const double deviation = deviation_from(plane), reach = neighbors.reach[i];
     if (deviation > options.least_volume * reach) return true;
     const double height = std::abs(plane.normal | plane.centroid);
     return height > options.least_height * reach && height > distance_outliers::least_deviations * deviation;
@@ -34,6 +54,7 @@ std::vector<std::uint8_t> find_outliers(const Octree& octree, const Neighbors& n
                                         const OutlierOptions& options) {
     std::vector<double> all = copy_of_large(neighbors.reach);
     const double typical = median(all);
+    const bool all_volume = is_volume(octree, neighbors, options.least_volume);
     std::vector<std::uint8_t> found = large_vector<std::uint8_t>(octree.size(), 0);
     for_each_index(octree.size(), chunks::quick, [&](Index i) {
         const double reach = neighbors.reach[i], sparseness = reach / typical;
@@ -47,7 +68,8 @@ std::vector<std::uint8_t> find_outliers(const Octree& octree, const Neighbors& n
         };
         if (sparseness > options.most_sparseness || is_stretched(options.most_stretch))
             found[i] = 1;
-        else if (sparseness > options.doubtful_sparseness || is_stretched(options.doubtful_stretch))
+        else if (!all_volume
+                 && (sparseness > options.doubtful_sparseness || is_stretched(options.doubtful_stretch)))
             found[i] = is_off_surface(octree, neighbors, i, options);
     });
     return found;
