@@ -129,9 +129,14 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
                               {"estimate", NormalSource::estimate}},
                              "where normals come from; auto: the file's if it has some, else estimated")
         ->group(method);
-    add_choice<Holes>(app, "--holes", a.holes,
-                      {{"auto", Holes::automatic}, {"keep", Holes::keep}, {"close", Holes::close}},
-                      "auto: close what is small against the sampling; close: everything; keep: nothing")
+    add_choice<Holes>(
+        app, "--holes", a.holes,
+        {{"auto", Holes::automatic},
+         {"keep", Holes::keep},
+         {"close", Holes::close},
+         {"complete", Holes::complete}},
+        "auto: close what is small against the sampling; keep: nothing; complete: everything, by the surface "
+        "that is missing; close: everything, over the vertices of its border")
         ->group(method);
     app.add_flag("--merge-layers", a.merge_layers,
                  "for scans that do not register: sheets in a voxel that face the same way are one surface")

@@ -28,7 +28,8 @@ enum class NormalSource {
 enum class Holes {
     automatic, ///< those that are small against the sampling
     keep,      ///< none
-    close,     ///< all
+    close,     ///< all, over their own vertices
+    complete,  ///< all, by the surface that is missing (extended method; the basic one closes)
 };
 /// What vertices stand for.
 enum class Grid {

@@ -108,6 +108,15 @@ struct Report {
     };
     std::vector<Warning> warnings; ///< in the order of the stages; empty: nothing is known to be doubtful
 
+    /// A boundary loop of the surface, longer than those that are closed as small.
+    struct Loop {
+        Vec3 where{0, 0, 0};    ///< a vertex of it, in the cloud's coordinates
+        std::size_t edges = 0;  ///< of the loop
+        double length = 0;      ///< of them all
+        bool completed = false; ///< closed by the surface that was missing (Holes::complete); else it is open
+    };
+    std::vector<Loop> loops; ///< the completed ones first, then those of the mesh
+
     /// A stage that the mesh went through afterwards.
     struct Stage {
         std::string call;    ///< as it was asked for, `name:key=value,...`

@@ -113,3 +113,19 @@ TEST_CASE("vertices, their properties and the hints go with their component", "[
     PolygonMesh empty;
     CHECK(drop_small_components(empty, hints, {.least_facets = 5}).components == 0);
 }
+
+TEST_CASE("a small bubble that encloses nothing is a splinter, a thicker part and a larger plate are not",
+          "[mesh]") {
+    const auto left = [](Index n, double thickness) {
+        PolygonMesh mesh = support::divided_cube(n);
+        for (Vec3& p : mesh.positions) p *= n * 0.5, p[2] *= thickness / n;
+        const std::size_t facets = mesh.facet_count();
+        add_strip(mesh, 64 * 32);
+        drop_splinters(mesh, {.flat = 0.33});
+        CHECK((mesh.facet_count() == 64 * 32 || mesh.facet_count() == 64 * 32 + facets));
+        return mesh.facet_count() > 64 * 32;
+    };
+    CHECK_FALSE(left(3, 0.05)); // three by three facets on each side
+    CHECK(left(3, 0.5));
+    CHECK(left(5, 0.05));
+}

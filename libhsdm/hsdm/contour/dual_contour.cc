@@ -277,7 +277,8 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     }();
     const auto pair = [&] { dual.links = pair_crossings(dual.grid, dual.crossings, sets, related); };
     pair();
-    for (int round = 0; round < pairing::trim_rounds && trim_unsupported(dual.crossings, dual.links) > 0;
+    for (int round = 0;
+         round < pairing::trim_rounds && trim_unsupported(dual.crossings, dual.links, options.all_round) > 0;
          ++round)
         pair();
     for (int round = 0;
@@ -324,7 +325,9 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     const double h = level.voxel_size;
     const std::vector<EdgeCollapse> to_corners = build_facets(octree, level, sets, options, result);
     result.corners_merged = merge_corners(to_corners, result.mesh, result.classes);
-    result.splinters = drop_splinters(result.mesh, options.splinters);
+    SplinterOptions splinters = options.splinters;
+    splinters.flat *= h;
+    result.splinters = drop_splinters(result.mesh, splinters);
     result.handles_cut =
         cut_handles(octree, level, sets, result.voxel, result.mesh); // holes have no data yet
     if (options.fill) {
@@ -335,7 +338,7 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     result.doublets = merge_doublets(
         result.mesh, [&](Index v) { return result.classes[result.mesh.origin[v]] == VertexClass::smooth; });
     result.manifold = make_manifold(result.mesh);
-    result.splinters.add(drop_splinters(result.mesh, options.splinters));
+    result.splinters.add(drop_splinters(result.mesh, splinters));
     if (result.splinters.count > 0) remove_isolated_vertices(result.mesh);
     UntangleOptions untangle_options = options.untangle;
     untangle_options.reach *= h;

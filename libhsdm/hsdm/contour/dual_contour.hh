@@ -15,11 +15,12 @@ struct DualContourOptions {
     RelationOptions relation;
     CrossingOptions crossing;
     RelaxOptions relax;
-    SplinterOptions splinters;
-    /// The lengths in these two are in voxels here.
+    /// The lengths in these three are in voxels here.
+    SplinterOptions splinters{.flat = splinters::flat};
     FillHolesOptions holes{.max_edges = holes::most_edges, .max_diameter = holes::widest};
     UntangleOptions untangle{.reach = untangling::reach, .nearby = untangling::nearby};
-    bool fill = true; ///< close small boundary loops
+    bool fill = true;       ///< close small boundary loops
+    bool all_round = false; ///< the data go round the whole solid: it has no border (trim_unsupported)
 };
 
 struct DualContour {

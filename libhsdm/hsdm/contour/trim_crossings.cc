@@ -116,7 +116,7 @@ std::size_t remove_crossings(std::span<const std::uint8_t> removed, Crossings& c
 
 } // namespace
 
-std::size_t trim_unsupported(Crossings& crossings, const Links& links) {
+std::size_t trim_unsupported(Crossings& crossings, const Links& links, bool all_round) {
     auto& list = crossings.crossings;
     for (Index x = 0; x < list.size(); ++x) {
         // Such a crossing is attached by one side at most.
@@ -124,7 +124,8 @@ std::size_t trim_unsupported(Crossings& crossings, const Links& links) {
     }
     const OpenLoops loops = find_open_loops(crossings, links);
     const std::vector<Patch> patches = find_patches(crossings, links, loops);
-    const std::vector<std::uint8_t> is_border = find_borders(loops, patches);
+    const std::vector<std::uint8_t> is_border =
+        all_round ? std::vector<std::uint8_t>(loops.sides.size(), 0) : find_borders(loops, patches);
     std::vector<std::uint8_t> removed(list.size(), 0);
     for (const Patch& patch : patches)
         if (ends_beyond(patch, is_border))

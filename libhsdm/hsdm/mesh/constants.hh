@@ -85,6 +85,14 @@ HSDM_TUNED std::size_t most_facets = 20;
 /// Why: by trial; more are a piece of the surface.
 HSDM_TUNED std::size_t most_open = 32;
 
+/// facets: of a flat splinter, a closed one that encloses next to nothing.
+/// Why: a disc of five voxels, both its sides; what is larger is a plate.
+inline constexpr std::size_t most_flat = 64;
+
+/// voxels: mean thickness of a flat splinter at most.
+/// Why: a spacing, at three to a voxel: where noise parts one surface into two that face apart, they stay that near.
+inline constexpr double flat = 0.33;
+
 /// ratio: of the largest component's facets to a splinter's.
 /// Why: by trial; beside a small part a small one is no splinter.
 inline constexpr double least_ratio = 32;

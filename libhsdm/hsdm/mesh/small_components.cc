@@ -8,6 +8,7 @@
 #include "hsdm/mesh/remove_facets.hh"
 
 #include <atomic>
+#include <cmath>
 
 namespace hsdm {
 namespace {
@@ -37,6 +38,23 @@ public:
         for (std::size_t f = 0; f < mesh_.facet_count(); ++f)
             areas[of(f)] += area_vector(mesh_, mesh_.facet(f)).norm();
         return areas;
+    }
+    /// Per component of at most `most` facets, is its mean thickness less than `flat`?
+    std::vector<std::uint8_t> are_flat(std::size_t most, double flat) {
+        std::vector<double> areas(facets_.size(), 0), volumes(facets_.size(), 0);
+        for_each_in_order(mesh_.facet_count(), [&](std::size_t f) {
+            const Index component = of(f);
+            if (facets_[component] > most) return;
+            const Vec3 area = 0.5 * area_vector(mesh_, mesh_.facet(f));
+            areas[component] += area.norm();
+            volumes[component] +=
+                (area | (mesh_.positions[mesh_.facet(f)[0]] - mesh_.positions[component])) / 3;
+        });
+        std::vector<std::uint8_t> result(facets_.size(), 0);
+        for (std::size_t c = 0; c < result.size(); ++c) {
+            result[c] = 2 * std::abs(volumes[c]) < flat * areas[c];
+        }
+        return result;
     }
     /// Per component of at most `most` facets, does it have a border?
     std::vector<std::uint8_t> are_open(std::size_t most) {
@@ -95,10 +113,13 @@ Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options) {
     Components components(mesh);
     const std::vector<std::size_t>& sizes = components.facets();
     const auto largest = static_cast<double>(*std::max_element(sizes.begin(), sizes.end()));
-    const std::vector<std::uint8_t> open = components.are_open(options.most_open);
+    const std::vector<std::uint8_t> open =
+        components.are_open(std::max(options.most_open, options.most_flat));
+    const std::vector<std::uint8_t> flat = components.are_flat(options.most_flat, options.flat);
     std::vector<EdgeHint> none;
     const SmallComponentFacets small = components_where(mesh, components, [&](std::size_t c) {
-        return sizes[c] <= (open[c] ? options.most_open : options.most_facets)
+        const std::size_t most_closed = flat[c] ? options.most_flat : options.most_facets;
+        return sizes[c] <= (open[c] ? options.most_open : most_closed)
                && static_cast<double>(sizes[c]) * options.least_ratio <= largest;
     });
     return remove_components(mesh, none, small).facets;

@@ -14,6 +14,10 @@ struct SplinterOptions {
     std::size_t most_facets = splinters::most_facets;
     /// the same for a component with a border; larger ones are a piece of the surface
     std::size_t most_open = splinters::most_open;
+    /// the same for a closed component whose mean thickness is less than `flat`, in the mesh's units; larger
+    /// ones are a plate
+    std::size_t most_flat = splinters::most_flat;
+    double flat = 0;
     /// least ratio of the facets of the largest component to those of a splinter
     double least_ratio = splinters::least_ratio;
 };

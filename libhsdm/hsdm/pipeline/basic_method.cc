@@ -12,7 +12,8 @@ namespace {
 BasicFacetOptions facet_options(const ReconstructOptions& options) {
     BasicFacetOptions result;
     if (options.holes == Holes::keep) result.max_hole_edges = 0;
-    if (options.holes == Holes::close) result.max_hole_edges = FillHolesOptions::no_limit;
+    if (options.holes == Holes::close || options.holes == Holes::complete)
+        result.max_hole_edges = FillHolesOptions::no_limit;
     return result;
 }
 

@@ -1,11 +1,13 @@
 #include "hsdm/pipeline/extended_method.hh"
 
+#include "hsdm/completion/constants.hh"
 #include "hsdm/contour/dual_contour.hh"
 #include "hsdm/contour/outlier_sets.hh"
 #include "hsdm/contour/patches.hh"
 #include "hsdm/contour/sheet_features.hh"
 #include "hsdm/contour/sheet_widths.hh"
 #include "hsdm/pipeline/attributes.hh"
+#include "hsdm/pipeline/completed_cloud.hh"
 #include "hsdm/pipeline/constants.hh"
 #include "hsdm/pipeline/extended_graph.hh"
 #include "hsdm/pipeline/phase_geometry.hh"
@@ -20,12 +22,12 @@ namespace {
 // auto: loops up to so wide are small against the sampling
 
 /// keep closes nothing, auto the loops that are small against the sampling, close all.
-DualContourOptions extended_options(const ReconstructOptions& options, double spacing_in_voxels) {
+DualContourOptions extended_options(Holes holes, double spacing_in_voxels) {
     DualContourOptions result;
     result.holes.max_diameter = std::max(holes::widest_in_spacings * spacing_in_voxels, holes::widest);
     result.holes.insist = true;
-    result.fill = options.holes != Holes::keep;
-    if (options.holes == Holes::close)
+    result.fill = holes != Holes::keep;
+    if (holes == Holes::close)
         result.holes = {.max_edges = FillHolesOptions::no_limit, .max_diameter = Box::inf, .insist = true};
     return result;
 }
@@ -81,16 +83,31 @@ bool turn_solid_outward(PolygonMesh& mesh) {
     return true;
 }
 
-} // namespace
+double spacing_in_voxels(const MethodInput& in, const Report& report) {
+    return report.input.spacing / in.level.voxel_size;
+}
 
-PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledge& known) {
-    const NormalSets sets =
-        in.phases.run("sets", 0.2, report.seconds.graph, [&] { return separated_sets(in, report); });
-    report.grid.sets = sets.sets.size();
-    DualContour facets = in.phases.run("facets", 0.3, report.seconds.facets, [&] {
-        const double spacing = report.input.spacing / in.level.voxel_size;
-        return dual_contour(in.octree, in.level, sets, extended_options(in.options, spacing));
-    });
+DualContour facets_of(const MethodInput& in, const NormalSets& sets, const DualContourOptions& options,
+                      Report& report) {
+    return in.phases.run("facets", 0.3, report.seconds.facets,
+                         [&] { return dual_contour(in.octree, in.level, sets, options); });
+}
+
+bool is_open(const PolygonMesh& mesh) {
+    return boundary_loops(mesh).size() > 0;
+}
+
+/// Marks the vertices of voxels that have none but completed points.
+VertexProperty completed_vertices(const CompletedCloud& cloud, std::span<const Index> voxel) {
+    const std::vector<std::uint8_t> completed = cloud.completed_voxels();
+    VertexProperty property{"hsdm_completed", VertexProperty::Type::uint8, std::vector<double>(voxel.size())};
+    for (std::size_t v = 0; v < voxel.size(); ++v) property.values[v] = completed[voxel[v]];
+    return property;
+}
+
+/// What is known of facets once they are made, and what their vertices inherit from the points.
+PolygonMesh finished(const MethodInput& in, const NormalSets& sets, DualContour facets, Report& report,
+                     FacetKnowledge& known) {
     note_counts(facets, report);
     note_dropped("facets of splinters", facets.splinters, in, report);
     const bool turned = turn_solid_outward(facets.mesh);
@@ -115,6 +132,54 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
                      placed, in.frame);
     }
     return std::move(facets.mesh);
+}
+
+/// The same with the points that complete the surface where these facets end, and again where loops are left.
+PolygonMesh completed(const MethodInput& in, PolygonMesh open, Report& report, FacetKnowledge& known,
+                      int rounds) {
+    note_loops(open, true, in.octree.origin, in.frame, report);
+    const CompletedCloud cloud = in.phases.run("completion", 0.4, report.seconds.facets, [&] {
+        return complete_cloud(in.octree, in.level, complete_surface(open, in.level.voxel_size));
+    });
+    open = PolygonMesh();
+    const MethodInput whole{in.frame, in.cloud, cloud.octree, cloud.level, in.options, in.phases};
+    const NormalSets sets =
+        in.phases.run("sets", 0.45, report.seconds.graph, [&] { return separated_sets(whole, report); });
+    const bool last = rounds == 1;
+    DualContourOptions options =
+        extended_options(last ? Holes::close : Holes::automatic, spacing_in_voxels(in, report));
+    options.all_round = true;
+    DualContour facets = facets_of(whole, sets, options, report);
+    PolygonMesh mesh;
+    if (!last && is_open(facets.mesh)) {
+        mesh = completed(whole, std::move(facets.mesh), report, known, rounds - 1);
+    } else {
+        VertexProperty marks = completed_vertices(cloud, facets.voxel);
+        mesh = finished(whole, sets, std::move(facets), report, known);
+        mesh.properties.push_back(std::move(marks));
+    }
+    const Vec3 moved = cloud.octree.origin - in.octree.origin;
+    for (Vec3& p : mesh.positions) p += moved;
+    known.intersections.first += moved;
+    known.cells.reset(); // their voxels are those of the larger cube
+    return mesh;
+}
+
+} // namespace
+
+PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledge& known) {
+    const NormalSets sets =
+        in.phases.run("sets", 0.2, report.seconds.graph, [&] { return separated_sets(in, report); });
+    report.grid.sets = sets.sets.size();
+    const Holes holes = in.options.holes;
+    DualContour facets = facets_of(in, sets, extended_options(holes, spacing_in_voxels(in, report)), report);
+    if (holes == Holes::complete && is_open(facets.mesh))
+        return completed(in, std::move(facets.mesh), report, known, completing::most_rounds);
+    PolygonMesh mesh = finished(in, sets, std::move(facets), report, known);
+    if (holes == Holes::complete)
+        mesh.properties.push_back(
+            {"hsdm_completed", VertexProperty::Type::uint8, std::vector<double>(mesh.vertex_count())});
+    return mesh;
 }
 
 } // namespace hsdm

@@ -36,4 +36,8 @@ struct FacetKnowledge {
 void note_dropped(const std::string& what, const Occurrences& discarded, const CloudFrame& frame,
                   Report& report);
 
+/// Adds the boundary loops of a mesh to the report's list. `origin` is the mesh's, in the frame.
+void note_loops(const PolygonMesh& mesh, bool completed, const Vec3& origin, const CloudFrame& frame,
+                Report& report);
+
 } // namespace hsdm

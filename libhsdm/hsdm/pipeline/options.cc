@@ -17,7 +17,10 @@ void check_depth(const std::string& name, int depth) {
 }
 
 std::string name_of(Holes holes) {
-    return holes == Holes::keep ? "keep" : holes == Holes::close ? "close" : "auto";
+    return holes == Holes::keep       ? "keep"
+           : holes == Holes::close    ? "close"
+           : holes == Holes::complete ? "complete"
+                                      : "auto";
 }
 
 } // namespace

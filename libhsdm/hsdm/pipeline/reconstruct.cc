@@ -48,6 +48,7 @@ void tell_in_cloud_units(const CloudFrame& frame, PolyMesh& mesh, Report& report
                            &report.error.points_to_mesh_rms, &report.error.mesh_to_surface_max,
                            &report.error.mesh_to_surface_mean})
         *length *= frame.unit();
+    for (Report::Loop& loop : report.loops) loop.length *= frame.unit();
 }
 
 /// Peak of the whole process so far; the kernel counts in KiB.
@@ -129,7 +130,9 @@ void reconstruct_level(InputCloud& cloud, PreparedCloud& prepared, int depth, bo
     warn_of(warning_of::intersections, known.intersections, input, report);
     leave_out_unsound(input, facets, known, report);
     check_facets(facets, level);
-    if (options.holes == Holes::close) warn_of(warning_of::open_loops, open_loops(facets), input, report);
+    note_loops(facets, false, octree.origin, prepared.frame, report);
+    if (options.holes == Holes::close || options.holes == Holes::complete)
+        warn_of(warning_of::open_loops, open_loops(facets), input, report);
     phases.run("error", 0.6, seconds.error, [&] { drop_and_measure(points, input, facets, known, report); });
 
     as_read = std::vector<Vec3>();

@@ -126,6 +126,19 @@ void fill(JsonText& json, const std::vector<Report::Warning>& warnings) {
     json.end();
 }
 
+void fill(JsonText& json, const std::vector<Report::Loop>& loops) {
+    json.begin_array();
+    for (const Report::Loop& loop : loops) {
+        json.begin_object();
+        json.member("where", loop.where);
+        json.member("edges", loop.edges);
+        json.member("length", loop.length);
+        json.member("completed", loop.completed);
+        json.end();
+    }
+    json.end();
+}
+
 void fill(JsonText& json, const std::vector<Report::Stage>& stages) {
     json.begin_array();
     for (const Report::Stage& stage : stages) {
@@ -171,6 +184,8 @@ std::string to_json(const Report& report) {
     fill(json, report.dropped);
     json.key("warnings");
     fill(json, report.warnings);
+    json.key("loops");
+    fill(json, report.loops);
     json.key("stages");
     fill(json, report.stages);
     json.key("seconds");

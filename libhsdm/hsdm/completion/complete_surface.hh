@@ -1,0 +1,20 @@
+#pragma once
+// Completion: the surface that no scanner saw, as points with normals.
+
+#include "hsdm/polygon_mesh.hh"
+
+namespace hsdm {
+
+struct CompletedPoints {
+    std::vector<Vec3> positions;
+    std::vector<Vec3> normals; ///< per point, unit, outward
+    std::size_t loops = 0;     ///< boundary loops of the mesh
+};
+
+/// Points of the surface that closes a mesh (an oriented 2-manifold, facets outward) where it has boundary
+/// loops: it separates inside from outside, joins loops that face each other, and continues the mesh's slope
+/// or meets it in a crease. Three points to a voxel each way. None for a closed mesh. O(facets + missing
+/// area). Throws OptionError for a voxel size that is not positive.
+CompletedPoints complete_surface(const PolygonMesh& mesh, double voxel_size);
+
+} // namespace hsdm

@@ -1,0 +1,189 @@
+#include "hsdm/completion/completion_field.hh"
+
+#include "hsdm/completion/constants.hh"
+
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCore>
+
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+enum Known : std::uint8_t { solved, beside_mesh, given };
+
+/// Grid points of the coarsest level: all.
+std::vector<MortonCode> all_points(const LatticePlace& place) {
+    std::vector<MortonCode> codes;
+    for (int z = 0; z <= place.last[2]; ++z)
+        for (int y = 0; y <= place.last[1]; ++y)
+            for (int x = 0; x <= place.last[0]; ++x) codes.push_back(morton_encode(VoxelCoord{x, y, z}));
+    sort_unique(codes);
+    return codes;
+}
+
+/// The places of all levels, the coarsest first.
+std::vector<LatticePlace> places(const Box& box, double spacing) {
+    const double extent = box.extent(), room = completing::margin * extent;
+    int levels = 1;
+    while (std::ldexp(spacing, levels - 1) * completing::coarsest_cells < extent) ++levels;
+    const double coarsest = std::ldexp(spacing, levels - 1);
+    LatticePlace place{{0, 0, 0}, coarsest, {}};
+    for (unsigned k = 0; k < 3; ++k) {
+        const double cells = std::ceil((box.size()[k] + 2 * room) / coarsest) + 1;
+        place.last[k] = static_cast<int>(cells);
+        // No plane of the lattice passes the box's own faces, where those of a part often lie.
+        place.origin[k] = 0.5 * (box.lo[k] + box.hi[k]) - 0.5 * cells * coarsest + spacing * 0.0618;
+    }
+    std::vector<LatticePlace> result(static_cast<std::size_t>(levels), place);
+    for (std::size_t l = 1; l < result.size(); ++l) {
+        result[l].spacing = 0.5 * result[l - 1].spacing;
+        for (unsigned k = 0; k < 3; ++k) result[l].last[k] = 2 * result[l - 1].last[k];
+    }
+    return result;
+}
+
+/// The value at a finer grid point, by trilinear interpolation of what there is.
+double interpolated(const CompletionField& coarse, const VoxelCoord& fine) {
+    double sum = 0, weight = 0;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        VoxelCoord c;
+        bool apart = true;
+        for (unsigned k = 0; k < 3; ++k) {
+            const int upper = corner >> k & 1;
+            apart = apart && (upper == 0 || fine[k] % 2 == 1);
+            c[k] = fine[k] / 2 + upper;
+        }
+        const Index point = apart ? coarse.lattice.find(c) : no_index;
+        if (point == no_index) continue;
+        sum += coarse.value[point];
+        weight += 1;
+    }
+    return weight > 0 ? sum / weight : 0;
+}
+
+/// The values of grid points beside the mesh: their distances from its planes, signed.
+void hold_beside_mesh(CompletionField& field) {
+    const Lattice& lattice = field.lattice;
+    std::vector<double> nearest(lattice.size(), Box::inf);
+    const auto hold = [&](Index point, double t, double across) {
+        if (point == no_index || t * std::abs(across) >= nearest[point]) return;
+        nearest[point] = t * std::abs(across);
+        field.known[point] = beside_mesh;
+        field.value[point] = std::copysign(nearest[point] * lattice.place.spacing, across);
+    };
+    for (std::size_t h = 0; h < lattice.hits.size(); ++h) {
+        const LatticeHit& hit = lattice.hits[h];
+        const double across = hit.normal[hit.edge % 3];
+        const Index lower = hit.edge / 3;
+        if (h == 0 || lattice.hits[h - 1].edge != hit.edge) hold(lower, hit.t, -across);
+        if (h + 1 == lattice.hits.size() || lattice.hits[h + 1].edge != hit.edge)
+            hold(lattice.next[lower][hit.edge % 3], 1 - hit.t, across);
+    }
+}
+
+/// Solves for the values that nobody knows: each the mean of those around it.
+void solve(CompletionField& field) {
+    const Lattice& lattice = field.lattice;
+    std::vector<Index> number(lattice.size(), no_index), unknown;
+    for (Index i = 0; i < lattice.size(); ++i)
+        if (field.known[i] == solved) number[i] = static_cast<Index>(unknown.size()), unknown.push_back(i);
+    if (unknown.empty()) return;
+    const auto count = static_cast<Eigen::Index>(unknown.size());
+    Eigen::SparseMatrix<double, Eigen::RowMajor> a(count, count);
+    Eigen::VectorXd b = Eigen::VectorXd::Zero(count), x(count);
+    a.reserve(Eigen::VectorXi::Constant(static_cast<int>(count), 7));
+    for (Eigen::Index row = 0; row < count; ++row) {
+        const Index i = unknown[static_cast<std::size_t>(row)];
+        x[row] = field.value[i];
+        std::array<Eigen::Index, 6> columns;
+        std::size_t others = 0, around = 0;
+        for (const Index k : lattice.next[i]) {
+            if (k == no_index) continue;
+            ++around;
+            if (field.known[k] == solved)
+                columns[others++] = number[k];
+            else
+                b[row] += field.value[k];
+        }
+        a.insert(row, row) = static_cast<double>(around);
+        for (std::size_t c = 0; c < others; ++c) a.insert(row, columns[c]) = -1;
+    }
+    Eigen::ConjugateGradient<Eigen::SparseMatrix<double, Eigen::RowMajor>, Eigen::Lower | Eigen::Upper>
+        solver;
+    solver.compute(a);
+    solver.setTolerance(completing::tolerance);
+    solver.setMaxIterations(20); // between two questions whether to go on
+    for (int round = 0; round < 50; ++round) {
+        Interruption::poll();
+        x = solver.solveWithGuess(b, x);
+        if (solver.info() == Eigen::Success) break;
+    }
+    for (Eigen::Index row = 0; row < count; ++row)
+        field.value[unknown[static_cast<std::size_t>(row)]] = x[row];
+}
+
+CompletionField coarsest_field(const LatticePlace& place, const PolygonMesh& mesh) {
+    CompletionField field{build_lattice(place, all_points(place), mesh), {}, {}};
+    assign_large(field.value, field.lattice.size(), 0.5 * place.spacing);
+    assign_large(field.known, field.lattice.size(), std::uint8_t{solved});
+    for_each_index(field.lattice.size(), chunks::light, [&](Index i) {
+        if (std::ranges::find(field.lattice.next[i], no_index) != field.lattice.next[i].end())
+            field.known[i] = given;
+    });
+    hold_beside_mesh(field);
+    solve(field);
+    return field;
+}
+
+/// The grid points around what is missing: the open edges of the coarser level, and the mesh's border.
+std::vector<MortonCode> points_around(const CompletionField& coarse, const LatticePlace& place,
+                                      const PolygonMesh& mesh, std::span<const std::array<Index, 2>> border) {
+    std::vector<MortonCode> codes;
+    const auto add = [&](const VoxelCoord& c) {
+        if (place.holds(c)) codes.push_back(morton_encode(c));
+    };
+    for (std::size_t e = 0; e < 3 * coarse.lattice.size(); ++e) {
+        if (!coarse.is_open(e)) continue;
+        VoxelCoord c = coarse.lattice.coord(static_cast<Index>(e / 3));
+        for (int& k : c) k *= 2;
+        for (int step = 0; step <= 2; ++step, ++c[e % 3]) add(c);
+    }
+    for_each_sample(mesh, border, place.spacing, [&](const Vec3& p) {
+        const Vec3 x = place.local(p);
+        add({static_cast<int>(std::lround(x[0])), static_cast<int>(std::lround(x[1])),
+             static_cast<int>(std::lround(x[2]))});
+    });
+    dilate(place, completing::band + 1, codes);
+    return codes;
+}
+
+CompletionField finer_field(const CompletionField& coarse, const LatticePlace& place, const PolygonMesh& mesh,
+                            std::span<const std::array<Index, 2>> border) {
+    CompletionField field{build_lattice(place, points_around(coarse, place, mesh, border), mesh), {}, {}};
+    const std::size_t size = field.lattice.size();
+    resize_large(field.value, size);
+    resize_large(field.known, size);
+    for_each_index(size, chunks::usual, [&](Index i) {
+        field.value[i] = interpolated(coarse, field.lattice.coord(i));
+        const bool at_end = std::ranges::find(field.lattice.next[i], no_index) != field.lattice.next[i].end();
+        field.known[i] = at_end ? given : solved;
+    });
+    hold_beside_mesh(field);
+    solve(field);
+    return field;
+}
+
+} // namespace
+
+CompletionField completion_field(const PolygonMesh& mesh, std::span<const std::array<Index, 2>> border,
+                                 double spacing) {
+    Box box;
+    for (const Vec3& p : mesh.positions) box.add(p);
+    const std::vector<LatticePlace> levels = places(box, spacing);
+    CompletionField field = coarsest_field(levels[0], mesh);
+    for (std::size_t l = 1; l < levels.size(); ++l) field = finer_field(field, levels[l], mesh, border);
+    return field;
+}
+
+} // namespace hsdm

@@ -1,0 +1,270 @@
+#include "hsdm/completion/completion_patch.hh"
+
+#include "hsdm/completion/constants.hh"
+
+#include <Eigen/SparseCholesky>
+
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+/// The lower corners of the four cells round an edge, counter-clockwise about its axis.
+std::array<VoxelCoord, 4> cells_around(const VoxelCoord& lower, unsigned axis) {
+    static constexpr std::array<std::array<int, 2>, 4> steps{{{-1, -1}, {0, -1}, {0, 0}, {-1, 0}}};
+    std::array<VoxelCoord, 4> cells;
+    for (unsigned j = 0; j < 4; ++j) {
+        cells[j] = lower;
+        cells[j][(axis + 1) % 3] += steps[j][0];
+        cells[j][(axis + 2) % 3] += steps[j][1];
+    }
+    return cells;
+}
+
+/// Where the surface passes an edge.
+struct Passage {
+    Vec3 position{0, 0, 0};
+    Vec3 normal{0, 0, 0}; ///< of the mesh there; 0 where it is missing
+    bool passes = false, missing = false, leaving = false;
+};
+
+Passage passage(const CompletionField& field, std::size_t edge) {
+    Passage result;
+    const Lattice& lattice = field.lattice;
+    const Index a = static_cast<Index>(edge / 3), b = lattice.next[a][edge % 3];
+    if (b == no_index) return result;
+    const auto hits = lattice.on_edge(edge);
+    double t = 0;
+    if (hits.size() % 2 == 1) {
+        t = hits[0].t;
+        result.normal = hits[0].normal;
+        result.leaving = hits[0].normal[edge % 3] > 0;
+        result.passes = true;
+    } else if (field.is_open(edge)) {
+        t = field.value[a] / (field.value[a] - field.value[b]);
+        result.leaving = field.value[a] < 0;
+        result.passes = result.missing = true;
+    }
+    result.position = lattice.place.position(lattice.coord(a));
+    result.position[edge % 3] += t * lattice.place.spacing;
+    return result;
+}
+
+/// The cells of the patch: those round missing edges, and as many around them as hold it.
+std::vector<MortonCode> cells_of(const CompletionField& field) {
+    std::vector<MortonCode> cells;
+    for (std::size_t e = 0; e < 3 * field.lattice.size(); ++e) {
+        if (!field.is_open(e)) continue;
+        for (const VoxelCoord& c :
+             cells_around(field.lattice.coord(static_cast<Index>(e / 3)), static_cast<unsigned>(e % 3)))
+            cells.push_back(morton_encode(c));
+    }
+    dilate(field.lattice.place, completing::rim, cells);
+    return cells;
+}
+
+/// Fair positions by sparse least squares; the three coordinates apart.
+class Fairing {
+public:
+    explicit Fairing(CompletionPatch& patch) : patch_(patch) {
+        const std::size_t count = patch.positions.size();
+        std::vector<std::array<Index, 2>> pairs;
+        for (const auto& quad : patch.quads)
+            for (unsigned j = 0; j < 4; ++j) {
+                const Index a = quad[j], b = quad[(j + 1) % 4];
+                pairs.push_back({a, b}), pairs.push_back({b, a});
+            }
+        sort_unique(pairs);
+        first_.assign(count + 1, 0);
+        for (const auto& [a, b] : pairs) ++first_[a + 1], around_.push_back(b);
+        counts_to_first(first_);
+        number_.assign(count, no_index);
+        for (Index v = 0; v < count; ++v)
+            if (patch.held[v] == 0 && first_[v] < first_[v + 1])
+                number_[v] = static_cast<Index>(free_.size()), free_.push_back(v);
+    }
+
+    void to_membrane() {
+        const Rows rows = each_less_mean(free_, true);
+        solve(rows.of_free, -rows.of_held);
+    }
+
+    void to_plate() {
+        std::vector<Index> at = free_;
+        for (Index v = 0; v < patch_.positions.size(); ++v)
+            if (patch_.held[v] != 0 && continues(v)) at.push_back(v);
+        const Rows rows = each_less_mean(at, false);
+        Eigen::MatrixX3d target = -rows.of_held;
+        // A plate resists bends across its surface; along it vertices stay spread as the membrane spreads
+        // them.
+        for (std::size_t r = free_.size(); r < at.size(); ++r) {
+            const Vec3 &normal = patch_.normals[at[r]], bend = bend_at(at[r]);
+            for (unsigned k = 0; k < 3; ++k)
+                target(static_cast<Eigen::Index>(r), k) += bend[k] - normal[k] * (normal | bend);
+        }
+        const Matrix transposed = rows.of_free.transpose();
+        solve(transposed * rows.of_free, transposed * target);
+    }
+
+private:
+    using Matrix = Eigen::SparseMatrix<double>;
+
+    /// Vertices less the means of those around them, as a matrix of the free ones and what held ones add.
+    struct Rows {
+        Matrix of_free;
+        Eigen::MatrixX3d of_held;
+    };
+
+    std::span<const Index> around(Index v) const {
+        return {around_.data() + first_[v], around_.data() + first_[v + 1]};
+    }
+    Vec3 bend_at(Index v) const {
+        Vec3 sum(0, 0, 0);
+        for (const Index k : around(v)) sum += patch_.positions[k];
+        return patch_.positions[v] - sum / static_cast<double>(around(v).size());
+    }
+
+    /// Does the patch continue the mesh here, rather than meet it in a crease?
+    bool continues(Index v) const {
+        Vec3 away(0, 0, 0);
+        bool any = false;
+        for (const Index k : around(v)) {
+            if (patch_.held[k] != 0) continue;
+            any = true;
+            away += patch_.positions[k] - patch_.positions[v];
+        }
+        return any && std::abs(away | patch_.normals[v]) <= completing::crease_sine * away.norm();
+    }
+
+    /// Each times the number of those around if `by_valence`, which makes the matrix of free rows symmetric.
+    Rows each_less_mean(std::span<const Index> vertices, bool by_valence) const {
+        const auto count = static_cast<Eigen::Index>(vertices.size());
+        Rows rows{Matrix(count, static_cast<Eigen::Index>(free_.size())), Eigen::MatrixX3d::Zero(count, 3)};
+        std::vector<Eigen::Triplet<double>> entries;
+        for (Eigen::Index r = 0; r < count; ++r) {
+            const auto add = [&](Index v, double value) {
+                if (number_[v] != no_index)
+                    entries.emplace_back(static_cast<int>(r), static_cast<int>(number_[v]), value);
+                else
+                    for (unsigned k = 0; k < 3; ++k) rows.of_held(r, k) += value * patch_.positions[v][k];
+            };
+            const Index vertex = vertices[static_cast<std::size_t>(r)];
+            const auto valence = static_cast<double>(around(vertex).size());
+            add(vertex, by_valence ? valence : 1);
+            for (const Index k : around(vertex)) add(k, by_valence ? -1 : -1 / valence);
+        }
+        rows.of_free.setFromTriplets(entries.begin(), entries.end());
+        return rows;
+    }
+
+    /// Moves the free vertices to where matrix * positions = target.
+    void solve(Matrix matrix, Eigen::MatrixX3d target) {
+        const auto count = static_cast<Eigen::Index>(free_.size());
+        if (count == 0) return;
+        for (Eigen::Index i = 0; i < count; ++i) {
+            const Vec3& p = patch_.positions[free_[static_cast<std::size_t>(i)]];
+            matrix.coeffRef(i, i) += completing::hold;
+            for (unsigned k = 0; k < 3; ++k) target(i, k) += completing::hold * p[k];
+        }
+        const Eigen::SimplicialLDLT<Matrix> factors(matrix);
+        if (factors.info() != Eigen::Success) return;
+        const Eigen::MatrixX3d x = factors.solve(target);
+        if (!x.allFinite()) return;
+        for (Eigen::Index i = 0; i < count; ++i)
+            patch_.positions[free_[static_cast<std::size_t>(i)]] = Vec3(x(i, 0), x(i, 1), x(i, 2));
+    }
+
+    CompletionPatch& patch_;
+    std::vector<Index> first_, around_, number_, free_;
+};
+
+/// Places the vertices of a patch: where the mesh passes their cells' edges, or else the missing surface;
+/// where both do, on the mesh's border.
+class Placing {
+public:
+    explicit Placing(CompletionPatch& patch)
+        : patch_(patch), hits_(patch.positions.size()), missing_(hits_.size()), border_(hits_.size()) {}
+
+    void add(std::span<const Index> corners, const Passage& at) {
+        for (const Index v : corners) {
+            (at.missing ? missing_ : hits_)[v].add(at.position);
+            patch_.normals[v] += at.normal;
+        }
+    }
+    void add_border(Index v, const Vec3& position) { border_[v].add(position); }
+
+    void finish() {
+        for (std::size_t v = 0; v < hits_.size(); ++v) {
+            patch_.held[v] = hits_[v].count > 0;
+            const bool at_border = hits_[v].count > 0 && missing_[v].count > 0 && border_[v].count > 0;
+            patch_.positions[v] = (at_border             ? border_[v]
+                                   : patch_.held[v] != 0 ? hits_[v]
+                                                         : missing_[v])
+                                      .mean();
+            const double length = patch_.normals[v].norm();
+            if (length > 0) patch_.normals[v] *= 1 / length;
+        }
+    }
+
+private:
+    struct Mean {
+        Vec3 sum{0, 0, 0};
+        int count = 0;
+
+        void add(const Vec3& p) { sum += p, ++count; }
+        Vec3 mean() const { return sum / std::max(count, 1); }
+    };
+
+    CompletionPatch& patch_;
+    std::vector<Mean> hits_, missing_, border_;
+};
+
+} // namespace
+
+CompletionPatch completion_patch(const CompletionField& field, const PolygonMesh& mesh,
+                                 std::span<const std::array<Index, 2>> border) {
+    const LatticePlace& place = field.lattice.place;
+    const std::vector<MortonCode> cells = cells_of(field);
+    const std::size_t count = cells.size();
+    CompletionPatch patch{std::vector<Vec3>(count),
+                          std::vector<Vec3>(count, Vec3(0, 0, 0)),
+                          std::vector<std::uint8_t>(count),
+                          {},
+                          {}};
+    Placing placing(patch);
+    MortonIndex number;
+    number.build(cells);
+    const auto vertex_in = [&](const VoxelCoord& cell) {
+        return place.holds(cell) ? number.find(morton_encode(cell)) : no_index;
+    };
+    for_each_in_order(3 * field.lattice.size(), [&](std::size_t e) {
+        const auto around =
+            cells_around(field.lattice.coord(static_cast<Index>(e / 3)), static_cast<unsigned>(e % 3));
+        std::array<Index, 4> corners;
+        for (unsigned j = 0; j < 4; ++j)
+            if (corners[j] = vertex_in(around[j]); corners[j] == no_index) return;
+        const Passage at = passage(field, e);
+        if (!at.passes) return;
+        placing.add(corners, at);
+        if (!at.leaving) std::reverse(corners.begin(), corners.end());
+        patch.quads.push_back(corners);
+        patch.missing.push_back(at.missing);
+    });
+    for_each_sample(mesh, border, 0.5 * place.spacing, [&](const Vec3& p) {
+        const Vec3 local = place.local(p);
+        const Index v =
+            vertex_in({static_cast<int>(std::floor(local[0])), static_cast<int>(std::floor(local[1])),
+                       static_cast<int>(std::floor(local[2]))});
+        if (v != no_index) placing.add_border(v, p);
+    });
+    placing.finish();
+    return patch;
+}
+
+void fair(CompletionPatch& patch) {
+    Fairing fairing(patch);
+    fairing.to_membrane();
+    fairing.to_plate();
+}
+
+} // namespace hsdm

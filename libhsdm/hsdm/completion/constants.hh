@@ -1,0 +1,42 @@
+#pragma once
+// What decides how a surface is completed, in the order of docs/completion.md.
+
+#include <cstddef>
+
+namespace hsdm::completing {
+
+/// lattice cells along the longest side of the mesh on the coarsest level, at most: a hole that is wide
+/// against the mesh is seen whole there, and finer levels are looked at only where it passes.
+inline constexpr int coarsest_cells = 32;
+
+/// of the mesh's longest side: the room around it, whose end is outside. Half as far changes what bulges from
+/// a border by a twentieth of the border's width.
+inline constexpr double margin = 0.25;
+
+/// lattice cells: so far around the zero level of the coarser level, and around boundary edges, a level is
+/// solved. One coarse cell, by which it may move.
+inline constexpr int band = 2;
+
+/// of the values' size: where conjugate gradients stop. A hundredth of a cell.
+inline constexpr double tolerance = 1e-3;
+
+/// lattice cells: so far beyond its border the mesh takes part in a patch, to hold it. Two rings of
+/// vertices give it position and slope.
+inline constexpr int rim = 2;
+
+/// sine of 40 degrees, of the angle beyond which neighbouring sheets meet in a crease (relations): a patch
+/// that would leave the mesh at a greater angle meets it in a crease, else it continues its slope.
+inline constexpr double crease_sine = 0.64;
+
+/// keeps patches that nothing holds where they are; small against the least stiffness of a patch a thousand
+/// cells wide.
+inline constexpr double hold = 1e-12;
+
+/// points along each side of a cell of a patch: nine to a voxel, as three spacings to a voxel have.
+inline constexpr int samples = 3;
+
+/// rounds: of completing, while loops are left that are not small. Where the completed points and the
+/// measured ones contradict each other some are left; the second round closes all but a few.
+inline constexpr int most_rounds = 2;
+
+} // namespace hsdm::completing

@@ -1,0 +1,111 @@
+#include "hsdm/completion/lattice.hh"
+
+#include "hsdm/core/parallel_sort.hh"
+
+#include <cmath>
+#include <tuple>
+
+namespace hsdm {
+namespace {
+
+/// The hits of one triangle, in grid coordinates.
+class TriangleHits {
+public:
+    TriangleHits(const Lattice& lattice, std::vector<LatticeHit>& hits) : lattice_(lattice), hits_(hits) {}
+
+    void add(const std::array<Vec3, 3>& corners) {
+        const Vec3 area = (corners[1] - corners[0]) % (corners[2] - corners[0]);
+        const double size = area.norm();
+        if (!(size > 0)) return;
+        for (unsigned axis = 0; axis < 3; ++axis)
+            if (area[axis] != 0) along(axis, corners, area * (1 / size));
+    }
+
+private:
+    void along(unsigned axis, const std::array<Vec3, 3>& p, const Vec3& normal) {
+        const unsigned u = (axis + 1) % 3, v = (axis + 2) % 3;
+        const auto range = [&](unsigned k) {
+            const double lo = std::min({p[0][k], p[1][k], p[2][k]}),
+                         hi = std::max({p[0][k], p[1][k], p[2][k]});
+            return std::pair(static_cast<int>(std::ceil(std::max(lo, 0.0))),
+                             static_cast<int>(std::floor(std::min<double>(hi, lattice_.place.last[k]))));
+        };
+        const auto [u_lo, u_hi] = range(u);
+        const auto [v_lo, v_hi] = range(v);
+        for (int i = u_lo; i <= u_hi; ++i)
+            for (int k = v_lo; k <= v_hi; ++k) {
+                std::array<double, 3> weight;
+                for (unsigned j = 0; j < 3; ++j) {
+                    const Vec3 &a = p[(j + 1) % 3], &b = p[(j + 2) % 3];
+                    weight[j] = (a[u] - i) * (b[v] - k) - (a[v] - k) * (b[u] - i);
+                }
+                if (const auto [lo, hi] = std::minmax({weight[0], weight[1], weight[2]}); lo < 0 && hi > 0)
+                    continue;
+                const double sum = weight[0] + weight[1] + weight[2];
+                if (sum == 0) continue;
+                const double at =
+                    (weight[0] * p[0][axis] + weight[1] * p[1][axis] + weight[2] * p[2][axis]) / sum;
+                VoxelCoord lower;
+                lower[axis] = static_cast<int>(std::floor(at)), lower[u] = i, lower[v] = k;
+                const Index point = lattice_.find(lower);
+                if (point != no_index) hits_.push_back({3 * point + axis, at - std::floor(at), normal});
+            }
+    }
+
+    const Lattice& lattice_;
+    std::vector<LatticeHit>& hits_;
+};
+
+std::vector<LatticeHit> find_hits(const Lattice& lattice, const PolygonMesh& mesh) {
+    std::vector<LatticeHit> hits = collected<LatticeHit>(
+        mesh.facet_count(), chunks::usual,
+        [&](std::size_t begin, std::size_t end, std::vector<LatticeHit>& part) {
+            TriangleHits triangles(lattice, part);
+            const auto at = [&](Index vertex) { return lattice.place.local(mesh.positions[vertex]); };
+            for (std::size_t f = begin; f < end; ++f) {
+                const auto corners = mesh.facet(f);
+                for (std::size_t c = 2; c < corners.size(); ++c)
+                    triangles.add({at(corners[0]), at(corners[c - 1]), at(corners[c])});
+            }
+        });
+    std::ranges::sort(hits, {}, [](const LatticeHit& h) {
+        return std::tuple(h.edge, h.t, h.normal[0], h.normal[1], h.normal[2]);
+    });
+    return hits;
+}
+
+} // namespace
+
+void dilate(const LatticePlace& place, int radius, std::vector<MortonCode>& codes) {
+    sort_unique(codes);
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        const std::size_t before = codes.size();
+        for (std::size_t i = 0; i < before; ++i)
+            for (int step = -radius; step <= radius; ++step) {
+                VoxelCoord c = morton_decode(codes[i]);
+                c[axis] += step;
+                if (step != 0 && place.holds(c)) codes.push_back(morton_encode(c));
+            }
+        sort_unique(codes);
+    }
+}
+
+Lattice build_lattice(const LatticePlace& place, std::vector<MortonCode> codes, const PolygonMesh& mesh) {
+    Lattice lattice{place, std::move(codes), {}, {}, {}, {}};
+    lattice.index.build(lattice.codes);
+    resize_large(lattice.next, lattice.size());
+    for_each_index(lattice.size(), chunks::usual, [&](Index i) {
+        for (unsigned way = 0; way < 6; ++way) {
+            VoxelCoord c = lattice.coord(i);
+            c[way % 3] += way < 3 ? 1 : -1;
+            lattice.next[i][way] = lattice.find(c);
+        }
+    });
+    lattice.hits = find_hits(lattice, mesh);
+    assign_large(lattice.first_hit, 3 * lattice.size() + 1, Index(0));
+    for (const LatticeHit& hit : lattice.hits) ++lattice.first_hit[hit.edge + 1];
+    counts_to_first(lattice.first_hit);
+    return lattice;
+}
+
+} // namespace hsdm

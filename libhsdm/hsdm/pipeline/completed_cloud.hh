@@ -1,0 +1,22 @@
+#pragma once
+// Phase 1 once more, with the points of a surface that no scanner saw.
+
+#include "hsdm/completion/complete_surface.hh"
+#include "hsdm/octree/octree.hh"
+
+namespace hsdm {
+
+/// A cloud with the points that complete it: an octree of the same voxels, or more of them, and the level of
+/// the mesh. Completed points have no `source`.
+struct CompletedCloud {
+    Octree octree;
+    OctreeLevel level;
+
+    /// Per voxel: has it no point but completed ones?
+    std::vector<std::uint8_t> completed_voxels() const;
+};
+
+/// Adds points, relative to the octree's origin, to those of a level. O(n), parallel.
+CompletedCloud complete_cloud(const Octree& octree, const OctreeLevel& level, const CompletedPoints& points);
+
+} // namespace hsdm

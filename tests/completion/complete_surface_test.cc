@@ -1,0 +1,92 @@
+#include "hsdm/completion/complete_surface.hh"
+#include "hsdm/errors.hh"
+#include "hsdm/mesh/remove_facets.hh"
+#include "support/meshes.hh"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+using namespace hsdm;
+
+namespace {
+
+template <class Gone>
+PolygonMesh without(PolygonMesh mesh, const Gone& gone) {
+    remove_facets(mesh, [&](std::size_t f) {
+        return std::ranges::all_of(mesh.facet(f), [&](Index v) { return gone(mesh.positions[v]); });
+    });
+    return mesh;
+}
+
+void turn(PolygonMesh& mesh) {
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f)
+        std::reverse(mesh.corners.begin() + mesh.first[f], mesh.corners.begin() + mesh.first[f + 1]);
+}
+
+} // namespace
+
+TEST_CASE("a closed mesh needs no points, a voxel size must be positive", "[completion]") {
+    const CompletedPoints none = complete_surface(support::divided_sphere(8), 0.1);
+    CHECK(none.loops == 0);
+    CHECK(none.positions.empty());
+    CHECK(complete_surface(PolygonMesh(), 0.1).positions.empty());
+    CHECK_THROWS_AS(complete_surface(support::divided_sphere(8), 0), OptionError);
+    CHECK_THROWS_AS(complete_surface(support::divided_sphere(8), std::nan("")), OptionError);
+}
+
+TEST_CASE("a hole in a sphere is completed by a cap that continues its slope", "[completion]") {
+    // The cap is 0.92 across and 0.11 high; a disc over the border would be that far off in the middle.
+    for (const bool inward : {false, true}) {
+        PolygonMesh mesh = without(support::divided_sphere(40), [](const Vec3& p) { return p[2] > 0.89; });
+        if (inward) turn(mesh);
+        const CompletedPoints points = complete_surface(mesh, 0.05);
+        CHECK(points.loops == 1);
+        CHECK(points.positions.size() > 9 * 200);
+        REQUIRE(points.normals.size() == points.positions.size());
+        double farthest = 0, least = 1, highest = 0;
+        for (std::size_t i = 0; i < points.positions.size(); ++i) {
+            const Vec3& p = points.positions[i];
+            farthest = std::max(farthest, std::abs(p.norm() - 1));
+            highest = std::max(highest, p[2]);
+            least = std::min(least, (points.normals[i] | p) * (inward ? -1 : 1) / p.norm());
+        }
+        CHECK(farthest < 0.03);
+        CHECK(highest > 0.97);
+        CHECK(least > 0.9);
+    }
+}
+
+TEST_CASE("the missing face of a cube is flat and meets the others in creases", "[completion]") {
+    const PolygonMesh mesh = without(support::divided_cube(30), [](const Vec3& p) { return p[2] < -0.999; });
+    const CompletedPoints points = complete_surface(mesh, 0.07);
+    CHECK(points.loops == 1);
+    CHECK(points.positions.size() > 9 * 700);
+    double mean = 0;
+    for (std::size_t i = 0; i < points.positions.size(); ++i) {
+        const Vec3& p = points.positions[i];
+        mean += std::abs(p[2] + 1) / static_cast<double>(points.positions.size());
+        CHECK(std::abs(p[2] + 1) < 0.1);
+        if (std::max(std::abs(p[0]), std::abs(p[1])) < 0.8) CHECK(points.normals[i][2] < -0.98);
+    }
+    CHECK(mean < 0.01);
+}
+
+TEST_CASE("two loops that face each other closely are joined, far ones closed each", "[completion]") {
+    // A tube of radius 1 with closed ends far off, cut through in the middle.
+    const auto tube = [](double gap) {
+        PolygonMesh mesh = support::round_tube(80, 120, 1, 0.05);
+        return without(std::move(mesh), [&](const Vec3& p) { return std::abs(p[2] - 3) < 0.5 * gap + 0.05; });
+    };
+    const auto near_axis = [](const CompletedPoints& points) {
+        return std::ranges::count_if(points.positions, [](const Vec3& p) {
+            return std::hypot(p[0], p[1]) < 0.2 && std::abs(p[2] - 3) < 2;
+        });
+    };
+    const CompletedPoints near = complete_surface(tube(0.3), 0.06), far = complete_surface(tube(2.2), 0.06);
+    CHECK(near.loops == 4);
+    CHECK(near_axis(near) == 0);
+    CHECK(near_axis(far) > 2 * 9 * 10);
+    for (const Vec3& p : near.positions)
+        if (std::abs(p[2] - 3) < 1) CHECK(std::abs(std::hypot(p[0], p[1]) - 1) < 0.05);
+}

@@ -1,0 +1,143 @@
+// Scans with parts that no scanner saw, as a whole.
+
+#include "hsdm/errors.hh"
+#include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/reconstruct.hh"
+#include "hsdm/spatial/self_intersections.hh"
+#include "support/check.hh"
+#include "support/sample.hh"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+using namespace hsdm;
+using namespace hsdm::support;
+
+namespace {
+
+/// A scan without the points at which `unseen` holds.
+template <class Unseen>
+PointCloud partial_scan(const Solid& solid, const SampleOptions& options, const Unseen& unseen) {
+    const PointCloud all = sample(solid, options);
+    PointCloud cloud;
+    for (std::size_t i = 0; i < all.positions.size(); ++i) {
+        if (unseen(all.positions[i])) continue;
+        cloud.positions.push_back(all.positions[i]);
+        if (all.has_normals()) cloud.normals.push_back(all.normals[i]);
+    }
+    return cloud;
+}
+
+const VertexProperty* marks_of(const PolygonMesh& mesh) {
+    const auto found = std::ranges::find(mesh.properties, "hsdm_completed", &VertexProperty::name);
+    return found == mesh.properties.end() ? nullptr : &*found;
+}
+
+struct Completed {
+    PolygonMesh mesh;
+    Report report;
+};
+
+Completed complete(const PointCloud& cloud, double voxel) {
+    ReconstructOptions options;
+    options.voxel_size = voxel;
+    options.holes = Holes::complete;
+    const Reconstruction result = reconstruct(cloud, options);
+    Completed completed{to_polygons(result.mesh), result.report};
+    CHECK(faults(completed.mesh).empty());
+    CHECK(completed.report.mesh.closed);
+    CHECK(find_self_intersections(completed.mesh).facet_pairs.empty());
+    return completed;
+}
+
+} // namespace
+
+TEST_CASE("what is missing of a sphere is completed, marked and listed", "[completion]") {
+    for (const bool normals : {true, false}) {
+        INFO((normals ? "given" : "estimated") << " normals");
+        const PointCloud cloud = partial_scan(sphere(1), {.points = 20000, .normals = normals},
+                                              [](const Vec3& p) { return p[2] > 0.85 || p[0] < -0.9; });
+        const Completed completed = complete(cloud, 0.08);
+        CHECK(completed.report.mesh.euler == 2);
+        CHECK(farthest_vertex(completed.mesh, sphere(1)) < 0.06);
+        REQUIRE(completed.report.loops.size() == 2);
+        for (const Report::Loop& loop : completed.report.loops) {
+            CHECK(loop.completed);
+            CHECK(loop.edges > 20);
+            CHECK(loop.length > 2 * 0.4 * 3.14);
+            CHECK(std::abs(loop.where.norm() - 1) < 0.1);
+        }
+        const VertexProperty* marks = marks_of(completed.mesh);
+        REQUIRE(marks != nullptr);
+        for (std::size_t v = 0; v < completed.mesh.vertex_count(); ++v) {
+            const Vec3& p = completed.mesh.positions[v];
+            if (p[2] > 0.95 || p[0] < -0.97) CHECK(marks->values[v] == 1);
+            if (p[2] < 0.7 && p[0] > -0.75) CHECK(marks->values[v] == 0);
+        }
+    }
+}
+
+TEST_CASE("a box that stood on a table gets its bottom, with sharp edges", "[completion]") {
+    const Solid part = in_general_pose(box({1, 1.2, 0.8}));
+    const PointCloud cloud = sample(part, {.points = 24000});
+    const Vec3 down = cloud.normals[0]; // the face of the first point
+    PointCloud seen;
+    for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
+        if ((cloud.normals[i] | down) > 0.99) continue;
+        seen.positions.push_back(cloud.positions[i]);
+        seen.normals.push_back(cloud.normals[i]);
+    }
+    REQUIRE(seen.positions.size() < cloud.positions.size());
+    const Completed completed = complete(seen, 0.06);
+    CHECK(completed.report.mesh.euler == 2);
+    CHECK(farthest_vertex(completed.mesh, part) < 0.06);
+    CHECK(completed.report.features.sharp_edges > 150);
+}
+
+TEST_CASE("a ring of which a piece is missing stays a ring", "[completion]") {
+    const PointCloud cloud = partial_scan(torus(1, 0.35), {.points = 30000},
+                                          [](const Vec3& p) { return p[0] > 0 && std::abs(p[1]) < 0.12; });
+    const Completed completed = complete(cloud, 0.06);
+    CHECK(completed.report.mesh.euler == 0);
+    CHECK(farthest_vertex(completed.mesh, torus(1, 0.35)) < 0.06);
+}
+
+TEST_CASE("a closed scan is the same completed or not, but for the marks", "[completion]") {
+    const PointCloud cloud = sample(sphere(1), {.points = 8000});
+    ReconstructOptions options;
+    options.voxel_size = 0.1;
+    const PolygonMesh plain = to_polygons(reconstruct(cloud, options).mesh);
+    const Completed completed = complete(cloud, 0.1);
+    CHECK(completed.mesh.positions == plain.positions);
+    CHECK(completed.mesh.corners == plain.corners);
+    CHECK(completed.report.loops.empty());
+    REQUIRE(marks_of(completed.mesh) != nullptr);
+    CHECK(std::ranges::count(marks_of(completed.mesh)->values, 0.0) == std::ssize(completed.mesh.positions));
+    CHECK(marks_of(plain) == nullptr);
+}
+
+TEST_CASE("completed surfaces have the same bits for any order of points and number of threads",
+          "[completion]") {
+    PointCloud cloud = partial_scan(in_general_pose(torus(1, 0.4)), {.points = 20000},
+                                    [](const Vec3& p) { return p[2] > 0.25; });
+    ReconstructOptions options;
+    options.voxel_size = 0.09;
+    options.holes = Holes::complete;
+    const PolygonMesh first = to_polygons(reconstruct(cloud, options).mesh);
+    std::reverse(cloud.positions.begin(), cloud.positions.end());
+    std::reverse(cloud.normals.begin(), cloud.normals.end());
+    options.threads = 1;
+    const PolygonMesh second = to_polygons(reconstruct(cloud, options).mesh);
+    CHECK(first.positions == second.positions);
+    CHECK(first.corners == second.corners);
+}
+
+TEST_CASE("a no while a surface is completed cancels", "[completion]") {
+    const PointCloud cloud =
+        partial_scan(sphere(1), {.points = 20000}, [](const Vec3& p) { return p[2] > 0.5; });
+    ReconstructOptions options;
+    options.holes = Holes::complete;
+    options.progress = [](const char* phase, double) { return std::string(phase) != "completion"; };
+    CHECK_THROWS_AS(reconstruct(cloud, options), Cancelled);
+}
