@@ -115,7 +115,9 @@ struct Report {
         double length = 0;      ///< of them all
         bool completed = false; ///< closed by the surface that was missing (Holes::complete); else it is open
     };
-    std::vector<Loop> loops; ///< the completed ones first, then those of the mesh
+    /// The completed ones first, then those of the mesh, which are left out without
+    /// ReconstructOptions::measure.
+    std::vector<Loop> loops;
 
     /// A stage that the mesh went through afterwards.
     struct Stage {

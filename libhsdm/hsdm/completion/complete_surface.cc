@@ -75,10 +75,12 @@ PolygonMesh turned_over(PolygonMesh mesh) {
 } // namespace
 
 CompletedPoints complete_surface(const PolygonMesh& mesh, double voxel_size) {
+    return complete_surface(mesh, boundary_loops(mesh), voxel_size);
+}
+
+CompletedPoints complete_surface(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size) {
     check_option(voxel_size > 0 && std::isfinite(voxel_size), "voxel_size", voxel_size, "be positive");
     CompletedPoints points;
-    const BoundaryLoops loops = boundary_loops(mesh);
-    points.loops = loops.size();
     if (loops.size() == 0) return points;
     const std::vector<std::array<Index, 2>> border = sides_of(loops);
     const bool inward = faces_inward(mesh, border);

@@ -1,14 +1,13 @@
 #pragma once
 // Completion: the surface that no scanner saw, as points with normals.
 
-#include "hsdm/polygon_mesh.hh"
+#include "hsdm/mesh/fill_holes.hh"
 
 namespace hsdm {
 
 struct CompletedPoints {
     std::vector<Vec3> positions;
     std::vector<Vec3> normals; ///< per point, unit, outward
-    std::size_t loops = 0;     ///< boundary loops of the mesh
 };
 
 /// Points of the surface that closes a mesh (an oriented 2-manifold, facets outward) where it has boundary
@@ -16,5 +15,7 @@ struct CompletedPoints {
 /// or meets it in a crease. Three points to a voxel each way. None for a closed mesh. O(facets + missing
 /// area). Throws OptionError for a voxel size that is not positive.
 CompletedPoints complete_surface(const PolygonMesh& mesh, double voxel_size);
+/// The same where the mesh's boundary loops are known.
+CompletedPoints complete_surface(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size);
 
 } // namespace hsdm

@@ -68,8 +68,11 @@ std::vector<LatticeHit> find_hits(const Lattice& lattice, const PolygonMesh& mes
                     triangles.add({at(corners[0]), at(corners[c - 1]), at(corners[c])});
             }
         });
-    std::ranges::sort(hits, {}, [](const LatticeHit& h) {
-        return std::tuple(h.edge, h.t, h.normal[0], h.normal[1], h.normal[2]);
+    parallel_sort(hits, [](const LatticeHit& a, const LatticeHit& b) {
+        const auto key = [](const LatticeHit& h) {
+            return std::tuple(h.edge, h.t, h.normal[0], h.normal[1], h.normal[2]);
+        };
+        return key(a) < key(b);
     });
     return hits;
 }
@@ -77,7 +80,7 @@ std::vector<LatticeHit> find_hits(const Lattice& lattice, const PolygonMesh& mes
 } // namespace
 
 void dilate(const LatticePlace& place, int radius, std::vector<MortonCode>& codes) {
-    sort_unique(codes);
+    parallel_sort_unique(codes);
     for (unsigned axis = 0; axis < 3; ++axis) {
         const std::size_t before = codes.size();
         for (std::size_t i = 0; i < before; ++i)
@@ -86,7 +89,7 @@ void dilate(const LatticePlace& place, int radius, std::vector<MortonCode>& code
                 c[axis] += step;
                 if (step != 0 && place.holds(c)) codes.push_back(morton_encode(c));
             }
-        sort_unique(codes);
+        parallel_sort_unique(codes);
     }
 }
 

@@ -93,10 +93,6 @@ DualContour facets_of(const MethodInput& in, const NormalSets& sets, const DualC
                          [&] { return dual_contour(in.octree, in.level, sets, options); });
 }
 
-bool is_open(const PolygonMesh& mesh) {
-    return boundary_loops(mesh).size() > 0;
-}
-
 /// Marks the vertices of voxels that have none but completed points.
 VertexProperty completed_vertices(const CompletedCloud& cloud, std::span<const Index> voxel) {
     const std::vector<std::uint8_t> completed = cloud.completed_voxels();
@@ -135,13 +131,14 @@ PolygonMesh finished(const MethodInput& in, const NormalSets& sets, DualContour 
 }
 
 /// The same with the points that complete the surface where these facets end, and again where loops are left.
-PolygonMesh completed(const MethodInput& in, PolygonMesh open, Report& report, FacetKnowledge& known,
+PolygonMesh completed(const MethodInput& in, DualContour draft, Report& report, FacetKnowledge& known,
                       int rounds) {
-    note_loops(open, true, in.octree.origin, in.frame, report);
+    note_loops(draft.mesh, draft.border, true, in.octree.origin, in.frame, report);
     const CompletedCloud cloud = in.phases.run("completion", 0.4, report.seconds.facets, [&] {
-        return complete_cloud(in.octree, in.level, complete_surface(open, in.level.voxel_size));
+        return complete_cloud(in.octree, in.level,
+                              complete_surface(draft.mesh, draft.border, in.level.voxel_size));
     });
-    open = PolygonMesh();
+    draft = DualContour();
     const MethodInput whole{in.frame, in.cloud, cloud.octree, cloud.level, in.options, in.phases};
     const NormalSets sets =
         in.phases.run("sets", 0.45, report.seconds.graph, [&] { return separated_sets(whole, report); });
@@ -149,10 +146,11 @@ PolygonMesh completed(const MethodInput& in, PolygonMesh open, Report& report, F
     DualContourOptions options =
         extended_options(last ? Holes::close : Holes::automatic, spacing_in_voxels(in, report));
     options.all_round = true;
+    options.find_border = !last;
     DualContour facets = facets_of(whole, sets, options, report);
     PolygonMesh mesh;
-    if (!last && is_open(facets.mesh)) {
-        mesh = completed(whole, std::move(facets.mesh), report, known, rounds - 1);
+    if (facets.border.size() > 0) {
+        mesh = completed(whole, std::move(facets), report, known, rounds - 1);
     } else {
         VertexProperty marks = completed_vertices(cloud, facets.voxel);
         mesh = finished(whole, sets, std::move(facets), report, known);
@@ -172,9 +170,11 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
         in.phases.run("sets", 0.2, report.seconds.graph, [&] { return separated_sets(in, report); });
     report.grid.sets = sets.sets.size();
     const Holes holes = in.options.holes;
-    DualContour facets = facets_of(in, sets, extended_options(holes, spacing_in_voxels(in, report)), report);
-    if (holes == Holes::complete && is_open(facets.mesh))
-        return completed(in, std::move(facets.mesh), report, known, completing::most_rounds);
+    DualContourOptions options = extended_options(holes, spacing_in_voxels(in, report));
+    options.find_border = holes == Holes::complete;
+    DualContour facets = facets_of(in, sets, options, report);
+    if (facets.border.size() > 0)
+        return completed(in, std::move(facets), report, known, completing::most_rounds);
     PolygonMesh mesh = finished(in, sets, std::move(facets), report, known);
     if (holes == Holes::complete)
         mesh.properties.push_back(

@@ -1,7 +1,5 @@
 #include "hsdm/pipeline/method.hh"
 
-#include "hsdm/mesh/fill_holes.hh"
-
 namespace hsdm {
 
 void note_dropped(const std::string& what, const Occurrences& discarded, const CloudFrame& frame,
@@ -10,9 +8,8 @@ void note_dropped(const std::string& what, const Occurrences& discarded, const C
         report.dropped.push_back({what, discarded.count, frame.to_cloud(discarded.first)});
 }
 
-void note_loops(const PolygonMesh& mesh, bool completed, const Vec3& origin, const CloudFrame& frame,
-                Report& report) {
-    const BoundaryLoops loops = boundary_loops(mesh);
+void note_loops(const PolygonMesh& mesh, const BoundaryLoops& loops, bool completed, const Vec3& origin,
+                const CloudFrame& frame, Report& report) {
     for (std::size_t l = 0; l < loops.size(); ++l) {
         const auto vertices = loops[l];
         const auto at = [&](std::size_t i) { return mesh.positions[vertices[i % vertices.size()]]; };

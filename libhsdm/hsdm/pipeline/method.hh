@@ -5,6 +5,7 @@
 #include "hsdm/core/occurrences.hh"
 #include "hsdm/mesh/facet_links.hh"
 #include "hsdm/mesh/feature_hints.hh"
+#include "hsdm/mesh/fill_holes.hh"
 #include "hsdm/octree/octree.hh"
 #include "hsdm/pipeline/phases.hh"
 #include "hsdm/spatial/facet_cells.hh"
@@ -37,7 +38,7 @@ void note_dropped(const std::string& what, const Occurrences& discarded, const C
                   Report& report);
 
 /// Adds the boundary loops of a mesh to the report's list. `origin` is the mesh's, in the frame.
-void note_loops(const PolygonMesh& mesh, bool completed, const Vec3& origin, const CloudFrame& frame,
-                Report& report);
+void note_loops(const PolygonMesh& mesh, const BoundaryLoops& loops, bool completed, const Vec3& origin,
+                const CloudFrame& frame, Report& report);
 
 } // namespace hsdm

@@ -130,10 +130,11 @@ void reconstruct_level(InputCloud& cloud, PreparedCloud& prepared, int depth, bo
     warn_of(warning_of::intersections, known.intersections, input, report);
     leave_out_unsound(input, facets, known, report);
     check_facets(facets, level);
-    note_loops(facets, false, octree.origin, prepared.frame, report);
     if (options.holes == Holes::close || options.holes == Holes::complete)
         warn_of(warning_of::open_loops, open_loops(facets), input, report);
     phases.run("error", 0.6, seconds.error, [&] { drop_and_measure(points, input, facets, known, report); });
+    if (report.mesh.boundary_loops > 0)
+        note_loops(facets, boundary_loops(facets), false, octree.origin, prepared.frame, report);
 
     as_read = std::vector<Vec3>();
     phases.run("mesh", 0.85, seconds.mesh, [&] {
