@@ -44,6 +44,7 @@ reconstruct() {
 "$generate" part --points 200000 --noise 0.003 --no-normals -o noisy.ply
 "$generate" plate --points 20000 -o thin.ply
 "$generate" fillet --points 200000 -o rounded.ply
+"$generate" cup --positions 5 --points 90000 --noise 0.003 -o above.ply
 
 reconstruct scan.ply uniform --depth 5
 reconstruct scan.ply adaptive --max-error 0.5%
@@ -51,7 +52,10 @@ reconstruct scan.ply coarse --depth 3
 reconstruct noisy.ply positions --depth 5
 reconstruct thin.ply plate --depth 3
 reconstruct rounded.ply fillet --max-error 0.1%
+reconstruct above.ply seen
+reconstruct above.ply completed --holes complete
 
 for name in uniform adaptive coarse positions; do draw "$name" +X 35 25 17; done
 draw plate +Z 30 20 24
 draw fillet +Z 120 25 29
+for name in seen completed; do draw "$name" +Z 30 -35 24; done

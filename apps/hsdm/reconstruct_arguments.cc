@@ -138,6 +138,15 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
         "auto: close what is small against the sampling; keep: nothing; complete: everything, by the surface "
         "that is missing; close: everything, over the vertices of its border")
         ->group(method);
+    app.add_flag(
+           "--confidence", a.confidence,
+           "PLY and .om get hsdm_confidence, 0 to 1: how much of the surface around a vertex points show")
+        ->group(method);
+    app.add_option("--trim", a.trim,
+                   "cut off the facets of less confidence, 0 to 1; 0.1 leaves what was measured")
+        ->type_name("SHARE")
+        ->check(number_between(0, 1, "lie between 0 and 1"))
+        ->group(method);
     app.add_flag("--merge-layers", a.merge_layers,
                  "for scans that do not register: sheets in a voxel that face the same way are one surface")
         ->group(method);
@@ -252,6 +261,8 @@ ReconstructOptions ReconstructArguments::options() const {
     o.method = method;
     o.normals = normals;
     o.holes = holes;
+    o.confidence = confidence;
+    o.trim = trim;
     o.merge_layers = merge_layers;
     if (!min_component.empty()) o.min_component = min_component_of(min_component);
     o.crease_angle = crease_degrees * std::numbers::pi / 180;

@@ -26,6 +26,8 @@ struct ReconstructArguments {
     Grid grid = Grid::automatic;
     std::string levels;
     bool merge_layers = false;
+    bool confidence = false;
+    double trim = 0;
     std::string min_component;
     double crease_degrees = 35;
     int smoothing = 3;

@@ -70,6 +70,10 @@ struct ReconstructOptions {
     bool merge_layers = false;
     /// Components smaller than this are dropped; by default none is, however small.
     std::optional<MinComponent> min_component{};
+    /// Each vertex gets its confidence in [0, 1], `hsdm_confidence`: the share of the surface within a voxel
+    /// of it that points show, 0 where it was completed, about a half at a border (extended method).
+    bool confidence = false;
+    double trim = 0; ///< [0, 1]: facets of less confidence are cut off at the end; 0: none
     double crease_angle =
         0.61;                 ///< radians, (0, pi): dihedral angle above which an edge is sharp (35 degrees)
     int normal_smoothing = 3; ///< rounds of anisotropic normal smoothing, >= 0 (section 3.3)

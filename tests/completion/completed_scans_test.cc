@@ -141,3 +141,63 @@ TEST_CASE("a no while a surface is completed cancels", "[completion]") {
     options.progress = [](const char* phase, double) { return std::string(phase) != "completion"; };
     CHECK_THROWS_AS(reconstruct(cloud, options), Cancelled);
 }
+
+TEST_CASE("confidence tells what was measured, and trimming cuts the rest off", "[completion]") {
+    const PointCloud cloud =
+        partial_scan(sphere(1), {.points = 20000}, [](const Vec3& p) { return p[2] > 0.6; });
+    ReconstructOptions options;
+    options.voxel_size = 0.08;
+    options.holes = Holes::complete;
+    options.confidence = true;
+    const PolygonMesh whole = to_polygons(reconstruct(cloud, options).mesh);
+    const auto confidence_of = [](const PolygonMesh& mesh) {
+        const auto found = std::ranges::find(mesh.properties, "hsdm_confidence", &VertexProperty::name);
+        return found == mesh.properties.end() ? std::vector<double>() : found->values;
+    };
+    const std::vector<double> confidence = confidence_of(whole);
+    REQUIRE(confidence.size() == whole.vertex_count());
+    double inner = 0, border = 0, inside_count = 0, border_count = 0;
+    for (std::size_t v = 0; v < confidence.size(); ++v) {
+        const Vec3& p = whole.positions[v];
+        INFO("at height " << p[2]);
+        CHECK((confidence[v] >= 0 && confidence[v] <= 1));
+        if (std::hypot(p[0], p[1]) < 0.6 && p[2] > 0) CHECK(confidence[v] == 0); // of the missing cap
+        if (p[2] < 0.5) {
+            CHECK(confidence[v] > 0.4);
+            inner += confidence[v];
+            ++inside_count;
+        }
+        if (std::abs(p[2] - 0.6) < 0.01 && std::hypot(p[0], p[1]) > 0.79)
+            border += confidence[v], ++border_count;
+    }
+    CHECK(inner / inside_count > 0.85); // counts of random points scatter, and are cut off at 1
+    CHECK(std::abs(border / border_count - 0.5) < 0.2);
+    options.confidence = false;
+    options.trim = 0.3;
+    const Reconstruction trimmed = reconstruct(cloud, options);
+    CHECK(trimmed.report.mesh.boundary_loops == 1);
+    CHECK(trimmed.report.mesh.euler == 1);
+    CHECK(trimmed.report.rejected.at("facets_trimmed") > 100);
+    CHECK(trimmed.report.warnings.empty());
+    const PolygonMesh cut = to_polygons(trimmed.mesh);
+    for (const Vec3& p : cut.positions) CHECK(p[2] < 0.7);
+    options.trim = 1.5;
+    CHECK_THROWS_AS(reconstruct(cloud, options), OptionError);
+    options.trim = 0.5;
+    options.method = Method::basic;
+    CHECK_THROWS_AS(reconstruct(cloud, options), OptionError);
+}
+
+TEST_CASE("a mesh of normals that face inward is completed and turned, with the same confidence",
+          "[completion]") {
+    PointCloud cloud = partial_scan(sphere(1), {.points = 12000}, [](const Vec3& p) { return p[2] > 0.9; });
+    for (Vec3& n : cloud.normals) n = -n;
+    ReconstructOptions options;
+    options.voxel_size = 0.1;
+    options.holes = Holes::complete;
+    options.trim = 0.3;
+    const Reconstruction result = reconstruct(cloud, options);
+    CHECK(result.report.mesh.boundary_loops == 1);
+    options.trim = 0;
+    CHECK(reconstruct(cloud, options).report.mesh.closed);
+}

@@ -1,7 +1,7 @@
 // hsdm_generate: a scan of a known solid, for the demo, the tests and anyone's own trials.
 
 #include "hsdm/errors.hh"
-#include "support/sample.hh"
+#include "support/scanner.hh"
 
 #include <CLI/CLI.hpp>
 
@@ -18,10 +18,18 @@ Solid solid_named(const std::string& name, std::uint64_t seed) {
     if (name == "cylinder") return cylinder(0.5, 2);
     if (name == "plate") return box(hsdm::Vec3(1, 1, 0.05));
     if (name == "wedge") return wedge(std::numbers::pi / 6, 1, 1);
+    if (name == "cup") return cylinder(0.8, 1.4) - cylinder(0.6, 1.4).placed({.shift = {0, 0, 0.2}});
     if (name == "fillet") return rounded_block(0.35);
     if (name == "nested") return nested_spheres(1, 0.8);
     if (name == "part") return mechanical_part();
     return random_solid(seed);
+}
+
+/// Of a ball about the origin that holds the solid.
+double radius_of(const Solid& solid) {
+    double radius = 0;
+    for (const hsdm::Vec3& p : sample(solid, {.points = 2000}).positions) radius = std::max(radius, p.norm());
+    return 1.05 * radius;
 }
 
 } // namespace
@@ -32,10 +40,11 @@ int main(int argc, char** argv) {
     SampleOptions options;
     double normal_noise_degrees = 0;
     bool no_normals = false, turn = false;
+    ScannerOptions scanner{.positions = 0};
     app.add_option("shape", shape, "the solid; `random` is a tree of solids that --seed chooses")
         ->required()
-        ->check(CLI::IsMember(
-            {"sphere", "torus", "box", "cylinder", "plate", "wedge", "fillet", "nested", "part", "random"}));
+        ->check(CLI::IsMember({"sphere", "torus", "box", "cylinder", "cup", "plate", "wedge", "fillet",
+                               "nested", "part", "random"}));
     app.add_option("-o,--output", output, "the PLY file to write")->required();
     app.add_option("--points", options.points, "how many points")->capture_default_str();
     app.add_option("--seed", options.seed, "the same seed gives the same file")->capture_default_str();
@@ -46,6 +55,10 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(0.0, 1.0));
     app.add_flag("--no-normals", no_normals, "positions only");
     app.add_flag("--turn", turn, "turn the solid at random (by the seed) instead of leaving it on the axes");
+    app.add_option(
+           "--positions", scanner.positions,
+           "scanner positions above the solid, which see what nothing hides, without normals; 0: all is seen")
+        ->check(CLI::Range(0, 100));
     CLI11_PARSE(app, argc, argv);
 
     options.normal_noise = normal_noise_degrees * std::numbers::pi / 180;
@@ -54,7 +67,10 @@ int main(int argc, char** argv) {
         Solid solid = solid_named(shape, options.seed);
         Random random(options.seed + 0x9e3779b97f4a7c15u);
         if (turn) solid = solid.placed(random_pose(random));
-        write_ply(output, sample(solid, options));
+        scanner.points = options.points, scanner.seed = options.seed;
+        scanner.noise = options.position_noise, scanner.outliers = options.outliers;
+        write_ply(output, scanner.positions > 0 ? scan_from_above(solid, radius_of(solid), scanner)
+                                                : sample(solid, options));
     } catch (const std::exception& error) {
         std::cerr << "hsdm_generate: " << error.what() << '\n';
         return 1;

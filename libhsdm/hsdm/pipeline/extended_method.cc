@@ -8,8 +8,10 @@
 #include "hsdm/contour/sheet_widths.hh"
 #include "hsdm/pipeline/attributes.hh"
 #include "hsdm/pipeline/completed_cloud.hh"
+#include "hsdm/pipeline/confidence.hh"
 #include "hsdm/pipeline/constants.hh"
 #include "hsdm/pipeline/extended_graph.hh"
+#include "hsdm/pipeline/options.hh"
 #include "hsdm/pipeline/phase_geometry.hh"
 #include "hsdm/pipeline/warnings.hh"
 #include "hsdm/quality/topology.hh"
@@ -121,6 +123,10 @@ PolygonMesh finished(const MethodInput& in, const NormalSets& sets, DualContour 
     known.cells = std::move(facets.cells);
     known.intersections = {facets.intersections.after, facets.intersections.first};
     facets.mesh.properties = average_attributes(in.cloud, in.octree, in.level, facets.voxel);
+    if (wants_confidence(in.options))
+        facets.mesh.properties.push_back(
+            {confidence_property, VertexProperty::Type::float32,
+             vertex_confidence(in.octree, in.level, facets.mesh, report.input.spacing, turned)});
     if (!in.options.debug_dir.empty()) {
         PolygonMesh placed = facets.mesh;
         for (Vec3& p : placed.positions) p += in.octree.origin;

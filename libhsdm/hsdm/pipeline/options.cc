@@ -44,6 +44,10 @@ bool wants_adaptive(const ReconstructOptions& options) {
     return options.grid == Grid::adaptive || (options.grid == Grid::automatic && options.max_error);
 }
 
+bool wants_confidence(const ReconstructOptions& options) {
+    return options.confidence || options.trim > 0;
+}
+
 void note_options(bool estimate, const ReconstructOptions& options, Report& report) {
     const bool extended = method_for(options) == Method::extended;
     report.options["method"] = extended ? "extended" : "basic";
@@ -54,6 +58,7 @@ void note_options(bool estimate, const ReconstructOptions& options, Report& repo
                                           ? text_of(100 * options.max_error->value) + "%"
                                           : text_of(options.max_error->value);
     report.options["holes"] = name_of(options.holes);
+    if (options.trim > 0) report.options["trim"] = text_of(options.trim);
     if (options.merge_layers) report.options["merge-layers"] = "yes";
     if (options.min_component)
         report.options["min-component"] = options.min_component->of_largest
@@ -78,6 +83,9 @@ void check_options(const ReconstructOptions& o) {
              && !(o.min_component->of_largest && o.min_component->value > 1)))
         throw OptionError("min_component " + text_of(o.min_component->value)
                           + ": must be a number of facets, or a share of the largest of 1 (100 %) at most");
+    check_option(o.trim >= 0 && o.trim <= 1, "trim", o.trim, "lie between 0 and 1");
+    if (wants_confidence(o) && o.method == Method::basic)
+        throw OptionError("confidence and trim: the basic method tells none; use the extended one");
     if (!(o.crease_angle > 0 && o.crease_angle < std::numbers::pi))
         throw OptionError("crease_angle " + text_of(o.crease_angle)
                           + " rad: must lie between 0 and pi (180 degrees)");

@@ -15,6 +15,7 @@ Method method_for(const ReconstructOptions& options);
 /// Does the cloud need normals and has none, or none that the options want used?
 bool must_estimate(const PointView& cloud, const ReconstructOptions& options);
 bool wants_adaptive(const ReconstructOptions& options);
+bool wants_confidence(const ReconstructOptions& options);
 
 void note_options(bool estimate, const ReconstructOptions& options, Report& report);
 

@@ -5,6 +5,7 @@
 #include "hsdm/mesh/turn_outward.hh"
 #include "hsdm/pipeline/adaptive_grid.hh"
 #include "hsdm/pipeline/basic_method.hh"
+#include "hsdm/pipeline/confidence.hh"
 #include "hsdm/pipeline/extended_method.hh"
 #include "hsdm/pipeline/measure.hh"
 #include "hsdm/pipeline/options.hh"
@@ -129,8 +130,9 @@ void reconstruct_level(InputCloud& cloud, PreparedCloud& prepared, int depth, bo
     }
     warn_of(warning_of::intersections, known.intersections, input, report);
     leave_out_unsound(input, facets, known, report);
+    if (options.trim > 0) trim_by_confidence(options.trim, input, facets, known, report);
     check_facets(facets, level);
-    if (options.holes == Holes::close || options.holes == Holes::complete)
+    if (options.trim == 0 && (options.holes == Holes::close || options.holes == Holes::complete))
         warn_of(warning_of::open_loops, open_loops(facets), input, report);
     phases.run("error", 0.6, seconds.error, [&] { drop_and_measure(points, input, facets, known, report); });
     if (report.mesh.boundary_loops > 0)

@@ -1,0 +1,123 @@
+// What becomes of scans from a few places, with growing faults, when what nobody saw is completed; prints the
+// table of docs/completion.md.
+
+#include "hsdm/errors.hh"
+#include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/reconstruct.hh"
+#include "hsdm/spatial/self_intersections.hh"
+#include "support/scanner.hh"
+
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+using namespace hsdm;
+using namespace hsdm::support;
+
+namespace {
+
+struct Part {
+    const char* name;
+    Solid solid;
+    double radius; // of a ball about the origin that holds it
+    long euler;
+};
+
+std::vector<Part> parts() {
+    const auto up = [](double z) { return turned({0, 0, 1}, 0.3, {0.02, 0.01, z}); };
+    return {
+        {"ball", sphere(1), 1.05, 2},
+        {"ring", torus(1, 0.35).placed(turned({1, 0.2, 0}, 0.9)), 1.4, 0},
+        {"block", box({1.4, 1, 0.8}).placed(turned({0, 0, 1}, 0.4)), 1, 2},
+        {"cup", (cylinder(0.8, 1.4) - cylinder(0.6, 1.4).placed(up(0.2))), 1.1, 2},
+        {"bracket",
+         box({1.4, 1, 1}).placed(turned({0, 0, 1}, 0.7))
+             - box({1.1, 1.4, 1}).placed(turned({0, 0, 1}, 0.7, {0.2, 0.17, 0.3})),
+         1.05, 2},
+        {"part with shafts", mechanical_part(turned({0.1, 1, 0}, 1.45)), 1.7, -4},
+    };
+}
+
+struct Fault {
+    const char* name;
+    std::vector<double> strengths;
+    void (*apply)(double strength, ScannerOptions& options);
+};
+
+/// Lengths are in hundredths of the part's radius.
+const std::vector<Fault> faults = {
+    {"noise", {0, 0.5, 1, 2, 3}, [](double s, ScannerOptions& o) { o.noise = s; }},
+    {"misalignment", {0.25, 0.5, 1, 2}, [](double s, ScannerOptions& o) { o.misalignment = s; }},
+    {"outliers, %", {1, 3, 10}, [](double s, ScannerOptions& o) { o.outliers = s; }},
+    {"holes' radius", {10, 20, 40}, [](double s, ScannerOptions& o) { o.holes = s; }},
+    {"positions", {8, 3, 2}, [](double s, ScannerOptions& o) { o.positions = static_cast<int>(s); }},
+};
+
+struct Outcome {
+    bool right = false, intersects = false;
+    double off = 0; // mean distance of vertices from the part, in hundredths of its radius
+    std::string what;
+};
+
+Outcome outcome(const Part& part, const ScannerOptions& scanner) {
+    ReconstructOptions options;
+    options.holes = Holes::complete;
+    Outcome result;
+    try {
+        const Reconstruction made = reconstruct(scan_from_above(part.solid, part.radius, scanner), options);
+        const Report::Mesh& m = made.report.mesh;
+        const PolygonMesh mesh = to_polygons(made.mesh);
+        result.intersects = !find_self_intersections(mesh).facet_pairs.empty();
+        result.right = m.closed && m.components == 1 && m.euler == part.euler && !result.intersects;
+        for (const Vec3& p : mesh.positions)
+            result.off += 100 * std::abs(part.solid.distance(p)) / part.radius
+                          / static_cast<double>(mesh.vertex_count());
+        result.what = !m.closed          ? "open"
+                      : m.components > 1 ? std::to_string(m.components) + " parts"
+                                         : "euler " + std::to_string(m.euler);
+    } catch (const Error& error) {
+        result.what = error.what();
+    }
+    return result;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app(
+        "Scans from a few places with growing faults, completed: how many come out right, and how near.");
+    std::size_t points = 60000;
+    std::uint64_t seeds = 2;
+    bool verbose = false;
+    app.add_option("--points", points, "rays of a scan");
+    app.add_option("--seeds", seeds, "scans of each part");
+    app.add_flag("--verbose", verbose, "says what fails");
+    CLI11_PARSE(app, argc, argv);
+    std::printf("| fault | strength | right | intersecting | mean distance |\n|---|---|---|---|---|\n");
+    for (const Fault& fault : faults)
+        for (const double strength : fault.strengths) {
+            int right = 0, all = 0, intersecting = 0;
+            double off = 0;
+            for (const Part& part : parts())
+                for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+                    ScannerOptions scanner;
+                    scanner.points = points;
+                    scanner.seed = seed;
+                    fault.apply(strength, scanner);
+                    scanner.noise *= part.radius / 100, scanner.misalignment *= part.radius / 100;
+                    scanner.holes *= part.radius / 100, scanner.outliers /= 100;
+                    const Outcome made = outcome(part, scanner);
+                    ++all, right += made.right, intersecting += made.intersects, off += made.off;
+                    if (verbose && !made.right)
+                        std::fprintf(stderr, "%s %g, %s, seed %d: %s%s, %.2f off\n", fault.name, strength,
+                                     part.name, static_cast<int>(seed), made.what.c_str(),
+                                     made.intersects ? ", intersects" : "", made.off);
+                }
+            std::printf("| %s | %g | %d of %d | %d | %.2f |\n", fault.name, strength, right, all,
+                        intersecting, off / all);
+            std::fflush(stdout);
+        }
+    return 0;
+}
