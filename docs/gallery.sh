@@ -44,7 +44,7 @@ reconstruct() {
 "$generate" part --points 200000 --noise 0.003 --no-normals -o noisy.ply
 "$generate" plate --points 20000 -o thin.ply
 "$generate" fillet --points 200000 -o rounded.ply
-"$generate" cup --positions 5 --points 90000 --noise 0.003 -o above.ply
+"$generate" cup --positions 5 --points 24000 --noise 0.003 -o above.ply
 
 reconstruct scan.ply uniform --depth 5
 reconstruct scan.ply adaptive --max-error 0.5%
@@ -58,4 +58,4 @@ reconstruct above.ply completed --holes complete
 for name in uniform adaptive coarse positions; do draw "$name" +X 35 25 17; done
 draw plate +Z 30 20 24
 draw fillet +Z 120 25 29
-for name in seen completed; do draw "$name" +Z 30 -35 24; done
+for name in seen completed; do draw "$name" +Z 30 -25 24; done

@@ -1,9 +1,7 @@
 #include "hsdm/completion/completion_field.hh"
 
+#include "hsdm/completion/conjugate_gradients.hh"
 #include "hsdm/completion/constants.hh"
-
-#include <Eigen/IterativeLinearSolvers>
-#include <Eigen/SparseCore>
 
 #include <cmath>
 
@@ -85,42 +83,30 @@ void hold_beside_mesh(CompletionField& field) {
 /// Solves for the values that nobody knows: each the mean of those around it.
 void solve(CompletionField& field) {
     const Lattice& lattice = field.lattice;
-    std::vector<Index> number(lattice.size(), no_index), unknown;
-    for (Index i = 0; i < lattice.size(); ++i)
-        if (field.known[i] == solved) number[i] = static_cast<Index>(unknown.size()), unknown.push_back(i);
-    if (unknown.empty()) return;
-    const auto count = static_cast<Eigen::Index>(unknown.size());
-    Eigen::SparseMatrix<double, Eigen::RowMajor> a(count, count);
-    Eigen::VectorXd b = Eigen::VectorXd::Zero(count), x(count);
-    a.reserve(Eigen::VectorXi::Constant(static_cast<int>(count), 7));
-    for (Eigen::Index row = 0; row < count; ++row) {
-        const Index i = unknown[static_cast<std::size_t>(row)];
-        x[row] = field.value[i];
-        std::array<Eigen::Index, 6> columns;
-        std::size_t others = 0, around = 0;
-        for (const Index k : lattice.next[i]) {
+    const std::vector<Index> unknown =
+        indices_where(lattice.size(), chunks::light, [&](Index i) { return field.known[i] == solved; });
+    std::vector<Index> number = large_vector<Index>(lattice.size(), no_index);
+    for_each_index(unknown.size(), chunks::light, [&](Index row) { number[unknown[row]] = row; });
+    HarmonicEquations equations;
+    std::vector<double> values = large_vector<double>(unknown.size());
+    for_each_in_order(unknown.size(), [&](std::size_t row) {
+        double degree = 0, known = 0;
+        for (const Index k : lattice.next[unknown[row]]) {
             if (k == no_index) continue;
-            ++around;
+            ++degree;
             if (field.known[k] == solved)
-                columns[others++] = number[k];
+                equations.beside.push_back(number[k]);
             else
-                b[row] += field.value[k];
+                known += field.value[k];
         }
-        a.insert(row, row) = static_cast<double>(around);
-        for (std::size_t c = 0; c < others; ++c) a.insert(row, columns[c]) = -1;
-    }
-    Eigen::ConjugateGradient<Eigen::SparseMatrix<double, Eigen::RowMajor>, Eigen::Lower | Eigen::Upper>
-        solver;
-    solver.compute(a);
-    solver.setTolerance(completing::tolerance);
-    solver.setMaxIterations(20); // between two questions whether to go on
-    for (int round = 0; round < 50; ++round) {
-        Interruption::poll();
-        x = solver.solveWithGuess(b, x);
-        if (solver.info() == Eigen::Success) break;
-    }
-    for (Eigen::Index row = 0; row < count; ++row)
-        field.value[unknown[static_cast<std::size_t>(row)]] = x[row];
+        equations.first.push_back(static_cast<Index>(equations.beside.size()));
+        equations.degree.push_back(degree);
+        equations.known.push_back(known);
+        values[row] = field.value[unknown[row]];
+    });
+    solve_harmonic(equations, completing::tolerance, completing::most_steps, values);
+    for_each_index(unknown.size(), chunks::light,
+                   [&](Index row) { field.value[unknown[row]] = values[row]; });
 }
 
 CompletionField coarsest_field(const LatticePlace& place, const PolygonMesh& mesh) {

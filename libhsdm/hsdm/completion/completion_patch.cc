@@ -1,10 +1,12 @@
 #include "hsdm/completion/completion_patch.hh"
 
+#include "hsdm/completion/conjugate_gradients.hh"
 #include "hsdm/completion/constants.hh"
 
 #include <Eigen/SparseCholesky>
 
 #include <cmath>
+#include <utility>
 
 namespace hsdm {
 namespace {
@@ -57,7 +59,7 @@ std::vector<MortonCode> cells_of(const CompletionField& field) {
         if (!field.is_open(e)) continue;
         for (const VoxelCoord& c :
              cells_around(field.lattice.coord(static_cast<Index>(e / 3)), static_cast<unsigned>(e % 3)))
-            cells.push_back(morton_encode(c));
+            if (field.lattice.place.holds(c)) cells.push_back(morton_encode(c));
     }
     dilate(field.lattice.place, completing::rim, cells);
     return cells;
@@ -79,21 +81,44 @@ public:
         for (const auto& [a, b] : pairs) ++first_[a + 1], around_.push_back(b);
         counts_to_first(first_);
         number_.assign(count, no_index);
+        const std::vector<std::uint8_t> attached = attached_vertices();
         for (Index v = 0; v < count; ++v)
-            if (patch.held[v] == 0 && first_[v] < first_[v + 1])
+            if (patch.held[v] == 0 && attached[v] != 0)
                 number_[v] = static_cast<Index>(free_.size()), free_.push_back(v);
+        for (std::size_t q = 0; q < patch.quads.size(); ++q)
+            if (attached[patch.quads[q][0]] == 0) patch.missing[q] = 0;
     }
 
     void to_membrane() {
-        const Rows rows = each_less_mean(free_, true);
-        solve(rows.of_free, -rows.of_held);
+        HarmonicEquations equations;
+        std::array<std::vector<double>, 3> known, values;
+        for_each_in_order(free_.size(), [&](std::size_t i) {
+            Vec3 held(0, 0, 0);
+            for (const Index k : around(free_[i]))
+                if (number_[k] != no_index)
+                    equations.beside.push_back(number_[k]);
+                else
+                    held += patch_.positions[k];
+            equations.first.push_back(static_cast<Index>(equations.beside.size()));
+            equations.degree.push_back(static_cast<double>(around(free_[i]).size()));
+            for (unsigned k = 0; k < 3; ++k) {
+                known[k].push_back(held[k]);
+                values[k].push_back(patch_.positions[free_[i]][k]);
+            }
+        });
+        for (unsigned k = 0; k < 3; ++k) {
+            equations.known = std::move(known[k]);
+            solve_harmonic(equations, completing::membrane_tolerance, completing::most_steps, values[k]);
+            for (std::size_t i = 0; i < free_.size(); ++i) patch_.positions[free_[i]][k] = values[k][i];
+        }
     }
 
     void to_plate() {
+        if (free_.size() > completing::most_bending) return;
         std::vector<Index> at = free_;
         for (Index v = 0; v < patch_.positions.size(); ++v)
             if (patch_.held[v] != 0 && continues(v)) at.push_back(v);
-        const Rows rows = each_less_mean(at, false);
+        const Rows rows = each_less_mean(at);
         Eigen::MatrixX3d target = -rows.of_held;
         // A plate resists bends across its surface; along it vertices stay spread as the membrane spreads
         // them.
@@ -124,6 +149,21 @@ private:
         return patch_.positions[v] - sum / static_cast<double>(around(v).size());
     }
 
+    /// Per vertex, do quads lead from it to one that is held? What hangs on nothing completes nothing.
+    std::vector<std::uint8_t> attached_vertices() const {
+        std::vector<std::uint8_t> attached(patch_.held);
+        std::vector<Index> pending;
+        for (Index v = 0; v < attached.size(); ++v)
+            if (attached[v] != 0) pending.push_back(v);
+        while (!pending.empty()) {
+            const Index v = pending.back();
+            pending.pop_back();
+            for (const Index k : around(v))
+                if (!std::exchange(attached[k], std::uint8_t{1})) pending.push_back(k);
+        }
+        return attached;
+    }
+
     /// Does the patch continue the mesh here, rather than meet it in a crease?
     bool continues(Index v) const {
         Vec3 away(0, 0, 0);
@@ -136,8 +176,7 @@ private:
         return any && std::abs(away | patch_.normals[v]) <= completing::crease_sine * away.norm();
     }
 
-    /// Each times the number of those around if `by_valence`, which makes the matrix of free rows symmetric.
-    Rows each_less_mean(std::span<const Index> vertices, bool by_valence) const {
+    Rows each_less_mean(std::span<const Index> vertices) const {
         const auto count = static_cast<Eigen::Index>(vertices.size());
         Rows rows{Matrix(count, static_cast<Eigen::Index>(free_.size())), Eigen::MatrixX3d::Zero(count, 3)};
         std::vector<Eigen::Triplet<double>> entries;
@@ -150,8 +189,8 @@ private:
             };
             const Index vertex = vertices[static_cast<std::size_t>(r)];
             const auto valence = static_cast<double>(around(vertex).size());
-            add(vertex, by_valence ? valence : 1);
-            for (const Index k : around(vertex)) add(k, by_valence ? -1 : -1 / valence);
+            add(vertex, 1);
+            for (const Index k : around(vertex)) add(k, -1 / valence);
         }
         rows.of_free.setFromTriplets(entries.begin(), entries.end());
         return rows;

@@ -20,6 +20,12 @@ inline constexpr int band = 2;
 /// of the values' size: where conjugate gradients stop. A hundredth of a cell.
 inline constexpr double tolerance = 1e-3;
 
+/// steps: of conjugate gradients at most; bounds the work. As many as the widest band has cells would do.
+inline constexpr int most_steps = 2000;
+
+/// of the patch's size: where the same stops for a membrane. A hundredth of a cell in a thousand.
+inline constexpr double membrane_tolerance = 1e-6;
+
 /// lattice cells: so far beyond its border the mesh takes part in a patch, to hold it. Two rings of
 /// vertices give it position and slope.
 inline constexpr int rim = 2;
@@ -31,6 +37,10 @@ inline constexpr double crease_sine = 0.64;
 /// keeps patches that nothing holds where they are; small against the least stiffness of a patch a thousand
 /// cells wide.
 inline constexpr double hold = 1e-12;
+
+/// vertices: of patches that bend as plates do, all together; more stay membranes. Factors of a plate's
+/// matrix take some 2 KB a vertex: 100 MB.
+inline constexpr std::size_t most_bending = 50000;
 
 /// points along each side of a cell of a patch: nine to a voxel, as three spacings to a voxel have.
 inline constexpr int samples = 3;

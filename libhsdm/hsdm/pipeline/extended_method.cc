@@ -62,6 +62,18 @@ void note_counts(const DualContour& facets, Report& report) {
     report.rejected["vertices_split"] = facets.manifold.split_vertices;
 }
 
+/// How much the report lists, so that what was noted of a draft can be taken back.
+struct Listed {
+    std::size_t dropped, warnings;
+
+    explicit Listed(const Report& report)
+        : dropped(report.dropped.size()), warnings(report.warnings.size()) {}
+    void restore(Report& report) const {
+        report.dropped.resize(dropped);
+        report.warnings.resize(warnings);
+    }
+};
+
 /// The level's sets without outliers, parted at walls and gaps; notes what was dropped or is doubtful.
 NormalSets separated_sets(const MethodInput& in, Report& report) {
     NormalSets all = build_normal_sets(in.octree, in.level, {.merge_layers = in.options.merge_layers});
@@ -137,8 +149,9 @@ PolygonMesh finished(const MethodInput& in, const NormalSets& sets, DualContour 
 }
 
 /// The same with the points that complete the surface where these facets end, and again where loops are left.
-PolygonMesh completed(const MethodInput& in, DualContour draft, Report& report, FacetKnowledge& known,
-                      int rounds) {
+PolygonMesh completed(const MethodInput& in, DualContour draft, const Listed& listed, int rounds,
+                      Report& report, FacetKnowledge& known) {
+    listed.restore(report);
     note_loops(draft.mesh, draft.border, true, in.octree.origin, in.frame, report);
     const CompletedCloud cloud = in.phases.run("completion", 0.4, report.seconds.facets, [&] {
         return complete_cloud(in.octree, in.level,
@@ -156,7 +169,7 @@ PolygonMesh completed(const MethodInput& in, DualContour draft, Report& report, 
     DualContour facets = facets_of(whole, sets, options, report);
     PolygonMesh mesh;
     if (facets.border.size() > 0) {
-        mesh = completed(whole, std::move(facets), report, known, rounds - 1);
+        mesh = completed(whole, std::move(facets), listed, rounds - 1, report, known);
     } else {
         VertexProperty marks = completed_vertices(cloud, facets.voxel);
         mesh = finished(whole, sets, std::move(facets), report, known);
@@ -172,6 +185,7 @@ PolygonMesh completed(const MethodInput& in, DualContour draft, Report& report, 
 } // namespace
 
 PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledge& known) {
+    const Listed listed(report);
     const NormalSets sets =
         in.phases.run("sets", 0.2, report.seconds.graph, [&] { return separated_sets(in, report); });
     report.grid.sets = sets.sets.size();
@@ -180,7 +194,7 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
     options.find_border = holes == Holes::complete;
     DualContour facets = facets_of(in, sets, options, report);
     if (facets.border.size() > 0)
-        return completed(in, std::move(facets), report, known, completing::most_rounds);
+        return completed(in, std::move(facets), listed, completing::most_rounds, report, known);
     PolygonMesh mesh = finished(in, sets, std::move(facets), report, known);
     if (holes == Holes::complete)
         mesh.properties.push_back(
