@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <utility>
 
 using namespace hsdm;
 using namespace hsdm::support;
@@ -61,12 +62,14 @@ struct Outcome {
     std::string what;
 };
 
-Outcome outcome(const Part& part, const ScannerOptions& scanner) {
+Outcome outcome(const Part& part, const ScannerOptions& scanner, bool sensors) {
     ReconstructOptions options;
     options.holes = Holes::complete;
     Outcome result;
     try {
-        const Reconstruction made = reconstruct(scan_from_above(part.solid, part.radius, scanner), options);
+        PointCloud cloud = scan_from_above(part.solid, part.radius, scanner);
+        if (!sensors) cloud.sensors.clear(), cloud.sensor_of.clear();
+        const Reconstruction made = reconstruct(std::move(cloud), options);
         const Report::Mesh& m = made.report.mesh;
         const PolygonMesh mesh = to_polygons(made.mesh);
         result.intersects = !find_self_intersections(mesh).facet_pairs.empty();
@@ -90,9 +93,10 @@ int main(int argc, char** argv) {
         "Scans from a few places with growing faults, completed: how many come out right, and how near.");
     std::size_t points = 60000;
     std::uint64_t seeds = 2;
-    bool verbose = false;
+    bool verbose = false, sensors = false;
     app.add_option("--points", points, "rays of a scan");
     app.add_option("--seeds", seeds, "scans of each part");
+    app.add_flag("--sensors", sensors, "with the scanner's positions");
     app.add_flag("--verbose", verbose, "says what fails");
     CLI11_PARSE(app, argc, argv);
     std::printf("| fault | strength | right | intersecting | mean distance |\n|---|---|---|---|---|\n");
@@ -108,7 +112,7 @@ int main(int argc, char** argv) {
                     fault.apply(strength, scanner);
                     scanner.noise *= part.radius / 100, scanner.misalignment *= part.radius / 100;
                     scanner.holes *= part.radius / 100, scanner.outliers /= 100;
-                    const Outcome made = outcome(part, scanner);
+                    const Outcome made = outcome(part, scanner, sensors);
                     ++all, right += made.right, intersecting += made.intersects, off += made.off;
                     if (verbose && !made.right)
                         std::fprintf(stderr, "%s %g, %s, seed %d: %s%s, %.2f off\n", fault.name, strength,

@@ -66,6 +66,12 @@ void fill_cloud(JsonText& json, const Loaded& loaded) {
         json.member("normal_lengths", std::array{lengths->first, lengths->second});
     if (!loaded.columns.empty()) json.member("columns", loaded.columns);
     if (loaded.cloud.sensor) json.member("sensor", *loaded.cloud.sensor);
+    if (!loaded.cloud.sensors.empty()) {
+        json.key("sensors");
+        json.begin_array();
+        for (const Vec3& sensor : loaded.cloud.sensors) json.value(sensor);
+        json.end();
+    }
     json.end();
 }
 
@@ -120,6 +126,8 @@ void print_cloud(const Loaded& loaded) {
     print_normals(loaded);
     print_dropped(std::cout, loaded.dropped);
     if (cloud.sensor) std::cout << "sensor    " << *cloud.sensor << '\n';
+    if (!cloud.sensors.empty())
+        std::cout << "sensors   " << cloud.sensors.size() << ", each point has its own\n";
     if (!cloud.colors.empty()) std::cout << "colours   yes\n";
     for (const Scalar& scalar : cloud.scalars)
         std::cout << "scalar    " << printable(scalar.name) << (scalar.is_label ? " (labels)" : "") << '\n';

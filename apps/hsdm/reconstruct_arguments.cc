@@ -67,6 +67,20 @@ std::optional<Amount> amount_of(const std::string& text) {
     return Amount{is_share ? *value / 100 : *value, is_share};
 }
 
+/// X,Y,Z; nothing if the text is not that.
+std::optional<Vec3> place_of(std::string_view text) {
+    Vec3 place;
+    for (unsigned k = 0; k < 3; ++k) {
+        const std::size_t comma = k < 2 ? text.find(',') : text.size();
+        if (comma == std::string_view::npos) return std::nullopt;
+        const auto value = number_of<double>(text.substr(0, comma));
+        if (!value || !std::isfinite(*value)) return std::nullopt;
+        place[k] = *value;
+        text.remove_prefix(std::min(text.size(), comma + 1));
+    }
+    return place;
+}
+
 /// A number of facets, or with % a share of the largest component.
 MinComponent min_component_of(const std::string& text) {
     const auto least = amount_of(text);
@@ -184,6 +198,25 @@ void add_text_options(CLI::App& app, ReconstructArguments& a) {
     app.add_option("--input-format", a.read.format, "the input's format, where no extension names it")
         ->check(one_of({point_formats().begin(), point_formats().end()}))
         ->type_name(joined_formats())
+        ->group(files);
+    app.add_option_function<std::vector<std::string>>(
+           "--sensor",
+           [&a](const std::vector<std::string>& given) {
+               for (const std::string& text : given) a.read.sensors.push_back(*place_of(text));
+           },
+           "where a scanner stood; several with --sensor-column, the first one's number is 0")
+        ->type_name("X,Y,Z")
+        ->check(CLI::Validator(
+            [](std::string& text) {
+                return place_of(text) ? std::string()
+                                      : text + ": must be three numbers with commas between them";
+            },
+            ""))
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->group(files);
+    app.add_option("--sensor-column", a.read.sensor_column, "the column that says which scanner saw a point")
+        ->type_name("NAME")
         ->group(files);
     app.add_option("--columns", a.read.columns, "columns of a text file, e.g. x,y,z,nx,ny,nz,r,g,b,_")
         ->type_name("LIST")

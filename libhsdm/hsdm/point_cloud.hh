@@ -30,6 +30,11 @@ struct PointCloud {
     std::vector<std::array<std::uint8_t, 4>> colors; ///< red, green, blue, alpha
     std::vector<Scalar> scalars;                     ///< further values, each with one entry per point
     std::optional<Vec3> sensor;                      ///< where the scanner stood, if the file says
+    /// Where several scanners stood, if that is sure, and per point the number of the one that saw it; a
+    /// number that none of them has says nothing of its point. With one scanner the numbers may be missing.
+    /// Normals are turned to them.
+    std::vector<Vec3> sensors;
+    std::vector<std::int32_t> sensor_of; ///< empty, or one entry per point
 
     /// Number of points.
     std::size_t size() const { return positions.size(); }

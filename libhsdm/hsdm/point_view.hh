@@ -62,6 +62,8 @@ struct PointView {
     int color_channels = 4;            ///< 3: red, green, blue, and opaque; 4: alpha too
     std::vector<ScalarView> scalars{}; ///< further values
     std::optional<Vec3> sensor{};      ///< where the scanner stood, if that is known
+    std::span<const Vec3> sensors{};   ///< as PointCloud::sensors
+    StridedSpan sensor_of{};           ///< rows of one integer, as PointCloud::sensor_of
 
     /// Number of points.
     std::size_t size() const { return positions.count; }

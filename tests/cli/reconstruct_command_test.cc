@@ -318,11 +318,12 @@ TEST_CASE("small components are dropped when asked, and said", "[cli]") {
               == (*bad == '\0' ? 0 : 2));
 }
 
-TEST_CASE("an open surface faces the scanner where the file says its place", "[cli]") {
+TEST_CASE("an open surface faces the scanner whose place is known", "[cli]") {
     const Folder folder;
-    for (const double side : {-5.0, 5.0}) {
-        // A sheet that is nowhere seen from two regions: z = 0.2 x^2 over a square.
-        std::string body, z = std::to_string(side);
+    for (const auto& [side, told] : {std::pair(-5.0, false), {5.0, false}, {-5.0, true}, {5.0, true}}) {
+        // The file says where the scanner stood, or the opposite, and --sensor tells better. A sheet that is
+        // nowhere seen from two regions: z = 0.2 x^2 over a square.
+        std::string body, z = std::to_string(told ? -side : side);
         for (int i = 0; i < 60; ++i)
             for (int j = 0; j < 60; ++j) {
                 const double x = i / 30.0 - 1, y = j / 30.0 - 1;
@@ -333,7 +334,8 @@ TEST_CASE("an open surface faces the scanner where the file says its place", "[c
                                  "property float view_py\nproperty float view_pz\nelement vertex 3600\n"
                                  "property float x\nproperty float y\nproperty float z\nend_header\n0 0 "
                                      + z + '\n' + body);
-        REQUIRE(run(folder, "reconstruct scan.ply --ascii -o a.stl --quiet").status == 0);
+        const std::string sensor = told ? " --sensor 0,0," + std::to_string(side) : "";
+        REQUIRE(run(folder, "reconstruct scan.ply --ascii -o a.stl --quiet" + sensor).status == 0);
         const std::string mesh = read_file(folder / "a.stl");
         double sum = 0;
         for (std::size_t at = mesh.find("normal"); at != std::string::npos;
@@ -344,4 +346,13 @@ TEST_CASE("an open surface faces the scanner where the file says its place", "[c
         }
         CHECK(sum * side > 0);
     }
+}
+
+TEST_CASE("a scanner's place that is none is wrong usage", "[cli]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan()));
+    for (const char* bad : {"--sensor 1,2", "--sensor 1,2,x", "--sensor 1,2,3,4", "--sensor-column scan",
+                            "--sensor 1,2,3 --sensor 4,5,6"})
+        CHECK(run(folder, std::string("reconstruct scan.xyz -o a.off ") + bad).status == 2);
+    CHECK(run(folder, "reconstruct scan.xyz -o a.off --sensor 1,2,3 --sensor-column scan").status == 1);
 }

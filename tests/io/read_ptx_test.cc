@@ -39,12 +39,14 @@ TEST_CASE("a PTX scan has colours if its lines have", "[io]") {
     CHECK(cloud.scalars[0].values == std::vector<double>{0.25, 0.5});
 }
 
-TEST_CASE("several PTX scans make one cloud, which has no single sensor", "[io]") {
+TEST_CASE("several PTX scans make one cloud, each with its sensor", "[io]") {
     const auto cloud = read("a.ptx", header(2, 2) + rays + header(1, 1, "0 0 5") + "1 1 1 0.5\n\n").cloud;
     REQUIRE(cloud.size() == 4);
     CHECK(cloud.positions[3] == Vec3(-1, 1, 6));
     CHECK(cloud.scalars[0].values.size() == 4);
     CHECK_FALSE(cloud.sensor);
+    CHECK(cloud.sensors == std::vector<Vec3>{{10, 20, 30}, {0, 0, 5}});
+    CHECK(cloud.sensor_of == std::vector<std::int32_t>{0, 0, 0, 1});
 }
 
 TEST_CASE("PTX scans that hit nothing leave the sensor of the one that did", "[io]") {

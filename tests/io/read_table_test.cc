@@ -308,3 +308,22 @@ TEST_CASE("the first bad line is reported, however many there are", "[io]") {
                  "and give this one "
                  "as _");
 }
+
+TEST_CASE("scanners can be named by the caller, and which of them saw a point by a column", "[io]") {
+    const std::string text = "x,y,z,scan\n0,0,0,1\n1,0,0,0\n2,0,0,2\n3,0,0,-1\n";
+    ReadOptions options{.sensors = {Vec3(0, 0, 9), Vec3(0, 0, 8)}, .sensor_column = "scan"};
+    const PointCloud cloud = read("a.csv", text, options).cloud;
+    CHECK(cloud.sensors == options.sensors);
+    CHECK(cloud.sensor_of == std::vector<std::int32_t>{1, 0, -1, -1});
+    CHECK(cloud.scalars.at(0).is_label);
+    options.sensor_column = "who";
+    CHECK_THROWS_WITH(read("a.csv", text, options), Catch::Contains("who"));
+    options.sensor_column = "";
+    CHECK_THROWS_AS(read("a.csv", text, options), OptionError); // two, and nothing says which
+    options.sensors.pop_back();
+    const PointCloud one = read("a.csv", text, options).cloud;
+    CHECK(one.sensors.size() == 1);
+    CHECK(one.sensor_of.empty());
+    CHECK_THROWS_AS(read("a.csv", text, {.sensor_column = "scan"}), OptionError);
+    CHECK_THROWS_AS(read("a.csv", text, {.sensors = {Vec3(0, 0, std::nan(""))}}), OptionError);
+}

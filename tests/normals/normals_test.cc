@@ -1,5 +1,5 @@
 #include "hsdm/normals/normals.hh"
-#include "support/sample.hh"
+#include "support/scanner.hh"
 
 #include <catch2/catch.hpp>
 
@@ -119,4 +119,44 @@ TEST_CASE("the smallest clouds get normals without complaint", "[normals]") {
         CHECK(octree.normals.size() == n);
         CHECK(report.missing <= n);
     }
+}
+
+TEST_CASE("points face the scanners that saw them, though layers do not register", "[normals]") {
+    // Scans of a ball, shifted by about a spacing each: two layers a spacing apart look like a thin shell.
+    const PointCloud cloud = support::scan_from_above(
+        support::sphere(1), 1.05, {.points = 30000, .noise = 0.003, .misalignment = 0.02});
+    const auto share_inward = [&](const Viewpoints& viewpoints) {
+        Octree octree = without_normals(cloud);
+        NormalsOptions options;
+        options.orient.viewpoints = viewpoints;
+        for (Vec3& sensor : options.orient.viewpoints.sensors) sensor -= octree.origin;
+        make_normals(octree, options);
+        std::size_t inward = 0;
+        for (std::size_t i = 0; i < octree.size(); ++i)
+            inward += (octree.normals[i] | (octree.positions[i] + octree.origin)) < 0;
+        return static_cast<double>(inward) / static_cast<double>(octree.size());
+    };
+    const double unknown = share_inward({}), known = share_inward({cloud.sensors, view_of(cloud).sensor_of});
+    INFO("inward: " << unknown << " without scanners, " << known << " with them");
+    CHECK(unknown > 0.02);
+    CHECK(known < 0.01);                                 // what is left lies where layers cross in one patch
+    CHECK(share_inward({{cloud.sensors[0]}, {}}) < 0.5); // wrong for what the others saw alone
+}
+
+TEST_CASE("numbers of no scanner say nothing", "[normals]") {
+    PointCloud cloud =
+        support::sample(in_general_pose(support::torus(1, 0.4)), {.points = 5000, .normals = false});
+    cloud.sensors = {Vec3(0, 0, 0)};
+    cloud.sensor_of.assign(cloud.size(), -1);
+    cloud.sensor_of[7] = 5;
+    const Viewpoints viewpoints{cloud.sensors, view_of(cloud).sensor_of};
+    CHECK(viewpoints.of(0) == nullptr);
+    CHECK(viewpoints.of(7) == nullptr);
+    CHECK(Viewpoints{}.of(0) == nullptr);
+    Octree with = without_normals(cloud), plain = with;
+    NormalsOptions options;
+    options.orient.viewpoints = viewpoints;
+    make_normals(with, options);
+    make_normals(plain);
+    CHECK(with.normals == plain.normals);
 }

@@ -57,6 +57,7 @@ PointCloud scan_from_above(const Solid& solid, double radius, const ScannerOptio
     for (int position = 0; position < options.positions; ++position) {
         const double turn = 2 * std::numbers::pi * (position + 0.3) / options.positions;
         const Vec3 from = Vec3(std::cos(turn), std::sin(turn), 0.6).normalized() * distance;
+        cloud.sensors.push_back(from);
         const Vec3 shift = random.gauss3() * options.misalignment;
         for (std::size_t i = 0; i < options.points / static_cast<std::size_t>(options.positions); ++i) {
             const Vec3 way = ray(from, radius, random);
@@ -70,6 +71,7 @@ PointCloud scan_from_above(const Solid& solid, double radius, const ScannerOptio
             const double slant = std::max(0.2, std::abs(normal_at(solid, hit) | way));
             const double off = stray < options.outliers ? anywhere * radius : noise * options.noise / slant;
             cloud.positions.push_back(hit + way * off + shift);
+            cloud.sensor_of.push_back(position);
         }
     }
     return cloud;

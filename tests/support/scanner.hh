@@ -15,8 +15,8 @@ struct ScannerOptions {
     std::uint64_t seed = 1;
 };
 
-/// What a scanner sees of a solid within `radius` of the origin; without normals. The same seed gives the
-/// same scan on every platform.
+/// What a scanner sees of a solid within `radius` of the origin; without normals, with where it stood (the
+/// shift of its scan is not known). The same seed gives the same scan on every platform.
 PointCloud scan_from_above(const Solid& solid, double radius, const ScannerOptions& options = {});
 
 } // namespace hsdm::support

@@ -54,6 +54,7 @@ void check_arrays(const PointCloud& cloud) {
     };
     check("normals", cloud.normals.size(), true);
     check("colours", cloud.colors.size(), true);
+    check("numbers of sensors", cloud.sensor_of.size(), cloud.sensors.size() <= 1);
     for (const Scalar& scalar : cloud.scalars) check("values of " + scalar.name, scalar.values.size(), false);
 }
 
@@ -89,6 +90,7 @@ Dropped drop_nonfinite(PointCloud& cloud) {
     keep_only(cloud.positions, kept);
     keep_only(cloud.normals, kept);
     keep_only(cloud.colors, kept);
+    keep_only(cloud.sensor_of, kept);
     for (Scalar& scalar : cloud.scalars) keep_only(scalar.values, kept);
     return dropped;
 }

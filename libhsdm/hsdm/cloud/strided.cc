@@ -124,6 +124,8 @@ PointView view_of(const PointCloud& cloud) {
     for (const Scalar& s : cloud.scalars)
         view.scalars.push_back({s.name, {s.values.data(), s.values.size(), sizeof(double)}, s.is_label});
     view.sensor = cloud.sensor;
+    view.sensors = cloud.sensors;
+    view.sensor_of = {cloud.sensor_of.data(), cloud.sensor_of.size(), sizeof(std::int32_t)};
     return view;
 }
 
@@ -139,6 +141,9 @@ void check_view(const PointView& view) {
     check_rows("colours", view.colors, static_cast<std::size_t>(view.color_channels), points, true);
     check_type(is_floating(view.colors.type) || view.colors.type == NumberType::uint8, "colours",
                "bytes, or float or double from 0 to 1");
+    check_rows("numbers of sensors", view.sensor_of, 1, points, view.sensors.size() <= 1);
+    check_type(!is_floating(view.sensor_of.type) || view.sensor_of.count == 0, "numbers of sensors",
+               "integers");
     for (const ScalarView& scalar : view.scalars)
         check_rows("values of " + scalar.name, scalar.values, 1, points, false);
 }

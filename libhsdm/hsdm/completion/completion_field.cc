@@ -48,7 +48,7 @@ double interpolated(const CompletionField& coarse, const VoxelCoord& fine) {
         VoxelCoord c;
         bool apart = true;
         for (unsigned k = 0; k < 3; ++k) {
-            const int upper = corner >> k & 1;
+            const auto upper = static_cast<int>(corner >> k & 1u);
             apart = apart && (upper == 0 || fine[k] % 2 == 1);
             c[k] = fine[k] / 2 + upper;
         }

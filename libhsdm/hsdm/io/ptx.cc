@@ -147,10 +147,17 @@ PointFile read_ptx(const SourceBytes& bytes) {
         append_scan(text, header, scan, file.cloud);
         file.nonfinite += scan.size() - (file.cloud.size() - before);
         if (file.cloud.size() == before) continue;
-        ++scans;
+        const auto scan_number = static_cast<std::int32_t>(scans++);
         file.cloud.sensor = header.matrix[3]; // the scanner is the origin of its own coordinates
+        file.cloud.sensors.push_back(*file.cloud.sensor);
+        file.cloud.sensor_of.resize(file.cloud.size(), scan_number);
     }
-    if (scans > 1) file.cloud.sensor.reset();
+    if (scans > 1) {
+        file.cloud.sensor.reset();
+    } else { // one is known by `sensor`
+        file.cloud.sensors.clear();
+        file.cloud.sensor_of = std::vector<std::int32_t>();
+    }
     if (file.cloud.size() == 0)
         throw Error(bytes.name(), "holds no points: no ray of its scans hit anything");
     return file;

@@ -193,7 +193,40 @@ std::string_view mesh_format_of(const SourceBytes& bytes) {
     return {};
 }
 
+namespace {
+
+/// Enters the scanners that the caller knows.
+void set_sensors(const SourceBytes& bytes, const ReadOptions& options, PointCloud& cloud) {
+    if (options.sensors.empty()) return;
+    cloud.sensor.reset();
+    cloud.sensors = options.sensors;
+    cloud.sensor_of = std::vector<std::int32_t>();
+    if (options.sensor_column.empty()) return;
+    const auto column = std::ranges::find(cloud.scalars, options.sensor_column, &Scalar::name);
+    if (column == cloud.scalars.end())
+        throw Error(bytes.name(), "has no column " + io::quoted(options.sensor_column)
+                                      + " that says which scanner saw a point; name one that it has");
+    cloud.sensor_of.reserve(cloud.size());
+    for (const double number : column->values) {
+        const bool is_one = number >= 0 && number < static_cast<double>(options.sensors.size());
+        cloud.sensor_of.push_back(is_one ? static_cast<std::int32_t>(number) : -1);
+    }
+    column->is_label = true; // a vertex takes the scanner of most points
+}
+
+PointFile read_cloud(const SourceBytes& bytes, const ReadOptions& options);
+
+} // namespace
+
 PointFile read_points(const SourceBytes& bytes, const ReadOptions& options) {
+    PointFile file = read_cloud(bytes, options);
+    set_sensors(bytes, options, file.cloud);
+    return file;
+}
+
+namespace {
+
+PointFile read_cloud(const SourceBytes& bytes, const ReadOptions& options) {
     if (bytes.size() == 0) throw Error(bytes.name(), "is empty; expected points");
     check_options(options);
     const KnownName* forced = find_name(lower(options.format));
@@ -209,6 +242,8 @@ PointFile read_points(const SourceBytes& bytes, const ReadOptions& options) {
     return read_unrecognised(bytes, named ? named->format : Format::unknown, kind, options.columns);
 }
 
+} // namespace
+
 } // namespace io
 
 void check_options(const ReadOptions& options) {
@@ -219,6 +254,12 @@ void check_options(const ReadOptions& options) {
         throw OptionError("format " + io::quoted(options.format) + ": known are " + names);
     }
     if (!options.columns.empty()) io::parse_columns(options.columns);
+    if (options.sensors.size() > 1 && options.sensor_column.empty())
+        throw OptionError("sensors: of several, sensor_column must say which of them saw a point");
+    if (!options.sensor_column.empty() && options.sensors.empty())
+        throw OptionError("sensor_column " + io::quoted(options.sensor_column) + ": goes with sensors");
+    for (const Vec3& sensor : options.sensors)
+        if (!is_finite(sensor)) throw OptionError("sensors: their coordinates must be finite");
 }
 
 std::span<const std::string_view> point_formats() {

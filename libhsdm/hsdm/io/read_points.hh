@@ -17,6 +17,11 @@ struct ReadOptions {
     /// Tables only: what each column is, e.g. "x,y,z,nx,ny,nz,r,g,b,_" (`_` is skipped); empty: told by a
     /// header line, else from the values. Throws OptionError if it cannot be.
     std::string columns{};
+    /// Where scanners stood, in the file's units; in place of what the file says.
+    std::vector<Vec3> sensors{};
+    /// The column or property that says which of them saw a point, by its number from 0 on; empty if it is
+    /// one alone. Throws Error if the file has none of that name.
+    std::string sensor_column{};
 };
 
 /// The values of ReadOptions::format, which are also the extensions known: "ply", "pcd", "xyz" and "csv",

@@ -90,7 +90,8 @@ HSDM_TUNED std::size_t most_open = 32;
 inline constexpr std::size_t most_flat = 64;
 
 /// voxels: mean thickness of a flat splinter at most.
-/// Why: a spacing, at three to a voxel: where noise parts one surface into two that face apart, they stay that near.
+/// Why: a spacing, at three to a voxel: where noise parts one surface into two that face apart, they stay
+/// that near.
 inline constexpr double flat = 0.33;
 
 /// ratio: of the largest component's facets to a splinter's.

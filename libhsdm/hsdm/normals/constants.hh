@@ -310,6 +310,10 @@ namespace hsdm::turning {
 /// hundred.
 HSDM_TUNED float view_weight = 4;
 
+/// pairs: of neighbouring points that a point's own scanner counts for, where it is known.
+/// Why: four times a view: it is measured, not concluded.
+inline constexpr float sensor_weight = 16;
+
 /// share: of the views that must fit the signs that came out, net of the others.
 /// Why: three of four agree; of a shell thinner than voxels views are right as often as wrong.
 inline constexpr double clear_views = 0.5;

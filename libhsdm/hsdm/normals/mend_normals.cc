@@ -110,13 +110,11 @@ NormalConsistency check_normals(const Octree& octree) {
     return sum_pairs<NormalConsistency>(octree, farthest, add);
 }
 
-std::size_t mend_normals(Octree& octree, const std::optional<Vec3>& sensor) {
+std::size_t mend_normals(Octree& octree, OrientOptions options) {
     if (!octree.has_normals() || octree.size() < 2) return 0;
     const Neighbors neighbors = find_neighbors(octree);
     EstimatedNormals mended = estimate_normals(octree, neighbors, {.rounds = 0}); // for its tolerances
     mended.normals = octree.normals;
-    OrientOptions options;
-    options.sensor = sensor;
     options.signs_count = true;
     turn_normals(orient_normals(octree, neighbors, mended, options), mended.normals);
     const double before = check_normals(octree).contradiction();

@@ -2,9 +2,8 @@
 // Finds given normals whose signs contradict each other, and turns them to one side.
 
 #include "hsdm/core/occurrences.hh"
+#include "hsdm/normals/orient_normals.hh"
 #include "hsdm/octree/octree.hh"
-
-#include <optional>
 
 namespace hsdm {
 
@@ -35,10 +34,10 @@ Occurrences doubtful_sides(const Octree& octree, const NormalConsistency& consis
 /// Compares points, or 131,072 of them, with their two successors in octree order. O(n), parallel.
 NormalConsistency check_normals(const Octree& octree);
 
-/// Turns the octree's normals to one side, in place; their axes stay. The evidence is that of orient_normals;
-/// where the shape leaves the side open (a sheet, a thin part), the side that most normals have is taken. If
-/// that leaves more than half of the contradictions, these come from noise, and nothing is turned. Returns
-/// how many normals were turned.
-std::size_t mend_normals(Octree& octree, const std::optional<Vec3>& sensor = std::nullopt);
+/// Turns the octree's normals to one side, in place; their axes stay. The evidence is that of orient_normals
+/// with these options; where the shape leaves the side open (a sheet, a thin part), the side that most
+/// normals have is taken. If that leaves more than half of the contradictions, these come from noise, and
+/// nothing is turned. Returns how many normals were turned.
+std::size_t mend_normals(Octree& octree, OrientOptions options = {});
 
 } // namespace hsdm

@@ -28,6 +28,7 @@ NormalsReport make_normals(Octree& octree, const NormalsOptions& options) {
     if (const Vec3 origin = octree.origin; report.outliers.count > 0 && fit_to_points(octree)) {
         nearest = find_neighbors(octree); // the order and the voxels have changed
         if (orient.sensor) *orient.sensor += origin - octree.origin;
+        for (Vec3& sensor : orient.viewpoints.sensors) sensor += origin - octree.origin;
     }
     report.smoothed = smooth_noise(octree, nearest, options.smooth);
     const Neighbors neighbors = choose_neighbors(octree, options.neighbors, std::move(nearest));

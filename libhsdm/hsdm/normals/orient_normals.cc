@@ -38,6 +38,22 @@ std::vector<std::int8_t> free_signs(const Patches& patches, const Signs& signs,
     return sign;
 }
 
+/// Per patch, how many of its points have their scanner in front of it, less those that have it behind.
+std::vector<float> seen_by_sensors(const Octree& octree, const Patches& patches,
+                                   const Viewpoints& viewpoints) {
+    constexpr double grazing = 0.1; // a cosine: at such angles noise of the normal decides
+    std::vector<float> votes = large_vector<float>(viewpoints.sensors.empty() ? 0 : patches.size(), 0);
+    for_each_in_order(votes.empty() ? 0 : octree.size(), [&](std::size_t i) {
+        const Index p = patches.of_point[i];
+        const Vec3* sensor = p == no_index ? nullptr : viewpoints.of(octree.source[i]);
+        if (sensor == nullptr) return;
+        const Vec3 way = *sensor - octree.positions[i];
+        const double cosine = (patches.normals[p] | way) / way.norm();
+        if (std::abs(cosine) > grazing) votes[p] += cosine > 0 ? 1 : -1;
+    });
+    return votes;
+}
+
 /// Do most views of patches agree with the signs found? The wall of a shell thinner than the space's voxels
 /// is missed in places, from inside as often as from outside.
 bool views_agree(const Patches& patches, const OutsideView& view, const Signs& signs) {
@@ -52,6 +68,14 @@ bool views_agree(const Patches& patches, const OutsideView& view, const Signs& s
 }
 
 } // namespace
+
+const Vec3* Viewpoints::of(Index source) const {
+    if (sensors.empty()) return nullptr;
+    const double number = sensor_of.count == 0 ? 0 : number_at(sensor_of, source, 0);
+    return number >= 0 && number < static_cast<double>(sensors.size())
+               ? &sensors[static_cast<std::size_t>(number)]
+               : nullptr;
+}
 
 Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate,
                            const OrientOptions& options) {
@@ -71,9 +95,14 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
         edges.push_back({static_cast<Index>(p), outside, view.votes[p] * weight, weight});
         report.seen_from_outside += patches.counts[p];
     });
+    const std::vector<float> seen_by = seen_by_sensors(octree, patches, options.viewpoints);
+    for_each_in_order(seen_by.size(), [&](std::size_t p) {
+        const float vote = turning::sensor_weight * seen_by[p];
+        if (vote != 0) edges.push_back({static_cast<Index>(p), outside, vote, std::abs(vote)});
+    });
     const Signs signs = agglomerate(patches.size() + 1, std::move(edges));
     std::vector<std::int8_t> turn = free_signs(patches, signs, options);
-    const bool seen = views_agree(patches, view, signs);
+    const bool seen = !seen_by.empty() || views_agree(patches, view, signs);
     if (seen) turn[signs.component[outside]] = signs.sign[outside];
     resize_large(result.turns, octree.size());
     for_each_index(octree.size(), chunks::light, [&](Index i) {

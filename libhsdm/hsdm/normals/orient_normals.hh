@@ -1,13 +1,25 @@
 #pragma once
 // One side for all normals: out of a solid, towards the scanner, or at least the same for a whole sheet.
 
+#include "hsdm/cloud/strided.hh"
 #include "hsdm/normals/estimate_normals.hh"
 
 #include <optional>
 
 namespace hsdm {
 
+/// Scanners that are sure, each where it stood, relative to the octree's origin, and which of them saw a
+/// point.
+struct Viewpoints {
+    std::vector<Vec3> sensors;
+    StridedSpan sensor_of; ///< by the points' `source`; none: the first one saw all
+
+    /// The scanner of a point, or nullptr if none is known.
+    const Vec3* of(Index source) const;
+};
+
 struct OrientOptions {
+    Viewpoints viewpoints;      ///< patches face the scanners of their points, whatever the shape says
     std::optional<Vec3> sensor; ///< where the scanner stood, relative to the octree's origin: decides what
                                 ///< the shape leaves open
     bool signs_count =

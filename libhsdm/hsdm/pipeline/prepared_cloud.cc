@@ -69,7 +69,7 @@ PreparedCloud::PreparedCloud(InputCloud& input, const ReconstructOptions& option
 
 void PreparedCloud::provide_normals(const PointView& cloud, const Phases& phases) {
     NormalsOptions normals_options;
-    normals_options.orient.sensor = sensor_of(cloud);
+    normals_options.orient = orientation_of(cloud);
     const NormalsReport made = phases.run("normals", 0.05, report.seconds.normals,
                                           [&] { return make_normals(octree, normals_options); });
     note_outliers(made.outliers);
@@ -86,7 +86,7 @@ void PreparedCloud::check_given_normals(const PointView& cloud, const Phases& ph
         if (consistency.rough() && octree.size() > 1)
             noise_ = noise_deviation(octree, find_neighbors(octree));
         if (!consistency.doubtful()) return std::size_t{0};
-        const std::size_t mended = mend_normals(octree, sensor_of(cloud));
+        const std::size_t mended = mend_normals(octree, orientation_of(cloud));
         if (mended > 0) consistency = check_normals(octree);
         warn_of_sides(consistency, false);
         return mended;
@@ -136,9 +136,13 @@ void PreparedCloud::note_outliers(const Occurrences& outliers) {
     report.input.spacing = estimate_spacing(octree);
 }
 
-std::optional<Vec3> PreparedCloud::sensor_of(const PointView& cloud) const {
-    if (!cloud.sensor) return std::nullopt;
-    return frame.to_work(*cloud.sensor) - octree.origin;
+OrientOptions PreparedCloud::orientation_of(const PointView& cloud) const {
+    OrientOptions options;
+    const auto here = [&](const Vec3& sensor) { return frame.to_work(sensor) - octree.origin; };
+    if (cloud.sensor) options.sensor = here(*cloud.sensor);
+    for (const Vec3& sensor : cloud.sensors) options.viewpoints.sensors.push_back(here(sensor));
+    options.viewpoints.sensor_of = cloud.sensor_of;
+    return options;
 }
 
 void PreparedCloud::warn_of_sides(const NormalConsistency& consistency, bool estimated) {

@@ -52,7 +52,8 @@ private:
     /// Enters what normals contradict each other.
     void warn_of_sides(const NormalConsistency& consistency, bool estimated);
 
-    std::optional<Vec3> sensor_of(const PointView& cloud) const;
+    /// What the cloud knows of its scanners, relative to the octree's origin.
+    OrientOptions orientation_of(const PointView& cloud) const;
 
     void note_smoothing(const SmoothReport& smoothed);
 

@@ -183,6 +183,7 @@ void run(InputCloud& cloud, const ReconstructOptions& options, std::optional<std
     if (cloud.nonfinite().count > 0) report.input.first_nonfinite = cloud.nonfinite().first;
     report.threads = tbb::this_task_arena::max_concurrency();
     note_options(estimate, options, report);
+    if (!(*cloud).sensors.empty()) report.options["sensors"] = std::to_string((*cloud).sensors.size());
     if (estimate)
         prepared.provide_normals(*cloud, Phases(options, 0, 1));
     else if (method_for(options) == Method::extended)
