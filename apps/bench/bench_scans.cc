@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -57,6 +58,7 @@ const std::vector<Fault> faults = {
 };
 
 struct Outcome {
+    bool made = false;
     bool right = false, intersects = false;
     double off = 0; // mean distance of vertices from the part, in hundredths of its radius
     std::string what;
@@ -72,6 +74,7 @@ Outcome outcome(const Part& part, const ScannerOptions& scanner, bool sensors) {
         const Reconstruction made = reconstruct(std::move(cloud), options);
         const Report::Mesh& m = made.report.mesh;
         const PolygonMesh mesh = to_polygons(made.mesh);
+        result.made = true;
         result.intersects = !find_self_intersections(mesh).facet_pairs.empty();
         result.right = m.closed && m.components == 1 && m.euler == part.euler && !result.intersects;
         for (const Vec3& p : mesh.positions)
@@ -102,7 +105,7 @@ int main(int argc, char** argv) {
     std::printf("| fault | strength | right | intersecting | mean distance |\n|---|---|---|---|---|\n");
     for (const Fault& fault : faults)
         for (const double strength : fault.strengths) {
-            int right = 0, all = 0, intersecting = 0;
+            int right = 0, all = 0, made_any = 0, intersecting = 0;
             double off = 0;
             for (const Part& part : parts())
                 for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
@@ -113,14 +116,15 @@ int main(int argc, char** argv) {
                     scanner.noise *= part.radius / 100, scanner.misalignment *= part.radius / 100;
                     scanner.holes *= part.radius / 100, scanner.outliers /= 100;
                     const Outcome made = outcome(part, scanner, sensors);
-                    ++all, right += made.right, intersecting += made.intersects, off += made.off;
+                    ++all, made_any += made.made, right += made.right, intersecting += made.intersects,
+                        off += made.off;
                     if (verbose && !made.right)
                         std::fprintf(stderr, "%s %g, %s, seed %d: %s%s, %.2f off\n", fault.name, strength,
                                      part.name, static_cast<int>(seed), made.what.c_str(),
                                      made.intersects ? ", intersects" : "", made.off);
                 }
             std::printf("| %s | %g | %d of %d | %d | %.2f |\n", fault.name, strength, right, all,
-                        intersecting, off / all);
+                        intersecting, off / std::max(made_any, 1));
             std::fflush(stdout);
         }
     return 0;

@@ -99,6 +99,36 @@ MaxError error_of(const std::string& text) {
     return {error->value, error->is_share};
 }
 
+/// What becomes of the surface's holes, layers and small parts.
+void add_surface_options(CLI::App& app, ReconstructArguments& a, const std::string& method) {
+    add_choice<Holes>(
+        app, "--holes", a.holes,
+        {{"auto", Holes::automatic},
+         {"keep", Holes::keep},
+         {"close", Holes::close},
+         {"complete", Holes::complete}},
+        "auto: close what is small against the sampling; keep: nothing; complete: everything, by the surface "
+        "that is missing; close: everything, over the vertices of its border")
+        ->group(method);
+    app.add_flag(
+           "--confidence", a.confidence,
+           "PLY and .om get hsdm_confidence, 0 to 1: how much of the surface around a vertex points show")
+        ->group(method);
+    app.add_option("--trim", a.trim,
+                   "cut off the facets of less confidence, 0 to 1; 0.3 leaves what was measured")
+        ->type_name("SHARE")
+        ->check(number_between(0, 1, "lie between 0 and 1"))
+        ->group(method);
+    app.add_flag("--merge-layers", a.merge_layers,
+                 "for scans that do not register: sheets in a voxel that face the same way are one surface")
+        ->group(method);
+    app.add_option("--min-component", a.min_component,
+                   "drop components of fewer facets than SIZE (1% is of the largest one's area; 100% keeps "
+                   "the largest alone); default: none is dropped")
+        ->type_name("SIZE")
+        ->group(method);
+}
+
 } // namespace
 
 void add_method_options(CLI::App& app, ReconstructArguments& a) {
@@ -143,32 +173,7 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
                               {"estimate", NormalSource::estimate}},
                              "where normals come from; auto: the file's if it has some, else estimated")
         ->group(method);
-    add_choice<Holes>(
-        app, "--holes", a.holes,
-        {{"auto", Holes::automatic},
-         {"keep", Holes::keep},
-         {"close", Holes::close},
-         {"complete", Holes::complete}},
-        "auto: close what is small against the sampling; keep: nothing; complete: everything, by the surface "
-        "that is missing; close: everything, over the vertices of its border")
-        ->group(method);
-    app.add_flag(
-           "--confidence", a.confidence,
-           "PLY and .om get hsdm_confidence, 0 to 1: how much of the surface around a vertex points show")
-        ->group(method);
-    app.add_option("--trim", a.trim,
-                   "cut off the facets of less confidence, 0 to 1; 0.1 leaves what was measured")
-        ->type_name("SHARE")
-        ->check(number_between(0, 1, "lie between 0 and 1"))
-        ->group(method);
-    app.add_flag("--merge-layers", a.merge_layers,
-                 "for scans that do not register: sheets in a voxel that face the same way are one surface")
-        ->group(method);
-    app.add_option("--min-component", a.min_component,
-                   "drop components of fewer facets than SIZE (1% is of the largest one's area; 100% keeps "
-                   "the largest alone); default: none is dropped")
-        ->type_name("SIZE")
-        ->group(method);
+    add_surface_options(app, a, method);
     app.add_option("--crease-degrees", a.crease_degrees, "dihedral angle above which an edge is sharp")
         ->check(number_between(0, 180, "lie between 0 and 180"))
         ->type_name("D")
@@ -213,6 +218,7 @@ void add_text_options(CLI::App& app, ReconstructArguments& a) {
             },
             ""))
         ->expected(1)
+        ->allow_extra_args(false) // the next word is an input
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->group(files);
     app.add_option("--sensor-column", a.read.sensor_column, "the column that says which scanner saw a point")

@@ -32,7 +32,7 @@ struct PointCloud {
     std::optional<Vec3> sensor;                      ///< where the scanner stood, if the file says
     /// Where several scanners stood, if that is sure, and per point the number of the one that saw it; a
     /// number that none of them has says nothing of its point. With one scanner the numbers may be missing.
-    /// Normals are turned to them.
+    /// Normals that are estimated, or contradict each other, are turned to them.
     std::vector<Vec3> sensors;
     std::vector<std::int32_t> sensor_of; ///< empty, or one entry per point
 

@@ -335,7 +335,7 @@ TEST_CASE("an open surface faces the scanner whose place is known", "[cli]") {
                                  "property float x\nproperty float y\nproperty float z\nend_header\n0 0 "
                                      + z + '\n' + body);
         const std::string sensor = told ? " --sensor 0,0," + std::to_string(side) : "";
-        REQUIRE(run(folder, "reconstruct scan.ply --ascii -o a.stl --quiet" + sensor).status == 0);
+        REQUIRE(run(folder, "reconstruct" + sensor + " scan.ply --ascii -o a.stl --quiet").status == 0);
         const std::string mesh = read_file(folder / "a.stl");
         double sum = 0;
         for (std::size_t at = mesh.find("normal"); at != std::string::npos;

@@ -55,7 +55,7 @@ TEST_CASE("a hole in a sphere is completed by a cap that continues its slope", "
     }
 }
 
-TEST_CASE("the missing face of a cube is flat and meets the others in creases", "[completion]") {
+TEST_CASE("the missing face of a cube is flat and meets the others in creases", "[completion][accuracy]") {
     const PolygonMesh mesh = without(support::divided_cube(30), [](const Vec3& p) { return p[2] < -0.999; });
     const CompletedPoints points = complete_surface(mesh, 0.07);
     CHECK(points.positions.size() > 9 * 700);
@@ -69,7 +69,8 @@ TEST_CASE("the missing face of a cube is flat and meets the others in creases", 
     CHECK(mean < 0.01);
 }
 
-TEST_CASE("two loops that face each other closely are joined, far ones closed each", "[completion]") {
+TEST_CASE("two loops that face each other closely are joined, far ones closed each",
+          "[completion][accuracy]") {
     // A tube of radius 1 with closed ends far off, cut through in the middle.
     const auto tube = [](double gap) {
         PolygonMesh mesh = support::round_tube(80, 120, 1, 0.05);

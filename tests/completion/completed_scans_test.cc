@@ -78,7 +78,7 @@ TEST_CASE("what is missing of a sphere is completed, marked and listed", "[compl
     }
 }
 
-TEST_CASE("a box that stood on a table gets its bottom, with sharp edges", "[completion]") {
+TEST_CASE("a box that stood on a table gets its bottom, with sharp edges", "[completion][accuracy]") {
     const Solid part = in_general_pose(box({1, 1.2, 0.8}));
     const PointCloud cloud = sample(part, {.points = 24000});
     const Vec3 down = cloud.normals[0]; // the face of the first point
@@ -95,7 +95,7 @@ TEST_CASE("a box that stood on a table gets its bottom, with sharp edges", "[com
     CHECK(completed.report.features.sharp_edges > 150);
 }
 
-TEST_CASE("a ring of which a piece is missing stays a ring", "[completion]") {
+TEST_CASE("a ring of which a piece is missing stays a ring", "[completion][accuracy]") {
     const PointCloud cloud = partial_scan(torus(1, 0.35), {.points = 30000},
                                           [](const Vec3& p) { return p[0] > 0 && std::abs(p[1]) < 0.12; });
     const Completed completed = complete(cloud, 0.06);
@@ -181,6 +181,11 @@ TEST_CASE("confidence tells what was measured, and trimming cuts the rest off", 
     CHECK(trimmed.report.warnings.empty());
     const PolygonMesh cut = to_polygons(trimmed.mesh);
     for (const Vec3& p : cut.positions) CHECK(p[2] < 0.7);
+    options.voxel_size.reset();
+    options.max_error = MaxError{.value = 0.03};
+    const Report bounded = reconstruct(cloud, options).report;
+    CHECK(bounded.grid.kind == "adaptive");
+    CHECK(bounded.mesh.boundary_loops == 1);
     options.trim = 1.5;
     CHECK_THROWS_AS(reconstruct(cloud, options), OptionError);
     options.trim = 0.5;
@@ -189,7 +194,7 @@ TEST_CASE("confidence tells what was measured, and trimming cuts the rest off", 
 }
 
 TEST_CASE("a mesh of normals that face inward is completed and turned, with the same confidence",
-          "[completion]") {
+          "[completion][accuracy]") {
     PointCloud cloud = partial_scan(sphere(1), {.points = 12000}, [](const Vec3& p) { return p[2] > 0.9; });
     for (Vec3& n : cloud.normals) n = -n;
     ReconstructOptions options;
@@ -200,4 +205,32 @@ TEST_CASE("a mesh of normals that face inward is completed and turned, with the 
     CHECK(result.report.mesh.boundary_loops == 1);
     options.trim = 0;
     CHECK(reconstruct(cloud, options).report.mesh.closed);
+}
+
+TEST_CASE("completed vertices take colours and labels from those around", "[completion]") {
+    PointCloud cloud = partial_scan(sphere(1), {.points = 12000}, [](const Vec3& p) { return p[2] > 0.7; });
+    Scalar label{"label", {}, true}, height{"height", {}, false};
+    for (const Vec3& p : cloud.positions) {
+        const bool left = p[0] < 0;
+        cloud.colors.push_back({static_cast<std::uint8_t>(left ? 200 : 100), 50, 7, 255});
+        label.values.push_back(left ? 3 : 8);
+        height.values.push_back(p[2]);
+    }
+    cloud.scalars = {label, height};
+    const Completed completed = complete(cloud, 0.1);
+    const VertexProperty* marks = marks_of(completed.mesh);
+    REQUIRE(marks != nullptr);
+    REQUIRE(std::ranges::count(marks->values, 1.0) > 50);
+    std::size_t seen = 0;
+    for (const VertexProperty& property : completed.mesh.properties)
+        for (std::size_t v = 0; v < property.values.size(); ++v) {
+            const double value = property.values[v];
+            seen += property.name == "red";
+            if (property.name == "red") CHECK((value >= 100 && value <= 200));
+            if (property.name == "green") CHECK(value == 50);
+            if (property.name == "alpha") CHECK(value == 255);
+            if (property.name == "label") CHECK((value == 3 || value == 8));
+            if (property.name == "height" && marks->values[v] == 1) CHECK((value > 0.4 && value < 0.71));
+        }
+    CHECK(seen == completed.mesh.vertex_count());
 }

@@ -47,6 +47,10 @@ TEST_CASE("several PTX scans make one cloud, each with its sensor", "[io]") {
     CHECK_FALSE(cloud.sensor);
     CHECK(cloud.sensors == std::vector<Vec3>{{10, 20, 30}, {0, 0, 5}});
     CHECK(cloud.sensor_of == std::vector<std::int32_t>{0, 0, 0, 1});
+    const auto moved = read("a.ptx", header(2, 2) + rays + header(1, 1) + "1 1 1 0.5\n\n").cloud;
+    CHECK_FALSE(moved.sensor); // of scans at one place nobody knows who saw what
+    CHECK(moved.sensors.empty());
+    CHECK(moved.sensor_of.empty());
 }
 
 TEST_CASE("PTX scans that hit nothing leave the sensor of the one that did", "[io]") {

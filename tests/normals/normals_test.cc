@@ -121,7 +121,7 @@ TEST_CASE("the smallest clouds get normals without complaint", "[normals]") {
     }
 }
 
-TEST_CASE("points face the scanners that saw them, though layers do not register", "[normals]") {
+TEST_CASE("points face the scanners that saw them, though layers do not register", "[normals][accuracy]") {
     // Scans of a ball, shifted by about a spacing each: two layers a spacing apart look like a thin shell.
     const PointCloud cloud = support::scan_from_above(
         support::sphere(1), 1.05, {.points = 30000, .noise = 0.003, .misalignment = 0.02});

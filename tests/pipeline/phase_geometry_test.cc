@@ -59,7 +59,8 @@ TEST_CASE("the phases are written into a folder", "[pipeline]") {
     const Octree octree = build_octree(random_cloud());
     const OctreeLevel level = extract_level(octree, 3);
     const support::Folder folder;
-    write_phases(folder / "deep", octree, level, extract_graph(octree, level), voxel_cubes(octree, level));
+    write_phases(phase_files(folder / "deep", level.depth), octree, level, extract_graph(octree, level),
+                 voxel_cubes(octree, level));
     for (const char* name : {"voxels.obj", "graph.obj", "facets.off"})
         CHECK(std::filesystem::file_size(folder / ("deep/d3/" + std::string(name))) > 0);
 }

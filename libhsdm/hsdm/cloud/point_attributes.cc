@@ -65,7 +65,8 @@ double majority_of(std::vector<WeightedValue>& values) {
 double average_of(Type type, std::vector<WeightedValue>& values) {
     if (type == Type::int32) return majority_of(values);
     const double mean = mean_of(values);
-    return type == Type::uint8 ? std::round(mean) : mean;
+    if (type != Type::uint8) return mean;
+    return std::isfinite(mean) ? std::round(mean) : 0; // no value at all: a byte has no other word for it
 }
 
 } // namespace hsdm

@@ -80,12 +80,18 @@ CompletedPoints complete_surface(const PolygonMesh& mesh, double voxel_size) {
 
 CompletedPoints complete_surface(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size) {
     check_option(voxel_size > 0 && std::isfinite(voxel_size), "voxel_size", voxel_size, "be positive");
+    Box box;
+    for (const Vec3& p : mesh.positions) box.add(p);
+    check_option(mesh.facet_count() == 0 || box.extent() / voxel_size < 1 << 17, "voxel_size", voxel_size,
+                 "be at least the mesh's extent over 2^17");
     CompletedPoints points;
     if (loops.size() == 0) return points;
     const std::vector<std::array<Index, 2>> border = sides_of(loops);
     const bool inward = faces_inward(mesh, border);
-    CompletionPatch patch = completion_patch(
-        completion_field(inward ? turned_over(mesh) : mesh, border, voxel_size), mesh, border);
+    const auto patch_of = [&](const PolygonMesh& outward) {
+        return completion_patch(completion_field(outward, border, voxel_size), outward, border);
+    };
+    CompletionPatch patch = inward ? patch_of(turned_over(mesh)) : patch_of(mesh);
     fair(patch);
     const std::vector<Vec3> normals = vertex_normals_of(patch);
     for (std::size_t q = 0; q < patch.quads.size(); ++q)

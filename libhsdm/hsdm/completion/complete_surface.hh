@@ -13,7 +13,7 @@ struct CompletedPoints {
 /// Points of the surface that closes a mesh (an oriented 2-manifold, facets outward) where it has boundary
 /// loops: it separates inside from outside, joins loops that face each other, and continues the mesh's slope
 /// or meets it in a crease. Three points to a voxel each way. None for a closed mesh. O(facets + missing
-/// area). Throws OptionError for a voxel size that is not positive.
+/// area). Throws OptionError for a voxel size that is not positive, or less than the mesh's extent over 2^17.
 CompletedPoints complete_surface(const PolygonMesh& mesh, double voxel_size);
 /// The same where the mesh's boundary loops are known.
 CompletedPoints complete_surface(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size);

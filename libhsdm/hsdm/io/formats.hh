@@ -18,7 +18,8 @@ PointFile read_pcd(const SourceBytes& bytes);
 /// Whether the text begins as a PCD header does.
 bool is_pcd(const Text& text);
 /// A terrestrial scanner's grids, each with its matrix to world coordinates, in which the points are given;
-/// rays without a hit are left out. The sensor is set if there is one scan only.
+/// rays without a hit are left out. The sensor is set if there is one scan only, else those of all scans,
+/// unless all are at one place.
 PointFile read_ptx(const SourceBytes& bytes);
 /// Whether the text begins with the ten header lines of a PTX scan.
 bool is_ptx(const Text& text);

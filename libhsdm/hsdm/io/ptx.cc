@@ -152,9 +152,10 @@ PointFile read_ptx(const SourceBytes& bytes) {
         file.cloud.sensors.push_back(*file.cloud.sensor);
         file.cloud.sensor_of.resize(file.cloud.size(), scan_number);
     }
-    if (scans > 1) {
-        file.cloud.sensor.reset();
-    } else { // one is known by `sensor`
+    const std::vector<Vec3>& sensors = file.cloud.sensors;
+    if (scans > 1) file.cloud.sensor.reset();
+    // One is known by `sensor`; several at one place are no scanners but points that were moved already.
+    if (std::ranges::all_of(sensors, [&](const Vec3& sensor) { return sensor == sensors[0]; })) {
         file.cloud.sensors.clear();
         file.cloud.sensor_of = std::vector<std::int32_t>();
     }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace hsdm {
 namespace io {
@@ -208,7 +209,8 @@ void set_sensors(const SourceBytes& bytes, const ReadOptions& options, PointClou
                                       + " that says which scanner saw a point; name one that it has");
     cloud.sensor_of.reserve(cloud.size());
     for (const double number : column->values) {
-        const bool is_one = number >= 0 && number < static_cast<double>(options.sensors.size());
+        const bool is_one = number >= 0 && number < static_cast<double>(options.sensors.size())
+                            && number == std::floor(number);
         cloud.sensor_of.push_back(is_one ? static_cast<std::int32_t>(number) : -1);
     }
     column->is_label = true; // a vertex takes the scanner of most points

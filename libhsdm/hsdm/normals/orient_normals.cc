@@ -7,6 +7,7 @@
 #include "hsdm/normals/outside.hh"
 #include "hsdm/octree/spacing.hh"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hsdm {
@@ -102,7 +103,8 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
     });
     const Signs signs = agglomerate(patches.size() + 1, std::move(edges));
     std::vector<std::int8_t> turn = free_signs(patches, signs, options);
-    const bool seen = !seen_by.empty() || views_agree(patches, view, signs);
+    const bool seen = std::ranges::any_of(seen_by, [](float vote) { return vote != 0; })
+                      || views_agree(patches, view, signs);
     if (seen) turn[signs.component[outside]] = signs.sign[outside];
     resize_large(result.turns, octree.size());
     for_each_index(octree.size(), chunks::light, [&](Index i) {

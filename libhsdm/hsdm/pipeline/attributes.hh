@@ -20,4 +20,9 @@ std::vector<VertexProperty> average_attributes(const PointView& cloud, const Oct
 std::vector<VertexProperty> merge_attributes(std::span<const VertexProperty> properties,
                                              std::span<const Index> into, std::size_t count);
 
+/// Gives vertices that have no point (`known` is 0) the colours and scalars of those around: the mean, of
+/// labels the majority, vertex by vertex away from the known ones. O(corners). Properties of our own
+/// (`hsdm_...`) stay.
+void spread_attributes(PolygonMesh& mesh, std::vector<std::uint8_t> known);
+
 } // namespace hsdm

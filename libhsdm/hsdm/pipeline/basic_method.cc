@@ -42,7 +42,8 @@ PolygonMesh basic_method(const MethodInput& in, Report& report) {
     });
     note_counts(facets.counts, report);
     if (!in.options.debug_dir.empty())
-        write_phases(in.options.debug_dir, in.octree, in.level, graph, facets.mesh, in.frame);
+        write_phases(phase_files(in.options.debug_dir, in.level.depth), in.octree, in.level, graph,
+                     facets.mesh, in.frame);
     for (Vec3& p : facets.mesh.positions) p -= in.octree.origin;
     return std::move(facets.mesh);
 }

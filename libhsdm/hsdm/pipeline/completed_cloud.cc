@@ -23,7 +23,7 @@ PointCloud joined_cloud(const Octree& octree, const CompletedPoints& points) {
 /// How many levels give voxels of this size in a cube that holds a box.
 int depth_for(const Box& box, double voxel_size) {
     int depth = 1;
-    while (depth < deepest_level && std::ldexp(voxel_size, depth) < box.extent()) ++depth;
+    while (depth < morton_levels && std::ldexp(voxel_size, depth) < box.extent()) ++depth;
     return depth;
 }
 

@@ -4,6 +4,7 @@
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/manifold.hh"
 #include "hsdm/mesh/remove_facets.hh"
+#include "hsdm/spatial/self_intersections.hh"
 
 #include <cmath>
 #include <numbers>
@@ -68,6 +69,12 @@ void trim_by_confidence(double least, const MethodInput& in, PolygonMesh& facets
     remove_isolated_vertices(facets);
     known.links.reset();
     known.cells.reset();
+    if (known.intersections.count > 0) {
+        const SelfIntersections left = find_self_intersections(facets);
+        known.intersections = {left.facet_pairs.size(), {}};
+        if (!left.facet_pairs.empty())
+            known.intersections.first = facets.positions[facets.facet(left.facet_pairs[0][0])[0]];
+    }
     trimmed.first += in.octree.origin;
     note_dropped("facets of less confidence than asked for", trimmed, in.frame, report);
 }

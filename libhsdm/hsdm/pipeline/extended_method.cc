@@ -21,9 +21,7 @@
 namespace hsdm {
 namespace {
 
-// auto: loops up to so wide are small against the sampling
-
-/// keep closes nothing, auto the loops that are small against the sampling, close all.
+/// keep closes nothing, close all loops, auto and complete those that are small against the sampling.
 DualContourOptions extended_options(Holes holes, double spacing_in_voxels) {
     DualContourOptions result;
     result.holes.max_diameter = std::max(holes::widest_in_spacings * spacing_in_voxels, holes::widest);
@@ -102,8 +100,8 @@ double spacing_in_voxels(const MethodInput& in, const Report& report) {
 }
 
 DualContour facets_of(const MethodInput& in, const NormalSets& sets, const DualContourOptions& options,
-                      Report& report) {
-    return in.phases.run("facets", 0.3, report.seconds.facets,
+                      double done, Report& report) {
+    return in.phases.run("facets", done, report.seconds.facets,
                          [&] { return dual_contour(in.octree, in.level, sets, options); });
 }
 
@@ -142,8 +140,8 @@ PolygonMesh finished(const MethodInput& in, const NormalSets& sets, DualContour 
     if (!in.options.debug_dir.empty()) {
         PolygonMesh placed = facets.mesh;
         for (Vec3& p : placed.positions) p += in.octree.origin;
-        write_phases(in.options.debug_dir, in.octree, in.level, extended_graph(facets.mesh, facets.voxel),
-                     placed, in.frame);
+        write_phases(phase_files(in.options.debug_dir, report.grid.depth), in.octree, in.level,
+                     extended_graph(facets.mesh, facets.voxel), placed, in.frame);
     }
     return std::move(facets.mesh);
 }
@@ -152,29 +150,36 @@ PolygonMesh finished(const MethodInput& in, const NormalSets& sets, DualContour 
 PolygonMesh completed(const MethodInput& in, DualContour draft, const Listed& listed, int rounds,
                       Report& report, FacetKnowledge& known) {
     listed.restore(report);
+    const double done = 0.4 + 0.05 * (completing::most_rounds - rounds);
     note_loops(draft.mesh, draft.border, true, in.octree.origin, in.frame, report);
-    const CompletedCloud cloud = in.phases.run("completion", 0.4, report.seconds.facets, [&] {
+    const CompletedCloud cloud = in.phases.run("completion", done, report.seconds.facets, [&] {
         return complete_cloud(in.octree, in.level,
                               complete_surface(draft.mesh, draft.border, in.level.voxel_size));
     });
     draft = DualContour();
     const MethodInput whole{in.frame, in.cloud, cloud.octree, cloud.level, in.options, in.phases};
-    const NormalSets sets =
-        in.phases.run("sets", 0.45, report.seconds.graph, [&] { return separated_sets(whole, report); });
+    const NormalSets sets = in.phases.run("sets", done + 0.01, report.seconds.graph,
+                                          [&] { return separated_sets(whole, report); });
     const bool last = rounds == 1;
     DualContourOptions options =
         extended_options(last ? Holes::close : Holes::automatic, spacing_in_voxels(in, report));
     options.all_round = true;
     options.find_border = !last;
-    DualContour facets = facets_of(whole, sets, options, report);
+    DualContour facets = facets_of(whole, sets, options, done + 0.02, report);
     PolygonMesh mesh;
     if (facets.border.size() > 0) {
         mesh = completed(whole, std::move(facets), listed, rounds - 1, report, known);
     } else {
         VertexProperty marks = completed_vertices(cloud, facets.voxel);
         mesh = finished(whole, sets, std::move(facets), report, known);
+        std::vector<std::uint8_t> measured(marks.values.size());
+        for (std::size_t v = 0; v < measured.size(); ++v) measured[v] = marks.values[v] == 0;
+        spread_attributes(mesh, std::move(measured));
         mesh.properties.push_back(std::move(marks));
     }
+    for (VertexProperty& property : mesh.properties) // the larger cube's level is no one's concern
+        if (property.name == "hsdm_level")
+            std::ranges::fill(property.values, static_cast<double>(in.level.depth));
     const Vec3 moved = cloud.octree.origin - in.octree.origin;
     for (Vec3& p : mesh.positions) p += moved;
     known.intersections.first += moved;
@@ -192,7 +197,7 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
     const Holes holes = in.options.holes;
     DualContourOptions options = extended_options(holes, spacing_in_voxels(in, report));
     options.find_border = holes == Holes::complete;
-    DualContour facets = facets_of(in, sets, options, report);
+    DualContour facets = facets_of(in, sets, options, 0.3, report);
     if (facets.border.size() > 0)
         return completed(in, std::move(facets), listed, completing::most_rounds, report, known);
     PolygonMesh mesh = finished(in, sets, std::move(facets), report, known);

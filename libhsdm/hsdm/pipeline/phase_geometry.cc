@@ -58,9 +58,8 @@ PhaseFiles phase_files(const std::string& debug_dir, int depth) {
             (folder / "facets.off").string()};
 }
 
-void write_phases(const std::string& debug_dir, const Octree& octree, const OctreeLevel& level,
+void write_phases(const PhaseFiles& files, const Octree& octree, const OctreeLevel& level,
                   const ConnectivityGraph& graph, const PolygonMesh& facets, const CloudFrame& frame) {
-    const PhaseFiles files = phase_files(debug_dir, level.depth);
     std::error_code error;
     std::filesystem::create_directories(files.folder, error);
     if (error) throw Error(files.folder, "cannot be made a folder (" + error.message() + "); choose another");

@@ -22,9 +22,9 @@ struct PhaseFiles {
 };
 PhaseFiles phase_files(const std::string& debug_dir, int depth);
 
-/// Writes the three files of the level; folders are made where there are none. The octree and the
+/// Writes the three files of the level into these; folders are made where there are none. The octree and the
 /// facets lie in the frame. Throws Error.
-void write_phases(const std::string& debug_dir, const Octree& octree, const OctreeLevel& level,
+void write_phases(const PhaseFiles& files, const Octree& octree, const OctreeLevel& level,
                   const ConnectivityGraph& graph, const PolygonMesh& facets, const CloudFrame& frame = {});
 
 } // namespace hsdm

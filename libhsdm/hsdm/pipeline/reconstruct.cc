@@ -114,6 +114,7 @@ void reconstruct_level(InputCloud& cloud, PreparedCloud& prepared, int depth, bo
     FacetKnowledge known;
     PolygonMesh facets = method_for(options) == Method::extended ? extended_method(input, report, known)
                                                                  : basic_method(input, report);
+    if (options.trim > 0) trim_by_confidence(options.trim, input, facets, known, report);
     if (last) {
         prepared.release_normals();
         cloud.release_attributes();
@@ -130,7 +131,6 @@ void reconstruct_level(InputCloud& cloud, PreparedCloud& prepared, int depth, bo
     }
     warn_of(warning_of::intersections, known.intersections, input, report);
     leave_out_unsound(input, facets, known, report);
-    if (options.trim > 0) trim_by_confidence(options.trim, input, facets, known, report);
     check_facets(facets, level);
     if (options.trim == 0 && (options.holes == Holes::close || options.holes == Holes::complete))
         warn_of(warning_of::open_loops, open_loops(facets), input, report);
