@@ -28,15 +28,6 @@ PolygonMesh open_sphere(double height) {
     return mesh;
 }
 
-std::vector<std::array<Index, 2>> border_of(const PolygonMesh& mesh) {
-    const BoundaryLoops loops = boundary_loops(mesh);
-    std::vector<std::array<Index, 2>> sides;
-    for (std::size_t l = 0; l < loops.size(); ++l)
-        for (std::size_t i = 0; i < loops[l].size(); ++i)
-            sides.push_back({loops[l][i], loops[l][(i + 1) % loops[l].size()]});
-    return sides;
-}
-
 } // namespace
 
 TEST_CASE("codes grow to all within a box, inside the lattice, each once", "[completion]") {
@@ -79,7 +70,7 @@ TEST_CASE("a closed mesh is passed on every edge between inside and outside, and
 
 TEST_CASE("the field is negative inside and positive outside, also behind a hole", "[completion]") {
     const PolygonMesh mesh = open_sphere(0.8);
-    const CompletionField field = completion_field(mesh, border_of(mesh), 0.05);
+    const CompletionField field = completion_field(mesh, boundary_loops(mesh), 0.05);
     REQUIRE(field.value.size() == field.lattice.size());
     for (std::size_t i = 0; i < field.value.size(); ++i) {
         const Vec3 p = field.lattice.place.position(field.lattice.coord(static_cast<Index>(i)));

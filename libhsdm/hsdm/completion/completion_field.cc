@@ -8,8 +8,6 @@
 namespace hsdm {
 namespace {
 
-enum Known : std::uint8_t { solved, beside_mesh, given };
-
 /// Grid points of the coarsest level: all.
 std::vector<MortonCode> all_points(const LatticePlace& place) {
     std::vector<MortonCode> codes;
@@ -67,7 +65,7 @@ void hold_beside_mesh(CompletionField& field) {
     const auto hold = [&](Index point, double t, double across) {
         if (point == no_index || t * std::abs(across) >= nearest[point]) return;
         nearest[point] = t * std::abs(across);
-        field.known[point] = beside_mesh;
+        field.known[point] = Known::beside_mesh;
         field.value[point] = std::copysign(nearest[point] * lattice.place.spacing, across);
     };
     for (std::size_t h = 0; h < lattice.hits.size(); ++h) {
@@ -83,8 +81,8 @@ void hold_beside_mesh(CompletionField& field) {
 /// Solves for the values that nobody knows: each the mean of those around it.
 void solve(CompletionField& field) {
     const Lattice& lattice = field.lattice;
-    const std::vector<Index> unknown =
-        indices_where(lattice.size(), chunks::light, [&](Index i) { return field.known[i] == solved; });
+    const std::vector<Index> unknown = indices_where(
+        lattice.size(), chunks::light, [&](Index i) { return field.known[i] == Known::solved; });
     std::vector<Index> number = large_vector<Index>(lattice.size(), no_index);
     for_each_index(unknown.size(), chunks::light, [&](Index row) { number[unknown[row]] = row; });
     HarmonicEquations equations;
@@ -94,7 +92,7 @@ void solve(CompletionField& field) {
         for (const Index k : lattice.next[unknown[row]]) {
             if (k == no_index) continue;
             ++degree;
-            if (field.known[k] == solved)
+            if (field.known[k] == Known::solved)
                 equations.beside.push_back(number[k]);
             else
                 known += field.value[k];
@@ -112,10 +110,10 @@ void solve(CompletionField& field) {
 CompletionField coarsest_field(const LatticePlace& place, const PolygonMesh& mesh) {
     CompletionField field{build_lattice(place, all_points(place), mesh), {}, {}};
     assign_large(field.value, field.lattice.size(), 0.5 * place.spacing);
-    assign_large(field.known, field.lattice.size(), std::uint8_t{solved});
+    assign_large(field.known, field.lattice.size(), Known::solved);
     for_each_index(field.lattice.size(), chunks::light, [&](Index i) {
         if (std::ranges::find(field.lattice.next[i], no_index) != field.lattice.next[i].end())
-            field.known[i] = given;
+            field.known[i] = Known::given;
     });
     hold_beside_mesh(field);
     solve(field);
@@ -124,7 +122,7 @@ CompletionField coarsest_field(const LatticePlace& place, const PolygonMesh& mes
 
 /// The grid points around what is missing: the open edges of the coarser level, and the mesh's border.
 std::vector<MortonCode> points_around(const CompletionField& coarse, const LatticePlace& place,
-                                      const PolygonMesh& mesh, std::span<const std::array<Index, 2>> border) {
+                                      const PolygonMesh& mesh, const BoundaryLoops& border) {
     std::vector<MortonCode> codes;
     const auto add = [&](const VoxelCoord& c) {
         if (place.holds(c)) codes.push_back(morton_encode(c));
@@ -145,7 +143,7 @@ std::vector<MortonCode> points_around(const CompletionField& coarse, const Latti
 }
 
 CompletionField finer_field(const CompletionField& coarse, const LatticePlace& place, const PolygonMesh& mesh,
-                            std::span<const std::array<Index, 2>> border) {
+                            const BoundaryLoops& border) {
     CompletionField field{build_lattice(place, points_around(coarse, place, mesh, border), mesh), {}, {}};
     const std::size_t size = field.lattice.size();
     resize_large(field.value, size);
@@ -153,7 +151,7 @@ CompletionField finer_field(const CompletionField& coarse, const LatticePlace& p
     for_each_index(size, chunks::usual, [&](Index i) {
         field.value[i] = interpolated(coarse, field.lattice.coord(i));
         const bool at_end = std::ranges::find(field.lattice.next[i], no_index) != field.lattice.next[i].end();
-        field.known[i] = at_end ? given : solved;
+        field.known[i] = at_end ? Known::given : Known::solved;
     });
     hold_beside_mesh(field);
     solve(field);
@@ -162,8 +160,7 @@ CompletionField finer_field(const CompletionField& coarse, const LatticePlace& p
 
 } // namespace
 
-CompletionField completion_field(const PolygonMesh& mesh, std::span<const std::array<Index, 2>> border,
-                                 double spacing) {
+CompletionField completion_field(const PolygonMesh& mesh, const BoundaryLoops& border, double spacing) {
     Box box;
     for (const Vec3& p : mesh.positions) box.add(p);
     const std::vector<LatticePlace> levels = places(box, spacing);

@@ -2,6 +2,7 @@
 
 #include "hsdm/completion/conjugate_gradients.hh"
 #include "hsdm/completion/constants.hh"
+#include "hsdm/mesh/vertex_neighbors.hh"
 
 #include <Eigen/SparseCholesky>
 
@@ -68,25 +69,14 @@ std::vector<MortonCode> cells_of(const CompletionField& field) {
 /// Fair positions by sparse least squares; the three coordinates apart.
 class Fairing {
 public:
-    explicit Fairing(CompletionPatch& patch) : patch_(patch) {
-        const std::size_t count = patch.positions.size();
-        std::vector<std::array<Index, 2>> pairs;
-        for (const auto& quad : patch.quads)
-            for (unsigned j = 0; j < 4; ++j) {
-                const Index a = quad[j], b = quad[(j + 1) % 4];
-                pairs.push_back({a, b}), pairs.push_back({b, a});
-            }
-        sort_unique(pairs);
-        first_.assign(count + 1, 0);
-        for (const auto& [a, b] : pairs) ++first_[a + 1], around_.push_back(b);
-        counts_to_first(first_);
-        number_.assign(count, no_index);
+    explicit Fairing(CompletionPatch& patch)
+        : patch_(patch), neighbors_(patch.net), number_(patch.net.vertex_count(), no_index) {
         const std::vector<std::uint8_t> attached = attached_vertices();
-        for (Index v = 0; v < count; ++v)
+        for (Index v = 0; v < number_.size(); ++v)
             if (patch.held[v] == 0 && attached[v] != 0)
                 number_[v] = static_cast<Index>(free_.size()), free_.push_back(v);
-        for (std::size_t q = 0; q < patch.quads.size(); ++q)
-            if (attached[patch.quads[q][0]] == 0) patch.missing[q] = 0;
+        for (std::size_t q = 0; q < patch.net.facet_count(); ++q)
+            if (attached[patch.net.facet(q)[0]] == 0) patch.missing[q] = 0;
     }
 
     void to_membrane() {
@@ -98,25 +88,25 @@ public:
                 if (number_[k] != no_index)
                     equations.beside.push_back(number_[k]);
                 else
-                    held += patch_.positions[k];
+                    held += patch_.net.positions[k];
             equations.first.push_back(static_cast<Index>(equations.beside.size()));
             equations.degree.push_back(static_cast<double>(around(free_[i]).size()));
             for (unsigned k = 0; k < 3; ++k) {
                 known[k].push_back(held[k]);
-                values[k].push_back(patch_.positions[free_[i]][k]);
+                values[k].push_back(patch_.net.positions[free_[i]][k]);
             }
         });
         for (unsigned k = 0; k < 3; ++k) {
             equations.known = std::move(known[k]);
             solve_harmonic(equations, completing::membrane_tolerance, completing::most_steps, values[k]);
-            for (std::size_t i = 0; i < free_.size(); ++i) patch_.positions[free_[i]][k] = values[k][i];
+            for (std::size_t i = 0; i < free_.size(); ++i) patch_.net.positions[free_[i]][k] = values[k][i];
         }
     }
 
     void to_plate() {
         if (free_.size() > completing::most_bending) return;
         std::vector<Index> at = free_;
-        for (Index v = 0; v < patch_.positions.size(); ++v)
+        for (Index v = 0; v < patch_.net.positions.size(); ++v)
             if (patch_.held[v] != 0 && continues(v)) at.push_back(v);
         const Rows rows = each_less_mean(at);
         Eigen::MatrixX3d target = -rows.of_held;
@@ -140,13 +130,11 @@ private:
         Eigen::MatrixX3d of_held;
     };
 
-    std::span<const Index> around(Index v) const {
-        return {around_.data() + first_[v], around_.data() + first_[v + 1]};
-    }
+    std::span<const Index> around(Index v) const { return neighbors_.of(v); }
     Vec3 bend_at(Index v) const {
         Vec3 sum(0, 0, 0);
-        for (const Index k : around(v)) sum += patch_.positions[k];
-        return patch_.positions[v] - sum / static_cast<double>(around(v).size());
+        for (const Index k : around(v)) sum += patch_.net.positions[k];
+        return patch_.net.positions[v] - sum / static_cast<double>(around(v).size());
     }
 
     /// Per vertex, do quads lead from it to one that is held? What hangs on nothing completes nothing.
@@ -171,7 +159,7 @@ private:
         for (const Index k : around(v)) {
             if (patch_.held[k] != 0) continue;
             any = true;
-            away += patch_.positions[k] - patch_.positions[v];
+            away += patch_.net.positions[k] - patch_.net.positions[v];
         }
         return any && std::abs(away | patch_.normals[v]) <= completing::crease_sine * away.norm();
     }
@@ -185,7 +173,7 @@ private:
                 if (number_[v] != no_index)
                     entries.emplace_back(static_cast<int>(r), static_cast<int>(number_[v]), value);
                 else
-                    for (unsigned k = 0; k < 3; ++k) rows.of_held(r, k) += value * patch_.positions[v][k];
+                    for (unsigned k = 0; k < 3; ++k) rows.of_held(r, k) += value * patch_.net.positions[v][k];
             };
             const Index vertex = vertices[static_cast<std::size_t>(r)];
             const auto valence = static_cast<double>(around(vertex).size());
@@ -201,7 +189,7 @@ private:
         const auto count = static_cast<Eigen::Index>(free_.size());
         if (count == 0) return;
         for (Eigen::Index i = 0; i < count; ++i) {
-            const Vec3& p = patch_.positions[free_[static_cast<std::size_t>(i)]];
+            const Vec3& p = patch_.net.positions[free_[static_cast<std::size_t>(i)]];
             matrix.coeffRef(i, i) += completing::hold;
             for (unsigned k = 0; k < 3; ++k) target(i, k) += completing::hold * p[k];
         }
@@ -210,11 +198,13 @@ private:
         const Eigen::MatrixX3d x = factors.solve(target);
         if (!x.allFinite()) return;
         for (Eigen::Index i = 0; i < count; ++i)
-            patch_.positions[free_[static_cast<std::size_t>(i)]] = Vec3(x(i, 0), x(i, 1), x(i, 2));
+            patch_.net.positions[free_[static_cast<std::size_t>(i)]] = Vec3(x(i, 0), x(i, 1), x(i, 2));
     }
 
     CompletionPatch& patch_;
-    std::vector<Index> first_, around_, number_, free_;
+    VertexNeighbors neighbors_;
+    std::vector<Index> number_; // per vertex, which of the free ones it is, or no_index
+    std::vector<Index> free_;
 };
 
 /// Places the vertices of a patch: where the mesh passes their cells' edges, or else the missing surface;
@@ -222,7 +212,7 @@ private:
 class Placing {
 public:
     explicit Placing(CompletionPatch& patch)
-        : patch_(patch), hits_(patch.positions.size()), missing_(hits_.size()), border_(hits_.size()) {}
+        : patch_(patch), hits_(patch.net.positions.size()), missing_(hits_.size()), border_(hits_.size()) {}
 
     void add(std::span<const Index> corners, const Passage& at) {
         for (const Index v : corners) {
@@ -236,10 +226,10 @@ public:
         for (std::size_t v = 0; v < hits_.size(); ++v) {
             patch_.held[v] = hits_[v].count > 0;
             const bool at_border = hits_[v].count > 0 && missing_[v].count > 0 && border_[v].count > 0;
-            patch_.positions[v] = (at_border             ? border_[v]
-                                   : patch_.held[v] != 0 ? hits_[v]
-                                                         : missing_[v])
-                                      .mean();
+            patch_.net.positions[v] = (at_border             ? border_[v]
+                                       : patch_.held[v] != 0 ? hits_[v]
+                                                             : missing_[v])
+                                          .mean();
             const double length = patch_.normals[v].norm();
             if (length > 0) patch_.normals[v] *= 1 / length;
         }
@@ -261,15 +251,12 @@ private:
 } // namespace
 
 CompletionPatch completion_patch(const CompletionField& field, const PolygonMesh& mesh,
-                                 std::span<const std::array<Index, 2>> border) {
+                                 const BoundaryLoops& border) {
     const LatticePlace& place = field.lattice.place;
     const std::vector<MortonCode> cells = cells_of(field);
     const std::size_t count = cells.size();
-    CompletionPatch patch{std::vector<Vec3>(count),
-                          std::vector<Vec3>(count, Vec3(0, 0, 0)),
-                          std::vector<std::uint8_t>(count),
-                          {},
-                          {}};
+    CompletionPatch patch{{}, std::vector<Vec3>(count, Vec3(0, 0, 0)), std::vector<std::uint8_t>(count), {}};
+    patch.net.positions.resize(count);
     Placing placing(patch);
     MortonIndex number;
     number.build(cells);
@@ -286,7 +273,7 @@ CompletionPatch completion_patch(const CompletionField& field, const PolygonMesh
         if (!at.passes) return;
         placing.add(corners, at);
         if (!at.leaving) std::reverse(corners.begin(), corners.end());
-        patch.quads.push_back(corners);
+        patch.net.add_facet(corners);
         patch.missing.push_back(at.missing);
     });
     for_each_sample(mesh, border, 0.5 * place.spacing, [&](const Vec3& p) {

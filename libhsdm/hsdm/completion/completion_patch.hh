@@ -8,17 +8,15 @@ namespace hsdm {
 /// Quads with a vertex in each lattice cell that the surface passes (surface nets: Gibson, 1998): the missing
 /// surface, and the mesh some cells around its border.
 struct CompletionPatch {
-    std::vector<Vec3> positions;
-    std::vector<Vec3> normals;               ///< of held vertices: the mesh's
-    std::vector<std::uint8_t> held;          ///< per vertex: does it lie on the mesh?
-    std::vector<std::array<Index, 4>> quads; ///< facing outward
-    std::vector<std::uint8_t> missing;       ///< per quad: is it of the missing surface?
+    PolygonMesh net;                   ///< quads, facing outward
+    std::vector<Vec3> normals;         ///< of held vertices: the mesh's
+    std::vector<std::uint8_t> held;    ///< per vertex: does it lie on the mesh?
+    std::vector<std::uint8_t> missing; ///< per quad: is it of the missing surface?
 };
 
-/// The patch between the field's two sides, held by a mesh with that border (pairs of vertices). O(grid
-/// points).
+/// The patch between the field's two sides, held by a mesh with that border. O(grid points).
 CompletionPatch completion_patch(const CompletionField& field, const PolygonMesh& mesh,
-                                 std::span<const std::array<Index, 2>> border);
+                                 const BoundaryLoops& border);
 
 /// Moves the vertices that are not held: to a membrane over the border first; then to a thin plate, which
 /// continues the slope of the mesh where the membrane leaves it at less than 40 degrees, and meets it in a

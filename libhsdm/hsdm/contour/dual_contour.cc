@@ -354,7 +354,6 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     }
     if (result.intersections.moved > 0) result.cells.reset();
     settle_origins(result);
-    if (options.find_border) result.border = boundary_loops(result.mesh);
     return result;
 }
 

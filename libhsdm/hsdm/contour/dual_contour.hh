@@ -19,9 +19,8 @@ struct DualContourOptions {
     SplinterOptions splinters{.flat = splinters::flat};
     FillHolesOptions holes{.max_edges = holes::most_edges, .max_diameter = holes::widest};
     UntangleOptions untangle{.reach = untangling::reach, .nearby = untangling::nearby};
-    bool fill = true;         ///< close small boundary loops
-    bool all_round = false;   ///< the data go round the whole solid: it has no border (trim_unsupported)
-    bool find_border = false; ///< DualContour::border is wanted
+    bool fill = true;       ///< close small boundary loops
+    bool all_round = false; ///< the data go round the whole solid: it has no border (trim_unsupported)
 };
 
 struct DualContour {
@@ -41,7 +40,6 @@ struct DualContour {
     std::size_t doublets = 0;  ///< pairs of facets round one vertex merged into one facet
     Occurrences splinters;     ///< facets of splinters, removed
     FillHolesCounts holes;
-    BoundaryLoops border; ///< the loops left, if they are wanted
     UntangleCounts intersections;
     std::optional<FacetCells> cells; ///< the mesh's facets by voxel; empty if untangling moved vertices
     ManifoldCounts manifold;         ///< what make_manifold still had to mend at the end

@@ -177,25 +177,6 @@ PointFile read_as(const SourceBytes& bytes, Format format, TableKind kind, const
     }
 }
 
-} // namespace
-
-std::string_view mesh_format_of(const SourceBytes& bytes) {
-    Format format = recognise(bytes);
-    const KnownName* named = find_name(extension_of(bytes.name()));
-    if (format == Format::unknown && named) {
-        const bool binary = is_binary(Text::head_of(bytes));
-        if (named->format == (binary ? Format::stl : Format::off)) format = named->format;
-    }
-    for (const Format known : {Format::ply, Format::off, Format::obj, Format::stl, Format::om})
-        if (format == known)
-            return std::find_if(std::begin(known_names), std::end(known_names),
-                                [=](const KnownName& k) { return k.format == known; })
-                ->name;
-    return {};
-}
-
-namespace {
-
 /// Enters the scanners that the caller knows.
 void set_sensors(const SourceBytes& bytes, const ReadOptions& options, PointCloud& cloud) {
     if (options.sensors.empty()) return;
@@ -216,18 +197,6 @@ void set_sensors(const SourceBytes& bytes, const ReadOptions& options, PointClou
     column->is_label = true; // a vertex takes the scanner of most points
 }
 
-PointFile read_cloud(const SourceBytes& bytes, const ReadOptions& options);
-
-} // namespace
-
-PointFile read_points(const SourceBytes& bytes, const ReadOptions& options) {
-    PointFile file = read_cloud(bytes, options);
-    set_sensors(bytes, options, file.cloud);
-    return file;
-}
-
-namespace {
-
 PointFile read_cloud(const SourceBytes& bytes, const ReadOptions& options) {
     if (bytes.size() == 0) throw Error(bytes.name(), "is empty; expected points");
     check_options(options);
@@ -245,6 +214,27 @@ PointFile read_cloud(const SourceBytes& bytes, const ReadOptions& options) {
 }
 
 } // namespace
+
+std::string_view mesh_format_of(const SourceBytes& bytes) {
+    Format format = recognise(bytes);
+    const KnownName* named = find_name(extension_of(bytes.name()));
+    if (format == Format::unknown && named) {
+        const bool binary = is_binary(Text::head_of(bytes));
+        if (named->format == (binary ? Format::stl : Format::off)) format = named->format;
+    }
+    for (const Format known : {Format::ply, Format::off, Format::obj, Format::stl, Format::om})
+        if (format == known)
+            return std::find_if(std::begin(known_names), std::end(known_names),
+                                [=](const KnownName& k) { return k.format == known; })
+                ->name;
+    return {};
+}
+
+PointFile read_points(const SourceBytes& bytes, const ReadOptions& options) {
+    PointFile file = read_cloud(bytes, options);
+    set_sensors(bytes, options, file.cloud);
+    return file;
+}
 
 } // namespace io
 

@@ -1,6 +1,7 @@
 #pragma once
 // The normal of a polygon, weighted by its area.
 
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/polygon_mesh.hh"
 
 namespace hsdm {
@@ -20,6 +21,16 @@ inline Vec3 area_vector(std::span<const Vec3> corners) {
     for (std::size_t i = 1; i + 1 < corners.size(); ++i)
         sum += (corners[i] - corners[0]) % (corners[i + 1] - corners[0]);
     return sum;
+}
+
+/// Per vertex, the sum of the area vectors of the facets round it: its normal, weighted by area. O(corners).
+inline std::vector<Vec3> vertex_area_vectors(const PolygonMesh& mesh) {
+    std::vector<Vec3> sums = large_vector<Vec3>(mesh.vertex_count(), Vec3(0, 0, 0));
+    for_each_in_order(mesh.facet_count(), [&](std::size_t f) {
+        const Vec3 area = area_vector(mesh, mesh.facet(f));
+        for (const Index v : mesh.facet(f)) sums[v] += area;
+    });
+    return sums;
 }
 
 /// Mean of a facet's corners.

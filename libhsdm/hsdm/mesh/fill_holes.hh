@@ -46,6 +46,26 @@ struct BoundaryLoops {
     }
 };
 
+/// The length of a closed row of vertices.
+inline double length_of(const PolygonMesh& mesh, std::span<const Index> loop) {
+    double length = 0;
+    for (std::size_t i = 0; i < loop.size(); ++i)
+        length += (mesh.positions[loop[(i + 1) % loop.size()]] - mesh.positions[loop[i]]).norm();
+    return length;
+}
+
+/// visit(position) along the sides of loops, at their ends and no farther apart than `step`.
+template <class Visit>
+void for_each_sample(const PolygonMesh& mesh, const BoundaryLoops& loops, double step, const Visit& visit) {
+    for (std::size_t l = 0; l < loops.size(); ++l)
+        for (std::size_t i = 0; i < loops[l].size(); ++i) {
+            const Vec3 &p = mesh.positions[loops[l][i]],
+                       &q = mesh.positions[loops[l][(i + 1) % loops[l].size()]];
+            const double steps = std::max(1.0, std::ceil((q - p).norm() / step));
+            for (double s = 0; s <= steps; ++s) visit(p + (q - p) * (s / steps));
+        }
+}
+
 /// The boundary loops of a mesh of which no two facets run along an edge the same way. At a vertex with
 /// several fans each loop stays in the gap between two fans that are next to each other, so that closing the
 /// loops joins the fans; fans that face different ways keep their gaps to themselves. O(facets).

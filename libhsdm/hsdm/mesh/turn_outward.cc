@@ -216,4 +216,9 @@ std::size_t turn_outward(PolygonMesh& mesh, FacetLinks& links, FeatureHints& hin
     return turned;
 }
 
+void turn_over(PolygonMesh& mesh) {
+    FeatureHints none;
+    for_each_in_order(mesh.facet_count(), [&](std::size_t f) { turn(mesh, f, none); });
+}
+
 } // namespace hsdm

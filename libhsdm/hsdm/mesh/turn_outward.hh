@@ -13,4 +13,7 @@ namespace hsdm {
 /// faces inward.
 std::size_t turn_outward(PolygonMesh& mesh, FacetLinks& links, FeatureHints& hints);
 
+/// Turns every facet of a mesh that has no hints yet.
+void turn_over(PolygonMesh& mesh);
+
 } // namespace hsdm

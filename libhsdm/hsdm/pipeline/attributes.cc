@@ -3,7 +3,7 @@
 #include "hsdm/cloud/point_attributes.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/groups.hh"
-#include "hsdm/core/parallel_sort.hh"
+#include "hsdm/mesh/vertex_neighbors.hh"
 
 #include <algorithm>
 
@@ -87,26 +87,13 @@ void spread_attributes(PolygonMesh& mesh, std::vector<std::uint8_t> known) {
     for (VertexProperty& property : mesh.properties)
         if (!property.name.starts_with("hsdm_")) properties.push_back(&property);
     if (properties.empty()) return;
-    std::vector<std::array<Index, 2>> sides; // from an unknown vertex to one beside it
-    for_each_in_order(mesh.facet_count(), [&](std::size_t f) {
-        const auto corners = mesh.facet(f);
-        for (std::size_t c = 0; c < corners.size(); ++c) {
-            const Index a = corners[c], b = corners[(c + 1) % corners.size()];
-            if (known[a] == 0) sides.push_back({a, b});
-            if (known[b] == 0) sides.push_back({b, a});
-        }
-    });
-    parallel_sort_unique(sides);
-    std::vector<Index> first(mesh.vertex_count() + 1, 0);
-    for (const auto& side : sides) ++first[side[0] + 1];
-    counts_to_first(first);
-    const auto beside = [&](Index v) {
-        return std::span(sides.data() + first[v], sides.data() + first[v + 1]);
-    };
-    const auto is_known = [&](const std::array<Index, 2>& side) { return known[side[1]] != 0; };
+    std::vector<std::uint8_t> unknown(known.size());
+    for (std::size_t v = 0; v < known.size(); ++v) unknown[v] = known[v] == 0;
+    const VertexNeighbors beside(mesh, unknown);
+    const auto is_known = [&](Index v) { return known[v] != 0; };
     // Round by round: those beside a known one get their values from those that had some before the round.
     std::vector<Index> front = indices_where(mesh.vertex_count(), chunks::light, [&](Index v) {
-        return known[v] == 0 && std::ranges::any_of(beside(v), is_known);
+        return !is_known(v) && std::ranges::any_of(beside.of(v), is_known);
     });
     std::vector<WeightedValue> values;
     while (!front.empty()) {
@@ -115,14 +102,14 @@ void spread_attributes(PolygonMesh& mesh, std::vector<std::uint8_t> known) {
         for (const Index v : front)
             for (VertexProperty* property : properties) {
                 values.clear();
-                for (const auto& side : beside(v))
-                    if (is_known(side)) values.push_back({property->values[side[1]], 1});
+                for (const Index k : beside.of(v))
+                    if (is_known(k)) values.push_back({property->values[k], 1});
                 property->values[v] = average_of(property->type, values);
             }
         for (const Index v : front) known[v] = 1;
         for (const Index v : front)
-            for (const auto& side : beside(v))
-                if (!is_known(side)) next.push_back(side[1]);
+            for (const Index k : beside.of(v))
+                if (!is_known(k)) next.push_back(k);
         sort_unique(next);
         front.swap(next);
     }

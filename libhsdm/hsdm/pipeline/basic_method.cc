@@ -2,6 +2,7 @@
 
 #include "hsdm/basic/basic_facets.hh"
 #include "hsdm/pipeline/attributes.hh"
+#include "hsdm/pipeline/options.hh"
 #include "hsdm/pipeline/phase_geometry.hh"
 
 namespace hsdm {
@@ -12,8 +13,7 @@ namespace {
 BasicFacetOptions facet_options(const ReconstructOptions& options) {
     BasicFacetOptions result;
     if (options.holes == Holes::keep) result.max_hole_edges = 0;
-    if (options.holes == Holes::close || options.holes == Holes::complete)
-        result.max_hole_edges = FillHolesOptions::no_limit;
+    if (closes_all(options.holes)) result.max_hole_edges = FillHolesOptions::no_limit;
     return result;
 }
 

@@ -4,22 +4,13 @@
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/manifold.hh"
 #include "hsdm/mesh/remove_facets.hh"
-#include "hsdm/spatial/self_intersections.hh"
+#include "hsdm/pipeline/measure.hh"
 
 #include <cmath>
 #include <numbers>
 
 namespace hsdm {
 namespace {
-
-std::vector<Vec3> vertex_directions(const PolygonMesh& mesh) {
-    std::vector<Vec3> sums = large_vector<Vec3>(mesh.vertex_count(), Vec3(0, 0, 0));
-    for_each_in_order(mesh.facet_count(), [&](std::size_t f) {
-        const Vec3 area = area_vector(mesh, mesh.facet(f));
-        for (const Index v : mesh.facet(f)) sums[v] += area;
-    });
-    return sums;
-}
 
 /// Measured points within a voxel's edge of a place that face along a unit normal.
 Index count_around(const Octree& octree, const OctreeLevel& level, const Vec3& place, const Vec3& normal) {
@@ -43,7 +34,7 @@ Index count_around(const Octree& octree, const OctreeLevel& level, const Vec3& p
 
 std::vector<double> vertex_confidence(const Octree& octree, const OctreeLevel& level, const PolygonMesh& mesh,
                                       double spacing, bool turned) {
-    const std::vector<Vec3> directions = vertex_directions(mesh);
+    const std::vector<Vec3> directions = vertex_area_vectors(mesh);
     const double wide = level.voxel_size / spacing, expected = std::numbers::pi * wide * wide;
     std::vector<double> confidence = large_vector<double>(mesh.vertex_count());
     for_each_index(mesh.vertex_count(), chunks::heavy, [&](Index v) {
@@ -69,12 +60,7 @@ void trim_by_confidence(double least, const MethodInput& in, PolygonMesh& facets
     remove_isolated_vertices(facets);
     known.links.reset();
     known.cells.reset();
-    if (known.intersections.count > 0) {
-        const SelfIntersections left = find_self_intersections(facets);
-        known.intersections = {left.facet_pairs.size(), {}};
-        if (!left.facet_pairs.empty())
-            known.intersections.first = facets.positions[facets.facet(left.facet_pairs[0][0])[0]];
-    }
+    if (known.intersections.count > 0) known.intersections = facets_that_meet(facets);
     trimmed.first += in.octree.origin;
     note_dropped("facets of less confidence than asked for", trimmed, in.frame, report);
 }

@@ -6,6 +6,7 @@
 #include "hsdm/contour/patches.hh"
 #include "hsdm/contour/sheet_features.hh"
 #include "hsdm/contour/sheet_widths.hh"
+#include "hsdm/mesh/turn_outward.hh"
 #include "hsdm/pipeline/attributes.hh"
 #include "hsdm/pipeline/completed_cloud.hh"
 #include "hsdm/pipeline/confidence.hh"
@@ -90,8 +91,7 @@ NormalSets separated_sets(const MethodInput& in, Report& report) {
 /// turned.
 bool turn_solid_outward(PolygonMesh& mesh) {
     if (signed_volume(mesh) >= 0 || !measure_connectivity(mesh).closed()) return false;
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f)
-        std::reverse(mesh.corners.begin() + mesh.first[f], mesh.corners.begin() + mesh.first[f + 1]);
+    turn_over(mesh);
     return true;
 }
 
@@ -147,14 +147,13 @@ PolygonMesh finished(const MethodInput& in, const NormalSets& sets, DualContour 
 }
 
 /// The same with the points that complete the surface where these facets end, and again where loops are left.
-PolygonMesh completed(const MethodInput& in, DualContour draft, const Listed& listed, int rounds,
-                      Report& report, FacetKnowledge& known) {
+PolygonMesh completed(const MethodInput& in, DualContour draft, const BoundaryLoops& border,
+                      const Listed& listed, int rounds, Report& report, FacetKnowledge& known) {
     listed.restore(report);
     const double done = 0.4 + 0.05 * (completing::most_rounds - rounds);
-    note_loops(draft.mesh, draft.border, true, in.octree.origin, in.frame, report);
+    note_loops(draft.mesh, border, true, in.octree.origin, in.frame, report);
     const CompletedCloud cloud = in.phases.run("completion", done, report.seconds.facets, [&] {
-        return complete_cloud(in.octree, in.level,
-                              complete_surface(draft.mesh, draft.border, in.level.voxel_size));
+        return complete_cloud(in.octree, in.level, complete_surface(draft.mesh, border, in.level.voxel_size));
     });
     draft = DualContour();
     const MethodInput whole{in.frame, in.cloud, cloud.octree, cloud.level, in.options, in.phases};
@@ -164,11 +163,11 @@ PolygonMesh completed(const MethodInput& in, DualContour draft, const Listed& li
     DualContourOptions options =
         extended_options(last ? Holes::close : Holes::automatic, spacing_in_voxels(in, report));
     options.all_round = true;
-    options.find_border = !last;
     DualContour facets = facets_of(whole, sets, options, done + 0.02, report);
+    const BoundaryLoops left = last ? BoundaryLoops() : boundary_loops(facets.mesh);
     PolygonMesh mesh;
-    if (facets.border.size() > 0) {
-        mesh = completed(whole, std::move(facets), listed, rounds - 1, report, known);
+    if (left.size() > 0) {
+        mesh = completed(whole, std::move(facets), left, listed, rounds - 1, report, known);
     } else {
         VertexProperty marks = completed_vertices(cloud, facets.voxel);
         mesh = finished(whole, sets, std::move(facets), report, known);
@@ -195,11 +194,11 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
         in.phases.run("sets", 0.2, report.seconds.graph, [&] { return separated_sets(in, report); });
     report.grid.sets = sets.sets.size();
     const Holes holes = in.options.holes;
-    DualContourOptions options = extended_options(holes, spacing_in_voxels(in, report));
-    options.find_border = holes == Holes::complete;
-    DualContour facets = facets_of(in, sets, options, 0.3, report);
-    if (facets.border.size() > 0)
-        return completed(in, std::move(facets), listed, completing::most_rounds, report, known);
+    DualContour facets =
+        facets_of(in, sets, extended_options(holes, spacing_in_voxels(in, report)), 0.3, report);
+    if (holes == Holes::complete)
+        if (const BoundaryLoops border = boundary_loops(facets.mesh); border.size() > 0)
+            return completed(in, std::move(facets), border, listed, completing::most_rounds, report, known);
     PolygonMesh mesh = finished(in, sets, std::move(facets), report, known);
     if (holes == Holes::complete)
         mesh.properties.push_back(

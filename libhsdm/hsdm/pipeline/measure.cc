@@ -3,7 +3,6 @@
 #include "hsdm/cloud/strided.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/interruption.hh"
-#include "hsdm/mesh/fill_holes.hh"
 #include "hsdm/mesh/small_components.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/mesh/vertex_normals.hh"
@@ -165,12 +164,6 @@ Occurrences facets_that_meet(const PolygonMesh& facets) {
     const auto pairs = find_self_intersections(facets).facet_pairs;
     if (pairs.empty()) return {};
     return {pairs.size(), facets.positions[facets.facet(pairs[0][0])[0]]};
-}
-
-Occurrences open_loops(const PolygonMesh& facets) {
-    const BoundaryLoops loops = boundary_loops(facets);
-    if (loops.size() == 0) return {};
-    return {loops.size(), facets.positions[loops[0][0]]};
 }
 
 void measure_details(const PolyMesh& mesh, Report::Mesh& report) {

@@ -23,9 +23,6 @@ void measure_again(const PolyMesh& mesh, std::span<const Vec3> points, Report& r
 /// Pairs of facets that pass through each other, and a corner of the first.
 Occurrences facets_that_meet(const PolygonMesh& facets);
 
-/// Boundary loops, and a vertex of the first.
-Occurrences open_loops(const PolygonMesh& facets);
-
 /// Digest and shape of a finished mesh. O(corners).
 void measure_details(const PolyMesh& mesh, Report::Mesh& report);
 /// Its self-intersections, exactly: as long as a few phases of the reconstruction take. They are the report's

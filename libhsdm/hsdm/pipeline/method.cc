@@ -10,13 +10,9 @@ void note_dropped(const std::string& what, const Occurrences& discarded, const C
 
 void note_loops(const PolygonMesh& mesh, const BoundaryLoops& loops, bool completed, const Vec3& origin,
                 const CloudFrame& frame, Report& report) {
-    for (std::size_t l = 0; l < loops.size(); ++l) {
-        const auto vertices = loops[l];
-        const auto at = [&](std::size_t i) { return mesh.positions[vertices[i % vertices.size()]]; };
-        Report::Loop loop{frame.to_cloud(at(0) + origin), vertices.size(), 0, completed};
-        for (std::size_t i = 0; i < vertices.size(); ++i) loop.length += (at(i + 1) - at(i)).norm();
-        report.loops.push_back(loop);
-    }
+    for (std::size_t l = 0; l < loops.size(); ++l)
+        report.loops.push_back({frame.to_cloud(mesh.positions[loops[l][0]] + origin), loops[l].size(),
+                                length_of(mesh, loops[l]), completed});
 }
 
 } // namespace hsdm

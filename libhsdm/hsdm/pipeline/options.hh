@@ -14,6 +14,10 @@ Method method_for(const ReconstructOptions& options);
 
 /// Does the cloud need normals and has none, or none that the options want used?
 bool must_estimate(const PointView& cloud, const ReconstructOptions& options);
+/// Is no boundary loop to be left?
+inline bool closes_all(Holes holes) {
+    return holes == Holes::close || holes == Holes::complete;
+}
 bool wants_adaptive(const ReconstructOptions& options);
 bool wants_confidence(const ReconstructOptions& options);
 

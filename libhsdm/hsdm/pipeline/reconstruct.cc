@@ -84,6 +84,16 @@ void warn_of(const char* what, Occurrences relative, const MethodInput& in, Repo
     warn(what, relative, in.frame, report);
 }
 
+/// Lists the loops of the facets, and warns of them where none should be left.
+void note_open_loops(const MethodInput& in, const PolygonMesh& facets, Report& report) {
+    const bool closed = closes_all(in.options.holes) && in.options.trim == 0;
+    if (!closed && report.mesh.boundary_loops == 0) return;
+    const BoundaryLoops loops = boundary_loops(facets);
+    if (in.options.measure) note_loops(facets, loops, false, in.octree.origin, in.frame, report);
+    if (closed && loops.size() > 0)
+        warn_of(warning_of::open_loops, {loops.size(), facets.positions[loops[0][0]]}, in, report);
+}
+
 /// Turns facets outward in the cloud's own coordinates: far from the origin these may have fewer digits than
 /// those without the empty space. Returns how many were turned.
 std::size_t face_outward(const CloudFrame& frame, PolygonMesh& facets, FacetKnowledge& known) {
@@ -132,11 +142,8 @@ void reconstruct_level(InputCloud& cloud, PreparedCloud& prepared, int depth, bo
     warn_of(warning_of::intersections, known.intersections, input, report);
     leave_out_unsound(input, facets, known, report);
     check_facets(facets, level);
-    if (options.trim == 0 && (options.holes == Holes::close || options.holes == Holes::complete))
-        warn_of(warning_of::open_loops, open_loops(facets), input, report);
     phases.run("error", 0.6, seconds.error, [&] { drop_and_measure(points, input, facets, known, report); });
-    if (report.mesh.boundary_loops > 0)
-        note_loops(facets, boundary_loops(facets), false, octree.origin, prepared.frame, report);
+    note_open_loops(input, facets, report);
 
     as_read = std::vector<Vec3>();
     phases.run("mesh", 0.85, seconds.mesh, [&] {
