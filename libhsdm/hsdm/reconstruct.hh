@@ -26,7 +26,7 @@ enum class NormalSource {
 };
 /// Which boundary loops are closed. A loop that could be closed only by folding stays open.
 enum class Holes {
-    automatic, ///< those that are small against the sampling
+    automatic, ///< those that are small against the sampling, or slits as narrow as these
     keep,      ///< none
     close,     ///< all, over their own vertices
     complete,  ///< all, by the surface that is missing (extended method; the basic one closes)

@@ -50,3 +50,16 @@ inline constexpr int samples = 3;
 inline constexpr int most_rounds = 2;
 
 } // namespace hsdm::completing
+
+// slits.hh
+namespace hsdm::slits {
+
+/// squared length over twice the area of a loop that is a slit, at least.
+/// Why: a rectangle six times as long as wide has 16.3, a square 8: the ends of narrow pipes are borders.
+inline constexpr double least_slenderness = 16;
+
+/// cosine: mean, of the angle between what closes a slit and the mesh beside it; less goes back over the
+/// mesh. Why: 120 degrees; the rim of a blade is at 90, the back of a ribbon at 180.
+inline constexpr double least_agreement = -0.5;
+
+} // namespace hsdm::slits

@@ -328,12 +328,15 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     SplinterOptions splinters = options.splinters;
     splinters.flat *= h;
     result.splinters = drop_splinters(result.mesh, splinters);
-    result.handles_cut =
-        cut_handles(octree, level, sets, result.voxel, result.mesh); // holes have no data yet
+    const auto cut = [&] {
+        result.handles_cut += cut_handles(octree, level, sets, result.voxel, result.mesh);
+    };
+    cut();
     if (options.fill) {
         FillHolesOptions holes = options.holes;
         holes.max_diameter *= h;
         result.holes = fill_holes(result.mesh, holes);
+        if (result.holes.closed > 0) cut(); // those of which a hole was a side
     }
     result.doublets = merge_doublets(
         result.mesh, [&](Index v) { return result.classes[result.mesh.origin[v]] == VertexClass::smooth; });

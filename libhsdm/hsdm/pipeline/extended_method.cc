@@ -1,6 +1,7 @@
 #include "hsdm/pipeline/extended_method.hh"
 
 #include "hsdm/completion/constants.hh"
+#include "hsdm/completion/slits.hh"
 #include "hsdm/contour/dual_contour.hh"
 #include "hsdm/contour/outlier_sets.hh"
 #include "hsdm/contour/patches.hh"
@@ -18,18 +19,24 @@
 #include "hsdm/quality/topology.hh"
 
 #include <algorithm>
+#include <optional>
 
 namespace hsdm {
 namespace {
 
+const FillHolesOptions every_hole{.max_edges = FillHolesOptions::no_limit, .insist = true};
+
 /// keep closes nothing, close all loops, auto and complete those that are small against the sampling.
-DualContourOptions extended_options(Holes holes, double spacing_in_voxels) {
+DualContourOptions options_for(const MethodInput& in, const Report& report) {
+    const double spacing_in_voxels = report.input.spacing / in.level.voxel_size;
     DualContourOptions result;
-    result.holes.max_diameter = std::max(holes::widest_in_spacings * spacing_in_voxels, holes::widest);
-    result.holes.insist = true;
-    result.fill = holes != Holes::keep;
-    if (holes == Holes::close)
-        result.holes = {.max_edges = FillHolesOptions::no_limit, .max_diameter = Box::inf, .insist = true};
+    result.fill = in.options.holes != Holes::keep;
+    if (in.options.holes == Holes::close) {
+        result.holes = every_hole;
+    } else {
+        result.holes.max_diameter = std::max(holes::widest_in_spacings * spacing_in_voxels, holes::widest);
+        result.holes.insist = true;
+    }
     return result;
 }
 
@@ -61,18 +68,6 @@ void note_counts(const DualContour& facets, Report& report) {
     report.rejected["vertices_split"] = facets.manifold.split_vertices;
 }
 
-/// How much the report lists, so that what was noted of a draft can be taken back.
-struct Listed {
-    std::size_t dropped, warnings;
-
-    explicit Listed(const Report& report)
-        : dropped(report.dropped.size()), warnings(report.warnings.size()) {}
-    void restore(Report& report) const {
-        report.dropped.resize(dropped);
-        report.warnings.resize(warnings);
-    }
-};
-
 /// The level's sets without outliers, parted at walls and gaps; notes what was dropped or is doubtful.
 NormalSets separated_sets(const MethodInput& in, Report& report) {
     NormalSets all = build_normal_sets(in.octree, in.level, {.merge_layers = in.options.merge_layers});
@@ -93,24 +88,6 @@ bool turn_solid_outward(PolygonMesh& mesh) {
     if (signed_volume(mesh) >= 0 || !measure_connectivity(mesh).closed()) return false;
     turn_over(mesh);
     return true;
-}
-
-double spacing_in_voxels(const MethodInput& in, const Report& report) {
-    return report.input.spacing / in.level.voxel_size;
-}
-
-DualContour facets_of(const MethodInput& in, const NormalSets& sets, const DualContourOptions& options,
-                      double done, Report& report) {
-    return in.phases.run("facets", done, report.seconds.facets,
-                         [&] { return dual_contour(in.octree, in.level, sets, options); });
-}
-
-/// Marks the vertices of voxels that have none but completed points.
-VertexProperty completed_vertices(const CompletedCloud& cloud, std::span<const Index> voxel) {
-    const std::vector<std::uint8_t> completed = cloud.completed_voxels();
-    VertexProperty property{"hsdm_completed", VertexProperty::Type::uint8, std::vector<double>(voxel.size())};
-    for (std::size_t v = 0; v < voxel.size(); ++v) property.values[v] = completed[voxel[v]];
-    return property;
 }
 
 /// What is known of facets once they are made, and what their vertices inherit from the points.
@@ -146,63 +123,117 @@ PolygonMesh finished(const MethodInput& in, const NormalSets& sets, DualContour 
     return std::move(facets.mesh);
 }
 
-/// The same with the points that complete the surface where these facets end, and again where loops are left.
-PolygonMesh completed(const MethodInput& in, DualContour draft, const BoundaryLoops& border,
-                      const Listed& listed, int rounds, Report& report, FacetKnowledge& known) {
-    listed.restore(report);
-    const double done = 0.4 + 0.05 * (completing::most_rounds - rounds);
-    note_loops(draft.mesh, border, true, in.octree.origin, in.frame, report);
-    const CompletedCloud cloud = in.phases.run("completion", done, report.seconds.facets, [&] {
-        return complete_cloud(in.octree, in.level, complete_surface(draft.mesh, border, in.level.voxel_size));
-    });
-    draft = DualContour();
-    const MethodInput whole{in.frame, in.cloud, cloud.octree, cloud.level, in.options, in.phases};
-    const NormalSets sets = in.phases.run("sets", done + 0.01, report.seconds.graph,
-                                          [&] { return separated_sets(whole, report); });
-    const bool last = rounds == 1;
-    DualContourOptions options =
-        extended_options(last ? Holes::close : Holes::automatic, spacing_in_voxels(in, report));
-    options.all_round = true;
-    DualContour facets = facets_of(whole, sets, options, done + 0.02, report);
-    const BoundaryLoops left = last ? BoundaryLoops() : boundary_loops(facets.mesh);
-    PolygonMesh mesh;
-    if (left.size() > 0) {
-        mesh = completed(whole, std::move(facets), left, listed, rounds - 1, report, known);
-    } else {
-        VertexProperty marks = completed_vertices(cloud, facets.voxel);
-        mesh = finished(whole, sets, std::move(facets), report, known);
-        std::vector<std::uint8_t> measured(marks.values.size());
-        for (std::size_t v = 0; v < measured.size(); ++v) measured[v] = marks.values[v] == 0;
-        spread_attributes(mesh, std::move(measured));
-        mesh.properties.push_back(std::move(marks));
+/// Facets of a cloud, and what the report says of them.
+struct Draft {
+    std::optional<CompletedCloud> completed; ///< none: the measured points alone
+    Report report;
+    NormalSets sets{};
+    DualContour facets{};
+
+    MethodInput input(const MethodInput& measured) const {
+        if (!completed) return measured;
+        return {measured.frame,   measured.cloud,   completed->octree,
+                completed->level, measured.options, measured.phases};
     }
-    for (VertexProperty& property : mesh.properties) // the larger cube's level is no one's concern
-        if (property.name == "hsdm_level")
-            std::ranges::fill(property.values, static_cast<double>(in.level.depth));
-    const Vec3 moved = cloud.octree.origin - in.octree.origin;
-    for (Vec3& p : mesh.positions) p += moved;
-    known.intersections.first += moved;
-    known.cells.reset(); // their voxels are those of the larger cube
-    return mesh;
+};
+
+/// Sets and facets of the draft's cloud; `done` is the share of the whole run before it.
+void make_facets(const MethodInput& measured, double done, const DualContourOptions& options, Draft& draft) {
+    const MethodInput in = draft.input(measured);
+    Report& report = draft.report;
+    draft.sets =
+        in.phases.run("sets", done, report.seconds.graph, [&] { return separated_sets(in, report); });
+    draft.facets = in.phases.run("facets", done + 0.02, report.seconds.facets,
+                                 [&] { return dual_contour(in.octree, in.level, draft.sets, options); });
+}
+
+/// The loops of a draft to complete: all, or those of slits if borders are to stay.
+BoundaryLoops loops_to_complete(const MethodInput& in, const Draft& draft) {
+    const DualContour& facets = draft.facets;
+    if (in.options.holes == Holes::complete) return boundary_loops(facets.mesh);
+    if (in.options.holes != Holes::automatic || facets.holes.loops == facets.holes.closed) return {};
+    const double widest = options_for(in, draft.report).holes.max_diameter;
+    return narrow_loops(facets.mesh, boundary_loops(facets.mesh), widest * in.level.voxel_size);
+}
+
+/// The draft's cloud with points that complete the surface at these loops; `base` is the report before there
+/// were facets.
+Draft completed(const MethodInput& measured, const Draft& draft, const BoundaryLoops& loops, double done,
+                Report base) {
+    const MethodInput in = draft.input(measured);
+    Draft next{{}, std::move(base)};
+    next.report.seconds = draft.report.seconds;
+    next.report.loops = draft.report.loops;
+    note_loops(draft.facets.mesh, loops, true, in.octree.origin, in.frame, next.report);
+    next.completed = in.phases.run("completion", done, next.report.seconds.facets, [&] {
+        const double h = in.level.voxel_size;
+        return complete_cloud(in.octree, in.level,
+                              in.options.holes == Holes::complete
+                                  ? complete_surface(draft.facets.mesh, loops, h)
+                                  : points_across(draft.facets.mesh, loops, h));
+    });
+    return next;
+}
+
+/// Completes the facets' surface, and once more where loops are left. Where borders are to stay a guess that
+/// passes through more than it closes is not taken.
+void complete(const MethodInput& in, const Report& base, Draft& draft) {
+    const bool all_round = in.options.holes == Holes::complete;
+    for (int round = 1; round <= completing::most_rounds; ++round) {
+        const BoundaryLoops loops = loops_to_complete(in, draft);
+        if (loops.size() == 0) return;
+        const double done = 0.35 + 0.05 * round;
+        Draft next = completed(in, draft, loops, done, base);
+        if (all_round) draft.facets = DualContour(); // frees it
+        DualContourOptions options = options_for(in, base);
+        if (all_round && round == completing::most_rounds) options.holes = every_hole;
+        options.all_round = all_round;
+        make_facets(in, done + 0.01, options, next);
+        if (!all_round && next.facets.intersections.after > draft.facets.intersections.after) {
+            draft.report.seconds = next.report.seconds;
+            return;
+        }
+        draft = std::move(next);
+    }
+}
+
+/// The vertices of a completed cloud's mesh as if it were the measured one's: where these lie, with colours
+/// and scalars everywhere.
+void return_to(const MethodInput& measured, const Draft& draft, std::span<const Index> voxel,
+               PolygonMesh& mesh, FacetKnowledge& known) {
+    VertexProperty marks{"hsdm_completed", VertexProperty::Type::uint8,
+                         std::vector<double>(mesh.vertex_count())};
+    if (draft.completed) {
+        const std::vector<std::uint8_t> completed = draft.completed->completed_voxels();
+        std::vector<std::uint8_t> is_measured(voxel.size());
+        for (std::size_t v = 0; v < voxel.size(); ++v) {
+            is_measured[v] = completed[voxel[v]] == 0;
+            marks.values[v] = completed[voxel[v]];
+        }
+        spread_attributes(mesh, std::move(is_measured));
+        for (VertexProperty& property : mesh.properties) // the larger cube's level is no one's concern
+            if (property.name == "hsdm_level")
+                std::ranges::fill(property.values, static_cast<double>(measured.level.depth));
+        const Vec3 moved = draft.completed->octree.origin - measured.octree.origin;
+        for (Vec3& p : mesh.positions) p += moved;
+        known.intersections.first += moved;
+        known.cells.reset(); // their voxels are those of the larger cube
+    }
+    mesh.properties.push_back(std::move(marks));
 }
 
 } // namespace
 
 PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledge& known) {
-    const Listed listed(report);
-    const NormalSets sets =
-        in.phases.run("sets", 0.2, report.seconds.graph, [&] { return separated_sets(in, report); });
-    report.grid.sets = sets.sets.size();
-    const Holes holes = in.options.holes;
-    DualContour facets =
-        facets_of(in, sets, extended_options(holes, spacing_in_voxels(in, report)), 0.3, report);
-    if (holes == Holes::complete)
-        if (const BoundaryLoops border = boundary_loops(facets.mesh); border.size() > 0)
-            return completed(in, std::move(facets), border, listed, completing::most_rounds, report, known);
-    PolygonMesh mesh = finished(in, sets, std::move(facets), report, known);
-    if (holes == Holes::complete)
-        mesh.properties.push_back(
-            {"hsdm_completed", VertexProperty::Type::uint8, std::vector<double>(mesh.vertex_count())});
+    Draft draft{{}, report};
+    make_facets(in, 0.2, options_for(in, report), draft);
+    draft.report.grid.sets = draft.sets.sets.size();
+    complete(in, report, draft);
+    report = std::move(draft.report);
+    const bool marked = draft.completed || in.options.holes == Holes::complete;
+    const std::vector<Index> voxel = marked ? draft.facets.voxel : std::vector<Index>();
+    PolygonMesh mesh = finished(draft.input(in), draft.sets, std::move(draft.facets), report, known);
+    if (marked) return_to(in, draft, voxel, mesh, known);
     return mesh;
 }
 

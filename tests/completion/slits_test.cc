@@ -1,0 +1,133 @@
+#include "hsdm/completion/slits.hh"
+#include "hsdm/mesh/remove_facets.hh"
+#include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/reconstruct.hh"
+#include "hsdm/spatial/self_intersections.hh"
+#include "support/check.hh"
+#include "support/meshes.hh"
+#include "support/sample.hh"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+using namespace hsdm;
+using namespace hsdm::support;
+
+namespace {
+
+/// A flat sheet of columns x rows squares of edge 1, without those at which `gone(column, row)`.
+template <class Gone>
+PolygonMesh sheet_without(Index columns, Index rows, const Gone& gone) {
+    PolygonMesh mesh = quad_sheet(columns, rows, [](Index c, Index r) { return Vec3(c, r, 0); });
+    remove_facets(mesh, [&](std::size_t f) {
+        return gone(static_cast<Index>(f % columns), static_cast<Index>(f / columns));
+    });
+    return mesh;
+}
+
+BoundaryLoops slits_of(const PolygonMesh& mesh, double width) {
+    return narrow_loops(mesh, boundary_loops(mesh), width);
+}
+
+} // namespace
+
+TEST_CASE("long and narrow loops are slits, windows and outlines are borders", "[completion]") {
+    // Slits of one and of three squares, 24 long, a window of 8 by 8, a nick of 2 by 4.
+    const auto inside = [](Index c, Index r, std::array<Index, 4> box) {
+        return c >= box[0] && c < box[1] && r >= box[2] && r < box[3];
+    };
+    const PolygonMesh mesh = sheet_without(40, 40, [&](Index c, Index r) {
+        return inside(c, r, {8, 32, 5, 6}) || inside(c, r, {8, 32, 12, 15}) || inside(c, r, {10, 18, 22, 30})
+               || inside(c, r, {25, 27, 22, 26});
+    });
+    REQUIRE(boundary_loops(mesh).size() == 5);
+    const BoundaryLoops slits = slits_of(mesh, 4);
+    REQUIRE(slits.size() == 1);
+    CHECK(slits[0].size() == 50);
+    for (Index v : slits[0]) CHECK((mesh.positions[v][1] == 5 || mesh.positions[v][1] == 6));
+    CHECK(slits_of(mesh, 6).size() == 2);
+    CHECK(slits_of(mesh, 1.5).size() == 0);
+}
+
+TEST_CASE("the outline of a ribbon is no slit", "[completion]") {
+    CHECK(slits_of(sheet_without(40, 1, [](Index, Index) { return false; }), 8).size() == 0);
+}
+
+TEST_CASE("the end of a narrow pipe is no slit, the open edge of a blade is one", "[completion]") {
+    CHECK(slits_of(round_tube(24, 12, 1, 0.5), 8).size() == 0);
+    // Two sides of 30 by 4, a unit apart at their open end and joined at the other three, as a bag is.
+    PolygonMesh bag = quad_tube(60, 4, [](Index c, Index r) {
+        const double side = c < 30 ? 0.5 : -0.5;
+        const double along = c < 30 ? c : 59 - c;
+        return Vec3(along, side * (r + 1) / 5, r);
+    });
+    std::vector<Index> bottom(60);
+    for (Index c = 0; c < 60; ++c) bottom[c] = 59 - c;
+    bag.add_facet(bottom);
+    const BoundaryLoops slits = slits_of(bag, 4);
+    REQUIRE(slits.size() == 1);
+    for (Index v : slits[0]) CHECK(bag.positions[v][2] == 4);
+}
+
+TEST_CASE("points across a slit lie in it, face as it does and fill it", "[completion]") {
+    const PolygonMesh mesh = sheet_without(30, 9, [](Index c, Index r) { return r == 4 && c > 2 && c < 27; });
+    const double voxel = 0.75;
+    const CompletedPoints points = points_across(mesh, slits_of(mesh, 4), voxel);
+    REQUIRE(points.positions.size() == points.normals.size());
+    std::vector<int> in_square(24 * 2);
+    for (std::size_t i = 0; i < points.positions.size(); ++i) {
+        const Vec3& p = points.positions[i];
+        CHECK(p[2] == 0);
+        CHECK(points.normals[i][2] == 1);
+        REQUIRE((p[0] > 3 && p[0] < 27 && p[1] > 4 && p[1] < 5));
+        ++in_square[2 * static_cast<std::size_t>(p[0] - 3) + (p[1] > 4.5 ? 1 : 0)];
+    }
+    // Nine to a voxel and more: eight to half a square.
+    for (int count : in_square) CHECK(count >= 6);
+    CHECK(points.positions.size() < 2 * 24 * 16);
+}
+
+TEST_CASE("a slit that the sampling left is closed and marked, a window stays open", "[completion]") {
+    // In the top of a box: a slit of 1 by 0.14, a window of 0.32 by 0.32; voxels of 0.05.
+    const Solid part = in_general_pose(box({2, 1.6, 1.2}));
+    const PointCloud all = sample(part, {.points = 60000});
+    const Vec3 up = all.normals[0];
+    Vec3 middle(0, 0, 0);
+    double count = 0;
+    for (std::size_t i = 0; i < all.positions.size(); ++i)
+        if ((all.normals[i] | up) > 0.99) middle += all.positions[i], ++count;
+    middle /= count;
+    Vec3 x = up % Vec3(0, 0, 1);
+    if (x.norm() < 0.1) x = up % Vec3(0, 1, 0);
+    x.normalize();
+    const Vec3 y = up % x;
+    PointCloud cloud;
+    for (std::size_t i = 0; i < all.positions.size(); ++i) {
+        const Vec3 d = all.positions[i] - middle;
+        const double u = d | x, v = d | y;
+        const bool slit = std::abs(u) < 0.5 && std::abs(v - 0.2) < 0.07;
+        const bool window = std::abs(u) < 0.16 && std::abs(v + 0.12) < 0.16;
+        if ((all.normals[i] | up) > 0.99 && (slit || window)) continue;
+        cloud.positions.push_back(all.positions[i]);
+        cloud.normals.push_back(all.normals[i]);
+    }
+    ReconstructOptions options;
+    options.voxel_size = 0.05;
+    const auto loops = [&](Holes holes) {
+        options.holes = holes;
+        const Reconstruction result = reconstruct(cloud, options);
+        const PolygonMesh mesh = to_polygons(result.mesh);
+        CHECK(faults(mesh).empty());
+        CHECK(find_self_intersections(mesh).facet_pairs.empty());
+        return result.report;
+    };
+    CHECK(loops(Holes::keep).mesh.boundary_loops == 2);
+    const Report report = loops(Holes::automatic);
+    CHECK(report.mesh.boundary_loops == 1);
+    CHECK(report.mesh.euler == 1);
+    REQUIRE(report.loops.size() == 2);
+    CHECK(report.loops[0].completed);
+    CHECK_FALSE(report.loops[1].completed);
+    CHECK(report.loops[1].length < 1.6);
+}
