@@ -4,6 +4,8 @@
 #include "hsdm/quality/topology.hh"
 #include "hsdm/spatial/self_intersections.hh"
 
+#include "support/random.hh"
+
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -104,11 +106,11 @@ TEST_CASE("what still sticks through another sheet is merged into its neighbours
     const std::vector<Vec3> before = mesh.positions;
     const std::size_t facets = mesh.facet_count();
 
-    const UntangleCounts none = collapse_tangles(mesh, 1, 0);
+    const UntangleCounts none = mend_tangles(mesh, 1, 0);
     CHECK(none.after == none.before);
     CHECK(mesh.facet_count() == facets);
 
-    const UntangleCounts counts = collapse_tangles(mesh, 1);
+    const UntangleCounts counts = mend_tangles(mesh, 1);
     CHECK(counts.before > 0);
     CHECK(counts.after == 0);
     CHECK(counts.moved >= 1);
@@ -118,6 +120,49 @@ TEST_CASE("what still sticks through another sheet is merged into its neighbours
     CHECK(mesh.vertex_count() == before.size() - counts.moved);
     CHECK(measure_topology(mesh).euler == 2); // of two discs
     CHECK(measure_topology(mesh).boundary_loops == 2);
+}
+
+TEST_CASE("mending leaves fewer intersections or none, and the topology as it is", "[untangle]") {
+    int ended = 0;
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+        INFO("seed " << seed);
+        support::Random random(seed);
+        PolygonMesh mesh;
+        add_sheet(mesh, 8, 0);
+        add_sheet(mesh, 8, 0.5);
+        for (int i = 0; i < 6; ++i) { // crumpled in the middle
+            Vec3& p = mesh.positions[random.below(2) * 81 + 9 * (3 + random.below(3)) + 3 + random.below(3)];
+            p += Vec3(random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6), random.uniform(-0.8, 0.8));
+        }
+        const std::vector<Vec3> before = mesh.positions;
+        const UntangleCounts counts = mend_tangles(mesh, 1);
+        CHECK(find_self_intersections(mesh).triangle_pairs == counts.after);
+        CHECK(counts.after <= counts.before);
+        if (counts.moved > 0) CHECK(counts.after < counts.before);
+        ended += counts.before > 0 && counts.after == 0;
+        CHECK(mesh.positions == before);
+        remove_isolated_vertices(mesh);
+        CHECK(measure_topology(mesh).manifold());
+        CHECK(measure_topology(mesh).euler == 2);
+        CHECK(measure_topology(mesh).boundary_loops == 2);
+    }
+    CHECK(ended >= 20);
+}
+
+TEST_CASE("a quad that passes through others along one diagonal is cut along the other one", "[untangle]") {
+    // Along the first diagonal the quad is a ridge at 1, along the other a valley at 0; no edge of a border
+    // collapses.
+    PolygonMesh mesh;
+    mesh.positions = {{0, 0, 1},       {1, 0, 0},     {1, 1, 1},    {0, 1, 0},
+                      {0.5, 0.5, 0.8}, {0.6, 0.5, 2}, {0.4, 0.5, 2}};
+    mesh.add_facet(std::array<Index, 4>{0, 1, 2, 3});
+    mesh.add_facet(std::array<Index, 3>{4, 5, 6});
+    const UntangleCounts counts = mend_tangles(mesh, 1);
+    CHECK(counts.before > 0);
+    CHECK(counts.after == 0);
+    CHECK(mesh.facet_count() == 3);
+    CHECK(find_self_intersections(mesh).triangle_pairs == 0);
+    CHECK(measure_topology(mesh).boundary_edges == 7);
 }
 
 TEST_CASE("options of untangling out of range are refused", "[untangle]") {

@@ -349,7 +349,7 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     result.cells.emplace(result.mesh, h);
     result.intersections = untangle(result.mesh, untangle_options, &*result.cells);
     if (result.intersections.after > 0) {
-        const UntangleCounts merged = collapse_tangles(result.mesh, untangle_options.nearby);
+        const UntangleCounts merged = mend_tangles(result.mesh, untangle_options.nearby);
         result.intersections.moved += merged.moved;
         result.intersections.after = merged.after;
         result.intersections.first = merged.first;

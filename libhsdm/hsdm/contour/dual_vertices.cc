@@ -70,9 +70,9 @@ struct Cut {
     std::vector<Piece> pieces;
 };
 
-/// Cuts a chain so that no vertex gets both sides of a thin part. Wherever the chain leads from one side to
-/// the other it is cut: across the link if that goes round the rim, else in a facet of the rim's own face,
-/// between the sides.
+/// Cuts a chain so that no vertex gets both sides of a thin part or of a gap, the thin part of what is
+/// around. Wherever the chain leads from one side to the other it is cut: across the link if that goes round
+/// the rim, else in a facet of the rim's own face, between the sides.
 class ChainCutter {
 public:
     ChainCutter(const GridPoints& grid, const Crossings& crossings, const Links& links)
@@ -163,7 +163,8 @@ private:
         return k * k + l * l - 2 * cosine * k * l < cuts::tip_reach * cuts::tip_reach * (1 - cosine * cosine);
     }
 
-    /// How wide a face is between the planes of two sides, in voxels; 0 if it belongs to one of them.
+    /// How wide a face is between the planes of two sides, in voxels; 0 if it belongs to one of them. The rim
+    /// of a wall lies within both, the bottom of a gap beyond both.
     double width(FacetCorner face, FacetCorner a, FacetCorner b) const {
         double sum = 0;
         for (FacetCorner side : {a, b}) {
@@ -173,7 +174,7 @@ private:
             const Vec3 d = crossing_position(grid_, of(side), 1) - crossing_position(grid_, of(face), 1);
             sum += (n | d) / std::sqrt(std::max(1 - cosine * cosine, 0.01));
         }
-        return sum;
+        return std::abs(sum);
     }
 
     /// Does the way from corner i to the other side contain a shorter or equal one from a later corner?

@@ -2,8 +2,10 @@
 
 #include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/collapse_edges.hh"
 #include "hsdm/mesh/part_of.hh"
+#include "hsdm/mesh/remove_facets.hh"
 #include "hsdm/spatial/self_intersections.hh"
 
 #include <algorithm>
@@ -60,17 +62,29 @@ public:
     /// Per vertex of the part: may it move?
     bool inner(Index v) const { return inner_[v] != 0; }
 
-    /// Per vertex of the part, that of the mesh.
-    std::vector<Index> whole() const {
-        std::vector<Index> numbers(part.vertex_count());
-        for (std::size_t v = 0; v < of_vertex_.size(); ++v)
-            if (of_vertex_[v] != no_index) numbers[of_vertex_[v]] = static_cast<Index>(v);
-        return numbers;
-    }
-
     void write_back(PolygonMesh& mesh) const {
         for (std::size_t v = 0; v < of_vertex_.size(); ++v)
             if (of_vertex_[v] != no_index) mesh.positions[v] = part.positions[of_vertex_[v]];
+    }
+
+    /// The same where the part's facets have changed too: they follow the mesh's others.
+    void replace_facets(PolygonMesh& mesh) const {
+        write_back(mesh);
+        std::size_t next = 0;
+        remove_facets(mesh, [&](std::size_t f) {
+            const bool out = next < facets_.size() && facets_[next] == f;
+            next += out;
+            return out;
+        });
+        std::vector<Index> of_part(part.vertex_count());
+        for (std::size_t v = 0; v < of_vertex_.size(); ++v)
+            if (of_vertex_[v] != no_index) of_part[of_vertex_[v]] = static_cast<Index>(v);
+        std::vector<Index> corners;
+        for (std::size_t f = 0; f < part.facet_count(); ++f) {
+            corners.clear();
+            for (Index v : part.facet(f)) corners.push_back(of_part[v]);
+            mesh.add_facet(corners);
+        }
     }
 
 private:
@@ -98,47 +112,111 @@ std::vector<Vec3> neighbour_means(const PolygonMesh& mesh) {
     return sums;
 }
 
-/// The edges that end at facets that intersect others, either way round, shortest first, if both ends may
-/// move.
-std::vector<EdgeCollapse> tangled_edges(const Neighbourhood& around,
-                                        const std::vector<std::array<Index, 2>>& pairs) {
-    const PolygonMesh& mesh = around.part;
-    std::vector<std::uint8_t> tangled(mesh.vertex_count(), 0);
-    for (const auto& pair : pairs)
-        for (Index f : pair)
-            for (Index v : mesh.facet(f)) tangled[v] = 1;
-    std::vector<std::tuple<double, Index, Index>> edges;
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-        const auto ring = mesh.facet(f);
-        for (std::size_t i = 0; i < ring.size(); ++i) {
-            const Index a = ring[i], b = ring[(i + 1) % ring.size()];
-            if (!(tangled[a] || tangled[b]) || !around.inner(a) || !around.inner(b)) continue;
-            const double length = (mesh.positions[a] - mesh.positions[b]).sqrnorm();
-            edges.emplace_back(length, a, b);
-            edges.emplace_back(length, b, a);
-        }
-    }
-    sort_unique(edges);
-    std::vector<EdgeCollapse> collapses;
-    collapses.reserve(edges.size());
-    for (const auto& [length, from, to] : edges) collapses.push_back({from, to, mesh.positions[to]});
-    return collapses;
-}
+/// Changes the part at one place after the other, as long as each change leaves fewer intersections.
+class Mender {
+public:
+    explicit Mender(Neighbourhood& around) : around_(around), found_(find_self_intersections(around.part)) {}
 
-/// Collapses the first of the edges that leaves fewer intersections than were found; false if none does.
-bool collapse_one(Neighbourhood& around, SelfIntersections& found, EdgeCollapse& done) {
-    for (const EdgeCollapse& edge : tangled_edges(around, found.facet_pairs)) {
-        PolygonMesh trial = around.part;
-        if (!collapse_edges(trial, {{edge}})[0]) continue;
-        SelfIntersections left = find_self_intersections(trial);
-        if (left.triangle_pairs >= found.triangle_pairs) continue;
-        around.part = std::move(trial);
-        found = std::move(left);
-        done = edge;
+    std::size_t run() {
+        std::size_t changes = 0;
+        while (found_.triangle_pairs > 0 && (collapse_an_edge() || cut_a_quad())) ++changes;
+        return changes;
+    }
+
+    const SelfIntersections& found() const { return found_; }
+
+private:
+    /// Takes the changed part if fewer facets meet in it.
+    bool take(PolygonMesh&& changed) {
+        SelfIntersections left = find_self_intersections(changed);
+        if (left.triangle_pairs >= found_.triangle_pairs) return false;
+        around_.part = std::move(changed);
+        found_ = std::move(left);
         return true;
     }
-    return false;
-}
+
+    std::vector<Index> tangled_facets() const {
+        std::vector<Index> facets;
+        for (const auto& pair : found_.facet_pairs) facets.insert(facets.end(), pair.begin(), pair.end());
+        sort_unique(facets);
+        return facets;
+    }
+
+    std::vector<Index> tangled_vertices() const {
+        std::vector<Index> vertices;
+        for (const Index f : tangled_facets())
+            for (const Index v : around_.part.facet(f)) vertices.push_back(v);
+        sort_unique(vertices);
+        return vertices;
+    }
+
+    /// Cuts a quad that meets others in two, one way or the other.
+    bool cut_a_quad() {
+        for (const Index f : tangled_facets()) {
+            const auto quad = around_.part.facet(f);
+            if (quad.size() != 4) continue;
+            for (std::size_t from : {0u, 1u}) {
+                if (!may_join(quad[from], quad[from + 2])) continue;
+                const std::array<Index, 3> one{quad[from], quad[from + 1], quad[from + 2]},
+                    other{quad[from], quad[from + 2], quad[(from + 3) % 4]};
+                PolygonMesh changed = around_.part;
+                remove_facets(changed, [&](std::size_t g) { return g == f; });
+                changed.add_facet(one);
+                changed.add_facet(other);
+                if (take(std::move(changed))) return true;
+            }
+        }
+        return false;
+    }
+
+    /// Would an edge between two vertices be a new one?
+    bool may_join(Index a, Index b) const {
+        if (!around_.inner(a) && !around_.inner(b)) return false; // there may be one outside
+        for (std::size_t f = 0; f < around_.part.facet_count(); ++f) {
+            const auto ring = around_.part.facet(f);
+            for (std::size_t i = 0; i < ring.size(); ++i) {
+                const Index c = ring[i], d = ring[(i + 1) % ring.size()];
+                if ((a == c && b == d) || (a == d && b == c)) return false;
+            }
+        }
+        return true;
+    }
+
+    /// Collapses an edge that ends at facets that meet others, the shortest first.
+    bool collapse_an_edge() {
+        for (const EdgeCollapse& edge : tangled_edges()) {
+            PolygonMesh changed = around_.part;
+            if (collapse_edges(changed, {{edge}})[0] && take(std::move(changed))) return true;
+        }
+        return false;
+    }
+
+    /// Either way round, if both ends may move.
+    std::vector<EdgeCollapse> tangled_edges() const {
+        const PolygonMesh& mesh = around_.part;
+        std::vector<std::uint8_t> tangled(mesh.vertex_count(), 0);
+        for (const Index v : tangled_vertices()) tangled[v] = 1;
+        std::vector<std::tuple<double, Index, Index>> edges;
+        for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+            const auto ring = mesh.facet(f);
+            for (std::size_t i = 0; i < ring.size(); ++i) {
+                const Index a = ring[i], b = ring[(i + 1) % ring.size()];
+                if (!(tangled[a] || tangled[b]) || !around_.inner(a) || !around_.inner(b)) continue;
+                const double length = (mesh.positions[a] - mesh.positions[b]).sqrnorm();
+                edges.emplace_back(length, a, b);
+                edges.emplace_back(length, b, a);
+            }
+        }
+        sort_unique(edges);
+        std::vector<EdgeCollapse> collapses;
+        collapses.reserve(edges.size());
+        for (const auto& [length, from, to] : edges) collapses.push_back({from, to, mesh.positions[to]});
+        return collapses;
+    }
+
+    Neighbourhood& around_;
+    SelfIntersections found_;
+};
 
 void validate(const UntangleOptions& options) {
     check_option(options.rounds >= 0, "rounds", options.rounds, "be 0 or more");
@@ -193,7 +271,7 @@ UntangleCounts untangle(PolygonMesh& mesh, const UntangleOptions& options, const
     return counts;
 }
 
-UntangleCounts collapse_tangles(PolygonMesh& mesh, double nearby, std::size_t most_pairs) {
+UntangleCounts mend_tangles(PolygonMesh& mesh, double nearby, std::size_t most_pairs) {
     check_option(nearby > 0, "nearby", nearby, "be positive");
     SelfIntersections found = find_self_intersections(mesh);
     UntangleCounts counts;
@@ -202,15 +280,12 @@ UntangleCounts collapse_tangles(PolygonMesh& mesh, double nearby, std::size_t mo
     counts.first = mesh.positions[mesh.facet(found.facet_pairs[0][0])[0]];
     if (found.facet_pairs.size() > most_pairs) return counts;
     Neighbourhood around(mesh, found.facet_pairs, nearby);
-    const std::vector<Index> whole = around.whole();
-    found = find_self_intersections(around.part);
-    std::vector<EdgeCollapse> edges;
-    for (EdgeCollapse edge{}; found.triangle_pairs > 0 && collapse_one(around, found, edge);)
-        edges.push_back({whole[edge.from], whole[edge.to], edge.position});
-    collapse_edges(mesh, edges);
-    counts.moved = edges.size();
-    counts.after = found.triangle_pairs;
-    if (counts.after > 0) counts.first = around.part.positions[around.part.facet(found.facet_pairs[0][0])[0]];
+    Mender mender(around);
+    counts.moved = mender.run();
+    if (counts.moved > 0) around.replace_facets(mesh);
+    counts.after = mender.found().triangle_pairs;
+    if (counts.after > 0)
+        counts.first = around.part.positions[around.part.facet(mender.found().facet_pairs[0][0])[0]];
     return counts;
 }
 

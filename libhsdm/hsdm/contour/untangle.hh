@@ -30,11 +30,12 @@ struct UntangleCounts {
 /// as large as cells; they stay valid if no vertex moves. Throws OptionError.
 UntangleCounts untangle(PolygonMesh& mesh, const UntangleOptions& options, const FacetCells* cells = nullptr);
 
-/// Merges vertices of the facets that still intersect others, one edge at a time, as long as each leaves
-/// fewer intersections: facets go, the topology stays (collapse_edges). Nothing is tried if more than
-/// `most_pairs` pairs of facets intersect. Merged vertices become isolated. `nearby`: as above. O(t log t +
-/// facets near by * edges tried).
-UntangleCounts collapse_tangles(PolygonMesh& mesh, double nearby,
-                                std::size_t most_pairs = untangling::most_pairs);
+/// Changes facets that still intersect others, one place at a time, as long as each change leaves fewer
+/// intersections: merges two vertices, else cuts a quad in two.
+/// The topology stays. Nothing is tried if more than `most_pairs` pairs of facets intersect. Merged vertices
+/// become isolated; the facets around come to be the mesh's last. `nearby`: as above. O(t log t + facets near
+/// by * changes tried).
+UntangleCounts mend_tangles(PolygonMesh& mesh, double nearby,
+                            std::size_t most_pairs = untangling::most_pairs);
 
 } // namespace hsdm
