@@ -86,6 +86,34 @@ TEST_CASE("a bridge through the air is taken away, and a tunnel that no points s
     }
 }
 
+TEST_CASE("measured points speak for a bridge, completed ones do not", "[contour]") {
+    const Stages stages(facing_boxes(false, 5), 5);
+    DualContour part = dual_contour(stages.octree, stages.level, stages.sets);
+    PolygonMesh& mesh = part.mesh;
+    for (Vec3& p : mesh.positions) p += stages.octree.origin;
+    mesh.origin.resize(mesh.vertex_count());
+    std::iota(mesh.origin.begin(), mesh.origin.end(), Index{0});
+    bridge(mesh, quad_at(mesh, -0.07), quad_at(mesh, 0.07));
+    for (Vec3& p : mesh.positions) p -= stages.octree.origin;
+    const PolygonMesh bridged = mesh;
+    // Every second point at the bridge's ends faces away from its axis, as if it were on its sides.
+    Octree octree = stages.octree;
+    std::vector<std::size_t> beside;
+    for (std::size_t i = 0; i < octree.size(); i += 2) {
+        Vec3 away = octree.positions[i] + octree.origin;
+        if (std::abs(away[0]) > 0.1) continue;
+        away[0] = 0;
+        if (away.norm() > 0.2) continue;
+        octree.normals[i] = away.normalized();
+        beside.push_back(i);
+    }
+    REQUIRE(beside.size() > 20);
+    CHECK(cut_handles(octree, stages.level, stages.sets, part.voxel, mesh) == 0);
+    mesh = bridged;
+    for (std::size_t i : beside) octree.source[i] = no_index;
+    CHECK(cut_handles(octree, stages.level, stages.sets, part.voxel, mesh) == 1);
+}
+
 TEST_CASE("holes and rods of the part that points speak for stay, however short the way round", "[contour]") {
     const double voxel = 1.0 / 16;
     for (const double diameter : {1.2, 2.0}) { // voxels

@@ -186,7 +186,8 @@ private:
     std::vector<Index> ring_;
 };
 
-/// Do the points nearest to a facet face its way?
+/// Do the measured points nearest to a facet face its way? Completed ones are guesses, by what the facets did
+/// not say.
 class Witnesses {
 public:
     Witnesses(const Octree& octree, const OctreeLevel& level, std::span<const Index> voxel,
@@ -212,7 +213,8 @@ public:
 private:
     void gather(Index v, const Vec3& centre) {
         for (Index p = level_.first_point[v]; p < level_.first_point[v + 1]; ++p)
-            near_.emplace_back((octree_.positions[p] - centre).sqrnorm(), p);
+            if (octree_.source[p] != no_index)
+                near_.emplace_back((octree_.positions[p] - centre).sqrnorm(), p);
     }
 
     const Octree& octree_;
