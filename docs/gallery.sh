@@ -44,6 +44,10 @@ reconstruct() {
 "$generate" part --points 200000 --noise 0.003 --no-normals -o noisy.ply
 "$generate" plate --points 20000 -o thin.ply
 "$generate" fillet --points 200000 -o rounded.ply
+for part in comb heat-sink honeycomb can roll; do
+    "$generate" $part --width 0.04 --points 60000 -o $part-scan.ply
+done
+"$generate" hinge --width 0.08 --points 60000 -o hinge-scan.ply
 "$generate" cup --positions 5 --points 24000 --noise 0.003 -o above.ply
 
 reconstruct scan.ply uniform --depth 5
@@ -52,10 +56,13 @@ reconstruct scan.ply coarse --depth 3
 reconstruct noisy.ply positions --depth 5
 reconstruct thin.ply plate --depth 3
 reconstruct rounded.ply fillet --max-error 0.1%
+for part in comb heat-sink hinge; do reconstruct $part-scan.ply $part --voxel-size 0.04; done
+for part in honeycomb can roll; do reconstruct $part-scan.ply $part --voxel-size 0.08; done
 reconstruct above.ply seen
 reconstruct above.ply completed --holes complete
 
 for name in uniform adaptive coarse positions; do draw "$name" +X 35 25 17; done
 draw plate +Z 30 20 24
 draw fillet +Z 120 25 29
+for part in comb heat-sink hinge honeycomb can roll; do draw $part +Z 35 40 29; done
 for name in seen completed; do draw "$name" +Z 30 -25 24; done

@@ -1,6 +1,7 @@
 // hsdm_generate: a scan of a known solid, for the demo, the tests and anyone's own trials.
 
 #include "hsdm/errors.hh"
+#include "support/crowded_parts.hh"
 #include "support/scanner.hh"
 
 #include <CLI/CLI.hpp>
@@ -11,7 +12,7 @@ using namespace hsdm::support;
 
 namespace {
 
-Solid solid_named(const std::string& name, std::uint64_t seed) {
+Solid solid_named(const std::string& name, std::uint64_t seed, double width) {
     if (name == "sphere") return sphere(1);
     if (name == "torus") return torus(1, 0.4);
     if (name == "box") return box(hsdm::Vec3(1, 1, 1));
@@ -22,6 +23,8 @@ Solid solid_named(const std::string& name, std::uint64_t seed) {
     if (name == "fillet") return rounded_block(0.35);
     if (name == "nested") return nested_spheres(1, 0.8);
     if (name == "part") return mechanical_part();
+    for (const CrowdedPart& part : crowded_parts())
+        if (name == part.name) return part.of_width(width);
     return random_solid(seed);
 }
 
@@ -38,13 +41,18 @@ int main(int argc, char** argv) {
     CLI::App app("Writes a scan of a known solid as a binary PLY file of doubles.");
     std::string shape, output;
     SampleOptions options;
-    double normal_noise_degrees = 0;
+    double normal_noise_degrees = 0, width = 0.04;
     bool no_normals = false, turn = false;
     ScannerOptions scanner{.positions = 0};
     app.add_option("shape", shape, "the solid; `random` is a tree of solids that --seed chooses")
         ->required()
-        ->check(CLI::IsMember({"sphere", "torus", "box", "cylinder", "cup", "plate", "wedge", "fillet",
-                               "nested", "part", "random"}));
+        ->check(
+            CLI::IsMember({"sphere", "torus", "box", "cylinder", "cup", "plate", "wedge", "fillet", "nested",
+                           "part", "comb", "honeycomb", "heat-sink", "hinge", "can", "roll", "random"}));
+    app.add_option("--width", width,
+                   "of the walls and gaps of a comb, honeycomb, heat-sink, hinge, can or roll")
+        ->check(CLI::Range(0.001, 0.2))
+        ->capture_default_str();
     app.add_option("-o,--output", output, "the PLY file to write")->required();
     app.add_option("--points", options.points, "how many points")->capture_default_str();
     app.add_option("--seed", options.seed, "the same seed gives the same file")->capture_default_str();
@@ -64,7 +72,7 @@ int main(int argc, char** argv) {
     options.normal_noise = normal_noise_degrees * std::numbers::pi / 180;
     options.normals = !no_normals;
     try {
-        Solid solid = solid_named(shape, options.seed);
+        Solid solid = solid_named(shape, options.seed, width);
         Random random(options.seed + 0x9e3779b97f4a7c15u);
         if (turn) solid = solid.placed(random_pose(random));
         scanner.points = options.points, scanner.seed = options.seed;

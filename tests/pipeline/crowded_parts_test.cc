@@ -1,0 +1,42 @@
+// Parts whose walls and gaps share voxels, as wholes.
+
+#include "support/crowded_parts.hh"
+
+#include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/reconstruct.hh"
+#include "support/check.hh"
+#include "support/sample.hh"
+
+#include <catch2/catch.hpp>
+
+using namespace hsdm;
+using namespace hsdm::support;
+
+namespace {
+
+/// In voxels, the width of walls and gaps from which on a part has its topology in any pose (docs/sheets.md).
+double narrowest(std::string_view part) {
+    if (part == "hinge") return 2;
+    return part == "comb" || part == "heat-sink" ? 1 : 0.5;
+}
+
+} // namespace
+
+TEST_CASE("combs, honeycombs, heat sinks, hinges, tins and rolls have their topology",
+          "[pipeline][accuracy]") {
+    constexpr double width = 0.04;
+    for (const CrowdedPart& part : crowded_parts())
+        for (std::uint64_t pose : {1, 2, 3}) {
+            INFO(part.name << ", pose " << pose);
+            const double wide = narrowest(part.name) > 1 ? 2 * width : width,
+                         voxel = wide / narrowest(part.name);
+            const Solid solid = part.of_width(wide).placed(random_pose(pose));
+            const PointCloud cloud = sample(solid, {.points = 40000, .seed = pose});
+            const Reconstruction result = reconstruct(cloud, {.voxel_size = voxel});
+            CHECK(faults(to_polygons(result.mesh)) == "");
+            CHECK(result.report.mesh.closed);
+            CHECK(result.report.mesh.components == part.components);
+            CHECK(result.report.mesh.euler == part.euler);
+            CHECK(result.report.error.points_to_mesh_max < voxel);
+        }
+}
