@@ -123,7 +123,11 @@ TEST_CASE("a slit that the sampling left is closed and marked, a window stays op
         return result.report;
     };
     CHECK(loops(Holes::keep).mesh.boundary_loops == 2);
+    const std::size_t sets = loops(Holes::keep).grid.sets;
+    CHECK(sets > 0);
+    CHECK(loops(Holes::complete).grid.sets == sets); // those of the points that were measured
     const Report report = loops(Holes::automatic);
+    CHECK(report.grid.sets == sets);
     CHECK(report.mesh.boundary_loops == 1);
     CHECK(report.mesh.euler == 1);
     REQUIRE(report.loops.size() == 2);

@@ -227,9 +227,10 @@ void return_to(const MethodInput& measured, const Draft& draft, std::span<const 
 PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledge& known) {
     Draft draft{{}, report};
     make_facets(in, 0.2, options_for(in, report), draft);
-    draft.report.grid.sets = draft.sets.sets.size();
+    const std::size_t measured_sets = draft.sets.sets.size();
     complete(in, report, draft);
     report = std::move(draft.report);
+    report.grid.sets = measured_sets;
     const bool marked = draft.completed || in.options.holes == Holes::complete;
     const std::vector<Index> voxel = marked ? draft.facets.voxel : std::vector<Index>();
     PolygonMesh mesh = finished(draft.input(in), draft.sets, std::move(draft.facets), report, known);
