@@ -26,7 +26,7 @@ TEST_CASE("combs, honeycombs, heat sinks, hinges, tins and rolls have their topo
           "[pipeline][accuracy]") {
     constexpr double width = 0.04;
     for (const CrowdedPart& part : crowded_parts())
-        for (std::uint64_t pose : {1, 2, 3}) {
+        for (std::uint64_t pose = 1; pose <= 3; ++pose) {
             INFO(part.name << ", pose " << pose);
             const double wide = narrowest(part.name) > 1 ? 2 * width : width,
                          voxel = wide / narrowest(part.name);
