@@ -101,14 +101,14 @@ MaxError error_of(const std::string& text) {
 
 /// What becomes of the surface's holes, layers and small parts.
 void add_surface_options(CLI::App& app, ReconstructArguments& a, const std::string& method) {
-    add_choice<Holes>(
-        app, "--holes", a.holes,
-        {{"auto", Holes::automatic},
-         {"keep", Holes::keep},
-         {"close", Holes::close},
-         {"complete", Holes::complete}},
-        "auto: close what is small against the sampling; keep: nothing; complete: everything, by the surface "
-        "that is missing; close: everything, over the vertices of its border")
+    add_choice<Holes>(app, "--holes", a.holes,
+                      {{"auto", Holes::automatic},
+                       {"keep", Holes::keep},
+                       {"close", Holes::close},
+                       {"complete", Holes::complete}},
+                      "auto: close what is small against the sampling, and slits as narrow; keep: nothing; "
+                      "complete: everything, by the surface "
+                      "that is missing; close: everything, over the vertices of its border")
         ->group(method);
     app.add_flag(
            "--confidence", a.confidence,

@@ -108,13 +108,13 @@ struct Report {
     };
     std::vector<Warning> warnings; ///< in the order of the stages; empty: nothing is known to be doubtful
 
-    /// A boundary loop that was left when small ones were closed, as far as they were to be.
+    /// A boundary loop that was left when small ones were closed, as far as they were to be; with
+    /// Holes::complete all that the surface had before, with automatic those of slits.
     struct Loop {
-        Vec3 where{0, 0, 0};   ///< a vertex of it, in the cloud's coordinates
-        std::size_t edges = 0; ///< of the loop
-        double length = 0;     ///< of them all
-        bool completed =
-            false; ///< of the surface before it was completed (Holes::complete); else of the mesh
+        Vec3 where{0, 0, 0};    ///< a vertex of it, in the cloud's coordinates
+        std::size_t edges = 0;  ///< of the loop
+        double length = 0;      ///< of them all
+        bool completed = false; ///< of the surface before it was completed; else of the mesh
     };
     /// The completed ones first, then those of the mesh, which are left out without
     /// ReconstructOptions::measure.

@@ -144,7 +144,7 @@ TEST_CASE("a no while a surface is completed cancels", "[completion]") {
 
 TEST_CASE("confidence tells what was measured, and trimming cuts the rest off", "[completion]") {
     const PointCloud cloud =
-        partial_scan(sphere(1), {.points = 20000}, [](const Vec3& p) { return p[2] > 0.6; });
+        partial_scan(sphere(1), {.points = 40000}, [](const Vec3& p) { return p[2] > 0.6; });
     ReconstructOptions options;
     options.voxel_size = 0.08;
     options.holes = Holes::complete;

@@ -27,7 +27,7 @@ PolygonMesh sheet_without(Index columns, Index rows, const Gone& gone) {
 }
 
 BoundaryLoops slits_of(const PolygonMesh& mesh, double width) {
-    return narrow_loops(mesh, boundary_loops(mesh), width);
+    return find_slits(mesh, boundary_loops(mesh), width).loops;
 }
 
 } // namespace
@@ -70,10 +70,32 @@ TEST_CASE("the end of a narrow pipe is no slit, the open edge of a blade is one"
     for (Index v : slits[0]) CHECK(bag.positions[v][2] == 4);
 }
 
+TEST_CASE("a long slit along a round sheet is closed along its curve", "[completion]") {
+    // Two thirds of the way round a tube of radius 20, 60 squares long and two wide: more than is solved
+    // exactly.
+    PolygonMesh tube = round_tube(90, 12, 20, 1.4);
+    remove_facets(tube, [](std::size_t f) { return f / 90 >= 5 && f / 90 < 7 && f % 90 < 62; });
+    const Slits slits = find_slits(tube, boundary_loops(tube), 7);
+    REQUIRE(slits.loops.size() == 1);
+    CHECK(slits.loops[0].size() == 128);
+    PolygonMesh longer = round_tube(180, 12, 40, 1.4);
+    remove_facets(longer, [](std::size_t f) { return f / 180 >= 5 && f / 180 < 7 && f % 180 < 120; });
+    const Slits long_slits = find_slits(longer, boundary_loops(longer), 7);
+    REQUIRE(long_slits.loops.size() == 1);
+    for (const auto& [found, radius] : {std::pair{&slits, 20.0}, std::pair{&long_slits, 40.0}}) {
+        const CompletedPoints points = points_across(*found, 1.4);
+        for (std::size_t i = 0; i < points.positions.size(); ++i) {
+            const Vec3 out(points.positions[i][0], points.positions[i][1], 0);
+            CHECK(std::abs(out.norm() - radius) < 0.2);
+            CHECK((points.normals[i] | out) > 0.95 * out.norm());
+        }
+    }
+}
+
 TEST_CASE("points across a slit lie in it, face as it does and fill it", "[completion]") {
     const PolygonMesh mesh = sheet_without(30, 9, [](Index c, Index r) { return r == 4 && c > 2 && c < 27; });
     const double voxel = 0.75;
-    const CompletedPoints points = points_across(mesh, slits_of(mesh, 4), voxel);
+    const CompletedPoints points = points_across(find_slits(mesh, boundary_loops(mesh), 4), voxel);
     REQUIRE(points.positions.size() == points.normals.size());
     std::vector<int> in_square(24 * 2);
     for (std::size_t i = 0; i < points.positions.size(); ++i) {
@@ -87,6 +109,15 @@ TEST_CASE("points across a slit lie in it, face as it does and fill it", "[compl
     for (int count : in_square) CHECK(count >= 6);
     CHECK(points.positions.size() < 2 * 24 * 16);
 }
+
+namespace {
+
+const VertexProperty* property(const PolygonMesh& mesh, const char* name) {
+    const auto found = std::ranges::find(mesh.properties, name, &VertexProperty::name);
+    return found == mesh.properties.end() ? nullptr : &*found;
+}
+
+} // namespace
 
 TEST_CASE("a slit that the sampling left is closed and marked, a window stays open", "[completion]") {
     // In the top of a box: a slit of 1 by 0.14, a window of 0.32 by 0.32; voxels of 0.05.
@@ -134,4 +165,47 @@ TEST_CASE("a slit that the sampling left is closed and marked, a window stays op
     CHECK(report.loops[0].completed);
     CHECK_FALSE(report.loops[1].completed);
     CHECK(report.loops[1].length < 1.6);
+
+    cloud.colors.assign(cloud.positions.size(), {40, 80, 120, 255});
+    options.holes = Holes::automatic;
+    options.confidence = true;
+    const Reconstruction closed = reconstruct(cloud, options);
+    const PolygonMesh mesh = to_polygons(closed.mesh);
+    const VertexProperty *marks = property(mesh, "hsdm_completed"),
+                         *confidence = property(mesh, "hsdm_confidence"), *red = property(mesh, "red");
+    REQUIRE((marks && confidence && red));
+    std::size_t marked = 0;
+    for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+        const Vec3 d = mesh.positions[v] - middle;
+        CHECK(red->values[v] == Approx(red->values[0]));
+        if (marks->values[v] == 0) continue;
+        ++marked;
+        CHECK(std::abs(d | up) < 0.03);
+        CHECK((std::abs(d | x) < 0.55 && std::abs((d | y) - 0.2) < 0.1));
+        CHECK(confidence->values[v] < 0.7);
+    }
+    CHECK(marked >= 10);
+    // What lies away from the slit is as it was without closing it.
+    options.confidence = false;
+    options.holes = Holes::keep;
+    const PolygonMesh open = to_polygons(reconstruct(cloud, options).mesh);
+    const auto far = [&](const Vec3& p) { return ((p - middle) | up) < -0.3; };
+    std::vector<std::array<double, 3>> before, after;
+    for (const Vec3& p : open.positions)
+        if (far(p)) before.push_back({p[0], p[1], p[2]});
+    for (const Vec3& p : mesh.positions)
+        if (far(p)) after.push_back({p[0], p[1], p[2]});
+    std::ranges::sort(before);
+    std::ranges::sort(after);
+    REQUIRE(before.size() == after.size());
+    for (std::size_t i = 0; i < before.size(); ++i)
+        for (unsigned k = 0; k < 3; ++k) CHECK(before[i][k] == Approx(after[i][k]).margin(1e-9));
+
+    options.holes = Holes::automatic;
+    options.voxel_size.reset();
+    options.max_error = MaxError{.value = 0.01};
+    const Report coarse = reconstruct(cloud, options).report;
+    CHECK(coarse.mesh.boundary_loops == 1);
+    CHECK(coarse.mesh.euler == 1);
+    CHECK(coarse.mesh.faces < report.mesh.faces / 4);
 }

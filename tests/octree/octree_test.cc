@@ -203,3 +203,16 @@ TEST_CASE("a cube whose voxels are no numbers is refused", "[octree]") {
         CHECK_THROWS_WITH(build_octree(cloud), Catch::Contains("too large or too small"));
     }
 }
+
+TEST_CASE("the cube lies where it is asked to, and must hold the cloud", "[octree]") {
+    PointCloud cloud;
+    cloud.positions = {{1, 1, 1}, {2, 1, 1}, {1.5, 2.5, 1}};
+    const Octree octree = build_octree(cloud, {.cube_extent = 4, .origin = Vec3(0, -1, 0.5)});
+    CHECK(octree.origin == Vec3(0, -1, 0.5));
+    CHECK(octree.extent == 4);
+    for (std::size_t i = 0; i < octree.size(); ++i)
+        CHECK(octree.positions[i] + octree.origin == cloud.positions[octree.source[i]]);
+    CHECK_THROWS_AS(build_octree(cloud, {.cube_extent = 4, .origin = Vec3(1.1, 0, 0)}), OptionError);
+    CHECK_THROWS_AS(build_octree(cloud, {.cube_extent = 2, .origin = Vec3(0, 0, 0)}), OptionError);
+    CHECK_THROWS_AS(build_octree(cloud, {.cube_extent = 4, .origin = Vec3(0, std::nan(""), 0)}), OptionError);
+}

@@ -45,6 +45,11 @@ inline constexpr std::size_t most_bending = 50000;
 /// points along each side of a cell of a patch: nine to a voxel, as three spacings to a voxel have.
 inline constexpr int samples = 3;
 
+/// voxels: so far the grid is moved, along all axes, for what completes everything.
+/// Why: half a voxel is farthest from where it was; in the same voxels the contradictions that ended the
+/// facets come up again: of nine real scans three came out sound, and seven with the grid moved.
+inline constexpr double shift = 0.5;
+
 /// rounds: of completing, while loops are left that are not small. Where the completed points and the
 /// measured ones contradict each other some are left; the second round closes all but a few.
 inline constexpr int most_rounds = 2;
@@ -57,6 +62,10 @@ namespace hsdm::slits {
 /// squared length over twice the area of a loop that is a slit, at least.
 /// Why: a rectangle six times as long as wide has 16.3, a square 8: the ends of narrow pipes are borders.
 inline constexpr double least_slenderness = 16;
+
+/// edges: longer loops are no slits.
+/// Why: what closes them is found in the square of their length; bounds it to a second.
+inline constexpr std::size_t most_edges = 4096;
 
 /// cosine: mean, of the angle between what closes a slit and the mesh beside it; less goes back over the
 /// mesh. Why: 120 degrees; the rim of a blade is at 90, the back of a ribbon at 180.

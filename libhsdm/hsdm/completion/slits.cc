@@ -1,96 +1,105 @@
 #include "hsdm/completion/slits.hh"
 
 #include "hsdm/completion/constants.hh"
+#include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/area_vector.hh"
-#include "hsdm/mesh/triangulate.hh"
+#include "hsdm/mesh/split_polygon.hh"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace hsdm {
 namespace {
 
-/// Loops as facets over vertices of their own: side i of all begins at vertex i.
-PolygonMesh facets_over(const PolygonMesh& mesh, const BoundaryLoops& loops) {
-    PolygonMesh facets;
-    std::vector<Index> corners;
-    for (std::size_t l = 0; l < loops.size(); ++l) {
-        corners.clear();
-        for (Index v : loops[l]) {
-            corners.push_back(static_cast<Index>(facets.positions.size()));
-            facets.positions.push_back(mesh.positions[v]);
-        }
-        facets.add_facet(corners);
-    }
-    return facets;
+/// What closes a loop with edges as short and bends as small as can be; empty if nothing does.
+Pieces triangles_over(const PolygonMesh& mesh, std::span<const Index> loop, std::span<const Vec3> beside,
+                      const EdgeSet& none) {
+    return split_polygon(mesh, loop, beside, none, {.max_bend = std::numbers::pi, .quads = false});
 }
 
-Vec3 area_vector_of(const PolygonMesh& mesh, const Triangle& t) {
-    return 0.5
-           * ((mesh.positions[t[1]] - mesh.positions[t[0]]) % (mesh.positions[t[2]] - mesh.positions[t[0]]));
+/// Unit normals of the facets at a loop's sides.
+std::vector<Vec3> normals_beside(const PolygonMesh& mesh, std::span<const Index> facets) {
+    std::vector<Vec3> normals;
+    for (Index f : facets) normals.push_back(unit(area_vector(mesh, mesh.facet(f))));
+    return normals;
 }
 
-/// The part of the loops that `is_chosen(loop)`.
-template <class IsChosen>
-BoundaryLoops chosen_loops(const BoundaryLoops& loops, const IsChosen& is_chosen) {
-    BoundaryLoops chosen;
-    for (std::size_t l = 0; l < loops.size(); ++l) {
-        if (!is_chosen(l)) continue;
-        for (Index i = loops.begin[l]; i < loops.begin[l + 1]; ++i) {
-            chosen.vertices.push_back(loops.vertices[i]);
-            chosen.facets.push_back(loops.facets[i]);
+/// Sums over what closes a loop.
+struct Closing {
+    double area = 0, length = 0, agreeing = 0;
+
+    Closing(const PolygonMesh& mesh, std::span<const Index> loop, std::span<const Vec3> beside,
+            const Pieces& triangles) {
+        const auto next = [&](std::size_t i) { return i + 1 == loop.size() ? 0 : i + 1; };
+        std::vector<std::pair<Index, std::size_t>> places; // of the loop's vertices, which are all different
+        for (std::size_t i = 0; i < loop.size(); ++i) places.emplace_back(loop[i], i);
+        std::sort(places.begin(), places.end());
+        for (const auto& triangle : triangles) {
+            const Vec3 twice = area_vector(mesh, triangle);
+            area += 0.5 * twice.norm();
+            for (std::size_t c = 0; c < 3; ++c) {
+                const Index from = triangle[c], to = triangle[(c + 1) % 3];
+                const std::size_t i =
+                    std::lower_bound(places.begin(), places.end(), std::pair(from, std::size_t{0}))->second;
+                if (loop[next(i)] != to) continue;
+                const double side = (mesh.positions[to] - mesh.positions[from]).norm();
+                length += side;
+                agreeing += side * (unit(twice) | beside[i]);
+            }
         }
-        chosen.begin.push_back(static_cast<Index>(chosen.vertices.size()));
     }
-    return chosen;
-}
+
+    bool is_slit(double widest) const {
+        return 4 * area <= widest * length && length * length >= slits::least_slenderness * 2 * area
+               && agreeing > slits::least_agreement * length;
+    }
+};
 
 } // namespace
 
-BoundaryLoops narrow_loops(const PolygonMesh& mesh, const BoundaryLoops& loops, double widest) {
-    // What closes a loop has at least the area of the loop's area vector: most borders need not be filled.
-    const BoundaryLoops candidates = chosen_loops(loops, [&](std::size_t l) {
-        return loops[l].size() >= 3
-               && 2 * area_vector(mesh, loops[l]).norm() <= widest * length_of(mesh, loops[l]);
+Slits find_slits(const PolygonMesh& mesh, const BoundaryLoops& loops, double widest) {
+    std::vector<Pieces> closing(loops.size());
+    const EdgeSet none(PolygonMesh(), {});
+    for_each_task(loops.size(), [&](std::size_t l) {
+        const auto loop = loops[l];
+        // What closes a loop has at least the area of the loop's area vector: most borders need not be
+        // filled.
+        if (loop.size() < 3 || loop.size() > slits::most_edges
+            || 2 * area_vector(mesh, loop).norm() > widest * length_of(mesh, loop))
+            return;
+        const std::vector<Vec3> beside =
+            normals_beside(mesh, {loops.facets.data() + loops.begin[l], loop.size()});
+        Pieces triangles = triangles_over(mesh, loop, beside, none);
+        if (!triangles.empty() && Closing(mesh, loop, beside, triangles).is_slit(widest))
+            closing[l] = std::move(triangles);
     });
-    const PolygonMesh closing = facets_over(mesh, candidates);
-    const Triangulation cut = triangulate(closing);
-    return chosen_loops(candidates, [&](std::size_t l) {
-        double area = 0, length = 0, agreeing = 0;
-        const Index begin = candidates.begin[l], end = candidates.begin[l + 1];
-        for (Index t = cut.first[l]; t < cut.first[l + 1]; ++t) {
-            const Triangle& corners = cut.triangles[t];
-            const Vec3 vector = area_vector_of(closing, corners);
-            area += vector.norm();
-            for (std::size_t i = 0; i < 3; ++i) {
-                const Index from = corners[i], to = corners[(i + 1) % 3];
-                if (to != (from + 1 == end ? begin : from + 1)) continue;
-                const double side = (closing.positions[to] - closing.positions[from]).norm();
-                length += side;
-                agreeing +=
-                    side * (unit(vector) | unit(area_vector(mesh, mesh.facet(candidates.facets[from]))));
-            }
+    Slits result;
+    for (std::size_t l = 0; l < loops.size(); ++l) {
+        if (closing[l].empty()) continue;
+        for (Index i = loops.begin[l]; i < loops.begin[l + 1]; ++i) {
+            result.loops.vertices.push_back(loops.vertices[i]);
+            result.loops.facets.push_back(loops.facets[i]);
         }
-        return 4 * area <= widest * length && length * length >= slits::least_slenderness * 2 * area
-               && agreeing > slits::least_agreement * length;
-    });
+        result.loops.begin.push_back(static_cast<Index>(result.loops.vertices.size()));
+        for (const auto& t : closing[l])
+            result.closing.push_back({mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]});
+    }
+    return result;
 }
 
-CompletedPoints points_across(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size) {
-    const PolygonMesh closing = facets_over(mesh, loops);
+CompletedPoints points_across(const Slits& slits, double voxel_size) {
     CompletedPoints points;
-    for (const Triangle& corners : triangulate(closing).triangles) {
-        const Vec3 vector = area_vector_of(closing, corners);
-        if (!(vector.norm() > 0)) continue;
-        const Vec3 &a = closing.positions[corners[0]], &b = closing.positions[corners[1]],
-                   &c = closing.positions[corners[2]];
+    for (const auto& [a, b, c] : slits.closing) {
+        const Vec3 twice = (b - a) % (c - a);
+        if (!(twice.norm() > 0)) continue;
         // n (n + 1) / 2 of the n^2 alike triangles that it consists of have a point each.
         const int n = std::max(
-            1, static_cast<int>(std::ceil(std::sqrt(2 * vector.norm()) * completing::samples / voxel_size)));
+            1, static_cast<int>(std::ceil(std::sqrt(twice.norm()) * completing::samples / voxel_size)));
         for (int i = 0; i < n; ++i)
             for (int k = 0; i + k < n; ++k) {
                 points.positions.push_back(a + (b - a) * ((i + 1.0 / 3) / n) + (c - a) * ((k + 1.0 / 3) / n));
-                points.normals.push_back(unit(vector));
+                points.normals.push_back(unit(twice));
             }
     }
     return points;

@@ -3,14 +3,23 @@
 
 #include "hsdm/completion/complete_surface.hh"
 
+#include <array>
+
 namespace hsdm {
 
-/// The loops that enclose a slit: of no more area to their length than a round hole `widest` across has,
-/// slender, and not closed by going back over the mesh, as the outline of a ribbon would be. As a list of
-/// their own. O(length of loop ^ 2) each, but for those that enclose too much at first sight.
-BoundaryLoops narrow_loops(const PolygonMesh& mesh, const BoundaryLoops& loops, double widest);
+struct Slits {
+    BoundaryLoops loops;
+    std::vector<std::array<Vec3, 3>>
+        closing; ///< triangles over the loops' vertices, which face as the mesh does
+};
 
-/// Points of facets over the loops' own vertices, three to a voxel each way, with the facets' normals.
-CompletedPoints points_across(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size);
+/// The loops that enclose a slit: of no more area to their length than a round hole `widest` across has,
+/// slender, and not closed by going back over the mesh, as the outline of a ribbon would be. Loops of more
+/// than 4,096 edges are none. O(length of loop ^ 3) each up to 128 edges, ^ 2 beyond, but for those that
+/// enclose too much at first sight; parallel.
+Slits find_slits(const PolygonMesh& mesh, const BoundaryLoops& loops, double widest);
+
+/// Points of what closes slits, nine to a squared voxel and more, with its normals.
+CompletedPoints points_across(const Slits& slits, double voxel_size);
 
 } // namespace hsdm

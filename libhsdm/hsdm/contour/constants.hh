@@ -426,7 +426,7 @@ HSDM_TUNED double reach = 0.5;
 /// Why: reach on both sides.
 inline constexpr double nearby = 1;
 
-/// Pairs of facets: of more intersecting ones none is tried to be merged.
+/// Pairs of facets: of more intersecting ones nothing is tried to be mended.
 /// Why: each try looks at all facets near them again; so many are no local mishap.
 inline constexpr std::size_t most_pairs = 100;
 

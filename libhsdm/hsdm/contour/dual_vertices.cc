@@ -164,7 +164,7 @@ private:
     }
 
     /// How wide a face is between the planes of two sides, in voxels; 0 if it belongs to one of them. The rim
-    /// of a wall lies within both, the bottom of a gap beyond both.
+    /// of a wall lies within both, the bottom of a gap beyond both, and both count alike.
     double width(FacetCorner face, FacetCorner a, FacetCorner b) const {
         double sum = 0;
         for (FacetCorner side : {a, b}) {

@@ -118,8 +118,12 @@ public:
     explicit Mender(Neighbourhood& around) : around_(around), found_(find_self_intersections(around.part)) {}
 
     std::size_t run() {
-        std::size_t changes = 0;
-        while (found_.triangle_pairs > 0 && (collapse_an_edge() || cut_a_quad())) ++changes;
+        std::size_t changes = 0, before = 0;
+        do {
+            before = changes;
+            while (collapse_an_edge()) ++changes;
+            while (cut_a_quad()) ++changes;
+        } while (changes > before && found_.triangle_pairs > 0);
         return changes;
     }
 
@@ -159,6 +163,7 @@ private:
                 if (!may_join(quad[from], quad[from + 2])) continue;
                 const std::array<Index, 3> one{quad[from], quad[from + 1], quad[from + 2]},
                     other{quad[from], quad[from + 2], quad[(from + 3) % 4]};
+                if (!has_area(quad, one) || !has_area(quad, other)) continue;
                 PolygonMesh changed = around_.part;
                 remove_facets(changed, [&](std::size_t g) { return g == f; });
                 changed.add_facet(one);
@@ -167,6 +172,11 @@ private:
             }
         }
         return false;
+    }
+
+    /// Has a half of a quad an area? It may be turned over: a fold is less harm than what passes through.
+    bool has_area(std::span<const Index> quad, std::span<const Index> half) const {
+        return area_vector(around_.part, half).norm() > 1e-6 * area_vector(around_.part, quad).norm();
     }
 
     /// Would an edge between two vertices be a new one?

@@ -36,6 +36,7 @@ public:
         if (open_.empty()) return;
         list_fans();
         next_.assign(mesh.corners.size(), no_index);
+        place_.assign(mesh.vertex_count(), no_index);
         for (Index c : open_) next_[c] = links_.open_in[links_.vertex[c]];
         for (std::size_t begin = 0, end = 0; begin < shared_.size(); begin = end) {
             while (end < shared_.size() && shared_[end].vertex == shared_[begin].vertex) ++end;
@@ -111,16 +112,21 @@ private:
     /// Adds the traced loop; one that visits a vertex twice is cut into loops there.
     void add_simple_loops(BoundaryLoops& loops) {
         std::vector<Index> open;
-        for (Index side : path_) {
-            const Index v = end(side);
-            const auto seen = std::find_if(open.begin(), open.end(), [&](Index s) { return end(s) == v; });
-            if (seen != open.end()) {
-                add_loop({seen, open.end()}, loops);
-                open.erase(seen, open.end());
+        const auto forget_from = [&](std::size_t first) {
+            for (std::size_t i = first; i < open.size(); ++i) place_[end(open[i])] = no_index;
+            open.resize(first);
+        };
+        for_each_in_order(path_.size(), [&](std::size_t i) {
+            const Index side = path_[i], v = end(side);
+            if (const Index seen = place_[v]; seen != no_index) {
+                add_loop({open.begin() + seen, open.end()}, loops);
+                forget_from(seen);
             }
+            place_[v] = static_cast<Index>(open.size());
             open.push_back(side);
-        }
+        });
         add_loop(open, loops);
+        forget_from(0);
     }
 
     void add_loop(std::span<const Index> sides, BoundaryLoops& loops) const {
@@ -137,6 +143,8 @@ private:
     std::vector<Fan> shared_;
     std::vector<Index> next_; ///< per side without twin; cleared as loops are traced
     std::vector<Index> path_;
+    std::vector<Index>
+        place_; ///< per vertex, where in the open part of a path a side ends there; or no_index
 };
 
 /// A new vertex at the mean of a loop's, with their mean normal and origin and properties of the first.

@@ -190,6 +190,12 @@ void place_cube(const PointView& cloud, const OctreeOptions& options, Octree& oc
     }
     if (options.placement == CubePlacement::centred)
         octree.origin = centred_origin(octree.bounds, octree.extent);
+    if (!options.origin) return;
+    octree.origin = *options.origin;
+    for (unsigned k = 0; k < 3; ++k)
+        if (!(octree.origin[k] <= octree.bounds.lo[k])
+            || !(octree.bounds.hi[k] <= octree.origin[k] + octree.extent))
+            throw OptionError("the cube at `origin`, of edge `cube_extent`, must hold the cloud");
 }
 
 /// The codes of the cloud's points, in their order.

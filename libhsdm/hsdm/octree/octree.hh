@@ -5,6 +5,7 @@
 #include "hsdm/core/occurrences.hh"
 #include "hsdm/point_view.hh"
 
+#include <optional>
 #include <span>
 
 namespace hsdm {
@@ -27,6 +28,8 @@ struct OctreeOptions {
     /// power of two, for clouds whose own numbers are extreme (CloudFrame).
     double unit = 1;
     CubePlacement placement = CubePlacement::least_corner;
+    /// Least corner of the cube, in place of `placement`; the cube of `cube_extent` must hold the cloud.
+    std::optional<Vec3> origin{};
 };
 
 /// The cloud in Morton order inside its bounding cube (Fig. 3b). One sort serves every level, 0 to 21: the
@@ -60,7 +63,8 @@ Vec3 centred_origin(const Box& bounds, double extent);
 /// position, then normal, so each voxel's points come in one canonical order; normals that are zero or not
 /// finite are (0, 0, 0) from here on. Reads the arrays where they are. Throws Error if the cloud is empty,
 /// holds a non-finite coordinate that is not to be skipped, all its points are equal, or its extent times
-/// 2^21 over the unit is no number; OptionError if cube_extent is given but smaller than the cloud.
+/// 2^21 over the unit is no number; OptionError if cube_extent is given but smaller than the cloud,
+/// or origin but that cube does not hold the cloud.
 Octree build_octree(const PointView& cloud, const OctreeOptions& options = {});
 Octree build_octree(const PointCloud& cloud, const OctreeOptions& options = {});
 /// The same in less memory: the cloud loses its normals, used or not, and keeps all else.

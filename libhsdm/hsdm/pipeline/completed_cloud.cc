@@ -20,12 +20,22 @@ PointCloud joined_cloud(const Octree& octree, const CompletedPoints& points) {
     return cloud;
 }
 
-/// How many levels give voxels of this size in a cube that holds a box.
-int depth_for(const Box& box, double voxel_size) {
-    int depth = 1;
-    while (depth < morton_levels && std::ldexp(voxel_size, depth) < box.extent()) ++depth;
-    return depth;
-}
+/// A cube of the same voxels that holds a box: the octree's least corner moved by whole voxels, and more
+/// levels where it takes them.
+struct Cube {
+    Vec3 origin;
+    int depth;
+
+    Cube(const Octree& octree, const OctreeLevel& level, const Box& box, double shift)
+        : origin(octree.origin), depth(level.depth) {
+        const double h = level.voxel_size;
+        if (shift > 0) origin -= Vec3(shift * h, shift * h, shift * h);
+        for (unsigned k = 0; k < 3; ++k) {
+            if (box.lo[k] < origin[k]) origin[k] -= h * std::ceil((origin[k] - box.lo[k]) / h);
+            while (depth < morton_levels && origin[k] + std::ldexp(h, depth) < box.hi[k]) ++depth;
+        }
+    }
+};
 
 } // namespace
 
@@ -39,22 +49,24 @@ std::vector<std::uint8_t> CompletedCloud::completed_voxels() const {
     return completed;
 }
 
-CompletedCloud complete_cloud(const Octree& octree, const OctreeLevel& level, const CompletedPoints& points) {
+CompletedCloud complete_cloud(const Octree& octree, const OctreeLevel& level, const CompletedPoints& points,
+                              double shift) {
     PointCloud cloud = joined_cloud(octree, points);
     Box box;
     for (const Vec3& p : cloud.positions) box.add(p);
-    const int depth = std::max(level.depth, depth_for(box, level.voxel_size));
+    const Cube cube(octree, level, box, shift);
     CompletedCloud completed;
     OctreeOptions options;
     options.merge_duplicates = false;
-    options.cube_extent = std::max(std::ldexp(level.voxel_size, depth), box.extent());
+    options.origin = cube.origin;
+    options.cube_extent = std::ldexp(level.voxel_size, cube.depth);
     completed.octree = build_octree_taking_normals(cloud, options);
     completed.octree.duplicates = octree.duplicates;
     for_each_index(completed.octree.size(), chunks::light, [&](Index i) {
         Index& source = completed.octree.source[i];
         source = source < octree.size() ? octree.source[source] : no_index;
     });
-    completed.level = extract_level(completed.octree, depth);
+    completed.level = extract_level(completed.octree, cube.depth);
     return completed;
 }
 

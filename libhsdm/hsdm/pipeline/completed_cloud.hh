@@ -6,8 +6,8 @@
 
 namespace hsdm {
 
-/// A cloud with the points that complete it: an octree of the same voxels, or more of them, and the level of
-/// the mesh. Completed points have no `source`.
+/// A cloud with the points that complete it: an octree of the same voxels, or more of them, whose planes go
+/// on, and the level of the mesh. Completed points have no `source`.
 struct CompletedCloud {
     Octree octree;
     OctreeLevel level;
@@ -16,7 +16,9 @@ struct CompletedCloud {
     std::vector<std::uint8_t> completed_voxels() const;
 };
 
-/// Adds points, relative to the octree's origin, to those of a level. O(n), parallel.
-CompletedCloud complete_cloud(const Octree& octree, const OctreeLevel& level, const CompletedPoints& points);
+/// Adds points, relative to the octree's origin, to those of a level. The voxels are moved down by `shift` of
+/// their edge along all axes, [0, 1). O(n), parallel.
+CompletedCloud complete_cloud(const Octree& octree, const OctreeLevel& level, const CompletedPoints& points,
+                              double shift = 0);
 
 } // namespace hsdm

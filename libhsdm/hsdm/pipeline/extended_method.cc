@@ -82,6 +82,11 @@ NormalSets separated_sets(const MethodInput& in, Report& report) {
     return all;
 }
 
+/// How many are not completed ones.
+std::size_t measured_points(const Octree& octree) {
+    return octree.size() - static_cast<std::size_t>(std::ranges::count(octree.source, no_index));
+}
+
 /// Facets face where the points' normals point. If these point into a closed solid, the whole surface is
 /// turned.
 bool turn_solid_outward(PolygonMesh& mesh) {
@@ -96,7 +101,7 @@ PolygonMesh finished(const MethodInput& in, const NormalSets& sets, DualContour 
     note_counts(facets, report);
     note_dropped("facets of splinters", facets.splinters, in, report);
     const bool turned = turn_solid_outward(facets.mesh);
-    report.rejected["normals_turned"] = turned ? in.octree.size() : 0;
+    report.rejected["normals_turned"] = turned ? measured_points(in.octree) : 0;
     if (in.options.classify) {
         SheetFeatures features = in.phases.run("sheet features", 0.5, report.seconds.features, [&] {
             known.links = link_facets(facets.mesh);
@@ -125,15 +130,15 @@ PolygonMesh finished(const MethodInput& in, const NormalSets& sets, DualContour 
 
 /// Facets of a cloud, and what the report says of them.
 struct Draft {
-    std::optional<CompletedCloud> completed; ///< none: the measured points alone
+    std::optional<CompletedCloud> cloud; ///< none: the measured points alone
     Report report;
     NormalSets sets{};
     DualContour facets{};
 
     MethodInput input(const MethodInput& measured) const {
-        if (!completed) return measured;
-        return {measured.frame,   measured.cloud,   completed->octree,
-                completed->level, measured.options, measured.phases};
+        if (!cloud) return measured;
+        return {measured.frame, measured.cloud,   cloud->octree,
+                cloud->level,   measured.options, measured.phases};
     }
 };
 
@@ -147,49 +152,67 @@ void make_facets(const MethodInput& measured, double done, const DualContourOpti
                                  [&] { return dual_contour(in.octree, in.level, draft.sets, options); });
 }
 
-/// The loops of a draft to complete: all, or those of slits if borders are to stay.
-BoundaryLoops loops_to_complete(const MethodInput& in, const Draft& draft) {
-    const DualContour& facets = draft.facets;
-    if (in.options.holes == Holes::complete) return boundary_loops(facets.mesh);
-    if (in.options.holes != Holes::automatic || facets.holes.loops == facets.holes.closed) return {};
-    const double widest = options_for(in, draft.report).holes.max_diameter;
-    return narrow_loops(facets.mesh, boundary_loops(facets.mesh), widest * in.level.voxel_size);
+/// What completes a draft, and where: at all loops, or at slits if borders are to stay.
+struct Completion {
+    BoundaryLoops loops;
+    CompletedPoints points;
+    std::size_t border = 0; ///< edges of all of the draft's loops
+};
+
+/// May there be something to complete?
+bool has_loops(const MethodInput& in, const Draft& draft) {
+    return in.options.holes == Holes::complete
+           || (in.options.holes == Holes::automatic && draft.facets.holes.loops > draft.facets.holes.closed);
 }
 
-/// The draft's cloud with points that complete the surface at these loops; `base` is the report before there
-/// were facets.
-Draft completed(const MethodInput& measured, const Draft& draft, const BoundaryLoops& loops, double done,
-                Report base) {
-    const MethodInput in = draft.input(measured);
-    Draft next{{}, std::move(base)};
-    next.report.seconds = draft.report.seconds;
-    next.report.loops = draft.report.loops;
-    note_loops(draft.facets.mesh, loops, true, in.octree.origin, in.frame, next.report);
-    next.completed = in.phases.run("completion", done, next.report.seconds.facets, [&] {
-        const double h = in.level.voxel_size;
-        return complete_cloud(in.octree, in.level,
-                              in.options.holes == Holes::complete
-                                  ? complete_surface(draft.facets.mesh, loops, h)
-                                  : points_across(draft.facets.mesh, loops, h));
-    });
-    return next;
+Completion completion_of(const MethodInput& in, const Draft& draft) {
+    const DualContour& facets = draft.facets;
+    const double h = in.level.voxel_size;
+    Completion result;
+    if (in.options.holes == Holes::complete) {
+        result.loops = boundary_loops(facets.mesh);
+        result.border = result.loops.vertices.size();
+        result.points = complete_surface(facets.mesh, result.loops, h);
+    } else {
+        const BoundaryLoops loops = boundary_loops(facets.mesh);
+        Slits slits = find_slits(facets.mesh, loops, h * options_for(in, draft.report).holes.max_diameter);
+        result.border = loops.vertices.size();
+        result.points = points_across(slits, h);
+        result.loops = std::move(slits.loops);
+    }
+    return result;
+}
+
+/// Is a guess no worse than the draft that it completes: fewer edges without a second facet, no more facets
+/// that meet?
+bool is_better(const DualContour& guess, const DualContour& draft, const Completion& completion) {
+    return guess.intersections.after <= draft.intersections.after
+           && boundary_loops(guess.mesh).vertices.size() < completion.border;
 }
 
 /// Completes the facets' surface, and once more where loops are left. Where borders are to stay a guess that
-/// passes through more than it closes is not taken.
-void complete(const MethodInput& in, const Report& base, Draft& draft) {
-    const bool all_round = in.options.holes == Holes::complete;
-    for (int round = 1; round <= completing::most_rounds; ++round) {
-        const BoundaryLoops loops = loops_to_complete(in, draft);
-        if (loops.size() == 0) return;
+/// is no better is not taken. `base` is the report before there were facets.
+void complete(const MethodInput& measured, const Report& base, Draft& draft) {
+    const bool all_round = measured.options.holes == Holes::complete;
+    for (int round = 1; round <= completing::most_rounds && has_loops(measured, draft); ++round) {
+        const MethodInput in = draft.input(measured);
         const double done = 0.35 + 0.05 * round;
-        Draft next = completed(in, draft, loops, done, base);
-        if (all_round) draft.facets = DualContour(); // frees it
-        DualContourOptions options = options_for(in, base);
+        const Completion completion = in.phases.run("completion", done, draft.report.seconds.facets,
+                                                    [&] { return completion_of(in, draft); });
+        if (completion.loops.size() == 0) return;
+        Draft next{{}, base};
+        next.report.seconds = draft.report.seconds;
+        next.report.loops = draft.report.loops;
+        note_loops(draft.facets.mesh, completion.loops, true, in.octree.origin, in.frame, next.report);
+        draft.facets.cells.reset(); // frees what is not needed any more
+        if (all_round) draft.facets = DualContour();
+        next.cloud =
+            complete_cloud(in.octree, in.level, completion.points, all_round ? completing::shift : 0);
+        DualContourOptions options = options_for(measured, base);
         if (all_round && round == completing::most_rounds) options.holes = every_hole;
         options.all_round = all_round;
-        make_facets(in, done + 0.01, options, next);
-        if (!all_round && next.facets.intersections.after > draft.facets.intersections.after) {
+        make_facets(measured, done + 0.01, options, next);
+        if (!all_round && !is_better(next.facets, draft.facets, completion)) {
             draft.report.seconds = next.report.seconds;
             return;
         }
@@ -203,8 +226,8 @@ void return_to(const MethodInput& measured, const Draft& draft, std::span<const 
                PolygonMesh& mesh, FacetKnowledge& known) {
     VertexProperty marks{"hsdm_completed", VertexProperty::Type::uint8,
                          std::vector<double>(mesh.vertex_count())};
-    if (draft.completed) {
-        const std::vector<std::uint8_t> completed = draft.completed->completed_voxels();
+    if (draft.cloud) {
+        const std::vector<std::uint8_t> completed = draft.cloud->completed_voxels();
         std::vector<std::uint8_t> is_measured(voxel.size());
         for (std::size_t v = 0; v < voxel.size(); ++v) {
             is_measured[v] = completed[voxel[v]] == 0;
@@ -214,7 +237,7 @@ void return_to(const MethodInput& measured, const Draft& draft, std::span<const 
         for (VertexProperty& property : mesh.properties) // the larger cube's level is no one's concern
             if (property.name == "hsdm_level")
                 std::ranges::fill(property.values, static_cast<double>(measured.level.depth));
-        const Vec3 moved = draft.completed->octree.origin - measured.octree.origin;
+        const Vec3 moved = draft.cloud->octree.origin - measured.octree.origin;
         for (Vec3& p : mesh.positions) p += moved;
         known.intersections.first += moved;
         known.cells.reset(); // their voxels are those of the larger cube
@@ -231,7 +254,7 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
     complete(in, report, draft);
     report = std::move(draft.report);
     report.grid.sets = measured_sets;
-    const bool marked = draft.completed || in.options.holes == Holes::complete;
+    const bool marked = draft.cloud || in.options.holes == Holes::complete;
     const std::vector<Index> voxel = marked ? draft.facets.voxel : std::vector<Index>();
     PolygonMesh mesh = finished(draft.input(in), draft.sets, std::move(draft.facets), report, known);
     if (marked) return_to(in, draft, voxel, mesh, known);
