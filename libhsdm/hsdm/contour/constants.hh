@@ -158,6 +158,10 @@ HSDM_TUNED double surface_error = 0.15;
 /// Why: bounds the work; a round without change ends it.
 HSDM_TUNED int closure_rounds = 8;
 
+/// pairs: of sets that are apart, between two sheets that do not become one though they are one elsewhere;
+/// and points of each of the two. Why: one pair may be an error; a plane has three points.
+inline constexpr unsigned fewest_apart = 2, fewest_points_apart = 3;
+
 /// cosine: of the normals of two sets that may become one sheet since they are one elsewhere.
 /// Why: 70 degrees: less than the right angle between a plate's side and its rim, through which its two sides
 /// would join.
@@ -250,6 +254,14 @@ HSDM_TUNED double cost_of_crease = 1;
 /// cost: of pairing two that have nothing to do with each other.
 /// Why: twice that of a crease.
 HSDM_TUNED double cost_of_strangers = 2;
+
+/// cost: of pairing two that face one way with a wall or gap between them, by 60 degrees.
+/// Why: twice that of a rim, across which two strangers face opposite ways a voxel apart.
+inline constexpr double cost_of_parted = 10, parted_cosine = 0.5;
+
+/// cost: of a crossing without a partner.
+/// Why: more than all pairs of a face.
+inline constexpr double cost_of_open = 100;
 
 /// sides: a shorter boundary loop is a defect to close and no border.
 /// Why: the end of a pipe of two voxels has 16 sides.
@@ -425,6 +437,11 @@ HSDM_TUNED double reach = 0.5;
 /// voxels: facets this close to a moved one are checked against it.
 /// Why: reach on both sides.
 inline constexpr double nearby = 1;
+
+/// rings: of facets round one that meets another, that may make place for others, and facets, most.
+/// Why: within two of them a fold that one voxel makes ends; more are a piece of the surface, not a mishap.
+inline constexpr int refilled_rings = 2;
+inline constexpr std::size_t most_refilled = 64;
 
 /// Pairs of facets: of more intersecting ones nothing is tried to be mended.
 /// Why: each try looks at all facets near them again; so many are no local mishap.

@@ -1,5 +1,6 @@
 #include "hsdm/contour/crossing_pairs.hh"
 
+#include "hsdm/contour/sets_round_face.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
 
@@ -13,51 +14,58 @@ namespace {
 struct Stop {
     FacetSide side; // of its facet, through the face
     Vec3 position;  // voxels, relative to the face's lower corner
+    bool exit;      // does the perimeter leave the solid there?
 };
 
-/// The crossings of one face, sorted by whether the perimeter leaves or enters the solid there.
+/// Pairs the crossings round one face.
 class FacePairing {
 public:
     FacePairing(const GridPoints& grid, const Crossings& crossings, const NormalSets& sets,
                 const RelationTest& related)
-        : grid_(grid), crossings_(crossings), sets_(sets), related_(related) {}
+        : grid_(grid), crossings_(crossings), sets_(sets), related_(related), around_(grid, sets, related) {}
 
-    /// Calls join(exit, enter, opposed) for every pair and left_open(stop) for every crossing without a
+    /// Calls join(stop, stop, opposed) for every pair and left_open(stop) for every crossing without a
     /// partner.
     template <class Join, class LeftOpen>
     void pair(Index grid_point, unsigned normal_axis, Join&& join, LeftOpen&& left_open) {
-        exits_.clear();
-        enters_.clear();
+        stops_.clear();
         gather(grid_point, normal_axis);
-        if (exits_.size() == 1 && enters_.size() == 1) {
-            join(exits_[0], enters_[0], opposed(of(exits_[0]), of(enters_[0])));
+        if (stops_.size() == 2 && stops_[0].exit != stops_[1].exit) {
+            join_two(stops_[0], stops_[1], join);
             return;
         }
-        while (!exits_.empty() && !enters_.empty()) join_best(join);
-        for (const Stop& s : exits_) left_open(s);
-        for (const Stop& s : enters_) left_open(s);
+        if (stops_.size() < 2) {
+            for (const Stop& s : stops_) left_open(s);
+            return;
+        }
+        crowded_ = around_.gather(grid_point, normal_axis);
+        find_best();
+        take(0, stops_.size(), join, left_open);
     }
 
 private:
+    /// In order round the face.
     void gather(Index grid_point, unsigned n) {
         const unsigned u = (n + 1) % 3, v = (n + 2) % 3;
         const Index pu = grid_.next[grid_point][u], pv = grid_.next[grid_point][v];
         add(grid_point, u, 1, true, 0, v);
-        add(grid_point, v, 2, false, 0, u);
         if (pu != no_index) add(pu, v, 0, true, 1, u);
         if (pv != no_index) add(pv, u, 3, false, 1, v);
+        add(grid_point, v, 2, false, 0, u);
     }
 
     void add(Index grid_point, unsigned axis, unsigned side, bool forward, double across,
              unsigned across_axis) {
         const Index edge = 3 * grid_point + axis;
+        const std::size_t first = stops_.size();
         for (Index x = crossings_.first[edge]; x < crossings_.first[edge + 1]; ++x) {
             const Crossing& crossing = crossings_.crossings[x];
             Vec3 position(0, 0, 0);
             position[axis] = crossing.t;
             position[across_axis] = across;
-            (crossing.leaving == forward ? exits_ : enters_).push_back({{x, side}, position});
+            stops_.push_back({{x, side}, position, crossing.leaving == forward});
         }
+        if (!forward) std::reverse(stops_.begin() + static_cast<std::ptrdiff_t>(first), stops_.end());
     }
 
     const Crossing& of(const Stop& s) const { return crossings_.of(s.side); }
@@ -70,42 +78,73 @@ private:
     /// 0 for two crossings of one flat sheet; the larger, the less they look like parts of one surface.
     double cost(const Stop& a, const Stop& b) const {
         const Crossing &x = of(a), &y = of(b);
+        const double cosine = x.normal | y.normal;
+        if (crowded_ && cosine > pairing::parted_cosine && around_.parted(x.set, y.set))
+            return pairing::cost_of_parted;
         const Vec3 d = b.position - a.position;
         const double off_plane = std::abs(x.normal | d) + std::abs(y.normal | d);
         const Relation r = relation(a, b);
-        return (1 - (x.normal | y.normal)) + off_plane
-               + (r == Relation::smooth ? 0
-                  : r == Relation::none ? pairing::cost_of_strangers
-                                        : pairing::cost_of_crease);
+        const bool crease = (r == Relation::convex || r == Relation::concave)
+                            || (crowded_ && opposed(x, y) && around_.joined_by_rim(x.set, y.set));
+        return (1 - cosine) + off_plane
+               + (crease                  ? pairing::cost_of_crease
+                  : r == Relation::smooth ? 0
+                                          : pairing::cost_of_strangers);
     }
 
-    /// Joins one pair: of two exits and two enters, one of the better pairing; of more (rare) the cheapest
-    /// pair, ties by number.
+    double& best(std::size_t begin, std::size_t end) { return best_[begin * (stops_.size() + 1) + end]; }
+    std::size_t& partner(std::size_t begin, std::size_t end) {
+        return partner_[begin * (stops_.size() + 1) + end];
+    }
+
+    /// Of all ways to pair the crossings without a link that crosses another the one of least cost, by
+    /// intervals of the perimeter.
+    void find_best() {
+        const std::size_t n = stops_.size();
+        best_.assign((n + 1) * (n + 1), 0);
+        partner_.assign((n + 1) * (n + 1), n);
+        for (std::size_t begin = n; begin-- > 0;)
+            for (std::size_t end = begin + 1; end <= n; ++end) {
+                double least = pairing::cost_of_open + best(begin + 1, end);
+                std::size_t with = n;
+                for (std::size_t k = begin + 1; k < end; ++k) {
+                    if (stops_[k].exit == stops_[begin].exit) continue;
+                    const double c = cost(stops_[begin], stops_[k]) + best(begin + 1, k) + best(k + 1, end);
+                    if (c < least) least = c, with = k;
+                }
+                best(begin, end) = least;
+                partner(begin, end) = with;
+            }
+    }
     template <class Join>
-    void join_best(Join&& join) {
-        double least = std::numeric_limits<double>::infinity();
-        std::size_t best_exit = 0, best_enter = 0;
-        if (exits_.size() == 2 && enters_.size() == 2) { // exactly: the better of the two pairings
-            const double straight = cost(exits_[0], enters_[0]) + cost(exits_[1], enters_[1]);
-            const double swapped = cost(exits_[0], enters_[1]) + cost(exits_[1], enters_[0]);
-            best_enter = straight <= swapped ? 0 : 1;
-        } else {
-            for (std::size_t i = 0; i < exits_.size(); ++i)
-                for (std::size_t j = 0; j < enters_.size(); ++j)
-                    if (const double c = cost(exits_[i], enters_[j]); c < least)
-                        least = c, best_exit = i, best_enter = j;
+    void join_two(const Stop& a, const Stop& b, Join& join) const {
+        join(a.exit ? a : b, a.exit ? b : a, opposed(of(a), of(b)));
+    }
+
+    template <class Join, class LeftOpen>
+    void take(std::size_t begin, std::size_t end, Join& join, LeftOpen& left_open) {
+        while (begin < end) {
+            const std::size_t k = partner(begin, end);
+            if (k == stops_.size()) {
+                left_open(stops_[begin]);
+                ++begin;
+                continue;
+            }
+            join_two(stops_[begin], stops_[k], join);
+            take(begin + 1, k, join, left_open);
+            begin = k + 1;
         }
-        const Stop &exit = exits_[best_exit], &enter = enters_[best_enter];
-        join(exit, enter, opposed(of(exit), of(enter)));
-        exits_.erase(exits_.begin() + static_cast<std::ptrdiff_t>(best_exit));
-        enters_.erase(enters_.begin() + static_cast<std::ptrdiff_t>(best_enter));
     }
 
     const GridPoints& grid_;
     const Crossings& crossings_;
     const NormalSets& sets_;
     const RelationTest& related_;
-    std::vector<Stop> exits_, enters_;
+    SetsRoundFace around_;
+    bool crowded_ = false; // does a wall or gap part sets round the face?
+    std::vector<Stop> stops_;
+    std::vector<double> best_;
+    std::vector<std::size_t> partner_;
 };
 
 } // namespace

@@ -142,6 +142,22 @@ bool joined_nearby(const GridPoints& grid, const LocalSheets& sheets, const Voxe
     return false;
 }
 
+/// Is a wall or gap known between two sheets? One pair of their sets may be an error, and so may be a set of
+/// few points.
+bool are_apart(std::span<const SheetMember> members, std::uint8_t one, std::uint8_t other,
+               const NormalSets& sets, const RelationTest& related) {
+    unsigned points_of_one = 0, points_of_other = 0, pairs = 0;
+    for (const SheetMember& a : members) {
+        if (a.sheet == one) points_of_one += sets.sets[a.set].count;
+        if (a.sheet == other) points_of_other += sets.sets[a.set].count;
+        if (a.sheet != one) continue;
+        for (const SheetMember& b : members)
+            pairs += b.sheet == other && related.apart(sets.sets[a.set], sets.sets[b.set]);
+    }
+    return pairs >= sheets::fewest_apart
+           && std::min(points_of_one, points_of_other) >= sheets::fewest_points_apart;
+}
+
 std::vector<Index> grid_points_with_several(const LocalSheets& sheets) {
     return indices_where(sheets.first_member.size() - 1, chunks::usual, [&](Index i) {
         return std::ranges::any_of(sheets.members_at(i), [](const SheetMember& m) { return m.sheet > 0; });
@@ -149,10 +165,12 @@ std::vector<Index> grid_points_with_several(const LocalSheets& sheets) {
 }
 
 /// Closure: two sets of one sheet at one grid point are one sheet at every grid point they share, unless
-/// their normals are so far apart that they were only joined round the rim of a thin part. Repeats until
+/// their normals are so far apart that they were only joined round the rim of a thin part, or a wall or gap
+/// passes between the two sheets there: those that end on one ground are one there alone. Repeats until
 /// nothing changes. Only grid points with several sheets are looked at; each round reads the sheets of the
 /// round before, so the order does not matter.
-void close_sheets(const GridPoints& grid, const NormalSets& sets, LocalSheets& sheets) {
+void close_sheets(const GridPoints& grid, const NormalSets& sets, const RelationTest& related,
+                  LocalSheets& sheets) {
     const std::vector<Index> open = grid_points_with_several(sheets);
     struct Merge {
         Index grid_point;
@@ -171,6 +189,7 @@ void close_sheets(const GridPoints& grid, const NormalSets& sets, LocalSheets& s
                         if ((sets.sets[a].normal | sets.sets[b].normal) < sheets::least_closure_cosine)
                             continue;
                         if (!joined_nearby(grid, sheets, c, a, b)) continue;
+                        if (are_apart(members, members[i].sheet, members[j].sheet, sets, related)) continue;
                         found[chunk].push_back({open[k], std::min(members[i].sheet, members[j].sheet),
                                                 std::max(members[i].sheet, members[j].sheet)});
                     }
@@ -235,7 +254,7 @@ private:
 LocalSheets group_local_sheets(const GridPoints& grid, const NormalSets& sets, const RelationTest& related,
                                double voxel_size) {
     LocalSheets result = connect_members(grid, sets, related);
-    close_sheets(grid, sets, result);
+    close_sheets(grid, sets, related, result);
     const std::size_t n = grid.size();
     assign_large(result.first_sheet, n + 1, 0);
     std::vector<std::vector<LocalSheet>> sheets(chunk_count(n, chunks::usual));

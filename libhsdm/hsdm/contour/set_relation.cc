@@ -20,10 +20,11 @@ RelationTest::RelationTest(const RelationOptions& options, double voxel_size)
 
 Relation RelationTest::operator()(const NormalSet& a, const NormalSet& b) const {
     const Relation relation = by_planes(a, b);
-    return relation != Relation::none && sets_ != nullptr && apart(a, b) ? Relation::none : relation;
+    return relation != Relation::none && apart(a, b) ? Relation::none : relation;
 }
 
 bool RelationTest::apart(const NormalSet& a, const NormalSet& b) const {
+    if (sets_ == nullptr) return false;
     const NormalSet* const sets = sets_->sets.data();
     const auto* const others = sets_->apart.data();
     return std::binary_search(others + sets_->first_apart[static_cast<std::size_t>(&a - sets)],

@@ -36,9 +36,10 @@ public:
         if (!sets.first_apart.empty()) sets_ = &sets;
     }
     Relation operator()(const NormalSet& a, const NormalSet& b) const;
+    /// Are they known to have a wall or gap between them?
+    bool apart(const NormalSet& a, const NormalSet& b) const;
 
 private:
-    bool apart(const NormalSet& a, const NormalSet& b) const;
     Relation by_planes(const NormalSet& a, const NormalSet& b) const;
     Relation crease(const NormalSet& a, const NormalSet& b, double cosine) const;
     bool ends_at(const NormalSet& set, const Vec3& plane, double above, bool convex, double cosine) const;
