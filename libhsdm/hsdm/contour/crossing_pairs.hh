@@ -31,8 +31,8 @@ struct Links {
 };
 
 /// Pairs the crossings on the perimeter of every grid face: one that leaves the solid with one that enters
-/// it, so that facets are oriented consistently. Of several possible pairings it takes the one whose sheets
-/// agree best. O(grid points), parallel.
+/// it, so that facets are oriented consistently. Of the pairings without links that cross it takes the one
+/// whose sheets agree best. O(grid points), parallel.
 Links pair_crossings(const GridPoints& grid, const Crossings& crossings, const NormalSets& sets,
                      const RelationTest& related);
 

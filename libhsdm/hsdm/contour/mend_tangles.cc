@@ -176,7 +176,7 @@ private:
             if (whole.ring.size() < 3
                 || !std::ranges::all_of(whole.between, [&](Index w) { return around_.inner(w); }))
                 continue;
-            const auto [f, g] = at.facets[v];
+            const Index f = at.facets[v][0], g = at.facets[v][1];
             PolygonMesh changed = around_.part;
             remove_facets(changed, [&](std::size_t k) { return k == f || k == g; });
             changed.add_facet(whole.ring);
