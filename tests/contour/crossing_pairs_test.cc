@@ -53,6 +53,31 @@ std::string link_fault(const Stages& stages) {
     return "";
 }
 
+/// How far round its face a side's crossing is, from 0 to 4.
+double way_round(const Stages& stages, FacetSide side) {
+    const double t = stages.crossings.of(side).t;
+    return std::array{1 + t, t, 4 - t, 3 - t}[side.j()];
+}
+
+/// Of the links of crowded faces, pairs that cross each other in their face.
+int links_that_cross(const Stages& stages) {
+    int count = 0;
+    std::vector<std::array<double, 2>> links; // where they begin and end
+    for (const FacetSide side : stages.links.crowded) {
+        if (side == no_side) {
+            links.clear();
+            continue;
+        }
+        if (stages.links.of(side).open()) continue;
+        const auto [begin, end] =
+            std::minmax(way_round(stages, side), way_round(stages, stages.links.of(side).twin));
+        for (const auto& [from, to] : links)
+            count += (from > begin && from < end) != (to > begin && to < end);
+        links.push_back({begin, end});
+    }
+    return count;
+}
+
 /// Per grid face, how many links and open sides there are, where these are two or more.
 std::map<VoxelCoord, int> crowded_faces(const Stages& stages) {
     std::map<VoxelCoord, int> count;
@@ -69,6 +94,13 @@ support::Solid plate() {
 }
 
 } // namespace
+
+TEST_CASE("links round a face do not cross, whatever passes there", "[contour]") {
+    CHECK(links_that_cross(Stages(support::mechanical_part(), 8000, 4)) == 0);
+    CHECK(links_that_cross(Stages(plate(), 5000, 3)) == 0);
+    for (std::uint64_t seed = 1; seed <= 3; ++seed)
+        CHECK(links_that_cross(Stages(support::random_cloud(500, seed), 3)) == 0);
+}
 
 TEST_CASE("links go both ways across a grid face, from what leaves the solid to what enters it",
           "[contour]") {

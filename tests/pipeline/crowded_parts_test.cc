@@ -40,3 +40,16 @@ TEST_CASE("combs, honeycombs, heat sinks, hinges, tins and rolls have their topo
             CHECK(result.report.error.points_to_mesh_max < voxel);
         }
 }
+
+TEST_CASE("a fin of half a voxel cut by a slot as narrow is two parts, in any pose", "[pipeline]") {
+    const Solid half = box({0.5, 4, 6});
+    const Solid fin = half.placed({.shift = {0, -2.25, 0}}) | half.placed({.shift = {0, 2.25, 0}});
+    for (std::uint64_t pose = 1; pose <= 8; ++pose) {
+        INFO("pose " << pose);
+        const PointCloud cloud = sample(fin.placed(random_pose(pose)), {.points = 3000, .seed = pose});
+        const Reconstruction result = reconstruct(cloud, {.voxel_size = 1});
+        CHECK(faults(to_polygons(result.mesh)) == "");
+        CHECK(result.report.mesh.components == 2);
+        CHECK(result.report.mesh.euler == 4);
+    }
+}

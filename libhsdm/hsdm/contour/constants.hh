@@ -158,9 +158,13 @@ HSDM_TUNED double surface_error = 0.15;
 /// Why: bounds the work; a round without change ends it.
 HSDM_TUNED int closure_rounds = 8;
 
-/// pairs: of sets that are apart, between two sheets that do not become one though they are one elsewhere;
-/// and points of each of the two. Why: one pair may be an error; a plane has three points.
-inline constexpr unsigned fewest_apart = 2, fewest_points_apart = 3;
+/// pairs: of sets apart, between two sheets that do not become one though they are one elsewhere.
+/// Why: one pair may be an error.
+inline constexpr unsigned fewest_apart = 2;
+
+/// points: of each of the two.
+/// Why: as many as a plane has; the rim of a wall has few.
+inline constexpr unsigned fewest_points_apart = 3;
 
 /// cosine: of the normals of two sets that may become one sheet since they are one elsewhere.
 /// Why: 70 degrees: less than the right angle between a plate's side and its rim, through which its two sides
@@ -255,9 +259,13 @@ HSDM_TUNED double cost_of_crease = 1;
 /// Why: twice that of a crease.
 HSDM_TUNED double cost_of_strangers = 2;
 
-/// cost: of pairing two that face one way with a wall or gap between them, by 60 degrees.
+/// cost: of pairing two that face one way, with a wall or gap between them.
 /// Why: twice that of a rim, across which two strangers face opposite ways a voxel apart.
-inline constexpr double cost_of_parted = 10, parted_cosine = 0.5;
+inline constexpr double cost_of_parted = 10;
+
+/// cosine: of the normals of two that face one way.
+/// Why: 60 degrees: walls of a honeycomb go on into each other, the faces of a block do not.
+inline constexpr double parted_cosine = 0.5;
 
 /// cost: of a crossing without a partner.
 /// Why: more than all pairs of a face.

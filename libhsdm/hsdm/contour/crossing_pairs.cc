@@ -24,7 +24,7 @@ public:
                 const RelationTest& related)
         : grid_(grid), crossings_(crossings), sets_(sets), related_(related), around_(grid, sets, related) {}
 
-    /// Calls join(stop, stop, opposed) for every pair and left_open(stop) for every crossing without a
+    /// Calls join(exit, enter, opposed) for every pair and left_open(stop) for every crossing without a
     /// partner.
     template <class Join, class LeftOpen>
     void pair(Index grid_point, unsigned normal_axis, Join&& join, LeftOpen&& left_open) {
@@ -92,30 +92,32 @@ private:
                                           : pairing::cost_of_strangers);
     }
 
-    double& best(std::size_t begin, std::size_t end) { return best_[begin * (stops_.size() + 1) + end]; }
-    std::size_t& partner(std::size_t begin, std::size_t end) {
-        return partner_[begin * (stops_.size() + 1) + end];
-    }
-
     /// Of all ways to pair the crossings without a link that crosses another the one of least cost, by
-    /// intervals of the perimeter.
+    /// intervals of the perimeter: best_ and partner_ are of those from a row's crossing to before a
+    /// column's.
     void find_best() {
         const std::size_t n = stops_.size();
+        costs_.resize(n * n);
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t k = i + 1; k < n; ++k)
+                if (stops_[i].exit != stops_[k].exit) costs_[i * n + k] = cost(stops_[i], stops_[k]);
         best_.assign((n + 1) * (n + 1), 0);
-        partner_.assign((n + 1) * (n + 1), n);
+        partner_.resize((n + 1) * (n + 1));
+        const auto at = [&](std::size_t begin, std::size_t end) { return begin * (n + 1) + end; };
         for (std::size_t begin = n; begin-- > 0;)
             for (std::size_t end = begin + 1; end <= n; ++end) {
-                double least = pairing::cost_of_open + best(begin + 1, end);
+                double least = pairing::cost_of_open + best_[at(begin + 1, end)];
                 std::size_t with = n;
                 for (std::size_t k = begin + 1; k < end; ++k) {
                     if (stops_[k].exit == stops_[begin].exit) continue;
-                    const double c = cost(stops_[begin], stops_[k]) + best(begin + 1, k) + best(k + 1, end);
+                    const double c = costs_[begin * n + k] + best_[at(begin + 1, k)] + best_[at(k + 1, end)];
                     if (c < least) least = c, with = k;
                 }
-                best(begin, end) = least;
-                partner(begin, end) = with;
+                best_[at(begin, end)] = least;
+                partner_[at(begin, end)] = with;
             }
     }
+
     template <class Join>
     void join_two(const Stop& a, const Stop& b, Join& join) const {
         join(a.exit ? a : b, a.exit ? b : a, opposed(of(a), of(b)));
@@ -124,7 +126,7 @@ private:
     template <class Join, class LeftOpen>
     void take(std::size_t begin, std::size_t end, Join& join, LeftOpen& left_open) {
         while (begin < end) {
-            const std::size_t k = partner(begin, end);
+            const std::size_t k = partner_[begin * (stops_.size() + 1) + end];
             if (k == stops_.size()) {
                 left_open(stops_[begin]);
                 ++begin;
@@ -143,7 +145,7 @@ private:
     SetsRoundFace around_;
     bool crowded_ = false; // does a wall or gap part sets round the face?
     std::vector<Stop> stops_;
-    std::vector<double> best_;
+    std::vector<double> costs_, best_;
     std::vector<std::size_t> partner_;
 };
 

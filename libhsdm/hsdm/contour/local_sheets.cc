@@ -1,5 +1,6 @@
 #include "hsdm/contour/local_sheets.hh"
 
+#include "hsdm/contour/components.hh"
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
@@ -28,26 +29,11 @@ struct SheetsAtPoint {
 
     /// Connected components of the smooth relation, numbered by their first member.
     void connect(const NormalSets& sets, const RelationTest& related) {
-        std::array<std::uint8_t, most> pending;
-        constexpr std::uint8_t none = 0xff;
-        for (std::size_t i = 0; i < member_count; ++i) members[i].sheet = none;
-        sheet_count = 0;
-        for (std::size_t i = 0; i < member_count; ++i) {
-            if (members[i].sheet != none) continue;
-            std::size_t waiting = 0;
-            pending[waiting++] = static_cast<std::uint8_t>(i);
-            members[i].sheet = static_cast<std::uint8_t>(sheet_count);
-            while (waiting > 0) {
-                const NormalSet& a = sets.sets[members[pending[--waiting]].set];
-                for (std::size_t j = i + 1; j < member_count; ++j) {
-                    if (members[j].sheet != none || related(a, sets.sets[members[j].set]) != Relation::smooth)
-                        continue;
-                    members[j].sheet = static_cast<std::uint8_t>(sheet_count);
-                    pending[waiting++] = static_cast<std::uint8_t>(j);
-                }
-            }
-            ++sheet_count;
-        }
+        sheet_count = label_components(
+            member_count, [&](std::size_t i) -> std::uint8_t& { return members[i].sheet; },
+            [&](std::size_t i, std::size_t j) {
+                return related(sets.sets[members[i].set], sets.sets[members[j].set]) == Relation::smooth;
+            });
     }
 
     /// Takes members with known sheets; renumbers the sheets without gaps, in order of their first member.

@@ -3,11 +3,11 @@
 #include "hsdm/contour/tangled_part.hh"
 #include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
-#include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/collapse_edges.hh"
 #include "hsdm/mesh/facet_unions.hh"
 #include "hsdm/mesh/remove_facets.hh"
 #include "hsdm/mesh/split_polygon.hh"
+#include "hsdm/quality/topology.hh"
 #include "hsdm/spatial/self_intersections.hh"
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace hsdm {
 namespace {
 
-/// Facets that make up a disc, and its border: the sides of a facet that could take their place.
+/// Facets that may make up a disc, so that others over its border could take their place.
 class FacetDisc {
 public:
     FacetDisc(const PolygonMesh& mesh, Index facet) : mesh_(mesh), facets_{facet} {}
@@ -35,8 +35,7 @@ public:
     bool has(Index f) const { return std::ranges::binary_search(facets_, f); }
     std::size_t size() const { return facets_.size(); }
 
-    /// The border's vertices in order, and the facets that it goes round have no others but `within`; empty
-    /// if the facets are no disc.
+    /// The vertices of the border in order; `within` becomes the others. Empty if the facets are no disc.
     std::vector<Index> border(std::vector<Index>& within) const {
         std::vector<std::array<Index, 2>> sides;
         for (const Index f : facets_) {
@@ -84,23 +83,19 @@ public:
         std::size_t changes = 0, before = 0;
         do {
             before = changes;
-            while (collapse_an_edge()) ++changes;
             while (unite_two()) ++changes;
+            while (collapse_an_edge()) ++changes;
             while (cut_a_facet()) ++changes;
             while (refill_a_disc()) ++changes;
         } while (changes > before && found_.triangle_pairs > 0);
         return changes;
     }
 
-    const SelfIntersections& found() const { return found_; }
-
 private:
-    static constexpr double least_area = 1e-6; // of a facet, over its diameter squared: far above rounding
-
     /// Takes the changed part if fewer facets meet in it. `made`: facets at its end that are new.
     bool take(PolygonMesh&& changed, std::size_t made = 0) {
         for (std::size_t f = changed.facet_count() - made; f < changed.facet_count(); ++f)
-            if (!encloses(changed, f)) return false;
+            if (!is_sound(changed, f)) return false;
         SelfIntersections left = find_self_intersections(changed);
         if (left.triangle_pairs >= found_.triangle_pairs) return false;
         around_.part = std::move(changed);
@@ -108,21 +103,14 @@ private:
         return true;
     }
 
-    /// Has a new facet an area, and are its vertices not those of another?
-    static bool encloses(const PolygonMesh& mesh, std::size_t facet) {
+    /// Has a new facet an area, and other vertices than any facet? Else it would be left out in the end.
+    static bool is_sound(const PolygonMesh& mesh, std::size_t facet) {
         const auto ring = mesh.facet(facet);
-        double longest = 0;
-        for (const Index v : ring)
-            longest = std::max(longest, (mesh.positions[v] - mesh.positions[ring[0]]).sqrnorm());
-        if (!(area_vector(mesh, ring).norm() > least_area * longest)) return false;
-        std::vector<Index> sorted(ring.begin(), ring.end()), other;
-        std::ranges::sort(sorted);
-        for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-            if (f == facet || mesh.facet(f).size() != ring.size()) continue;
-            other.assign(mesh.facet(f).begin(), mesh.facet(f).end());
-            std::ranges::sort(other);
-            if (other == sorted) return false;
-        }
+        std::vector<Vec3> corners;
+        for (const Index v : ring) corners.push_back(mesh.positions[v]);
+        if (has_no_area(corners)) return false;
+        for (std::size_t f = 0; f < mesh.facet_count(); ++f)
+            if (f != facet && std::ranges::is_permutation(mesh.facet(f), ring)) return false;
         return true;
     }
 
@@ -281,12 +269,12 @@ UntangleCounts mend_tangles(PolygonMesh& mesh, double nearby, std::size_t most_p
     counts.first = mesh.positions[mesh.facet(found.facet_pairs[0][0])[0]];
     if (found.facet_pairs.size() > most_pairs) return counts;
     TangledPart around(mesh, found.facet_pairs, nearby);
-    Mender mender(around);
-    counts.moved = mender.run();
-    if (counts.moved > 0) around.replace_facets(mesh);
-    counts.after = mender.found().triangle_pairs;
-    if (counts.after > 0)
-        counts.first = around.part.positions[around.part.facet(mender.found().facet_pairs[0][0])[0]];
+    counts.moved = Mender(around).run();
+    if (counts.moved == 0) return counts;
+    around.replace_facets(mesh);
+    found = find_self_intersections(mesh); // what is filled anew may reach farther than the part
+    counts.after = found.triangle_pairs;
+    if (counts.after > 0) counts.first = mesh.positions[mesh.facet(found.facet_pairs[0][0])[0]];
     return counts;
 }
 

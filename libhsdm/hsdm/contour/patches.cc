@@ -1,5 +1,6 @@
 #include "hsdm/contour/patches.hh"
 
+#include "hsdm/contour/components.hh"
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/parallel_sort.hh"
@@ -289,27 +290,12 @@ std::size_t connect_samples(const Neighborhood& around, std::size_t i, std::vect
     const auto samples = around.samples(i);
     const Vec3& normal = around.set(i).normal;
     const auto discs = around.standing_on(i);
-    std::vector<std::uint8_t> pending;
-    constexpr std::uint8_t none = 0xff;
-    patch.assign(samples.size(), none);
-    std::uint8_t count = 0;
-    for (std::size_t start = 0; start < samples.size(); ++start) {
-        if (patch[start] != none) continue;
-        patch[start] = count;
-        pending.assign(1, static_cast<std::uint8_t>(start));
-        while (!pending.empty()) {
-            const std::size_t at = pending.back();
-            pending.pop_back();
-            for (std::size_t j = 0; j < samples.size(); ++j) {
-                if (patch[j] != none || Neighborhood::parted(samples[at], samples[j], normal, discs))
-                    continue;
-                patch[j] = count;
-                pending.push_back(static_cast<std::uint8_t>(j));
-            }
-        }
-        ++count;
-    }
-    return count;
+    patch.resize(samples.size());
+    return label_components(
+        samples.size(), [&](std::size_t i) -> std::uint8_t& { return patch[i]; },
+        [&](std::size_t i, std::size_t j) {
+            return !Neighborhood::parted(samples[i], samples[j], normal, discs);
+        });
 }
 
 /// Voxels whose points lie on several sheets, by which alone anything ends.

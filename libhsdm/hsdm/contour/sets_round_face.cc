@@ -1,5 +1,6 @@
 #include "hsdm/contour/sets_round_face.hh"
 
+#include "hsdm/contour/components.hh"
 #include "hsdm/contour/constants.hh"
 
 #include <algorithm>
@@ -45,24 +46,12 @@ bool SetsRoundFace::gather(Index grid_point, unsigned axis) {
 }
 
 void SetsRoundFace::find_patches() {
-    unsigned patches = 0;
-    for (std::size_t i = 0; i < members_.size(); ++i) {
-        if (members_[i].patch != 0) continue;
-        members_[i].patch = ++patches;
-        pending_.assign(1, i);
-        while (!pending_.empty()) {
-            const Member from = members_[pending_.back()];
-            pending_.pop_back();
-            for (std::size_t j = 0; j < members_.size(); ++j) {
-                Member& m = members_[j];
-                if (m.patch != 0 || !adjacent(from.at, m.at)
-                    || related_(set(from), set(m)) != Relation::smooth)
-                    continue;
-                m.patch = patches;
-                pending_.push_back(j);
-            }
-        }
-    }
+    label_components(
+        members_.size(), [&](std::size_t i) -> std::uint8_t& { return members_[i].patch; },
+        [&](std::size_t i, std::size_t j) {
+            const Member &a = members_[i], &b = members_[j];
+            return adjacent(a.at, b.at) && related_(set(a), set(b)) == Relation::smooth;
+        });
 }
 
 const SetsRoundFace::Member* SetsRoundFace::find(Index s) const {
@@ -70,7 +59,7 @@ const SetsRoundFace::Member* SetsRoundFace::find(Index s) const {
     return at == members_.end() ? nullptr : &*at;
 }
 
-double SetsRoundFace::points_of(unsigned patch) const {
+double SetsRoundFace::points_of(std::uint8_t patch) const {
     double points = 0;
     for (const Member& m : members_)
         if (m.patch == patch) points += set(m).count;
@@ -88,7 +77,7 @@ bool SetsRoundFace::parted(Index s, Index t) const {
     });
 }
 
-bool SetsRoundFace::meets(const Member& rim, unsigned patch, Relation kind) const {
+bool SetsRoundFace::meets(const Member& rim, std::uint8_t patch, Relation kind) const {
     return std::ranges::any_of(members_, [&](const Member& m) {
         return m.patch == patch && adjacent(rim.at, m.at) && related_(set(rim), set(m)) == kind;
     });

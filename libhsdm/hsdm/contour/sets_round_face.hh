@@ -27,21 +27,20 @@ public:
 private:
     struct Member {
         Index set;
-        VoxelCoord at;  ///< of its voxel, relative to the face
-        unsigned patch; ///< from 1
+        VoxelCoord at; ///< of its voxel, relative to the face
+        std::uint8_t patch;
     };
 
     const NormalSet& set(const Member& m) const { return sets_.sets[m.set]; }
     const Member* find(Index s) const;
-    bool meets(const Member& rim, unsigned patch, Relation kind) const;
-    double points_of(unsigned patch) const;
+    bool meets(const Member& rim, std::uint8_t patch, Relation kind) const;
+    double points_of(std::uint8_t patch) const;
     void find_patches();
 
     const GridPoints& grid_;
     const NormalSets& sets_;
     const RelationTest& related_;
     std::vector<Member> members_;
-    std::vector<std::size_t> pending_;
 };
 
 } // namespace hsdm

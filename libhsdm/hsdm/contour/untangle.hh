@@ -31,9 +31,9 @@ struct UntangleCounts {
 UntangleCounts untangle(PolygonMesh& mesh, const UntangleOptions& options, const FacetCells* cells = nullptr);
 
 /// Changes facets that still intersect others, one place at a time, as long as each change leaves fewer
-/// intersections: merges two vertices, unites two facets that are folded onto each other round vertices of no
-/// third, cuts a facet in two, or fills the border of a disc of facets anew. The topology stays. Nothing is
-/// tried if more than `most_pairs` pairs of facets intersect. Merged vertices become isolated; the facets
+/// intersections: unites two facets that are folded onto each other round vertices of no third, merges two
+/// vertices, cuts a facet in two, or fills the border of a disc of facets anew. The topology stays. Nothing
+/// is tried if more than `most_pairs` pairs of facets intersect. Merged vertices become isolated; the facets
 /// around come to be the mesh's last. `nearby`: as above. O(t log t + facets near by * changes tried).
 UntangleCounts mend_tangles(PolygonMesh& mesh, double nearby,
                             std::size_t most_pairs = untangling::most_pairs);
