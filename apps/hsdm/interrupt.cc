@@ -40,7 +40,7 @@ public:
     /// reads no more does not keep the process alive.
     void say() {
         constexpr std::string_view wipe = "\r\033[K";
-        constexpr int patience = 50; // milliseconds, twice
+        constexpr int patience = 300; // milliseconds, twice: every core may be busy with other processes
         text_[length_++] = '\n';
         for (int waited = 0; ftrylockfile(stderr) != 0 && waited < patience; ++waited)
             std::this_thread::sleep_for(std::chrono::milliseconds(1));

@@ -292,9 +292,9 @@ std::size_t connect_samples(const Neighborhood& around, std::size_t i, std::vect
     const auto discs = around.standing_on(i);
     patch.resize(samples.size());
     return label_components(
-        samples.size(), [&](std::size_t i) -> std::uint8_t& { return patch[i]; },
-        [&](std::size_t i, std::size_t j) {
-            return !Neighborhood::parted(samples[i], samples[j], normal, discs);
+        samples.size(), [&](std::size_t k) -> std::uint8_t& { return patch[k]; },
+        [&](std::size_t k, std::size_t j) {
+            return !Neighborhood::parted(samples[k], samples[j], normal, discs);
         });
 }
 
