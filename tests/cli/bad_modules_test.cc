@@ -49,7 +49,7 @@ TEST_CASE("a broken mesh that a module leaves is an error that names it, and is 
     CHECK(five.sharp_edges.size() == 12);
 }
 
-TEST_CASE("a module that crashes is named before its signal ends the command", "[cli]") {
+TEST_CASE("a module that crashes is named before its signal ends the command", "[cli][threads]") {
     const Folder folder;
     const std::string modules = with_ill_module(folder);
     for (const auto& [how, status, name] :
@@ -72,7 +72,7 @@ TEST_CASE("a module that crashes is named before its signal ends the command", "
     CHECK(read_file(folder / "new.off") == "old");
 }
 
-TEST_CASE("a module that never asks is cancelled all the same, also the last one", "[cli]") {
+TEST_CASE("a module that never asks is cancelled all the same, also the last one", "[cli][threads]") {
     const Folder folder;
     const std::string modules = with_ill_module(folder);
     for (const char* after : {"", " --module smooth-normals"}) {

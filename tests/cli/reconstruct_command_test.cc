@@ -10,7 +10,7 @@ using namespace hsdm;
 using namespace hsdm::test;
 using Json = nlohmann::json;
 
-TEST_CASE("a scan becomes a mesh, a report and features with one command", "[cli]") {
+TEST_CASE("a scan becomes a mesh, a report and features with one command", "[cli][threads]") {
     const Folder folder;
     folder.write("scan.xyz", xyz(sphere_scan()));
     const CommandResult result =
@@ -94,7 +94,7 @@ TEST_CASE("standard input and output carry clouds and meshes, messages go to sta
     CHECK(read_file(folder / "part.off") == result.out);
 }
 
-TEST_CASE("many inputs: one failure does not stop the others", "[cli]") {
+TEST_CASE("many inputs: one failure does not stop the others", "[cli][threads]") {
     const Folder folder;
     folder.write("a.xyz", xyz(sphere_scan(4000)));
     folder.write("b.xyz", "1 2 3\n4 five 6\n7 8 9\n1 1 1\n");
@@ -115,7 +115,7 @@ TEST_CASE("many inputs: one failure does not stop the others", "[cli]") {
     CHECK(reports[1].contains("failure"));
 }
 
-TEST_CASE("levels give one mesh per depth from one octree, the same as each depth alone", "[cli]") {
+TEST_CASE("levels give one mesh per depth from one octree, the same as each depth alone", "[cli][threads]") {
     const Folder folder;
     folder.write("scan.xyz", xyz(sphere_scan()));
     CHECK(run(folder, "reconstruct scan.xyz --levels 3:4 -o part.off --report levels.json").status == 0);
@@ -252,7 +252,7 @@ TEST_CASE("points that are not finite are dropped and counted", "[cli]") {
     CHECK(report["input"]["points"] == 4000);
 }
 
-TEST_CASE("one or two threads and any order of the points write the same bytes", "[cli]") {
+TEST_CASE("one or two threads and any order of the points write the same bytes", "[cli][threads]") {
     const Folder folder;
     PointCloud cloud = support::sample(support::mechanical_part(), {.points = 20000, .normals = false});
     folder.write("scan.xyz", xyz(cloud));

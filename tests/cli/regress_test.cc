@@ -177,7 +177,7 @@ TEST_CASE("what a case expects of a file or a surface that it does not name is r
         Contains("--ascii is about a file, but the case has no `output`"));
 }
 
-TEST_CASE("cases side by side give the rows and results of cases one by one", "[cli]") {
+TEST_CASE("cases side by side give the rows and results of cases one by one", "[cli][threads]") {
     const ScanFolder folder;
     folder.write("large.xyz", xyz(sphere_scan(6000)));
     std::string cases = R"({"name": "first", "input": "large.xyz", "args": ["--depth", "5"],

@@ -40,7 +40,8 @@ const std::string catching = "grep -q 'SigBlk:.*[2367abef]$' /proc/$command/stat
 
 } // namespace
 
-TEST_CASE("every signal that ends a program ends this one with 128 + its number and no file", "[cli]") {
+TEST_CASE("every signal that ends a program ends this one with 128 + its number and no file",
+          "[cli][threads]") {
     const Folder folder;
     folder.write("scan.xyz", xyz(sphere_scan(1000)));
     const std::pair<const char*, int> signals[] = {
@@ -56,7 +57,7 @@ TEST_CASE("every signal that ends a program ends this one with 128 + its number 
     }
 }
 
-TEST_CASE("a signal is not kept waiting by work without end", "[cli]") {
+TEST_CASE("a signal is not kept waiting by work without end", "[cli][threads]") {
     const Folder folder;
     folder.write("scan.xyz", xyz(sphere_scan(4000)));
     const std::string work =
@@ -67,7 +68,7 @@ TEST_CASE("a signal is not kept waiting by work without end", "[cli]") {
     CHECK_FALSE(exists(folder / "a.ply"));
 }
 
-TEST_CASE("a signal is not kept waiting by pipes", "[cli]") {
+TEST_CASE("a signal is not kept waiting by pipes", "[cli][threads]") {
     const Folder folder;
     folder.write("scan.xyz", xyz(sphere_scan(500)));
     with_modules(folder);
@@ -82,7 +83,7 @@ TEST_CASE("a signal is not kept waiting by pipes", "[cli]") {
     }
 }
 
-TEST_CASE("after a signal the message says what stands and what is there in part", "[cli]") {
+TEST_CASE("after a signal the message says what stands and what is there in part", "[cli][threads]") {
     const Folder folder;
     folder.write("scan.xyz", xyz(sphere_scan(500)));
     const std::string command = "reconstruct scan.xyz --depth 3 --quiet -o a.off ";
@@ -100,7 +101,8 @@ TEST_CASE("after a signal the message says what stands and what is there in part
     CHECK(list(folder) == "a.off\nerr\nout\nscan.xyz\n");
 }
 
-TEST_CASE("a signal during a suite leaves the rows and results of the cases that are done", "[cli]") {
+TEST_CASE("a signal during a suite leaves the rows and results of the cases that are done",
+          "[cli][threads]") {
     const Folder folder;
     folder.write("scan.xyz", xyz(sphere_scan(500)));
     REQUIRE(mkfifo((folder / "stuck.xyz").c_str(), 0600) == 0);
@@ -143,7 +145,7 @@ TEST_CASE("a signal during a suite leaves the rows and results of the cases that
     CHECK(piped.err == "hsdm: cancelled; nothing was written\n");
 }
 
-TEST_CASE("a signal that was ignored stays so where shells do not do it for every job", "[cli]") {
+TEST_CASE("a signal that was ignored stays so where shells do not do it for every job", "[cli][threads]") {
     const Folder folder;
     folder.write("scan.xyz", xyz(sphere_scan(500)));
     const CommandResult result =
@@ -158,7 +160,7 @@ TEST_CASE("a signal that was ignored stays so where shells do not do it for ever
     CHECK(exists(folder / "a.off"));
 }
 
-TEST_CASE("a limit on the size of files is an error of writing, and leaves nothing", "[cli]") {
+TEST_CASE("a limit on the size of files is an error of writing, and leaves nothing", "[cli][threads]") {
     const Folder folder;
     folder.write("scan.xyz", xyz(sphere_scan(4000)));
     const CommandResult result =
@@ -168,7 +170,8 @@ TEST_CASE("a limit on the size of files is an error of writing, and leaves nothi
     CHECK(list(folder) == "scan.xyz\n");
 }
 
-TEST_CASE("a run that was killed leaves a temporary file, which the next one removes and names", "[cli]") {
+TEST_CASE("a run that was killed leaves a temporary file, which the next one removes and names",
+          "[cli][threads]") {
     const Folder folder;
     folder.write("scan.xyz", xyz(sphere_scan(500)));
     folder.write(".a.off.4711-0.tmp", "OFF");

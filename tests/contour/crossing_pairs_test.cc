@@ -69,8 +69,8 @@ int links_that_cross(const Stages& stages) {
             continue;
         }
         if (stages.links.of(side).open()) continue;
-        const auto [begin, end] =
-            std::minmax(way_round(stages, side), way_round(stages, stages.links.of(side).twin));
+        double begin = way_round(stages, side), end = way_round(stages, stages.links.of(side).twin);
+        if (end < begin) std::swap(begin, end);
         for (const auto& [from, to] : links)
             count += (from > begin && from < end) != (to > begin && to < end);
         links.push_back({begin, end});

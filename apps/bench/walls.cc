@@ -1,6 +1,8 @@
 // How thin may walls and gaps be? Shapes of many widths in many poses, normals given and estimated: the table
 // and the plot of docs/sheets.md.
 
+#include "benchmarks.hh"
+
 #include "hsdm/errors.hh"
 #include "hsdm/reconstruct.hh"
 #include "support/pose.hh"
@@ -46,7 +48,7 @@ Solid layers(double width) {
            | at(support::box({1, 0.8, width}), {0, 0, width});
 }
 
-const std::vector<Shape> shapes = {
+const std::vector<Shape> walls_and_gaps = {
     {"plate",
      [](double w) {
          return support::box({1, 0.8, w}) - support::box({0.3, 0.3, 1});
@@ -90,21 +92,21 @@ std::vector<double> print_table(NormalSource normals, const std::vector<double>&
                                 std::uint64_t poses) {
     std::vector<double> percents;
     std::printf("| width |");
-    for (const Shape& shape : shapes) std::printf(" %s |", shape.name);
+    for (const Shape& shape : walls_and_gaps) std::printf(" %s |", shape.name);
     std::printf(" all |\n|---|");
-    for (std::size_t i = 0; i <= shapes.size(); ++i) std::printf("---|");
+    for (std::size_t i = 0; i <= walls_and_gaps.size(); ++i) std::printf("---|");
     std::printf("\n");
     for (const double width : widths) {
         std::printf("| %g |", width);
         std::uint64_t all = 0;
-        for (const Shape& shape : shapes) {
+        for (const Shape& shape : walls_and_gaps) {
             std::uint64_t right = 0;
             for (std::uint64_t pose = 1; pose <= poses; ++pose)
                 right += is_right(shape, width, pose, normals);
             std::printf(" %.0f |", 100.0 * static_cast<double>(right) / static_cast<double>(poses));
             all += right;
         }
-        percents.push_back(100.0 * static_cast<double>(all) / static_cast<double>(poses * shapes.size()));
+        percents.push_back(100.0 * static_cast<double>(all) / static_cast<double>(poses * walls_and_gaps.size()));
         std::printf(" %.1f |\n", percents.back());
         std::fflush(stdout);
     }
@@ -173,7 +175,7 @@ private:
 
 } // namespace
 
-int main(int argc, char** argv) {
+int bench::walls(int argc, char** argv) {
     CLI::App app(
         "Percent of meshes with the topology of the shape, and without intersections, by width in voxels.");
     std::uint64_t poses = 20;
@@ -189,4 +191,5 @@ int main(int argc, char** argv) {
     std::printf("\nNormals estimated:\n\n");
     plot.add(print_table(NormalSource::estimate, widths, poses), "normals estimated", "#c4611a");
     if (!plot_file.empty()) plot.write(plot_file);
+    return 0;
 }

@@ -1,5 +1,7 @@
-// hsdm_bench_normals: accuracy and seconds of estimated normals, against the normals that the file gives or
+// hsdm_bench normals: accuracy and seconds of estimated normals, against the normals that the file gives or
 // those of the shape itself.
+
+#include "benchmarks.hh"
 
 #include "hsdm/io/read_mesh.hh"
 #include "hsdm/io/read_points.hh"
@@ -11,7 +13,6 @@
 #include <CLI/CLI.hpp>
 
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -49,15 +50,12 @@ double distance(const Vec3& p, const Segment& s) {
     return (p - s.from - along * t).norm();
 }
 
-double now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 /// Normals of the surface that a mesh of triangles stands for: those at the corners, means over the facets
 /// around that are bent by less than a crease, interpolated. So facets of a smooth shape leave no steps.
-class Shape {
+class TrueShape {
 public:
-    explicit Shape(const PolygonMesh& mesh) : mesh_(mesh), distance_(mesh), normals_(mesh.corners.size()) {
+    explicit TrueShape(const PolygonMesh& mesh)
+        : mesh_(mesh), distance_(mesh), normals_(mesh.corners.size()) {
         std::vector<Vec3> areas(mesh.facet_count());
         std::vector<std::vector<std::size_t>> around(mesh.vertex_count());
         for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
@@ -145,14 +143,14 @@ std::vector<Vec3> true_normals(const PointCloud& cloud, const std::string& shape
         return normals;
     }
     const PolygonMesh mesh = read_mesh(shape_path);
-    const Shape shape(mesh);
+    const TrueShape shape(mesh);
     for (std::size_t i = 0; i < normals.size(); ++i) normals[i] = shape.normal(cloud.positions[i]);
     return normals;
 }
 
 } // namespace
 
-int main(int argc, char** argv) {
+int bench::normals(int argc, char** argv) {
     CLI::App app("Estimates the normals of clouds that have some and compares. "
                  "Arguments: CLOUD[:EDGES[:SHAPE]] ...");
     std::vector<std::string> inputs;
@@ -175,9 +173,9 @@ int main(int argc, char** argv) {
         const std::vector<Segment> edges = read_edges(edges_path);
         Octree octree = build_octree(cloud, {.use_normals = false});
         const double h = octree.voxel_size(choose_depth(octree, estimate_spacing(octree)).depth);
-        const double start = now();
+        const double start = bench::now();
         const NormalsReport report = make_normals(octree, options);
-        const double seconds = now() - start;
+        const double seconds = bench::now() - start;
         const Score s = judge(octree, cloud, true_normals(cloud, shape_path), edges, 2 * h);
         const auto share = [](auto part, std::size_t whole) {
             return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;

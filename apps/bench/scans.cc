@@ -1,6 +1,8 @@
 // What becomes of scans from a few places, with growing faults, when what nobody saw is completed; prints the
 // table of docs/completion.md.
 
+#include "benchmarks.hh"
+
 #include "hsdm/errors.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/reconstruct.hh"
@@ -42,14 +44,14 @@ std::vector<Part> parts() {
     };
 }
 
-struct Fault {
+struct ScanFault {
     const char* name;
     std::vector<double> strengths;
     void (*apply)(double strength, ScannerOptions& options);
 };
 
 /// Lengths are in hundredths of the part's radius.
-const std::vector<Fault> faults = {
+const std::vector<ScanFault> scan_faults = {
     {"noise", {0, 0.5, 1, 2, 3}, [](double s, ScannerOptions& o) { o.noise = s; }},
     {"misalignment", {0.25, 0.5, 1, 2}, [](double s, ScannerOptions& o) { o.misalignment = s; }},
     {"outliers, %", {1, 3, 10}, [](double s, ScannerOptions& o) { o.outliers = s; }},
@@ -91,7 +93,7 @@ Outcome outcome(const Part& part, const ScannerOptions& scanner, bool sensors) {
 
 } // namespace
 
-int main(int argc, char** argv) {
+int bench::scans(int argc, char** argv) {
     CLI::App app(
         "Scans from a few places with growing faults, completed: how many come out right, and how near.");
     std::size_t points = 60000;
@@ -103,7 +105,7 @@ int main(int argc, char** argv) {
     app.add_flag("--verbose", verbose, "says what fails");
     CLI11_PARSE(app, argc, argv);
     std::printf("| fault | strength | right | intersecting | mean distance |\n|---|---|---|---|---|\n");
-    for (const Fault& fault : faults)
+    for (const ScanFault& fault : scan_faults)
         for (const double strength : fault.strengths) {
             int right = 0, all = 0, made_any = 0, intersecting = 0;
             double off = 0;

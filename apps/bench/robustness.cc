@@ -1,6 +1,8 @@
 // Where does topology break? Three solids, faults of growing strength, normals given and estimated; prints
 // the table of docs/robustness.md.
 
+#include "benchmarks.hh"
+
 #include "hsdm/errors.hh"
 #include "hsdm/octree/spacing.hh"
 #include "hsdm/reconstruct.hh"
@@ -8,6 +10,8 @@
 #include "support/random.hh"
 #include "support/sample.hh"
 #include "support/trial.hh"
+
+#include <CLI/CLI.hpp>
 
 #include <cmath>
 #include <cstdio>
@@ -17,13 +21,13 @@ using namespace hsdm;
 
 namespace {
 
-constexpr double voxel = 0.1;
-constexpr double per_voxel = 8; // points per squared voxel
+constexpr double fixed_voxel = 0.1;
+constexpr double points_a_voxel = 8; // points per squared voxel
 
-struct Shape {
+struct ScannedSolid {
     const char* name;
     support::Solid solid;
-    std::size_t points; // so that there are `per_voxel` on a squared voxel
+    std::size_t points; // so that there are `points_a_voxel` on a squared voxel
     long euler;
 };
 
@@ -63,14 +67,15 @@ void add_blobs(PointCloud& cloud, double count, support::Random& random) {
         Vec3 at;
         for (unsigned k = 0; k < 3; ++k) at[k] = random.uniform(box.lo[k], box.hi[k]);
         for (int i = 0; i < 12; ++i) {
-            cloud.positions.push_back(at + random.direction() * (voxel / std::sqrt(per_voxel)));
+            cloud.positions.push_back(at + random.direction() * (fixed_voxel / std::sqrt(points_a_voxel)));
             cloud.normals.push_back(random.direction());
         }
     }
 }
 
 /// The same solid scanned again, the second scan moved rigidly.
-void add_moved_scan(PointCloud& cloud, const Shape& shape, support::SampleOptions options, double apart) {
+void add_moved_scan(PointCloud& cloud, const ScannedSolid& shape, support::SampleOptions options,
+                    double apart) {
     options.seed += 1;
     const PointCloud second = support::sample(shape.solid, options);
     const Vec3 shift = Vec3(0.6, 0.5, 0.62).normalized() * apart;
@@ -78,32 +83,33 @@ void add_moved_scan(PointCloud& cloud, const Shape& shape, support::SampleOption
     cloud.normals.insert(cloud.normals.end(), second.normals.begin(), second.normals.end());
 }
 
-PointCloud scan(const Shape& shape, std::size_t fault, double strength) {
+PointCloud scan(const ScannedSolid& shape, std::size_t fault, double strength) {
     support::SampleOptions options;
     options.points = shape.points;
     options.seed = 7;
-    if (fault == 0) options.position_noise = strength * voxel;
+    if (fault == 0) options.position_noise = strength * fixed_voxel;
     if (fault == 1) options.normal_noise = strength * 0.0174533;
     if (fault == 2) options.outliers = strength / 100;
     // The dense end gets more points, so that the sparse one has as many per voxel as half of the others.
     if (fault == 3)
         options.points = static_cast<std::size_t>(static_cast<double>(shape.points) * (1 + strength) / 2);
     if (fault == 5)
-        options.points = static_cast<std::size_t>(static_cast<double>(shape.points) * strength / per_voxel);
+        options.points =
+            static_cast<std::size_t>(static_cast<double>(shape.points) * strength / points_a_voxel);
     PointCloud cloud = support::sample(shape.solid, options);
     support::Random random(11);
     if (fault == 3) thin_out(cloud, strength, random);
     if (fault == 6) add_blobs(cloud, strength, random);
-    if (fault == 7) add_moved_scan(cloud, shape, options, strength * voxel);
+    if (fault == 7) add_moved_scan(cloud, shape, options, strength * fixed_voxel);
     if (fault == 4)
         for (Vec3& n : cloud.normals)
             if (random.uniform(0, 1) < strength / 100) n = -n;
     return cloud;
 }
 
-std::string outcome(const Shape& shape, const PointCloud& cloud, NormalSource normals, bool choose) {
+std::string outcome(const ScannedSolid& shape, const PointCloud& cloud, NormalSource normals, bool choose) {
     ReconstructOptions options;
-    if (!choose) options.voxel_size = voxel;
+    if (!choose) options.voxel_size = fixed_voxel;
     options.normals = normals;
     try {
         const Report report = reconstruct(cloud, options).report;
@@ -124,18 +130,20 @@ void print_random_solids(std::uint64_t first_seed, std::uint64_t last_seed, Norm
     const std::vector<double> noises = {0, 0.25, 0.5};
     std::vector<int> right(noises.size(), 0);
     int solids = 0;
-    const support::TrialOptions how{.voxel = voxel};
+    const support::TrialOptions how{.voxel = fixed_voxel};
     for (std::uint64_t seed = first_seed; seed < last_seed; ++seed) {
         const support::Trial trial = support::make_trial(seed, how);
         if (trial.size != support::FeatureSize::large) continue;
         ++solids;
-        const support::Solid solid = support::random_solid(seed, how.thinnest * voxel, how.thickest * voxel);
+        const support::Solid solid =
+            support::random_solid(seed, how.thinnest * fixed_voxel, how.thickest * fixed_voxel);
         for (std::size_t k = 0; k < noises.size(); ++k) {
             ReconstructOptions options;
-            if (!choose) options.voxel_size = voxel;
+            if (!choose) options.voxel_size = fixed_voxel;
             options.normals = normals;
             const PointCloud cloud = support::sample(
-                solid, {.points = trial.cloud.size(), .seed = seed, .position_noise = noises[k] * voxel});
+                solid,
+                {.points = trial.cloud.size(), .seed = seed, .position_noise = noises[k] * fixed_voxel});
             const Report::Mesh m = reconstruct(cloud, options).report.mesh;
             right[k] += m.closed && m.euler == trial.euler;
         }
@@ -150,11 +158,14 @@ void print_random_solids(std::uint64_t first_seed, std::uint64_t last_seed, Norm
 
 } // namespace
 
-/// An argument names the faults that are wanted by a part of their names.
-int main(int argc, char** argv) {
+int bench::robustness(int argc, char** argv) {
+    CLI::App app("Clouds with growing faults: which come out as one closed surface of the right topology.");
+    std::string wanted;
+    app.add_option("fault", wanted, "only those whose name holds this");
+    CLI11_PARSE(app, argc, argv);
     support::Random random(3);
     const support::Pose pose = support::random_pose(random);
-    const std::vector<Shape> shapes = {
+    const std::vector<ScannedSolid> shapes = {
         {"mechanical part", support::mechanical_part(pose), 40000, -4},
         {"torus", support::torus(1, 0.4).placed(pose), 12600, 0},
         {"box", support::box({1.4, 1.1, 0.5}).placed(pose), 4500, 2},
@@ -162,8 +173,8 @@ int main(int argc, char** argv) {
     for (bool choose : {false, true}) {
         std::printf("\n%s\n", choose ? "voxel chosen from the cloud" : "voxel fixed");
         for (std::size_t f = 0; f < faults.size(); ++f) {
-            if (argc > 1 && std::string(faults[f].name).find(argv[1]) == std::string::npos) continue;
-            for (const Shape& shape : shapes)
+            if (std::string(faults[f].name).find(wanted) == std::string::npos) continue;
+            for (const ScannedSolid& shape : shapes)
                 for (NormalSource normals : {NormalSource::given, NormalSource::estimate}) {
                     std::printf("| %-24s | %-16s | %-8s |", faults[f].name, shape.name,
                                 normals == NormalSource::given ? "given" : "none");
@@ -174,7 +185,7 @@ int main(int argc, char** argv) {
                     std::fflush(stdout);
                 }
         }
-        if (argc > 1 && std::string(faults[0].name).find(argv[1]) == std::string::npos) continue;
+        if (std::string(faults[0].name).find(wanted) == std::string::npos) continue;
         for (NormalSource normals : {NormalSource::given, NormalSource::estimate})
             print_random_solids(200, 320, normals, choose);
     }

@@ -1,5 +1,7 @@
-// hsdm_bench_neighbors: neighbours for normals by the octree and by FLANN's k-d tree: seconds, memory, and
+// hsdm_bench neighbors: neighbours for normals by the octree and by FLANN's k-d tree: seconds, memory, and
 // how good the normals are that come of them.
+
+#include "benchmarks.hh"
 
 #include "hsdm/normals/estimate_normals.hh"
 #include "hsdm/octree/spacing.hh"
@@ -10,7 +12,6 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -20,10 +21,6 @@
 using namespace hsdm;
 
 namespace {
-
-double now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// Kilobytes that a line of /proc/self/status tells of.
 double memory(const std::string& line) {
@@ -67,9 +64,9 @@ Searched measure(const Search& search, int repeats) {
     for (int i = 0; i < repeats; ++i) {
         result.neighbors = {};
         forget_peak();
-        const double before = memory("VmRSS:"), start = now();
+        const double before = memory("VmRSS:"), start = bench::now();
         result.neighbors = search();
-        seconds.push_back(now() - start);
+        seconds.push_back(bench::now() - start);
         result.megabytes = (memory("VmHWM:") - before) / 1000;
     }
     std::sort(seconds.begin(), seconds.end());
@@ -116,7 +113,7 @@ void print(std::size_t points, double noise, int count, const char* name, const 
 
 } // namespace
 
-int main(int argc, char** argv) {
+int bench::neighbors(int argc, char** argv) {
     CLI::App app("Neighbours for normals, by the octree and by FLANN's k-d tree.");
     std::vector<std::size_t> sizes{100000, 1000000};
     std::vector<double> noises{0, 0.2, 0.5};

@@ -1,4 +1,6 @@
-// hsdm_bench_silences: how long a reconstruction goes on without asking whether it is to, phase by phase.
+// hsdm_bench silences: how long a reconstruction goes on without asking whether it is to, phase by phase.
+
+#include "benchmarks.hh"
 
 #include "hsdm/reconstruct.hh"
 #include "support/sample.hh"
@@ -60,7 +62,7 @@ void measure(const PointCloud& cloud, ReconstructOptions options, const std::str
 
 } // namespace
 
-int main(int argc, char** argv) {
+int bench::silences(int argc, char** argv) {
     CLI::App app("The longest times between two questions whether to go on, in seconds, and the phases that "
                  "they are in.");
     std::vector<std::size_t> sizes{1000000, 10000000};

@@ -1,3 +1,5 @@
+// Seconds of each phase over clouds of growing size: the table of docs/benchmark.md.
+#include "benchmarks.hh"
 
 #include "hsdm/octree/spacing.hh"
 #include "hsdm/reconstruct.hh"
@@ -30,7 +32,7 @@ Report best_of(const PointCloud& cloud, const ReconstructOptions& options, int r
 
 } // namespace
 
-int main(int argc, char** argv) {
+int bench::phases(int argc, char** argv) {
     CLI::App app("Times the phases of a reconstruction over clouds of growing size.");
     std::vector<std::size_t> sizes{100000, 300000, 1000000, 3000000, 10000000};
     double points_per_voxel = 8;

@@ -1,6 +1,8 @@
 // What a copy of the input costs: a reconstruction of points in structs of floats, read where they are or
 // copied into a PointCloud first. One way a run, as the memory is the process's greatest.
 
+#include "benchmarks.hh"
+
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/quality/mesh_digest.hh"
 #include "hsdm/reconstruct.hh"
@@ -69,7 +71,7 @@ Reconstruction run(const std::string& way, const std::vector<Hit>& hits, const R
 
 } // namespace
 
-int main(int argc, char** argv) {
+int bench::input(int argc, char** argv) {
     CLI::App app("Memory and time of a reconstruction by the way that its points come in.");
     std::size_t points = 10000000;
     std::string way = "view";

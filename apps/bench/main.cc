@@ -1,0 +1,41 @@
+// hsdm_bench NAME [ARGUMENT...]: the measurements that docs/ shows, one of them at a time.
+#include "benchmarks.hh"
+
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+
+namespace {
+
+struct Benchmark {
+    const char* name;
+    int (*run)(int argc, char** argv);
+    const char* what;
+};
+
+constexpr Benchmark benchmarks[] = {
+    {"input", hsdm::bench::input, "memory and time by the way that points come in"},
+    {"neighbors", hsdm::bench::neighbors, "neighbours for normals, by the octree and by FLANN"},
+    {"normals", hsdm::bench::normals, "estimated normals against true ones"},
+    {"phases", hsdm::bench::phases, "time of each phase over clouds of growing size"},
+    {"robustness", hsdm::bench::robustness, "noise, outliers, holes, density: what comes out right"},
+    {"scans", hsdm::bench::scans, "scans from a few places, completed"},
+    {"silences", hsdm::bench::silences, "the longest times between two questions whether to go on"},
+    {"walls", hsdm::bench::walls, "how thin walls and gaps may be"}};
+
+} // namespace
+
+double hsdm::bench::now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+int main(int argc, char** argv) {
+    for (const Benchmark& benchmark : benchmarks)
+        if (argc > 1 && std::strcmp(argv[1], benchmark.name) == 0) return benchmark.run(argc - 1, argv + 1);
+    const bool asked = argc > 1 && (std::strcmp(argv[1], "--help") == 0 || std::strcmp(argv[1], "-h") == 0);
+    std::FILE* out = asked ? stdout : stderr;
+    std::fprintf(out, "usage: hsdm_bench NAME [ARGUMENT...]; NAME --help tells its arguments\n\n");
+    for (const Benchmark& benchmark : benchmarks)
+        std::fprintf(out, "  %-10s  %s\n", benchmark.name, benchmark.what);
+    return asked ? 0 : 2;
+}
