@@ -497,6 +497,24 @@ inline constexpr int rounds = 8;
 
 } // namespace hsdm::handles
 
+// spikes.hh
+namespace hsdm::spikes {
+
+/// voxels: from a vertex to the nearest point; farther ones stand out from the surface.
+/// Why: half of a voxel's diagonal: a vertex whose voxel the sampling missed has points beside it.
+inline constexpr double farthest = 0.87;
+
+/// spacings: the same where points are few.
+/// Why: beside a corner of three faces the nearest point of each is expected within one, and seldom beyond
+/// two.
+inline constexpr double spacings = 2;
+
+/// rounds: half of the way to the mean of the neighbours in each.
+/// Why: bounds the work; where there are points to come near to, ten are enough.
+inline constexpr int rounds = 30;
+
+} // namespace hsdm::spikes
+
 // which holes dual_contour.hh closes
 namespace hsdm::holes {
 

@@ -156,22 +156,28 @@ private:
         return any;
     }
 
-    /// Relation of two sheets, by the vote of their sets.
+    /// Relation of two sheets, by the vote of their pairs of sets, each as strong as its lesser set has
+    /// points. Where a wall or gap is known between any two of them a single point does not say otherwise.
     Relation relation_between(std::size_t j, std::size_t k) const {
-        int convex = 0, concave = 0;
+        unsigned convex = 0, concave = 0;
+        bool any_apart = false;
         for (unsigned end : {0u, 1u}) {
             const auto members = local_.members_at(ends_[end]);
             for (const SheetMember& a : members) {
                 if (number_[offset_[end] + a.sheet] != j) continue;
                 for (const SheetMember& b : members) {
                     if (number_[offset_[end] + b.sheet] != k) continue;
-                    const Relation r = related_(sets_.sets[a.set], sets_.sets[b.set]);
-                    convex += r == Relation::convex;
-                    concave += r == Relation::concave;
+                    const NormalSet &one = sets_.sets[a.set], &other = sets_.sets[b.set];
+                    const Relation r = related_(one, other);
+                    const unsigned points = std::min(one.count, other.count);
+                    if (r == Relation::convex) convex += points;
+                    if (r == Relation::concave) concave += points;
+                    any_apart = any_apart || (r == Relation::none && related_.apart(one, other));
                 }
             }
         }
-        return convex > concave ? Relation::convex : concave > convex ? Relation::concave : Relation::none;
+        if (convex == concave || (any_apart && std::max(convex, concave) == 1)) return Relation::none;
+        return convex > concave ? Relation::convex : Relation::concave;
     }
 
     /// Relations of sheet i to every other sheet here.

@@ -53,6 +53,7 @@ void note_counts(const DualContour& facets, Report& report) {
     report.rejected["webs_opened"] = facets.webs_opened;
     report.rejected["handles_cut"] = facets.handles_cut;
     report.rejected["vertices_clamped"] = facets.clamped;
+    report.rejected["vertices_drawn_in"] = facets.drawn_in;
     report.rejected["corners_merged"] = facets.corners_merged;
     report.rejected["edges_halved"] = facets.midpoints;
     report.rejected["doublets_merged"] = facets.doublets;
