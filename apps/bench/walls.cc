@@ -106,7 +106,8 @@ std::vector<double> print_table(NormalSource normals, const std::vector<double>&
             std::printf(" %.0f |", 100.0 * static_cast<double>(right) / static_cast<double>(poses));
             all += right;
         }
-        percents.push_back(100.0 * static_cast<double>(all) / static_cast<double>(poses * walls_and_gaps.size()));
+        percents.push_back(100.0 * static_cast<double>(all)
+                           / static_cast<double>(poses * walls_and_gaps.size()));
         std::printf(" %.1f |\n", percents.back());
         std::fflush(stdout);
     }

@@ -97,11 +97,12 @@ std::size_t draw_in_spikes(const Octree& octree, const OctreeLevel& level, std::
     for (int round = 0; round < spikes::rounds && !far.empty(); ++round) {
         moved.resize(far.size());
         for_each_index(far.size(), chunks::heavy, [&](Index i) {
-            const auto [begin, end] =
-                std::ranges::equal_range(neighbors, far[i], {}, &std::pair<Index, Index>::first);
+            const auto begin =
+                std::lower_bound(neighbors.begin(), neighbors.end(), std::pair(far[i], Index{0}));
             Vec3 sum(0, 0, 0);
-            for (const auto& [v, w] : std::ranges::subrange(begin, end)) sum += mesh.positions[w];
-            moved[i] = 0.5 * (mesh.positions[far[i]] + sum / static_cast<double>(end - begin));
+            auto at = begin;
+            for (; at != neighbors.end() && at->first == far[i]; ++at) sum += mesh.positions[at->second];
+            moved[i] = 0.5 * (mesh.positions[far[i]] + sum / static_cast<double>(at - begin));
         });
         for (std::size_t i = 0; i < far.size(); ++i) mesh.positions[far[i]] = moved[i];
         std::erase_if(far, [&](Index v) { return !is_far(v); });
