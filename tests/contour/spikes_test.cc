@@ -86,7 +86,7 @@ TEST_CASE("where points are few only what is two spacings away from them is a sp
     CHECK(far > 10);
 }
 
-TEST_CASE("walls too thin for the sampling leave no vertex far away from all points", "[pipeline]") {
+TEST_CASE("walls too thin for the sampling leave no vertex far away from all points", "[pipeline][slow]") {
     constexpr double voxel = 1.0 / 16, width = 0.32 * voxel;
     std::size_t drawn_in = 0;
     for (const Solid& solid : {can(width), heat_sink(width), honeycomb(width), roll(width)}) {
