@@ -156,10 +156,10 @@ private:
         return any;
     }
 
-    /// Relation of two sheets, by the vote of their pairs of sets, each as strong as its lesser set has
-    /// points. Where a wall or gap is known between any two of them a single point does not say otherwise.
+    /// Relation of two sheets, by the vote of their pairs of sets. Where a wall or gap is known between any
+    /// two of them one pair with a single point does not say otherwise.
     Relation relation_between(std::size_t j, std::size_t k) const {
-        unsigned convex = 0, concave = 0;
+        unsigned convex = 0, concave = 0, points = 0; // of the lesser sets that vote
         bool any_apart = false;
         for (unsigned end : {0u, 1u}) {
             const auto members = local_.members_at(ends_[end]);
@@ -169,15 +169,16 @@ private:
                     if (number_[offset_[end] + b.sheet] != k) continue;
                     const NormalSet &one = sets_.sets[a.set], &other = sets_.sets[b.set];
                     const Relation r = related_(one, other);
-                    const unsigned points = std::min(one.count, other.count);
-                    if (r == Relation::convex) convex += points;
-                    if (r == Relation::concave) concave += points;
+                    convex += r == Relation::convex;
+                    concave += r == Relation::concave;
+                    if (r == Relation::convex || r == Relation::concave)
+                        points += std::min(one.count, other.count);
                     any_apart = any_apart || (r == Relation::none && related_.apart(one, other));
                 }
             }
         }
-        if (convex == concave || (any_apart && std::max(convex, concave) == 1)) return Relation::none;
-        return convex > concave ? Relation::convex : Relation::concave;
+        if (any_apart && points == 1) return Relation::none;
+        return convex > concave ? Relation::convex : concave > convex ? Relation::concave : Relation::none;
     }
 
     /// Relations of sheet i to every other sheet here.
