@@ -12,6 +12,7 @@
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/doublets.hh"
 #include "hsdm/quality/topology.hh"
+#include "hsdm/spatial/self_intersections.hh"
 
 #include <algorithm>
 #include <numeric>
@@ -291,6 +292,14 @@ std::size_t merge_flat_facets(const Vec3& origin, PolygonMesh& mesh) {
     return count;
 }
 
+/// Anew, after facets have changed.
+void count_intersections(DualContour& result) {
+    const SelfIntersections found = find_self_intersections(result.mesh);
+    result.intersections.after = found.triangle_pairs;
+    if (found.triangle_pairs > 0)
+        result.intersections.first = result.mesh.positions[result.mesh.facet(found.facet_pairs[0][0])[0]];
+}
+
 /// Builds the facets; returns the edges to collapse to corners. Grid points, crossings and dual vertices, the
 /// largest part of the memory, are freed at the end.
 std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
@@ -388,8 +397,10 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
         result.intersections.first = merged.first;
         if (merged.moved > 0) remove_isolated_vertices(result.mesh);
     }
-    merge_flat_facets(octree.origin, result.mesh);
-    if (result.intersections.moved > 0) result.cells.reset();
+    if (result.intersections.moved > 0) {
+        result.cells.reset();
+        if (merge_flat_facets(octree.origin, result.mesh) > 0) count_intersections(result);
+    }
     settle_origins(result);
     return result;
 }
