@@ -1,5 +1,6 @@
 #include "hsdm/contour/dual_contour.hh"
 
+#include "hsdm/contour/flat_facets.hh"
 #include "hsdm/contour/grid_signs.hh"
 #include "hsdm/contour/handles.hh"
 #include "hsdm/contour/move_to_creases.hh"
@@ -11,7 +12,6 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/doublets.hh"
-#include "hsdm/quality/topology.hh"
 #include "hsdm/spatial/self_intersections.hh"
 
 #include <algorithm>
@@ -262,36 +262,6 @@ std::size_t merge_corners(std::span<const EdgeCollapse> edges, PolygonMesh& mesh
     return count;
 }
 
-/// Facets whose vertices lie at one place or in one line would have to be left out in the end, and the
-/// surface would be open there: their shortest sides collapse. Returns how many did.
-std::size_t merge_flat_facets(const Vec3& origin, PolygonMesh& mesh) {
-    const std::vector<Index> flat = collected<Index>(
-        mesh.facet_count(), chunks::quick, [&](std::size_t begin, std::size_t end, std::vector<Index>& part) {
-            std::vector<Vec3> ring;
-            for (std::size_t f = begin; f < end; ++f) {
-                ring.clear();
-                for (const Index v : mesh.facet(f)) ring.push_back(mesh.positions[v] + origin);
-                if (has_no_area(ring)) part.push_back(static_cast<Index>(f));
-            }
-        });
-    std::vector<EdgeCollapse> sides;
-    for (const Index f : flat) {
-        const auto facet = mesh.facet(f);
-        double least = Box::inf;
-        EdgeCollapse side{};
-        for (std::size_t i = 0; i < facet.size(); ++i) {
-            const Index from = facet[i], to = facet[(i + 1) % facet.size()];
-            const double length = (mesh.positions[to] - mesh.positions[from]).sqrnorm();
-            if (length < least) least = length, side = {from, to, mesh.positions[to]};
-        }
-        sides.push_back(side);
-    }
-    const std::vector<std::uint8_t> collapsed = collapse_edges(mesh, sides);
-    const auto count = static_cast<std::size_t>(std::ranges::count(collapsed, 1));
-    if (count > 0) remove_isolated_vertices(mesh);
-    return count;
-}
-
 /// Anew, after facets have changed.
 void count_intersections(DualContour& result) {
     const SelfIntersections found = find_self_intersections(result.mesh);
@@ -384,7 +354,7 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     result.splinters.add(drop_splinters(result.mesh, splinters));
     if (result.splinters.count > 0) remove_isolated_vertices(result.mesh);
     result.drawn_in = draw_in_spikes(octree, level, result.voxel, result.mesh);
-    merge_flat_facets(octree.origin, result.mesh);
+    collapse_flat_facets(octree.origin, result.mesh);
     UntangleOptions untangle_options = options.untangle;
     untangle_options.reach *= h;
     untangle_options.nearby *= h;
@@ -399,7 +369,7 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     }
     if (result.intersections.moved > 0) {
         result.cells.reset();
-        if (merge_flat_facets(octree.origin, result.mesh) > 0) count_intersections(result);
+        if (collapse_flat_facets(octree.origin, result.mesh) > 0) count_intersections(result);
     }
     settle_origins(result);
     return result;

@@ -1,0 +1,45 @@
+// Facets without an area go without leaving a hole.
+#include "hsdm/contour/flat_facets.hh"
+#include "hsdm/quality/topology.hh"
+#include "support/check.hh"
+
+#include <catch2/catch.hpp>
+
+#include <numeric>
+
+using namespace hsdm;
+
+namespace {
+
+/// A pyramid over a square base, with a vertex more on the way up one of its edges: `share` of the way from
+/// the base to the top, where a triangle beside it has no area.
+PolygonMesh pyramid(double share) {
+    PolygonMesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 1}};
+    mesh.positions.push_back(mesh.positions[0] + share * (mesh.positions[4] - mesh.positions[0]));
+    mesh.add_facet(std::array<Index, 4>{0, 3, 2, 1});
+    mesh.add_facet(std::array<Index, 4>{0, 1, 4, 5});
+    mesh.add_facet(std::array<Index, 3>{1, 2, 4});
+    mesh.add_facet(std::array<Index, 3>{2, 3, 4});
+    mesh.add_facet(std::array<Index, 3>{3, 0, 4});
+    mesh.add_facet(std::array<Index, 3>{0, 5, 4});
+    mesh.origin.resize(mesh.vertex_count());
+    std::iota(mesh.origin.begin(), mesh.origin.end(), Index{0});
+    return mesh;
+}
+
+} // namespace
+
+TEST_CASE("facets without an area collapse, and the surface stays closed", "[contour]") {
+    for (const double share : {0.3, 0.6, 0.0, 1.0, 1e-15}) { // in one line, or at one place
+        INFO("at " << share << " of the edge");
+        PolygonMesh mesh = pyramid(share);
+        REQUIRE(measure_topology(mesh).closed());
+        CHECK(collapse_flat_facets(Vec3(10, 0, 0), mesh) == 1);
+        CHECK(mesh.facet_count() == 5);
+        CHECK(mesh.vertex_count() == 5);
+        CHECK(support::faults(mesh) == "");
+        CHECK(measure_topology(mesh).closed());
+        CHECK(collapse_flat_facets(Vec3(10, 0, 0), mesh) == 0);
+    }
+}
