@@ -7,6 +7,7 @@ namespace hsdm::bench {
 /// Seconds on a clock that runs evenly.
 double now();
 
+int creases(int argc, char** argv);
 int input(int argc, char** argv);
 int neighbors(int argc, char** argv);
 int normals(int argc, char** argv);

@@ -14,6 +14,7 @@ struct Benchmark {
 };
 
 constexpr Benchmark benchmarks[] = {
+    {"creases", hsdm::bench::creases, "how blunt an edge may be and come out sharp"},
     {"input", hsdm::bench::input, "memory and time by the way that points come in"},
     {"neighbors", hsdm::bench::neighbors, "neighbours for normals, by the octree and by FLANN"},
     {"normals", hsdm::bench::normals, "estimated normals against true ones"},

@@ -160,4 +160,13 @@ Solid wedge(double angle, double length, double height) {
     return Solid(std::make_shared<TriangularPrism>(corners, height));
 }
 
+Solid prism(int sides, double across, double height) {
+    Solid result = box({2 * across, 2 * across, height});
+    for (int i = 0; 2 * i < sides; ++i)
+        result = result
+                 & box({across, 2 * across, 2 * height})
+                       .placed(turned({0, 0, 1}, 2 * std::numbers::pi * i / sides));
+    return result;
+}
+
 } // namespace hsdm::support

@@ -82,6 +82,9 @@ Solid cylinder(double radius, double height);
 /// A prism along z whose cross-section is the triangle with an edge of length `length` along x from the
 /// origin, opening by `angle` radians (below pi / 2), its far side upright; full height.
 Solid wedge(double angle, double length, double height);
+/// Along z, regular, of an even number of `sides` (6 to 32), two opposite ones `across` apart: edges that
+/// turn by 360 degrees / sides.
+Solid prism(int sides, double across, double height);
 /// A block of 2 x 1 x 1 whose edge along x at positive y and z is rounded, `radius` below 1.
 Solid rounded_block(double radius);
 /// A block of 2 x 1 x 1 without a square of `step` along that edge, hollow with `radius` < step between the

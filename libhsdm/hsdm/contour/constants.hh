@@ -80,6 +80,39 @@ HSDM_TUNED double overshoot = 0.3;
 
 } // namespace hsdm::relations
 
+// blunt_creases.hh
+namespace hsdm::blunt_creases {
+
+/// cosine: between the normals of two faces; of a smaller angle they are one.
+/// Why: 15 degrees, half of where tools begin to take an edge for sharp.
+HSDM_TUNED double bluntest_cosine = 0.966;
+
+/// points: of each face.
+/// Why: as many as a plane has.
+inline constexpr double least_points = 3;
+
+/// share: of the angle between the two faces, root mean square of normals within each.
+/// Why: on a round surface cut in halves it is 0.29, on two halves of noise 0.38.
+HSDM_TUNED double most_scatter = 0.25;
+
+/// share: of what normals turn from one face to the other, that they would by the turn within each.
+/// Why: on a round surface it is 1, on two flat faces 0: nearer to flat than to round.
+HSDM_TUNED double most_turn = 0.5;
+
+/// share: of what lies on the other face's side.
+/// Why: by trial; where normals alone make two groups it is a half.
+HSDM_TUNED double most_astray = 0.2;
+
+/// rounds: assignments of samples to the nearer mean normal (Lloyd).
+/// Why: by trial, as sets.lloyd_rounds.
+inline constexpr int rounds = 3;
+
+/// cosine: length of a sheet's mean unit normal; of a longer one no crease is looked for.
+/// Why: half of bluntest_cosine's angle either way.
+inline constexpr double least_bend = 0.9914;
+
+} // namespace hsdm::blunt_creases
+
 // patches.hh
 namespace hsdm::patches {
 

@@ -1,5 +1,6 @@
 #include "hsdm/contour/crossings.hh"
 
+#include "hsdm/contour/blunt_creases.hh"
 #include "hsdm/contour/constants.hh"
 #include "hsdm/contour/plane_area.hh"
 #include "hsdm/core/chunks.hh"
@@ -18,7 +19,7 @@ struct EdgeSheet {
     Vec3 normal{0, 0, 0};
     double points = 0, points_squared = 0;
     std::array<double, 4> held{0, 0, 0, 0}; // points of the sheet in each voxel beside the edge
-    bool crosses = false;
+    bool crosses = false, bent = false, by_crease = false;
     double t = 0;
 
     bool beside() const { return held[0] + held[1] + held[2] + held[3] > 0; }
@@ -54,6 +55,7 @@ public:
         const std::size_t begin = found.size();
         for (std::size_t i = 0; i < count_; ++i) {
             if (!sheets_[i].crosses) continue;
+            if (sheets_[i].bent) cross_at_crease(i);
             if (count_ > 1 && relations_for_ != i) relate(i);
             const bool on_solid = visible(i);
             dropped_beyond_crease += !on_solid;
@@ -137,23 +139,64 @@ private:
         return sheets_[number_[offset_[end] + m.sheet]];
     }
 
-    /// Signed distances at both ends; a sheet known at one end only is continued along its plane.
     bool measure() {
-        bool any = false;
-        for (std::size_t i = 0; i < count_; ++i) {
-            EdgeSheet& sheet = sheets_[i];
-            const double length = sheet.normal.norm();
-            sheet.normal = length > 0 ? sheet.normal / length : Vec3(0, 0, 1);
-            for (unsigned end : {0u, 1u})
-                if (sheet.weight[end] > 0) sheet.distance[end] /= sheet.weight[end];
-            if (!(sheet.weight[0] > 0)) sheet.distance[0] = sheet.distance[1] - h_ * sheet.normal[axis_];
-            if (!(sheet.weight[1] > 0)) sheet.distance[1] = sheet.distance[0] + h_ * sheet.normal[axis_];
-            sheet.crosses = (sheet.distance[0] < 0) != (sheet.distance[1] < 0);
-            if (sheet.crosses) sheet.t = sheet.distance[0] / (sheet.distance[0] - sheet.distance[1]);
-            any |= sheet.crosses;
-        }
+        for (std::size_t i = 0; i < count_; ++i) measure(sheets_[i]);
         relations_for_ = most;
-        return any;
+        return std::any_of(sheets_.begin(), sheets_.begin() + static_cast<std::ptrdiff_t>(count_),
+                           [](const EdgeSheet& sheet) { return sheet.crosses; });
+    }
+
+    /// Signed distances at both ends; a sheet known at one end only is continued along its plane.
+    void measure(EdgeSheet& sheet) const {
+        const double length = sheet.normal.norm();
+        sheet.bent = length < blunt_creases::least_bend * (sheet.weight[0] + sheet.weight[1]);
+        sheet.normal = length > 0 ? sheet.normal / length : Vec3(0, 0, 1);
+        for (unsigned end : {0u, 1u})
+            if (sheet.weight[end] > 0) sheet.distance[end] /= sheet.weight[end];
+        if (!(sheet.weight[0] > 0)) sheet.distance[0] = sheet.distance[1] - h_ * sheet.normal[axis_];
+        if (!(sheet.weight[1] > 0)) sheet.distance[1] = sheet.distance[0] + h_ * sheet.normal[axis_];
+        sheet.crosses = (sheet.distance[0] < 0) != (sheet.distance[1] < 0);
+        if (sheet.crosses) sheet.t = sheet.distance[0] / (sheet.distance[0] - sheet.distance[1]);
+    }
+
+    /// On a sheet with a blunt crease, lets the edge cross the face on which it enters or leaves what lies
+    /// between both. The signs at the ends stay.
+    void cross_at_crease(std::size_t i) {
+        std::array<CreaseSample, most> samples;
+        std::array<std::uint8_t, most> face;
+        std::size_t n = 0;
+        for_each_member(i, [&](const NormalSet& set, unsigned) { samples[n++] = crease_sample(set); });
+        BluntCrease crease;
+        if (!find_blunt_crease({samples.data(), n}, blunt_creases::least_points, {face.data(), n}, crease))
+            return;
+        std::array<EdgeSheet, 2> faces;
+        n = 0;
+        for_each_member(i, [&](const NormalSet& set, unsigned end) {
+            Vec3 d = low_ - set.centroid;
+            d[axis_] += end * h_;
+            const double weight = sheet_weight(set, d, h_);
+            EdgeSheet& of_set = faces[face[n++]];
+            of_set.weight[end] += weight;
+            of_set.distance[end] += weight * (set.normal | d);
+            of_set.normal += weight * set.normal;
+        });
+        EdgeSheet& sheet = sheets_[i];
+        const bool is_first = crease.is_convex == sheet.leaving(); // of the two that it crosses
+        for (EdgeSheet& one : faces) {
+            measure(one);
+            if (!one.crosses || one.leaving() != sheet.leaving()) continue;
+            if (sheet.by_crease && (is_first ? one.t >= sheet.t : one.t <= sheet.t)) continue;
+            sheet.t = one.t;
+            sheet.normal = one.normal;
+            sheet.by_crease = true;
+        }
+    }
+
+    template <class F>
+    void for_each_member(std::size_t i, F&& f) const {
+        for (unsigned end : {0u, 1u})
+            for (const SheetMember& m : local_.members_at(ends_[end]))
+                if (number_[offset_[end] + m.sheet] == i) f(sets_.sets[m.set], end);
     }
 
     /// Relation of two sheets, by the vote of their pairs of sets. Where a wall or gap is known between any
@@ -279,7 +322,8 @@ private:
                 if (d < nearest || (d == nearest && m.set < set)) nearest = d, set = m.set;
             }
         carried = carried && nearest < crossing::far_from_data * crossing::far_from_data * h_ * h_;
-        return {sheets_[i].t, sheets_[i].normal, 3 * ends_[0] + axis_, set, sheets_[i].leaving(), carried};
+        return {sheets_[i].t,         sheets_[i].normal, 3 * ends_[0] + axis_, set,
+                sheets_[i].leaving(), carried,           sheets_[i].by_crease};
     }
 
     const GridPoints& grid_;

@@ -22,6 +22,7 @@ struct Crossing {
     Index set;      ///< the sheet's set nearest to the crossing
     bool leaving;   ///< the lower grid point is inside, the upper one outside
     bool supported; ///< do the data carry the sheet into all four voxels beside the edge, slivers apart?
+    bool by_crease = false; ///< is it on one face of a blunt crease near by?
 };
 
 /// The crossings of every grid edge: those of edge e are crossings[first[e]] .. crossings[first[e + 1]], by

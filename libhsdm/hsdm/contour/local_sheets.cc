@@ -1,5 +1,6 @@
 #include "hsdm/contour/local_sheets.hh"
 
+#include "hsdm/contour/blunt_creases.hh"
 #include "hsdm/contour/components.hh"
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
@@ -51,14 +52,12 @@ struct SheetsAtPoint {
     }
 
     void measure(const Vec3& position, const NormalSets& sets, double voxel_size) {
-        const double falloff = 1 / (sheets::nearness * sheets::nearness * voxel_size * voxel_size);
         for (std::size_t k = 0; k < sheet_count; ++k) sheets[k] = {};
         for (std::size_t i = 0; i < member_count; ++i) {
             const NormalSet& set = sets.sets[members[i].set];
             const Vec3 d = position - set.centroid;
             LocalSheet& sheet = sheets[members[i].sheet];
-            const double weight =
-                std::min<double>(set.count, sheets::most_points) * std::exp(-d.sqrnorm() * falloff);
+            const double weight = sheet_weight(set, d, voxel_size);
             sheet.weight += weight;
             sheet.distance += weight * (set.normal | d);
             sheet.normal += weight * set.normal;
@@ -66,6 +65,36 @@ struct SheetsAtPoint {
             sheet.points += points;
             sheet.points_squared += points * points;
         }
+        for (std::size_t k = 0; k < sheet_count; ++k)
+            if (sheets[k].normal.norm() < blunt_creases::least_bend * sheets[k].weight)
+                measure_at_crease(static_cast<std::uint8_t>(k), position, sets, voxel_size);
+    }
+
+    /// The distance of a sheet with a blunt crease is that of the outer face where it is convex, of the inner
+    /// one where it is concave, not the mean of both.
+    void measure_at_crease(std::uint8_t k, const Vec3& position, const NormalSets& sets, double voxel_size) {
+        std::array<CreaseSample, most> samples;
+        std::array<std::uint8_t, most> face;
+        std::size_t n = 0;
+        for (std::size_t i = 0; i < member_count; ++i)
+            if (members[i].sheet == k) samples[n++] = crease_sample(sets.sets[members[i].set]);
+        BluntCrease crease;
+        if (!find_blunt_crease({samples.data(), n}, blunt_creases::least_points, {face.data(), n}, crease))
+            return;
+        std::array<double, 2> weight{0, 0}, distance{0, 0};
+        n = 0;
+        for (std::size_t i = 0; i < member_count; ++i) {
+            if (members[i].sheet != k) continue;
+            const NormalSet& set = sets.sets[members[i].set];
+            const Vec3 d = position - set.centroid;
+            const double w = sheet_weight(set, d, voxel_size);
+            weight[face[n]] += w;
+            distance[face[n++]] += w * (set.normal | d);
+        }
+        if (!(weight[0] > 0 && weight[1] > 0)) return;
+        const double one = distance[0] / weight[0], other = distance[1] / weight[1];
+        sheets[k].distance =
+            sheets[k].weight * (crease.is_convex ? std::max(one, other) : std::min(one, other));
     }
 
     /// A sheet may pass the grid point, nearer than the error of its planes, on a side where it has no

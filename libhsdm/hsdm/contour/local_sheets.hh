@@ -5,6 +5,9 @@
 #include "hsdm/contour/grid_points.hh"
 #include "hsdm/contour/set_relation.hh"
 
+#include <algorithm>
+#include <cmath>
+
 namespace hsdm {
 
 /// A set seen from a grid point: where it lies and which of the grid point's sheets it belongs to.
@@ -22,6 +25,12 @@ struct LocalSheet {
     /// sums over its sets, of counts and their squares: the sampling density
     double points = 0, points_squared = 0;
 };
+
+/// The say of a set about a place that lies `d` from its centroid.
+inline double sheet_weight(const NormalSet& set, const Vec3& d, double voxel_size) {
+    const double falloff = 1 / (sheets::nearness * sheets::nearness * voxel_size * voxel_size);
+    return std::min<double>(set.count, sheets::most_points) * std::exp(-d.sqrnorm() * falloff);
+}
 
 /// Members and sheets of every grid point: those of grid point c are members[first_member[c]] ..
 /// [first_member[c + 1]], alike for sheets.

@@ -1,5 +1,6 @@
 #include "hsdm/contour/normal_sets.hh"
 
+#include "hsdm/contour/blunt_creases.hh"
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
@@ -19,7 +20,9 @@ constexpr std::uint8_t unassigned = 0xff;
 struct Scratch {
     std::vector<std::uint8_t> label; // per point of the voxel
     std::vector<std::pair<double, Index>> offsets;
-    std::vector<Index> points; // of a set
+    std::vector<Index> points;         // of a set
+    std::vector<CreaseSample> samples; // of a set
+    std::vector<std::uint8_t> face;
 };
 
 /// Finds the sets of one voxel. Labels are positions in `modes_` until finish() orders the sets by count.
@@ -35,7 +38,9 @@ public:
           cos_cluster_(std::cos(options.cluster_angle)),
           label_(scratch.label),
           offsets_(scratch.offsets),
-          points_(scratch.points) {
+          points_(scratch.points),
+          samples_(scratch.samples),
+          face_(scratch.face) {
         label_.assign(size_, unassigned);
     }
 
@@ -44,7 +49,9 @@ public:
             find_modes();
             for (int round = 0; round < sets::lloyd_rounds; ++round) assign_to_nearest();
         }
-        const std::size_t directions = modes_.size();
+        std::size_t directions = modes_.size();
+        for (std::size_t k = 0; k < directions; ++k) split_at_crease(static_cast<std::uint8_t>(k));
+        directions = modes_.size();
         for (std::size_t k = 0; k < directions; ++k) split_parallel_sheets(static_cast<std::uint8_t>(k));
     }
 
@@ -141,6 +148,25 @@ private:
             if (const double length = sums[k].norm(); length > 0) modes_[k] = sums[k] / length;
     }
 
+    /// Splits the set of a direction that holds the two faces of a blunt crease.
+    void split_at_crease(std::uint8_t k) {
+        if (static_cast<int>(modes_.size()) >= options_.max_sets) return;
+        points_.clear();
+        Vec3 sum(0, 0, 0);
+        for_each(k, [&](Index i) { points_.push_back(i), sum += octree_.normals[i]; });
+        const auto n = static_cast<double>(points_.size());
+        if (n < 2 * blunt_creases::least_points || sum.norm() > blunt_creases::least_bend * n) return;
+        samples_.clear();
+        for (Index i : points_) samples_.push_back({octree_.positions[i], octree_.normals[i]});
+        face_.resize(points_.size());
+        BluntCrease crease;
+        if (!find_blunt_crease(samples_, blunt_creases::least_points, face_, crease)) return;
+        modes_[k] = crease.normals[0];
+        for (std::size_t i = 0; i < points_.size(); ++i)
+            if (face_[i] == 1) label_[points_[i] - begin_] = static_cast<std::uint8_t>(modes_.size());
+        modes_.push_back(crease.normals[1]);
+    }
+
     /// Splits the set of a direction at its widest gap along the mean normal if the two sides are parallel
     /// sheets: on one curved sheet the chord between the sides' centroids would be perpendicular to the sum
     /// of their normals.
@@ -230,6 +256,8 @@ private:
     std::vector<std::uint8_t>& label_;
     std::vector<std::pair<double, Index>>& offsets_;
     std::vector<Index>& points_;
+    std::vector<CreaseSample>& samples_;
+    std::vector<std::uint8_t>& face_;
     std::vector<Vec3> modes_;
 };
 
@@ -250,7 +278,7 @@ NormalSet measure_set(const Octree& octree, std::span<const Index> points, Index
         normal += octree.normals[i];
     }
     const auto n = static_cast<Index>(points.size());
-    if (n == 0) return {position, normal, 0, voxel, {}};
+    if (n == 0) return {position, normal, 0, voxel, {}, 0};
     position /= n;
     const Vec3 mean = normal / n;
     double below = 0; // curvature times variance, summed over the two tangent directions
@@ -267,7 +295,7 @@ NormalSet measure_set(const Octree& octree, std::span<const Index> points, Index
     // Limited, because noise in the normals must not push the centroid out of its own points.
     const double lift =
         std::clamp(0.5 * below / n, -sets::most_lift * voxel_size, sets::most_lift * voxel_size);
-    return {position + normal * lift, normal, n, voxel, spread};
+    return {position + normal * lift, normal, n, voxel, spread, below / n};
 }
 
 NormalSets build_normal_sets(const Octree& octree, const OctreeLevel& level,

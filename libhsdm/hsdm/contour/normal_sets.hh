@@ -31,11 +31,12 @@ struct Spread {
 
 /// One normal-consistent set: the paper's graph vertex for points with normals (section 3.4.2).
 struct NormalSet {
-    Vec3 centroid; ///< mean position, moved along the normal onto the surface (see build_normal_sets)
-    Vec3 normal;   ///< unit mean normal
-    Index count;   ///< points
-    Index voxel;   ///< of the level the sets were made for
-    Spread spread; ///< of its points about their mean
+    Vec3 centroid;   ///< mean position, moved along the normal onto the surface (see build_normal_sets)
+    Vec3 normal;     ///< unit mean normal
+    Index count;     ///< points
+    Index voxel;     ///< of the level the sets were made for
+    Spread spread;   ///< of its points about their mean
+    double turn = 0; ///< mean of (n - mean n) . (p - mean p): curvature times variance, 0 where it is flat
 };
 
 /// The sets of a level's voxels: those of voxel v are sets[first[v]] .. sets[first[v + 1]], by descending

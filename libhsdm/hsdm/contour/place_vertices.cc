@@ -1,5 +1,6 @@
 #include "hsdm/contour/place_vertices.hh"
 
+#include "hsdm/contour/blunt_creases.hh"
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
@@ -159,7 +160,8 @@ public:
         gather(dual);
         const Index nearest = sets_.sets[mesh_.crossings.of(mesh_.duals.corners_of(dual)[0]).set].voxel;
         result.voxel[dual] = voxel_ != no_index ? voxel_ : nearest;
-        int sheets = SheetNormals(problem_.planes).count;
+        const SheetNormals faces = by_crease_ ? faces_that_meet() : SheetNormals(problem_.planes);
+        int sheets = faces.count;
         Solution solution = least_squares(problem_, sheets);
         if (sheets == 2 && solution.rank == 2 && add_corner_plane(dual)) {
             sheets = 3;
@@ -171,8 +173,7 @@ public:
             result.is_clamped[dual] = keep_inside(solution);
             if (result.is_clamped[dual] && sheets == 2
                 && meet(2, solution, unclamped, placement::crease_out, placement::clear_crease)) {
-                const SheetNormals both(problem_.planes);
-                on_creases.push_back({dual, unclamped, {both.normals[0], both.normals[1]}});
+                on_creases.push_back({dual, unclamped, {faces.normals[0], faces.normals[1]}});
             }
         }
         result.positions[dual] = solution.position;
@@ -185,8 +186,29 @@ public:
     }
 
 private:
+    /// One normal per sheet, but two for a sheet whose two faces meet in a blunt crease in the voxel.
+    SheetNormals faces_that_meet() {
+        const SheetNormals sheets(problem_.planes);
+        SheetNormals faces = sheets;
+        for (int k = 0; k < sheets.count && faces.count < 3; ++k) {
+            const Vec3& sheet = sheets.normals[static_cast<std::size_t>(k)];
+            samples_.clear();
+            for (const WeightedPlane& plane : problem_.planes)
+                if ((plane.normal | sheet) > relations::same_sheet_cosine)
+                    samples_.push_back({plane.point, plane.normal, plane.weight});
+            face_.resize(samples_.size());
+            BluntCrease crease;
+            if (!find_blunt_crease(samples_, 0, face_, crease)) continue;
+            faces.normals[static_cast<std::size_t>(k)] = crease.normals[0];
+            faces.normals[static_cast<std::size_t>(faces.count++)] = crease.normals[1];
+        }
+        const Vec3 meeting = least_squares(problem_, faces.count).position;
+        return is_inside(meeting, problem_, -placement::crease_out) ? faces : sheets;
+    }
+
     void gather(Index dual) {
         problem_.planes.clear();
+        by_crease_ = false;
         problem_.size = mesh_.voxel_size;
         const auto corners = mesh_.duals.corners_of(dual);
         const CornerVoxel at(mesh_.grid, mesh_.crossings, corners[0]);
@@ -196,6 +218,7 @@ private:
         for (FacetCorner corner : corners) {
             const Vec3 p = mesh_.crossing_position_of(corner);
             problem_.planes.push_back({mesh_.crossings.of(corner).normal, p, 1});
+            by_crease_ |= mesh_.crossings.of(corner).by_crease;
             problem_.mean += p;
         }
         problem_.mean /= static_cast<double>(corners.size());
@@ -363,6 +386,9 @@ private:
     const std::vector<std::uint8_t>& crosses_;
     Problem problem_;
     std::vector<Index> near_;
+    std::vector<CreaseSample> samples_;
+    std::vector<std::uint8_t> face_;
+    bool by_crease_ = false; // is a crossing on one face of a blunt crease?
     Index voxel_ = no_index;
 };
 

@@ -161,16 +161,16 @@ struct Completion {
 };
 
 /// May there be something to complete?
-bool has_loops(const MethodInput& in, const Draft& draft) {
-    return in.options.holes == Holes::complete
-           || (in.options.holes == Holes::automatic && draft.facets.holes.loops > draft.facets.holes.closed);
+bool has_loops(Holes holes, const Draft& draft) {
+    return holes == Holes::complete
+           || (holes == Holes::automatic && draft.facets.holes.loops > draft.facets.holes.closed);
 }
 
-Completion completion_of(const MethodInput& in, const Draft& draft) {
+Completion completion_of(const MethodInput& in, Holes holes, const Draft& draft) {
     const DualContour& facets = draft.facets;
     const double h = in.level.voxel_size;
     Completion result;
-    if (in.options.holes == Holes::complete) {
+    if (holes == Holes::complete) {
         result.loops = boundary_loops(facets.mesh);
         result.border = result.loops.vertices.size();
         result.points = complete_surface(facets.mesh, result.loops, h);
@@ -184,6 +184,13 @@ Completion completion_of(const MethodInput& in, const Draft& draft) {
     return result;
 }
 
+/// Then what closes them is the whole: no surface is missing that a volume would have to tell.
+bool has_slits_only(const MethodInput& in, const Draft& draft) {
+    const BoundaryLoops loops = boundary_loops(draft.facets.mesh);
+    const double widest = in.level.voxel_size * options_for(in, draft.report).holes.max_diameter;
+    return find_slits(draft.facets.mesh, loops, widest).loops.size() == loops.size();
+}
+
 /// Is a guess no worse than the draft that it completes: fewer edges without a second facet, no more facets
 /// that meet?
 bool is_better(const DualContour& guess, const DualContour& draft, const Completion& completion) {
@@ -193,13 +200,13 @@ bool is_better(const DualContour& guess, const DualContour& draft, const Complet
 
 /// Completes the facets' surface, and once more where loops are left. Where borders are to stay a guess that
 /// is no better is not taken. `base` is the report before there were facets.
-void complete(const MethodInput& measured, const Report& base, Draft& draft) {
-    const bool all_round = measured.options.holes == Holes::complete;
-    for (int round = 1; round <= completing::most_rounds && has_loops(measured, draft); ++round) {
+void complete(const MethodInput& measured, Holes holes, const Report& base, Draft& draft) {
+    const bool all_round = holes == Holes::complete;
+    for (int round = 1; round <= completing::most_rounds && has_loops(holes, draft); ++round) {
         const MethodInput in = draft.input(measured);
         const double done = 0.35 + 0.05 * round;
         const Completion completion = in.phases.run("completion", done, draft.report.seconds.facets,
-                                                    [&] { return completion_of(in, draft); });
+                                                    [&] { return completion_of(in, holes, draft); });
         if (completion.loops.size() == 0) return;
         Draft next{{}, base};
         next.report.seconds = draft.report.seconds;
@@ -252,7 +259,10 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
     Draft draft{{}, report};
     make_facets(in, 0.2, options_for(in, report), draft);
     const std::size_t measured_sets = draft.sets.sets.size();
-    complete(in, report, draft);
+    const Holes holes = in.options.holes;
+    if (holes == Holes::automatic || (holes == Holes::complete && has_slits_only(in, draft)))
+        complete(in, Holes::automatic, report, draft);
+    if (holes == Holes::complete) complete(in, holes, report, draft);
     report = std::move(draft.report);
     report.grid.sets = measured_sets;
     const bool marked = draft.cloud || in.options.holes == Holes::complete;
