@@ -6,9 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <iomanip>
+#include <map>
 #include <sstream>
 
 using namespace hsdm;
@@ -335,10 +337,19 @@ TEST_CASE("process keeps the normals of creases of a mesh that has classes but n
     }
     CHECK(several > 200);
     CHECK(lost == 0);
-    const std::string lines = read_file(folder / "lines.txt");
-    const auto sharp =
-        static_cast<double>(std::count_if(lines.begin(), lines.end(), [](char c) { return c == '\n'; })
-                            - std::count(lines.begin(), lines.end(), 'c'));
-    CHECK(static_cast<double>(read_mesh(folder / "new.om").sharp_edges.size())
-          == Approx(sharp).epsilon(0.01));
+    // Where a crease is one edge long the facets beside it are one fan at both ends, and normals do not tell.
+    std::istringstream lines(read_file(folder / "lines.txt"));
+    std::vector<std::array<std::string, 2>> edges;
+    std::map<std::string, int> ends;
+    for (std::string x, y, z, u, v, w; lines >> x && x != "c" && lines >> y >> z >> u >> v >> w;) {
+        edges.push_back({x + ' ' + y + ' ' + z, u + ' ' + v + ' ' + w});
+        for (const std::string& end : edges.back()) ++ends[end];
+    }
+    const auto lone = std::count_if(edges.begin(), edges.end(), [&](const auto& edge) {
+        return ends[edge[0]] == 1 && ends[edge[1]] == 1;
+    });
+    const std::size_t sharp = edges.size() - static_cast<std::size_t>(lone);
+    INFO(lone << " of " << edges.size() << " alone");
+    CHECK(lone < 10);
+    CHECK(read_mesh(folder / "new.om").sharp_edges.size() == sharp);
 }
