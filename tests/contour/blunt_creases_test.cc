@@ -8,6 +8,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -48,6 +49,41 @@ std::vector<CreaseSample> vault(double radius, std::uint64_t seed, double noise 
     return relief(24, seed, noise, height, [=](double x) { return -x / height(x); });
 }
 
+/// Bent one way along x and the other, less, along y.
+std::vector<CreaseSample> saddle(double bend, std::uint64_t seed) {
+    support::Random random(seed);
+    std::vector<CreaseSample> samples;
+    for (int i = 0; i < 48; ++i) {
+        const double x = random.uniform() - 0.5;
+        const double y = random.uniform() - 0.5;
+        const Vec3 normal(bend * x, -0.35 * bend * y, 1);
+        samples.push_back({Vec3(x, y, -0.5 * bend * (x * x - 0.35 * y * y)), normal.normalized()});
+    }
+    return samples;
+}
+
+/// The points of each quarter of the square as a set.
+struct Quarters {
+    std::array<NormalSet, 4> sets{};
+    std::vector<CreaseSample> samples;
+
+    explicit Quarters(const std::vector<CreaseSample>& points) {
+        std::array<std::vector<Index>, 4> quarter;
+        Octree octree;
+        for (const CreaseSample& p : points) {
+            const std::size_t k = (p.position[0] > 0) + 2 * std::size_t{p.position[1] > 0};
+            quarter[k].push_back(static_cast<Index>(octree.positions.size()));
+            octree.positions.push_back(p.position);
+            octree.normals.push_back(p.normal);
+        }
+        for (std::size_t k = 0; k < 4; ++k) {
+            if (quarter[k].empty()) continue;
+            sets[k] = measure_set(octree, quarter[k], 0, 0.5);
+            samples.push_back(crease_sample(sets[k]));
+        }
+    }
+};
+
 bool is_crease(const std::vector<CreaseSample>& samples, BluntCrease& crease,
                std::vector<std::uint8_t>& face) {
     face.assign(samples.size(), 2);
@@ -86,6 +122,29 @@ TEST_CASE("a crease found among turned normals is the other kind", "[contour]") 
     std::vector<std::uint8_t> face;
     REQUIRE(is_crease(samples, crease, face));
     CHECK(!crease.is_convex);
+    BluntCrease before;
+    std::vector<std::uint8_t> face_before;
+    REQUIRE(is_crease(roof(30 * degree, 0, 1), before, face_before));
+    CHECK(face == face_before);
+}
+
+TEST_CASE("sets show a blunt crease as their points do, and none on a round or saddle-shaped surface",
+          "[contour]") {
+    std::size_t round = 0, tried = 0;
+    for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+        INFO("seed " << seed);
+        CHECK(is_crease(Quarters(roof(30 * degree, 0, seed)).samples));
+        CHECK(is_crease(Quarters(roof(-20 * degree, 0, seed)).samples));
+        for (const double radius : {0.8, 1.2, 2.0})
+            round += is_crease(Quarters(vault(radius, seed)).samples), ++tried;
+        for (const double bend : {0.4, 0.7}) {
+            round += is_crease(saddle(bend, seed));
+            round += is_crease(Quarters(saddle(bend, seed)).samples);
+            tried += 2;
+        }
+    }
+    INFO(round << " of " << tried);
+    CHECK(round * 50 < tried);
 }
 
 TEST_CASE("round, flat and noisy surfaces have no blunt crease", "[contour]") {

@@ -3,6 +3,7 @@
 #include "hsdm/contour/constants.hh"
 
 #include <algorithm>
+#include <cmath>
 
 namespace hsdm {
 namespace {
@@ -56,14 +57,11 @@ bool lie_apart(std::span<const CreaseSample> samples, std::span<const std::uint8
     return astray <= blunt_creases::most_astray * (faces[0].weight + faces[1].weight);
 }
 
-} // namespace
-
-bool find_blunt_crease(std::span<const CreaseSample> samples, double least_weight,
-                       std::span<std::uint8_t> face, BluntCrease& crease) {
-    if (samples.size() < 2) return false;
+/// Sorts samples by the nearer of two mean normals. False if a face weighs too little, or if both are one.
+bool group_by_normals(std::span<const CreaseSample> samples, double least_weight,
+                      std::span<std::uint8_t> face, Faces& faces) {
     std::array<Vec3, 2> modes = farthest_normals(samples);
     if ((modes[0] | modes[1]) > blunt_creases::bluntest_cosine) return false;
-    Faces faces;
     for (int round = 0; round < blunt_creases::rounds; ++round) {
         for (std::size_t i = 0; i < samples.size(); ++i)
             face[i] = (samples[i].normal | modes[1]) > (samples[i].normal | modes[0]);
@@ -74,24 +72,39 @@ bool find_blunt_crease(std::span<const CreaseSample> samples, double least_weigh
             modes[k] = faces[k].normal;
         }
     }
-    if ((modes[0] | modes[1]) > blunt_creases::bluntest_cosine) return false;
+    return (modes[0] | modes[1]) <= blunt_creases::bluntest_cosine;
+}
 
-    const Vec3 bend = modes[1] - modes[0];
-    const double size = bend.norm(), way = ((faces[1].position - faces[0].position) | bend) / size;
-    double scatter = 0, turn = 0, extent = 0; // of normals; with positions; of positions along the bend
+/// Do normals scatter little within the faces, and turn little along them?
+bool are_flat(std::span<const CreaseSample> samples, std::span<const std::uint8_t> face, const Faces& faces) {
+    Vec3 bend = faces[1].normal - faces[0].normal;
+    const double size = bend.norm();
+    bend /= size;
+    double scatter = 0, turn = 0, extent = 0; // of normals; with positions along the bend; of these
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const CreaseSample& s = samples[i];
-        const Vec3 n = s.normal - modes[face[i]], p = s.position - faces[face[i]].position;
-        const double along = (p | bend) / size;
+        const Vec3 n = s.normal - faces[face[i]].normal;
+        const double along = (s.position - faces[face[i]].position) | bend;
         scatter += s.weight * n.sqrnorm();
-        turn += s.weight * (s.turn + (n | p));
-        extent += s.weight * (along * along + (s.spread != nullptr ? s.spread->along(bend / size) : 0));
+        turn += s.weight * (s.turn + (n | bend) * along);
+        extent += s.weight * (along * along + (s.spread != nullptr ? s.spread->along(bend) : 0));
     }
     const double weight = faces[0].weight + faces[1].weight;
-    if (scatter > blunt_creases::most_scatter * blunt_creases::most_scatter * size * size * weight)
+    const double way = (faces[1].position - faces[0].position) | bend;
+    return scatter <= std::pow(blunt_creases::most_scatter * size, 2) * weight
+           && turn * way <= blunt_creases::most_turn * extent * size;
+}
+
+} // namespace
+
+bool find_blunt_crease(std::span<const CreaseSample> samples, double least_weight,
+                       std::span<std::uint8_t> face, BluntCrease& crease) {
+    Faces faces;
+    if (samples.size() < 2 || !group_by_normals(samples, least_weight, face, faces)
+        || !are_flat(samples, face, faces))
         return false;
-    if (turn * way > blunt_creases::most_turn * extent * size) return false;
-    crease = {modes, way > 0};
+    crease.normals = {faces[0].normal, faces[1].normal};
+    crease.is_convex = ((faces[1].position - faces[0].position) | (faces[1].normal - faces[0].normal)) > 0;
     return lie_apart(samples, face, faces, crease.is_convex);
 }
 

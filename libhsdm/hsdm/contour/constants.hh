@@ -55,7 +55,7 @@ namespace hsdm::relations {
 
 /// radians: normals closer than this belong to one sheet.
 /// Why: 40 degrees, beyond the 35 that a set may spread to: sets beside each other on round ground of a voxel
-/// and a half's radius are one sheet. Creases that are flatter are rounded.
+/// and a half's radius are one sheet. Creases that are flatter lie within a sheet (blunt_creases.hh).
 HSDM_TUNED double smooth_angle = 0.70;
 
 /// cosine: of the same angle, where normals of crossings, planes and vertices are compared.
@@ -108,7 +108,7 @@ HSDM_TUNED double most_astray = 0.2;
 inline constexpr int rounds = 3;
 
 /// cosine: length of a sheet's mean unit normal; of a longer one no crease is looked for.
-/// Why: half of bluntest_cosine's angle either way.
+/// Why: two equal faces with bluntest_cosine between them; only saves time.
 inline constexpr double least_bend = 0.9914;
 
 } // namespace hsdm::blunt_creases

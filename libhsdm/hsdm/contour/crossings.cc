@@ -55,7 +55,6 @@ public:
         const std::size_t begin = found.size();
         for (std::size_t i = 0; i < count_; ++i) {
             if (!sheets_[i].crosses) continue;
-            if (sheets_[i].bent) cross_at_crease(i);
             if (count_ > 1 && relations_for_ != i) relate(i);
             const bool on_solid = visible(i);
             dropped_beyond_crease += !on_solid;
@@ -135,12 +134,11 @@ private:
             if (beside(a, 0)) sheets_[number_[a.sheet]].held[around(a)] += sets_.sets[a.set].count;
     }
 
-    EdgeSheet& sheet_of(const SheetMember& m, unsigned end) {
-        return sheets_[number_[offset_[end] + m.sheet]];
-    }
-
     bool measure() {
-        for (std::size_t i = 0; i < count_; ++i) measure(sheets_[i]);
+        for (std::size_t i = 0; i < count_; ++i) {
+            measure(sheets_[i]);
+            if (sheets_[i].crosses && sheets_[i].bent) cross_at_crease(i);
+        }
         relations_for_ = most;
         return std::any_of(sheets_.begin(), sheets_.begin() + static_cast<std::ptrdiff_t>(count_),
                            [](const EdgeSheet& sheet) { return sheet.crosses; });
@@ -164,18 +162,24 @@ private:
     void cross_at_crease(std::size_t i) {
         std::array<CreaseSample, most> samples;
         std::array<std::uint8_t, most> face;
+        std::array<Index, most> of;
         std::size_t n = 0;
-        for_each_member(i, [&](const NormalSet& set, unsigned) { samples[n++] = crease_sample(set); });
+        for_each_member(i, [&](const SheetMember& m, unsigned end) {
+            if (end == 1 && beside(m, 1)) return; // seen from the other end, too
+            of[n] = m.set;
+            samples[n++] = crease_sample(sets_.sets[m.set]);
+        });
         BluntCrease crease;
         if (!find_blunt_crease({samples.data(), n}, blunt_creases::least_points, {face.data(), n}, crease))
             return;
         std::array<EdgeSheet, 2> faces;
-        n = 0;
-        for_each_member(i, [&](const NormalSet& set, unsigned end) {
+        for_each_member(i, [&](const SheetMember& m, unsigned end) {
+            const auto sample = std::find(of.begin(), of.begin() + static_cast<std::ptrdiff_t>(n), m.set);
+            EdgeSheet& of_set = faces[face[static_cast<std::size_t>(sample - of.begin())]];
+            const NormalSet& set = sets_.sets[m.set];
             Vec3 d = low_ - set.centroid;
             d[axis_] += end * h_;
             const double weight = sheet_weight(set, d, h_);
-            EdgeSheet& of_set = faces[face[n++]];
             of_set.weight[end] += weight;
             of_set.distance[end] += weight * (set.normal | d);
             of_set.normal += weight * set.normal;
@@ -196,7 +200,7 @@ private:
     void for_each_member(std::size_t i, F&& f) const {
         for (unsigned end : {0u, 1u})
             for (const SheetMember& m : local_.members_at(ends_[end]))
-                if (number_[offset_[end] + m.sheet] == i) f(sets_.sets[m.set], end);
+                if (number_[offset_[end] + m.sheet] == i) f(m, end);
     }
 
     /// Relation of two sheets, by the vote of their pairs of sets. Where a wall or gap is known between any
@@ -315,12 +319,10 @@ private:
         const Vec3 x = position(i);
         double nearest = std::numeric_limits<double>::infinity();
         Index set = no_index;
-        for (unsigned end : {0u, 1u})
-            for (const SheetMember& m : local_.members_at(ends_[end])) {
-                if (number_[offset_[end] + m.sheet] != i) continue;
-                const double d = (sets_.sets[m.set].centroid - x).sqrnorm();
-                if (d < nearest || (d == nearest && m.set < set)) nearest = d, set = m.set;
-            }
+        for_each_member(i, [&](const SheetMember& m, unsigned) {
+            const double d = (sets_.sets[m.set].centroid - x).sqrnorm();
+            if (d < nearest || (d == nearest && m.set < set)) nearest = d, set = m.set;
+        });
         carried = carried && nearest < crossing::far_from_data * crossing::far_from_data * h_ * h_;
         return {sheets_[i].t,         sheets_[i].normal, 3 * ends_[0] + axis_, set,
                 sheets_[i].leaving(), carried,           sheets_[i].by_crease};

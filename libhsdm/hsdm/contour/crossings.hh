@@ -17,7 +17,7 @@ struct CrossingOptions {
 /// A sheet crossing a grid edge.
 struct Crossing {
     double t;       ///< position along the edge, [0, 1] from its lower grid point
-    Vec3 normal;    ///< unit normal of the sheet there
+    Vec3 normal;    ///< unit normal of the sheet there, or of its face at a blunt crease
     Index edge;     ///< 3 * lower grid point + axis
     Index set;      ///< the sheet's set nearest to the crossing
     bool leaving;   ///< the lower grid point is inside, the upper one outside

@@ -20,7 +20,8 @@ struct SheetMember {
 /// A smooth sheet seen from a grid point. Sums over its sets, weighted by count and nearness.
 struct LocalSheet {
     double weight = 0;
-    double distance = 0;  ///< weight times the grid point's signed distance, positive outside
+    /// weight times the grid point's signed distance, positive outside; to one face at a blunt crease
+    double distance = 0;
     Vec3 normal{0, 0, 0}; ///< weight times the unit normals
     /// sums over its sets, of counts and their squares: the sampling density
     double points = 0, points_squared = 0;

@@ -60,7 +60,8 @@ struct NormalSets {
 NormalSet measure_set(const Octree& octree, std::span<const Index> points, Index voxel, double voxel_size);
 
 /// Sorts each voxel's points into sets: by direction (modes of the normals, mean shift), then by offset where
-/// two parallel sheets share a direction. Does not depend on the order of the points. The centroid of points
+/// two parallel sheets share a direction. The two faces of a blunt crease
+/// are two sets. Does not depend on the order of the points. The centroid of points
 /// on a curved patch lies below it by half the mean of (n - mean n) . (p - mean p); that much is added back
 /// along the normal. Voxels whose points have no normals have no set. O(points), parallel. Throws
 /// OptionError.

@@ -160,18 +160,18 @@ public:
         gather(dual);
         const Index nearest = sets_.sets[mesh_.crossings.of(mesh_.duals.corners_of(dual)[0]).set].voxel;
         result.voxel[dual] = voxel_ != no_index ? voxel_ : nearest;
-        const SheetNormals faces = by_crease_ ? faces_that_meet() : SheetNormals(problem_.planes);
-        int sheets = faces.count;
-        Solution solution = least_squares(problem_, sheets);
-        if (sheets == 2 && solution.rank == 2 && add_corner_plane(dual)) {
-            sheets = 3;
-            solution = least_squares(problem_, sheets);
+        SheetNormals faces = by_crease_ ? faces_that_meet() : SheetNormals(problem_.planes);
+        Solution solution = least_squares(problem_, faces.count);
+        if (faces.count == 2 && solution.rank == 2 && add_corner_plane(dual)) {
+            faces.normals[2] = problem_.planes.back().normal;
+            faces.count = 3;
+            solution = least_squares(problem_, faces.count);
         }
         if (!is_inside(solution.position, problem_) && !may_leave(solution.position)) {
-            note_corner(dual, solution);
+            note_corner(dual, solution, faces);
             const Vec3 unclamped = solution.position;
             result.is_clamped[dual] = keep_inside(solution);
-            if (result.is_clamped[dual] && sheets == 2
+            if (result.is_clamped[dual] && faces.count == 2
                 && meet(2, solution, unclamped, placement::crease_out, placement::clear_crease)) {
                 on_creases.push_back({dual, unclamped, {faces.normals[0], faces.normals[1]}});
             }
@@ -179,10 +179,10 @@ public:
         result.positions[dual] = solution.position;
         const bool upward = (solution.steep | problem_.planes[0].normal) > 0;
         result.directions[dual] =
-            solution.rank > 1 && sheets > 1 ? solution.free : solution.steep * (upward ? 1.0 : -1.0);
-        result.classes[dual] = sheets == 1 || solution.rank < 2 ? VertexClass::smooth
-                               : solution.rank == 2             ? VertexClass::edge
-                                                                : VertexClass::corner;
+            solution.rank > 1 && faces.count > 1 ? solution.free : solution.steep * (upward ? 1.0 : -1.0);
+        result.classes[dual] = faces.count == 1 || solution.rank < 2 ? VertexClass::smooth
+                               : solution.rank == 2                  ? VertexClass::edge
+                                                                     : VertexClass::corner;
     }
 
 private:
@@ -311,14 +311,13 @@ private:
     }
 
     /// Records a corner outside, which the vertex of another voxel may take over (shared_corners).
-    void note_corner(Index dual, const Solution& solution) {
+    void note_corner(Index dual, const Solution& solution, const SheetNormals& faces) {
         if (!meet(3, solution, solution.position, placement::farthest_out, placement::clear_corner)) return;
-        const SheetNormals sheets(problem_.planes);
-        if (sheets.count < 3) return;
+        if (faces.count < 3) return;
         const VoxelCoord step = step_to(solution.position);
         unsigned crossed = 0;
         for (unsigned way = 1; way < 8; ++way) crossed |= unsigned{is_crossed(step, way)} << way;
-        beyond.push_back({dual, solution.position, sheets.normals, step, static_cast<std::uint8_t>(crossed)});
+        beyond.push_back({dual, solution.position, faces.normals, step, static_cast<std::uint8_t>(crossed)});
     }
 
     /// Step from this voxel to the one that holds a position less than a voxel away.

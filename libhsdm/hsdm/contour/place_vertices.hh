@@ -37,9 +37,9 @@ struct PlacedVertices {
 };
 
 /// Minimises the QEF of the planes of the dual vertex's crossings and of the voxel's own sets, solved for as
-/// many directions as sheets meet (one, two, three); in the others the vertex stays at the mean of the
-/// crossings. The minimiser may lie up to half a voxel outside the voxel where no other vertex of the same
-/// sheets can be; otherwise the vertex is kept inside. O(crossings), parallel.
+/// many directions as sheets, or faces of a blunt crease, meet (one, two, three); in the others the vertex
+/// stays at the mean of the crossings. The minimiser may lie up to half a voxel outside the voxel where no
+/// other vertex of the same sheets can be; otherwise the vertex is kept inside. O(crossings), parallel.
 PlacedVertices place_vertices(const DualMesh& mesh, const NormalSets& sets, const RelationTest& related);
 
 /// The two sides of a thin part that were cut apart in one voxel may come to lie at the same point; facets

@@ -166,6 +166,11 @@ bool has_loops(Holes holes, const Draft& draft) {
            || (holes == Holes::automatic && draft.facets.holes.loops > draft.facets.holes.closed);
 }
 
+Slits slits_of(const MethodInput& in, const Draft& draft, const BoundaryLoops& loops) {
+    const double widest = in.level.voxel_size * options_for(in, draft.report).holes.max_diameter;
+    return find_slits(draft.facets.mesh, loops, widest);
+}
+
 Completion completion_of(const MethodInput& in, Holes holes, const Draft& draft) {
     const DualContour& facets = draft.facets;
     const double h = in.level.voxel_size;
@@ -176,7 +181,7 @@ Completion completion_of(const MethodInput& in, Holes holes, const Draft& draft)
         result.points = complete_surface(facets.mesh, result.loops, h);
     } else {
         const BoundaryLoops loops = boundary_loops(facets.mesh);
-        Slits slits = find_slits(facets.mesh, loops, h * options_for(in, draft.report).holes.max_diameter);
+        Slits slits = slits_of(in, draft, loops);
         result.border = loops.vertices.size();
         result.points = points_across(slits, h);
         result.loops = std::move(slits.loops);
@@ -184,11 +189,10 @@ Completion completion_of(const MethodInput& in, Holes holes, const Draft& draft)
     return result;
 }
 
-/// Then what closes them is the whole: no surface is missing that a volume would have to tell.
+/// Are slits all that is open? What closes them is the whole then; a volume would tell no more.
 bool has_slits_only(const MethodInput& in, const Draft& draft) {
     const BoundaryLoops loops = boundary_loops(draft.facets.mesh);
-    const double widest = in.level.voxel_size * options_for(in, draft.report).holes.max_diameter;
-    return find_slits(draft.facets.mesh, loops, widest).loops.size() == loops.size();
+    return slits_of(in, draft, loops).loops.size() == loops.size();
 }
 
 /// Is a guess no worse than the draft that it completes: fewer edges without a second facet, no more facets
@@ -199,12 +203,13 @@ bool is_better(const DualContour& guess, const DualContour& draft, const Complet
 }
 
 /// Completes the facets' surface, and once more where loops are left. Where borders are to stay a guess that
-/// is no better is not taken. `base` is the report before there were facets.
-void complete(const MethodInput& measured, Holes holes, const Report& base, Draft& draft) {
+/// is no better is not taken. `base` is the report before there were facets; `begin` is
+/// the share of the whole run before the first round.
+void complete(const MethodInput& measured, Holes holes, double begin, const Report& base, Draft& draft) {
     const bool all_round = holes == Holes::complete;
     for (int round = 1; round <= completing::most_rounds && has_loops(holes, draft); ++round) {
         const MethodInput in = draft.input(measured);
-        const double done = 0.35 + 0.05 * round;
+        const double done = begin + 0.03 * round;
         const Completion completion = in.phases.run("completion", done, draft.report.seconds.facets,
                                                     [&] { return completion_of(in, holes, draft); });
         if (completion.loops.size() == 0) return;
@@ -260,9 +265,11 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
     make_facets(in, 0.2, options_for(in, report), draft);
     const std::size_t measured_sets = draft.sets.sets.size();
     const Holes holes = in.options.holes;
-    if (holes == Holes::automatic || (holes == Holes::complete && has_slits_only(in, draft)))
-        complete(in, Holes::automatic, report, draft);
-    if (holes == Holes::complete) complete(in, holes, report, draft);
+    const bool slits_first = holes == Holes::complete
+                             && in.phases.run("completion", 0.36, draft.report.seconds.facets,
+                                              [&] { return has_slits_only(in, draft); });
+    if (holes == Holes::automatic || slits_first) complete(in, Holes::automatic, 0.35, report, draft);
+    if (holes == Holes::complete) complete(in, holes, 0.41, report, draft);
     report = std::move(draft.report);
     report.grid.sets = measured_sets;
     const bool marked = draft.cloud || in.options.holes == Holes::complete;
