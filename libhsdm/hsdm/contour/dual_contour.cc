@@ -299,7 +299,6 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     PlacedVertices vertices = place_vertices(dual, sets, related);
     dual.grid.index = {}; // place_vertices was the last to look for grid points
     extend_borders(dual, sets, vertices);
-    draw_in_rims(octree, level, sets, dual, vertices); // again below: what is relaxed makes room
     relax_vertices(octree, level, dual, options.relax, vertices);
     draw_in_rims(octree, level, sets, dual, vertices);
     separate_sides(dual, vertices.positions);
