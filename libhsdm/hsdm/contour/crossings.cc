@@ -164,8 +164,12 @@ private:
         std::array<std::uint8_t, most> face;
         std::array<Index, most> of;
         std::size_t n = 0;
-        for_each_member(i, [&](const SheetMember& m, unsigned end) {
-            if (end == 1 && beside(m, 1)) return; // seen from the other end, too
+        const auto place_of = [&](Index set) {
+            return static_cast<std::size_t>(
+                std::find(of.begin(), of.begin() + static_cast<std::ptrdiff_t>(n), set) - of.begin());
+        };
+        for_each_member(i, [&](const SheetMember& m, unsigned) {
+            if (place_of(m.set) < n) return; // a set beside the edge, seen from its other end, too
             of[n] = m.set;
             samples[n++] = crease_sample(sets_.sets[m.set]);
         });
@@ -174,8 +178,7 @@ private:
             return;
         std::array<EdgeSheet, 2> faces;
         for_each_member(i, [&](const SheetMember& m, unsigned end) {
-            const auto sample = std::find(of.begin(), of.begin() + static_cast<std::ptrdiff_t>(n), m.set);
-            EdgeSheet& of_set = faces[face[static_cast<std::size_t>(sample - of.begin())]];
+            EdgeSheet& of_set = faces[face[place_of(m.set)]];
             const NormalSet& set = sets_.sets[m.set];
             Vec3 d = low_ - set.centroid;
             d[axis_] += end * h_;
