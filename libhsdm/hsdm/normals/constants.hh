@@ -209,7 +209,8 @@ HSDM_TUNED double bent_spread = 0.45;
 HSDM_TUNED double clear_gain = 1.3;
 
 /// cosine: of normals of neighbours that are no sign of a crease.
-/// Why: 14 degrees; where planes are smeared over both faces those beside a crease differ by half of its angle.
+/// Why: 14 degrees; where planes are smeared over both faces those beside a crease differ by half of its
+/// angle.
 HSDM_TUNED double differing_cosine = 0.97;
 
 /// cosine: the same once planes were looked for.
