@@ -2,6 +2,7 @@
 // docs/sheets.md.
 
 #include "benchmarks.hh"
+#include "segment.hh"
 
 #include "hsdm/mesh/facet_normal.hh"
 #include "hsdm/reconstruct.hh"
@@ -24,29 +25,20 @@ constexpr double points_per_square = 8; // per squared edge
 constexpr double prism_height = 1;
 constexpr double near_by = 0.25; // voxels: an edge as far off is found
 
-struct Line {
-    Vec3 from, to;
-
-    double length() const { return (to - from).norm(); }
-    double distance(const Vec3& p) const {
-        const Vec3 way = to - from;
-        const double share = std::clamp(((p - from) | way) / way.sqrnorm(), 0.0, 1.0);
-        return (p - from - way * share).norm();
-    }
-};
-
-using Lines = std::vector<Line>;
+using bench::Segment;
+using Lines = std::vector<Segment>;
 
 /// Share of the length of `these` that is near one of `those`.
 double share_near(const Lines& these, const Lines& those, double tolerance) {
     double near = 0, all = 0;
-    for (const Line& s : these) {
+    for (const Segment& s : these) {
         constexpr int pieces = 64;
+        const double length = (s.to - s.from).norm();
         for (int i = 0; i < pieces; ++i) {
             const Vec3 p = s.from + (s.to - s.from) * ((i + 0.5) / pieces);
-            all += s.length();
-            if (std::ranges::any_of(those, [&](const Line& t) { return t.distance(p) <= tolerance; }))
-                near += s.length();
+            all += length;
+            if (std::ranges::any_of(those, [&](const Segment& t) { return distance(p, t) <= tolerance; }))
+                near += length;
         }
     }
     return all > 0 ? near / all : 1;

@@ -2,6 +2,7 @@
 // those of the shape itself.
 
 #include "benchmarks.hh"
+#include "segment.hh"
 
 #include "hsdm/io/read_mesh.hh"
 #include "hsdm/io/read_points.hh"
@@ -24,9 +25,7 @@ using namespace hsdm;
 
 namespace {
 
-struct Segment {
-    Vec3 from, to;
-};
+using bench::Segment;
 
 /// Lines `e x y z x y z ...` of a file of sharp edges.
 std::vector<Segment> read_edges(const std::string& path) {
@@ -41,13 +40,6 @@ std::vector<Segment> read_edges(const std::string& path) {
             edges.push_back(s);
     }
     return edges;
-}
-
-double distance(const Vec3& p, const Segment& s) {
-    const Vec3 along = s.to - s.from;
-    const double length = along.sqrnorm();
-    const double t = length > 0 ? std::clamp(((p - s.from) | along) / length, 0.0, 1.0) : 0;
-    return (p - s.from - along * t).norm();
 }
 
 /// Normals of the surface that a mesh of triangles stands for: those at the corners, means over the facets

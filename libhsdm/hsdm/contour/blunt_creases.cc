@@ -8,6 +8,8 @@
 namespace hsdm {
 namespace {
 
+constexpr int most_rounds = 3; // of sorting samples anew by the means of the round before
+
 /// Weighted means of one face.
 struct Face {
     Vec3 position{0, 0, 0}, normal{0, 0, 0};
@@ -62,7 +64,7 @@ bool group_by_normals(std::span<const CreaseSample> samples, double least_weight
                       std::span<std::uint8_t> face, Faces& faces) {
     std::array<Vec3, 2> modes = farthest_normals(samples);
     if ((modes[0] | modes[1]) > blunt_creases::bluntest_cosine) return false;
-    for (int round = 0; round < blunt_creases::rounds; ++round) {
+    for (int round = 0; round < most_rounds; ++round) {
         for (std::size_t i = 0; i < samples.size(); ++i)
             face[i] = (samples[i].normal | modes[1]) > (samples[i].normal | modes[0]);
         faces = means(samples, face);

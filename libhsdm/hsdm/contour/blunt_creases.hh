@@ -20,6 +20,12 @@ inline CreaseSample crease_sample(const NormalSet& set) {
     return {set.centroid, set.normal, static_cast<double>(set.count), set.turn, &set.spread};
 }
 
+/// May there be a crease, from the weighted sum of unit normals? Only saves time: that of two equal faces
+/// with bluntest_cosine between them is so long.
+inline bool is_bent(const Vec3& sum, double weight) {
+    return sum.norm() < 0.9914 * weight;
+}
+
 struct BluntCrease {
     std::array<Vec3, 2> normals; ///< unit mean normals of the two faces
     bool is_convex = false;

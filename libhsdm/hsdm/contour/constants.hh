@@ -9,6 +9,10 @@
 // normal_sets.hh
 namespace hsdm::sets {
 
+/// points: of which a plane can be told: of a set, a sheet or a face that says where it lies.
+/// Why: as many as a plane has; the rim of a wall has few.
+inline constexpr unsigned points_of_plane = 3;
+
 /// radians: points of a set lie within this angle of its mean normal.
 /// Why: 35 degrees, the default angle above which an edge is sharp, so that the faces beside a sharp edge are
 /// two sets.
@@ -87,10 +91,6 @@ namespace hsdm::blunt_creases {
 /// Why: 15 degrees, half of where tools begin to take an edge for sharp.
 HSDM_TUNED double bluntest_cosine = 0.966;
 
-/// points: of each face.
-/// Why: as many as a plane has.
-inline constexpr double least_points = 3;
-
 /// share: of the angle between the two faces, root mean square of normals within each.
 /// Why: on a round surface cut in halves it is 0.29, on two halves of noise 0.38.
 HSDM_TUNED double most_scatter = 0.25;
@@ -102,14 +102,6 @@ HSDM_TUNED double most_turn = 0.5;
 /// share: of what lies on the other face's side.
 /// Why: by trial; where normals alone make two groups it is a half.
 HSDM_TUNED double most_astray = 0.2;
-
-/// rounds: assignments of samples to the nearer mean normal (Lloyd).
-/// Why: by trial, as sets.lloyd_rounds.
-inline constexpr int rounds = 3;
-
-/// cosine: length of a sheet's mean unit normal; of a longer one no crease is looked for.
-/// Why: two equal faces with bluntest_cosine between them; only saves time.
-inline constexpr double least_bend = 0.9914;
 
 } // namespace hsdm::blunt_creases
 
@@ -174,10 +166,6 @@ namespace hsdm::widths {
 /// Why: where a sheet ends is known to a spacing; two that end on each other's ground need one each.
 inline constexpr double least = 1;
 
-/// points: of a set that tells where its sheet is.
-/// Why: as many as a plane has.
-inline constexpr unsigned least_points = 3;
-
 } // namespace hsdm::widths
 
 // local_sheets.hh, grid_signs.hh
@@ -194,10 +182,6 @@ HSDM_TUNED int closure_rounds = 8;
 /// pairs: of sets apart, between two sheets that do not become one though they are one elsewhere.
 /// Why: one pair may be an error.
 inline constexpr unsigned fewest_apart = 2;
-
-/// points: of each of the two.
-/// Why: as many as a plane has; the rim of a wall has few.
-inline constexpr unsigned fewest_points_apart = 3;
 
 /// cosine: of the normals of two sets that may become one sheet since they are one elsewhere.
 /// Why: 70 degrees: less than the right angle between a plate's side and its rim, through which its two sides

@@ -147,7 +147,7 @@ private:
     /// Signed distances at both ends; a sheet known at one end only is continued along its plane.
     void measure(EdgeSheet& sheet) const {
         const double length = sheet.normal.norm();
-        sheet.bent = length < blunt_creases::least_bend * (sheet.weight[0] + sheet.weight[1]);
+        sheet.bent = is_bent(sheet.normal, sheet.weight[0] + sheet.weight[1]);
         sheet.normal = length > 0 ? sheet.normal / length : Vec3(0, 0, 1);
         for (unsigned end : {0u, 1u})
             if (sheet.weight[end] > 0) sheet.distance[end] /= sheet.weight[end];
@@ -174,8 +174,7 @@ private:
             samples[n++] = crease_sample(sets_.sets[m.set]);
         });
         BluntCrease crease;
-        if (!find_blunt_crease({samples.data(), n}, blunt_creases::least_points, {face.data(), n}, crease))
-            return;
+        if (!find_blunt_crease({samples.data(), n}, sets::points_of_plane, {face.data(), n}, crease)) return;
         std::array<EdgeSheet, 2> faces;
         for_each_member(i, [&](const SheetMember& m, unsigned end) {
             EdgeSheet& of_set = faces[face[place_of(m.set)]];

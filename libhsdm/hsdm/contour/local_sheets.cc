@@ -66,7 +66,7 @@ struct SheetsAtPoint {
             sheet.points_squared += points * points;
         }
         for (std::size_t k = 0; k < sheet_count; ++k)
-            if (sheets[k].normal.norm() < blunt_creases::least_bend * sheets[k].weight)
+            if (is_bent(sheets[k].normal, sheets[k].weight))
                 measure_at_crease(static_cast<std::uint8_t>(k), position, sets, voxel_size);
     }
 
@@ -79,8 +79,7 @@ struct SheetsAtPoint {
         for (std::size_t i = 0; i < member_count; ++i)
             if (members[i].sheet == k) samples[n++] = crease_sample(sets.sets[members[i].set]);
         BluntCrease crease;
-        if (!find_blunt_crease({samples.data(), n}, blunt_creases::least_points, {face.data(), n}, crease))
-            return;
+        if (!find_blunt_crease({samples.data(), n}, sets::points_of_plane, {face.data(), n}, crease)) return;
         std::array<double, 2> weight{0, 0}, distance{0, 0};
         n = 0;
         for (std::size_t i = 0; i < member_count; ++i) {
@@ -169,8 +168,7 @@ bool are_apart(std::span<const SheetMember> members, std::uint8_t one, std::uint
         for (const SheetMember& b : members)
             pairs += b.sheet == other && related.apart(sets.sets[a.set], sets.sets[b.set]);
     }
-    return pairs >= sheets::fewest_apart
-           && std::min(points_of_one, points_of_other) >= sheets::fewest_points_apart;
+    return pairs >= sheets::fewest_apart && std::min(points_of_one, points_of_other) >= sets::points_of_plane;
 }
 
 std::vector<Index> grid_points_with_several(const LocalSheets& sheets) {
