@@ -209,26 +209,3 @@ TEST_CASE("a slit that the sampling left is closed and marked, a window stays op
     CHECK(coarse.mesh.euler == 1);
     CHECK(coarse.mesh.faces < report.mesh.faces / 4);
 }
-
-TEST_CASE("where only slits are open, completing is what auto does", "[completion]") {
-    // A slit of 1 by 0.14 in the upper face of a box; voxels of 0.05.
-    const PointCloud all = sample(box({2, 1.6, 1.2}), {.points = 60000});
-    PointCloud cloud;
-    for (std::size_t i = 0; i < all.positions.size(); ++i) {
-        const Vec3& p = all.positions[i];
-        if (p[2] > 0.59 && std::abs(p[0]) < 0.5 && std::abs(p[1]) < 0.07) continue;
-        cloud.positions.push_back(p);
-        cloud.normals.push_back(all.normals[i]);
-    }
-    const auto mesh = [&](Holes holes) {
-        ReconstructOptions options;
-        options.voxel_size = 0.05;
-        options.holes = holes;
-        return to_polygons(reconstruct(cloud, options).mesh);
-    };
-    CHECK(boundary_loops(mesh(Holes::keep)).size() == 1);
-    const PolygonMesh closed = mesh(Holes::complete), alike = mesh(Holes::automatic);
-    CHECK(boundary_loops(closed).size() == 0);
-    CHECK(closed.corners == alike.corners);
-    CHECK(closed.positions == alike.positions);
-}

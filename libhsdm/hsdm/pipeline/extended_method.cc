@@ -161,38 +161,27 @@ struct Completion {
 };
 
 /// May there be something to complete?
-bool has_loops(Holes holes, const Draft& draft) {
-    return holes == Holes::complete
-           || (holes == Holes::automatic && draft.facets.holes.loops > draft.facets.holes.closed);
+bool has_loops(const MethodInput& in, const Draft& draft) {
+    return in.options.holes == Holes::complete
+           || (in.options.holes == Holes::automatic && draft.facets.holes.loops > draft.facets.holes.closed);
 }
 
-Slits slits_of(const MethodInput& in, const Draft& draft, const BoundaryLoops& loops) {
-    const double widest = in.level.voxel_size * options_for(in, draft.report).holes.max_diameter;
-    return find_slits(draft.facets.mesh, loops, widest);
-}
-
-Completion completion_of(const MethodInput& in, Holes holes, const Draft& draft) {
+Completion completion_of(const MethodInput& in, const Draft& draft) {
     const DualContour& facets = draft.facets;
     const double h = in.level.voxel_size;
     Completion result;
-    if (holes == Holes::complete) {
+    if (in.options.holes == Holes::complete) {
         result.loops = boundary_loops(facets.mesh);
         result.border = result.loops.vertices.size();
         result.points = complete_surface(facets.mesh, result.loops, h);
     } else {
         const BoundaryLoops loops = boundary_loops(facets.mesh);
-        Slits slits = slits_of(in, draft, loops);
+        Slits slits = find_slits(facets.mesh, loops, h * options_for(in, draft.report).holes.max_diameter);
         result.border = loops.vertices.size();
         result.points = points_across(slits, h);
         result.loops = std::move(slits.loops);
     }
     return result;
-}
-
-/// Are slits all that is open? What closes them is the whole then; a volume would tell no more.
-bool has_slits_only(const MethodInput& in, const Draft& draft) {
-    const BoundaryLoops loops = boundary_loops(draft.facets.mesh);
-    return slits_of(in, draft, loops).loops.size() == loops.size();
 }
 
 /// Is a guess no worse than the draft that it completes: fewer edges without a second facet, no more facets
@@ -203,15 +192,14 @@ bool is_better(const DualContour& guess, const DualContour& draft, const Complet
 }
 
 /// Completes the facets' surface, and once more where loops are left. Where borders are to stay a guess that
-/// is no better is not taken. `base` is the report before there were facets; `begin` is
-/// the share of the whole run before the first round.
-void complete(const MethodInput& measured, Holes holes, double begin, const Report& base, Draft& draft) {
-    const bool all_round = holes == Holes::complete;
-    for (int round = 1; round <= completing::most_rounds && has_loops(holes, draft); ++round) {
+/// is no better is not taken. `base` is the report before there were facets.
+void complete(const MethodInput& measured, const Report& base, Draft& draft) {
+    const bool all_round = measured.options.holes == Holes::complete;
+    for (int round = 1; round <= completing::most_rounds && has_loops(measured, draft); ++round) {
         const MethodInput in = draft.input(measured);
-        const double done = begin + 0.03 * round;
+        const double done = 0.35 + 0.05 * round;
         const Completion completion = in.phases.run("completion", done, draft.report.seconds.facets,
-                                                    [&] { return completion_of(in, holes, draft); });
+                                                    [&] { return completion_of(in, draft); });
         if (completion.loops.size() == 0) return;
         Draft next{{}, base};
         next.report.seconds = draft.report.seconds;
@@ -264,12 +252,7 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
     Draft draft{{}, report};
     make_facets(in, 0.2, options_for(in, report), draft);
     const std::size_t measured_sets = draft.sets.sets.size();
-    const Holes holes = in.options.holes;
-    const bool slits_first = holes == Holes::complete
-                             && in.phases.run("completion", 0.36, draft.report.seconds.facets,
-                                              [&] { return has_slits_only(in, draft); });
-    if (holes == Holes::automatic || slits_first) complete(in, Holes::automatic, 0.35, report, draft);
-    if (holes == Holes::complete) complete(in, holes, 0.41, report, draft);
+    complete(in, report, draft);
     report = std::move(draft.report);
     report.grid.sets = measured_sets;
     const bool marked = draft.cloud || in.options.holes == Holes::complete;
