@@ -21,7 +21,7 @@ esac
 cd "$(dirname "$0")/.."
 
 packages="g++ cmake ninja-build libopenmesh-dev libeigen3-dev libflann-dev libtbb-dev libfast-float-dev
-    nlohmann-json3-dev libcli11-dev catch2"
+    libboost-dev nlohmann-json3-dev libcli11-dev catch2"
 case $goal in
 demo) packages="$packages f3d xvfb xauth" ;;
 tools) packages="$packages clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 llvm-14 doxygen git

@@ -78,14 +78,25 @@ int links_that_cross(const Stages& stages) {
     return count;
 }
 
-/// Per grid face, how many links and open sides there are, where these are two or more.
+/// Per face of the grid, how many links and open sides there are, where these are two or more. Where the grid
+/// ends sides are open as well, but of no face.
 std::map<VoxelCoord, int> crowded_faces(const Stages& stages) {
     std::map<VoxelCoord, int> count;
+    std::set<VoxelCoord> points;
+    for (Index c = 0; c < stages.grid.size(); ++c) points.insert(stages.grid.coord(c));
     for (Index x = 0; x < stages.crossings.crossings.size(); ++x)
         for (const FacetSide side : corners_of_facet(x))
             count[middle_of_face(stages, side)] +=
                 stages.links.of(side).open() ? 2 : 1; // a link has two ends
-    std::erase_if(count, [](const auto& face) { return face.second <= 2; });
+    std::erase_if(count, [&](const auto& face) {
+        bool whole = true;
+        for (int corner = 0; corner < 8; ++corner) { // along its own axis twice the same
+            VoxelCoord at = face.first;
+            for (unsigned k = 0; k < 3; ++k) at[k] = (at[k] + (at[k] % 2 != 0 && corner >> k & 1)) >> 1;
+            whole = whole && points.contains(at);
+        }
+        return face.second <= 2 || !whole;
+    });
     return count;
 }
 

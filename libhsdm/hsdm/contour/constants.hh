@@ -226,32 +226,32 @@ HSDM_TUNED double sliver_points = 6;
 namespace hsdm::signs {
 
 /// crossings: cost of taking back one that the data do not carry.
-/// Why: by trial; two of them must weigh less than one that is carried.
-HSDM_TUNED double cost_of_weak = 0.25;
+/// Why: by trial; four of them must weigh less than one that is carried.
+HSDM_TUNED double cost_of_weak = 0.2;
 
 /// crossings: cost of bringing back one beyond a crease or beyond the data.
 /// Why: by trial; cheaper than taking back what is carried, dearer than what is not.
-HSDM_TUNED double cost_of_return = 0.75;
+HSDM_TUNED double cost_of_return = 0.6;
 
 /// crossings: cost of one where no sheet has any.
-/// Why: as much as taking back both crossings of a thin part.
-HSDM_TUNED double cost_of_invention = 2;
+/// Why: by trial; less than taking back both crossings of a thin part.
+HSDM_TUNED double cost_of_invention = 1.6;
 
-/// crossings: cost of one that leaves a side open.
-/// Why: more than all six edges of a grid point can cost otherwise, so that it comes last.
-inline constexpr double cost_of_leak = 8;
+/// crossings: cost of one where the grid ends beside the edge, so that a side stays open.
+/// Why: half of one within the grid; dear, the surface is closed at the ends of slots or taken away there.
+HSDM_TUNED double cost_of_border = 0.8;
 
 /// crossings: cost of a side against all sheets around a grid point.
-/// Why: as much as one crossing that the data carry.
-HSDM_TUNED double most_belief = 1;
+/// Why: less than one crossing that the data carry, which decides if nothing else does.
+HSDM_TUNED double most_belief = 0.8;
 
 /// rounds: of votes by neighbours after the first.
 /// Why: by trial; what is farther off has no sheet near, and the last round leaves none undecided.
 HSDM_TUNED int vote_rounds = 3;
 
-/// rounds: of changing sides where that lowers the cost.
-/// Why: bounds the work; a round without change ends it.
-inline constexpr int settle_rounds = 8;
+/// grid points: so far around contradictions sides are in doubt.
+/// Why: with six instead of two the same sides come out, on scans with noise as well.
+HSDM_TUNED int rings = 2;
 
 /// voxels: an invented crossing stays this far from the ends of its edge.
 /// Why: by trial; off the grid points by enough that facets there keep an area.

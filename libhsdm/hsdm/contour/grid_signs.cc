@@ -1,6 +1,7 @@
 #include "hsdm/contour/grid_signs.hh"
 
 #include "hsdm/contour/constants.hh"
+#include "hsdm/contour/minimum_cut.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
 
@@ -14,8 +15,11 @@ namespace {
 // Costs are in units of one supported crossing dropped.
 constexpr double impossible = 1e30;
 
+// Of two sides that cost the same a grid point keeps the one it had.
+constexpr double tie = 1e-3;
+
 using Side = std::uint8_t;
-constexpr Side inside = 0, outside = 1, unknown = 2;
+constexpr Side inside = 0, outside = 1, unknown = 2; // the labels of cheapest_labels
 
 /// The cheapest choice among an edge's crossings that alternates from one given side to the other (dynamic
 /// programming along the edge).
@@ -32,8 +36,8 @@ public:
     double cost_of_leaving(Index x) const { return standing_[x] ? weight(x) : 0; }
     Side side_before(Index x) const { return list_.crossings[x].leaving ? inside : outside; }
 
-    double cost(Index edge, Side low, Side high) const {
-        std::array<double, 2> after = at_upper_end(high);
+    double cost(Index edge, Side low, Side high, double invention = signs::cost_of_invention) const {
+        std::array<double, 2> after = at_upper_end(high, invention);
         for (Index x = list_.first[edge + 1]; x-- > list_.first[edge];) after = before(x, after);
         return after[low];
     }
@@ -44,7 +48,7 @@ public:
         const Index begin = list_.first[edge];
         const std::size_t n = list_.first[edge + 1] - begin;
         std::array<std::array<double, 2>, most + 1> after;
-        after[n] = at_upper_end(high);
+        after[n] = at_upper_end(high, signs::cost_of_invention);
         for (std::size_t k = n; k-- > 0;) after[k] = before(begin + static_cast<Index>(k), after[k + 1]);
         Side side = low;
         for (std::size_t k = 0; k < n; ++k) {
@@ -58,8 +62,8 @@ public:
     }
 
 private:
-    static std::array<double, 2> at_upper_end(Side high) {
-        std::array<double, 2> cost{signs::cost_of_invention, signs::cost_of_invention};
+    static std::array<double, 2> at_upper_end(Side high, double invention) {
+        std::array<double, 2> cost{invention, invention};
         cost[high] = 0;
         return cost;
     }
@@ -96,7 +100,7 @@ public:
         set_beliefs();
         vote(true);
         for (int ring = 0; ring < signs::vote_rounds; ++ring) vote(false, ring + 1 < signs::vote_rounds);
-        flip_doubtful();
+        settle_doubtful();
         return chosen();
     }
 
@@ -153,9 +157,9 @@ private:
         side_ = std::move(next);
     }
 
-    /// Would a crossing on this edge leave a mesh edge open: is one of the four faces beside it missing, or
-    /// no set seen from its ends?
-    bool leaks(Index edge) const {
+    /// Does the grid end here: is one of the four faces beside the edge missing, or no set seen from its
+    /// ends?
+    bool is_at_end(Index edge) const {
         const Index lower = edge / 3, upper = grid_.next[lower][edge % 3];
         for (unsigned a : {(edge + 1) % 3, (edge + 2) % 3})
             for (Index end : {lower, upper})
@@ -163,57 +167,77 @@ private:
         return sheets_.members_at(lower).empty() && sheets_.members_at(upper).empty();
     }
 
-    double edge_cost(Index edge, Side low, Side high) const {
-        if (low == unknown || high == unknown) return 0;
-        return choice_.cost(edge, low, high) + (low != high && leaks(edge) ? signs::cost_of_leak : 0);
+    bool is_known(Index c) const { return c != no_index && side_[c] != unknown; }
+
+    /// Does an edge whose ends have sides contradict them?
+    bool is_contradicted(Index edge) const {
+        const Index c = edge / 3, up = grid_.next[c][edge % 3];
+        return is_known(c) && is_known(up) && choice_.cost(edge, side_[c], side_[up]) > 0;
     }
 
-    double grid_point_cost(Index c, Side side) const {
-        double sum = 0;
-        for (unsigned a = 0; a < 3; ++a) {
-            const Index up = grid_.next[c][a], down = below_[c][a];
-            if (up != no_index) sum += edge_cost(3 * c + a, side, side_[up]);
-            if (down != no_index) sum += edge_cost(3 * down + a, side_[down], side);
-        }
-        return sum;
+    /// Calls f(neighbour) for those of a grid point that have a side.
+    template <class F>
+    void for_each_neighbor(Index c, F&& f) const {
+        for (unsigned a = 0; a < 3; ++a)
+            for (const Index n : {grid_.next[c][a], below_[c][a]})
+                if (is_known(n)) f(n);
     }
 
-    /// The grid points with an edge whose crossings contradict the sides of its ends, and their neighbours.
+    /// The grid points whose sides are in doubt: those at the ends of a contradicted edge, and those around.
     std::vector<Index> doubtful() const {
-        const auto add_doubtful = [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
-            for (auto c = static_cast<Index>(begin); c < end; ++c) {
-                if (side_[c] == unknown || grid_point_cost(c, side_[c]) == 0) continue;
-                found.push_back(c);
-                for (unsigned a = 0; a < 3; ++a)
-                    for (Index n : {grid_.next[c][a], below_[c][a]})
-                        if (n != no_index && side_[n] != unknown) found.push_back(n);
+        const auto add = [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
+            for (Index edge = static_cast<Index>(3 * begin); edge < 3 * end; ++edge) {
+                if (!is_contradicted(edge)) continue;
+                found.push_back(edge / 3);
+                found.push_back(grid_.next[edge / 3][edge % 3]);
             }
         };
-        std::vector<Index> grid_points = collected<Index>(grid_.size(), chunks::usual, add_doubtful);
-        sort_unique(grid_points);
-        return grid_points;
+        std::vector<Index> found = collected<Index>(grid_.size(), chunks::usual, add);
+        sort_unique(found);
+        for (int ring = 0; ring < signs::rings; ++ring) {
+            for (std::size_t i = 0, n = found.size(); i < n; ++i)
+                for_each_neighbor(found[i], [&](Index c) { found.push_back(c); });
+            sort_unique(found);
+        }
+        return found;
     }
 
-    /// Doubtful grid points change sides while that lowers the cost of their edges. Grid points of one colour
-    /// of a chessboard share no edge, so they can change in any order.
-    void flip_doubtful() {
-        const std::vector<Index> grid_points = doubtful();
-        std::vector<std::uint8_t> changed = large_vector<std::uint8_t>(grid_points.size());
-        for (int round = 0; round < signs::settle_rounds; ++round) {
-            std::fill(changed.begin(), changed.end(), 0);
-            for (int colour : {0, 1})
-                for_each_index(grid_points.size(), 512, [&](Index k) {
-                    const Index c = grid_points[k];
-                    const VoxelCoord v = grid_.coord(c);
-                    if (((v[0] + v[1] + v[2]) & 1) != colour) return;
-                    const Side other = 1 - side_[c];
-                    const double gain = (other == outside ? 1 : -1) * belief_[c];
-                    if (grid_point_cost(c, other) + 1e-9 >= grid_point_cost(c, side_[c]) + gain) return;
-                    side_[c] = other;
-                    changed[k] = 1;
-                });
-            if (std::find(changed.begin(), changed.end(), 1) == changed.end()) break;
+    /// Adds what an edge costs, by the sides of those of its ends that `number` says are in doubt.
+    void add_edge(Index edge, const std::vector<Index>& number, LabelCosts& costs) const {
+        const Index c = edge / 3, up = grid_.next[c][edge % 3];
+        if (!is_known(c) || !is_known(up)) return;
+        const Index low = number[c], high = number[up];
+        const double invention = is_at_end(edge) ? signs::cost_of_border : signs::cost_of_invention;
+        const auto cost = [&](Side a, Side b) { return choice_.cost(edge, a, b, invention); };
+        if (low == no_index && high != no_index)
+            costs.add(high, cost(side_[c], inside), cost(side_[c], outside));
+        else if (high == no_index)
+            costs.add(low, cost(inside, side_[up]), cost(outside, side_[up]));
+        else
+            costs.add(low, high,
+                      {{{cost(inside, inside), cost(inside, outside)},
+                        {cost(outside, inside), cost(outside, outside)}}});
+    }
+
+    /// The doubtful grid points get the sides that all together cost least, given those around. An edge's
+    /// costs are submodular: each crossing's are, and so is the least sum over what lies between two of them.
+    void settle_doubtful() {
+        const std::vector<Index> points = doubtful();
+        std::vector<Index> number;
+        assign_large(number, grid_.size(), no_index);
+        for (std::size_t i = 0; i < points.size(); ++i) number[points[i]] = static_cast<Index>(i);
+        LabelCosts costs(points.size());
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const Index c = points[i];
+            costs.add(static_cast<Index>(i), 0, -belief_[c] + (side_[c] == outside ? -tie : tie));
+            for (unsigned a = 0; a < 3; ++a) {
+                add_edge(3 * c + a, number, costs);
+                const Index down = below_[c][a];
+                if (down != no_index && number[down] == no_index) add_edge(3 * down + a, number, costs);
+            }
         }
+        const std::vector<std::uint8_t> sides = cheapest_labels(costs);
+        for (std::size_t i = 0; i < points.size(); ++i) side_[points[i]] = sides[i];
     }
 
     /// Appends the crossings chosen for an edge; `changes` counts those that differ from the standing ones.
