@@ -99,13 +99,16 @@ int bench::scans(int argc, char** argv) {
     std::size_t points = 60000;
     std::uint64_t seeds = 2;
     bool verbose = false, sensors = false;
+    std::string only;
     app.add_option("--points", points, "rays of a scan");
     app.add_option("--seeds", seeds, "scans of each part");
+    app.add_option("--fault", only, "the faults whose names hold this");
     app.add_flag("--sensors", sensors, "with the scanner's positions");
     app.add_flag("--verbose", verbose, "says what fails");
     CLI11_PARSE(app, argc, argv);
     std::printf("| fault | strength | right | intersecting | mean distance |\n|---|---|---|---|---|\n");
-    for (const ScanFault& fault : scan_faults)
+    for (const ScanFault& fault : scan_faults) {
+        if (std::string(fault.name).find(only) == std::string::npos) continue;
         for (const double strength : fault.strengths) {
             int right = 0, all = 0, made_any = 0, intersecting = 0;
             double off = 0;
@@ -129,5 +132,6 @@ int bench::scans(int argc, char** argv) {
                         intersecting, off / std::max(made_any, 1));
             std::fflush(stdout);
         }
+    }
     return 0;
 }

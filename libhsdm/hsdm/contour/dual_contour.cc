@@ -283,7 +283,8 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
         LocalSheets local = group_local_sheets(dual.grid, sets, related, h);
         extend_grid_points(dual.grid, local, level);
         return label_grid_signs(dual.grid, local, sets,
-                                find_crossings(dual.grid, local, sets, related, h, options.crossing), h);
+                                find_crossings(dual.grid, local, sets, related, h, options.crossing), h,
+                                options.all_round);
     }();
     const auto pair = [&] { dual.links = pair_crossings(dual.grid, dual.crossings, sets, related); };
     pair();

@@ -84,7 +84,7 @@ private:
 class SignLabelling {
 public:
     SignLabelling(const GridPoints& grid, const LocalSheets& sheets, const NormalSets& sets,
-                  const CrossingCandidates& candidates, double voxel_size)
+                  const CrossingCandidates& candidates, double voxel_size, bool all_round)
         : grid_(grid),
           sheets_(sheets),
           sets_(sets),
@@ -92,6 +92,7 @@ public:
           standing_(candidates.standing),
           choice_(candidates),
           h_(voxel_size),
+          cost_of_border_(all_round ? signs::cost_of_invention : signs::cost_of_border),
           side_(grid.size(), unknown),
           belief_(grid.size(), 0),
           below_(grid_points_below(grid)) {}
@@ -207,7 +208,7 @@ private:
         const Index c = edge / 3, up = grid_.next[c][edge % 3];
         if (!is_known(c) || !is_known(up)) return;
         const Index low = number[c], high = number[up];
-        const double invention = is_at_end(edge) ? signs::cost_of_border : signs::cost_of_invention;
+        const double invention = is_at_end(edge) ? cost_of_border_ : signs::cost_of_invention;
         const auto cost = [&](Side a, Side b) { return choice_.cost(edge, a, b, invention); };
         if (low == no_index && high != no_index)
             costs.add(high, cost(side_[c], inside), cost(side_[c], outside));
@@ -319,7 +320,7 @@ private:
     const Crossings& list_;
     const std::vector<std::uint8_t>& standing_;
     EdgeChoice choice_;
-    double h_;
+    double h_, cost_of_border_;
     std::vector<Side> side_;
     std::vector<double> belief_;
     std::vector<std::array<Index, 3>> below_;
@@ -328,8 +329,8 @@ private:
 } // namespace
 
 Crossings label_grid_signs(const GridPoints& grid, const LocalSheets& sheets, const NormalSets& sets,
-                           const CrossingCandidates& candidates, double voxel_size) {
-    return SignLabelling(grid, sheets, sets, candidates, voxel_size).run();
+                           const CrossingCandidates& candidates, double voxel_size, bool all_round) {
+    return SignLabelling(grid, sheets, sets, candidates, voxel_size, all_round).run();
 }
 
 } // namespace hsdm

@@ -12,6 +12,6 @@ namespace hsdm {
 /// solid as enter it, and no side is left open between grid points whose sides are known. O(grid points),
 /// parallel.
 Crossings label_grid_signs(const GridPoints& grid, const LocalSheets& sheets, const NormalSets& sets,
-                           const CrossingCandidates& candidates, double voxel_size);
+                           const CrossingCandidates& candidates, double voxel_size, bool all_round = false);
 
 } // namespace hsdm
