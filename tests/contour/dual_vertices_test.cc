@@ -143,9 +143,15 @@ TEST_CASE("three vertices and more of one closed chain have a cap, which runs ag
         const auto& cut = stages.duals.after_cut;
         const auto is_after_cut = [&](Index v) { return std::binary_search(cut.begin(), cut.end(), v); };
         for (const std::vector<Index>& cap : stages.duals.caps) {
-            wrong += cap.size() < 3 || !is_after_cut(cap.front()) || is_after_cut(cap.back());
-            for (std::size_t i = 0; i < cap.size(); ++i)
-                wrong += stages.duals.open[cap[i]] || (i > 0 && cap[i] + 1 != cap[i - 1]);
+            // From the chain's first vertex on up, or down from its last, as the chain was cut against the
+            // facets or with them.
+            const auto last = cap[0] + static_cast<Index>(cap.size()) - 1;
+            const bool up = cap[1] == cap[0] + 1;
+            wrong +=
+                cap.size() < 3 || is_after_cut(cap[0]) || stages.duals.open[cap[0]] || is_after_cut(last + 1);
+            for (Index i = 1; i < cap.size(); ++i)
+                wrong += stages.duals.open[cap[i]] || !is_after_cut(cap[i])
+                         || cap[i] != (up ? cap[0] + i : last + 1 - i);
         }
     }
     CHECK(caps > 0);

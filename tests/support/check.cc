@@ -1,6 +1,8 @@
 #include "support/check.hh"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace hsdm::support {
 
@@ -25,6 +27,29 @@ double farthest_vertex(const PolygonMesh& mesh, const Solid& solid) {
     double farthest = 0;
     for (const Vec3& p : mesh.positions) farthest = std::max(farthest, std::abs(solid.distance(p)));
     return farthest;
+}
+
+std::string difference_of_turned(const PolygonMesh& one, const PolygonMesh& other) {
+    if (one.vertex_count() != other.vertex_count() || one.facet_count() != other.facet_count())
+        return std::to_string(one.vertex_count()) + " vertices and " + std::to_string(one.facet_count())
+               + " facets, not " + std::to_string(other.vertex_count()) + " and "
+               + std::to_string(other.facet_count());
+    Box box;
+    for (const Vec3& p : one.positions) box.add(p);
+    for (std::size_t v = 0; v < one.vertex_count(); ++v)
+        if ((one.positions[v] - other.positions[v]).norm() > 1e-9 * box.extent())
+            return "vertex " + std::to_string(v) + " lies elsewhere";
+    const auto facets = [](const PolygonMesh& mesh) {
+        std::vector<std::vector<Index>> all;
+        for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+            all.emplace_back(mesh.facet(f).begin(), mesh.facet(f).end());
+            std::ranges::sort(all.back());
+        }
+        std::ranges::sort(all);
+        return all;
+    };
+    if (facets(one) != facets(other)) return "facets have other vertices";
+    return "";
 }
 
 } // namespace hsdm::support

@@ -96,14 +96,9 @@ public:
         for (const FacetSide side : corners_of_facet(x)) {
             const auto& [twin, rim] = dual_.links.of(side);
             if (!rim || side > twin) continue;
-            auto [from, to] = dual_.duals.ends(side);
-            auto [twin_from, twin_to] = dual_.duals.ends(twin);
+            const auto [from, to] = dual_.duals.ends(side);
+            const auto [twin_from, twin_to] = dual_.duals.ends(twin);
             if (from == twin_from && to == twin_to) continue; // not cut: an ordinary edge
-            // The half-edge of x's facet runs along the side if x leaves; the strip runs the other way.
-            if (dual_.crossings.crossings[x].leaving == side.ascends()) {
-                std::swap(from, to);
-                std::swap(twin_from, twin_to);
-            }
             polygon_.clear();
             add(from);
             add(midpoints_.mid(side));
@@ -111,6 +106,8 @@ public:
             if (twin_to != to) add(twin_to);
             add(midpoints_.mid(twin));
             if (twin_from != from) add(twin_from);
+            // The half-edge of x's facet runs along the side if x leaves; the strip runs the other way.
+            if (dual_.crossings.crossings[x].leaving == side.ascends()) turn();
             mesh_.add_facet(polygon_);
         }
     }
@@ -119,6 +116,9 @@ private:
     void add(Index vertex) {
         if (vertex != no_index) polygon_.push_back(vertex);
     }
+
+    /// The other way round from the same corner: turned normals leave a facet's triangles as they are.
+    void turn() { std::reverse(polygon_.begin() + 1, polygon_.end()); }
 
     Vec3 triangle_normal(Index a, Index b, Index c) const {
         const auto& p = vertices_.positions;
@@ -138,7 +138,7 @@ private:
             if (after != before) add(after);
             add(midpoints_.mid(corner));
         }
-        if (!dual_.crossings.crossings[x].leaving) std::reverse(polygon_.begin(), polygon_.end());
+        if (!dual_.crossings.crossings[x].leaving) turn();
     }
 
     /// Where a crease runs along a quad's diagonal, the quad is cut there: the paper's refinement triangles.

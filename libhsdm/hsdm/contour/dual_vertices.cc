@@ -22,12 +22,13 @@ public:
 
     std::vector<FacetCorner> corners;
     bool closed = false;
+    bool turned = false; // do the corners run against the facets?
 
     /// Collects the chain through a corner in the direction in which facets run round the vertex: each
     /// facet's half-edge to the vertex lies across the face by which the chain enters the corner.
     void walk(FacetCorner start) {
         corners.clear();
-        closed = false;
+        closed = turned = false;
         const FacetSide exit = side_after(crossings_, start);
         forward(start, exit);
         if (closed) return;
@@ -37,6 +38,20 @@ public:
         forward(start, start.other_side(exit));
         std::reverse(corners.begin(), corners.end());
         corners.insert(corners.end(), tail.begin() + 1, tail.end());
+    }
+
+    /// Lets the corners run from the lower end, or from the same corner to the lower of the two beside it, as
+    /// they do if all normals are turned as well.
+    void turn_by_number() {
+        const std::size_t fixed = closed ? 1 : 0;
+        if (corners.size() <= fixed || corners[fixed] <= corners.back()) return;
+        std::reverse(corners.begin() + static_cast<std::ptrdiff_t>(fixed), corners.end());
+        turned = true;
+    }
+    /// The side of the i-th corner by which the next one follows.
+    FacetSide way_on(std::size_t i) const {
+        const FacetSide after = side_after(crossings_, corners[i]);
+        return turned ? corners[i].other_side(after) : after;
     }
 
 private:
@@ -138,7 +153,7 @@ private:
         const std::size_t n = chain.corners.size();
         const FacetCorner a = chain.corners[i], b = chain.corners[(i + steps) % n];
         if (steps == 1) {
-            const bool rim = links_.of(side_after(crossings_, a)).rim;
+            const bool rim = links_.of(chain.way_on(i)).rim;
             return rim && !meet_nearby(a, b) ? 2 * i + 1 : none;
         }
         if (!opposed(of(a), of(b)) || meet_nearby(a, b)) return none;
@@ -197,19 +212,27 @@ struct ChunkDualVertices {
     std::vector<FacetCorner> corners;
     std::vector<Index> sizes;
     std::vector<std::uint8_t> shared, open;
-    std::vector<std::pair<std::size_t, std::size_t>> caps; // first dual vertex, number of dual vertices
+    struct Cap {
+        std::size_t first, count; // dual vertices
+        bool turned;
+    };
+    std::vector<Cap> caps;
     std::vector<std::size_t> after_cut;
 
-    void add(const Cut& cut_chain, bool closed) {
+    /// Dual vertices are numbered along the chain as it was cut; the corners of each run as facets do.
+    void add(const Cut& cut_chain, bool closed, bool turned) {
         const std::size_t pieces = cut_chain.pieces.size();
         for (std::size_t i = 1; i < pieces; ++i) after_cut.push_back(sizes.size() + i);
-        if (pieces > 2 && closed) caps.emplace_back(sizes.size(), pieces);
+        if (pieces > 2 && closed) caps.push_back({sizes.size(), pieces, turned});
         for (const Cut::Piece& piece : cut_chain.pieces) {
+            const std::size_t size = corners.size();
             corners.insert(corners.end(),
                            cut_chain.corners.begin() + static_cast<std::ptrdiff_t>(piece.first),
                            cut_chain.corners.begin() + static_cast<std::ptrdiff_t>(piece.end));
+            if (turned) std::reverse(corners.begin() + static_cast<std::ptrdiff_t>(size), corners.end());
             sizes.push_back(static_cast<Index>(piece.end - piece.first));
-            shared.push_back(piece.shared);
+            const unsigned swapped = piece.shared >> 1 | (piece.shared & 1u) << 1;
+            shared.push_back(turned ? static_cast<std::uint8_t>(swapped) : piece.shared);
             open.push_back(!closed);
         }
     }
@@ -221,11 +244,13 @@ void append(const ChunkDualVertices& chunk, DualVertices& duals) {
     duals.open.insert(duals.open.end(), chunk.open.begin(), chunk.open.end());
     for (Index size : chunk.sizes) duals.first.push_back(duals.first.back() + size);
     for (std::size_t dual : chunk.after_cut) duals.after_cut.push_back(base + static_cast<Index>(dual));
-    for (const auto& [first, count] : chunk.caps) {
-        std::vector<Index>
-            cap; // facets at the cuts run from each dual vertex to the next, so the cap runs backwards
-        for (std::size_t i = count; i-- > 0;) cap.push_back(base + static_cast<Index>(first + i));
-        duals.caps.push_back(std::move(cap));
+    for (const ChunkDualVertices::Cap& cap : chunk.caps) {
+        std::vector<Index> vertices;
+        for (std::size_t i = 0; i < cap.count; ++i)
+            vertices.push_back(base + static_cast<Index>(cap.first + i));
+        // Facets at the cuts run from each dual vertex to the next, the cap against them.
+        if (!cap.turned) std::reverse(vertices.begin() + 1, vertices.end());
+        duals.caps.push_back(std::move(vertices));
     }
 }
 
@@ -264,8 +289,9 @@ DualVertices build_dual_vertices(const GridPoints& grid, const Crossings& crossi
             for (const FacetCorner corner : corners_of_facet(x)) {
                 chain.walk(corner);
                 if (std::ranges::min(chain.corners) != corner) continue; // another corner's chain
+                chain.turn_by_number();
                 cutter.cut(chain, cut);
-                chunks[c].add(cut, chain.closed);
+                chunks[c].add(cut, chain.closed, chain.turned);
             }
     });
     std::size_t corners = 0, vertices = 0;

@@ -35,6 +35,13 @@ struct DualVertices {
     std::span<const FacetCorner> corners_of(Index v) const {
         return {corners.data() + first[v], corners.data() + first[v + 1]};
     }
+    /// Calls f(corner) for those of a vertex one way round, which is the same if all normals are turned.
+    template <class F>
+    void for_each_corner(Index v, F&& f) const {
+        const std::span<const FacetCorner> all = corners_of(v);
+        const bool forward = all.front() >= all.back();
+        for (std::size_t i = 0; i < all.size(); ++i) f(all[forward ? i : all.size() - 1 - i]);
+    }
 };
 
 /// The voxel of a facet corner, one of the four round its grid edge.

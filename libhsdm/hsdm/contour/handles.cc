@@ -103,13 +103,15 @@ private:
         place_[root] = 0;
         for (Index i = 0; i < nodes_.size() && nodes_[i].depth < handles::reach; ++i) {
             const Node node = nodes_[i];
-            for_each_side_out(node.vertex, [&](Index c) {
-                const Index w = end(c);
-                if (place_[w] != no_index) return;
+            beside_.clear();
+            for_each_side_out(node.vertex, [&](Index c) { beside_.push_back(end(c)); });
+            std::ranges::sort(beside_); // the way round a vertex turns with the normals
+            for (const Index w : beside_) {
+                if (place_[w] != no_index) continue;
                 place_[w] = static_cast<Index>(nodes_.size());
                 nodes_.push_back({w, i, node.depth + 1,
                                   node.length + (mesh_.positions[w] - mesh_.positions[node.vertex]).norm()});
-            });
+            }
         }
         for (const Node& node : nodes_)
             for_each_side_out(node.vertex, [&](Index c) {
@@ -183,7 +185,7 @@ private:
     std::vector<Index> facets_;
     std::vector<Edge> edges_;
     std::vector<Index> joined_;
-    std::vector<Index> ring_;
+    std::vector<Index> ring_, beside_;
 };
 
 /// Do the measured points nearest to a facet face its way? Completed ones are guesses, by what the facets did

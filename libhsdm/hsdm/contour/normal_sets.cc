@@ -180,7 +180,11 @@ private:
             if (cut == 0) return;
             const auto added = static_cast<std::uint8_t>(modes_.size());
             modes_.push_back(modes_[k]);
-            for (std::size_t i = cut; i < offsets_.size(); ++i) label_[offsets_[i].second - begin_] = added;
+            // The first point's part keeps its label, whichever way normals point.
+            const auto first = std::ranges::min_element(offsets_, {}, &std::pair<double, Index>::second);
+            const bool above = first - offsets_.begin() < static_cast<std::ptrdiff_t>(cut);
+            for (std::size_t i = above ? cut : 0; i < (above ? offsets_.size() : cut); ++i)
+                label_[offsets_[i].second - begin_] = added;
             split_parallel_sheets(added);
         }
     }

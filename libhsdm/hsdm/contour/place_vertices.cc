@@ -158,7 +158,9 @@ public:
 
     void place(Index dual, PlacedVertices& result) {
         gather(dual);
-        const Index nearest = sets_.sets[mesh_.crossings.of(mesh_.duals.corners_of(dual)[0]).set].voxel;
+        const auto corners = mesh_.duals.corners_of(dual);
+        const FacetCorner first = std::min(corners.front(), corners.back());
+        const Index nearest = sets_.sets[mesh_.crossings.of(first).set].voxel;
         result.voxel[dual] = voxel_ != no_index ? voxel_ : nearest;
         SheetNormals faces = by_crease_ ? faces_that_meet() : SheetNormals(problem_.planes);
         Solution solution = least_squares(problem_, faces.count);
@@ -215,12 +217,12 @@ private:
         voxel_ = at.voxel;
         for (unsigned k = 0; k < 3; ++k) problem_.lo[k] = at.coord[k] * mesh_.voxel_size;
         problem_.mean = Vec3(0, 0, 0);
-        for (FacetCorner corner : corners) {
+        mesh_.duals.for_each_corner(dual, [&](FacetCorner corner) {
             const Vec3 p = mesh_.crossing_position_of(corner);
             problem_.planes.push_back({mesh_.crossings.of(corner).normal, p, 1});
             by_crease_ |= mesh_.crossings.of(corner).by_crease;
             problem_.mean += p;
-        }
+        });
         problem_.mean /= static_cast<double>(corners.size());
         if (voxel_ != no_index) add_own_sets(corners);
     }

@@ -27,11 +27,11 @@ struct Foot {
 /// Appends the triangles round a vertex, two of each facet.
 void list_triangles(Index dual, const DualVertices& duals, const std::vector<Vec3>& at,
                     std::vector<Around>& around) {
-    for (FacetCorner corner : duals.corners_of(dual)) {
+    duals.for_each_corner(dual, [&](FacetCorner corner) {
         const Index opposite = duals.from(corner.opposite());
         around.emplace_back(at, dual, duals.to(corner), opposite);
         around.emplace_back(at, dual, opposite, duals.from(corner.previous()));
-    }
+    });
 }
 
 /// The foot of p: the nearest perpendicular foot inside a triangle (the first found if the facets are about
@@ -143,12 +143,13 @@ std::vector<double> PointFit::rises(const std::vector<Heights>& heights) const {
     std::vector<double> rises = large_vector<double>(duals_.size(), 0);
     for_each_index(duals_.size(), 2 * chunks::heavy, [&](Index v) {
         Moments sum{0, 0};
-        for (FacetCorner corner : duals_.corners_of(v))
+        duals_.for_each_corner(v, [&](FacetCorner corner) {
             for (const FacetCorner beside : corners_of_facet(corner.crossing())) {
                 const Moments& other = of_mean[duals_.from(beside)];
                 sum.square += other.square;
                 sum.variance += other.variance;
             }
+        });
         if (sum.square > relaxation::doubt * sum.variance)
             rises[v] = heights[v].mean() * (1 - relaxation::doubt * sum.variance / sum.square);
     });

@@ -94,10 +94,10 @@ private:
                 if (known == last) *last++ = {n, 0};
                 ++known->sides;
             };
-            for (FacetCorner corner : duals_.corners_of(v)) {
+            duals_.for_each_corner(v, [&](FacetCorner corner) {
                 add(duals_.to(corner));
                 add(duals_.from(corner.previous()));
-            }
+            });
             neighbour_count_[v] = static_cast<Index>(last - first);
         });
     }
