@@ -135,7 +135,7 @@ TEST_CASE("a corner that two vertices share has one of them beside either face",
     CHECK(wrong == 0);
 }
 
-TEST_CASE("three vertices and more of one closed chain have a cap, which runs against them", "[contour]") {
+TEST_CASE("three vertices and more of one closed chain have a cap", "[contour]") {
     std::size_t caps = 0, wrong = 0;
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
         const Stages stages(support::random_cloud(200, seed), 2);
@@ -145,10 +145,10 @@ TEST_CASE("three vertices and more of one closed chain have a cap, which runs ag
         for (const std::vector<Index>& cap : stages.duals.caps) {
             // From the chain's first vertex on up, or down from its last, as the chain was cut against the
             // facets or with them.
+            REQUIRE(cap.size() >= 3);
             const auto last = cap[0] + static_cast<Index>(cap.size()) - 1;
             const bool up = cap[1] == cap[0] + 1;
-            wrong +=
-                cap.size() < 3 || is_after_cut(cap[0]) || stages.duals.open[cap[0]] || is_after_cut(last + 1);
+            wrong += is_after_cut(cap[0]) || stages.duals.open[cap[0]] || is_after_cut(last + 1);
             for (Index i = 1; i < cap.size(); ++i)
                 wrong += stages.duals.open[cap[i]] || !is_after_cut(cap[i])
                          || cap[i] != (up ? cap[0] + i : last + 1 - i);

@@ -238,7 +238,7 @@ HSDM_TUNED double cost_of_return = 0.6;
 HSDM_TUNED double cost_of_invention = 1.6;
 
 /// crossings: cost of one where the grid ends beside the edge, so that a side stays open.
-/// Why: half of one within the grid; dear, the surface is closed at the ends of slots or taken away there.
+/// Why: by trial; dearer, surfaces get closed at the ends of slots, or taken away there.
 HSDM_TUNED double cost_of_border = 0.8;
 
 /// crossings: cost of a side against all sheets around a grid point.
@@ -251,7 +251,7 @@ HSDM_TUNED int vote_rounds = 3;
 
 /// grid points: so far around contradictions sides are in doubt.
 /// Why: with six instead of two the same sides come out, on scans with noise as well.
-HSDM_TUNED int rings = 2;
+inline constexpr int rings = 2;
 
 /// voxels: an invented crossing stays this far from the ends of its edge.
 /// Why: by trial; off the grid points by enough that facets there keep an area.

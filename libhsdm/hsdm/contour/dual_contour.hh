@@ -19,8 +19,9 @@ struct DualContourOptions {
     SplinterOptions splinters{.flat = splinters::flat};
     FillHolesOptions holes{.max_edges = holes::most_edges, .max_diameter = holes::widest};
     UntangleOptions untangle{.reach = untangling::reach, .nearby = untangling::nearby};
-    bool fill = true;       ///< close small boundary loops
-    bool all_round = false; ///< the data go round the whole solid: it has no border (trim_unsupported)
+    bool fill = true; ///< close small boundary loops
+    bool all_round =
+        false; ///< the data go round the whole solid: it has no border (label_grid_signs, trim_unsupported)
 };
 
 struct DualContour {

@@ -16,7 +16,7 @@ namespace {
 constexpr double impossible = 1e30;
 
 // Of two sides that cost the same a grid point keeps the one it had.
-constexpr double tie = 1e-3;
+constexpr double tie = 1e-5;
 
 using Side = std::uint8_t;
 constexpr Side inside = 0, outside = 1, unknown = 2; // the labels of cheapest_labels
@@ -36,7 +36,7 @@ public:
     double cost_of_leaving(Index x) const { return standing_[x] ? weight(x) : 0; }
     Side side_before(Index x) const { return list_.crossings[x].leaving ? inside : outside; }
 
-    double cost(Index edge, Side low, Side high, double invention = signs::cost_of_invention) const {
+    double cost(Index edge, Side low, Side high, double invention) const {
         std::array<double, 2> after = at_upper_end(high, invention);
         for (Index x = list_.first[edge + 1]; x-- > list_.first[edge];) after = before(x, after);
         return after[low];
@@ -44,11 +44,11 @@ public:
 
     /// Calls take(x, taken) for every crossing, lowest first; returns the side beyond the last.
     template <class Take>
-    Side choose(Index edge, Side low, Side high, Take&& take) const {
+    Side choose(Index edge, Side low, Side high, double invention, Take&& take) const {
         const Index begin = list_.first[edge];
         const std::size_t n = list_.first[edge + 1] - begin;
         std::array<std::array<double, 2>, most + 1> after;
-        after[n] = at_upper_end(high, signs::cost_of_invention);
+        after[n] = at_upper_end(high, invention);
         for (std::size_t k = n; k-- > 0;) after[k] = before(begin + static_cast<Index>(k), after[k + 1]);
         Side side = low;
         for (std::size_t k = 0; k < n; ++k) {
@@ -168,12 +168,17 @@ private:
         return sheets_.members_at(lower).empty() && sheets_.members_at(upper).empty();
     }
 
+    double cost_of_invention(Index edge) const {
+        return is_at_end(edge) ? cost_of_border_ : signs::cost_of_invention;
+    }
+
     bool is_known(Index c) const { return c != no_index && side_[c] != unknown; }
 
     /// Does an edge whose ends have sides contradict them?
     bool is_contradicted(Index edge) const {
         const Index c = edge / 3, up = grid_.next[c][edge % 3];
-        return is_known(c) && is_known(up) && choice_.cost(edge, side_[c], side_[up]) > 0;
+        return is_known(c) && is_known(up)
+               && choice_.cost(edge, side_[c], side_[up], signs::cost_of_invention) > 0;
     }
 
     /// Calls f(neighbour) for those of a grid point that have a side.
@@ -208,7 +213,7 @@ private:
         const Index c = edge / 3, up = grid_.next[c][edge % 3];
         if (!is_known(c) || !is_known(up)) return;
         const Index low = number[c], high = number[up];
-        const double invention = is_at_end(edge) ? cost_of_border_ : signs::cost_of_invention;
+        const double invention = cost_of_invention(edge);
         const auto cost = [&](Side a, Side b) { return choice_.cost(edge, a, b, invention); };
         if (low == no_index && high != no_index)
             costs.add(high, cost(side_[c], inside), cost(side_[c], outside));
@@ -251,7 +256,8 @@ private:
                 if (standing_[x]) out.push_back(list_.crossings[x]);
             return;
         }
-        const Side reached = choice_.choose(edge, low, high, [&](Index x, bool taken) {
+        const double invention = begin == end ? 0 : cost_of_invention(edge);
+        const Side reached = choice_.choose(edge, low, high, invention, [&](Index x, bool taken) {
             if (taken) out.push_back(list_.crossings[x]);
             changes += taken != (standing_[x] != 0);
         });

@@ -9,8 +9,9 @@ namespace hsdm {
 /// Chooses a side for every grid point near the surface and, on every edge, crossings that lead from the side
 /// of its lower end to that of its upper end by turns. Where the standing ones do not, the cheapest change is
 /// made: some are dropped, others restored or invented. So round each grid face as many crossings leave the
-/// solid as enter it, and no side is left open between grid points whose sides are known. O(grid points),
-/// parallel.
+/// solid as enter it, and no side is left open but where the grid ends. With
+/// `all_round` the data are known to go round the whole solid: a border costs as much as what would close it.
+/// O(grid points), parallel.
 Crossings label_grid_signs(const GridPoints& grid, const LocalSheets& sheets, const NormalSets& sets,
                            const CrossingCandidates& candidates, double voxel_size, bool all_round = false);
 

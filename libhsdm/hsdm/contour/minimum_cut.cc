@@ -1,5 +1,6 @@
 #include "hsdm/contour/minimum_cut.hh"
 
+#include "hsdm/core/chunks.hh"
 #include "hsdm/core/disjoint_sets.hh"
 #include "hsdm/core/groups.hh"
 
@@ -8,11 +9,14 @@
 
 #include <cassert>
 #include <cmath>
+#include <span>
 
 namespace hsdm {
 namespace {
 
-/// Whole numbers, in which sums do not depend on their order.
+constexpr std::size_t few = 16; // components of a task: most have a few dozen things, some have thousands
+
+/// Whole numbers, in which flows do not depend on the order of their sums.
 std::int64_t whole(double cost) {
     return std::llround(cost * (1 << 20));
 }
@@ -97,7 +101,7 @@ std::vector<std::uint8_t> cheapest_labels(const LabelCosts& costs) {
     const Groups pairs(of_pairs, count);
     std::vector<Index> place(costs.size()); // among the things of its component
     std::vector<std::uint8_t> labels(costs.size());
-    for_chunks(count, chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for_chunks(count, few, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t c = begin; c < end; ++c) {
             const std::span<const Index> mine = things.of(c);
             FlowGraph graph(mine.size());

@@ -34,10 +34,10 @@ private:
     std::vector<Pair> pairs_;
 };
 
-/// The labels of least cost, to a millionth of a unit: a minimum cut of the graph of pairs (Boykov,
+/// The labels of least cost, each rounded to a millionth: a minimum cut of the graph of pairs (Boykov,
 /// Kolmogorov, An experimental comparison of min-cut/max-flow algorithms, 2004; Kolmogorov, Zabih, What
 /// energy functions can be minimized via graph cuts, 2004). Of several, the one with the fewest zeros, so the
-/// order of pairs does not count. One task for each component of the graph.
+/// order of pairs does not count. Parallel over components of the graph.
 std::vector<std::uint8_t> cheapest_labels(const LabelCosts& costs);
 
 } // namespace hsdm

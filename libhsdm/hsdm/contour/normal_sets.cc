@@ -182,8 +182,8 @@ private:
             modes_.push_back(modes_[k]);
             // The first point's part keeps its label, whichever way normals point.
             const auto first = std::ranges::min_element(offsets_, {}, &std::pair<double, Index>::second);
-            const bool above = first - offsets_.begin() < static_cast<std::ptrdiff_t>(cut);
-            for (std::size_t i = above ? cut : 0; i < (above ? offsets_.size() : cut); ++i)
+            const bool relabel_above = first - offsets_.begin() < static_cast<std::ptrdiff_t>(cut);
+            for (std::size_t i = relabel_above ? cut : 0; i < (relabel_above ? offsets_.size() : cut); ++i)
                 label_[offsets_[i].second - begin_] = added;
             split_parallel_sheets(added);
         }

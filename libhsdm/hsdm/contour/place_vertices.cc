@@ -27,20 +27,32 @@ struct Problem {
     double size = 0;
 };
 
-/// One normal per sheet that the planes belong to, at most three.
+/// One normal per sheet that the planes belong to, at most three: each that of the plane which the others
+/// left agree with most, so that it lies amid its sheet.
 struct SheetNormals {
     std::array<Vec3, 3> normals;
     int count = 0;
 
     explicit SheetNormals(const std::vector<WeightedPlane>& planes) {
-        for (const WeightedPlane& plane : planes) {
-            const auto end = normals.begin() + count;
-            if (std::any_of(normals.begin(), end,
-                            [&](const Vec3& n) { return (n | plane.normal) > relations::same_sheet_cosine; }))
-                continue;
-            *end = plane.normal;
-            if (++count == 3) break;
+        while (count < 3) {
+            const WeightedPlane* best = nullptr;
+            double most = -1;
+            for (const WeightedPlane& plane : planes) {
+                if (is_covered(plane.normal)) continue;
+                double sum = 0;
+                for (const WeightedPlane& other : planes)
+                    if (!is_covered(other.normal)) sum += std::max(0.0, plane.normal | other.normal);
+                if (sum > most) best = &plane, most = sum;
+            }
+            if (!best) return;
+            normals[static_cast<std::size_t>(count++)] = best->normal;
         }
+    }
+
+private:
+    bool is_covered(const Vec3& normal) const {
+        return std::any_of(normals.begin(), normals.begin() + count,
+                           [&](const Vec3& n) { return (n | normal) > relations::same_sheet_cosine; });
     }
 };
 

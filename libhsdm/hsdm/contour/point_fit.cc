@@ -34,14 +34,13 @@ void list_triangles(Index dual, const DualVertices& duals, const std::vector<Vec
     });
 }
 
-/// The foot of p: the nearest perpendicular foot inside a triangle (the first found if the facets are about
-/// flat), or, if there is none, the nearest point of any triangle.
-Foot find_foot(const Vec3& p, const std::vector<Around>& around, bool flat) {
+/// The foot of p: the nearest perpendicular foot inside a triangle, or, if there is none, the nearest point
+/// of any triangle.
+Foot find_foot(const Vec3& p, const std::vector<Around>& around) {
     Foot best, foot;
     for (const Around& a : around) {
         if (!a.triangle.foot_inside(p, foot.nearest)) continue;
         if (foot.nearest.squared_distance < best.nearest.squared_distance) best = {a.corners, foot.nearest};
-        if (flat) return best;
     }
     if (best.nearest.squared_distance < std::numeric_limits<double>::infinity()) return best;
     for (const Around& a : around) {
@@ -97,7 +96,6 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
         for (std::size_t x = begin; x < end; ++x) {
             if (of_voxel_.of(x).empty()) gather_beside(static_cast<Index>(x), beside);
             const std::span<const Index> near = of_voxel_.of(x).empty() ? beside : of_voxel_.of(x);
-            const bool flat = near.size() == 1 && vertices_.classes[near[0]] == VertexClass::smooth;
             around.clear();
             for (Index dual : near) list_triangles(dual, duals_, positions, around);
             if (around.empty()) continue;
@@ -105,7 +103,7 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
             const std::size_t stride =
                 (last - first + relaxation::points_per_voxel - 1) / relaxation::points_per_voxel;
             for (std::size_t i = first; i < last; i += stride) {
-                const Foot foot = find_foot(octree_.positions[i], around, flat);
+                const Foot foot = find_foot(octree_.positions[i], around);
                 const double distance = std::sqrt(foot.nearest.squared_distance);
                 result.misfit[x] += distance;
                 const Vec3 way = octree_.positions[i] - foot.nearest.point;
