@@ -39,7 +39,7 @@ struct DualVertices {
     template <class F>
     void for_each_corner(Index v, F&& f) const {
         const std::span<const FacetCorner> all = corners_of(v);
-        const bool forward = all.front() >= all.back();
+        const bool forward = all.front() <= all.back();
         for (std::size_t i = 0; i < all.size(); ++i) f(all[forward ? i : all.size() - 1 - i]);
     }
 };

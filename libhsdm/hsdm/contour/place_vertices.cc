@@ -235,6 +235,7 @@ private:
             by_crease_ |= mesh_.crossings.of(corner).by_crease;
             problem_.mean += p;
         });
+        std::ranges::reverse(problem_.planes); // either order would do, and must not turn with the normals
         problem_.mean /= static_cast<double>(corners.size());
         if (voxel_ != no_index) add_own_sets(corners);
     }
