@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <utility>
 
 using namespace hsdm;
@@ -106,9 +107,16 @@ int bench::scans(int argc, char** argv) {
     app.add_flag("--sensors", sensors, "with the scanner's positions");
     app.add_flag("--verbose", verbose, "says what fails");
     CLI11_PARSE(app, argc, argv);
+    const auto is_asked_for = [&](const ScanFault& fault) {
+        return std::string_view(fault.name).find(only) != std::string_view::npos;
+    };
+    if (std::ranges::none_of(scan_faults, is_asked_for)) {
+        std::fprintf(stderr, "scans: no fault is named like '%s'\n", only.c_str());
+        return 2;
+    }
     std::printf("| fault | strength | right | intersecting | mean distance |\n|---|---|---|---|---|\n");
     for (const ScanFault& fault : scan_faults) {
-        if (std::string(fault.name).find(only) == std::string::npos) continue;
+        if (!is_asked_for(fault)) continue;
         for (const double strength : fault.strengths) {
             int right = 0, all = 0, made_any = 0, intersecting = 0;
             double off = 0;

@@ -39,17 +39,20 @@ std::string difference_of_turned(const PolygonMesh& one, const PolygonMesh& othe
     for (std::size_t v = 0; v < one.vertex_count(); ++v)
         if ((one.positions[v] - other.positions[v]).norm() > 1e-9 * box.extent())
             return "vertex " + std::to_string(v) + " lies elsewhere";
-    const auto facets = [](const PolygonMesh& mesh) {
+    // Each from its least vertex on.
+    const auto facets = [](const PolygonMesh& mesh, bool turned) {
         std::vector<std::vector<Index>> all;
         for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
             all.emplace_back(mesh.facet(f).begin(), mesh.facet(f).end());
-            std::ranges::sort(all.back());
+            if (turned) std::ranges::reverse(all.back());
+            std::ranges::rotate(all.back(), std::ranges::min_element(all.back()));
         }
         std::ranges::sort(all);
         return all;
     };
-    if (facets(one) != facets(other)) return "facets have other vertices";
-    return "";
+    const auto wanted = facets(one, false);
+    const bool same = facets(other, false) == wanted || facets(other, true) == wanted;
+    return same ? "" : "facets have other vertices, or some are turned over";
 }
 
 } // namespace hsdm::support

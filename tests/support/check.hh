@@ -16,8 +16,8 @@ std::string faults(const PolygonMesh& mesh);
 /// The largest distance of a vertex from the solid's boundary.
 double farthest_vertex(const PolygonMesh& mesh, const Solid& solid);
 
-/// Empty if two meshes are one, up to rounding and to the order and direction of facets, vertex by vertex;
-/// otherwise what differs.
+/// Empty if two meshes are one, vertex by vertex up to rounding, and facet by facet in any order, all turned
+/// over or none; otherwise what differs.
 std::string difference_of_turned(const PolygonMesh& one, const PolygonMesh& other);
 
 } // namespace hsdm::support

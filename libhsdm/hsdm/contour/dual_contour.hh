@@ -20,8 +20,8 @@ struct DualContourOptions {
     FillHolesOptions holes{.max_edges = holes::most_edges, .max_diameter = holes::widest};
     UntangleOptions untangle{.reach = untangling::reach, .nearby = untangling::nearby};
     bool fill = true; ///< close small boundary loops
-    bool all_round =
-        false; ///< the data go round the whole solid: it has no border (label_grid_signs, trim_unsupported)
+    /// the data go round the whole solid: it has no border (label_grid_signs, trim_unsupported)
+    bool all_round = false;
 };
 
 struct DualContour {

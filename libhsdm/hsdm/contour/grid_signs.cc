@@ -142,7 +142,7 @@ private:
 
     /// One round of votes for the grid points still unknown: `carried_only`, by crossings that the data
     /// carry; later also by the sides of neighbours, which tell more farther off, where sheets are only
-    /// continued. Ties stay unknown if `undecided`, else count as outside.
+    /// continued. Ties stay unknown if `undecided`, else count as outside: after the last round none is.
     void vote(bool carried_only, bool undecided = true) {
         std::vector<Side> next = side_;
         for_each_index(grid_.size(), chunks::usual, [&](Index c) {
@@ -172,21 +172,10 @@ private:
         return is_at_end(edge) ? cost_of_border_ : signs::cost_of_invention;
     }
 
-    bool is_known(Index c) const { return c != no_index && side_[c] != unknown; }
-
-    /// Does an edge whose ends have sides contradict them?
+    /// Do the crossings of an edge contradict the sides of its ends?
     bool is_contradicted(Index edge) const {
         const Index c = edge / 3, up = grid_.next[c][edge % 3];
-        return is_known(c) && is_known(up)
-               && choice_.cost(edge, side_[c], side_[up], signs::cost_of_invention) > 0;
-    }
-
-    /// Calls f(neighbour) for those of a grid point that have a side.
-    template <class F>
-    void for_each_neighbor(Index c, F&& f) const {
-        for (unsigned a = 0; a < 3; ++a)
-            for (const Index n : {grid_.next[c][a], below_[c][a]})
-                if (is_known(n)) f(n);
+        return up != no_index && choice_.cost(edge, side_[c], side_[up], signs::cost_of_invention) > 0;
     }
 
     /// The grid points whose sides are in doubt: those at the ends of a contradicted edge, and those around.
@@ -202,7 +191,9 @@ private:
         sort_unique(found);
         for (int ring = 0; ring < signs::rings; ++ring) {
             for (std::size_t i = 0, n = found.size(); i < n; ++i)
-                for_each_neighbor(found[i], [&](Index c) { found.push_back(c); });
+                for (unsigned a = 0; a < 3; ++a)
+                    for (const Index c : {grid_.next[found[i]][a], below_[found[i]][a]})
+                        if (c != no_index) found.push_back(c);
             sort_unique(found);
         }
         return found;
@@ -211,7 +202,7 @@ private:
     /// Adds what an edge costs, by the sides of those of its ends that `number` says are in doubt.
     void add_edge(Index edge, const std::vector<Index>& number, LabelCosts& costs) const {
         const Index c = edge / 3, up = grid_.next[c][edge % 3];
-        if (!is_known(c) || !is_known(up)) return;
+        if (up == no_index) return;
         const Index low = number[c], high = number[up];
         const double invention = cost_of_invention(edge);
         const auto cost = [&](Side a, Side b) { return choice_.cost(edge, a, b, invention); };
@@ -250,13 +241,13 @@ private:
     void choose(Index edge, std::vector<Crossing>& out, std::size_t& changes) const {
         const Index begin = list_.first[edge], end = list_.first[edge + 1];
         const Index upper = grid_.next[edge / 3][edge % 3];
-        const Side low = side_[edge / 3], high = upper == no_index ? unknown : side_[upper];
-        if (low == unknown || high == unknown) {
+        if (upper == no_index) {
             for (Index x = begin; x < end; ++x)
                 if (standing_[x]) out.push_back(list_.crossings[x]);
             return;
         }
-        const double invention = begin == end ? 0 : cost_of_invention(edge);
+        const Side low = side_[edge / 3], high = side_[upper];
+        const double invention = begin == end ? 0 : cost_of_invention(edge); // without any it changes nothing
         const Side reached = choice_.choose(edge, low, high, invention, [&](Index x, bool taken) {
             if (taken) out.push_back(list_.crossings[x]);
             changes += taken != (standing_[x] != 0);
