@@ -45,7 +45,7 @@ std::string difference_of_turned(const PolygonMesh& one, const PolygonMesh& othe
         for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
             all.emplace_back(mesh.facet(f).begin(), mesh.facet(f).end());
             if (turned) std::ranges::reverse(all.back());
-            std::ranges::rotate(all.back(), std::ranges::min_element(all.back()));
+            std::rotate(all.back().begin(), std::ranges::min_element(all.back()), all.back().end());
         }
         std::ranges::sort(all);
         return all;
