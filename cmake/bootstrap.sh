@@ -25,7 +25,7 @@ packages="g++ cmake ninja-build libopenmesh-dev libeigen3-dev libflann-dev libtb
 case $goal in
 demo) packages="$packages f3d xvfb xauth" ;;
 tools) packages="$packages clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 llvm-14 doxygen git
-    python3" ;;
+    python3 lintian zsh fish man-db" ;;
 esac
 
 is_installed() {

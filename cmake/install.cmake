@@ -1,5 +1,5 @@
 # Components of `cmake --install`, each with the licence: runtime (the command), library (a shared libhsdm), development
-# (headers, package files, a static libhsdm), modules, examples.
+# (headers, package files, a static libhsdm), modules, examples; in Debian packages also tools (hsdm_generate, hsdm_bench).
 
 # hsdm_install(TARGET FOLDER COMPONENT): installs a program or a module into FOLDER of the prefix. A shared libhsdm is found
 # from there by a relative path, so the prefix can be moved.
@@ -20,4 +20,13 @@ endfunction()
 # hsdm_install_files(COMPONENT FOLDER FILE...): files as they are, relative to the caller's folder.
 function(hsdm_install_files component folder)
   install(FILES ${ARGN} DESTINATION ${folder} COMPONENT ${component})
+endfunction()
+
+# hsdm_install_tool(TARGET DESCRIPTION): a program of the component tools, with a manual page that shows what its --help does.
+function(hsdm_install_tool target description)
+  hsdm_install(${target} ${CMAKE_INSTALL_BINDIR} tools)
+  set(page ${CMAKE_CURRENT_BINARY_DIR}/${target}.1)
+  add_custom_command(TARGET ${target} POST_BUILD VERBATIM
+    COMMAND sh ${PROJECT_SOURCE_DIR}/cmake/help_page.sh $<TARGET_FILE:${target}> ${description} ${page})
+  install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tools)
 endfunction()

@@ -1,6 +1,7 @@
 #include "command.hh"
 
 #include "activity.hh"
+#include "help_text.hh"
 #include "interrupt.hh"
 #include "messages.hh"
 #include "standard_output.hh"
@@ -55,26 +56,38 @@ int guarded(const Run& run) {
     }
 }
 
+/// The subcommands in the groups that --help shows them in.
+void add_subcommands(CLI::App& app, Run& run) {
+    add_reconstruct(app, run);
+    app.get_subcommand("reconstruct")->group("From points to a mesh");
+    add_info(app, run);
+    add_compare(app, run);
+    for (const char* name : {"info", "compare"}) app.get_subcommand(name)->group("What files hold");
+    add_process(app, run);
+    add_stages(app, run);
+    for (const char* name : {"process", "stages"})
+        app.get_subcommand(name)->group("Stages that meshes go through");
+    add_regress(app, run);
+    app.get_subcommand("regress")->group("Suites");
+    add_manual(app, run);
+}
+
 /// The subcommand's status, or the one that the arguments deserve.
 int parse_and_run(int argc, char** argv) {
-    CLI::App app("hsdm turns scanned point clouds into CAD-ready meshes.", "hsdm");
-    app.set_version_flag("--version", std::string("hsdm ") + version);
+    CLI::App app("scanned points in, CAD-ready meshes out", "hsdm");
+    app.formatter(help_formatter());
+    app.set_help_flag("-h,--help", "print this and end");
+    app.set_version_flag("--version", std::string("hsdm ") + version, "print the version and end");
     app.require_subcommand(1);
-    app.get_formatter()->column_width(34);
-    app.footer("Examples:\n"
+    app.footer("Points come as PLY, PCD, text and more, meshes go out as OFF, STL, PLY, OBJ or .om;\n"
+               "`hsdm SUBCOMMAND --help` tells what a subcommand takes.\n"
+               "Examples:\n"
                "  hsdm reconstruct scan.ply -o part.stl\n"
                "  hsdm reconstruct scan.xyz --depth 6 -o part.off --report part.json\n"
                "  hsdm info part.stl\n"
-               "  hsdm compare part.off scan.ply\n"
-               "Exit status: 0 all done, 1 an input failed, 2 wrong usage,\n             130 cancelled (128 "
-               "+ the signal).");
+               "  hsdm compare part.off scan.ply");
     Run run;
-    add_reconstruct(app, run);
-    add_info(app, run);
-    add_compare(app, run);
-    add_process(app, run);
-    add_stages(app, run);
-    add_regress(app, run);
+    add_subcommands(app, run);
     return guarded([&] {
         if (const auto status = parse_command_line(app, argc, argv)) return *status;
         handle_signals();

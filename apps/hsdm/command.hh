@@ -27,6 +27,7 @@ void add_compare(CLI::App& app, Run& run);
 void add_process(CLI::App& app, Run& run);
 void add_stages(CLI::App& app, Run& run);
 void add_regress(CLI::App& app, Run& run);
+void add_manual(CLI::App& app, Run& run);
 
 /// Parses and runs; every exception becomes a message on standard error and an exit status.
 int run_command(int argc, char** argv);

@@ -85,7 +85,7 @@ void add_compare(CLI::App& app, Run& run) {
     const auto arguments = std::make_shared<Arguments>();
     sub->add_option("a", arguments->a, "a mesh or a cloud; - is standard input")->required();
     sub->add_option("b", arguments->b, "a mesh or a cloud")->required();
-    sub->add_flag("--json", arguments->json, "as JSON");
+    sub->add_flag("--json", arguments->json, "as JSON")->group("Output");
     sub->footer(
         "Distances of a cloud are taken from every point, those of a mesh from points spread over its area\n"
         "and from its vertices. To a mesh they are those to its surface, to a cloud those to its nearest "

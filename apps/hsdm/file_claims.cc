@@ -2,6 +2,7 @@
 
 #include "command.hh"
 
+#include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/output_target.hh"
 
@@ -12,22 +13,15 @@
 #include <tuple>
 #include <utility>
 
-#include <sys/stat.h>
-#include <sys/sysmacros.h>
-#include <unistd.h>
-
 namespace hsdm::command {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool is_null_device(const struct stat& status) {
-    return S_ISCHR(status.st_mode) && status.st_rdev == makedev(1, 3);
-}
+using Kind = os::FileStatus::Kind;
 
 /// What the name stands for, if it is there: "-" for the descriptor `standard`.
-bool status_of(const std::string& path, int standard, struct stat& status) {
-    return path == "-" ? ::fstat(standard, &status) == 0 : ::stat(path.c_str(), &status) == 0;
+bool status_of(const std::string& path, int standard, os::FileStatus& status) {
+    return path == "-" ? os::status_of(standard, status) : os::status_of(path, status);
 }
 
 /// For a file that cannot be told from others.
@@ -38,10 +32,10 @@ bool status_of(const std::string& path, int standard, struct stat& status) {
 } // namespace
 
 void FileClaims::add(Claim claim, const std::string& path, int standard) {
-    struct stat status {};
+    os::FileStatus status;
     if (status_of(path, standard, status)) {
-        if (is_null_device(status)) return;
-        claim.two_way = S_ISCHR(status.st_mode) || S_ISSOCK(status.st_mode);
+        if (status.is_null_device) return;
+        claim.two_way = status.kind == Kind::terminal_or_device || status.kind == Kind::socket;
     } else {
         if (path == "-") return; // closed: reading or writing will say so
         if (errno != ENOENT && errno != ENOTDIR) fail(path, std::strerror(errno));
@@ -51,13 +45,13 @@ void FileClaims::add(Claim claim, const std::string& path, int standard) {
         do {
             below = above.filename() / below;
             above = above.parent_path();
-            if (::stat(above.c_str(), &status) == 0) break;
+            if (os::status_of(above.string(), status)) break;
             if (!above.has_relative_path()) fail(path, std::strerror(errno));
         } while (true);
         claim.below = below.string();
     }
-    claim.device = status.st_dev;
-    claim.inode = status.st_ino;
+    claim.device = status.device;
+    claim.inode = status.inode;
     claim.order = claims_.size();
     claims_.push_back(std::move(claim));
 }
@@ -65,14 +59,14 @@ void FileClaims::add(Claim claim, const std::string& path, int standard) {
 void FileClaims::reads(const std::string& what, const std::string& path) {
     Claim claim;
     claim.words = path == "-" ? "standard input" : what + ' ' + path;
-    add(std::move(claim), path, STDIN_FILENO);
+    add(std::move(claim), path, os::standard_input);
 }
 
 void FileClaims::writes(const std::string& option, const std::string& path) {
     Claim claim;
     claim.writes = true;
     claim.words = path == "-" || option.ends_with(path) ? option : option + " (" + path + ')';
-    add(std::move(claim), path, STDOUT_FILENO);
+    add(std::move(claim), path, os::standard_output);
 }
 
 void FileClaims::check() const {
@@ -98,10 +92,9 @@ void FileClaims::check() const {
 
 bool is_standard_output(const std::string& path) {
     if (path == "-") return true;
-    struct stat named {
-    }, standard{};
-    return !path.empty() && ::stat(path.c_str(), &named) == 0 && ::fstat(STDOUT_FILENO, &standard) == 0
-           && named.st_dev == standard.st_dev && named.st_ino == standard.st_ino && !is_null_device(named);
+    os::FileStatus named, standard;
+    return !path.empty() && os::status_of(path, named) && os::status_of(os::standard_output, standard)
+           && named.device == standard.device && named.inode == standard.inode && !named.is_null_device;
 }
 
 } // namespace hsdm::command

@@ -2,10 +2,9 @@
 // The files that a run reads and writes, known before it starts, so that none of them destroys another.
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
-
-#include <sys/types.h>
 
 namespace hsdm::command {
 
@@ -24,8 +23,8 @@ public:
 
 private:
     struct Claim {
-        dev_t device = 0; ///< of the file, or of the folder above it that is there
-        ino_t inode = 0;
+        std::uint64_t device = 0; ///< of the file, or of the folder above it that is there
+        std::uint64_t inode = 0;
         std::string below; ///< the way from there on
         std::size_t order = 0;
         bool writes = false, two_way = false;

@@ -162,7 +162,7 @@ void add_info(CLI::App& app, Run& run) {
     const auto path = std::make_shared<std::string>();
     const auto json = std::make_shared<bool>(false);
     sub->add_option("file", *path, "a point file or a mesh; - is standard input")->required();
-    sub->add_flag("--json", *json, "as JSON");
+    sub->add_flag("--json", *json, "as JSON")->group("Output");
     sub->footer("Examples:\n  hsdm info scan.ply\n  hsdm info part.stl --json");
     sub->callback([&run, path, json] { run = [path, json] { return show(*path, *json); }; });
 }

@@ -137,17 +137,22 @@ void add_process(CLI::App& app, Run& run) {
     CLI::App* const sub =
         app.add_subcommand("process", "a mesh through stages, built in or loaded at run time");
     const auto a = std::make_shared<ProcessArguments>();
+    sub->option_defaults()->group("Files");
     sub->add_option("mesh", a->input, "OFF, STL, PLY, OBJ or .om");
     sub->add_option("-o,--output", a->output, "the mesh to write; - is standard output")->type_name("FILE");
     sub->add_flag("--in-place", a->in_place, "write the mesh's own file instead");
-    sub->add_option("--format", a->format, "its format, where no extension names it")
+    sub->add_option("--format", a->format, "its format, where no extension names it (default: off)")
         ->check(one_of({"off", "stl", "ply", "obj", "om"}))
         ->type_name("off|stl|ply|obj|om");
     sub->add_flag("--ascii", a->ascii, "text instead of binary STL and PLY");
-    sub->add_option("--stage,--module", a->stages,
-                    "NAME or NAME:key=value,key=value; several run in the order given (hsdm stages)")
+    sub->option_defaults()->group("Stages");
+    sub->add_option(
+           "--stage,--module", a->stages,
+           "NAME or NAME:key=value,key=value; several run in the order given, hsdm stages names them; "
+           "at least one is needed (default: none)")
         ->type_name("STAGE");
     sub->add_flag("--list", a->list, "the stages there are, as hsdm stages");
+    sub->option_defaults()->group("Running");
     sub->add_flag("--quiet", a->quiet, "no summary, errors only");
     sub->footer(
         "Modules are looked for in the folders of HSDM_PLUGIN_PATH, then in that of the installation, and\n"

@@ -2,16 +2,20 @@
 
 #include "messages.hh"
 
+#include "hsdm/core/system.hh"
+
 #include <algorithm>
 #include <cstdio>
-#include <unistd.h>
 
 namespace hsdm::command {
 
 using namespace std::chrono_literals;
 
 ProgressBar::ProgressBar(Progress mode, const std::string& title)
-    : mode_(mode), title_(printable(title)), start_(Clock::now()), terminal_(isatty(STDERR_FILENO) == 1) {}
+    : mode_(mode),
+      title_(printable(title)),
+      start_(Clock::now()),
+      terminal_(os::is_terminal(os::standard_error)) {}
 
 ProgressBar::~ProgressBar() {
     wipe();

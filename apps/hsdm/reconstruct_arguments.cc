@@ -21,10 +21,12 @@ template <class T>
 CLI::Option* add_choice(CLI::App& app, const std::string& name, T& value, const Names<T>& names,
                         const std::string& help) {
     std::string list;
+    std::string fallback;
     std::vector<std::string> known;
     for (const auto& [word, meaning] : names) {
         list += (list.empty() ? "" : "|") + word;
         known.push_back(word);
+        if (meaning == value) fallback = word;
     }
     return app
         .add_option_function<std::string>(
@@ -35,7 +37,8 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, T& value, const 
             },
             help)
         ->check(one_of(known))
-        ->type_name(list);
+        ->type_name(list)
+        ->default_str(fallback);
 }
 
 constexpr int deepest = 16;
@@ -115,7 +118,8 @@ void add_surface_options(CLI::App& app, ReconstructArguments& a, const std::stri
            "PLY and .om get hsdm_confidence, 0 to 1: how much of the surface around a vertex points show")
         ->group(method);
     app.add_option("--trim", a.trim,
-                   "cut off the facets of less confidence, 0 to 1; 0.3 leaves what was measured")
+                   "cut off the facets of less confidence, a share from 0 to 1; 0.3 leaves what was "
+                   "measured (default: none)")
         ->type_name("SHARE")
         ->check(number_between(0, 1, "lie between 0 and 1"))
         ->group(method);
@@ -124,7 +128,7 @@ void add_surface_options(CLI::App& app, ReconstructArguments& a, const std::stri
         ->group(method);
     app.add_option("--min-component", a.min_component,
                    "drop components of fewer facets than SIZE (1% is of the largest one's area; 100% keeps "
-                   "the largest alone); default: none is dropped")
+                   "the largest alone; default: none is dropped)")
         ->type_name("SIZE")
         ->group(method);
 }
@@ -158,7 +162,7 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
             if (one != other) one->excludes(other);
     add_choice<Grid>(
         app, "--grid", a.grid, {{"uniform", Grid::uniform}, {"adaptive", Grid::adaptive}},
-        "default uniform, with --max-error adaptive; adaptive without it keeps a tenth of a voxel")
+        "adaptive without --max-error keeps a tenth of a voxel (default: uniform, with --max-error adaptive)")
         ->group(resolution);
 
     const std::string method = "Method";
@@ -174,7 +178,8 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
                              "where normals come from; auto: the file's if it has some, else estimated")
         ->group(method);
     add_surface_options(app, a, method);
-    app.add_option("--crease-degrees", a.crease_degrees, "dihedral angle above which an edge is sharp")
+    app.add_option("--crease-degrees", a.crease_degrees,
+                   "dihedral angle above which an edge is sharp, in degrees")
         ->check(number_between(0, 180, "lie between 0 and 180"))
         ->type_name("D")
         ->capture_default_str()
@@ -187,7 +192,7 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
     app.add_option(
            "--stage", a.stages,
            "what the mesh goes through then: NAME or NAME:key=value,key=value; several run in the order "
-           "given (hsdm stages)")
+           "given, hsdm stages names them (default: none)")
         ->type_name("STAGE")
         ->group(method);
     app.add_flag("--strict", a.strict,
@@ -200,7 +205,8 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
 
 void add_text_options(CLI::App& app, ReconstructArguments& a) {
     const std::string files = "Files";
-    app.add_option("--input-format", a.read.format, "the input's format, where no extension names it")
+    app.add_option("--input-format", a.read.format,
+                   "the input's format (default: by its extension or content)")
         ->check(one_of({point_formats().begin(), point_formats().end()}))
         ->type_name(joined_formats())
         ->group(files);
@@ -209,7 +215,9 @@ void add_text_options(CLI::App& app, ReconstructArguments& a) {
            [&a](const std::vector<std::string>& given) {
                for (const std::string& text : given) a.read.sensors.push_back(*place_of(text));
            },
-           "where a scanner stood; several with --sensor-column, the first one's number is 0")
+           "where a scanner stood, in the cloud's units; several with --sensor-column, the first one's "
+           "number "
+           "is 0 (default: what the file says)")
         ->type_name("X,Y,Z")
         ->check(CLI::Validator(
             [](std::string& text) {
@@ -221,10 +229,12 @@ void add_text_options(CLI::App& app, ReconstructArguments& a) {
         ->allow_extra_args(false) // the next word is an input
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->group(files);
-    app.add_option("--sensor-column", a.read.sensor_column, "the column that says which scanner saw a point")
+    app.add_option("--sensor-column", a.read.sensor_column,
+                   "the column that says which scanner saw a point (default: none)")
         ->type_name("NAME")
         ->group(files);
-    app.add_option("--columns", a.read.columns, "columns of a text file, e.g. x,y,z,nx,ny,nz,r,g,b,_")
+    app.add_option("--columns", a.read.columns,
+                   "columns of a text file, e.g. x,y,z,nx,ny,nz,r,g,b,_ (default: by its header or values)")
         ->type_name("LIST")
         ->group(files);
 }
@@ -249,7 +259,7 @@ void add_file_options(CLI::App& app, ReconstructArguments& a) {
     app.add_option("--out-dir", a.out_dir, "one mesh per input, by the input's name; made if missing")
         ->type_name("DIR")
         ->group(files);
-    app.add_option("--format", a.format, "the mesh's format, where no extension names it (default off)")
+    app.add_option("--format", a.format, "the mesh's format, where no extension names it (default: off)")
         ->check(one_of({"off", "stl", "ply", "obj", "om"}))
         ->type_name("off|stl|ply|obj|om")
         ->group(files);
@@ -270,7 +280,7 @@ void add_file_options(CLI::App& app, ReconstructArguments& a) {
     add_text_options(app, a);
 
     const std::string running = "Running";
-    app.add_option("--threads", a.threads, "at most N threads (default all); the result is the same")
+    app.add_option("--threads", a.threads, "at most N threads; the result is the same (default: all)")
         ->check(whole_number(0, largest, "a whole number, 0 (all) or more"))
         ->type_name("N")
         ->group(running);

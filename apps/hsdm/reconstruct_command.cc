@@ -284,7 +284,9 @@ void add_reconstruct(CLI::App& app, Run& run) {
     const auto arguments = std::make_shared<ReconstructArguments>();
     add_file_options(*sub, *arguments);
     add_method_options(*sub, *arguments);
-    sub->footer("Examples:\n"
+    sub->footer("The mesh is an oriented 2-manifold, mostly of quads, with its sharp edges marked;\n"
+                "outward where it is closed. What may be wrong with it is said in warnings.\n"
+                "Examples:\n"
                 "  hsdm reconstruct scan.ply -o part.stl\n"
                 "  hsdm reconstruct scan.xyz --depth 6 -o part.off --features part.txt --report part.json\n"
                 "  hsdm reconstruct scan.ply --levels 4:7 -o part.ply\n"

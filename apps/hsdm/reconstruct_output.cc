@@ -1,5 +1,6 @@
 #include "reconstruct_output.hh"
 
+#include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/features/features.hh"
 #include "hsdm/io/output_target.hh"
@@ -10,8 +11,6 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <unistd.h>
-
 namespace hsdm::command {
 namespace {
 
@@ -56,7 +55,7 @@ void make_folder(const std::string& folder) {
     if (error || !fs::is_directory(folder, error))
         throw Error(folder, "the folder cannot be made" + (error ? ": " + error.message() : std::string())
                                 + "; check the permissions of the one above");
-    if (access(folder.c_str(), W_OK | X_OK) != 0)
+    if (!os::may_write_into(folder))
         throw Error(folder, std::string("the folder cannot be written: ") + std::strerror(errno)
                                 + "; check its permissions");
 }

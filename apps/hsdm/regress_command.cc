@@ -197,14 +197,18 @@ void add_regress(CLI::App& app, Run& run) {
     sub->add_option("suite", given->suite,
                     "a JSON file: root, cases [{name, input, args, reference, output, expect}]")
         ->required();
-    sub->add_option("--filter", given->filter, "run the cases in whose names this is found")
+    sub->option_defaults()->group("Cases");
+    sub->add_option("--filter", given->filter, "run the cases in whose names this is found (default: all)")
         ->type_name("REGEX");
+    sub->option_defaults()->group("Results");
     sub->add_option("--json", given->json, "write the reports and what missed here")->type_name("FILE");
     sub->add_option("--junit", given->junit, "write what missed here, as JUnit's XML")->type_name("FILE");
+    sub->option_defaults()->group("Running");
     sub->add_option("--jobs", given->jobs, "run so many cases side by side; the results are the same")
         ->check(whole_number(1, most_threads, "a whole number from 1 to 256"))
         ->type_name("N")
         ->capture_default_str();
+    sub->option_defaults()->group("Results");
     sub->add_flag("--update", given->update,
                   "show which expectations change by what was found, and write the suite anew with them");
     sub->footer(

@@ -84,7 +84,7 @@ void add_stages(CLI::App& app, Run& run) {
     CLI::App* const sub =
         app.add_subcommand("stages", "what --stage may name, built in and loaded, with options");
     const auto as_json = std::make_shared<bool>(false);
-    sub->add_flag("--json", *as_json, "the same as JSON");
+    sub->add_flag("--json", *as_json, "the same as JSON")->group("Output");
     sub->footer("Examples:\n"
                 "  hsdm reconstruct scan.ply -o part.stl --stage decimate:ratio=0.125 --stage classify\n"
                 "  hsdm process part.off -o quads.obj --stage quads");

@@ -1,12 +1,11 @@
 #include "standard_output.hh"
 
+#include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
 
 #include <cerrno>
 #include <cstring>
 #include <iostream>
-
-#include <unistd.h>
 
 namespace hsdm::command {
 
@@ -34,7 +33,7 @@ StandardOutput::int_type StandardOutput::overflow(int_type character) {
 
 int StandardOutput::sync() {
     for (const char* next = pbase(); next < pptr() && error_ == 0;) {
-        const auto written = write(STDOUT_FILENO, next, static_cast<std::size_t>(pptr() - next));
+        const auto written = os::write(os::standard_output, next, static_cast<std::size_t>(pptr() - next));
         if (written > 0)
             next += written;
         else if (written == 0 || errno != EINTR)

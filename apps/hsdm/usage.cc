@@ -11,9 +11,11 @@ namespace {
 
 using Words = std::vector<std::string>;
 
+/// But those that are hidden.
 Words subcommands(const CLI::App& app) {
     Words names;
-    for (const CLI::App* sub : app.get_subcommands({})) names.push_back(sub->get_name());
+    for (const CLI::App* sub : app.get_subcommands({}))
+        if (!sub->get_group().empty()) names.push_back(sub->get_name());
     return names;
 }
 
@@ -35,7 +37,8 @@ Words without_words_for_options(Words words) {
 void check_subcommand(const CLI::App& app, const Words& words) {
     Words known = subcommands(app);
     if (words.empty()) throw UsageError("a subcommand is needed: " + joined(known));
-    if (words[0].starts_with('-') || std::find(known.begin(), known.end(), words[0]) != known.end()) return;
+    const auto is_named = [&words](const CLI::App* sub) { return sub->get_name() == words[0]; };
+    if (words[0].starts_with('-') || !app.get_subcommands(is_named).empty()) return;
     const std::string all = joined(known);
     known.insert(known.end(), {"help", "version"});
     const std::string near = suggestion(words[0], known);

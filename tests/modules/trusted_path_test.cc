@@ -7,38 +7,38 @@
 #include <filesystem>
 #include <fstream>
 
-#include <unistd.h>
-
 using Catch::Matchers::Contains;
 using hsdm::distrust;
+using Kind = hsdm::os::FileStatus::Kind;
 
 namespace fs = std::filesystem;
 
 namespace {
 
 /// What is said of a file or folder of `owner` to user 1000.
-std::string said_of(mode_t mode, uid_t owner, bool above = false) {
-    struct stat status {};
-    status.st_mode = mode;
-    status.st_uid = owner;
+std::string said_of(Kind kind, std::uint32_t mode, std::uint32_t owner, bool above = false) {
+    hsdm::os::FileStatus status;
+    status.kind = kind;
+    status.mode = mode;
+    status.owner = owner;
     return distrust(status, 1000, above);
 }
 
 } // namespace
 
 TEST_CASE("trusted is what root or the user alone can write") {
-    CHECK(said_of(S_IFREG | 0755, 1000).empty());
-    CHECK(said_of(S_IFREG | 0644, 0).empty());
-    CHECK_THAT(said_of(S_IFREG | 0600, 1001), Contains("another user (1001)"));
-    CHECK_THAT(said_of(S_IFREG | 0664, 1000), Contains("its group"));
-    CHECK_THAT(said_of(S_IFREG | 0646, 0), Contains("everybody"));
-    CHECK_THAT(said_of(S_IFDIR | 0775, 1000, true), Contains("its group"));
+    CHECK(said_of(Kind::regular, 0755, 1000).empty());
+    CHECK(said_of(Kind::regular, 0644, 0).empty());
+    CHECK_THAT(said_of(Kind::regular, 0600, 1001), Contains("another user (1001)"));
+    CHECK_THAT(said_of(Kind::regular, 0664, 1000), Contains("its group"));
+    CHECK_THAT(said_of(Kind::regular, 0646, 0), Contains("everybody"));
+    CHECK_THAT(said_of(Kind::folder, 0775, 1000, true), Contains("its group"));
 }
 
 TEST_CASE("the sticky bit helps a folder farther up, not the one that modules are in") {
-    CHECK(said_of(S_IFDIR | 01777, 0, true).empty());
-    CHECK_THAT(said_of(S_IFDIR | 01777, 0), Contains("everybody"));
-    CHECK_THAT(said_of(S_IFDIR | 01777, 1001, true), Contains("another user"));
+    CHECK(said_of(Kind::folder, 01777, 0, true).empty());
+    CHECK_THAT(said_of(Kind::folder, 01777, 0), Contains("everybody"));
+    CHECK_THAT(said_of(Kind::folder, 01777, 1001, true), Contains("another user"));
 }
 
 TEST_CASE("a file is distrusted for any folder above it, and for where its links lead through") {

@@ -1,5 +1,6 @@
 #include "hsdm/io/atomic_file.hh"
 
+#include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/file_registry.hh"
 #include "hsdm/io/temporary_file.hh"
@@ -9,10 +10,6 @@
 #include <cerrno>
 #include <cstring>
 #include <utility>
-
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace hsdm {
 namespace {
@@ -40,8 +37,8 @@ std::string advice(int error) {
 /// False with errno on failure.
 bool write_all(int descriptor, std::string_view bytes) {
     while (!bytes.empty()) {
-        const ssize_t written =
-            ::write(descriptor, bytes.data(), std::min(bytes.size(), std::size_t{1} << 30));
+        const std::ptrdiff_t written =
+            os::write(descriptor, bytes.data(), std::min(bytes.size(), std::size_t{1} << 30));
         if (written < 0 && errno == EINTR) continue;
         if (written < 0) return false;
         bytes.remove_prefix(static_cast<std::size_t>(written));
@@ -50,16 +47,16 @@ bool write_all(int descriptor, std::string_view bytes) {
 }
 
 /// Copies all of one file over the content of another, from its first byte; false with errno on failure.
-bool overwrite(int from, int to, off_t size) {
+bool overwrite(int from, int to, std::uint64_t size) {
     std::array<char, 1 << 16> buffer;
-    for (off_t done = 0; done < size;) {
-        const ssize_t count = ::pread(from, buffer.data(), buffer.size(), done);
+    for (std::uint64_t done = 0; done < size;) {
+        const std::ptrdiff_t count = os::read_at(from, buffer.data(), buffer.size(), done);
         if (count < 0 && errno == EINTR) continue;
         if (count == 0) errno = EIO; // another process truncated it meanwhile
         if (count <= 0 || !write_all(to, {buffer.data(), static_cast<std::size_t>(count)})) return false;
-        done += count;
+        done += static_cast<std::uint64_t>(count);
     }
-    return ::ftruncate(to, size) == 0 && ::fsync(to) == 0;
+    return os::resize(to, size) && os::flush_to_disk(to);
 }
 
 } // namespace
@@ -77,7 +74,7 @@ AtomicFile::AtomicFile(const std::string& path) : path_(path), target_(find_targ
             open_directly();
         }
     } catch (...) { // a constructor that throws gets no destructor call
-        if (descriptor_ >= 0) ::close(descriptor_);
+        if (descriptor_ >= 0) os::close(descriptor_);
         forget_temporary(true);
         throw;
     }
@@ -90,8 +87,8 @@ void AtomicFile::open_temporary() {
         const auto lock = registry.lock();
         registry.note_leftover(std::move(left));
     }
-    struct stat old {};
-    const bool exists = ::stat(target_.path.c_str(), &old) == 0;
+    os::FileStatus old;
+    const bool exists = os::status_of(target_.path, old);
     TemporaryFile made = make_temporary(target_.path, exists ? 0600 : 0666);
     if (made.path.empty()) fail("cannot write");
     temporary_ = std::move(made.path);
@@ -100,9 +97,8 @@ void AtomicFile::open_temporary() {
 }
 
 void AtomicFile::open_directly() {
-    descriptor_ = target_.kind == OutputTarget::Kind::descriptor
-                      ? ::fcntl(target_.descriptor, F_DUPFD_CLOEXEC, 3)
-                      : ::open(target_.path.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC);
+    descriptor_ = target_.kind == OutputTarget::Kind::descriptor ? os::duplicate(target_.descriptor)
+                                                                 : os::open_to_write(target_.path);
     if (descriptor_ < 0) fail("cannot open for writing");
     FileRegistry& registry = FileRegistry::of_process();
     const auto lock = registry.lock();
@@ -112,25 +108,24 @@ void AtomicFile::open_directly() {
 /// Sets owner and mode of the file to be replaced before the first byte is readable. Only some users may give
 /// files away, and not every file system has modes; then the temporary stays this user's alone, or with the
 /// modes it has.
-void AtomicFile::take_over_mode(const struct stat& old) const {
-    struct stat made {};
-    if (::fstat(descriptor_, &made) == 0 && (old.st_uid != made.st_uid || old.st_gid != made.st_gid)) {
-        int given = ::fchown(descriptor_, old.st_uid, old.st_gid);
-        if (given != 0) given = ::fchown(descriptor_, static_cast<uid_t>(-1), old.st_gid);
-    }
-    [[maybe_unused]] const int changed = ::fchmod(descriptor_, old.st_mode & 07777);
+void AtomicFile::take_over_mode(const os::FileStatus& old) const {
+    os::FileStatus made;
+    if (os::status_of(descriptor_, made) && (old.owner != made.owner || old.group != made.group)
+        && !os::set_owner(descriptor_, old.owner, old.group))
+        os::set_group(descriptor_, old.group);
+    os::set_mode(descriptor_, old.mode);
 }
 
 AtomicFile::~AtomicFile() {
     forget_temporary(true);
-    if (descriptor_ >= 0) ::close(descriptor_);
+    if (descriptor_ >= 0) os::close(descriptor_);
 }
 
 void AtomicFile::forget_temporary(bool unlink) noexcept {
     if (temporary_.empty()) return;
     FileRegistry& registry = FileRegistry::of_process();
     const auto lock = registry.lock();
-    if (unlink) ::unlink(temporary_.c_str());
+    if (unlink) os::remove(temporary_);
     registry.drop_temporary(temporary_);
     temporary_.clear();
 }
@@ -146,17 +141,17 @@ void AtomicFile::commit() {
         registry.end_stream(spoken_name(path_));
         return;
     }
-    if (::fsync(descriptor_) != 0) fail("cannot write");
-    struct stat old {};
+    if (!os::flush_to_disk(descriptor_)) fail("cannot write");
+    os::FileStatus old;
     const bool has_links =
-        ::stat(target_.path.c_str(), &old) == 0 && S_ISREG(old.st_mode) && old.st_nlink > 1;
+        os::status_of(target_.path, old) && old.kind == os::FileStatus::Kind::regular && old.names > 1;
     // held so that abandon_files() does not remove the temporary from here on
     const auto lock = registry.lock();
     registry.note_complete(path_);
     // The descriptor stays open meanwhile: its lock keeps other processes from removing the temporary.
     if (has_links) {
         copy_into_target();
-    } else if (::rename(temporary_.c_str(), target_.path.c_str()) != 0) {
+    } else if (!os::replace(temporary_, target_.path)) {
         registry.take_back_complete(path_);
         fail("cannot put the new file in place");
     }
@@ -165,22 +160,20 @@ void AtomicFile::commit() {
 }
 
 void AtomicFile::copy_into_target() {
-    struct stat made {};
-    const int to = ::open(target_.path.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC);
-    if (to < 0 || ::fstat(descriptor_, &made) != 0
-        || (made.st_size > 0 && ::fallocate(to, FALLOC_FL_KEEP_SIZE, 0, made.st_size) != 0
-            && errno != EOPNOTSUPP)) {
+    os::FileStatus made;
+    const int to = os::open_entry_to_write(target_.path);
+    if (to < 0 || !os::status_of(descriptor_, made) || !os::reserve(to, made.size)) {
         const int error = errno;
-        if (to >= 0) ::close(to);
+        if (to >= 0) os::close(to);
         FileRegistry::of_process().take_back_complete(path_);
         errno = error;
         fail("cannot write into the file, which has other names (hard links) too");
     }
-    const bool copied = overwrite(descriptor_, to, made.st_size);
+    const bool copied = overwrite(descriptor_, to, made.size);
     const int error = errno;
-    ::close(to);
+    os::close(to);
     if (copied) {
-        ::unlink(temporary_.c_str());
+        os::remove(temporary_);
         return;
     }
     FileRegistry::of_process().take_back_complete(path_);

@@ -6,7 +6,9 @@
 #include <string>
 #include <string_view>
 
-struct stat;
+namespace hsdm::os {
+struct FileStatus;
+}
 
 namespace hsdm {
 
@@ -38,7 +40,7 @@ private:
     [[noreturn]] void fail(const std::string& what) const;
     void open_temporary();
     void open_directly();
-    void take_over_mode(const struct stat& old) const;
+    void take_over_mode(const os::FileStatus& old) const;
     void copy_into_target();
     void forget_temporary(bool unlink) noexcept;
 

@@ -1,11 +1,11 @@
 #include "hsdm/io/file_registry.hh"
 
+#include "hsdm/core/system.hh"
+
 #include <algorithm>
 #include <cstddef>
 #include <new>
 #include <utility>
-
-#include <unistd.h>
 
 namespace hsdm {
 
@@ -50,14 +50,14 @@ void FileRegistry::take_back_complete(const std::string& name) noexcept {
 const FilesWritten& abandon_files() noexcept {
     FileRegistry& registry = FileRegistry::of_process();
     registry.mutex_.lock(); // and never unlocked
-    for (const std::string& path : registry.temporaries_) ::unlink(path.c_str());
+    for (const std::string& path : registry.temporaries_) os::remove(path);
     return registry.written_;
 }
 
 void remove_temporaries_unless_locked() noexcept {
     FileRegistry& registry = FileRegistry::of_process();
     if (!registry.mutex_.try_lock()) return;
-    for (const std::string& path : registry.temporaries_) ::unlink(path.c_str());
+    for (const std::string& path : registry.temporaries_) os::remove(path);
 }
 
 std::vector<std::string> take_removed_leftovers() {

@@ -1,14 +1,11 @@
 #include "hsdm/io/output_target.hh"
 
 #include "hsdm/core/number_of.hh"
+#include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
 
 #include <filesystem>
 #include <optional>
-
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace hsdm {
 namespace {
@@ -26,7 +23,7 @@ fs::path folder_of(const fs::path& path) {
 std::optional<int> own_descriptor(const fs::path& path) {
     std::error_code ignored;
     const std::string folder = fs::canonical(folder_of(path), ignored).string();
-    if (folder != "/proc/" + std::to_string(::getpid()) + "/fd") return std::nullopt;
+    if (folder != "/proc/" + std::to_string(os::process_id()) + "/fd") return std::nullopt;
     return number_of<int>(path.filename().string());
 }
 
@@ -36,7 +33,7 @@ void check_folder(const std::string& path, const fs::path& folder) {
     if (status.type() == fs::file_type::none)
         throw Error(path, "the folder cannot be looked at: " + error.message() + "; check its permissions");
     if (!fs::is_directory(status)) throw Error(path, "the folder does not exist; make it first");
-    if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0)
+    if (!os::may_write_into(folder.string()))
         throw Error(path, "the folder cannot be written; check its permissions");
 }
 
@@ -45,7 +42,7 @@ void check_folder(const std::string& path, const fs::path& folder) {
 OutputTarget find_target(const std::string& path) {
     if (path.empty()) throw Error("(no name)", "cannot write without a file name; name the output file");
     OutputTarget target;
-    if (path == "-") return {OutputTarget::Kind::descriptor, "-", STDOUT_FILENO};
+    if (path == "-") return {OutputTarget::Kind::descriptor, "-", os::standard_output};
     fs::path name(path);
     for (int links = 0;; ++links) {
         if (const auto descriptor = own_descriptor(name))
@@ -57,28 +54,27 @@ OutputTarget find_target(const std::string& path) {
             throw Error(path, "the symbolic link cannot be followed; name the file itself");
         name = next.is_absolute() ? next : folder_of(name) / next;
     }
-    struct stat status {};
-    const bool exists = ::stat(name.c_str(), &status) == 0;
-    const bool stream = exists && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+    using Kind = os::FileStatus::Kind;
+    os::FileStatus status;
+    const bool exists = os::status_of(name.string(), status);
+    const bool stream = exists && status.kind != Kind::regular && status.kind != Kind::folder;
     return {stream ? OutputTarget::Kind::stream : OutputTarget::Kind::file, name.string(), -1};
 }
 
 void check_replaceable(const std::string& path, const OutputTarget& target) {
     std::error_code ignored;
     if (fs::is_directory(target.path, ignored)) throw Error(path, "is a folder; name a file in it");
-    if (fs::exists(target.path, ignored) && ::faccessat(AT_FDCWD, target.path.c_str(), W_OK, AT_EACCESS) != 0)
+    if (fs::exists(target.path, ignored) && !os::may_write(target.path))
         throw Error(path, "is write-protected; choose another name, or allow writing with chmod u+w");
 }
 
 void check_writable(const std::string& path) {
     const OutputTarget target = find_target(path);
     if (target.kind == OutputTarget::Kind::descriptor) {
-        const int mode = ::fcntl(target.descriptor, F_GETFL);
-        if (mode < 0 || (mode & O_ACCMODE) == O_RDONLY)
+        if (!os::is_open_for_writing(target.descriptor))
             throw Error(spoken_name(path), "is not open for writing; check the redirection");
     } else if (target.kind == OutputTarget::Kind::stream) {
-        if (::faccessat(AT_FDCWD, target.path.c_str(), W_OK, AT_EACCESS) != 0)
-            throw Error(path, "cannot be written; check its permissions");
+        if (!os::may_write(target.path)) throw Error(path, "cannot be written; check its permissions");
     } else {
         check_replaceable(path, target);
         check_folder(path, folder_of(target.path));

@@ -1,14 +1,12 @@
 #include "hsdm/io/scratch_file.hh"
 
+#include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/file_registry.hh"
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-
-#include <stdlib.h>
-#include <unistd.h>
 
 namespace hsdm {
 
@@ -18,15 +16,15 @@ ScratchFile::ScratchFile(const std::string& extension) {
     path_ = ((none ? "/tmp" : folder) / "hsdm-XXXXXX").string() + extension;
     FileRegistry& registry = FileRegistry::of_process();
     const auto lock = registry.lock(); // a signal finds the file registered, or not made
-    const int descriptor = ::mkstemps(path_.data(), static_cast<int>(extension.size()));
+    const int descriptor = os::create_with_new_name(path_, extension.size());
     if (descriptor < 0)
         throw Error(path_, std::string("a temporary file cannot be made: ") + std::strerror(errno)
                                + "; TMPDIR names another folder for it");
-    ::close(descriptor);
+    os::close(descriptor);
     try {
         registry.add_temporary(path_);
     } catch (...) {
-        ::unlink(path_.c_str());
+        os::remove(path_);
         throw;
     }
 }
@@ -34,7 +32,7 @@ ScratchFile::ScratchFile(const std::string& extension) {
 ScratchFile::~ScratchFile() {
     FileRegistry& registry = FileRegistry::of_process();
     const auto lock = registry.lock();
-    ::unlink(path_.c_str());
+    os::remove(path_);
     registry.drop_temporary(path_);
 }
 

@@ -2,11 +2,8 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/huge_pages.hh"
+#include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
-
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -34,16 +31,16 @@ constexpr std::size_t block_size = std::size_t(1) << 22;
 /// Calls `read(bytes, count)` until `count` bytes are there or it gives none. Returns -1 with errno on
 /// failure.
 template <class Read>
-ssize_t read_fully(char* bytes, std::size_t count, const Read& read) {
+std::ptrdiff_t read_fully(char* bytes, std::size_t count, const Read& read) {
     std::size_t done = 0;
     while (done < count) {
-        const ssize_t n = read(bytes + done, count - done, done);
+        const std::ptrdiff_t n = read(bytes + done, count - done, done);
         if (n < 0 && errno == EINTR) continue;
         if (n < 0) return -1;
         if (n == 0) break;
         done += static_cast<std::size_t>(n);
     }
-    return static_cast<ssize_t>(done);
+    return static_cast<std::ptrdiff_t>(done);
 }
 
 std::unique_ptr<char[]> uninitialised(std::size_t size) {
@@ -64,20 +61,21 @@ SourceBytes::SourceBytes(SourceBytes&& other) noexcept
       descriptor_(std::exchange(other.descriptor_, -1)) {}
 
 SourceBytes::~SourceBytes() {
-    if (descriptor_ >= 0) ::close(descriptor_);
+    if (descriptor_ >= 0) os::close(descriptor_);
 }
 
 SourceBytes SourceBytes::open(const std::string& path) {
-    if (path == "-") return read_stream(STDIN_FILENO, "<stdin>");
+    if (path == "-") return read_stream(os::standard_input, "<stdin>");
     SourceBytes source(path, 0);
-    source.descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    struct stat status {};
-    if (source.descriptor_ < 0 || ::fstat(source.descriptor_, &status) != 0) fail(path, errno);
-    if (S_ISDIR(status.st_mode)) fail(path, EISDIR);
+    source.descriptor_ = os::open_to_read(path);
+    os::FileStatus status;
+    if (source.descriptor_ < 0 || !os::status_of(source.descriptor_, status)) fail(path, errno);
+    if (status.kind == os::FileStatus::Kind::folder) fail(path, EISDIR);
     // Pipes and the files of /proc do not know their size.
-    if (!S_ISREG(status.st_mode) || status.st_size == 0) return read_stream(source.descriptor_, path);
+    if (status.kind != os::FileStatus::Kind::regular || status.size == 0)
+        return read_stream(source.descriptor_, path);
 
-    source.size_ = static_cast<std::size_t>(status.st_size);
+    source.size_ = static_cast<std::size_t>(status.size);
     source.complete_ = source.size_ <= head_size;
     const std::size_t head = std::min(source.size_, head_size);
     source.bytes_ = uninitialised(head);
@@ -86,8 +84,8 @@ SourceBytes SourceBytes::open(const std::string& path) {
 }
 
 void SourceBytes::read_at(char* bytes, std::size_t count, std::size_t offset) const {
-    const ssize_t n = read_fully(bytes, count, [&](char* to, std::size_t size, std::size_t done) {
-        return ::pread(descriptor_, to, size, static_cast<off_t>(offset + done));
+    const std::ptrdiff_t n = read_fully(bytes, count, [&](char* to, std::size_t size, std::size_t done) {
+        return os::read_at(descriptor_, to, size, offset + done);
     });
     if (n < 0) fail(name_, errno);
     if (static_cast<std::size_t>(n) != count)
@@ -117,9 +115,10 @@ const char* SourceBytes::piece(std::size_t offset, std::size_t count, char* scra
 SourceBytes SourceBytes::read_stream(int descriptor, const std::string& name) {
     auto bytes = uninitialised(block_size);
     for (std::size_t capacity = block_size, filled = 0;;) {
-        const ssize_t n =
-            read_fully(bytes.get() + filled, capacity - filled,
-                       [&](char* to, std::size_t size, std::size_t) { return ::read(descriptor, to, size); });
+        const std::ptrdiff_t n =
+            read_fully(bytes.get() + filled, capacity - filled, [&](char* to, std::size_t size, std::size_t) {
+                return os::read(descriptor, to, size);
+            });
         if (n < 0) fail(name, errno);
         filled += static_cast<std::size_t>(n);
         if (filled < capacity) {
@@ -152,10 +151,10 @@ SourceBytes SourceBytes::read(std::istream& stream, const std::string& name) {
 }
 
 void check_readable(const std::string& path) {
-    struct stat status {};
+    os::FileStatus status;
     // Not opened: a pipe would wait for whoever writes it, and then be told that nobody reads.
-    if (::stat(path.c_str(), &status) != 0 || ::access(path.c_str(), R_OK) != 0) fail(path, errno);
-    if (S_ISDIR(status.st_mode)) fail(path, EISDIR);
+    if (!os::status_of(path, status) || !os::may_read(path)) fail(path, errno);
+    if (status.kind == os::FileStatus::Kind::folder) fail(path, EISDIR);
 }
 
 } // namespace hsdm::io

@@ -1,20 +1,14 @@
 #include "hsdm/io/temporary_file.hh"
 
+#include "hsdm/core/system.hh"
 #include "hsdm/io/file_registry.hh"
 
 #include <atomic>
 #include <cerrno>
 #include <map>
-#include <memory>
 #include <mutex>
 #include <string_view>
 #include <utility>
-
-#include <dirent.h>
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace hsdm {
 namespace {
@@ -33,7 +27,7 @@ std::string name_part(const fs::path& target) {
 /// A name beside the target that no other process or thread uses.
 std::string temporary_name(const fs::path& target) {
     static std::atomic<unsigned> counter{0}; // distinguishes threads; no result depends on it
-    const std::string name = '.' + name_part(target) + '.' + std::to_string(::getpid()) + '-'
+    const std::string name = '.' + name_part(target) + '.' + std::to_string(os::process_id()) + '-'
                              + std::to_string(counter++) + std::string(suffix);
     return (target.parent_path() / name).string();
 }
@@ -66,32 +60,27 @@ using Leftovers = std::multimap<std::string, fs::path, std::less<>>;
 
 Leftovers find_in(const fs::path& folder) {
     Leftovers found;
-    // Not by std::filesystem: its iterator ends the process if there is no memory for the next name.
-    const auto close = [](DIR* open) { ::closedir(open); };
-    const std::unique_ptr<DIR, decltype(close)> names(::opendir(folder.empty() ? "." : folder.c_str()),
-                                                      close);
-    while (const dirent* const entry = names ? ::readdir(names.get()) : nullptr) {
-        const std::string name = entry->d_name;
+    os::for_each_name(folder.empty() ? "." : folder.string(), [&](const char* name) {
         const std::string_view target = target_of(name);
         if (!target.empty()) found.emplace(target, folder / name);
-    }
+    });
     return found;
 }
 
 /// True if no name stands for this file any more: a process that took it for left behind has removed it.
 bool is_removed(int descriptor) {
-    struct stat status {};
-    return ::fstat(descriptor, &status) == 0 && status.st_nlink == 0;
+    os::FileStatus status;
+    return os::status_of(descriptor, status) && status.names == 0;
 }
 
 bool remove_if_left(const fs::path& path) {
-    const int descriptor = ::open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    const std::string name = path.string();
+    const int descriptor = os::open_entry_to_write(name);
     if (descriptor < 0) return false;
-    struct stat status {};
-    const bool removed = ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode)
-                         && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && !is_removed(descriptor)
-                         && ::unlink(path.c_str()) == 0;
-    ::close(descriptor);
+    os::FileStatus status;
+    const bool removed = os::status_of(descriptor, status) && status.kind == os::FileStatus::Kind::regular
+                         && os::try_lock(descriptor) && !is_removed(descriptor) && os::remove(name);
+    os::close(descriptor);
     return removed;
 }
 
@@ -103,13 +92,13 @@ TemporaryFile make_temporary(const fs::path& target, unsigned mode) {
         TemporaryFile made{temporary_name(target), -1};
         const auto lock = registry.lock();
         registry.add_temporary(made.path); // registered first, so that it will be removed whatever happens
-        made.descriptor = ::open(made.path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+        made.descriptor = os::create(made.path, mode);
         const int error = errno;
         if (made.descriptor >= 0) {
-            while (::flock(made.descriptor, LOCK_EX) != 0 && errno == EINTR) {
+            while (!os::lock(made.descriptor) && errno == EINTR) {
             } // a file system without locks: use it unlocked
             if (!is_removed(made.descriptor)) return made;
-            ::close(made.descriptor);
+            os::close(made.descriptor);
         }
         registry.drop_temporary(made.path);
         if (made.descriptor >= 0 || error == EEXIST) continue;

@@ -1,12 +1,11 @@
 #include "hsdm/modules/plugin_loader.hh"
 
+#include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/source_bytes.hh"
 #include "hsdm/mesh/check_links.hh"
 #include "hsdm/modules/trusted_path.hh"
 #include "hsdm/plugin.hh"
-
-#include <dlfcn.h>
 
 #include <algorithm>
 #include <array>
@@ -22,11 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* extension = ".so";
-
-std::string last_dl_error() {
-    const char* text = dlerror();
-    return text == nullptr ? "unknown reason" : text;
-}
 
 void check_interface(const std::string& path, std::uint32_t abi) {
     if (abi != plugin_abi)
@@ -78,11 +72,11 @@ std::vector<StageOption> declared_options(const std::string& path, const PluginR
 }
 
 const PluginInfo* load(const std::string& path) {
-    // A path without '/' would make dlopen search the system's library folders.
-    void* library = dlopen(fs::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
-    if (library == nullptr) throw Error(path, "cannot be loaded: " + last_dl_error());
+    // A path without '/' would be searched for in the system's library folders.
+    void* library = os::load_library(fs::absolute(path).string());
+    if (library == nullptr) throw Error(path, "cannot be loaded: " + os::library_error());
     using Entry = const PluginInfo* (*)();
-    const auto entry = reinterpret_cast<Entry>(dlsym(library, "hsdm_plugin"));
+    const auto entry = reinterpret_cast<Entry>(os::symbol_of(library, "hsdm_plugin"));
     if (entry == nullptr)
         throw Error(path, "is not an hsdm module: it does not export hsdm_plugin; see hsdm/plugin.hh");
     const PluginInfo* info = entry();
@@ -171,7 +165,7 @@ std::string Plugin::process(PolyMesh& mesh, const StageArguments& arguments) con
 
 std::vector<std::string> plugin_folders() {
     std::vector<std::string> folders;
-    if (const char* given = ::secure_getenv("HSDM_PLUGIN_PATH"))
+    if (const char* given = os::trusted_variable("HSDM_PLUGIN_PATH"))
         for (std::string_view rest = given; !rest.empty();) {
             const std::size_t end = find_mark(rest, 0, ':');
             if (end > 0) folders.push_back(unescaped(rest.substr(0, end), ':'));

@@ -3,12 +3,11 @@
 #include <filesystem>
 #include <vector>
 
-#include <unistd.h>
-
 namespace hsdm {
 namespace {
 
 namespace fs = std::filesystem;
+using Kind = os::FileStatus::Kind;
 
 /// Follows a path entry by entry, links included, and asks of each what it is.
 class PathWalk {
@@ -26,15 +25,15 @@ public:
                 continue;
             }
             at_ /= entry;
-            struct stat status {};
-            if (::lstat(at_.c_str(), &status) != 0) return "";
-            if (!S_ISLNK(status.st_mode)) {
+            os::FileStatus status;
+            if (!os::status_of_entry(at_.string(), status)) return "";
+            if (status.kind != Kind::link) {
                 reason = look(!rest_.empty());
                 continue;
             }
             if (++links > most_links) return at_.string() + " is a link that leads in a circle";
-            status.st_mode = 0; // a link's own says nothing
-            reason = said(distrust(status, ::geteuid(), true));
+            status.mode = 0; // a link's own says nothing
+            reason = said(distrust(status, os::effective_user(), true));
             if (reason.empty()) reason = follow();
         }
         return reason;
@@ -62,10 +61,10 @@ private:
     /// Why others could change the entry reached; for a file at the end of the path also the folder that
     /// holds it.
     std::string look(bool above) const {
-        struct stat status {};
-        if (::stat(at_.c_str(), &status) != 0) return "";
-        const std::string reason = distrust(status, ::geteuid(), above);
-        if (!reason.empty() || above || S_ISDIR(status.st_mode)) return said(reason);
+        os::FileStatus status;
+        if (!os::status_of(at_.string(), status)) return "";
+        const std::string reason = distrust(status, os::effective_user(), above);
+        if (!reason.empty() || above || status.kind == Kind::folder) return said(reason);
         PathWalk folder(*this);
         folder.at_ = at_.parent_path();
         return folder.look(false);
@@ -81,14 +80,15 @@ private:
 
 } // namespace
 
-std::string distrust(const struct stat& status, uid_t user, bool above) {
-    if (status.st_uid != 0 && status.st_uid != user)
-        return "belongs to another user (" + std::to_string(status.st_uid)
+std::string distrust(const os::FileStatus& status, std::uint32_t user, bool above) {
+    constexpr std::uint32_t sticky = 01000, group_may_write = 020, all_may_write = 02;
+    if (status.owner != 0 && status.owner != user)
+        return "belongs to another user (" + std::to_string(status.owner)
                + "), who could have put anything there; move the module to a folder of your own";
-    if (above && S_ISDIR(status.st_mode) && (status.st_mode & S_ISVTX) != 0) return "";
-    if ((status.st_mode & S_IWOTH) != 0)
+    if (above && status.kind == Kind::folder && (status.mode & sticky) != 0) return "";
+    if ((status.mode & all_may_write) != 0)
         return "can be written by everybody; run `chmod go-w` on it if it is yours";
-    if ((status.st_mode & S_IWGRP) != 0)
+    if ((status.mode & group_may_write) != 0)
         return "can be written by its group; run `chmod g-w` on it if it is yours";
     return "";
 }

@@ -1,5 +1,6 @@
 #include "hsdm/reconstruct.hh"
 
+#include "hsdm/core/system.hh"
 #include "hsdm/features/features.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/mesh/turn_outward.hh"
@@ -17,7 +18,6 @@
 #include <tbb/task_arena.h>
 
 #include <new>
-#include <sys/resource.h>
 #include <tuple>
 
 namespace hsdm {
@@ -50,13 +50,6 @@ void tell_in_cloud_units(const CloudFrame& frame, PolyMesh& mesh, Report& report
                            &report.error.mesh_to_surface_mean})
         *length *= frame.unit();
     for (Report::Loop& loop : report.loops) loop.length *= frame.unit();
-}
-
-/// Peak of the whole process so far; the kernel counts in KiB.
-std::size_t peak_memory() {
-    rusage usage = {};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
 }
 
 /// Throws Error if there are none.
@@ -159,7 +152,7 @@ void reconstruct_level(InputCloud& cloud, PreparedCloud& prepared, int depth, bo
         phases.run("features", 0.9, seconds.features,
                    [&] { find_features(result.mesh, options, known.hints, report); });
     tell_in_cloud_units(prepared.frame, result.mesh, report);
-    report.peak_memory_bytes = peak_memory();
+    report.peak_memory_bytes = os::peak_memory();
     result.report = std::move(report);
 }
 
