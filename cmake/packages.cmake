@@ -8,7 +8,8 @@ find_program(GZIP gzip REQUIRED)
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME hsdm)
 set(CPACK_PACKAGE_VENDOR "the hsdm developers")
-set(CPACK_PACKAGE_CONTACT "the hsdm developers <hsdm@users.noreply.example.org>") # a field that must be there; no one reads it
+set(CPACK_PACKAGE_CONTACT "the hsdm developers <developers@hsdm.invalid>") # Debian asks for an address; it is nobody's
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_NAME} built using CMake") # CPack's default, which it leaves out
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
@@ -22,12 +23,11 @@ set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/libhsdm)
-set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 
 set(full_version ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})
 set(soname_package libhsdm${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
-set(about "hsdm reconstructs the surfaces of scanned parts from point clouds: quad-dominant
-meshes, a 2-manifold every time, with their sharp edges marked.")
+set(about "hsdm reconstructs the surfaces of scanned parts from point clouds:
+quad-dominant meshes, a 2-manifold every time, with sharp edges marked.")
 
 # The page of man(1), the files of the package's folder under share/doc, and the licence as Debian wants it.
 string(TIMESTAMP now "%a, %d %b %Y %H:%M:%S +0000" UTC) # SOURCE_DATE_EPOCH, where that is set
@@ -58,10 +58,7 @@ macro(hsdm_debian_package group name section summary description depends)
   endforeach()
   list(GET components_of_${group} 0 first)
   hsdm_install_files(${first} share/doc/${name} ${debian}/copyright ${debian}/changelog.gz ${debian}/changelog.Debian.gz)
-  if(EXISTS ${PROJECT_SOURCE_DIR}/cmake/debian/${name}.lintian-overrides)
-    install(FILES cmake/debian/${name}.lintian-overrides DESTINATION share/lintian/overrides RENAME ${name}
-            COMPONENT ${first})
-  endif()
+  install(FILES cmake/debian/lintian-overrides DESTINATION share/lintian/overrides RENAME ${name} COMPONENT ${first})
 endmacro()
 
 set(CPACK_COMPONENTS_ALL)
@@ -71,18 +68,20 @@ hsdm_debian_package(hsdm hsdm graphics "scanned points to CAD-ready meshes"
 hsdm_debian_package(library ${soname_package} libs "scanned points to CAD-ready meshes, shared library"
   "This is the library that the command and other programs use." "" library)
 hsdm_debian_package(dev libhsdm-dev libdevel "scanned points to CAD-ready meshes, development files"
-  "These are the headers, the packages for CMake and pkg-config, and examples."
+  "These are the headers, the packages for CMake and pkg-config, and\nexamples."
   "${soname_package} (= ${full_version}), libopenmesh-dev, libtbb-dev" development examples)
 hsdm_debian_package(tools hsdm-tools graphics "scans of known solids, and measurements of hsdm"
-  "hsdm_generate writes scans of solids whose surface is known, with noise and\noutliers; hsdm_bench measures what becomes of such."
+  "hsdm_generate writes scans of solids whose surface is known, with noise\nand outliers; hsdm_bench measures what becomes of such."
   "${soname_package} (= ${full_version})" tools)
 if(HSDM_BUILD_PYTHON)
   hsdm_debian_package(python python3-hsdm python "scanned points to CAD-ready meshes, Python module"
     "This is the module for Python 3, on NumPy's arrays."
     "${soname_package} (= ${full_version}), python3, python3-numpy" python)
 endif()
-set(CPACK_DEBIAN_LIBRARY_PACKAGE_MULTIARCH same)
-set(CPACK_DEBIAN_DEV_PACKAGE_MULTIARCH same)
+# Debian calls ldconfig by a trigger; see packages.sh on what CPack does.
+file(CONFIGURE OUTPUT ${debian}/shlibs CONTENT "libhsdm ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} ${soname_package} (>= ${PROJECT_VERSION})\n")
+file(CONFIGURE OUTPUT ${debian}/triggers CONTENT "activate-noawait ldconfig\n")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA "${debian}/shlibs;${debian}/triggers")
 
 # Pages of man(1) are compressed.
 set(docs "\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/share")

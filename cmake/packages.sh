@@ -33,4 +33,12 @@ rm -rf "$tree/packages"
     cat "$tree/cpack.log" >&2
     exit 1
 }
+# CPack writes scripts that call ldconfig, which the trigger in the package does as well.
+for library in "$tree"/packages/libhsdm[0-9]*.deb; do
+    rm -rf "$tree/library"
+    dpkg-deb -R "$library" "$tree/library"
+    rm -f "$tree/library/DEBIAN/postinst" "$tree/library/DEBIAN/postrm"
+    dpkg-deb --root-owner-group -b "$tree/library" "$library" >/dev/null
+done
+rm -rf "$tree/packages/_CPack_Packages" "$tree/library"
 ls "$tree"/packages/*.deb
