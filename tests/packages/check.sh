@@ -148,7 +148,7 @@ fake=$([ "$(id -u)" -eq 0 ] || echo fakeroot)
 [ "$way" = folder ] || [ -z "$fake" ] || fail "a root of its own needs the rights of root"
 check_lintian
 make_root
-files >"$work/before"
+[ "$way" = root ] || files >"$work/before"
 install_packages
 use_command
 build_consumer
