@@ -377,6 +377,11 @@ int access(const char* path, int wanted) noexcept {
     return watched(path) && fails(Kind::status, path) ? -1 : next(path, wanted);
 }
 
+int faccessat(int folder, const char* path, int wanted, int flags) noexcept {
+    NEXT(faccessat);
+    return watched(path) && fails(Kind::status, path) ? -1 : next(folder, path, wanted, flags);
+}
+
 ssize_t readlink(const char* path, char* target, size_t size) noexcept {
     NEXT(readlink);
     return watched(path) && fails(Kind::status, path) ? -1 : next(path, target, size);
