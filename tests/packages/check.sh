@@ -92,6 +92,7 @@ use_command() {
     in_root hsdm_generate part --points 20000 --noise 0.002 -o try/scan.ply
     in_root hsdm reconstruct try/scan.ply --depth 5 -o try/part.off --report try/part.json
     in_root hsdm process try/part.off --stage classify-features -o try/classified.ply # a module
+    in_root env -u HSDM_PLUGIN_PATH hsdm stages | grep -q "$libdir/hsdm/plugins" || fail "modules are looked for elsewhere"
     in_root hsdm_bench --help >/dev/null
     for page in "$root"/usr/share/man/man1/hsdm*.1.gz; do gzip -t "$page"; done
     bash -n "$root/usr/share/bash-completion/completions/hsdm"
