@@ -74,9 +74,12 @@ hsdm_debian_package(tools hsdm-tools graphics "scans of known solids, and measur
   "hsdm_generate writes scans of solids whose surface is known, with noise\nand outliers; hsdm_bench measures what becomes of such."
   "${soname_package} (= ${full_version})" tools)
 if(HSDM_BUILD_PYTHON)
+  # Built for one Python; the command is what `python3 -m hsdm` runs.
+  math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
   hsdm_debian_package(python python3-hsdm python "scanned points to CAD-ready meshes, Python module"
-    "This is the module for Python 3, on NumPy's arrays."
-    "${soname_package} (= ${full_version}), python3, python3-numpy" python)
+    "This is the module for Python ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}, on NumPy's arrays."
+    "hsdm (= ${full_version}), ${soname_package} (= ${full_version}), python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}~), python3 (<< ${Python_VERSION_MAJOR}.${next_minor}), python3-numpy" python)
+  install(CODE "file(REMOVE \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/share/doc/hsdm/LICENSE\")" COMPONENT python)
 endif()
 # Debian calls ldconfig by a trigger; see packages.sh on what CPack does.
 file(CONFIGURE OUTPUT ${debian}/shlibs CONTENT "libhsdm ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} ${soname_package} (>= ${PROJECT_VERSION})\n")

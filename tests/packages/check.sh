@@ -101,6 +101,18 @@ use_command() {
     done
 }
 
+# If there is a package of it; Debian's own Python, which leaves nothing behind.
+use_python() {
+    [ -d "$root/usr/lib/python3/dist-packages/hsdm" ] || return 0
+    say python3-hsdm
+    in_root env PYTHONDONTWRITEBYTECODE=1 PYTHONPATH="$at/usr/lib/python3/dist-packages" /usr/bin/python3 -c '
+import numpy, hsdm
+points = numpy.random.default_rng(1).normal(size=(5000, 3))
+points /= numpy.linalg.norm(points, axis=1)[:, None]
+print(hsdm.reconstruct(points, depth=4))'
+    in_root env PYTHONDONTWRITEBYTECODE=1 PYTHONPATH="$at/usr/lib/python3/dist-packages" /usr/bin/python3 -m hsdm --version
+}
+
 # The example of README, by CMake and by pkg-config.
 build_consumer() {
     say "a program against libhsdm-dev"
@@ -114,7 +126,6 @@ add_executable(mine main.cc)
 target_link_libraries(mine PRIVATE hsdm::hsdm)
 END
     cp "$root/try/scan.ply" "$root/try/mine/scan.ply"
-    at=$([ "$way" = root ] || echo "$root")
     (
         [ "$way" = root ] || export CMAKE_PREFIX_PATH="$root/usr" PKG_CONFIG_PATH="$root$libdir/pkgconfig"
         in_root cmake -S "$at/try/mine" -B "$at/try/mine/build" -G Ninja -DCMAKE_CXX_FLAGS=-O0 >"$work/log" 2>&1 &&
@@ -145,6 +156,7 @@ remove_packages() {
 for tool in lintian dpkg-deb $([ "$way" = folder ] || echo debootstrap); do
     command -v "$tool" >/dev/null || { echo "packages: no $tool here; skipped" && exit 77; }
 done
+at=$([ "$way" = root ] || echo "$root") # where the root is for who stands outside of it, or not
 fake=$([ "$(id -u)" -eq 0 ] || echo fakeroot)
 [ "$way" = folder ] || [ -z "$fake" ] || fail "a root of its own needs the rights of root"
 check_lintian
@@ -152,6 +164,7 @@ make_root
 [ "$way" = root ] || files >"$work/before"
 install_packages
 use_command
+use_python
 build_consumer
 say remove
 remove_packages >"$work/left"
