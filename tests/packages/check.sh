@@ -144,7 +144,7 @@ left_over() {
 
 remove_packages() {
     if [ "$way" = root ]; then
-        in_root dpkg -L $(names) | sort -u >"$work/installed"
+        in_root dpkg -L $(names) | grep "^/[^.]" | sort -u >"$work/installed"
         in_root dpkg -P $(names) >/dev/null
         left_over
     else
