@@ -43,7 +43,7 @@ std::string italic(const std::string& text) {
 }
 
 /// Of section headings and titles, in which a quotation mark would end the argument.
-std::string quoted(const std::string& text) {
+std::string in_quotes(const std::string& text) {
     std::string plain = text;
     std::erase(plain, '"');
     return '"' + literal(plain) + '"';
@@ -54,7 +54,7 @@ std::string upper(std::string text) {
     return text;
 }
 
-std::string entry(const std::string& tag, const std::string& text) {
+std::string tagged(const std::string& tag, const std::string& text) {
     return ".TP\n" + tag + '\n' + literal(text) + '\n';
 }
 
@@ -67,8 +67,8 @@ std::string option_entry(const OptionText& option) {
     std::string tag;
     for (const std::string& name : option.names) tag += (tag.empty() ? "" : ", ") + bold(name);
     if (!option.value.empty()) tag += (tag.empty() ? "" : " ") + value_of(option);
-    return entry(tag, full_description(option)
-                          + (option.repeats && !option.names.empty() ? "; can be given several times" : ""));
+    return tagged(tag, full_description(option)
+                           + (option.repeats && !option.names.empty() ? "; can be given several times" : ""));
 }
 
 /// Lines of a footer: those below `Examples:`, which are indented, and all others.
@@ -97,17 +97,17 @@ std::string verbatim(const std::string& title, const std::string& lines) {
 }
 
 std::string meanings(const std::string& title, const std::vector<Meaning>& all) {
-    std::string text = ".SH " + quoted(title) + '\n';
-    for (const Meaning& one : all) text += entry(bold(one.name), one.text);
+    std::string text = ".SH " + in_quotes(title) + '\n';
+    for (const Meaning& one : all) text += tagged(bold(one.name), one.text);
     return text;
 }
 
-std::string subcommand_entries(const CommandText& command) {
+std::string subcommand_section(const CommandText& command) {
     std::string text = ".SH SUBCOMMANDS\n", group;
     for (const CommandText& sub : command.subcommands) {
-        if (sub.group != group) text += ".SS " + quoted(sub.group) + '\n';
+        if (sub.group != group) text += ".SS " + in_quotes(sub.group) + '\n';
         group = sub.group;
-        text += entry(bold(sub.name), sub.description + "; see " + page_name(sub) + "(1)");
+        text += tagged(bold(sub.name), sub.description + "; see " + page_name(sub) + "(1)");
     }
     return text;
 }
@@ -129,18 +129,18 @@ std::string page_name(const CommandText& command) {
 
 std::string man_page(const CommandText& command) {
     const std::string name = page_name(command);
-    std::string page = ".TH " + quoted(upper(name)) + " 1 \"\" " + quoted("hsdm " + std::string(version))
-                       + " \"User Commands\"\n.nh\n.ad l\n";
+    std::string page = ".TH " + in_quotes(upper(name)) + " 1 \"\" "
+                       + in_quotes("hsdm " + std::string(version)) + " \"User Commands\"\n.nh\n.ad l\n";
     page += ".SH NAME\n" + literal(name) + " \\- " + literal(command.description) + '\n';
     page += ".SH SYNOPSIS\n" + bold(command.path) + ' ' + literal(synopsis(command)) + '\n';
     const Footer footer = split(command.footer);
     page += verbatim("DESCRIPTION", footer.notes);
-    if (!command.subcommands.empty()) page += subcommand_entries(command);
+    if (!command.subcommands.empty()) page += subcommand_section(command);
     if (!command.arguments.empty()) page += ".SH ARGUMENTS\n";
     for (const OptionText& argument : command.arguments) page += option_entry(argument);
     page += ".SH OPTIONS\n";
     for (const OptionGroup& group : command.groups) {
-        page += ".SS " + quoted(group.title) + '\n';
+        page += ".SS " + in_quotes(group.title) + '\n';
         for (const OptionText& option : group.options) page += option_entry(option);
     }
     page += meanings("ENVIRONMENT", environment_variables());
