@@ -81,7 +81,7 @@ install_packages() {
         in_root hsdm --version
         apt install $(cd "$root" && ls packages/*.deb | sed 's,^,/,') g++ cmake ninja-build pkg-config
     else
-        $fake dpkg --root="$root" --log=/dev/null --force-depends --force-not-root -i "$packages"/*.deb >"$work/log" 2>&1 ||
+        $fake dpkg --root="$root" --log=/dev/null --force-depends --force-not-root --path-include='/usr/share/*' -i "$packages"/*.deb >"$work/log" 2>&1 ||
             { cat "$work/log" >&2 && fail "dpkg could not install them"; }
     fi
 }
