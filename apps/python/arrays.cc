@@ -20,6 +20,7 @@ StridedSpan rows_of(const py::array& array, py::ssize_t columns) {
     const bool is_table = array.ndim() == 2 && array.shape(1) == columns;
     if (!is_table && !(columns == 1 && array.ndim() == 1))
         throw py::value_error("rows of " + std::to_string(columns) + " numbers are wanted");
+    if (array.shape(0) == 0) return {};
     if (columns > 1 && array.strides(1) != array.itemsize())
         throw py::value_error("the numbers of a row must stand one after the other");
     if (array.shape(0) > 1 && array.strides(0) < columns * array.itemsize())

@@ -44,7 +44,7 @@ def to_pyvista(mesh: Mesh) -> Any:
     """See Mesh.to_pyvista."""
     pyvista = _package("pyvista")
     # Each face is its number of vertices and then these.
-    faces = np.insert(mesh.face_vertices.astype(np.int64), mesh.face_offsets[:-1], mesh.face_sizes)
+    faces = np.insert(mesh.face_vertices.astype(np.int64), mesh.face_offsets[:-1].astype(np.int64), mesh.face_sizes)
     made = pyvista.PolyData(np.array(mesh.vertices), faces)
     for name, values in _attributes(mesh).items():
         made.point_data[name] = values.reshape(len(values), -1) if values.ndim > 1 else values

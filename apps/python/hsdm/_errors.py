@@ -14,7 +14,10 @@ class CloudError(Error, ValueError):
 
 
 class FileError(Error, OSError):
-    """A file that cannot be read or written: ``FILE:LINE: what, and what to do``."""
+    """A file that cannot be read or written: ``FILE:LINE: what, and what to do``; ``filename`` is its path."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])  # an OSError with a file name would make another text of it
 
 
 class Cancelled(Error):

@@ -1,0 +1,75 @@
+"""Files in and out, by the library's readers and writers."""
+
+import numpy as np
+import pytest
+
+import hsdm
+
+
+@pytest.fixture
+def scan(tmp_path, torus):
+    points, normals = torus
+    path = tmp_path / "scan.xyz"
+    rows = np.concatenate([points, normals], axis=1)
+    np.savetxt(path, rows, "%.17g")
+    return path
+
+
+def test_points_that_are_read_give_the_mesh_of_the_arrays(scan, torus):
+    cloud = hsdm.read_points(scan)
+    assert len(cloud) == len(torus[0]) and cloud.format == "xyz" and cloud.columns == "x,y,z,nx,ny,nz"
+    assert (cloud.positions == torus[0]).all() and (cloud.normals == torus[1]).all()
+    assert cloud.colors is None and cloud.sensor is None and cloud.sensors is None
+    assert hsdm.reconstruct(cloud, depth=4).digest() == hsdm.reconstruct(*torus, depth=4).digest()
+    assert repr(cloud) == "<hsdm.Points: 20,000 points with normals>"
+
+
+def test_columns_say_what_a_table_holds(tmp_path, torus):
+    points, normals = torus
+    side = (points[:, 0] > 0).astype(int)
+    path = tmp_path / "scan.csv"
+    rows = np.column_stack([points, normals, side * 200, side * 100, side, side + 5, points[:, 2]])
+    header = "x,y,z,nx,ny,nz,red,green,blue,classification,height"
+    np.savetxt(path, rows, "%.9g", delimiter=",", header=header, comments="")
+    cloud = hsdm.read_points(str(path))
+    assert cloud.colors.shape == (len(points), 4)
+    assert list(cloud.scalars) == ["height"] and list(cloud.labels) == ["classification"]
+    mesh = hsdm.reconstruct(cloud, depth=4)
+    assert set(np.unique(mesh.properties["classification"])) == {5, 6}
+    assert np.abs(mesh.properties["height"] - mesh.vertices[:, 2]).max() < np.sqrt(3) * mesh.report["grid"]["voxel_size"]
+    other = hsdm.reconstruct(cloud, labels={"classification": side + 1}, depth=4)
+    assert set(np.unique(other.properties["classification"])) == {1, 2}
+    plain = hsdm.read_points(path, columns="x,y,z,_,_,_,_,_,_,_,_")
+    assert plain.normals is None and not plain.scalars
+    with pytest.raises(hsdm.OptionError):
+        hsdm.read_points(path, format="docx")
+
+
+@pytest.mark.parametrize("name", ["part.off", "part.ply", "part.obj", "part.om"])
+def test_a_mesh_that_is_written_reads_back_to_the_same_bits(tmp_path, adaptive_mesh, name):
+    adaptive_mesh.write(tmp_path / name)
+    again = hsdm.read_mesh(tmp_path / name)
+    assert again.digest() == adaptive_mesh.digest()
+    if name != "part.off":
+        assert np.allclose(again.normals, adaptive_mesh.normals, atol=1e-12)
+    if name in ("part.ply", "part.om"):
+        assert (again.vertex_classes == adaptive_mesh.vertex_classes).all()
+        assert (again.crease_normals == adaptive_mesh.crease_normals).all()
+    if name == "part.om":
+        assert sorted(again.sharp_edges.tolist()) == sorted(adaptive_mesh.sharp_edges.tolist())
+
+
+def test_stl_has_the_triangles(tmp_path, box_mesh):
+    box_mesh.write(tmp_path / "part.stl")
+    again = hsdm.read_mesh(tmp_path / "part.stl")
+    assert len(again.triangles) == len(box_mesh.triangulated())
+    assert again.topology()["closed"]
+    box_mesh.write(tmp_path / "text.stl", ascii=True)
+    assert (tmp_path / "text.stl").read_bytes().startswith(b"solid")
+
+
+def test_every_format_that_is_named_is_known(tmp_path):
+    assert {"ply", "pcd", "xyz", "pts", "om"} <= set(hsdm.point_formats)
+    for name in hsdm.point_formats:
+        with pytest.raises(hsdm.FileError, match="none"):
+            hsdm.read_points(tmp_path / "none", format=name)
