@@ -1,20 +1,21 @@
 #!/bin/sh
-# sh cmake/bootstrap.sh tools|build|demo|test [CMAKE-ARGUMENT...]
+# sh cmake/bootstrap.sh tools|build|python|demo|test [CMAKE-ARGUMENT...]
 #
 # On Debian 12: installs what is missing, then
 #   tools  nothing more (with the compilers and tools of .ci/run)
 #   build  configures and builds build/release
+#   python builds the Python package too, into build/release/python; then `pip install .` needs no network
 #   demo   builds, scans a mechanical part, reconstructs it and draws it, into demo/
 #   test   builds and runs every test; the last line is `N passed, N failed`
 set -eu
 
 usage() {
-    sed -n '2,8s/^# \{0,1\}//p' "$0"
+    sed -n '2,9s/^# \{0,1\}//p' "$0"
 }
 
 goal=${1:-}
 case $goal in
-tools | build | demo | test) shift ;;
+tools | build | python | demo | test) shift ;;
 -h | --help) usage && exit 0 ;;
 *) usage >&2 && exit 2 ;;
 esac
@@ -22,7 +23,10 @@ cd "$(dirname "$0")/.."
 
 packages="g++ cmake ninja-build libopenmesh-dev libeigen3-dev libflann-dev libtbb-dev libfast-float-dev
     libboost-dev nlohmann-json3-dev libcli11-dev catch2"
+python="pybind11-dev python3-dev python3-numpy"
 case $goal in
+python) packages="$packages $python python3-skbuild python3-venv" ;;
+test) packages="$packages $python python3-pytest python3-meshio mypy" ;;
 demo) packages="$packages f3d xvfb xauth" ;;
 tools) packages="$packages clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 llvm-14 doxygen git
     python3 lintian zsh fish man-db" ;;
@@ -124,7 +128,7 @@ install_missing
 [ "$goal" != tools ] || exit 0
 configure "$@"
 case $goal in
-build) cmake --build build/release ;;
+build | python) cmake --build build/release ;;
 demo) demo ;;
 test) run_tests ;;
 esac

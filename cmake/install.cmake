@@ -1,5 +1,6 @@
 # Components of `cmake --install`, each with the licence: runtime (the command), library (a shared libhsdm), development
-# (headers, package files, a static libhsdm), modules, examples; in Debian packages also tools (hsdm_generate, hsdm_bench).
+# (headers, package files, a static libhsdm), modules, examples; and python (apps/python), by its name alone. In Debian
+# packages also tools (hsdm_generate, hsdm_bench).
 
 # hsdm_install(TARGET FOLDER COMPONENT): installs a program or a module into FOLDER of the prefix. A shared libhsdm is found
 # from there by a relative path, so the prefix can be moved.

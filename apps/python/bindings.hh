@@ -14,6 +14,8 @@ void bind_files(pybind11::module_& core);
 void bind_options(pybind11::module_& core);
 /// reconstruct, reconstruct_levels, and View, the points that they take.
 void bind_reconstruct(pybind11::module_& core);
+/// process: stages.
+void bind_process(pybind11::module_& core);
 /// compare, topology.
 void bind_quality(pybind11::module_& core);
 

@@ -13,5 +13,6 @@ PYBIND11_MODULE(_core, core) {
     hsdm::python::bind_files(core);
     hsdm::python::bind_options(core);
     hsdm::python::bind_reconstruct(core);
+    hsdm::python::bind_process(core);
     hsdm::python::bind_quality(core);
 }

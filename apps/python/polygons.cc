@@ -3,13 +3,12 @@
 #include "interpreter.hh"
 
 #include "hsdm/io/write_mesh.hh"
-#include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/mesh/triangulate.hh"
 #include "hsdm/quality/mesh_digest.hh"
-#include "hsdm/stages/stages.hh"
 
 #include <pybind11/stl.h>
 
+#include <array>
 #include <cstring>
 
 namespace hsdm::python {
@@ -117,21 +116,6 @@ bool write(const PolygonMesh& mesh, const std::string& path, bool ascii) {
     });
 }
 
-/// The polygons that stages leave, and what each says it did.
-py::tuple process(const PolygonMesh& mesh, const std::vector<std::string>& stages) {
-    auto left = std::make_shared<PolygonMesh>();
-    std::vector<std::string> summaries;
-    run_interruptibly([&] {
-        std::vector<StageCall> calls;
-        for (const std::string& text : stages) calls.push_back(parse_stage_call(text));
-        PolyMesh worked_on;
-        to_mesh(mesh, worked_on);
-        for (const StageCall& call : calls) summaries.push_back(call(worked_on));
-        *left = to_polygons(worked_on);
-    });
-    return py::make_tuple(left, summaries);
-}
-
 } // namespace
 
 void bind_polygons(py::module_& core) {
@@ -159,7 +143,6 @@ void bind_polygons(py::module_& core) {
         .def("properties", &properties_of)
         .def("triangles", &triangles_of)
         .def("write", &write, py::arg("path"), py::arg("ascii"))
-        .def("process", &process, py::arg("stages"))
         .def("digest", [](const PolygonMesh& mesh) { return mesh_digest(mesh); });
 }
 

@@ -137,5 +137,18 @@ def test_stages_run_in_their_order_and_leave_another_mesh(torus):
     assert small.topology()["genus"] == 1
     assert [stage["call"] for stage in small.report["stages"]] == ["decimate:facets=500", "classify"]
     assert mesh.report["stages"] == []
-    with pytest.raises(hsdm.OptionError, match="decimate"):
-        mesh.process("decimate:faces=500")
+
+
+@pytest.mark.parametrize("stage", ["decimate:faces=500", "decimat", "", "transfer"])
+def test_a_stage_that_there_is_not_is_named(box_mesh, stage):
+    with pytest.raises(hsdm.OptionError, match=stage[:7]):
+        box_mesh.process(stage)
+
+
+def test_stages_refuse_what_is_no_2_manifold_or_too_large_to_be_measured(box_mesh):
+    fin = hsdm.Mesh(np.eye(5, 3), [[0, 1, 2], [0, 1, 3], [0, 1, 4]])
+    with pytest.raises(hsdm.CloudError, match="half-edge mesh cannot hold"):
+        fin.process("classify")
+    huge = hsdm.Mesh(box_mesh.vertices * 1e40, box_mesh.face_vertices, box_mesh.face_offsets)
+    with pytest.raises(hsdm.CloudError, match="scale the mesh"):
+        huge.process("classify")

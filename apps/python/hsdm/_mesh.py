@@ -193,9 +193,10 @@ class Mesh:
         """The mesh that stages leave, which run in the order given: ``mesh.process("decimate:facets=500")``.
 
         They are those of ``python -m hsdm stages``. What each did is appended to the report's ``stages``; its
-        other parts stay those of the mesh before. Raises OptionError, CloudError.
+        other parts stay those of the mesh before. Raises OptionError for what no stage is or takes, CloudError for a
+        mesh that is no 2-manifold.
         """
-        polygons, summaries = self._polygons.process(list(stages))
+        polygons, summaries = _core.process(self._polygons, list(stages))
         report = json.loads(self._report)
         done = [{"call": call, "summary": summary} for call, summary in zip(stages, summaries)]
         report["stages"] = report.get("stages", []) + done
