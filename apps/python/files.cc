@@ -46,7 +46,7 @@ py::dict scalars_of(const py::object& self, bool labels) {
     py::dict scalars;
     for (const Scalar& scalar : cloud_of(self).scalars)
         if (scalar.is_label == labels)
-            scalars[py::str(scalar.name)] =
+            scalars[text_of(scalar.name)] =
                 borrowed(scalar.values.data(), {static_cast<py::ssize_t>(scalar.values.size())}, self);
     return scalars;
 }
@@ -80,7 +80,7 @@ void bind_files(py::module_& core) {
         .def_readonly("format", &PointFile::format)
         .def_readonly("faces", &PointFile::faces)
         .def_readonly("nonfinite", &PointFile::nonfinite)
-        .def_readonly("columns", &PointFile::columns);
+        .def_property_readonly("columns", [](const PointFile& file) { return text_of(file.columns); });
     core.def("read_points", &read_cloud, py::arg("path"), py::arg("format"), py::arg("columns"),
              py::arg("sensors"), py::arg("sensor_column"));
     core.def("read_mesh", &read_polygons, py::arg("path"));

@@ -32,12 +32,12 @@ py::object error_type(const char* name) {
 }
 
 void set_error(const char* type, const char* message) {
-    PyErr_SetString(error_type(type).ptr(), message);
+    PyErr_SetObject(error_type(type).ptr(), text_of(message).ptr());
 }
 
 void set_file_error(const FileError& error) {
-    const py::object made = error_type("FileError")(error.what());
-    made.attr("filename") = error.path();
+    const py::object made = error_type("FileError")(text_of(error.what()));
+    made.attr("filename") = text_of(error.path());
     PyErr_SetObject(py::type::of(made).ptr(), made.ptr());
 }
 
@@ -77,6 +77,13 @@ bool Watch::goes_on(const char* phase, double done) {
         failure_.emplace(raised);
         return false;
     }
+}
+
+py::str text_of(const std::string& bytes) {
+    const auto size = static_cast<Py_ssize_t>(bytes.size());
+    PyObject* const text = PyUnicode_DecodeFSDefaultAndSize(bytes.data(), size);
+    if (!text) throw py::error_already_set();
+    return py::reinterpret_steal<py::str>(text);
 }
 
 void translate_errors() {

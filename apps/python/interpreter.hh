@@ -55,6 +55,10 @@ auto run_interruptibly(const Work& work) {
     });
 }
 
+/// Text that may hold the bytes of names of files, which need not be UTF-8: these become what os.fsdecode()
+/// makes of them, and os.fsencode() undoes.
+py::str text_of(const std::string& bytes);
+
 /// An Error of a file that is read or written.
 class FileError : public Error {
 public:

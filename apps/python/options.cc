@@ -51,7 +51,8 @@ void bind_options(py::module_& core) {
         .def_readwrite("classify", &ReconstructOptions::classify)
         .def_readwrite("vertex_normals", &ReconstructOptions::vertex_normals)
         .def_readwrite("measure", &ReconstructOptions::measure)
-        .def_readwrite("debug_dir", &ReconstructOptions::debug_dir);
+        .def("set_debug_dir",
+             [](ReconstructOptions& options, const std::string& folder) { options.debug_dir = folder; });
 }
 
 } // namespace hsdm::python

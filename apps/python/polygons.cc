@@ -88,7 +88,7 @@ py::array values_of(const VertexProperty& property, const py::handle& owner) {
 py::dict properties_of(const py::object& self) {
     py::dict properties;
     for (const VertexProperty& property : self.cast<const PolygonMesh&>().properties)
-        properties[py::str(property.name)] = values_of(property, self);
+        properties[text_of(property.name)] = values_of(property, self);
     return properties;
 }
 

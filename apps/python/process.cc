@@ -51,7 +51,9 @@ py::tuple process(const PolygonMesh& facets, const std::vector<std::string>& sta
         for (const StageCall& call : calls) summaries.push_back(call(mesh));
         *left = to_polygons(mesh);
     });
-    return py::make_tuple(left, summaries);
+    py::list said;
+    for (const std::string& summary : summaries) said.append(text_of(summary));
+    return py::make_tuple(left, said);
 }
 
 } // namespace

@@ -60,7 +60,7 @@ Made made_of(const Reconstruction& result) {
 }
 
 py::tuple tuple_of(const Made& made) {
-    return py::make_tuple(made.polygons, made.report);
+    return py::make_tuple(made.polygons, text_of(made.report));
 }
 
 ReconstructOptions watched(ReconstructOptions options, Watch& watch) {

@@ -1,5 +1,8 @@
 """Files in and out, by the library's readers and writers."""
 
+import os
+import pickle
+
 import numpy as np
 import pytest
 
@@ -66,6 +69,24 @@ def test_stl_has_the_triangles(tmp_path, box_mesh):
     assert again.topology()["closed"]
     box_mesh.write(tmp_path / "text.stl", ascii=True)
     assert (tmp_path / "text.stl").read_bytes().startswith(b"solid")
+
+
+def test_names_need_not_be_utf_8(tmp_path, torus, box_mesh):
+    folder = os.fsencode(tmp_path)
+    path = folder + b"/caf\xe9.csv"
+    with open(path, "wb") as file:
+        file.write(b"x,y,z,nx,ny,nz,h\xf6he\n")
+        np.savetxt(file, np.column_stack([*torus, torus[0][:, 2]]), "%.9g", delimiter=",")
+    cloud = hsdm.read_points(path)
+    (name,) = cloud.scalars
+    assert os.fsencode(name) == b"h\xf6he"
+    mesh = hsdm.reconstruct(cloud, depth=3, debug_dir=folder + b"/\xe9")
+    assert name in mesh.properties and pickle.loads(pickle.dumps(mesh)).properties.keys() == mesh.properties.keys()
+    mesh.write(os.fsdecode(folder + b"/\xfcber.ply"))
+    assert name in hsdm.read_mesh(folder + b"/\xfcber.ply").properties
+    with pytest.raises(hsdm.FileError) as caught:
+        hsdm.read_points(folder + b"/\xff.ply")
+    assert os.fsencode(caught.value.filename) == folder + b"/\xff.ply"
 
 
 def test_every_format_that_is_named_is_known(tmp_path):

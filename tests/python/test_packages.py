@@ -30,6 +30,15 @@ def test_meshio_gets_all_faces_and_properties(coloured, tmp_path):
     assert (made.point_data["colors"] == coloured.colors).all()
 
 
+def test_meshio_gets_faces_of_five_vertices_as_polygons(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    turn = np.arange(5) * 2 * np.pi / 5
+    made = hsdm.Mesh(np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1), [[0, 1, 2, 3, 4]]).to_meshio()
+    made.write(tmp_path / "five.vtu")
+    (block,) = meshio.read(tmp_path / "five.vtu").cells
+    assert block.type.startswith("polygon") and block.data.tolist() == [[0, 1, 2, 3, 4]]
+
+
 def test_what_meshio_writes_hsdm_reads(box_mesh, tmp_path):
     pytest.importorskip("meshio")
     box_mesh.to_meshio().write(tmp_path / "box.ply", binary=False)

@@ -188,5 +188,7 @@ def test_compare_tells_how_far_apart_two_are(torus, box_mesh):
     result = hsdm.compare(points, mesh)
     assert result["a_to_b"]["max"] == pytest.approx(mesh.report["error"]["points_to_mesh_max"], rel=1e-6)
     assert result["a_to_b"]["median"] <= result["a_to_b"]["p95"] <= result["a_to_b"]["p99"]
+    with pytest.raises(hsdm.OptionError, match="samples -1"):
+        hsdm.compare(mesh, points, samples=-1)
     shifted = hsdm.Mesh(box_mesh.vertices + [0, 0, 10], box_mesh.face_vertices, box_mesh.face_offsets)
     assert hsdm.compare(box_mesh, shifted)["hausdorff"] == pytest.approx(10)

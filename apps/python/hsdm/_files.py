@@ -112,7 +112,7 @@ def read_points(
     FileError ``FILE:LINE: what, and what to do``, OptionError.
     """
     places = [_arrays.place("sensors", place) for place in sensors]
-    return Points(_core.read_points(os.fspath(path), format, columns, places, sensor_column))
+    return Points(_core.read_points(os.fsencode(path), format, columns, places, sensor_column))
 
 
 def read_mesh(path: Path) -> Mesh:
@@ -120,4 +120,4 @@ def read_mesh(path: Path) -> Mesh:
 
     Corners of STL at one place become one vertex. Raises FileError.
     """
-    return Mesh._of(_core.read_mesh(os.fspath(path)))
+    return Mesh._of(_core.read_mesh(os.fsencode(path)))

@@ -196,7 +196,7 @@ class Mesh:
         other parts stay those of the mesh before. Raises OptionError for what no stage is or takes, CloudError for a
         mesh that is no 2-manifold.
         """
-        polygons, summaries = _core.process(self._polygons, list(stages))
+        polygons, summaries = _core.process(self._polygons, [os.fsencode(stage) for stage in stages])
         report = json.loads(self._report)
         done = [{"call": call, "summary": summary} for call, summary in zip(stages, summaries)]
         report["stages"] = report.get("stages", []) + done
@@ -208,7 +208,7 @@ class Mesh:
         PLY and .om hold the properties, .om the sharp edges too. Either the whole file is there afterwards or the
         old one still is. ``ascii``: PLY and STL as text. Raises FileError.
         """
-        self._polygons.write(os.fspath(path), bool(ascii))
+        self._polygons.write(os.fsencode(path), bool(ascii))
 
     def to_trimesh(self) -> Any:
         """A trimesh.Trimesh of the faces as triangles; vertices keep their numbers, normals and colours."""
@@ -263,15 +263,15 @@ def _facets(
     )
 
 
-def _split_properties(given: Mapping[str, npt.ArrayLike], vertices: int) -> dict[str, npt.NDArray[Any]]:
+def _split_properties(given: Mapping[str, npt.ArrayLike], vertices: int) -> dict[bytes, npt.NDArray[Any]]:
     """Properties as the library has them, each a number for each vertex."""
-    split: dict[str, npt.NDArray[Any]] = {}
+    split: dict[bytes, npt.NDArray[Any]] = {}
     for name, values in given.items():
         array = np.asarray(values)
         if name == _NORMALS and array.shape == (vertices, 3, 3):
             parts = array.reshape(vertices, 9).astype(np.float32)
-            split.update({part: np.ascontiguousarray(parts[:, i]) for i, part in enumerate(_COMPONENTS)})
+            split.update({os.fsencode(part): np.ascontiguousarray(parts[:, i]) for i, part in enumerate(_COMPONENTS)})
             continue
         column = _arrays.scalars(f"property {name}", array, vertices)
-        split[name] = np.ascontiguousarray(column, column.dtype if column.dtype in _SMALL else np.float64)
+        split[os.fsencode(name)] = np.ascontiguousarray(column, column.dtype if column.dtype in _SMALL else np.float64)
     return split

@@ -115,5 +115,5 @@ def options_of(
     options.classify = flag("classify", classify)
     options.vertex_normals = flag("vertex_normals", vertex_normals)
     options.measure = flag("measure", measure)
-    options.debug_dir = os.fspath(debug_dir)
+    options.set_debug_dir(os.fsencode(debug_dir))
     return options

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _arrays, _core
+from ._errors import OptionError
 from ._files import Points
 from ._mesh import Mesh
 from ._options import options_of, whole
@@ -151,7 +152,10 @@ def compare(
     Each way has ``max``, ``mean``, ``rms``, ``median``, ``p95`` and ``p99`` of the distances of all points of a cloud,
     or of ``samples`` points spread over a mesh, from the other. Raises CloudError, OptionError.
     """
-    return _core.compare(_polygons_of("a", a), _polygons_of("b", b), whole("samples", samples))
+    count = whole("samples", samples)
+    if count < 1:
+        raise OptionError(f"samples {count}: must be above 0")
+    return _core.compare(_polygons_of("a", a), _polygons_of("b", b), count)
 
 
 def _check_callable(progress: object) -> None:
@@ -197,9 +201,9 @@ def _view_of(
         None if sensor_of is None else _arrays.labels("sensor_of", sensor_of, rows).astype(np.int32),
     )
     for name, values in numbers.items():
-        view.add_scalar(name, _arrays.scalars(f"scalars {name}", values, rows), False)
+        view.add_scalar(os.fsencode(name), _arrays.scalars(f"scalars {name}", values, rows), False)
     for name, values in read_marks.items():
-        view.add_scalar(name, values, True)
+        view.add_scalar(os.fsencode(name), values, True)
     for name, values in marks.items():
-        view.add_scalar(name, _arrays.labels(f"labels {name}", values, rows), True)
+        view.add_scalar(os.fsencode(name), _arrays.labels(f"labels {name}", values, rows), True)
     return view
