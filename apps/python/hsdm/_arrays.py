@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import Any, Optional, Sequence
 
 import numpy as np
@@ -103,6 +104,16 @@ def labels(name: str, given: npt.ArrayLike, rows: int) -> Array:
 def _fits_int32(array: Array) -> bool:
     limits = np.iinfo(np.int32)
     return not array.size or bool(array.min() >= limits.min and array.max() <= limits.max)
+
+
+def property_name(given: object) -> bytes:
+    """A name as files have it: a word that is not one of the coordinates'."""
+    if not isinstance(given, str):
+        raise TypeError(f"a property's name: a str is wanted, {type(given).__name__} came")
+    is_word = given.split() == [given] and min(given) > " "
+    if not is_word or given in ("x", "y", "z", "nx", "ny", "nz"):
+        raise ValueError(f"a property's name: {given!r} came, a word other than x, y, z, nx, ny, nz is wanted")
+    return os.fsencode(given)
 
 
 def place(name: str, given: Sequence[float]) -> tuple[float, float, float]:

@@ -273,5 +273,5 @@ def _split_properties(given: Mapping[str, npt.ArrayLike], vertices: int) -> dict
             split.update({os.fsencode(part): np.ascontiguousarray(parts[:, i]) for i, part in enumerate(_COMPONENTS)})
             continue
         column = _arrays.scalars(f"property {name}", array, vertices)
-        split[os.fsencode(name)] = np.ascontiguousarray(column, column.dtype if column.dtype in _SMALL else np.float64)
+        split[_arrays.property_name(name)] = np.ascontiguousarray(column, column.dtype if column.dtype in _SMALL else np.float64)
     return split

@@ -181,14 +181,16 @@ def _view_of(
     sensor_of: Optional[npt.ArrayLike],
 ) -> _core.View:
     numbers, marks = dict(scalars or {}), dict(labels or {})
+    read_numbers: Mapping[str, npt.NDArray[np.float64]] = {}
     read_marks: Mapping[str, npt.NDArray[np.float64]] = {}
     if isinstance(points, Points):
         normals = points.normals if normals is None else normals
         colors = points.colors if colors is None else colors
         if sensor is None and sensors is None:
             sensor, sensors, sensor_of = points.sensor, points.sensors, points.sensor_of
-        numbers = {**points.scalars, **numbers}
-        read_marks = {name: values for name, values in points.labels.items() if name not in marks}
+        given = {**numbers, **marks}
+        read_numbers = {name: values for name, values in points.scalars.items() if name not in given}
+        read_marks = {name: values for name, values in points.labels.items() if name not in given}
         points = points.positions
     positions = _arrays.vectors("points", points)
     rows = len(positions)
@@ -201,9 +203,11 @@ def _view_of(
         None if sensor_of is None else _arrays.labels("sensor_of", sensor_of, rows).astype(np.int32),
     )
     for name, values in numbers.items():
-        view.add_scalar(os.fsencode(name), _arrays.scalars(f"scalars {name}", values, rows), False)
+        view.add_scalar(_arrays.property_name(name), _arrays.scalars(f"scalars {name}", values, rows), False)
+    for name, values in read_numbers.items():
+        view.add_scalar(os.fsencode(name), values, False)
     for name, values in read_marks.items():
         view.add_scalar(os.fsencode(name), values, True)
     for name, values in marks.items():
-        view.add_scalar(os.fsencode(name), _arrays.labels(f"labels {name}", values, rows), True)
+        view.add_scalar(_arrays.property_name(name), _arrays.labels(f"labels {name}", values, rows), True)
     return view
