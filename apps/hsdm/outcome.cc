@@ -1,77 +1,128 @@
 #include "outcome.hh"
 
-#include "messages.hh"
-
 #include <algorithm>
-#include <iomanip>
-#include <sstream>
-#include <utility>
+#include <cstdint>
+#include <string_view>
 
 namespace hsdm::command {
 namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-std::string xml(std::string_view text) {
-    // The last two are UTF-8, but no characters of XML.
-    constexpr std::pair<std::string_view, std::string_view> written[] = {{"&", "&amp;"},
-                                                                         {"<", "&lt;"},
-                                                                         {">", "&gt;"},
-                                                                         {"\"", "&quot;"},
-                                                                         {"\xef\xbf\xbe", "\\ufffe"},
-                                                                         {"\xef\xbf\xbf", "\\uffff"}};
-    std::string result = printable(text);
-    for (const auto& [from, to] : written)
-        for (std::size_t at = result.find(from); at != std::string::npos;
-             at = result.find(from, at + to.size()))
-            result.replace(at, from.size(), to);
-    return result;
+constexpr std::string_view digits_of_64 = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+OrderedJson json_of(const AgainstBaseline& baseline) {
+    OrderedJson object{{"seconds", baseline.seconds},     {"peak_memory_bytes", baseline.peak_memory_bytes},
+                       {"machine", baseline.machine},     {"ok", baseline.was_ok},
+                       {"same_mesh", baseline.same_mesh}, {"slower", baseline.slower},
+                       {"more_memory", baseline.more}};
+    if (!baseline.not_judged.empty()) object["not_judged"] = baseline.not_judged;
+    return object;
 }
 
-void put_case(std::ostream& out, const std::string& suite, const Outcome& outcome) {
-    out << "    <testcase classname=\"" << suite << "\" name=\"" << xml(outcome.name) << "\" time=\""
-        << outcome.seconds << '"';
-    if (outcome.misses.empty()) {
-        out << "/>\n";
-        return;
-    }
-    const char* const kind = outcome.report.is_null() ? "error" : "failure";
-    out << ">\n      <" << kind << " message=\"" << xml(outcome.misses.front()) << "\">";
-    for (const std::string& reason : outcome.misses) out << xml(reason) << '\n';
-    out << "</" << kind << ">\n    </testcase>\n";
+/// A member, if it is there and of the fallback's kind.
+template <class T>
+T value_or(const OrderedJson& object, const char* key, const T& fallback) {
+    const auto found = object.find(key);
+    if (found == object.end() || found->is_number() != OrderedJson(fallback).is_number()
+        || found->is_array() != OrderedJson(fallback).is_array()
+        || found->is_string() != OrderedJson(fallback).is_string()
+        || found->is_boolean() != OrderedJson(fallback).is_boolean())
+        return fallback;
+    return found->template get<T>();
+}
+
+std::vector<std::string> texts_of(const OrderedJson& object, const char* key) {
+    std::vector<std::string> texts;
+    const auto found = object.find(key);
+    if (found == object.end() || !found->is_array()) return texts;
+    for (const OrderedJson& one : *found)
+        if (one.is_string()) texts.push_back(one.get<std::string>());
+    return texts;
+}
+
+/// A length in bytes or the like; numbers that are none are 0.
+std::size_t count_of(const OrderedJson& object, const char* key) {
+    const double value = value_or(object, key, 0.0);
+    return value > 0 && value < 9e15 ? static_cast<std::size_t>(value) : 0;
 }
 
 } // namespace
 
+OrderedJson json_of(const Outcome& one) {
+    OrderedJson object{{"name", one.name},
+                       {"ok", is_ok(one)},
+                       {"misses", one.misses},
+                       {"seconds", one.seconds},
+                       {"input", one.input},
+                       {"args", one.arguments},
+                       {"peak_memory_bytes", one.peak_memory_bytes},
+                       {"machine_seconds", one.machine_seconds},
+                       {"runs", one.runs},
+                       {"status", one.status}};
+    if (one.status != 0) object["failure"] = one.failure;
+    if (!one.printed.empty()) object["printed"] = one.printed;
+    if (one.baseline) object["baseline"] = json_of(*one.baseline);
+    if (!one.picture.empty()) object["picture"] = base64(one.picture);
+    object["report"] = one.report;
+    if (one.interrupted) object["interrupted"] = true;
+    return object;
+}
+
+Outcome outcome_of(const OrderedJson& object) {
+    Outcome one;
+    one.name = value_or(object, "name", std::string());
+    one.misses = texts_of(object, "misses");
+    one.seconds = value_or(object, "seconds", 0.0);
+    one.interrupted = value_or(object, "interrupted", false);
+    one.input = value_or(object, "input", std::string());
+    one.arguments = texts_of(object, "args");
+    one.peak_memory_bytes = count_of(object, "peak_memory_bytes");
+    one.machine_seconds = value_or(object, "machine_seconds", 0.0);
+    one.runs = static_cast<int>(std::min<std::size_t>(count_of(object, "runs"), 1000));
+    one.status = static_cast<int>(std::min<std::size_t>(count_of(object, "status"), 255));
+    one.failure = value_or(object, "failure", std::string());
+    one.printed = value_or(object, "printed", std::string());
+    one.picture = from_base64(value_or(object, "picture", std::string()));
+    const auto report = object.find("report");
+    if (report != object.end() && report->is_object()) one.report = *report;
+    return one;
+}
+
 std::string to_json(const std::vector<Outcome>& outcomes) {
     OrderedJson results = OrderedJson::array();
-    for (const Outcome& one : outcomes) {
-        results.push_back({{"name", one.name},
-                           {"ok", one.misses.empty()},
-                           {"misses", one.misses},
-                           {"seconds", one.seconds},
-                           {"report", one.report}});
-        if (one.interrupted) results.back()["interrupted"] = true;
-    }
+    for (const Outcome& one : outcomes) results.push_back(json_of(one));
     return results.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + '\n';
 }
 
-std::string to_junit(const std::string& suite, const std::vector<Outcome>& outcomes) {
-    const auto count = [&outcomes](bool without_report) {
-        return std::count_if(outcomes.begin(), outcomes.end(), [without_report](const Outcome& one) {
-            return !one.misses.empty() && one.report.is_null() == without_report;
-        });
-    };
-    double seconds = 0;
-    for (const Outcome& one : outcomes) seconds += one.seconds;
-    const std::string name = xml(suite);
-    std::ostringstream out;
-    out << std::fixed << std::setprecision(3) << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
-        << "  <testsuite name=\"" << name << "\" tests=\"" << outcomes.size() << "\" failures=\""
-        << count(false) << "\" errors=\"" << count(true) << "\" time=\"" << seconds << "\">\n";
-    for (const Outcome& one : outcomes) put_case(out, name, one);
-    out << "  </testsuite>\n</testsuites>\n";
-    return out.str();
+std::string base64(const std::string& bytes) {
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+        std::uint32_t word = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            word = word << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+        for (std::size_t k = 0; k < 4; ++k)
+            text += k <= count ? digits_of_64[word >> (18 - 6 * k) & 63] : '=';
+    }
+    return text;
+}
+
+std::string from_base64(const std::string& text) {
+    std::string bytes;
+    if (text.size() % 4 != 0) return bytes;
+    std::uint32_t word = 0;
+    std::size_t held = 0;
+    for (const char c : text.substr(0, text.find('='))) {
+        const std::size_t digit = digits_of_64.find(c);
+        if (digit == std::string_view::npos) return "";
+        word = word << 6 | static_cast<std::uint32_t>(digit);
+        if ((held += 6) < 8) continue;
+        held -= 8;
+        bytes += static_cast<char>(word >> held & 255);
+    }
+    return bytes;
 }
 
 } // namespace hsdm::command

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <regex>
 #include <set>
 
 namespace hsdm::command {
@@ -21,6 +22,8 @@ constexpr int most_nested = 32;
 constexpr std::size_t most_keys = 1000;
 /// As long as paths can be; names are matched by a recursion over their bytes.
 constexpr std::size_t most_bytes = 4096;
+/// Of a regular expression, which is read by recursion, too.
+constexpr std::size_t most_pattern_bytes = 512;
 
 /// A value of a suite and where it stands, for messages.
 struct Place {
@@ -120,7 +123,8 @@ std::vector<std::string> report_keys() {
 
 /// Refuses what could never be missed as well as what could never hold.
 void check_expectations(const Json& expect, const Place& place) {
-    if (expect.empty()) place.fail("expects nothing: `expect` must name a key of the report");
+    if (expect.empty())
+        place.fail("expects nothing: `expect` must name a key of the report, or `fails` a message");
     for (const auto& [key, expected] : expect.items()) {
         const std::string quoted = '`' + key + '`';
         if (!may_lead_somewhere(key))
@@ -169,17 +173,60 @@ std::string output_format(const Json& entry, const Place& place) {
     return format;
 }
 
+/// What the message of a failure must hold.
+std::string failure_pattern(const Json& entry, const Place& place) {
+    std::string pattern = text_of(entry, "fails", "", place);
+    if (pattern.empty()) place.fail("`fails` is empty, so any message would do; name a part of the message");
+    if (pattern.size() > most_pattern_bytes)
+        place.fail("`fails` is longer than " + std::to_string(most_pattern_bytes) + " bytes");
+    try {
+        const std::regex check(pattern);
+    } catch (const std::regex_error&) {
+        place.fail("`fails` is no regular expression (ECMAScript)");
+    }
+    return pattern;
+}
+
+/// How the case must fail, if it must: nothing can be expected of a report then.
+std::optional<Failure> parse_failure(const Json& entry, const Place& place) {
+    if (!entry.contains("fails")) {
+        if (entry.contains("status")) place.fail("has a `status`, but nothing that `fails`");
+        return std::nullopt;
+    }
+    for (const char* key : {"expect", "reference", "output", "max_slower", "max_memory"})
+        if (entry.contains(key))
+            place.fail("`fails` and `" + std::string(key) + "` are both there, but what fails has no report");
+    Failure failure{failure_pattern(entry, place)};
+    if (const Json* const status = member(entry, "status")) {
+        if (*status != 1 && *status != 2) place.fail("`status` must be 1 (it failed) or 2 (wrong usage)");
+        failure.status = status->get<int>();
+    }
+    return failure;
+}
+
+/// A bound relative to the baseline, if there is one.
+std::optional<double> parse_ratio(const Json& entry, const char* key, const Place& place) {
+    const Json* const ratio = member(entry, key);
+    if (!ratio) return std::nullopt;
+    if (!ratio->is_number() || *ratio < 1)
+        place.fail("`" + std::string(key) + "` must be a number of times the baseline, 1 or more");
+    return ratio->get<double>();
+}
+
 Case parse_case(const Json& entry, const std::filesystem::path& folder, OtherKeys others,
                 const Place& place) {
     if (!entry.is_object()) place.fail("must be an object with an `input`");
     if (others == OtherKeys::refused)
-        place.check_keys(entry, {"name", "input", "args", "reference", "output", "expect"});
+        place.check_keys(entry, {"name", "input", "args", "reference", "output", "expect", "fails", "status",
+                                 "max_slower", "max_memory"});
     const std::string input = text_of(entry, "input", "", place);
     if (input.empty()) place.fail("has no `input`");
     Case one;
     one.input = (folder / input).string();
+    one.pattern = input;
     one.folder = folder.string();
     one.name = text_of(entry, "name", input, place);
+    one.named = entry.contains("name");
     if (const Json* const arguments = member(entry, "args")) {
         const bool words = arguments->is_array()
                            && std::all_of(arguments->begin(), arguments->end(),
@@ -191,7 +238,10 @@ Case parse_case(const Json& entry, const std::filesystem::path& folder, OtherKey
     one.expect = expect ? *expect : Json::object();
     if (!one.expect.is_object()) place.fail("`expect` must be an object");
     if (others == OtherKeys::left) return one;
-    check_expectations(one.expect, place);
+    one.fails = parse_failure(entry, place);
+    one.most_slower = parse_ratio(entry, "max_slower", place);
+    one.most_memory = parse_ratio(entry, "max_memory", place);
+    if (!one.fails) check_expectations(one.expect, place);
     if (const std::string reference = text_of(entry, "reference", "", place); !reference.empty())
         one.reference = (folder / reference).string();
     one.output = output_format(entry, place);

@@ -18,6 +18,7 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <regex>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -48,21 +49,25 @@ Comparison compare_to_reference(const std::string& path, const PolyMesh& mesh) {
     return compare(to_polygons(mesh), reference.mesh);
 }
 
-/// Measures what the case asks for beyond the report; the misses are those of the file that it wrote.
-CaseReport measure_case(const Case& one, const CaseOptions& asked, Reconstruction&& made,
-                        std::vector<std::string>& misses) {
+/// Measures what the case asks for beyond the report; misses are warnings, if it is strict, and what the file
+/// that it wrote says otherwise. Takes the report.
+CaseReport measure_case(const Case& one, const CaseOptions& asked, Reconstruction& made, Outcome& outcome) {
     CaseReport all;
     measure_details(made.mesh, made.report.mesh);
     set_phase("intersections");
     if (asked.strict || one.expect.contains("mesh.intersections"))
         count_intersections(made.mesh, made.report);
-    if (asked.strict && !made.report.warnings.empty()) misses.push_back(strict_words(made.report));
+    if (asked.strict && !made.report.warnings.empty()) {
+        outcome.status = failed;
+        outcome.failure = strict_words(made.report);
+        outcome.misses.push_back(outcome.failure);
+    }
     if (!one.reference.empty()) all.reference = compare_to_reference(one.reference, made.mesh);
     set_activity(one.input.c_str(), "write");
     if (!one.output.empty()) {
         OutputCheck check = check_output(one, asked, made.mesh);
         all.output = std::move(check.output);
-        if (!check.fault.empty()) misses.push_back("the " + one.output + " file " + check.fault);
+        if (!check.fault.empty()) outcome.misses.push_back("the " + one.output + " file " + check.fault);
     }
     all.report = std::move(made.report);
     return all;
@@ -76,12 +81,44 @@ CaseOptions options_of(const Case& one) {
     return asked;
 }
 
+/// That the command would end with.
+int status_of(const std::exception& error) {
+    const bool usage = dynamic_cast<const UsageError*>(&error) || dynamic_cast<const OptionError*>(&error);
+    return usage ? wrong_usage : failed;
+}
+
+/// Of a message only so much is searched: by recursion.
+constexpr std::size_t most_searched = 4096;
+
+/// Why a case that must fail did not, or did otherwise.
+std::vector<std::string> misses_of_failure(const Failure& expected, const Outcome& outcome) {
+    const std::string wanted = "`" + expected.message + "`";
+    if (outcome.status == done) return {"made a mesh; a failure with " + wanted + " was expected"};
+    const std::string message = outcome.failure.substr(0, most_searched);
+    if (!std::regex_search(message, std::regex(expected.message)))
+        return {"failed without " + wanted + " in its message: " + outcome.failure};
+    if (outcome.status != expected.status)
+        return {"failed with status " + std::to_string(outcome.status) + ", expected "
+                + std::to_string(expected.status) + ": " + outcome.failure};
+    return {};
+}
+
+Outcome interrupted(const Case& one) {
+    Outcome outcome;
+    outcome.name = one.name;
+    outcome.input = one.input;
+    outcome.arguments = one.arguments;
+    outcome.misses = {"interrupted"};
+    outcome.interrupted = true;
+    return outcome;
+}
+
 /// Cases that are taken one by one by several threads.
 class Queue {
 public:
-    Queue(std::span<const Case> cases, SuiteProgress& progress,
-          const std::function<void(const std::function<void()>&)>& change)
-        : cases_(cases), progress_(progress), change_(change) {}
+    Queue(std::span<const Case> cases, const std::function<Outcome(const Case&)>& run,
+          SuiteProgress& progress, const std::function<void(const std::function<void()>&)>& change)
+        : cases_(cases), run_(run), progress_(progress), change_(change) {}
 
     /// Runs one case after the other while there are any.
     void work() noexcept {
@@ -111,7 +148,7 @@ public:
 private:
     void run_one(std::size_t i) {
         change_([&] { progress_.begun[i] = true; });
-        Outcome outcome = run_case(cases_[i]);
+        Outcome outcome = run_(cases_[i]);
         change_([&] { progress_.outcomes[i] = std::move(outcome); });
         {
             const std::lock_guard lock(mutex_);
@@ -121,6 +158,7 @@ private:
     }
 
     std::span<const Case> cases_;
+    const std::function<Outcome(const Case&)>& run_;
     SuiteProgress& progress_;
     const std::function<void(const std::function<void()>&)>& change_;
     std::atomic<std::size_t> next_ = 0;
@@ -143,22 +181,32 @@ std::vector<std::jthread> start_workers(int count, Queue& queue) {
 
 } // namespace
 
-Outcome run_case(const Case& one) {
+Outcome run_case(const Case& one, PolygonMesh* mesh) {
     Outcome outcome;
     outcome.name = one.name;
     const auto start = std::chrono::steady_clock::now();
+    const auto stop = [&outcome, start] {
+        outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
     try {
+        outcome.status = wrong_usage;
         const CaseOptions asked = options_of(one);
+        outcome.status = done;
         Reconstruction made = reconstruct_case(one, asked);
-        outcome.report = to_json(measure_case(one, asked, std::move(made), outcome.misses));
+        outcome.report = to_json(measure_case(one, asked, made, outcome));
         for (const auto& [key, expected] : one.expect.items()) {
             const std::string reason = miss(key, find_key(outcome.report, key), expected);
             if (!reason.empty()) outcome.misses.push_back(reason);
         }
+        stop();
+        if (mesh) *mesh = to_polygons(made.mesh);
     } catch (const std::exception& error) {
-        outcome.misses.push_back(message_of(error));
+        stop();
+        if (outcome.status == done) outcome.status = status_of(error);
+        outcome.failure = message_of(error);
+        outcome.misses.push_back(outcome.failure);
     }
-    outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (one.fails) outcome.misses = misses_of_failure(*one.fails, outcome);
     return outcome;
 }
 
@@ -168,17 +216,17 @@ std::vector<Outcome> SuiteProgress::so_far(std::span<const Case> cases) const {
         if (outcomes[i])
             all.push_back(*outcomes[i]);
         else if (begun[i])
-            all.push_back({cases[i].name, nullptr, {"interrupted"}, 0, true});
+            all.push_back(interrupted(cases[i]));
     }
     return all;
 }
 
-void run_cases(std::span<const Case> cases, int jobs, SuiteProgress& progress,
-               const std::function<void(const std::function<void()>& make)>& change,
+void run_cases(std::span<const Case> cases, int jobs, const std::function<Outcome(const Case&)>& run,
+               SuiteProgress& progress, const std::function<void(const std::function<void()>& make)>& change,
                const std::function<void(const Outcome&)>& show) {
     progress.outcomes.assign(cases.size(), std::nullopt);
     progress.begun.assign(cases.size(), 0);
-    Queue queue(cases, progress, change);
+    Queue queue(cases, run, progress, change);
     const int threads = std::min(jobs, static_cast<int>(std::min<std::size_t>(cases.size(), 256)));
     const std::vector<std::jthread> others =
         threads > 1 ? start_workers(threads, queue) : std::vector<std::jthread>();

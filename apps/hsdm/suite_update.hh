@@ -21,11 +21,12 @@ struct SuiteChange {
 
 /// What must change so that the outcomes, one for each of the cases, are within tolerance: plain values and
 /// the `value` of bounds become what was found, `min` and `max` too where it lies beyond them; tolerances
-/// stay. What is within tolerance stays as it is, and so does what no value could mend: a key that the report
-/// does not have, a bound for what is no number, a case without a report.
+/// stay. Of a case of several files a bound becomes what holds for all. What is within tolerance stays as it
+/// is, and so does what no value could mend: a key that the report does not have, a bound for what is no
+/// number, a case without a report, files that differ.
 std::vector<SuiteChange> changes_to(std::span<const Case> cases, std::span<const Outcome> outcomes);
 
-/// The misses that the changes mend, by number of cases: whether no other miss is left.
+/// Whether no miss is left once the changes are made.
 bool mends_all(const std::vector<SuiteChange>& changes, std::span<const Case> cases,
                std::span<const Outcome> outcomes);
 

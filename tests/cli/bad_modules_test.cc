@@ -1,6 +1,7 @@
 // Modules that crash, hang, end the program or leave a broken mesh: the command says which, and writes
 // nothing.
 #include "cli/run.hh"
+#include "cli/scan.hh"
 #include "hsdm/io/read_mesh.hh"
 
 #include <catch2/catch.hpp>
@@ -70,6 +71,30 @@ TEST_CASE("a module that crashes is named before its signal ends the command", "
     CHECK(ended.status == 1);
     CHECK(ended.err == "hsdm: cube.off: module ill ended the program\n");
     CHECK(read_file(folder / "new.off") == "old");
+}
+
+TEST_CASE("a module that crashes or ends the program in a suite is a miss of its case alone",
+          "[cli][threads]") {
+    const Folder folder;
+    const std::string modules = with_ill_module(folder);
+    folder.write("scan.xyz", xyz(sphere_scan(500)));
+    std::string cases;
+    for (const char* stage : {"ill:how=segv", "ill:how=exit", "classify-features"})
+        cases += std::string(cases.empty() ? "" : ", ") + R"({"name": ")" + stage
+                 + R"(", "input": "scan.xyz", "args": ["--depth", "3", "--stage", ")" + stage
+                 + R"("], "expect": {"mesh.closed": true}})";
+    folder.write("suite.json", R"({"cases": [)" + cases + "]}");
+    const CommandResult result =
+        run(folder, "regress suite.json --junit r.xml --jobs 3", "ulimit -c 0; " + modules);
+    INFO(result.out << result.err);
+    CHECK(result.status == 1);
+    CHECK(result.out.find("module ill crashed: segmentation fault; ended by signal 11 (Segmentation fault)\n")
+          != std::string::npos);
+    CHECK(result.out.find("module ill ended the program; ended by status 1\n") != std::string::npos);
+    CHECK(result.out.find("1 of 3 within tolerance\n") != std::string::npos);
+    const std::string xml = read_file(folder / "r.xml");
+    CHECK(xml.find("printed:\nhsdm: ./scan.xyz: module ill crashed: segmentation fault\n")
+          != std::string::npos);
 }
 
 TEST_CASE("a module that never asks is cancelled all the same, also the last one", "[cli][threads]") {

@@ -270,14 +270,15 @@ TEST_CASE("regress writes what missed as JUnit's XML", "[cli]") {
     INFO(result.out << result.err);
     CHECK(result.status == 1);
     const std::string xml = read_file(folder / "r.xml");
-    for (const char* part :
-         {"<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n",
-          "<testsuite name=\"suite.json\" tests=\"3\" failures=\"1\" errors=\"1\" time=\"",
-          "<testcase classname=\"suite.json\" name=\"good\" time=\"",
-          "name=\"&lt;a &amp; &quot;b&quot;&gt;\\x07\\uffff\" time=\"",
-          "<failure message=\"mesh.closed is true, expected false\">mesh.closed is true, expected false\n"
-          "mesh.genus is 0, expected 7\n</failure>\n",
-          "<error message=\"./missing.xyz: "}) {
+    for (const char* part : {"<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n",
+                             "<testsuite name=\"suite.json\" package=\"hsdm\" id=\"0\" timestamp=\"",
+                             "tests=\"3\" failures=\"1\" errors=\"1\" time=\"",
+                             "<testcase classname=\"suite.json\" name=\"good\" time=\"",
+                             "name=\"&lt;a &amp; &quot;b&quot;&gt;\\x07\\uffff\" time=\"",
+                             "<failure message=\"mesh.closed is true, expected false\" type=\"out of "
+                             "tolerance\">mesh.closed is true, expected false\n"
+                             "mesh.genus is 0, expected 7\n</failure>\n",
+                             "<error message=\"./missing.xyz: "}) {
         INFO(part);
         CHECK(xml.find(part) != std::string::npos);
     }

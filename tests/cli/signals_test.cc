@@ -128,7 +128,8 @@ TEST_CASE("a signal during a suite leaves the rows and results of the cases that
         CHECK(results[1]["name"] == "second");
         CHECK(results[1]["ok"] == false);
         CHECK(results[1]["interrupted"] == true);
-        CHECK(read_file(folder / "r.xml").find("<error message=\"interrupted\">") != std::string::npos);
+        CHECK(read_file(folder / "r.xml").find("<error message=\"interrupted\" type=\"interrupted\">")
+              != std::string::npos);
         CHECK(list(folder) == "err\nout\nr.json\nr.xml\nscan.xyz\nstuck.xyz\nsuite.json\n");
     }
     // Side by side each keeps its place, whichever was done first.
@@ -143,6 +144,30 @@ TEST_CASE("a signal during a suite leaves the rows and results of the cases that
     const CommandResult piped = end_after_first("INT", "regress suite.json --json wait");
     CHECK(piped.status == 130);
     CHECK(piped.err == "hsdm: cancelled; nothing was written\n");
+}
+
+TEST_CASE("no case of a suite outlives it, whatever ends it", "[cli][threads]") {
+    const Folder folder;
+    folder.write("scan.xyz", xyz(sphere_scan(500)));
+    REQUIRE(mkfifo((folder / "stuck.xyz").c_str(), 0600) == 0);
+    folder.write("suite.json", R"({"cases": [
+        {"name": "first", "input": "scan.xyz", "args": ["--depth", "3"], "expect": {"mesh.closed": true}},
+        {"name": "second", "input": "stuck.xyz", "expect": {"mesh.closed": true}}]})");
+    const std::string commands_here =
+        "for p in /proc/[0-9]*; do [ \"$(cat $p/comm 2>/dev/null)\" = hsdm ] && "
+        "[ \"$(readlink $p/cwd)\" = \"$PWD\" ] && echo $p; done";
+    for (const char* signal : {"INT", "KILL"}) {
+        INFO(signal);
+        std::remove((folder / "out").c_str());
+        CHECK(end_by(folder, signal, "regress suite.json",
+                     "grep -q '^ok    first' out 2>/dev/null && [ $(" + commands_here + " | wc -l) = 2 ]")
+                  .status
+              > 128);
+        const CommandResult left =
+            run(folder, "--version; for i in $(seq 200); do left=$(" + commands_here
+                            + "); [ -z \"$left\" ] && break; sleep 0.02; done; echo \"left:$left\"");
+        CHECK(left.out.ends_with("left:\n"));
+    }
 }
 
 TEST_CASE("a signal that was ignored stays so where shells do not do it for every job", "[cli][threads]") {

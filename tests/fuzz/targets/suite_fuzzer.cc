@@ -47,7 +47,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     renew({reinterpret_cast<const char*>(bytes), size}, cases);
     for (const command::Case& one : cases) {
         promise(!one.input.empty(), "a case has an input");
-        promise(one.expect.is_object() && !one.expect.empty(), "a case expects keys of a report");
+        promise(one.expect.is_object() && one.expect.empty() == one.fails.has_value(),
+                "a case expects keys of a report or a failure");
         for (const auto& [key, expected] : one.expect.items()) {
             command::miss(key, command::find_key(report(), key), expected);
             if (!expected.is_object())
