@@ -1,5 +1,6 @@
 #include "case_process.hh"
 
+#include "activity.hh"
 #include "command.hh"
 #include "machine_speed.hh"
 #include "mesh_picture.hh"
@@ -17,6 +18,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <new>
 #include <optional>
 #include <span>
 #include <system_error>
@@ -61,6 +63,7 @@ private:
 };
 
 [[noreturn]] void fail(const std::string& what, int error) {
+    if (error == ENOMEM) throw std::bad_alloc();
     throw Error("a process for the case could not be " + what + ": " + std::strerror(error)
                 + "; are there too many processes or open files? try fewer --jobs");
 }
@@ -291,6 +294,7 @@ Outcome run_in_process(const Case& one, const CaseTask& task) {
     const auto begin = std::chrono::steady_clock::now();
     Outcome outcome;
     outcome.status = failed;
+    bool came = false;
     try {
         Lines lines;
         const pid_t child = start(lines);
@@ -301,16 +305,18 @@ Outcome run_in_process(const Case& one, const CaseTask& task) {
         const Received got = receive(lines, child);
         if (const std::optional<Json> result = unpacked(got.result); result && result->is_object()) {
             outcome = outcome_of(*result);
+            came = true;
         } else {
             outcome.status = status_of_end(got.status);
-            outcome.failure = words_of_end(got);
-            outcome.misses.push_back(one.input + ": " + outcome.failure);
+            outcome.failure = one.input + ": " + words_of_end(got);
         }
         outcome.printed = got.printed;
+    } catch (const std::bad_alloc&) {
+        outcome.failure = one.input + ": out of memory in phase start" + memory_advice;
     } catch (const std::exception& error) {
         outcome.failure = words_of(error);
-        outcome.misses.push_back(outcome.failure);
     }
+    if (!came) outcome.misses.push_back(outcome.failure);
     if (outcome.seconds == 0)
         outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     outcome.name = one.name;

@@ -166,10 +166,10 @@ TEST_CASE("a baseline that is none is refused, and bounds without one", "[cli]")
 
 TEST_CASE("a case's memory is its own, whatever ran before it", "[cli]") {
     const Folder folder;
-    folder.write("large.xyz", xyz(sphere_scan(200000)));
+    folder.write("large.xyz", xyz(sphere_scan(60000)));
     folder.write("small.xyz", xyz(sphere_scan(500)));
     folder.write("suite.json", R"({"cases": [
-        {"input": "large.xyz", "args": ["--depth", "7"], "expect": {"mesh.closed": true}},
+        {"input": "large.xyz", "args": ["--depth", "6"], "expect": {"mesh.closed": true}},
         {"input": "small.xyz", "args": ["--depth", "3"], "expect": {"mesh.closed": true}}]})");
     const CommandResult result = run(folder, "regress suite.json --json r.json");
     INFO(result.out << result.err);
@@ -220,7 +220,7 @@ TEST_CASE("the page of a suite is whole in itself and says what missed and what 
     CHECK(times_found(read_file(folder / "page.html"), "<figcaption>baseline</figcaption>") == "1");
 }
 
-TEST_CASE("a browser runs the page's script without a complaint, filters and sorts", "[cli][slow]") {
+TEST_CASE("a browser runs the page's script without a complaint, filters and sorts", "[cli]") {
     const std::string program = browser();
     if (program.empty()) {
         WARN("skipped, for there is no chromium");

@@ -41,8 +41,7 @@ Files files_below(const std::string& folder) {
 
 void remove_measurements(Json& json) {
     if (json.is_object()) {
-        json.erase("seconds");
-        json.erase("peak_memory_bytes");
+        for (const char* key : {"seconds", "machine_seconds", "peak_memory_bytes"}) json.erase(key);
     }
     if (json.is_structured())
         for (Json& part : json) remove_measurements(part);
