@@ -62,7 +62,7 @@ private:
     int number_ = -1;
 };
 
-[[noreturn]] void fail(const std::string& what, int error) {
+[[noreturn]] void fail_to_start(const std::string& what, int error) {
     if (error == ENOMEM) throw std::bad_alloc();
     throw Error("a process for the case could not be " + what + ": " + std::strerror(error)
                 + "; are there too many processes or open files? try fewer --jobs");
@@ -73,7 +73,7 @@ struct Pipe {
 
     Pipe() {
         int ends[2];
-        if (pipe2(ends, O_CLOEXEC) != 0) fail("reached", errno);
+        if (pipe2(ends, O_CLOEXEC) != 0) fail_to_start("reached", errno);
         read = Descriptor(ends[0]);
         write = Descriptor(ends[1]);
     }
@@ -119,7 +119,7 @@ std::optional<Json> unpacked(const std::string& bytes) {
     return Json::from_cbor(bytes.begin() + head, bytes.end(), true, false);
 }
 
-Json to_json(const Case& one, const CaseTask& task) {
+Json task_json(const Case& one, const CaseTask& task) {
     Json fails;
     if (one.fails) fails = {{"message", one.fails->message}, {"status", one.fails->status}};
     return {{"name", one.name},           {"input", one.input},
@@ -152,10 +152,10 @@ struct SpawnSettings {
     posix_spawnattr_t attributes;
 
     SpawnSettings() {
-        if (const int error = posix_spawn_file_actions_init(&actions)) fail("started", error);
+        if (const int error = posix_spawn_file_actions_init(&actions)) fail_to_start("started", error);
         if (const int error = posix_spawnattr_init(&attributes)) {
             posix_spawn_file_actions_destroy(&actions);
-            fail("started", error);
+            fail_to_start("started", error);
         }
     }
     ~SpawnSettings() {
@@ -172,7 +172,7 @@ struct Lines {
 };
 
 /// A process of its own group, so that what a terminal sends ends this one alone, which ends the others.
-pid_t start(const Lines& lines) {
+pid_t start_process(const Lines& lines) {
     SpawnSettings settings;
     const int in = lines.task.read.number(), out = lines.result.write.number();
     sigset_t none;
@@ -187,7 +187,7 @@ pid_t start(const Lines& lines) {
                                         {lines.printed.write.number(), STDERR_FILENO}};
     for (const auto& [from, to] : kept)
         if (const int error = posix_spawn_file_actions_adddup2(&settings.actions, from, to))
-            fail("started", error);
+            fail_to_start("started", error);
     std::string pipes = std::to_string(in) + ':' + std::to_string(out);
     std::string words[] = {"hsdm", "regress", "--case", std::move(pipes), "-"};
     char* arguments[] = {words[0].data(), words[1].data(), words[2].data(),
@@ -195,7 +195,7 @@ pid_t start(const Lines& lines) {
     pid_t child = -1;
     if (const int error = posix_spawn(&child, "/proc/self/exe", &settings.actions, &settings.attributes,
                                       arguments, environ))
-        fail("started", error);
+        fail_to_start("started", error);
     return child;
 }
 
@@ -297,11 +297,11 @@ Outcome run_in_process(const Case& one, const CaseTask& task) {
     bool came = false;
     try {
         Lines lines;
-        const pid_t child = start(lines);
+        const pid_t child = start_process(lines);
         lines.task.read.close();
         lines.result.write.close();
         lines.printed.write.close();
-        write_all(lines.task.write.number(), packed(to_json(one, task)));
+        write_all(lines.task.write.number(), packed(task_json(one, task)));
         const Received got = receive(lines, child);
         if (const std::optional<Json> result = unpacked(got.result); result && result->is_object()) {
             outcome = outcome_of(*result);

@@ -36,8 +36,7 @@ std::string xml_lines(const std::string& text) {
     return result;
 }
 
-/// An error is what did not come to a report; of a case that must fail, that it failed otherwise is a
-/// failure.
+/// An error is what did not come to a report, though it had to; of a failure there are numbers.
 bool is_error(const Outcome& one) {
     return !is_ok(one) && one.report.is_null();
 }

@@ -16,21 +16,22 @@ namespace {
 
 /// Each pixel is drawn as so many squared, which are averaged: smooth outlines and lines of half a pixel.
 constexpr int fine = 2;
-constexpr int width = picture_width * fine, height = picture_height * fine, margin = 4 * fine;
+constexpr int fine_width = picture_width * fine, fine_height = picture_height * fine, fine_margin = 4 * fine;
 /// More facets than these would be all edges.
 constexpr std::size_t most_with_edges = 2500;
 /// In pixels, what lines lie before the facets that they bound.
 constexpr double line_bias = 1.5;
 
 using Color = std::array<std::uint8_t, 3>;
-constexpr Color front{150, 180, 215}, inside{230, 150, 60}, line{60, 80, 110}, sharp{10, 20, 45};
+constexpr Color front_color{150, 180, 215}, inside_color{230, 150, 60}, line_color{60, 80, 110},
+    sharp_color{10, 20, 45};
 
 /// What is seen so far.
 class Canvas {
 public:
     void put(int x, int y, double depth, const Color& color) {
-        if (x < 0 || y < 0 || x >= width || y >= height) return;
-        const auto at = static_cast<std::size_t>(y * width + x);
+        if (x < 0 || y < 0 || x >= fine_width || y >= fine_height) return;
+        const auto at = static_cast<std::size_t>(y * fine_width + x);
         if (depth <= depths_[at]) return;
         depths_[at] = depth;
         colors_[at] = color;
@@ -49,7 +50,8 @@ private:
         std::array<int, 3> sum{};
         int covered = 0;
         for (int k = 0; k < fine * fine; ++k) {
-            const auto at = static_cast<std::size_t>((y * fine + k / fine) * width + x * fine + k % fine);
+            const auto at =
+                static_cast<std::size_t>((y * fine + k / fine) * fine_width + x * fine + k % fine);
             if (depths_[at] == nothing) continue;
             ++covered;
             for (std::size_t c = 0; c < 3; ++c) sum[c] += colors_[at][c];
@@ -59,8 +61,8 @@ private:
     }
 
     static constexpr double nothing = -1e300;
-    std::vector<double> depths_ = std::vector<double>(std::size_t{width} * height, nothing);
-    std::vector<Color> colors_ = std::vector<Color>(std::size_t{width} * height);
+    std::vector<double> depths_ = std::vector<double>(std::size_t{fine_width} * fine_height, nothing);
+    std::vector<Color> colors_ = std::vector<Color>(std::size_t{fine_width} * fine_height);
 };
 
 /// Positions as pixels across and down, and towards the eye, also in pixels.
@@ -78,12 +80,12 @@ std::vector<Vec3> project(const PolygonMesh& mesh) {
         seen.add(places.back());
     }
     const Vec3 size = seen.size();
-    const double scale = std::min((width - 2 * margin) / std::max(size[0], 1e-300),
-                                  (height - 2 * margin) / std::max(size[1], 1e-300));
+    const double scale = std::min((fine_width - 2 * fine_margin) / std::max(size[0], 1e-300),
+                                  (fine_height - 2 * fine_margin) / std::max(size[1], 1e-300));
     const Vec3 center = seen.lo / 2 + seen.hi / 2;
     for (Vec3& p : places) {
         p = (p - center) * scale;
-        p += Vec3(width / 2.0, height / 2.0, 0);
+        p += Vec3(fine_width / 2.0, fine_height / 2.0, 0);
     }
     return places;
 }
@@ -96,7 +98,7 @@ Color shade(const Vec3& area) {
     const Vec3 normal = length > 0 ? area / (is_front ? length : -length) : Vec3(0, 0, 1);
     // in steps, so that the file is small
     const double strength = std::round((0.45 + 0.55 * std::max(0.0, normal | light)) * 40) / 40;
-    Color color = is_front ? front : inside;
+    Color color = is_front ? front_color : inside_color;
     for (std::uint8_t& c : color) c = static_cast<std::uint8_t>(c * strength);
     return color;
 }
@@ -179,9 +181,9 @@ std::string draw_picture(const PolygonMesh& mesh) {
         for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
             const auto facet = mesh.facet(f);
             for (std::size_t i = 0; i < facet.size(); ++i)
-                draw_line(places[facet[i]], places[facet[(i + 1) % facet.size()]], line, canvas);
+                draw_line(places[facet[i]], places[facet[(i + 1) % facet.size()]], line_color, canvas);
         }
-    for (const auto& [a, b] : mesh.sharp_edges) draw_line(places[a], places[b], sharp, canvas);
+    for (const auto& [a, b] : mesh.sharp_edges) draw_line(places[a], places[b], sharp_color, canvas);
     return png_of(canvas.pixels());
 }
 

@@ -42,7 +42,7 @@ std::vector<std::string> texts_of(const OrderedJson& object, const char* key) {
 }
 
 /// A length in bytes or the like; numbers that are none are 0.
-std::size_t count_of(const OrderedJson& object, const char* key) {
+std::size_t size_at(const OrderedJson& object, const char* key) {
     const double value = value_or(object, key, 0.0);
     return value > 0 && value < 9e15 ? static_cast<std::size_t>(value) : 0;
 }
@@ -77,10 +77,10 @@ Outcome outcome_of(const OrderedJson& object) {
     one.interrupted = value_or(object, "interrupted", false);
     one.input = value_or(object, "input", std::string());
     one.arguments = texts_of(object, "args");
-    one.peak_memory_bytes = count_of(object, "peak_memory_bytes");
+    one.peak_memory_bytes = size_at(object, "peak_memory_bytes");
     one.machine_seconds = value_or(object, "machine_seconds", 0.0);
-    one.runs = static_cast<int>(std::min<std::size_t>(count_of(object, "runs"), 1000));
-    one.status = static_cast<int>(std::min<std::size_t>(count_of(object, "status"), 255));
+    one.runs = static_cast<int>(std::min<std::size_t>(size_at(object, "runs"), 1000));
+    one.status = static_cast<int>(std::min<std::size_t>(size_at(object, "status"), 255));
     one.failure = value_or(object, "failure", std::string());
     one.printed = value_or(object, "printed", std::string());
     one.picture = from_base64(value_or(object, "picture", std::string()));

@@ -252,7 +252,7 @@ int run_regress(const Arguments& given) {
     return all_within || mends_all(changes, cases, outcomes) ? done : failed;
 }
 
-CLI::Validator ratio() {
+CLI::Validator times_wanted() {
     return CLI::Validator(
         [](std::string& text) {
             const auto value = number_of<double>(text);
@@ -269,12 +269,12 @@ void add_baseline_options(CLI::App& sub, Arguments& given) {
         ->group(group);
     sub.add_option("--max-slower", given.bounds.most_slower,
                    "a case may take so many times the baseline's seconds, such as 1.3")
-        ->check(ratio())
+        ->check(times_wanted())
         ->type_name("TIMES")
         ->group(group);
     sub.add_option("--max-memory", given.bounds.most_memory,
                    "a case may take so many times the baseline's memory (and 16 MB), such as 1.2")
-        ->check(ratio())
+        ->check(times_wanted())
         ->type_name("TIMES")
         ->group(group);
     sub.add_option("--least-seconds", given.bounds.least_seconds,

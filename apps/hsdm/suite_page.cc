@@ -68,12 +68,12 @@ bool is_failure(const Outcome& one) {
 }
 
 /// The classes of a row: what the tiles at the top count, and show alone.
-struct Kind {
+struct RowKind {
     const char *name, *label;
     bool (*holds)(const Outcome&);
 };
 
-constexpr Kind kinds[] = {
+constexpr RowKind row_kinds[] = {
     {"all", "cases", [](const Outcome&) { return true; }},
     {"missed", "missed", [](const Outcome& one) { return !is_ok(one); }},
     {"passed", "passed", [](const Outcome& one) { return is_ok(one); }},
@@ -82,20 +82,20 @@ constexpr Kind kinds[] = {
     {"changed", "another mesh", is_changed},
     {"new", "not in the baseline", [](const Outcome& one) { return !one.baseline; }},
 };
-constexpr std::size_t kinds_without_baseline = 3;
+constexpr std::size_t row_kinds_without_baseline = 3;
 
-std::size_t kinds_of(const SuitePage& page) {
-    return page.before ? std::size(kinds) : kinds_without_baseline;
+std::size_t row_kinds_of(const SuitePage& page) {
+    return page.before ? std::size(row_kinds) : row_kinds_without_baseline;
 }
 
 void put_tiles(std::ostream& out, const SuitePage& page) {
     out << "<ul class=\"counts\">\n";
-    for (std::size_t k = 0; k < kinds_of(page); ++k) {
-        const auto count = std::count_if(page.outcomes.begin(), page.outcomes.end(), kinds[k].holds);
+    for (std::size_t k = 0; k < row_kinds_of(page); ++k) {
+        const auto count = std::count_if(page.outcomes.begin(), page.outcomes.end(), row_kinds[k].holds);
         const bool is_bad = count > 0 && (k == 1 || k == 3 || k == 4);
-        out << "<li><button type=\"button\" data-kind=\"" << kinds[k].name << "\" aria-pressed=\"false\"><b"
-            << (is_bad ? " class=\"bad\"" : "") << '>' << count << "</b>" << kinds[k].label
-            << "</button></li>\n";
+        out << "<li><button type=\"button\" data-kind=\"" << row_kinds[k].name
+            << "\" aria-pressed=\"false\"><b" << (is_bad ? " class=\"bad\"" : "") << '>' << count << "</b>"
+            << row_kinds[k].label << "</button></li>\n";
     }
     out << "</ul>\n";
 }
@@ -240,8 +240,8 @@ void put_row(std::ostream& out, const SuitePage& page, std::size_t i) {
     const Outcome& one = page.outcomes[i];
     const Outcome* const before = page.before ? page.before->find(page.cases[i]) : nullptr;
     out << "<tr class=\"case";
-    for (std::size_t k = 1; k < kinds_of(page); ++k)
-        if (kinds[k].holds(one)) out << ' ' << kinds[k].name;
+    for (std::size_t k = 1; k < row_kinds_of(page); ++k)
+        if (row_kinds[k].holds(one)) out << ' ' << row_kinds[k].name;
     out << "\" id=\"case-" << i + 1 << "\" data-index=\"" << i << "\" data-text=\""
         << html(searched_text(one)) << "\">\n<td class=\"mark " << (is_ok(one) ? "good" : "bad")
         << "\" data-value=\"" << (is_ok(one) ? "1" : "0") << "\">"

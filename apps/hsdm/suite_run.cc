@@ -82,7 +82,7 @@ CaseOptions options_of(const Case& one) {
 }
 
 /// That the command would end with.
-int status_of(const std::exception& error) {
+int status_after(const std::exception& error) {
     const bool usage = dynamic_cast<const UsageError*>(&error) || dynamic_cast<const OptionError*>(&error);
     return usage ? wrong_usage : failed;
 }
@@ -202,7 +202,7 @@ Outcome run_case(const Case& one, PolygonMesh* mesh) {
         if (mesh) *mesh = to_polygons(made.mesh);
     } catch (const std::exception& error) {
         stop();
-        if (outcome.status == done) outcome.status = status_of(error);
+        if (outcome.status == done) outcome.status = status_after(error);
         outcome.failure = message_of(error);
         outcome.misses.push_back(outcome.failure);
     }

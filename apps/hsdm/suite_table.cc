@@ -18,17 +18,17 @@ std::string fixed_text(double number, int digits) {
 }
 
 /// Times the baseline's; a machine that is slower now is allowed for.
-std::string ratio(double now, double before) {
+std::string times_text(double now, double before) {
     if (!(before > 0)) return "-";
     return now < 1000 * before ? fixed_text(now / before, 2) + 'x' : ">999x";
 }
 
-std::string count_of(const Outcome& outcome, const char* key) {
+std::string cell_text(const Outcome& outcome, const char* key) {
     const Json* const value = outcome.report.is_null() ? nullptr : find_key(outcome.report, key);
     return value == nullptr ? std::string("-") : value->dump();
 }
 
-std::string error_of(const Outcome& outcome) {
+std::string error_text(const Outcome& outcome) {
     const Json* const error =
         outcome.report.is_null() ? nullptr : find_key(outcome.report, "error.normalised_max");
     std::ostringstream percent;
@@ -52,17 +52,17 @@ void SuiteTable::print_head() {
 
 void SuiteTable::print_row(const Outcome& outcome) {
     out_ << (is_ok(outcome) ? "ok    " : "MISS  ") << std::left << std::setw(width_)
-         << printable(outcome.name) << std::right << std::setw(10) << count_of(outcome, "mesh.faces")
-         << std::setw(8) << count_of(outcome, "mesh.closed") << std::setw(7)
-         << count_of(outcome, "mesh.genus") << std::setw(10) << error_of(outcome) << std::setw(9)
+         << printable(outcome.name) << std::right << std::setw(10) << cell_text(outcome, "mesh.faces")
+         << std::setw(8) << cell_text(outcome, "mesh.closed") << std::setw(7)
+         << cell_text(outcome, "mesh.genus") << std::setw(10) << error_text(outcome) << std::setw(9)
          << fixed_text(outcome.seconds, 2) << std::setw(8) << outcome.peak_memory_bytes / 1000000;
     if (against_baseline_ && !outcome.baseline) out_ << "       -       -   new";
     if (const auto& before = outcome.baseline; before && !before->not_judged.empty())
         out_ << "       -       -" << (before->same_mesh ? "  same" : " other");
     else if (before)
-        out_ << std::setw(8) << ratio(outcome.seconds, before->seconds * before->machine) << std::setw(8)
-             << ratio(static_cast<double>(outcome.peak_memory_bytes),
-                      static_cast<double>(before->peak_memory_bytes))
+        out_ << std::setw(8) << times_text(outcome.seconds, before->seconds * before->machine) << std::setw(8)
+             << times_text(static_cast<double>(outcome.peak_memory_bytes),
+                           static_cast<double>(before->peak_memory_bytes))
              << (before->same_mesh ? "  same" : " other");
     out_ << '\n';
     for (const std::string& reason : outcome.misses) out_ << "      " << printable(reason) << '\n';

@@ -19,7 +19,9 @@ const command::Json& report() {
 
 /// What changes is as found afterwards, and all else is as before.
 void renew(const std::string& text, const std::vector<command::Case>& cases) {
-    const std::vector<command::Outcome> outcomes(cases.size(), {"", report(), {}});
+    command::Outcome found;
+    found.report = report();
+    const std::vector<command::Outcome> outcomes(cases.size(), found);
     const auto changes = command::changes_to(cases, outcomes);
     const auto renewed = command::parse_suite(command::with_changes(text, changes), "suite.json");
     promise(renewed.size() == cases.size(), "cases stay");
