@@ -1,5 +1,7 @@
 #include "input_pattern.hh"
 
+#include "messages.hh"
+
 #include "hsdm/errors.hh"
 
 #include <algorithm>
@@ -166,7 +168,8 @@ std::vector<Case> with_files_of_patterns(std::vector<Case> cases, const std::str
         for (const std::string& file : files) {
             all.push_back(one);
             all.back().input = (fs::path(one.folder) / file).string();
-            all.back().name = one.named ? one.name + ": " + file : file;
+            const std::string shown = printable(file); // results are UTF-8, file names need not be
+            all.back().name = one.named ? one.name + ": " + shown : shown;
         }
     }
     return all;

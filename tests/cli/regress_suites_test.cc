@@ -92,6 +92,14 @@ TEST_CASE("patterns are below a suite's root, and one that no file is as is refu
     }
 }
 
+TEST_CASE("a file whose name is no text is a case like others, and found in a baseline", "[cli]") {
+    const Folder folder;
+    folder.write("\xff\n.xyz", xyz(sphere_scan(500)));
+    REQUIRE(regress_suite(folder, closed("*.xyz"), "--json r.json --html r.html").status == 0);
+    CHECK(names_in(folder) == std::vector<std::string>{"\\xff\\x0a.xyz"});
+    CHECK_THAT(regress_suite(folder, closed("*.xyz"), "--baseline r.json").out, Contains(" 0 new\n"));
+}
+
 TEST_CASE("an update gives a case of several files bounds that hold for all", "[cli]") {
     const Folder folder;
     folder.write("a.xyz", xyz(sphere_scan(500)));
