@@ -18,6 +18,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <filesystem>
 #include <new>
 #include <optional>
 #include <span>
@@ -166,6 +167,15 @@ struct SpawnSettings {
     SpawnSettings& operator=(const SpawnSettings&) = delete;
 };
 
+/// This program's file: by its name, which tools that run it see through; by the link itself if it was
+/// replaced.
+std::string this_program() {
+    const std::string link = "/proc/self/exe";
+    std::error_code error;
+    const std::filesystem::path file = std::filesystem::read_symlink(link, error);
+    return !error && std::filesystem::exists(file, error) ? file.string() : link;
+}
+
 /// The three pipes between the two processes.
 struct Lines {
     Pipe task, result, printed;
@@ -193,7 +203,7 @@ pid_t start_process(const Lines& lines) {
     char* arguments[] = {words[0].data(), words[1].data(), words[2].data(),
                          words[3].data(), words[4].data(), nullptr};
     pid_t child = -1;
-    if (const int error = posix_spawn(&child, "/proc/self/exe", &settings.actions, &settings.attributes,
+    if (const int error = posix_spawn(&child, this_program().c_str(), &settings.actions, &settings.attributes,
                                       arguments, environ))
         fail_to_start("started", error);
     return child;
@@ -332,7 +342,7 @@ int serve_case(const std::string& pipes) {
     while (!(task = unpacked(bytes)))
         if (!read_some(in.number(), bytes)) return failed;
     end_with(in.number());
-    pthread_setname_np(pthread_self(), "hsdm"); // it was started by another name
+    pthread_setname_np(pthread_self(), "hsdm"); // it may have been started by a link
     const auto [one, what] = case_of(*task);
     if (what.threads > 0) bound_threads(std::min(what.threads, most_threads));
     const std::vector<std::uint8_t> result = packed(json_of(run_task(one, what)));
