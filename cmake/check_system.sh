@@ -1,10 +1,10 @@
 #!/bin/sh
 # sh cmake/check_system.sh: what is asked of the operating system beyond the standard library stands in core/system.cc alone,
-# but for the format of modules and the command's handlers of signals (docs/portability.md); and every variable of the
+# but for the format of modules, the command's handlers of signals and the processes of its cases (docs/portability.md); and every variable of the
 # environment that is read is told in docs/command.md and in the manual pages.
 set -eu
 cd "$(dirname "$0")/.."
-allowed='^(libhsdm/hsdm/core/system\.cc|libhsdm/hsdm/modules/plugin_record\.cc|apps/hsdm/(interrupt|module_watch)\.cc):'
+allowed='^(libhsdm/hsdm/core/system\.cc|libhsdm/hsdm/modules/plugin_record\.cc|apps/hsdm/(case_process|interrupt|module_watch)\.cc):'
 headers='(sys/[a-z]+|unistd|fcntl|dirent|dlfcn|link|elf|poll|pthread|sched|signal|termios|pwd|grp|spawn|ucontext|execinfo|libgen|glob|fnmatch|netdb|syslog|semaphore|aio|ftw|stdlib)\.h'
 functions='(secure_getenv|setenv|unsetenv|putenv|mkstemps?|mkdtemp|realpath|popen|pclose|fileno|fdopen|ftrylockfile|flockfile|localtime_r|gmtime_r|strerror_r|nanosleep|clock_gettime|posix_[a-z_]+)'
 found=$(grep -rnE "^ *# *include <($headers|csignal)>|(^|[^a-zA-Z0-9_.>])(::)?$functions *\(" --include='*.cc' --include='*.hh' \

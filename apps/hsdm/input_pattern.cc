@@ -2,6 +2,7 @@
 
 #include "messages.hh"
 
+#include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
 
 #include <algorithm>
@@ -64,11 +65,9 @@ bool is_pattern(std::string_view text) {
 /// Names in a folder that match, sorted; those of `**` are folders.
 std::vector<fs::path> entries(const fs::path& folder, std::string_view pattern) {
     std::vector<fs::path> found;
-    std::error_code error;
-    const fs::path here = folder.empty() ? fs::path(".") : folder;
-    for (fs::directory_iterator at(here, error), end; !error && at != end; at.increment(error))
-        if (const std::string name = at->path().filename().string(); matches(pattern, name))
-            found.push_back(folder / name);
+    os::for_each_name(folder.empty() ? "." : folder.string(), [&](const char* name) {
+        if (matches(pattern, name)) found.push_back(folder / name);
+    });
     return found;
 }
 
