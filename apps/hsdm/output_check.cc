@@ -74,7 +74,7 @@ std::string fault_of(const PolygonMesh& mesh, const PolygonMesh& read, MeshForma
 
 OutputCheck check_output(const Case& one, const CaseOptions& asked, const PolyMesh& mesh) {
     const ScratchFile file('.' + one.output);
-    const MeshTarget target{file.path(), format_for(file.path(), ""), asked.ascii, asked.plain, ""};
+    const MeshTarget target{file.path(), format_for(file.path(), ""), asked.ascii, asked.plain, "", ""};
     OutputCheck check;
     check.output.format = one.output;
     check.output.text_for_precision = write_outputs(target, mesh).text_for_precision;

@@ -270,6 +270,11 @@ void add_file_options(CLI::App& app, ReconstructArguments& a) {
     app.add_option("--report", a.report, "counts, errors and times as JSON; - is standard output")
         ->type_name("FILE")
         ->group(files);
+    app.add_option(
+           "--html", a.html,
+           "a page to look at: the mesh to turn, deviations of the points, warnings, the report in words")
+        ->type_name("FILE")
+        ->group(files);
     app.add_flag("--intersections", a.intersections,
                  "count facets that pass through each other, for summary and report; takes its time")
         ->group(files);

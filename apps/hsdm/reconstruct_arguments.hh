@@ -39,7 +39,7 @@ struct ReconstructArguments {
 
     std::string output, out_dir, format;
     bool ascii = false, plain = false;
-    std::string features, report;
+    std::string features, report, html;
     bool intersections = false;
     bool quiet = false, verbose = false;
     Progress progress = Progress::automatic;

@@ -4,6 +4,7 @@
 #include "command.hh"
 #include "mesh_stages.hh"
 #include "messages.hh"
+#include "page.hh"
 #include "reconstruct_arguments.hh"
 #include "reconstruct_output.hh"
 #include "summary.hh"
@@ -12,9 +13,11 @@
 #include "hsdm/errors.hh"
 #include "hsdm/io/json_text.hh"
 #include "hsdm/io/output_target.hh"
+#include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/pipeline/measure.hh"
 
 #include <chrono>
+#include <filesystem>
 #include <iostream>
 #include <span>
 
@@ -60,7 +63,7 @@ public:
           options_(checked_options(arguments, levels_)),
           plan_(arguments, levels_, stages_),
           text_(plan_.uses_standard_output() ? std::cerr : std::cout) {
-        options_.measure = !arguments.quiet || !arguments.report.empty();
+        options_.measure = !arguments.quiet || !arguments.report.empty() || !arguments.html.empty();
         options_.classify = options_.measure || plan_.writes_features() || !stages_.empty();
         options_.vertex_normals = plan_.writes_properties();
     }
@@ -154,7 +157,8 @@ private:
         bar.show("read", 0);
         PointFile file = read_points(input, arguments_.read);
         const double read_seconds = seconds_since(start);
-        const PointCloud scan = scan_for_stages(stages_, file.cloud, options_.measure);
+        PointCloud scan = scan_for_stages(stages_, file.cloud, options_.measure);
+        if (!arguments_.html.empty() && scan.positions.empty()) scan.positions = file.cloud.positions;
         ReconstructOptions options = options_;
         options.debug_dir = plan_.debug_dir(input);
         options.progress = [&bar](const char* phase, double share) {
@@ -172,6 +176,7 @@ private:
                 if (!file.columns.empty()) result.report.options["columns"] = file.columns;
                 const bool as_text = write_one(name, scan, result);
                 result.report.seconds.total = seconds_since(start);
+                write_page(scan.positions, result);
                 made.push_back({std::move(result.report), as_text});
             }
             return made;
@@ -194,7 +199,8 @@ private:
     /// Adds what is told of a mesh only if it is asked for.
     void measure_more(Reconstruction& result) const {
         const auto start = Clock::now();
-        if (!arguments_.report.empty()) measure_details(result.mesh, result.report.mesh);
+        if (!arguments_.report.empty() || !arguments_.html.empty())
+            measure_details(result.mesh, result.report.mesh);
         if (arguments_.intersections || arguments_.strict) {
             set_phase("intersections");
             count_intersections(result.mesh, result.report);
@@ -221,6 +227,32 @@ private:
         }
         report.seconds.write = seconds_since(start);
         return as_text;
+    }
+
+    /// The page of a mesh that was written; last, for it tells how long all the rest took.
+    void write_page(std::vector<Vec3> points, Reconstruction& result) const {
+        Report& report = result.report;
+        const std::string page = target(report).page;
+        if (page.empty() || !report.failure.empty()) return;
+        set_phase("page");
+        std::erase_if(points, [](const Vec3& p) { return !is_finite(p); });
+        const PolygonMesh mesh = to_polygons(result.mesh);
+        try {
+            write_text(
+                page,
+                page_of(
+                    {.title = title_of(report), .mesh = mesh, .points = points, .report = to_json(report)}));
+        } catch (const std::exception& error) {
+            if (!levels_) throw;
+            report.failure = message_of(error);
+        }
+    }
+
+    std::string title_of(const Report& report) const {
+        const std::string& file = report.input.file;
+        const std::string name =
+            file == "-" ? "Standard input" : std::filesystem::path(file).filename().string();
+        return levels_ ? name + ", depth " + std::to_string(report.grid.depth) : name;
     }
 
     /// Notes the report and prints a line or a summary; false for a level that failed.

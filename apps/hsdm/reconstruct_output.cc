@@ -1,5 +1,7 @@
 #include "reconstruct_output.hh"
 
+#include "page.hh"
+
 #include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/features/features.hh"
@@ -79,7 +81,8 @@ OutputPlan::OutputPlan(const ReconstructArguments& arguments, std::optional<std:
     check_combinations();
     check_claims(stages);
     make_folders();
-    for (const std::string* path : {&arguments.output, &arguments.report, &arguments.features})
+    for (const std::string* path :
+         {&arguments.output, &arguments.report, &arguments.features, &arguments.html})
         if (!path->empty()) check_writable(*path);
 }
 
@@ -93,7 +96,10 @@ void OutputPlan::check_combinations() const {
         throw UsageError("-o FILE holds one mesh; with several inputs use --out-dir DIR");
     if (a.inputs.size() > 1 && !a.features.empty())
         throw UsageError("--features FILE holds one mesh's; run the inputs one by one");
-    if (levels_ && (a.output == "-" || a.features == "-"))
+    if (a.inputs.size() > 1 && !a.html.empty())
+        throw UsageError("--html FILE shows one mesh; run the inputs one by one");
+    if (!a.html.empty() && !can_write_pages()) throw UsageError("--html: " + std::string(without_three));
+    if (levels_ && (a.output == "-" || a.features == "-" || a.html == "-"))
         throw UsageError("--levels makes several files; standard output holds one");
 }
 
@@ -116,6 +122,7 @@ void OutputPlan::claim_outputs(const std::string& input, FileClaims& claims) con
         const MeshTarget made = target(input, levels_ ? std::optional(depth) : std::nullopt);
         claims.writes(a.output.empty() ? "--out-dir " + a.out_dir : "-o " + a.output, made.mesh);
         if (!made.features.empty()) claims.writes("--features " + a.features, made.features);
+        if (!made.page.empty()) claims.writes("--html " + a.html, made.page);
     }
     const std::string folder = debug_dir(input);
     if (folder.empty()) return;
@@ -147,6 +154,7 @@ MeshTarget OutputPlan::target(const std::string& input, std::optional<int> depth
                       : arguments_.output;
     if (result.mesh != "-") result.mesh = with_depth(result.mesh, depth);
     if (!arguments_.features.empty()) result.features = with_depth(arguments_.features, depth);
+    if (!arguments_.html.empty()) result.page = with_depth(arguments_.html, depth);
     return result;
 }
 
@@ -160,7 +168,7 @@ bool OutputPlan::writes_features() const {
 
 bool OutputPlan::uses_standard_output() const {
     return is_standard_output(arguments_.output) || is_standard_output(arguments_.report)
-           || is_standard_output(arguments_.features);
+           || is_standard_output(arguments_.features) || is_standard_output(arguments_.html);
 }
 
 PolygonMesh polygons_to_write(const PolyMesh& mesh, bool plain) {

@@ -14,6 +14,7 @@ struct MeshTarget {
     bool ascii = false;
     bool plain = false;   ///< positions and facets only
     std::string features; ///< empty: none
+    std::string page;     ///< empty: none
 };
 
 class OutputPlan {

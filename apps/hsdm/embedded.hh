@@ -1,0 +1,14 @@
+#pragma once
+// Files of page/, and three.js, as they were when the command was built (cmake/embed.cmake).
+
+#include <span>
+#include <string_view>
+
+namespace hsdm::command::embedded {
+
+/// A file's text, in parts that follow each other; none if the file was not there.
+using Text = std::span<const std::string_view>;
+
+extern const Text three_js, three_notice, viewer_js, page_js, page_css, page_html;
+
+} // namespace hsdm::command::embedded

@@ -1,0 +1,106 @@
+#include "page.hh"
+
+#include "embedded.hh"
+#include "messages.hh"
+#include "page_mesh.hh"
+#include "page_words.hh"
+
+#include "hsdm/errors.hh"
+#include "hsdm/version.hh"
+
+#include <map>
+
+namespace hsdm::command {
+namespace {
+
+std::string joined(embedded::Text text) {
+    std::string whole;
+    for (const std::string_view part : text) whole += part;
+    return whole;
+}
+
+/// JSON text in a script element: nothing in it can end the element or begin a comment.
+std::string json_in_script(std::string text) {
+    for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at))
+        text.replace(at, 1, "\\u003c");
+    return text;
+}
+
+/// The template with `{{NAME}}` replaced; what is put in is not looked at again.
+std::string filled(std::string_view text, const std::map<std::string, std::string, std::less<>>& parts) {
+    std::string result;
+    for (std::size_t begin; (begin = text.find("{{")) != std::string_view::npos;) {
+        const std::size_t end = text.find("}}", begin);
+        result += text.substr(0, begin);
+        result += parts.at(std::string(text.substr(begin + 2, end - begin - 2)));
+        text.remove_prefix(end + 2);
+    }
+    return result += text;
+}
+
+} // namespace
+
+bool can_write_pages() {
+    return !embedded::three_js.empty();
+}
+
+std::string html_text(std::string_view text) {
+    std::string result;
+    for (const char c : printable(text)) {
+        switch (c) {
+        case '&':
+            result += "&amp;";
+            break;
+        case '<':
+            result += "&lt;";
+            break;
+        case '>':
+            result += "&gt;";
+            break;
+        case '"':
+            result += "&quot;";
+            break;
+        case '\'':
+            result += "&#39;";
+            break;
+        default:
+            result += c;
+        }
+    }
+    return result;
+}
+
+std::string viewer_scripts() {
+    return "<script>\n/*\n" + joined(embedded::three_notice) + "*/\n" + joined(embedded::three_js)
+           + "\n</script>\n<script>\n" + joined(embedded::viewer_js) + "</script>\n";
+}
+
+std::string page_styles() {
+    return "<style>\n" + joined(embedded::page_css) + "</style>\n";
+}
+
+std::string mesh_element(const std::string& id, const PageContent& content) {
+    const PageReport report = parse_report(content.report);
+    return describe_mesh(id, content, largest_error_of(report)).html;
+}
+
+std::string page_of(const PageContent& content) {
+    if (!can_write_pages()) throw Error(std::string("no page can be written: ") + std::string(without_three));
+    const PageReport report = parse_report(content.report);
+    const MeshElement mesh = describe_mesh("mesh", content, largest_error_of(report));
+    return filled(joined(embedded::page_html),
+                  {{"title", html_text(content.title)},
+                   {"version", html_text(version)},
+                   {"styles", page_styles()},
+                   {"verdict", verdict_items(report)},
+                   {"figures", key_figures(report)},
+                   {"deviations", deviation_rows(mesh.figures)},
+                   {"places", places_to_look(report, mesh.figures)},
+                   {"report", report_sections(report)},
+                   {"mesh", mesh.html},
+                   {"json", json_in_script(content.report)},
+                   {"viewer", viewer_scripts()},
+                   {"page", "<script>\n" + joined(embedded::page_js) + "</script>\n"}});
+}
+
+} // namespace hsdm::command
