@@ -24,7 +24,7 @@
     let view = null;
     const canvas = get("view");
     try {
-        view = hsdm.view(canvas, data, {dark, mode: measured ? "deviation" : data.confidence ? "confidence" : "plain"});
+        view = hsdm.view(canvas, data, {dark, software: asked.has("software") ? asked.get("software") === "1" : undefined, mode: measured ? "deviation" : data.confidence ? "confidence" : "plain"});
     } catch (error) {
         get("lacking").hidden = false;
         canvas.hidden = true;
@@ -151,8 +151,6 @@
             radio.closest("label").hidden = !can[radio.value];
             radio.addEventListener("change", () => setMode(radio.value));
         }
-        // Facets so large that the colours of their corners tell little of what lies between: points tell more.
-        if (data.points && data.points.length / 3 > 12 * data.vertex_count) view.state.points = true;
         if (data.facet_count > 60000) view.state.edges = false;
         for (const name of ["edges", "sharp", "points"]) {
             const box = get(name);
@@ -229,6 +227,7 @@
         setRange(range);
     } else get("deviation-card").hidden = true;
 
+    hsdm.shown = view;
     preparePlaces();
     get("theme").addEventListener("click", () => setTheme(!dark));
     setTheme(dark);

@@ -168,6 +168,92 @@ var hsdm = (function () {
         return {position, deviation, marks};
     }
 
+    // ---- More triangles, for colours --------------------------------------------------------------------------
+
+    // The points by cells of a grid, to find those near a place.
+    function pointGrid(data, size) {
+        const n = data.points.length / 3, cells = new Map(), step = data.point_step;
+        const cell = (x) => Math.floor(x / size) + 4096;
+        const key = (i, j, k) => (i * 8192 + j) * 8192 + k;
+        for (let i = 0; i < n; ++i) {
+            const at = key(cell(data.points[3 * i] * step), cell(data.points[3 * i + 1] * step), cell(data.points[3 * i + 2] * step));
+            if (cells.has(at)) cells.get(at).push(i);
+            else cells.set(at, [i]);
+        }
+        // Mean deviation of the points less than `size` from a place whose feet lie in its plane, the nearer ones
+        // counting more; null if there are none. The plane keeps out what belongs to the other side of a wall.
+        return (x, y, z, nx, ny, nz) => {
+            let sum = 0, weights = 0;
+            const ci = cell(x), cj = cell(y), ck = cell(z);
+            for (let i = ci - 1; i <= ci + 1; ++i) for (let j = cj - 1; j <= cj + 1; ++j) for (let k = ck - 1; k <= ck + 1; ++k) {
+                const found = cells.get(key(i, j, k));
+                if (!found) continue;
+                for (const p of found) {
+                    const dx = data.points[3 * p] * step - x, dy = data.points[3 * p + 1] * step - y, dz = data.points[3 * p + 2] * step - z;
+                    const d = data.point_deviations[p] * data.deviation_step, apart = dx * dx + dy * dy + dz * dz;
+                    if (apart > size * size || Math.abs(dx * nx + dy * ny + dz * nz - d / data.radius) > 0.3 * size) continue;
+                    const weight = 1.001 - apart / (size * size);
+                    sum += weight * weight * d;
+                    weights += weight * weight;
+                }
+            }
+            return weights > 0 ? sum / weights : null;
+        };
+    }
+
+    // Where triangles are large against the distance of the points, they are divided, so that colours tell what lies
+    // between their corners. Other meshes stay as they are.
+    function divided(shape, data) {
+        const {position, normals, marks, index} = shape;
+        if (!data.points || !data.deviations) return shape;
+        const at = (d) => [position[3 * d], position[3 * d + 1], position[3 * d + 2]];
+        const minus = (p, q) => [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+        const cross = (p, q) => [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+        const length = (p) => Math.hypot(...p);
+        const count = index.length / 3, longest = new Float32Array(count), planes = [];
+        let area = 0;
+        if (count > MANY) return shape;
+        for (let t = 0; t < count; ++t) {
+            const [a, b, c] = [0, 1, 2].map((k) => at(index[3 * t + k])), n = cross(minus(b, a), minus(c, a)), twice = length(n);
+            area += twice / 2;
+            longest[t] = Math.max(length(minus(b, a)), length(minus(c, b)), length(minus(a, c)));
+            planes.push(n.map((x) => x / (twice || 1)));
+        }
+        const spacing = Math.sqrt(2 * area / data.points.length * 3), reach = 3 * spacing;
+        // As fine as a spacing and a half, or as `MANY` triangles allow.
+        let edge = 1.5 * spacing;
+        const parts = (t) => Math.min(128, Math.max(1, Math.ceil(longest[t] / edge)));
+        for (;;) {
+            let sum = 0;
+            for (let t = 0; t < count; ++t) sum += parts(t) * parts(t);
+            if (sum <= MANY) {
+                if (sum < 2 * count) return shape;
+                break;
+            }
+            edge *= 1.2;
+        }
+        const near = pointGrid(data, Math.max(reach, edge)), out = {position: [], normals: [], deviation: [], marks: [], index: []};
+        for (let t = 0; t < count; ++t) {
+            const corners = [0, 1, 2].map((k) => index[3 * t + k]), n = parts(t), first = out.deviation.length, plane = planes[t];
+            const row = (i) => first + i * (n + 1) - i * (i - 1) / 2;
+            for (let i = 0; i <= n; ++i)
+                for (let j = 0; i + j <= n; ++j) {
+                    const shares = [(n - i - j) / n, j / n, i / n];
+                    const mix = (array, width, k) => shares.reduce((sum, share, c) => sum + share * array[width * corners[c] + k], 0);
+                    const p = [0, 1, 2].map((k) => mix(position, 3, k)), way = [0, 1, 2].map((k) => mix(normals, 3, k)), size = length(way) || 1;
+                    const d = near(...p, ...plane);
+                    out.position.push(...p);
+                    out.normals.push(...way.map((x) => x / size));
+                    out.deviation.push(d === null ? 0 : d);
+                    out.marks.push(d === null ? 0 : 255, mix(marks, 4, 1), mix(marks, 4, 2), 0);
+                    if (i + j < n) out.index.push(row(i) + j, row(i) + j + 1, row(i + 1) + j);
+                    if (i + j + 1 < n) out.index.push(row(i) + j + 1, row(i + 1) + j + 1, row(i + 1) + j);
+                }
+        }
+        return {position: Float32Array.from(out.position), normals: Float32Array.from(out.normals), deviation: Float32Array.from(out.deviation),
+                marks: Uint8Array.from(out.marks), index: Uint32Array.from(out.index)};
+    }
+
     // ---- Fewer triangles, to turn -----------------------------------------------------------------------------
 
     // The mesh with the vertices of each cell of a grid as one; the two sides of a wall stay apart. For large
@@ -220,6 +306,18 @@ var hsdm = (function () {
         }
         out.index = kept.slice(0, t);
         return out;
+    }
+
+    // As above, with cells so large that about FEW triangles are left: their number goes with the square of cells.
+    function ofFew(shape) {
+        const cells = 80, first = coarser(shape, cells);
+        const wanted = Math.round(cells * Math.sqrt(FEW / Math.max(1, first.index.length / 3)));
+        const less = coarser(shape, Math.max(24, Math.min(160, wanted)));
+        for (let i = 0; i < less.normals.length; i += 3) {
+            const length = Math.hypot(less.normals[i], less.normals[i + 1], less.normals[i + 2]) || 1;
+            for (let k = 0; k < 3; ++k) less.normals[i + k] /= length;
+        }
+        return less;
     }
 
     // ---- Colours --------------------------------------------------------------------------------------------
@@ -283,9 +381,33 @@ var hsdm = (function () {
                 if (mark.z > 0.5 && fract((gl_FragCoord.x + gl_FragCoord.y) / (9.0 * ratio)) < 0.35) color = stripe;
                 vec3 n = normalize(way);
                 if (!gl_FrontFacing) { n = -n; color *= 0.55; }
-                float light = 0.38 + 0.5 * max(0.0, dot(n, vec3(-0.36, 0.48, 0.8))) + 0.2 * max(0.0, n.z);
+                float light = 0.52 + 0.4 * max(0.0, dot(n, vec3(-0.36, 0.48, 0.8))) + 0.14 * max(0.0, n.z);
                 gl_FragColor = vec4(color * light, 1.0);
             }`,
+    };
+
+    // The same with everything but the placing of pixels done for the vertices: to turn without a graphics card.
+    const QUICK_SURFACE = {
+        vertexShader: `
+            uniform sampler2D scale;
+            uniform float range;
+            uniform int mode;
+            uniform vec3 plain, unknown, stripe;
+            attribute float deviation;
+            attribute vec4 marks;
+            varying vec3 shade;
+            void main() {
+                vec3 color = plain;
+                if (mode == 1) color = mix(unknown, texture2D(scale, vec2(0.5 + 0.498 * clamp(deviation / range, -1.0, 1.0), 0.25)).rgb, step(0.5, marks.x));
+                if (mode == 2) color = texture2D(scale, vec2(0.002 + 0.996 * marks.y, 0.75)).rgb;
+                if (marks.z > 0.5) color = mix(color, stripe, 0.35);
+                vec3 n = normalize(normalMatrix * normal);
+                shade = color * (0.52 + 0.4 * max(0.0, dot(n, vec3(-0.36, 0.48, 0.8))) + 0.14 * max(0.0, n.z));
+                gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+            }`,
+        fragmentShader: `
+            varying vec3 shade;
+            void main() { gl_FragColor = vec4(gl_FrontFacing ? shade : 0.55 * shade, 1.0); }`,
     };
 
     // Lines of a width in pixels: every segment is two triangles that turn to the viewer.
@@ -370,9 +492,17 @@ var hsdm = (function () {
         return geometry;
     }
 
-    const MANY = 60000;      // triangles from which on a coarser mesh stands by
+    const MANY = 60000;      // triangles that large ones are divided into, for their colours, at most
+    const FEW = 20000;       // triangles: from more on a coarser mesh of about so many stands by, to turn
     const SLOW = 25;         // ms of a whole picture from which on it is taken to turn
     const SETTLED = 160;     // ms without a movement until all is drawn again
+
+    function drawnBySoftware() {
+        const gl = document.createElement("canvas").getContext("webgl"), about = gl && gl.getExtension("WEBGL_debug_renderer_info");
+        const name = about ? String(gl.getParameter(about.UNMASKED_RENDERER_WEBGL)) : "";
+        if (gl && gl.getExtension("WEBGL_lose_context")) gl.getExtension("WEBGL_lose_context").loseContext();
+        return /swiftshader|llvmpipe|software/i.test(name);
+    }
 
     // options: mode ("plain", "deviation", "confidence"), edges, sharp, points (booleans), range, dark, still (no
     // controls: for thumbnails). Returns an object with set(options), draw(), fit(), look(direction, up), goTo(place),
@@ -380,10 +510,13 @@ var hsdm = (function () {
     function view(canvas, data, options) {
         const state = Object.assign({mode: data.deviations ? "deviation" : "plain", edges: true, sharp: true, points: false,
                                      range: data.range || 1, dark: false, still: false}, options);
-        const renderer = new THREE.WebGLRenderer({canvas, antialias: true});
+        // A renderer without a graphics card draws smooth edges by drawing more pixels, once the mesh stands still:
+        // what it does by itself would be done for every picture of a turning one.
+        const software = state.software === undefined ? drawnBySoftware() : state.software;
+        const renderer = new THREE.WebGLRenderer({canvas, antialias: !software});
         const {edges, sharpEdges, borders, group} = connect(data);
         const corners = drawn(data, group);
-        const shape = Object.assign({index: corners.index, normals: corners.normals}, attributes(data, corners));
+        const shape = divided(Object.assign({index: corners.index, normals: corners.normals}, attributes(data, corners)), data);
         const scale = scaleTexture();
         const shared = {scale: {value: scale}, range: {value: 1}, mode: {value: 0}, ratio: {value: 1}, size: {value: new THREE.Vector2(1, 1)},
                         plain: {value: new THREE.Color()}, unknown: {value: new THREE.Color()}, stripe: {value: new THREE.Color()}};
@@ -391,7 +524,8 @@ var hsdm = (function () {
 
         const scene = new THREE.Scene(), camera = new THREE.PerspectiveCamera(28, 1, 0.01, 100);
         const add = (object) => { object.frustumCulled = false; scene.add(object); return object; };
-        const surfaceMaterial = material(SURFACE, {}, {side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1});
+        const side = borders.length ? THREE.DoubleSide : THREE.FrontSide; // nobody sees a closed surface from behind
+        const surfaceMaterial = material(SURFACE, {}, {side, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1});
         const full = add(new THREE.Mesh(surfaceGeometry(shape), surfaceMaterial));
         let coarse = null;
 
@@ -400,9 +534,10 @@ var hsdm = (function () {
             const geometry = new THREE.BufferGeometry();
             geometry.setAttribute("position", positions);
             geometry.setIndex(new THREE.BufferAttribute(Uint32Array.from(pairs), 1));
-            return add(new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({transparent: true})));
+            return add(new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({transparent: true, depthWrite: false})));
         };
         const edgeLines = thin(edges);
+        const quickLines = thin(sharpEdges);
         const sharpMaterial = material(LINES, {width: {value: 2}, color: {value: new THREE.Color()}}, {side: THREE.DoubleSide});
         const borderMaterial = material(LINES, {width: {value: 3}, color: {value: new THREE.Color()}}, {side: THREE.DoubleSide});
         const sharpLines = add(new THREE.Mesh(lineGeometry(data.positions, sharpEdges), sharpMaterial));
@@ -439,11 +574,23 @@ var hsdm = (function () {
             if (pointDots) put(pointDots.material.uniforms.color, theme.sharp);
             edgeLines.material.color.setRGB(...theme.edges);
             edgeLines.material.opacity = theme.edgeAlpha;
+            quickLines.material.color.setRGB(...theme.sharp);
         };
 
         let moving = false, settle = 0, waiting = 0, slow = false, measured = false, listener = null;
 
-        function render() {
+        // Pixels of the canvas for one of the page's: fewer while a slow renderer turns, more when it has stopped.
+        function sharpness() {
+            const ratio = Math.min(2, window.devicePixelRatio || 1);
+            if (!software) return moving && slow ? Math.min(1, ratio) : ratio;
+            return moving ? Math.min(1, ratio) : Math.max(2, ratio);
+        }
+
+        function render(asItIs) {
+            if (!asItIs && renderer.getPixelRatio() !== sharpness()) {
+                const size = renderer.getSize(new THREE.Vector2());
+                resize(size.x, size.y, sharpness());
+            }
             camera.quaternion.copy(turned);
             camera.position.set(0, 0, distance).applyQuaternion(turned).add(target);
             camera.near = Math.max(distance - 3, distance / 200);
@@ -453,7 +600,8 @@ var hsdm = (function () {
             full.visible = !less;
             if (coarse) coarse.visible = !!less;
             edgeLines.visible = state.edges && !less;
-            sharpLines.visible = cornerDots.visible = state.sharp && !(less && sharpEdges.length > 60000);
+            sharpLines.visible = cornerDots.visible = state.sharp && !less;
+            quickLines.visible = state.sharp && !!less;
             borderLines.visible = state.sharp;
             if (pointDots) pointDots.visible = state.points;
             renderer.render(scene, camera);
@@ -546,7 +694,7 @@ var hsdm = (function () {
                 const p = self.inside(place).project(camera);
                 return {x: 0.5 + 0.5 * p.x, y: 0.5 - 0.5 * p.y, seen: p.z < 1};
             },
-            // What lies under a place of the canvas (shares of its size): the nearest vertex, its place and deviation.
+            // What lies under a place of the canvas (shares of its size), with the deviation of the nearest vertex drawn.
             pick(x, y) {
                 const ray = new THREE.Raycaster();
                 ray.setFromCamera(new THREE.Vector2(2 * x - 1, 1 - 2 * y), camera);
@@ -554,7 +702,7 @@ var hsdm = (function () {
                 if (!hit) return null;
                 const near = [hit.face.a, hit.face.b, hit.face.c].map((d) => [d, hit.point.distanceTo(new THREE.Vector3(...shape.position.subarray(3 * d, 3 * d + 3)))]);
                 const d = near.sort((p, q) => p[1] - q[1])[0][0];
-                return {place: hit.point.toArray().map((c, k) => c * data.radius + data.centre[k]), vertex: corners.source[d],
+                return {place: hit.point.toArray().map((c, k) => c * data.radius + data.centre[k]), 
                         deviation: shape.marks[4 * d] ? shape.deviation[d] : null, confidence: data.confidence ? shape.marks[4 * d + 1] / 255 : null};
             },
             // A still picture as a data: address, on a light ground.
@@ -564,7 +712,7 @@ var hsdm = (function () {
                 colors(LIGHT);
                 renderer.setClearColor(new THREE.Color(1, 1, 1), 1);
                 resize(width, height, 1);
-                render();
+                render(true);
                 const address = canvas.toDataURL("image/png");
                 resize(old.x, old.y, ratio);
                 colors(state.dark ? DARK : LIGHT);
@@ -574,7 +722,7 @@ var hsdm = (function () {
             },
             resize: () => {
                 if (!canvas.clientWidth || !canvas.clientHeight) return;
-                resize(canvas.clientWidth, canvas.clientHeight, Math.min(2, window.devicePixelRatio || 1));
+                resize(canvas.clientWidth, canvas.clientHeight, sharpness());
                 invalidate();
             },
             // Turns the mesh once round and tells the pictures per second, each waited for.
@@ -596,16 +744,9 @@ var hsdm = (function () {
             },
         };
 
-        if (shape.index.length / 3 > MANY && !state.still) {
-            // Cells so large that about MANY triangles are left: their number goes with the square of cells.
-            let cells = 90, less = coarser(shape, cells);
-            cells = Math.max(24, Math.min(160, Math.round(cells * Math.sqrt(0.8 * MANY / Math.max(1, less.index.length / 3)))));
-            less = coarser(shape, cells);
-            for (let i = 0; i < less.normals.length; i += 3) {
-                const length = Math.hypot(less.normals[i], less.normals[i + 1], less.normals[i + 2]) || 1;
-                less.normals[i] /= length; less.normals[i + 1] /= length; less.normals[i + 2] /= length;
-            }
-            coarse = add(new THREE.Mesh(surfaceGeometry(less), surfaceMaterial));
+        if (!state.still) {
+            const quick = material(QUICK_SURFACE, {}, {side, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1});
+            coarse = add(new THREE.Mesh(shape.index.length / 3 > FEW ? surfaceGeometry(ofFew(shape)) : full.geometry, quick));
             coarse.visible = false;
         }
         self.resize();
