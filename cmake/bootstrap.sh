@@ -22,14 +22,14 @@ esac
 cd "$(dirname "$0")/.."
 
 packages="g++ cmake ninja-build libopenmesh-dev libeigen3-dev libflann-dev libtbb-dev libfast-float-dev
-    libboost-dev nlohmann-json3-dev libcli11-dev libpng-dev catch2"
+    libboost-dev nlohmann-json3-dev libcli11-dev libpng-dev libjs-three catch2"
 python="pybind11-dev python3-dev python3-numpy"
 case $goal in
 python) packages="$packages $python python3-skbuild python3-venv" ;;
 test) packages="$packages $python python3-pytest python3-meshio mypy" ;;
 demo) packages="$packages f3d xvfb xauth" ;;
 tools) packages="$packages clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 llvm-14 doxygen git
-    python3 lintian zsh fish man-db libxml2-utils" ;;
+    python3 lintian zsh fish man-db libxml2-utils chromium" ;;
 esac
 
 is_installed() {

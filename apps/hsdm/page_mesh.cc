@@ -1,5 +1,7 @@
 #include "page_mesh.hh"
 
+#include "summary.hh"
+
 #include "hsdm/core/hash.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/json_text.hh"
@@ -18,6 +20,7 @@ namespace {
 
 constexpr std::int16_t nowhere = -32768; // no deviation is known; what is known lies in +-32767
 constexpr double largest_step = 32767;
+constexpr std::size_t most_facets = 2000000; // of some 60 MB in a page, which browsers still open
 constexpr std::size_t histogram_bins = 400;
 
 std::string base64(std::string_view bytes) {
@@ -290,6 +293,9 @@ DeviationFigures put_deviations(const PageContent& content, const PageSpace& spa
 
 MeshElement describe_mesh(const std::string& id, const PageContent& content, double largest_error) {
     if (content.mesh.facet_count() == 0) throw Error("a mesh without facets: there is nothing to show");
+    if (content.mesh.facet_count() > most_facets)
+        throw Error(grouped(content.mesh.facet_count()) + " facets are more than the " + grouped(most_facets)
+                    + " that a page can show; make it of a coarser --depth, or of a level of --levels");
     const PageSpace space(content.mesh);
     MeshElement result;
     JsonText json;

@@ -97,7 +97,7 @@ std::string resolution_words(const PageReport& report) {
                        + grouped(count_at(report, {"grid", "voxels"}))
                        + " of them hold points. What is smaller is not " + "reproduced.";
     if (const std::string why = text_at(report, {"options", "resolution"}); !why.empty())
-        text += " Why this size: " + why + ".";
+        text += " The size is " + why + ".";
     text = paragraph(text);
     if (at<std::string>(report, {"grid", "kind"}, "") == "adaptive") {
         const std::size_t beyond = count_at(report, {"grid", "points_beyond"});
@@ -174,8 +174,8 @@ std::string topology_sentence(const PageReport& report) {
 std::string error_words(const PageReport& report) {
     const double largest = number_at(report, {"error", "points_to_mesh_max"});
     if (!(largest > 0)) return "";
-    return paragraph("No point is farther than <b>" + page_number(largest, 3) + "</b> from the mesh, "
-                     + page_number(100 * number_at(report, {"error", "normalised_max"}), 3)
+    return paragraph("No point that the mesh was made of is farther than <b>" + page_number(largest, 3)
+                     + "</b> from it, " + page_number(100 * number_at(report, {"error", "normalised_max"}), 3)
                      + " % of the diagonal of the points’ box. The mean distance is "
                      + page_number(number_at(report, {"error", "points_to_mesh_mean"}), 3)
                      + ", the root mean square "
@@ -330,8 +330,9 @@ std::string places_to_look(const PageReport& report, const DeviationFigures& fig
         const Vec3& p = figures.farthest[i];
         std::snprintf(place, sizeof place, "%.17g %.17g %.17g", p[0], p[1], p[2]);
         const double d = figures.farthest_deviations[i];
-        items += place_item("far", place, i == 0 ? "Farthest point" : "Another far point",
-                            (d > 0 ? "+" : "") + page_number(d, 3) + (d > 0 ? ", outside" : ", inside"));
+        items +=
+            place_item("far", place, i == 0 ? "Farthest point" : "Far point, no. " + std::to_string(i + 1),
+                       (d > 0 ? "+" : "") + page_number(d, 3) + (d > 0 ? ", outside" : ", inside"));
     }
     return items;
 }

@@ -96,7 +96,10 @@
         sums[bars - 1] += above;
         counts.forEach((count, i) => {
             const d = ((i + 0.5) / counts.length * 2 - 1) * reach;
-            sums[Math.min(bars - 1, Math.max(0, Math.floor((d / shown + 1) / 2 * bars)))] += count;
+            // A bin's points are spread over the bars that it reaches into.
+            const from = ((i / counts.length * 2 - 1) * reach / shown + 1) / 2 * bars, to = from + reach / shown * bars / counts.length;
+            for (let b = Math.floor(from); b < to; ++b)
+                sums[Math.min(bars - 1, Math.max(0, b))] += count * (Math.min(to, b + 1) - Math.max(from, b)) / (to - from);
             total += count;
             if (Math.abs(d) <= range) within += count;
         });
@@ -107,7 +110,7 @@
             const bar = shape("rect", {class: "bar", x: i * width / bars + 0.5, y: height - tall, width: width / bars - 1, height: tall,
                                        fill: hsdm.css(hsdm.colorAt(hsdm.SIGNED, 0.5 + 0.5 * Math.max(-1, Math.min(1, d / range))))});
             const title = document.createElementNS(SVG, "title");
-            title.textContent = grouped(sum) + " points about " + signed(d);
+            title.textContent = grouped(Math.round(sum)) + " points about " + signed(d);
             bar.append(title);
         });
         shape("line", {class: "axis", x1: 0, x2: width, y1: height + 0.5, y2: height + 0.5});
@@ -116,7 +119,7 @@
             shape("line", {class: "axis", x1: at, x2: at, y1: height, y2: height + 4});
             shape("text", {x: Math.min(width - 2, Math.max(2, at)), y: height + 16, "text-anchor": at > width - 20 ? "end" : at < 20 ? "start" : "middle"}, signed(x * range, 2));
         }
-        get("within").textContent = (100 * within / total).toFixed(within === total ? 0 : 1) + " % of the points lie within ±" + number(range) + ".";
+        get("within").textContent = (within === total ? 100 : Math.floor(1000 * within / total) / 10) + " % of the points lie within ±" + number(range) + ".";
     }
 
     // The slider goes from a hundredth of the histogram's reach to all of it, in equal ratios.
@@ -248,7 +251,7 @@
 
     window.addEventListener("beforeprint", () => {
         const still = get("still");
-        still.src = view.picture(1500, 900);
+        still.src = view.picture(1500, 820);
         still.hidden = false;
     });
     window.addEventListener("afterprint", () => { get("still").hidden = true; });

@@ -219,9 +219,10 @@ var hsdm = (function () {
             longest[t] = Math.max(length(minus(b, a)), length(minus(c, b)), length(minus(a, c)));
             planes.push(n.map((x) => x / (twice || 1)));
         }
-        const spacing = Math.sqrt(2 * area / data.points.length * 3), reach = 3 * spacing;
-        // As fine as a spacing and a half, or as `MANY` triangles allow.
-        let edge = 1.5 * spacing;
+        if (!(area > 0)) return shape;
+        const spacing = Math.sqrt(3 * area / data.points.length), reach = 3.5 * spacing;
+        // As fine as two spacings, or as `MANY` triangles allow.
+        let edge = 2 * spacing;
         const parts = (t) => Math.min(128, Math.max(1, Math.ceil(longest[t] / edge)));
         for (;;) {
             let sum = 0;
@@ -381,7 +382,7 @@ var hsdm = (function () {
                 if (mark.z > 0.5 && fract((gl_FragCoord.x + gl_FragCoord.y) / (9.0 * ratio)) < 0.35) color = stripe;
                 vec3 n = normalize(way);
                 if (!gl_FrontFacing) { n = -n; color *= 0.55; }
-                float light = 0.52 + 0.4 * max(0.0, dot(n, vec3(-0.36, 0.48, 0.8))) + 0.14 * max(0.0, n.z);
+                float light = 0.62 + 0.34 * max(0.0, dot(n, vec3(-0.36, 0.48, 0.8))) + 0.1 * max(0.0, n.z);
                 gl_FragColor = vec4(color * light, 1.0);
             }`,
     };
@@ -402,7 +403,7 @@ var hsdm = (function () {
                 if (mode == 2) color = texture2D(scale, vec2(0.002 + 0.996 * marks.y, 0.75)).rgb;
                 if (marks.z > 0.5) color = mix(color, stripe, 0.35);
                 vec3 n = normalize(normalMatrix * normal);
-                shade = color * (0.52 + 0.4 * max(0.0, dot(n, vec3(-0.36, 0.48, 0.8))) + 0.14 * max(0.0, n.z));
+                shade = color * (0.62 + 0.34 * max(0.0, dot(n, vec3(-0.36, 0.48, 0.8))) + 0.1 * max(0.0, n.z));
                 gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
             }`,
         fragmentShader: `
@@ -649,7 +650,7 @@ var hsdm = (function () {
         }
 
         const self = {
-            state, data,
+            state, data, canvas,
             edgeCounts: {smooth: edges.length / 2, sharp: sharpEdges.length / 2, border: borders.length / 2},
             onDraw: (f) => { listener = f; },
             draw: invalidate,
@@ -720,6 +721,8 @@ var hsdm = (function () {
                 render();
                 return address;
             },
+            // Gives the graphics card its memory back; browsers allow only some views at a time.
+            end() { renderer.dispose(); renderer.forceContextLoss(); },
             resize: () => {
                 if (!canvas.clientWidth || !canvas.clientHeight) return;
                 resize(canvas.clientWidth, canvas.clientHeight, sharpness());
@@ -759,6 +762,14 @@ var hsdm = (function () {
             else window.addEventListener("resize", self.resize);
         }
         return self;
+    }
+
+    // A still picture of a mesh as a data: address, for an <img>: of many meshes one after the other.
+    function picture(data, width, height, options) {
+        const shown = view(document.createElement("canvas"), data, Object.assign({still: true}, options));
+        const address = shown.picture(width, height);
+        shown.end();
+        return address;
     }
 
     // ---- Mouse, fingers, keys ---------------------------------------------------------------------------------
@@ -814,5 +825,5 @@ var hsdm = (function () {
         });
     }
 
-    return {read, view, colorAt, css, SIGNED, SHARE};
+    return {read, view, picture, colorAt, css, SIGNED, SHARE};
 })();
