@@ -154,7 +154,7 @@
             radio.closest("label").hidden = !can[radio.value];
             radio.addEventListener("change", () => setMode(radio.value));
         }
-        if (data.facet_count > 60000) view.state.edges = false;
+        if (data.facet_count > 15000) view.state.edges = false; // they would be closer than pixels
         for (const name of ["edges", "sharp", "points"]) {
             const box = get(name);
             box.checked = view.state[name];

@@ -309,6 +309,42 @@ var hsdm = (function () {
         return out;
     }
 
+    // Rows of edges as few segments, none of which leaves its edges by more than a hair: to turn.
+    function fewerLines(positions, pairs) {
+        const HAIR = 0.002, ends = new Map(), out = [];
+        const at = (v) => [positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]];
+        const add = (a, e) => { if (ends.has(a)) ends.get(a).push(e); else ends.set(a, [e]); };
+        for (let e = 0; e < pairs.length / 2; ++e) { add(pairs[2 * e], e); add(pairs[2 * e + 1], e); }
+        const done = new Uint8Array(pairs.length / 2);
+        const isNear = (p, a, b) => { // is p no more than a hair from the segment?
+            let length = 0, along = 0, apart = 0;
+            for (let k = 0; k < 3; ++k) { length += (b[k] - a[k]) ** 2; along += (b[k] - a[k]) * (p[k] - a[k]); }
+            const share = length > 0 ? Math.min(1, Math.max(0, along / length)) : 0;
+            for (let k = 0; k < 3; ++k) apart += (p[k] - a[k] - share * (b[k] - a[k])) ** 2;
+            return apart <= HAIR * HAIR;
+        };
+        const walk = (start, edge) => {
+            let from = start, here = start, passed = [];
+            for (let e = edge; e !== undefined && !done[e];) {
+                done[e] = 1;
+                const next = pairs[2 * e] + pairs[2 * e + 1] - here;
+                if (here !== from) passed.push(at(here));
+                if (passed.length > 60 || !passed.every((p) => isNear(p, at(from), at(next)))) {
+                    out.push(from, here);
+                    from = here;
+                    passed = [];
+                }
+                here = next;
+                const round = ends.get(here);
+                e = round.length === 2 ? round.find((other) => !done[other]) : undefined;
+            }
+            if (here !== from) out.push(from, here);
+        };
+        for (const [v, round] of ends) if (round.length !== 2) for (const e of round) walk(v, e);
+        for (let e = 0; e < done.length; ++e) walk(pairs[2 * e], e); // rings
+        return out;
+    }
+
     // As above, with cells so large that about FEW triangles are left: their number goes with the square of cells.
     function ofFew(shape) {
         const cells = 80, first = coarser(shape, cells);
@@ -411,21 +447,32 @@ var hsdm = (function () {
             void main() { gl_FragColor = vec4(gl_FrontFacing ? shade : 0.55 * shade, 1.0); }`,
     };
 
+    // Lines and points lie a little before the surface that they are on, at the same place of the picture.
+    const NEARER = "\n#define NEARER(place) (projectionMatrix * vec4(0.998 * (modelViewMatrix * vec4(place, 1.0)).xyz, 1.0))\n";
+
+    const THIN_LINES = {
+        vertexShader: NEARER + `
+            void main() { gl_Position = NEARER(position); }`,
+        fragmentShader: `
+            uniform vec3 color;
+            uniform float alpha;
+            void main() { gl_FragColor = vec4(color, alpha); }`,
+    };
+
     // Lines of a width in pixels: every segment is two triangles that turn to the viewer.
     const LINES = {
-        vertexShader: `
+        vertexShader: NEARER + `
             attribute vec3 other;
             attribute float side;
             uniform vec2 size;
             uniform float width;
             void main() {
-                vec4 here = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-                vec4 there = projectionMatrix * modelViewMatrix * vec4(other, 1.0);
+                vec4 here = NEARER(position);
+                vec4 there = NEARER(other);
                 vec2 along = (there.xy / there.w - here.xy / here.w) * size;
                 along = length(along) > 0.0 ? normalize(along) : vec2(1.0, 0.0);
                 vec2 across = vec2(-along.y, along.x) * side - along * 0.4;
                 here.xy += across * width / size * here.w;
-                here.z -= 0.0012 * here.w;
                 gl_Position = here;
             }`,
         fragmentShader: `
@@ -434,14 +481,13 @@ var hsdm = (function () {
     };
 
     const DOTS = {
-        vertexShader: `
+        vertexShader: NEARER + `
             attribute float deviation;
             uniform float width;
             varying float offset;
             void main() {
                 offset = deviation;
-                gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-                gl_Position.z -= 0.0016 * gl_Position.w;
+                gl_Position = NEARER(position);
                 gl_PointSize = width;
             }`,
         fragmentShader: `
@@ -494,7 +540,7 @@ var hsdm = (function () {
     }
 
     const MANY = 60000;      // triangles that large ones are divided into, for their colours, at most
-    const FEW = 20000;       // triangles: from more on a coarser mesh of about so many stands by, to turn
+    const FEW = 15000;       // triangles: from more on a coarser mesh of about so many stands by, to turn
     const SLOW = 25;         // ms of a whole picture from which on it is taken to turn
     const SETTLED = 160;     // ms without a movement until all is drawn again
 
@@ -535,10 +581,11 @@ var hsdm = (function () {
             const geometry = new THREE.BufferGeometry();
             geometry.setAttribute("position", positions);
             geometry.setIndex(new THREE.BufferAttribute(Uint32Array.from(pairs), 1));
-            return add(new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({transparent: true, depthWrite: false})));
+            const own = {color: {value: new THREE.Color()}, alpha: {value: 1}};
+            return add(new THREE.LineSegments(geometry, material(THIN_LINES, own, {transparent: true, depthWrite: false})));
         };
         const edgeLines = thin(edges);
-        const quickLines = thin(sharpEdges);
+        const quickLines = thin(state.still ? [] : fewerLines(data.positions, sharpEdges));
         const sharpMaterial = material(LINES, {width: {value: 2}, color: {value: new THREE.Color()}}, {side: THREE.DoubleSide});
         const borderMaterial = material(LINES, {width: {value: 3}, color: {value: new THREE.Color()}}, {side: THREE.DoubleSide});
         const sharpLines = add(new THREE.Mesh(lineGeometry(data.positions, sharpEdges), sharpMaterial));
@@ -573,9 +620,9 @@ var hsdm = (function () {
             put(sharpMaterial.uniforms.color, theme.sharp); put(borderMaterial.uniforms.color, theme.border);
             put(cornerDots.material.uniforms.color, theme.corner);
             if (pointDots) put(pointDots.material.uniforms.color, theme.sharp);
-            edgeLines.material.color.setRGB(...theme.edges);
-            edgeLines.material.opacity = theme.edgeAlpha;
-            quickLines.material.color.setRGB(...theme.sharp);
+            put(edgeLines.material.uniforms.color, theme.edges);
+            edgeLines.material.uniforms.alpha.value = theme.edgeAlpha;
+            put(quickLines.material.uniforms.color, theme.sharp);
         };
 
         let moving = false, settle = 0, waiting = 0, slow = false, measured = false, listener = null;
