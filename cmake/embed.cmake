@@ -3,7 +3,7 @@
 # Writes a C++ source that defines, for each name, the text of its file as string literals that follow each other; of an
 # empty path none. Parts are below the 65,536 bytes that compilers must take.
 set(part 16000)
-set(source "// Made by cmake/embed.cmake.\n#include \"${HEADER}\"\n\nnamespace ${NAMESPACE} {\n")
+set(source "// Made by cmake/embed.cmake.\n#include \"${HEADER}\"\n\nnamespace ${NAMESPACE} {\nusing namespace std::string_view_literals;\n")
 file(WRITE ${OUTPUT}.new "${source}")
 foreach(name file IN ZIP_LISTS NAMES FILES)
   if(file STREQUAL "none")
@@ -20,7 +20,7 @@ foreach(name file IN ZIP_LISTS NAMES FILES)
   set(begin 0)
   while(begin LESS length)
     string(SUBSTRING "${text}" ${begin} ${part} piece)
-    file(APPEND ${OUTPUT}.new "R\"hsdm-(" "${piece}" ")hsdm-\",\n")
+    file(APPEND ${OUTPUT}.new "R\"hsdm-(" "${piece}" ")hsdm-\"sv,\n")
     math(EXPR begin "${begin} + ${part}")
   endwhile()
   file(APPEND ${OUTPUT}.new "};\nconst Text ${name}(${name}_parts);\n")
