@@ -13,7 +13,7 @@
 namespace hsdm::command {
 namespace {
 
-std::string joined(embedded::Text text) {
+std::string whole_text(embedded::Text text) {
     std::string whole;
     for (const std::string_view part : text) whole += part;
     return whole;
@@ -71,24 +71,23 @@ std::string html_text(std::string_view text) {
 }
 
 std::string viewer_scripts() {
-    return "<script>\n/*\n" + joined(embedded::three_notice) + "*/\n" + joined(embedded::three_js)
-           + "\n</script>\n<script>\n" + joined(embedded::viewer_js) + "</script>\n";
+    return "<script>\n/*\n" + whole_text(embedded::three_notice) + "*/\n" + whole_text(embedded::three_js)
+           + "\n</script>\n<script>\n" + whole_text(embedded::viewer_js) + "</script>\n";
 }
 
 std::string page_styles() {
-    return "<style>\n" + joined(embedded::page_css) + "</style>\n";
+    return "<style>\n" + whole_text(embedded::page_css) + "</style>\n";
 }
 
 std::string mesh_element(const std::string& id, const PageContent& content) {
-    const PageReport report = parse_report(content.report);
-    return describe_mesh(id, content, largest_error_of(report)).html;
+    return describe_mesh(id, content).html;
 }
 
 std::string page_of(const PageContent& content) {
     if (!can_write_pages()) throw Error(std::string("no page can be written: ") + std::string(without_three));
-    const PageReport report = parse_report(content.report);
-    const MeshElement mesh = describe_mesh("mesh", content, largest_error_of(report));
-    return filled(joined(embedded::page_html),
+    const Report none, &report = content.report ? *content.report : none;
+    const MeshElement mesh = describe_mesh("mesh", content);
+    return filled(whole_text(embedded::page_html),
                   {{"title", html_text(content.title)},
                    {"version", html_text(version)},
                    {"styles", page_styles()},
@@ -98,9 +97,9 @@ std::string page_of(const PageContent& content) {
                    {"places", places_to_look(report, mesh.figures)},
                    {"report", report_sections(report)},
                    {"mesh", mesh.html},
-                   {"json", json_in_script(content.report)},
+                   {"json", json_in_script(to_json(report))},
                    {"viewer", viewer_scripts()},
-                   {"page", "<script>\n" + joined(embedded::page_js) + "</script>\n"}});
+                   {"page", "<script>\n" + whole_text(embedded::page_js) + "</script>\n"}});
 }
 
 } // namespace hsdm::command

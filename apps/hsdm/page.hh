@@ -2,6 +2,7 @@
 // One page to look at: a mesh to turn, its deviations, what it may be wrong for, its report in words.
 
 #include "hsdm/polygon_mesh.hh"
+#include "hsdm/report.hh"
 
 #include <span>
 #include <string>
@@ -20,12 +21,13 @@ struct PageContent {
     std::string title;                ///< may hold any bytes
     const PolygonMesh& mesh;          ///< at least one facet; with hsdm_... properties, if it has them
     std::span<const Vec3> points{};   ///< that the mesh was made of, or none
-    std::string report{};             ///< a report's JSON text; its errors bound what counts as a stray point
+    const Report* report = nullptr;   ///< if there is one; its largest error tells strays among the points
     std::size_t points_shown = 60000; ///< at most so many of the points are drawn; figures are those of all
 };
 
 /// The page as HTML text, whole in itself: it loads nothing. Same content, same bits, for any number of
-/// threads. Throws Error if can_write_pages() is false, or for a mesh without a facet.
+/// threads. Throws Error if can_write_pages() is false, or for a mesh without a facet or of more than two
+/// million.
 std::string page_of(const PageContent& content);
 
 /// The text in HTML, between tags and in quoted attributes: what is not printable is written out by

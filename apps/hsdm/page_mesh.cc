@@ -23,7 +23,7 @@ constexpr double largest_step = 32767;
 constexpr std::size_t most_facets = 2000000; // of some 60 MB in a page, which browsers still open
 constexpr std::size_t histogram_bins = 400;
 
-std::string base64(std::string_view bytes) {
+std::string base64_text(std::string_view bytes) {
     constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string text;
     text.reserve((bytes.size() + 2) / 3 * 4);
@@ -57,7 +57,7 @@ public:
         last_ = vertex;
     }
     bool empty() const { return bytes_.empty(); }
-    std::string text() const { return base64(bytes_); }
+    std::string text() const { return base64_text(bytes_); }
 
 private:
     void add_bytes(std::uint32_t value, unsigned count) {
@@ -267,8 +267,8 @@ void put_points(const PageContent& content, const PageSpace& space, std::span<co
     json.member("point_deviations", values.text());
 }
 
-DeviationFigures put_deviations(const PageContent& content, const PageSpace& space, double largest_error,
-                                JsonText& json) {
+DeviationFigures put_deviations(const PageContent& content, const PageSpace& space, JsonText& json) {
+    const double largest_error = content.report ? content.report->error.points_to_mesh_max : 0;
     const Deviations deviations = measure_deviations(content.points, content.mesh);
     const std::vector<Index> counted = counted_points(deviations.of_points, largest_error);
     DeviationFigures figures = figures_of(deviations.of_points, counted);
@@ -291,7 +291,7 @@ DeviationFigures put_deviations(const PageContent& content, const PageSpace& spa
 
 } // namespace
 
-MeshElement describe_mesh(const std::string& id, const PageContent& content, double largest_error) {
+MeshElement describe_mesh(const std::string& id, const PageContent& content) {
     if (content.mesh.facet_count() == 0) throw Error("a mesh without facets: there is nothing to show");
     if (content.mesh.facet_count() > most_facets)
         throw Error(grouped(content.mesh.facet_count()) + " facets are more than the " + grouped(most_facets)
@@ -303,7 +303,7 @@ MeshElement describe_mesh(const std::string& id, const PageContent& content, dou
     put_mesh(content.mesh, space, json);
     put_shares(content.mesh, "hsdm_confidence", "confidence", json);
     put_shares(content.mesh, "hsdm_completed", "completed", json);
-    if (!content.points.empty()) result.figures = put_deviations(content, space, largest_error, json);
+    if (!content.points.empty()) result.figures = put_deviations(content, space, json);
     json.end();
     result.html = "<script type=\"application/json\" id=\"" + html_text(id) + "\">" + std::move(json).take()
                   + "</script>\n";

@@ -28,7 +28,7 @@ struct MeshElement {
     DeviationFigures figures;
 };
 
-/// As mesh_element(). `largest_error`: points farther than this are strays; 0: there are none.
-MeshElement describe_mesh(const std::string& id, const PageContent& content, double largest_error);
+/// As mesh_element().
+MeshElement describe_mesh(const std::string& id, const PageContent& content);
 
 } // namespace hsdm::command

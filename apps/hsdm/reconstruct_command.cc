@@ -240,8 +240,7 @@ private:
         try {
             write_text(
                 page,
-                page_of(
-                    {.title = title_of(report), .mesh = mesh, .points = points, .report = to_json(report)}));
+                page_of({.title = title_of(report), .mesh = mesh, .points = points, .report = &report}));
         } catch (const std::exception& error) {
             if (!levels_) throw;
             report.failure = message_of(error);
