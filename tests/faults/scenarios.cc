@@ -107,6 +107,11 @@ std::vector<Scenario> reconstructions() {
                                   {"part.ply"}));
     list.push_back(
         reconstruction("adaptive", {"scan.ply", "--max-error", "2%", "-o", "part.off"}, cube, {"part.off"}));
+#ifdef HSDM_PAGES
+    list.push_back(reconstruction("a page",
+                                  {"scan.ply", "--depth", "3", "-o", "part.off", "--html", "part.html"}, cube,
+                                  {"part.off", "part.html"}));
+#endif
     Scenario streams = reconstruction(
         "streams", {"-", "--input-format", "xyz", "--depth", "3", "-o", "-", "--format", "ply"}, sphere, {});
     streams.standard_input = "scan.xyz";
