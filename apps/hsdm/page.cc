@@ -8,6 +8,7 @@
 #include "hsdm/errors.hh"
 #include "hsdm/version.hh"
 
+#include <functional>
 #include <map>
 
 namespace hsdm::command {

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::int16_t nowhere = -32768; // no deviation is known; what is known lies in +-32767
 constexpr double largest_step = 32767;
-constexpr std::size_t most_facets = 2000000; // of some 60 MB in a page, which browsers still open
+constexpr std::size_t most_facets = 2000000; // some 50 MB of page
 constexpr std::size_t histogram_bins = 400;
 
 std::string base64_text(std::string_view bytes) {
