@@ -22,7 +22,7 @@ esac
 cd "$(dirname "$0")/.."
 
 packages="g++ cmake ninja-build libopenmesh-dev libeigen3-dev libflann-dev libtbb-dev libfast-float-dev
-    libboost-dev nlohmann-json3-dev libcli11-dev libpng-dev libjs-three catch2"
+    libboost-dev nlohmann-json3-dev libzip-dev libcli11-dev libpng-dev libjs-three catch2"
 python="pybind11-dev python3-dev python3-numpy"
 case $goal in
 python) packages="$packages $python python3-skbuild python3-venv" ;;

@@ -10,7 +10,7 @@
 set -u
 cd "$(dirname "$0")/.." || exit 1
 
-all="cloud points_ply points_pcd points_table points_ptx points_off points_obj points_stl points_om points_hoppe"
+all="cloud points_ply points_pcd points_table points_ptx points_las points_npy points_npz points_off points_obj points_stl points_om points_hoppe"
 all="$all mesh_ply mesh_off mesh_obj mesh_stl mesh_om suite module_options"
 
 if [ "${1:-}" = --one ]; then # SECONDS NAME: how this script calls itself

@@ -127,7 +127,7 @@ int run_process(const ProcessArguments& a) {
     target.format = format;
     target.ascii = a.ascii;
     const WrittenMesh written = write_outputs(target, built.mesh);
-    if (written.text_for_precision && !a.quiet) text << text_for_precision;
+    if (!a.quiet) text << written_words(report_of(target, written));
     return done;
 }
 
@@ -142,8 +142,8 @@ void add_process(CLI::App& app, Run& run) {
     sub->add_option("-o,--output", a->output, "the mesh to write; - is standard output")->type_name("FILE");
     sub->add_flag("--in-place", a->in_place, "write the mesh's own file instead");
     sub->add_option("--format", a->format, "its format, where no extension names it (default: off)")
-        ->check(one_of({"off", "stl", "ply", "obj", "om"}))
-        ->type_name("off|stl|ply|obj|om");
+        ->check(one_of(mesh_format_names()))
+        ->type_name(joined(mesh_format_names(), "|"));
     sub->add_flag("--ascii", a->ascii, "text instead of binary STL and PLY");
     sub->option_defaults()->group("Stages");
     sub->add_option(

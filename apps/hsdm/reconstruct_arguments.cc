@@ -47,9 +47,7 @@ constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 /// ply|pcd|...
 std::string joined_formats() {
-    std::string list;
-    for (const std::string_view name : point_formats()) list += (list.empty() ? "" : "|") + std::string(name);
-    return list;
+    return joined({point_formats().begin(), point_formats().end()}, "|");
 }
 
 void refuse(bool given, const std::string& what) {
@@ -260,11 +258,24 @@ void add_file_options(CLI::App& app, ReconstructArguments& a) {
         ->type_name("DIR")
         ->group(files);
     app.add_option("--format", a.format, "the mesh's format, where no extension names it (default: off)")
-        ->check(one_of({"off", "stl", "ply", "obj", "om"}))
-        ->type_name("off|stl|ply|obj|om")
+        ->check(one_of(mesh_format_names()))
+        ->type_name(joined(mesh_format_names(), "|"))
         ->group(files);
     add_writing_options(app, a);
-    app.add_option("--features", a.features, "sharp edges (x y z x y z) and corners (c x y z) as text")
+    add_choice<LengthUnit>(app, "--units", a.units,
+                           {{"mm", LengthUnit::millimetre},
+                            {"cm", LengthUnit::centimetre},
+                            {"m", LengthUnit::metre},
+                            {"in", LengthUnit::inch}},
+                           "what the cloud's lengths are in: 3MF says so, GLB becomes metres")
+        ->group(files);
+    app.add_flag("--recentre", a.recentre,
+                 "write coordinates relative to a shift, which summary and report tell: far from the origin "
+                 "binary STL is too coarse otherwise")
+        ->group(files);
+    app.add_option("--features", a.features,
+                   "sharp edges and corners: .dxf and .obj as lines and points, others as text (x y z x y z, "
+                   "c x y z)")
         ->type_name("FILE")
         ->group(files);
     app.add_option("--report", a.report, "counts, errors and times as JSON; - is standard output")

@@ -39,6 +39,8 @@ struct ReconstructArguments {
 
     std::string output, out_dir, format;
     bool ascii = false, plain = false;
+    LengthUnit units = LengthUnit::none;
+    bool recentre = false;
     std::string features, report, html;
     bool intersections = false;
     bool quiet = false, verbose = false;

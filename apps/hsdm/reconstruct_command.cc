@@ -135,9 +135,9 @@ private:
         set_activity(input == "-" ? "standard input" : input.c_str(), "read");
         bool complete = true;
         std::size_t points = 0; // of an input without a mesh none count
-        for (const Made& made : make(input, name)) {
-            if (tell(name, made))
-                points = made.report.input.points;
+        for (const Report& report : make(input, name)) {
+            if (tell(name, report))
+                points = report.input.points;
             else
                 complete = false;
         }
@@ -145,13 +145,8 @@ private:
         failed_inputs_ += !complete;
     }
 
-    struct Made {
-        Report report;
-        bool text_for_precision; ///< the mesh was written so
-    };
-
     /// Reads, reconstructs and writes one input.
-    std::vector<Made> make(const std::string& input, const std::string& name) {
+    std::vector<Report> make(const std::string& input, const std::string& name) {
         const auto start = Clock::now();
         ProgressBar bar(arguments_.progress, name);
         bar.show("read", 0);
@@ -168,16 +163,20 @@ private:
         };
         const auto write_all = [&](std::span<Reconstruction> results) {
             bar.show(stages_.empty() ? "write" : "stages", 0.97);
-            std::vector<Made> made;
+            std::vector<Report> made;
             for (Reconstruction& result : results) {
                 result.report.input.file = input;
                 result.report.input.dropped_nonfinite += file.nonfinite;
                 result.report.seconds.read = read_seconds;
                 if (!file.columns.empty()) result.report.options["columns"] = file.columns;
-                const bool as_text = write_one(name, scan, result);
+                if (file.withheld > 0)
+                    result.report.dropped.insert(
+                        result.report.dropped.begin(),
+                        {"points that the file marks as withheld", file.withheld, file.first_withheld});
+                write_one(name, scan, result);
                 result.report.seconds.total = seconds_since(start);
                 write_page(scan.positions, result);
-                made.push_back({std::move(result.report), as_text});
+                made.push_back(std::move(result.report));
             }
             return made;
         };
@@ -208,25 +207,23 @@ private:
         result.report.seconds.error += seconds_since(start);
     }
 
-    /// Runs the stages on one level and writes it; a failure does not stop the others. Returns whether the
-    /// mesh became text for its precision.
-    bool write_one(const std::string& name, const PointCloud& scan, Reconstruction& result) const {
+    /// Runs the stages on one level and writes it; a failure does not stop the others.
+    void write_one(const std::string& name, const PointCloud& scan, Reconstruction& result) const {
         Report& report = result.report;
-        if (!report.failure.empty()) return false;
-        bool as_text = false;
+        if (!report.failure.empty()) return;
         auto start = Clock::now();
         try {
             run_stages(name, stages_, scan, options_.measure, arguments_.quiet, result);
             measure_more(result);
             set_phase("write");
             start = Clock::now();
-            as_text = write_outputs(target(report), result.mesh).text_for_precision;
+            const MeshTarget to = target(report);
+            report.written = report_of(to, write_outputs(to, result.mesh));
         } catch (const std::exception& error) {
             if (!levels_) throw;
             report.failure = message_of(error);
         }
         report.seconds.write = seconds_since(start);
-        return as_text;
     }
 
     /// The page of a mesh that was written; last, for it tells how long all the rest took.
@@ -255,8 +252,7 @@ private:
     }
 
     /// Notes the report and prints a line or a summary; false for a level that failed.
-    bool tell(const std::string& name, const Made& made) {
-        const Report& report = made.report;
+    bool tell(const std::string& name, const Report& report) {
         reports_.push_back(to_json(report));
         if (!report.failure.empty()) {
             complain(name + ", depth " + std::to_string(report.grid.depth) + ": " + report.failure);
@@ -264,21 +260,20 @@ private:
         }
         faces_ += report.mesh.faces;
         doubtful_ += !report.warnings.empty();
-        if (!arguments_.quiet) print(made);
+        if (!arguments_.quiet) print(report);
         if (arguments_.strict && !report.warnings.empty())
             complain(name + ": " + strict_words(report) + "; the mesh is written");
         return true;
     }
 
-    void print(const Made& made) const {
-        const Report& report = made.report;
+    void print(const Report& report) const {
         const std::string written = spoken_name(target(report).mesh);
         if (arguments_.inputs.size() == 1 && !levels_) {
             text_ << summary_of(report, written);
         } else {
             text_ << line_of(report, written);
         }
-        if (made.text_for_precision) text_ << text_for_precision;
+        if (report.written) text_ << written_words(*report.written);
         if (arguments_.verbose) text_ << details_of(report);
         text_ << warnings_of(report);
     }

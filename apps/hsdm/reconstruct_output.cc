@@ -4,8 +4,9 @@
 
 #include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
-#include "hsdm/features/features.hh"
+#include "hsdm/io/float_precision.hh"
 #include "hsdm/io/output_target.hh"
+#include "hsdm/io/write_features.hh"
 #include "hsdm/io/write_om.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/pipeline/phase_geometry.hh"
@@ -19,18 +20,15 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string extension(MeshFormat format) {
-    switch (format) {
-    case MeshFormat::stl:
-        return ".stl";
-    case MeshFormat::ply:
-        return ".ply";
-    case MeshFormat::obj:
-        return ".obj";
-    case MeshFormat::om:
-        return ".om";
-    default:
-        return ".off";
-    }
+    return std::string(".").append(info_of(format).name);
+}
+
+/// .om has every property; its writer takes the mesh as it is.
+void write_all_om(const std::string& path, const PolyMesh& mesh, const Vec3& shift) {
+    if (shift == Vec3(0, 0, 0)) return write_om(path, mesh);
+    PolyMesh near = mesh;
+    for (const auto v : near.vertices()) near.set_point(v, near.point(v) - shift);
+    write_om(path, near);
 }
 
 bool is_file(const std::string& path) {
@@ -149,6 +147,8 @@ MeshTarget OutputPlan::target(const std::string& input, std::optional<int> depth
     result.format = format_;
     result.ascii = arguments_.ascii;
     result.plain = arguments_.plain;
+    result.unit = arguments_.units;
+    result.recentre = arguments_.recentre;
     result.mesh = arguments_.output.empty()
                       ? (fs::path(arguments_.out_dir) / (stem(input) + extension(format_))).string()
                       : arguments_.output;
@@ -159,7 +159,7 @@ MeshTarget OutputPlan::target(const std::string& input, std::optional<int> depth
 }
 
 bool OutputPlan::writes_properties() const {
-    return !arguments_.plain && format_ != MeshFormat::off && format_ != MeshFormat::stl;
+    return !arguments_.plain && info_of(format_).holds_normals;
 }
 
 bool OutputPlan::writes_features() const {
@@ -181,15 +181,28 @@ PolygonMesh polygons_to_write(const PolyMesh& mesh, bool plain) {
     return polygons;
 }
 
+Report::Written report_of(const MeshTarget& target, const WrittenMesh& written) {
+    Report::Written told;
+    told.format = info_of(target.format).name;
+    told.units = name_of(target.unit);
+    told.text_for_precision = written.text_for_precision;
+    told.moved_by_floats = written.moved_by_floats;
+    told.shift = written.shift;
+    return told;
+}
+
 WrittenMesh write_outputs(const MeshTarget& target, const PolyMesh& mesh) {
+    const PolygonMesh polygons = polygons_to_write(mesh, target.plain);
+    const WriteOptions options{target.ascii, target.unit, target.recentre};
     WrittenMesh written;
-    const WriteOptions options{.ascii = target.ascii};
     if (target.format == MeshFormat::om && !target.plain) {
-        write_om(target.mesh, mesh); // with status bits and every property
+        if (target.recentre) written.shift = recentring_shift(polygons.positions);
+        write_all_om(target.mesh, mesh, written.shift);
     } else {
-        written = write_mesh(target.mesh, polygons_to_write(mesh, target.plain), target.format, options);
+        written = write_mesh(target.mesh, polygons, target.format, options);
     }
-    if (!target.features.empty()) write_text(target.features, feature_lines(mesh));
+    if (!target.features.empty())
+        write_features(target.features, mesh, feature_format(target.features), target.unit, written.shift);
     return written;
 }
 

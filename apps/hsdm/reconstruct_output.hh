@@ -15,6 +15,8 @@ struct MeshTarget {
     bool plain = false;   ///< positions and facets only
     std::string features; ///< empty: none
     std::string page;     ///< empty: none
+    LengthUnit unit = LengthUnit::none;
+    bool recentre = false; ///< mesh and features
 };
 
 class OutputPlan {
@@ -56,6 +58,9 @@ MeshFormat format_for(const std::string& output, const std::string& format);
 
 /// The mesh for the writers; plain: positions and facets only.
 PolygonMesh polygons_to_write(const PolyMesh& mesh, bool plain);
+
+/// What a report tells of it.
+Report::Written report_of(const MeshTarget& target, const WrittenMesh& written);
 
 /// Writes mesh and features. Throws Error.
 WrittenMesh write_outputs(const MeshTarget& target, const PolyMesh& mesh);

@@ -5,6 +5,7 @@
 
 #include "hsdm/core/number_of.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/io/write_mesh.hh"
 
 #include <algorithm>
 #include <array>
@@ -166,10 +167,14 @@ void check_extras(const Case& one, const Place& place) {
 
 /// Of the case's `output`; empty if it has none.
 std::string output_format(const Json& entry, const Place& place) {
-    static const std::vector<std::string> known{"off", "stl", "ply", "obj", "om"};
+    std::vector<std::string> known;
+    for (const MeshFormatInfo& info : mesh_formats())
+        if (info.is_read) known.emplace_back(info.name);
+    std::string words = known.front();
+    for (std::size_t i = 1; i < known.size(); ++i) words += (i + 1 < known.size() ? ", " : " or ") + known[i];
     std::string format = text_of(entry, "output", "", place);
     if (entry.contains("output") && std::find(known.begin(), known.end(), format) == known.end())
-        place.fail_at(format, "`output` must be off, stl, ply, obj or om", known);
+        place.fail_at(format, "`output` must be " + words, known);
     return format;
 }
 

@@ -2,6 +2,8 @@
 
 #include "messages.hh"
 
+#include "hsdm/io/write_mesh.hh"
+
 #include <algorithm>
 #include <cstdio>
 #include <string_view>
@@ -174,6 +176,26 @@ std::string details_of(const Report& r) {
 std::string warnings_of(const Report& r) {
     Text out;
     for (const Report::Warning& warning : r.warnings) out << "warning   " << warning_words(warning) << "\n";
+    return std::move(out).take();
+}
+
+std::string written_words(const Report::Written& w) {
+    Text out;
+    if (w.text_for_precision)
+        out << "format    STL as text: so far from the origin the floats of binary STL would move vertices "
+               "by up to "
+            << number(w.moved_by_floats, 2)
+            << " of the diagonal; --recentre writes it binary, relative to a shift\n";
+    if (w.shift != Vec3(0, 0, 0))
+        out << "shift     " << number(w.shift[0], 17) << ' ' << number(w.shift[1], 17) << ' '
+            << number(w.shift[2], 17) << ": add it to the file's coordinates for those of the cloud\n";
+    if (!w.units.empty()) {
+        const MeshFormatInfo& format = info_of(mesh_format("x." + w.format));
+        out << "units     " << w.units;
+        if (format.format == MeshFormat::glb) out << ", scaled to metres, which GLB is in";
+        if (!format.holds_unit) out << ", which " << format.title << " has no place for";
+        out << "\n";
+    }
     return std::move(out).take();
 }
 

@@ -22,9 +22,9 @@ std::string strict_words(const Report& report);
 /// "closed, genus 3", "open, 2 boundary loops of 40 edges, genus 0".
 std::string topology_words(const Report::Mesh& mesh);
 
-/// The line that says why an STL file is text (WrittenMesh::text_for_precision).
-inline constexpr const char* text_for_precision =
-    "format    STL as text: binary STL would move vertices by more than 1e-6 of the diagonal\n";
+/// Lines on what the file is other than was asked for, or does not show; empty if there is nothing to be
+/// said.
+std::string written_words(const Report::Written& written);
 
 /// What the columns of a table were taken for, and what to do if that is wrong.
 std::string columns_words(const std::string& columns, bool has_normals);

@@ -2,6 +2,8 @@
 
 #include "messages.hh"
 
+#include "hsdm/io/write_mesh.hh"
+
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -17,12 +19,6 @@ Words subcommands(const CLI::App& app) {
     for (const CLI::App* sub : app.get_subcommands({}))
         if (!sub->get_group().empty()) names.push_back(sub->get_name());
     return names;
-}
-
-std::string joined(const Words& words) {
-    std::string text;
-    for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-    return text;
 }
 
 /// The words with `help` and `version` turned into options.
@@ -76,6 +72,18 @@ std::string fault_of_option(const CLI::ParseError& error) {
 }
 
 } // namespace
+
+std::string joined(const std::vector<std::string>& words, const std::string& between) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : between) + word;
+    return text;
+}
+
+std::vector<std::string> mesh_format_names() {
+    std::vector<std::string> names;
+    for (const MeshFormatInfo& info : mesh_formats()) names.emplace_back(info.name);
+    return names;
+}
 
 std::string fault_of(const CLI::App& app, const CLI::ParseError& error) {
     const auto given = app.get_subcommands();

@@ -25,4 +25,9 @@ CLI::Validator whole_number(int least, int most, const std::string& wanted);
 CLI::Validator number_between(double least, double most, const std::string& wanted);
 CLI::Validator one_of(std::vector<std::string> names);
 
+/// The words with something between each and the next.
+std::string joined(const std::vector<std::string>& words, const std::string& between = ", ");
+/// The values of --format.
+std::vector<std::string> mesh_format_names();
+
 } // namespace hsdm::command

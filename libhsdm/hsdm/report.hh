@@ -130,6 +130,16 @@ struct Report {
     /// leave.
     std::vector<Stage> stages;
 
+    /// The file that the mesh was written to.
+    struct Written {
+        std::string format;              ///< "stl"
+        std::string units;               ///< "mm", or empty: not given
+        bool text_for_precision = false; ///< STL as text, since floats would move vertices too far
+        double moved_by_floats = 0;      ///< of STL: how far they would, over the diagonal
+        Vec3 shift{0, 0, 0};             ///< what its coordinates are less than the cloud's
+    };
+    std::optional<Written> written; ///< set by the command
+
     /// Wall-clock time.
     struct Seconds {
         double read = 0,  ///< set by the command

@@ -2,6 +2,8 @@
 
 #include "hsdm/errors.hh"
 #include "hsdm/io/formats.hh"
+#include "io/las_bytes.hh"
+#include "io/npy_bytes.hh"
 #include "io/pack_lzf.hh"
 #include "io/temp_file.hh"
 
@@ -86,6 +88,36 @@ std::string half_edge_om() {
     return text + chunk(7, 0, 0);
 }
 
+std::string las(int minor, int format) {
+    LasLayout layout;
+    layout.minor = minor;
+    layout.format = format;
+    layout.records = {"words"};
+    layout.extra = minor == 4 ? "x" : "";
+    return las_file(layout, {{{1, 2, 3}, 4, 5, false, 6, {7, 8, 9}},
+                             {{-1, -2, -3}, 4, 5, true, 6, {7, 8, 900}},
+                             {{0, 0, 0}, 1, 1, false, 1, {1, 1, 1}}});
+}
+
+std::string npy(bool fortran) {
+    std::string data;
+    for (const float value : {1.0f, 2.0f, 3.0f, 0.0f, 0.0f, 1.0f, 4.0f, 5.0f, 6.0f, 0.0f, 1.0f, 0.0f})
+        data += bytes_of(value, fortran);
+    return npy_file(fortran ? "'>f4'" : "'<f4'", fortran, "(2, 6)", data);
+}
+
+std::string structured_npy() {
+    const std::string row = bytes_of(1.0) + bytes_of(std::int16_t(2)) + bytes_of(3.0f) + "abcd" + "\1\2\3";
+    return npy_file("[('x', '<f8'), ('y', '<i2'), ('z', '<f4'), ('', '|V4'), ('rgb', '|u1', (3,))]", false,
+                    "(2,)", row + row);
+}
+
+std::string npz(bool deflated) {
+    const std::string label =
+        npy_file("'<i8'", false, "(2,)", bytes_of(std::int64_t(1)) + bytes_of(std::int64_t(2)));
+    return zip_file({{"points.npy", npy(false)}, {"label.npy", label}}, deflated);
+}
+
 std::string check(const PointCloud& cloud) {
     const std::size_t n = cloud.size();
     if (n == 0) return "a cloud without points";
@@ -128,6 +160,13 @@ std::vector<NamedContent> valid_point_files() {
                   "1 2 3 255 0 0 1\nnan 5 6 65280 0 1 0\n4 5 6 7 1 0 0\n"},
         {"b.pcd", binary_pcd()},
         {"c.pcd", compressed_pcd()},
+        {"a.las", las(2, 2)},
+        {"b.las", las(4, 7)},
+        {"a.npy", npy(false)},
+        {"b.npy", npy(true)},
+        {"c.npy", structured_npy()},
+        {"a.npz", npz(false)},
+        {"b.npz", npz(true)},
     };
 }
 
@@ -199,8 +238,8 @@ std::string fuzz_reading(std::uint64_t seed, int rounds) {
     const auto files = valid_point_files();
     support::Random random(seed);
     const std::string columns[] = {"", "", "", "x,y,z", "_,z,y,x,label", "x,y,z,nx,ny,nz,r,g,b"};
-    const std::string formats[] = {"",    "",    "",   "ply", "pcd", "xyz", "off",
-                                   "obj", "stl", "om", "pts", "ptx", "pwn", "hoppe"};
+    const std::string formats[] = {"",   "",    "",    "ply", "pcd",   "xyz", "off", "obj", "stl",
+                                   "om", "pts", "ptx", "pwn", "hoppe", "las", "npy", "npz"};
     for (int round = 0; round < rounds; ++round)
         for (const NamedContent& file : files) {
             std::istringstream stream(damaged(file.content, random));

@@ -135,7 +135,8 @@ TEST_CASE("compressed PCD files that are damaged are refused, whatever sizes the
     CHECK(message.find("do not fit 100000000 points of 37") != std::string::npos);
 }
 
-TEST_CASE("fields of several values, of eight bytes and for padding are passed by in PCD files", "[io]") {
+TEST_CASE("fields of several values and of eight bytes are read, those for padding passed by in PCD files",
+          "[io]") {
     std::string binary = pcd("_ x y z histogram stamp rgba",
                              "SIZE 1 4 4 4 4 8 4\nTYPE U F F F F U U\nCOUNT 3 1 1 1 2 1 1\n", "1", "binary");
     binary += "abc" + bytes_of(1.0f) + bytes_of(2.0f) + bytes_of(3.0f) + bytes_of(0.5f) + bytes_of(0.25f)
@@ -143,9 +144,10 @@ TEST_CASE("fields of several values, of eight bytes and for padding are passed b
     const PointCloud cloud = read("a.pcd", binary).cloud;
     CHECK(cloud.positions == std::vector<Vec3>{Vec3(1, 2, 3)});
     CHECK(cloud.colors == std::vector<std::array<std::uint8_t, 4>>{{1, 2, 3, 0x80}});
-    REQUIRE(cloud.scalars.size() == 2);
+    REQUIRE(cloud.scalars.size() == 3);
     CHECK(cloud.scalars[1].name == "histogram_1");
     CHECK(cloud.scalars[1].values == std::vector<double>{0.25});
+    CHECK(cloud.scalars[2].values == std::vector<double>{std::ldexp(1, 60)});
 }
 
 TEST_CASE("pixels of a PCD file without a measurement are no points, its viewpoint is the sensor", "[io]") {

@@ -128,12 +128,12 @@ void append_point(const Vec3& p, std::string& text) {
 
 } // namespace
 
-std::string feature_lines(const PolyMesh& mesh) {
+std::string feature_lines(const PolyMesh& mesh, const Vec3& shift) {
     std::string text;
     for (const auto e : mesh.edges()) {
         if (!mesh.status(e).feature()) continue;
-        append_point(mesh.point(e.v0()), text);
-        append_point(mesh.point(e.v1()), text);
+        append_point(mesh.point(e.v0()) - shift, text);
+        append_point(mesh.point(e.v1()) - shift, text);
         text += '\n';
     }
     OpenMesh::VPropHandleT<std::uint8_t> classes;
@@ -141,7 +141,7 @@ std::string feature_lines(const PolyMesh& mesh) {
     for (const auto v : mesh.vertices()) {
         if (mesh.property(classes, v) != static_cast<std::uint8_t>(VertexClass::corner)) continue;
         text += 'c';
-        append_point(mesh.point(v), text);
+        append_point(mesh.point(v) - shift, text);
         text += '\n';
     }
     return text;

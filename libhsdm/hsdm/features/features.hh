@@ -37,8 +37,8 @@ SubdivisionCounts subdivide(PolyMesh& mesh, const SubdivisionOptions& options = 
 void mark_edges_by_normals(PolyMesh& mesh);
 
 /// The features as text: a line `x y z x y z` for each sharp edge, then a line `c x y z` for each corner, in
-/// the mesh's order; doubles in the fewest digits that read back to the same bits. Empty before
+/// the mesh's order, less `shift`; doubles in the fewest digits that read back to the same bits. Empty before
 /// classify_features.
-std::string feature_lines(const PolyMesh& mesh);
+std::string feature_lines(const PolyMesh& mesh, const Vec3& shift = Vec3(0, 0, 0));
 
 } // namespace hsdm

@@ -22,6 +22,11 @@ struct Column {
     std::string name; ///< as the file spells it; scalars keep it
 };
 
+/// Whether the column is red, green or blue.
+inline bool is_color(const Column& column) {
+    return column.role >= Role::red && column.role <= Role::blue;
+}
+
 /// The role of a column called so (`normal_x`, `diffuse_red`, ...), letter case aside; scalar if the name is
 /// none of the known ones, skip for `_` and the empty name.
 Role role_of(std::string_view name);

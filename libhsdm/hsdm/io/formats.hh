@@ -7,9 +7,9 @@
 namespace hsdm::io {
 
 /// What the file's name or the caller says of a table: decides only what its values leave open.
-enum class TableKind { plain, pts, pwn };
+enum class TableKind { plain, pts, pwn, xyzrgb };
 
-/// XYZ, TXT, ASC, CSV, PTS, PWN: rows of numbers, with or without a header, a count, comments.
+/// XYZ, XYZN, XYZRGB, TXT, ASC, CSV, PTS, PWN: rows of numbers, with or without a header, a count, comments.
 PointFile read_table(const SourceBytes& bytes, TableKind kind, const std::string& columns);
 PointFile read_ply(const SourceBytes& bytes);
 /// The points of a PCD file, as text, binary or compressed; those whose coordinates are not finite, pixels
@@ -23,6 +23,20 @@ bool is_pcd(const Text& text);
 PointFile read_ptx(const SourceBytes& bytes);
 /// Whether the text begins with the ten header lines of a PTX scan.
 bool is_ptx(const Text& text);
+/// ASPRS LAS 1.0 to 1.4, uncompressed, every point format: positions, and colour, intensity, classification
+/// and point_source_id where one of them is not zero. Points marked as withheld are left out and counted.
+PointFile read_las(const SourceBytes& bytes);
+/// Whether the bytes begin as those of a LAS or LAZ file.
+bool is_las(const SourceBytes& bytes);
+/// NumPy's array: structured, or rows of three numbers and more, whose columns are `columns` or told as those
+/// of a table.
+PointFile read_npy(const SourceBytes& bytes, const std::string& columns);
+bool is_npy(const SourceBytes& bytes);
+/// NumPy's arrays in an archive: `points` (or the like, or the only one that may be) as read_npy, `normals`,
+/// `colors`, and as scalars the others that have one number for each point.
+PointFile read_npz(const SourceBytes& bytes, const std::string& columns);
+/// Whether the bytes begin as those of a ZIP archive whose first member is an array.
+bool is_npz(const SourceBytes& bytes);
 PointFile read_off(const SourceBytes& bytes);
 /// The vertices that are not deleted and their normals, if one of them is not zero.
 PointFile read_om(const SourceBytes& bytes);

@@ -4,19 +4,9 @@
 #include "hsdm/io/ply_header.hh"
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
 
 namespace hsdm::io {
 namespace {
-
-template <class T>
-double load(const char* at, bool swap) {
-    std::array<char, sizeof(T)> bytes;
-    std::memcpy(bytes.data(), at, sizeof(T));
-    if (swap) std::reverse(bytes.begin(), bytes.end());
-    return static_cast<double>(std::bit_cast<T>(bytes));
-}
 
 /// The values of a PLY body one after the other, whatever its encoding.
 class PlyValues {
@@ -26,8 +16,7 @@ public:
           cursor_(body_),
           at_(body.begin),
           ascii_(header.encoding == PlyEncoding::ascii),
-          swap_((header.encoding == PlyEncoding::big_endian)
-                == (std::endian::native == std::endian::little)) {}
+          big_endian_(header.encoding == PlyEncoding::big_endian) {}
 
     double next(PlyType type) {
         if (ascii_) {
@@ -40,25 +29,9 @@ public:
                                           + "); it was cut off");
         const char* at = at_;
         at_ += size;
-        switch (type) {
-        case PlyType::int8:
-            return load<std::int8_t>(at, swap_);
-        case PlyType::uint8:
-            return load<std::uint8_t>(at, swap_);
-        case PlyType::int16:
-            return load<std::int16_t>(at, swap_);
-        case PlyType::uint16:
-            return load<std::uint16_t>(at, swap_);
-        case PlyType::int32:
-            return load<std::int32_t>(at, swap_);
-        case PlyType::uint32:
-            return load<std::uint32_t>(at, swap_);
-        case PlyType::float32:
-            return load<float>(at, swap_);
-        case PlyType::float64:
-            return load<double>(at, swap_);
-        }
-        return 0;
+        double value = 0;
+        gather_of(type, big_endian_)(at, 0, 1, &value);
+        return value;
     }
 
     std::size_t next_count(const PlyProperty& list) {
@@ -89,7 +62,7 @@ private:
     Text body_;
     Cursor cursor_;
     const char* at_;
-    bool ascii_, swap_;
+    bool ascii_, big_endian_;
 };
 
 VertexProperty::Type property_type(PlyType type) {

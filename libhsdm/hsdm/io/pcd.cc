@@ -170,11 +170,11 @@ PlyType type_of(const PcdField& field) {
     const bool is_signed = field.type == 'I';
     if (field.size == 1) return is_signed ? PlyType::int8 : PlyType::uint8;
     if (field.size == 2) return is_signed ? PlyType::int16 : PlyType::uint16;
-    return is_signed ? PlyType::int32 : PlyType::uint32;
+    if (field.size == 4) return is_signed ? PlyType::int32 : PlyType::uint32;
+    return is_signed ? PlyType::int64 : PlyType::uint64;
 }
 
-/// The values of a field as a binary file has them: colours are their bytes, integers of eight bytes passed
-/// over.
+/// The values of a field as a binary file has them: colours are their bytes.
 void add_binary(const PcdField& field, const std::string& name, std::vector<PlyProperty>& properties) {
     const auto add = [&](const std::string& called, PlyType type) {
         properties.push_back({called, type, false, {}});
@@ -182,8 +182,6 @@ void add_binary(const PcdField& field, const std::string& name, std::vector<PlyP
     if (field.is_packed_color()) {
         for (const char* component : {"blue", "green", "red"}) add(component, PlyType::uint8);
         add(field.name == "rgba" ? "alpha" : "_", PlyType::uint8);
-    } else if (field.type != 'F' && field.size == 8) {
-        for (int half = 0; half < 2; ++half) add("_", PlyType::uint32);
     } else {
         add(name, type_of(field));
     }
@@ -205,6 +203,7 @@ PlyHeader ply_header_of(const PcdHeader& pcd) {
     ply.encoding = pcd.data == PcdData::ascii ? PlyEncoding::ascii : PlyEncoding::little_endian;
     ply.elements.push_back(std::move(point));
     ply.size = pcd.data == PcdData::compressed ? 0 : pcd.size;
+    ply.padded = true; // as PCL leaves room for what it has in memory between the fields
     return ply;
 }
 

@@ -1,58 +1,12 @@
-#include "hsdm/core/chunks.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/io/binary_columns.hh"
 #include "hsdm/io/ply.hh"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
-#include <memory>
 
 namespace hsdm::io {
 namespace {
-
-static_assert(std::endian::native == std::endian::little || std::endian::native == std::endian::big);
-
-/// One value at any address, from the file's byte order.
-template <class T, bool swap>
-T load(const char* at) {
-    std::array<char, sizeof(T)> bytes;
-    std::memcpy(bytes.data(), at, sizeof(T));
-    if constexpr (swap) std::reverse(bytes.begin(), bytes.end());
-    return std::bit_cast<T>(bytes);
-}
-
-template <class T, bool swap>
-void gather(const char* at, std::size_t stride, std::size_t count, double* out) {
-    for (std::size_t i = 0; i < count; ++i) out[i] = static_cast<double>(load<T, swap>(at + i * stride));
-}
-
-/// Reads `count` values that lie `stride` bytes apart.
-using Gather = void (*)(const char* at, std::size_t stride, std::size_t count, double* out);
-
-template <bool swap>
-Gather gather_of(PlyType type) {
-    switch (type) {
-    case PlyType::int8:
-        return gather<std::int8_t, swap>;
-    case PlyType::uint8:
-        return gather<std::uint8_t, swap>;
-    case PlyType::int16:
-        return gather<std::int16_t, swap>;
-    case PlyType::uint16:
-        return gather<std::uint16_t, swap>;
-    case PlyType::int32:
-        return gather<std::int32_t, swap>;
-    case PlyType::uint32:
-        return gather<std::uint32_t, swap>;
-    case PlyType::float32:
-        return gather<float, swap>;
-    case PlyType::float64:
-        return gather<double, swap>;
-    }
-    return nullptr;
-}
 
 /// A property as the body reads it.
 struct Field {
@@ -65,10 +19,7 @@ struct Field {
 class BinaryBody {
 public:
     BinaryBody(const SourceBytes& bytes, const PlyHeader& header)
-        : bytes_(bytes),
-          at_(header.size),
-          swap_((header.encoding == PlyEncoding::big_endian)
-                == (std::endian::native == std::endian::little)) {}
+        : bytes_(bytes), at_(header.size), big_endian_(header.encoding == PlyEncoding::big_endian) {}
 
     std::size_t at() const { return at_; }
     std::size_t left() const { return bytes_.size() - at_; }
@@ -78,7 +29,7 @@ public:
         std::size_t offset = 0;
         for (const PlyProperty& property : element.properties) {
             const PlyType type = property.is_list ? property.count_type : property.type;
-            result.push_back({offset, size_of(type), swap_ ? gather_of<true>(type) : gather_of<false>(type),
+            result.push_back({offset, size_of(type), gather_of(type, big_endian_),
                               property.is_list ? size_of(property.type) : 0});
             offset += size_of(type);
         }
@@ -150,38 +101,10 @@ private:
 
     const SourceBytes& bytes_;
     std::size_t at_; ///< offset in the source
-    bool swap_;
+    bool big_endian_;
 };
 
-constexpr std::size_t block_rows = 1024; // a column of them fits the first-level cache
-
-/// Vertices of one size, as they lie in the source.
-struct FixedVertices {
-    const SourceBytes& bytes;
-    std::size_t offset, stride, count;
-    std::vector<Field> layout;
-};
-
-/// Calls use(column, first, values) for every block of every column that is used, in parallel.
-template <class Use>
-void for_each_block(const FixedVertices& vertices, const std::vector<Column>& columns, const Use& use) {
-    const std::size_t blocks = (vertices.count + block_rows - 1) / block_rows;
-    for_chunks(blocks, 16, [&](std::size_t begin, std::size_t end, std::size_t) {
-        std::array<double, block_rows> values;
-        const std::size_t stride = vertices.stride;
-        const std::unique_ptr<char[]> scratch(new char[std::min(block_rows, vertices.count) * stride]);
-        for (std::size_t block = begin; block != end; ++block) {
-            const std::size_t first = block * block_rows, rows = std::min(block_rows, vertices.count - first);
-            const char* bytes =
-                vertices.bytes.piece(vertices.offset + first * stride, rows * stride, scratch.get());
-            for (std::size_t c = 0; c < columns.size(); ++c) {
-                if (columns[c].role == Role::skip) continue;
-                vertices.layout[c].gather(bytes + vertices.layout[c].offset, stride, rows, values.data());
-                use(c, first, std::span<const double>(values.data(), rows));
-            }
-        }
-    });
-}
+constexpr std::size_t list_rows = 1024; // a column of them fits the first-level cache
 
 double largest(std::span<const double> values) {
     double max = 0;
@@ -189,29 +112,17 @@ double largest(std::span<const double> values) {
     return max;
 }
 
-bool is_color(const Column& column) {
-    return column.role >= Role::red && column.role <= Role::blue;
-}
-
-/// Columns are gathered block by block: the bytes of a block pass through the cache once.
-PointCloud read_fixed(const FixedVertices& vertices, const PlyElement& element,
-                      const std::vector<Column>& columns) {
-    auto factor = color_factor_by_type(element, columns);
-    if (!factor) {
-        std::vector<Column> colors = columns;
-        for (Column& column : colors)
-            if (!is_color(column)) column.role = Role::skip;
-        std::vector<double> maxima((vertices.count + block_rows - 1) / block_rows, 0);
-        for_each_block(vertices, colors, [&](std::size_t, std::size_t first, auto values) {
-            maxima[first / block_rows] = std::max(maxima[first / block_rows], largest(values));
-        });
-        factor = color_factor(largest(maxima), has_fractional_color(element, columns));
+/// Vertices of one size.
+PointCloud read_fixed(const SourceBytes& bytes, const PlyHeader& header, std::size_t offset,
+                      const PlyElement& element, const std::vector<Column>& columns) {
+    std::vector<BinaryColumn> values;
+    for (const PlyProperty& property : element.properties) {
+        values.push_back({&bytes, offset, element.least_size(), property.type,
+                          header.encoding == PlyEncoding::big_endian});
+        offset += size_of(property.type);
     }
-    CloudColumns cloud(columns, vertices.count, *factor);
-    for_each_block(vertices, columns, [&](std::size_t c, std::size_t first, auto values) {
-        cloud.store(c, first, values.size(), values.data(), 1);
-    });
-    return cloud.finish();
+    return read_columns(values, columns, static_cast<std::size_t>(element.count),
+                        color_factor_by_type(element, columns));
 }
 
 /// Vertices that hold lists: one after the other, as only the one before says where the next begins.
@@ -219,7 +130,7 @@ PointCloud read_varying(BinaryBody& body, const PlyElement& vertex, const std::v
     const auto layout = body.fields(vertex);
     const std::size_t width = columns.size(), count = static_cast<std::size_t>(vertex.count);
     auto factor = color_factor_by_type(vertex, columns);
-    std::vector<double> rows(std::min(block_rows, count) * width);
+    std::vector<double> rows(std::min(list_rows, count) * width);
     if (!factor) {
         double max = 0;
         BinaryBody scan = body;
@@ -231,13 +142,17 @@ PointCloud read_varying(BinaryBody& body, const PlyElement& vertex, const std::v
         factor = color_factor(max, has_fractional_color(vertex, columns));
     }
     CloudColumns cloud(columns, count, *factor);
-    for (std::size_t first = 0; first < count; first += block_rows) {
-        const std::size_t filled = std::min(block_rows, count - first);
+    for (std::size_t first = 0; first < count; first += list_rows) {
+        const std::size_t filled = std::min(list_rows, count - first);
         for (std::size_t i = 0; i < filled; ++i)
             body.read_element(layout, vertex, first + i, &rows[i * width]);
         for (std::size_t c = 0; c < width; ++c) cloud.store(c, first, filled, &rows[c], width);
     }
     return cloud.finish();
+}
+
+bool is_all_zero(std::string_view bytes) {
+    return bytes.find_first_not_of('\0') == std::string_view::npos;
 }
 
 } // namespace
@@ -251,13 +166,12 @@ PointCloud read_ply_binary(const SourceBytes& bytes, const PlyHeader& header, st
     if (element.has_list()) return read_varying(body, element, columns);
 
     const std::size_t rest = body.left() - static_cast<std::size_t>(element.count) * element.least_size();
-    if (vertex + 1 == header.elements.size() && rest >= element.least_size())
+    if (vertex + 1 == header.elements.size() && rest >= element.least_size()
+        && !(header.padded && is_all_zero(bytes.view().substr(bytes.size() - rest))))
         throw Error(bytes.name(), std::to_string(rest) + " bytes behind the last of "
                                       + std::to_string(element.count)
                                       + " vertices; the header's count is wrong, correct it");
-    return read_fixed({bytes, body.at(), element.least_size(), static_cast<std::size_t>(element.count),
-                       body.fields(element)},
-                      element, columns);
+    return read_fixed(bytes, header, body.at(), element, columns);
 }
 
 std::optional<Vec3> read_ply_sensor_binary(const SourceBytes& bytes, const PlyHeader& header,

@@ -119,11 +119,6 @@ private:
 
 } // namespace
 
-std::size_t size_of(PlyType type) {
-    constexpr std::size_t sizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
-    return sizes[static_cast<std::size_t>(type)];
-}
-
 bool PlyElement::has_list() const {
     return std::any_of(properties.begin(), properties.end(), [](const PlyProperty& p) { return p.is_list; });
 }

@@ -1,6 +1,7 @@
 #pragma once
 // The header of a PLY file: which elements follow, how many, made of what.
 
+#include "hsdm/io/number_type.hh"
 #include "hsdm/io/text.hh"
 
 #include <cstdint>
@@ -9,11 +10,8 @@
 
 namespace hsdm::io {
 
-enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+using PlyType = NumberType; // PLY itself has no integers of eight bytes
 enum class PlyEncoding : std::uint8_t { ascii, little_endian, big_endian };
-
-/// Bytes of a value.
-std::size_t size_of(PlyType type);
 
 struct PlyProperty {
     std::string name;
@@ -37,6 +35,7 @@ struct PlyHeader {
     PlyEncoding encoding = PlyEncoding::ascii;
     std::vector<PlyElement> elements;
     std::size_t size = 0; ///< bytes from the start of the source to the data
+    bool padded = false;  ///< whether zeros may follow the data
 };
 
 /// The text of a PLY file with the line ends of its first line: binary data decide nothing about them.

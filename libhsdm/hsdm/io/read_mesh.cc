@@ -3,6 +3,7 @@
 #include "hsdm/errors.hh"
 #include "hsdm/io/formats.hh"
 #include "hsdm/io/mesh_readers.hh"
+#include "hsdm/io/write_mesh.hh"
 
 namespace hsdm {
 namespace io {
@@ -28,6 +29,17 @@ PolygonMesh read_as(const SourceBytes& bytes, std::string_view format) {
     return format == "off" ? read_mesh_off(bytes) : read_mesh_obj(bytes);
 }
 
+/// "OFF, STL, PLY, OBJ or .om"
+std::string titles_of_read_formats() {
+    std::vector<std::string_view> titles;
+    for (const MeshFormatInfo& info : mesh_formats())
+        if (info.is_read) titles.push_back(info.title);
+    std::string text;
+    for (std::size_t i = 0; i < titles.size(); ++i)
+        text.append(i == 0 ? "" : i + 1 == titles.size() ? " or " : ", ").append(titles[i]);
+    return text;
+}
+
 } // namespace
 
 /// Chooses the reader by the content, else by the name; then the file must be what its name says.
@@ -41,7 +53,7 @@ PolygonMesh read_mesh(const SourceBytes& bytes) {
     if (format.empty() && extension == ".ply")
         throw Error(bytes.name(), 1, "a PLY file begins with \"ply\"; this one does not, check it");
     if (format.empty())
-        throw Error(bytes.name(), "no mesh format that is known; use OFF, STL, PLY, OBJ or .om");
+        throw Error(bytes.name(), "no mesh format that is known; use " + titles_of_read_formats());
     PolygonMesh mesh = read_as(bytes, format);
     if (mesh.facet_count() == 0) return mesh;
     for (std::size_t v = 0; v < mesh.vertex_count(); ++v)

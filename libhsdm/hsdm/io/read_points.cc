@@ -12,7 +12,7 @@ namespace hsdm {
 namespace io {
 namespace {
 
-enum class Format { unknown, table, ply, pcd, ptx, off, obj, hoppe, stl, om };
+enum class Format { unknown, table, ply, pcd, ptx, las, npy, npz, off, obj, hoppe, stl, om };
 
 struct KnownName {
     std::string_view name;
@@ -25,12 +25,17 @@ constexpr KnownName known_names[] = {
     {"ply", Format::ply},
     {"pcd", Format::pcd},
     {"xyz", Format::table},
+    {"xyzn", Format::table},
+    {"xyzrgb", Format::table, TableKind::xyzrgb},
     {"csv", Format::table},
     {"txt", Format::table},
     {"asc", Format::table},
     {"pts", Format::table, TableKind::pts},
     {"pwn", Format::table, TableKind::pwn},
     {"ptx", Format::ptx},
+    {"las", Format::las},
+    {"npy", Format::npy},
+    {"npz", Format::npz},
     {"off", Format::off},
     {"obj", Format::obj},
     {"stl", Format::stl},
@@ -50,7 +55,6 @@ struct Magic {
 
 /// Formats that are often met and not read here, by how they begin.
 constexpr Magic unread[] = {
-    {"LASF", "a LAS or LAZ file"},
     {"ASTM-E57", "an E57 file"},
     {"\x1f\x8b", "a gzip file"},
     {"PK\x03\x04", "a ZIP file"},
@@ -111,6 +115,9 @@ Format recognise(const SourceBytes& bytes) {
     const std::string_view view = text.view();
     if (view.starts_with("ply") && view.size() > 3 && (is_blank(view[3]) || view[3] == '\n'))
         return Format::ply;
+    if (is_las(bytes)) return Format::las;
+    if (is_npy(bytes)) return Format::npy;
+    if (is_npz(bytes)) return Format::npz;
     if (is_pcd(text)) return Format::pcd;
     if (is_om(bytes)) return Format::om;
     if (is_binary_stl(bytes) || is_text_stl(bytes)) return Format::stl;
@@ -162,6 +169,12 @@ PointFile read_as(const SourceBytes& bytes, Format format, TableKind kind, const
         return read_pcd(bytes);
     case Format::ptx:
         return read_ptx(bytes);
+    case Format::las:
+        return read_las(bytes);
+    case Format::npy:
+        return read_npy(bytes, columns);
+    case Format::npz:
+        return read_npz(bytes, columns);
     case Format::off:
         return read_off(bytes);
     case Format::obj:
@@ -197,6 +210,11 @@ void set_sensors(const SourceBytes& bytes, const ReadOptions& options, PointClou
     column->is_label = true; // a vertex takes the scanner of most points
 }
 
+bool takes_columns(Format format) {
+    return format == Format::table || format == Format::unknown || format == Format::npy
+           || format == Format::npz;
+}
+
 PointFile read_cloud(const SourceBytes& bytes, const ReadOptions& options) {
     if (bytes.size() == 0) throw Error(bytes.name(), "is empty; expected points");
     check_options(options);
@@ -204,7 +222,7 @@ PointFile read_cloud(const SourceBytes& bytes, const ReadOptions& options) {
     const KnownName* named = forced ? forced : find_name(extension_of(bytes.name()));
     const TableKind kind = named ? named->kind : TableKind::plain;
     const Format format = forced ? forced->format : recognise(bytes);
-    if (!options.columns.empty() && format != Format::table && format != Format::unknown)
+    if (!options.columns.empty() && !takes_columns(format))
         throw OptionError("columns: " + bytes.name() + " is no table of numbers; leave the option out");
     if (forced && !(format == Format::table && is_binary(Text::head_of(bytes))))
         return read_as(bytes, format, kind, options.columns);

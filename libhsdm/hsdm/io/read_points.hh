@@ -1,6 +1,6 @@
 #pragma once
-// Point files -> PointCloud. PLY, PCD, XYZ / TXT / ASC / CSV, PTS, PTX, PWN, Hoppe's `p x y z`, vertices of
-// OFF, OBJ, STL, .om.
+// Point files -> PointCloud. PLY, PCD, XYZ / TXT / ASC / CSV, PTS, PTX, PWN, LAS, NPY, NPZ, Hoppe's `p x y
+// z`, vertices of OFF, OBJ, STL, .om.
 
 #include "hsdm/point_cloud.hh"
 
@@ -14,8 +14,8 @@ namespace hsdm {
 struct ReadOptions {
     /// One of point_formats(); empty: by the content where that is a sure sign, else by the file's extension.
     std::string format{};
-    /// Tables only: what each column is, e.g. "x,y,z,nx,ny,nz,r,g,b,_" (`_` is skipped); empty: told by a
-    /// header line, else from the values. Throws OptionError if it cannot be.
+    /// Tables and plain NPY arrays only: what each column is, e.g. "x,y,z,nx,ny,nz,r,g,b,_" (`_` is skipped);
+    /// empty: told by a header line, else from the values. Throws OptionError if it cannot be.
     std::string columns{};
     /// Where scanners stood, in the file's units; in place of what the file says.
     std::vector<Vec3> sensors{};
@@ -24,9 +24,9 @@ struct ReadOptions {
     std::string sensor_column{};
 };
 
-/// The values of ReadOptions::format, which are also the extensions known: "ply", "pcd", "xyz" and "csv",
-/// "txt", "asc" (the same), "pts", "pwn", "ptx", "off", "obj", "stl", "om",
-/// "hoppe".
+/// The values of ReadOptions::format, which are also the extensions known: "ply", "pcd", "xyz" and "xyzn",
+/// "xyzrgb", "csv", "txt", "asc" (the same), "pts", "pwn", "ptx", "las", "npy", "npz", "off", "obj", "stl",
+/// "om", "hoppe".
 std::span<const std::string_view> point_formats();
 
 /// What was read, beside the cloud.
@@ -36,7 +36,10 @@ struct PointFile {
     std::size_t faces = 0; ///< faces in the file, which were skipped
     /// Points without coordinates, left out while reading: pixels and rays without a return.
     std::size_t nonfinite = 0;
-    /// Tables whose columns were told from their values alone: what each was taken for, e.g.
+    /// Points that a LAS file marks as deleted, left out while reading, and where the first of them was.
+    std::size_t withheld = 0;
+    Vec3 first_withheld{0, 0, 0};
+    /// Tables and plain arrays whose columns were told from their values alone: what each was taken for, e.g.
     /// "x,y,z,nx,ny,nz", so that whoever knows better can say so in ReadOptions::columns. Else empty.
     std::string columns{};
 };

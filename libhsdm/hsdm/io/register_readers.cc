@@ -20,7 +20,14 @@ public:
     std::string get_description() const override { return "Point clouds as text"; }
     /// No extension that OpenMesh reads itself, because its modules are asked in the order of their
     /// addresses.
-    std::string get_extensions() const override { return "xyz xyzn xyzrgb asc txt csv pcd pts ptx pwn"; }
+    std::string get_extensions() const override {
+        std::string extensions;
+        for (const std::string_view name : point_formats())
+            if (std::string_view(" ply off obj stl om hoppe ").find(' ' + std::string(name) + ' ')
+                == std::string_view::npos)
+                extensions.append(extensions.empty() ? "" : " ").append(name);
+        return extensions;
+    }
 
     bool read(const std::string& path, BaseImporter& mesh, Options& options) override {
         return add_points([&] { return read_points(path); }, mesh, options);

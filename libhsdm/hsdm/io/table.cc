@@ -185,6 +185,11 @@ std::vector<Column> find_columns(const Text& text, const Prelude& prelude, const
                                         + "; correct the header or remove it");
     constexpr std::size_t sample_size = 4096;
     auto columns = columns_from_values(rows.sample(sample_size), rows.columns(), kind == TableKind::pts);
+    if (kind == TableKind::xyzrgb && columns.size() == 6) { // fractions too, which no values tell of
+        for (std::size_t k = 0; k < 3; ++k)
+            columns[3 + k].role = static_cast<Role>(static_cast<std::size_t>(Role::red) + k);
+        return columns;
+    }
     for (std::size_t i = 0; fitting && i < columns.size(); ++i)
         if (columns[i].role == Role::scalar && !prelude.names[i].empty()) columns[i].name = prelude.names[i];
     if (columns.size() > 3) told = list_of(columns);

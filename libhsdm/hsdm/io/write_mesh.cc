@@ -1,9 +1,12 @@
 #include "hsdm/io/write_mesh.hh"
 
 #include "hsdm/errors.hh"
+#include "hsdm/io/float_precision.hh"
 #include "hsdm/io/mesh_writers.hh"
+#include "hsdm/io/text.hh"
 
-#include <cctype>
+#include <algorithm>
+#include <array>
 #include <filesystem>
 
 namespace hsdm {
@@ -28,21 +31,49 @@ void check(const std::string& path, const PolygonMesh& mesh) {
 
 } // namespace
 
-MeshFormat mesh_format(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    if (extension == ".off") return MeshFormat::off;
-    if (extension == ".stl") return MeshFormat::stl;
-    if (extension == ".ply") return MeshFormat::ply;
-    if (extension == ".obj") return MeshFormat::obj;
-    if (extension == ".om") return MeshFormat::om;
-    throw Error(path,
-                "no mesh format has the extension '" + extension + "'; use .off, .stl, .ply, .obj or .om");
+std::span<const MeshFormatInfo> mesh_formats() {
+    static constexpr std::array<MeshFormatInfo, 7> all{{
+        {"off", MeshFormat::off, "OFF", false, false, true},
+        {"stl", MeshFormat::stl, "STL", false, false, true},
+        {"ply", MeshFormat::ply, "PLY", true, false, true},
+        {"obj", MeshFormat::obj, "OBJ", true, false, true},
+        {"om", MeshFormat::om, ".om", true, false, true},
+        {"glb", MeshFormat::glb, "GLB", true, true, false},
+        {"3mf", MeshFormat::mf3, "3MF", false, true, false},
+    }};
+    return all;
 }
 
-WrittenMesh write_mesh(const std::string& path, const PolygonMesh& mesh, MeshFormat format,
-                       const WriteOptions& options) {
-    check(path, mesh);
+const MeshFormatInfo& info_of(MeshFormat format) {
+    return *std::ranges::find(mesh_formats(), format, &MeshFormatInfo::format);
+}
+
+std::string_view name_of(LengthUnit unit) {
+    constexpr std::array<std::string_view, 5> names{"", "mm", "cm", "m", "in"};
+    return names[static_cast<std::size_t>(unit)];
+}
+
+double metres_of(LengthUnit unit) {
+    constexpr std::array metres{1.0, 0.001, 0.01, 1.0, 0.0254};
+    return metres[static_cast<std::size_t>(unit)];
+}
+
+MeshFormat mesh_format(const std::string& path) {
+    const std::string extension = std::filesystem::path(path).extension().string();
+    const std::string name = io::lower(extension.substr(std::min<std::size_t>(extension.size(), 1)));
+    std::string known;
+    for (const MeshFormatInfo& info : mesh_formats()) {
+        if (name == info.name) return info.format;
+        known += known.empty() ? "" : info.format == mesh_formats().back().format ? " or " : ", ";
+        known.append(".").append(info.name);
+    }
+    throw Error(path, "no mesh format has the extension '" + extension + "'; use " + known);
+}
+
+namespace {
+
+WrittenMesh write_as_it_is(const std::string& path, const PolygonMesh& mesh, MeshFormat format,
+                           const WriteOptions& options) {
     WrittenMesh written;
     if (format == MeshFormat::om) {
         write_polygons_om(path, mesh);
@@ -54,7 +85,9 @@ WrittenMesh write_mesh(const std::string& path, const PolygonMesh& mesh, MeshFor
         write_off(file, mesh);
         break;
     case MeshFormat::stl:
-        written.text_for_precision = write_stl(file, mesh, options.ascii) && !options.ascii;
+        written.moved_by_floats = moved_by_floats(mesh.positions);
+        written.text_for_precision = !options.ascii && written.moved_by_floats > most_moved_by_floats;
+        write_stl(file, mesh, options.ascii || written.text_for_precision);
         break;
     case MeshFormat::ply:
         write_ply(file, mesh, options.ascii);
@@ -62,10 +95,30 @@ WrittenMesh write_mesh(const std::string& path, const PolygonMesh& mesh, MeshFor
     case MeshFormat::obj:
         write_obj(file, mesh);
         break;
+    case MeshFormat::glb:
+        write_glb(file, path, mesh, options.unit);
+        break;
+    case MeshFormat::mf3:
+        write_3mf(file, path, mesh, options.unit);
+        break;
     case MeshFormat::om:
         break; // done above
     }
     file.commit();
+    return written;
+}
+
+} // namespace
+
+WrittenMesh write_mesh(const std::string& path, const PolygonMesh& mesh, MeshFormat format,
+                       const WriteOptions& options) {
+    check(path, mesh);
+    if (!options.recentre) return write_as_it_is(path, mesh, format, options);
+    PolygonMesh near = mesh;
+    const Vec3 shift = recentring_shift(mesh.positions);
+    for (Vec3& p : near.positions) p -= shift;
+    WrittenMesh written = write_as_it_is(path, near, format, options);
+    written.shift = shift;
     return written;
 }
 

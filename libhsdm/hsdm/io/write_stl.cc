@@ -8,22 +8,6 @@
 namespace hsdm {
 namespace {
 
-/// Whether some vertex would move by more than 1e-6 of the mesh's diagonal when stored as float. Lengths are
-/// taken in the frame's unit, since their squares must be numbers.
-bool too_coarse_for_float(const PolygonMesh& mesh) {
-    Box box;
-    for (const Vec3& p : mesh.positions) box.add(p);
-    const double unit = CloudFrame(box).unit();
-    const double tolerance = 1e-6 * (box.hi / unit - box.lo / unit).norm();
-    for (const Vec3& p : mesh.positions) {
-        Vec3 moved;
-        for (unsigned k = 0; k < 3; ++k)
-            moved[k] = (static_cast<double>(static_cast<float>(p[k])) - p[k]) / unit;
-        if (!(moved.norm() <= tolerance)) return true;
-    }
-    return false;
-}
-
 Vec3 unit_normal(const std::vector<Vec3>& p, const Triangle& t) {
     Box box;
     for (Index v : t) box.add(p[v]);
@@ -71,14 +55,12 @@ void write_binary(AtomicFile& file, const PolygonMesh& mesh, const Triangulation
 
 } // namespace
 
-bool write_stl(AtomicFile& file, const PolygonMesh& mesh, bool ascii) {
+void write_stl(AtomicFile& file, const PolygonMesh& mesh, bool ascii) {
     const Triangulation cut = triangulate(mesh);
-    const bool as_text = ascii || too_coarse_for_float(mesh);
-    if (as_text)
+    if (ascii)
         write_ascii(file, mesh, cut);
     else
         write_binary(file, mesh, cut);
-    return as_text;
 }
 
 } // namespace hsdm

@@ -151,6 +151,16 @@ void fill(JsonText& json, const std::vector<Report::Stage>& stages) {
     json.end();
 }
 
+void fill(JsonText& json, const Report::Written& written) {
+    json.begin_object();
+    json.member("format", written.format);
+    if (!written.units.empty()) json.member("units", written.units);
+    json.member("text_for_precision", written.text_for_precision);
+    json.member("moved_by_floats", written.moved_by_floats);
+    json.member("shift", written.shift);
+    json.end();
+}
+
 } // namespace
 
 std::string to_json(const Report& report) {
@@ -188,6 +198,10 @@ std::string to_json(const Report& report) {
     fill(json, report.loops);
     json.key("stages");
     fill(json, report.stages);
+    if (report.written) {
+        json.key("written");
+        fill(json, *report.written);
+    }
     json.key("seconds");
     fill(json, report.seconds);
     json.member("peak_memory_bytes", report.peak_memory_bytes);
