@@ -255,19 +255,6 @@ TEST_CASE("what columns were taken for is said, and when normals are not of unit
     CHECK_THAT(info, Contains("normals   yes, not of unit length (1.4 to 1.4)") && !Contains("told"));
 }
 
-TEST_CASE("an STL file that becomes text for its precision is said to", "[cli]") {
-    const Folder folder;
-    PointCloud scan = sphere_scan(1000);
-    folder.write("near.xyz", xyz(scan));
-    for (Vec3& p : scan.positions) p += Vec3(1e7, 1e7, 1e7);
-    folder.write("far.xyz", xyz(scan));
-    const std::string text = "STL as text: binary STL would move vertices";
-    CHECK_THAT(run(folder, "reconstruct far.xyz --depth 3 -o far.stl").out, Contains(text));
-    CHECK_THAT(read_file(folder / "far.stl"), StartsWith("solid"));
-    CHECK_THAT(run(folder, "reconstruct far.xyz --depth 3 -o far.stl --ascii").out, !Contains(text));
-    CHECK_THAT(run(folder, "reconstruct near.xyz --depth 3 -o near.stl").out, !Contains(text));
-}
-
 TEST_CASE("JSON holds no null: what is not finite is left out", "[cli]") {
     const Folder folder;
     folder.write("huge.off", "OFF\n4 4 6\n0 0 0\n1e120 0 0\n0 1e120 0\n0 0 1e120\n"

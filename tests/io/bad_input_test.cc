@@ -114,12 +114,16 @@ TEST_CASE("a format that the caller names is taken at its word", "[io]") {
     options.format = "xyz";
     CHECK(read("a.off", "1 0 0\n1 2 3\n", options).cloud.size() == 2);
     options.format = "las";
+    CHECK(error_of("a.xyz", "1 2 3\n", options).starts_with("a.xyz: a LAS file begins with \"LASF\""));
+    options.format = "npy";
+    CHECK(error_of("a.xyz", "1 2 3\n", options).starts_with("a.xyz: an NPY file begins with"));
+    options.format = "e57";
     CHECK_THROWS_AS(read("a.xyz", "1 2 3\n", options), OptionError);
 }
 
 TEST_CASE("binary files of other kinds are refused by their kind", "[io]") {
-    CHECK(error_of("a.las", std::string("LASF\0\0\1\2", 8))
-          == "a.las: is a LAS or LAZ file, which is not read; convert it to PLY or XYZ text");
+    CHECK(error_of("a.e57", "ASTM-E57\1")
+          == "a.e57: is an E57 file, which is not read; convert it to PLY or XYZ text");
     CHECK(error_of("a.xyz", "\x1f\x8b\x08").find("is a gzip file") != std::string::npos);
     CHECK(error_of("a.csv", std::string("\xff\xfe"
                                         "1\0 \0",

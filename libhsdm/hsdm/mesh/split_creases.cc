@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace hsdm {
 namespace {
@@ -41,11 +42,12 @@ public:
         }
     }
 
-    /// The one nearest to a direction, or that itself if none is nearer than a right angle.
+    /// The one nearest to a direction, or that itself if none is within 45 degrees: the vertex then has no
+    /// normal for this side.
     Vec3 nearest(Index vertex, const Vec3& direction) const {
         if (std::ranges::find(components_, nullptr) != components_.end()) return direction;
         Vec3 best = direction;
-        double most = 0;
+        double most = std::sqrt(0.5);
         for (std::size_t n = 0; n < 3; ++n) {
             Vec3 normal;
             for (unsigned k = 0; k < 3; ++k) normal[k] = components_[3 * n + k]->values[vertex];
