@@ -187,7 +187,7 @@ std::string written_words(const Report::Written& w) {
             << number(w.moved_by_floats, 2)
             << " of the diagonal; --recentre writes it binary, relative to a shift\n";
     if (w.shift != Vec3(0, 0, 0))
-        out << "shift     " << number(w.shift[0], 17) << ' ' << number(w.shift[1], 17) << ' '
+        out << "shift     " << number(w.shift[0], 17) << " " << number(w.shift[1], 17) << " "
             << number(w.shift[2], 17) << ": add it to the file's coordinates for those of the cloud\n";
     if (!w.units.empty()) {
         const MeshFormatInfo& format = info_of(mesh_format("x." + w.format));

@@ -108,7 +108,7 @@ TEST_CASE("an option at fault is named as it was written, with its bounds in its
         {"--levels 4:17", "two depths from 1 to 16"},
         {"--levels 4", "e.g. 4:7"},
         {"--columns q", "\"q\" is no column"},
-        {"--input-format las", "must be one of ply, pcd, xyz"},
+        {"--input-format e57", "must be one of ply, pcd, xyz"},
         {"--normals estimate --method basic", "uses no normals"},
         {"--max-error 1 --grid uniform", "no bound to keep"},
         {"--depth 4 --voxel-size 1", "cannot be given together"},
@@ -231,7 +231,7 @@ TEST_CASE("every format that is read by its name can be given as --input-format"
               == 0);
     }
     CHECK_THAT(run(folder, "help reconstruct").out,
-               Contains("ply|pcd|xyz|csv|txt|asc|pts|pwn|ptx|off|obj|stl|om|hoppe"));
+               Contains("ply|pcd|xyz|xyzn|xyzrgb|csv|txt|asc|pts|pwn|ptx|las|npy|npz|off|obj|stl|om|hoppe"));
 }
 
 TEST_CASE("what columns were taken for is said, and when normals are not of unit length", "[cli]") {
