@@ -41,7 +41,7 @@ void print(const char* title, const std::string& path, const Loaded& loaded) {
         print_topology(std::cout, loaded.mesh);
     } else {
         std::cout << "cloud     " << grouped(loaded.cloud.size()) << " points\n";
-        print_dropped(std::cout, loaded.dropped);
+        print_dropped(std::cout, loaded);
     }
 }
 

@@ -54,6 +54,7 @@ void fill_cloud(JsonText& json, const Loaded& loaded) {
     json.begin_object();
     json.member("points", loaded.cloud.size());
     json.member("dropped_nonfinite", loaded.dropped.nonfinite);
+    json.member("withheld", loaded.withheld);
     json.member("has_normals", loaded.cloud.has_normals());
     json.member("bad_normals", loaded.dropped.bad_normals);
     json.member("has_colors", !loaded.cloud.colors.empty());
@@ -124,7 +125,7 @@ void print_cloud(const Loaded& loaded) {
     std::cout << "cloud     " << grouped(cloud.size()) << " points, spacing " << sampling.spacing << '\n';
     print_sampling(options, sampling);
     print_normals(loaded);
-    print_dropped(std::cout, loaded.dropped);
+    print_dropped(std::cout, loaded);
     if (cloud.sensor) std::cout << "sensor    " << *cloud.sensor << '\n';
     if (!cloud.sensors.empty())
         std::cout << "sensors   " << cloud.sensors.size() << ", each point has its own\n";

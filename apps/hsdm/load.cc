@@ -54,6 +54,7 @@ Loaded load(const std::string& path) {
     loaded.mesh = std::move(file.mesh);
     if (loaded.is_mesh()) return loaded;
     loaded.columns = std::move(file.points.columns);
+    loaded.withheld = file.points.withheld;
     loaded.cloud = std::move(file.points.cloud);
     loaded.dropped = drop_nonfinite(loaded.cloud);
     loaded.dropped.nonfinite += file.points.nonfinite;
@@ -95,10 +96,13 @@ void fill_topology(JsonText& json, const PolygonMesh& mesh) {
     json.end();
 }
 
-void print_dropped(std::ostream& out, const Dropped& dropped) {
-    if (dropped.nonfinite > 0)
-        out << "dropped   " << grouped(dropped.nonfinite) << (dropped.nonfinite == 1 ? " point" : " points")
-            << " without finite coordinates\n";
+void print_dropped(std::ostream& out, const Loaded& loaded) {
+    const auto print = [&out](std::size_t count, const char* what) {
+        if (count > 0)
+            out << "dropped   " << grouped(count) << (count == 1 ? " point " : " points ") << what << '\n';
+    };
+    print(loaded.dropped.nonfinite, "without finite coordinates");
+    print(loaded.withheld, "that the file marks as withheld");
 }
 
 void print_topology(std::ostream& out, const PolygonMesh& mesh) {

@@ -8,10 +8,11 @@
 namespace hsdm::command {
 
 struct Loaded {
-    PolygonMesh mesh;    ///< without facets if the file holds points only
-    PointCloud cloud;    ///< filled only then
-    Dropped dropped;     ///< from the cloud
-    std::string columns; ///< of a table, as PointFile::columns
+    PolygonMesh mesh;         ///< without facets if the file holds points only
+    PointCloud cloud;         ///< filled only then
+    Dropped dropped;          ///< from the cloud
+    std::size_t withheld = 0; ///< points that a LAS file marks as deleted, left out
+    std::string columns;      ///< of a table, as PointFile::columns
     bool is_mesh() const { return mesh.facet_count() > 0; }
 };
 
@@ -23,7 +24,7 @@ Loaded load(const std::string& path);
 void fill_topology(JsonText& json, const PolygonMesh& mesh);
 
 /// Lines for people, each `name  value`; the first none if nothing was dropped.
-void print_dropped(std::ostream& out, const Dropped& dropped);
+void print_dropped(std::ostream& out, const Loaded& loaded);
 void print_topology(std::ostream& out, const PolygonMesh& mesh);
 
 } // namespace hsdm::command

@@ -1,6 +1,8 @@
 #include "faults/scenarios.hh"
 
 #include "cli/scan.hh"
+#include "io/las_bytes.hh"
+#include "io/npy_bytes.hh"
 #include "support/sample.hh"
 
 #include "hsdm/io/write_mesh.hh"
@@ -63,6 +65,22 @@ std::string pcd_binary(std::size_t points) {
     return text;
 }
 
+std::string las_scan(std::size_t points) {
+    std::vector<test::LasPoint> scan;
+    for (const Vec3& p : test::sphere_scan(points).positions) {
+        test::LasPoint& point = scan.emplace_back();
+        for (unsigned k = 0; k < 3; ++k) point.at[k] = static_cast<std::int32_t>(1000 * p[k]);
+    }
+    return test::las_file({}, scan);
+}
+
+std::string npy_scan(std::size_t points) {
+    std::string data;
+    for (const Vec3& p : test::sphere_scan(points).positions)
+        for (const double x : p) data += test::bytes_of(x);
+    return test::npy_file("'<f8'", false, "(" + std::to_string(points) + ", 3)", data);
+}
+
 std::string ptx(std::size_t points) {
     std::string text =
         std::to_string(points) + "\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n" + "0 0 0 1\n";
@@ -84,8 +102,8 @@ Scenario reconstruction(const std::string& name, std::vector<std::string> option
 std::vector<Scenario> reconstructions() {
     const Files cube = {{"scan.ply", ply_scan(400)}}, sphere = {{"scan.xyz", xyz_scan(300)}};
     std::vector<Scenario> list;
-    for (const std::string format : {"off", "stl", "ply", "obj", "om"}) {
-        const std::string mesh = "part." + format;
+    for (const MeshFormatInfo& info : mesh_formats()) {
+        const std::string format(info.name), mesh = "part." + format;
         list.push_back(reconstruction(
             "to " + format,
             {"scan.ply", "--depth", "3", "-o", mesh, "--features", "part.txt", "--report", "part.json"}, cube,
@@ -132,6 +150,9 @@ std::vector<Scenario> readings() {
         {"scan.csv", "x;y;z\n1;2;3\n1;2;4\n1;3;3\n0;0;1\n0;1;0\n2;2;2\n"},
         {"scan.pts", with_header("200\n", 200)},
         {"scan.ptx", ptx(200)},
+        {"scan.las", las_scan(200)},
+        {"scan.npy", npy_scan(200)},
+        {"scan.npz", test::zip_file({{"points.npy", npy_scan(200)}}, true)},
         {"mesh.off", mesh_file(MeshFormat::off, false)},
         {"large.off", mesh_file(MeshFormat::off, false, 3000)},
         {"mesh.obj", mesh_file(MeshFormat::obj, false)},

@@ -39,12 +39,12 @@ FORMATS = [[], [GPS], [RGB], [GPS, RGB], [GPS, WAVE], [GPS, RGB, WAVE],
 SIZES = [20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67]
 
 
-def las_point(form, xyz, color):
+def las_point(form, xyz, color, withheld=False):
     record = struct.pack("<3iH", *xyz, 77)
     if form < 6:
-        record += struct.pack("<BBbBH", 0b00001001, 2, -5, 1, 4)
+        record += struct.pack("<BBbBH", 0b00001001, 2 | withheld << 7, -5, 1, 4)
     else:
-        record += struct.pack("<BBBBhH", 0b00010001, 0, 2, 1, -500, 4)
+        record += struct.pack("<BBBBhH", 0b00010001, withheld << 2, 2, 1, -500, 4)
     for part in FORMATS[form]:
         values = {GPS: [1e5], RGB: [257 * c for c in color], NIR: [1], WAVE: [1, 2, 3, 0.5, 0.1, 0.2, 0.3]}[part]
         record += struct.pack("<" + part, *values)
@@ -52,12 +52,12 @@ def las_point(form, xyz, color):
     return record
 
 
-def las_file(path, minor, form, points, colors, scale, offset):
+def las_file(path, minor, form, points, colors, scale, offset, withheld=()):
     size = {2: 227, 3: 235, 4: 375}[minor]
     vlr = struct.pack("<H16sHH32s", 0, b"LASF_Projection", 34735, 8, b"keys") + b"\0" * 8
     evlr = struct.pack("<H16sHQ32s", 0, b"someone", 1, 5, b"behind") + b"12345" if minor == 4 else b""
-    body = b"".join(las_point(form, [round((x - o) / s) for x, s, o in zip(p, scale, offset)], c)
-                    for p, c in zip(points, colors))
+    body = b"".join(las_point(form, [round((x - o) / s) for x, s, o in zip(p, scale, offset)], c, i in withheld)
+                    for i, (p, c) in enumerate(zip(points, colors)))
     count = len(points)
     header = struct.pack("<4sHHIHH8sBB32s32sHHHIIBHI5I", b"LASF", 1, 0, 0, 0, 0, b"", 1, minor, b"OTHER", b"test", 1,
                          2026, size, size + len(vlr), 1, form, SIZES[form], count if minor < 4 else 0,
@@ -86,6 +86,10 @@ def las():
             cloud = info(name)["cloud"]
             check(farthest(name, "ref.xyz") == 0, f"{name} is not exact")
             check((cloud["has_colors"], cloud["scalars"]) == (colored, scalars), f"{name}: {cloud}")
+    for minor, form in ((2, 1), (4, 6)):
+        las_file("withheld.las", minor, form, points, colors, scale, offset, withheld={0, 7, 399})
+        check(info("withheld.las")["cloud"]["withheld"] == 3, "withheld points are counted")
+        check("withheld: 3" in hsdm("reconstruct", "withheld.las", "--depth", "3", "-o", "a.off"), "and told")
     expect_color("v4_7.las")
     expect_color("v2_2.las")
 

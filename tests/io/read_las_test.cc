@@ -9,9 +9,9 @@ using namespace hsdm::test;
 
 namespace {
 
-const std::vector<LasPoint> three_points{{{1000, -2000, 3000}, 11, 2, false, 5, {65535, 257, 0}},
-                                         {{4, 5, 6}, 12, 6, false, 6, {0, 65535, 257 * 128}},
-                                         {{-7, 8, 2147483647}, 13, 2, false, 5, {257, 257, 257}}};
+const std::vector<LasPoint> las_points{{{1000, -2000, 3000}, 11, 2, false, 5, {65535, 257, 0}},
+                                       {{4, 5, 6}, 12, 6, false, 6, {0, 65535, 257 * 128}},
+                                       {{-7, 8, 2147483647}, 13, 2, false, 5, {257, 257, 257}}};
 
 const Scalar* las_scalar(const PointCloud& cloud, const std::string& name) {
     for (const Scalar& scalar : cloud.scalars)
@@ -37,14 +37,13 @@ TEST_CASE("LAS files of every version and point format give positions, colours a
             layout.records = {"", "some words", std::string(5000, 'x')};
             layout.between = "padding";
             layout.extra = format % 2 ? "four" : "";
-            const PointFile file = read("a.las", las_file(layout, three_points));
+            const PointFile file = read("a.las", las_file(layout, las_points));
             CHECK(file.format == "las");
             const PointCloud& cloud = file.cloud;
             REQUIRE(cloud.size() == 3);
             for (std::size_t i = 0; i < 3; ++i)
                 for (unsigned k = 0; k < 3; ++k)
-                    CHECK(cloud.positions[i][k]
-                          == three_points[i].at[k] * layout.scale[k] + layout.offset[k]);
+                    CHECK(cloud.positions[i][k] == las_points[i].at[k] * layout.scale[k] + layout.offset[k]);
             const bool colored =
                 format == 2 || format == 3 || format == 5 || format == 7 || format == 8 || format == 10;
             REQUIRE(cloud.colors.empty() == !colored);
@@ -82,7 +81,7 @@ TEST_CASE("points that a LAS file marks as withheld are left out and counted", "
         LasLayout layout;
         layout.minor = 4;
         layout.format = format;
-        std::vector<LasPoint> points = three_points;
+        std::vector<LasPoint> points = las_points;
         points[1].withheld = true;
         const PointFile file = read("a.las", las_file(layout, points));
         CHECK(file.cloud.size() == 2);
@@ -103,13 +102,13 @@ TEST_CASE(
     layout.minor = 4;
     layout.format = 7;
     layout.behind = std::string(500, 'e');
-    const PointFile file = read("wrong-name.xyz", las_file(layout, three_points));
+    const PointFile file = read("wrong-name.xyz", las_file(layout, las_points));
     CHECK(file.format == "las");
     CHECK(file.cloud.size() == 3);
 }
 
 TEST_CASE("LAZ is refused with the command that unpacks it", "[io]") {
-    const std::string file = las_file({}, three_points);
+    const std::string file = las_file({}, las_points);
     for (const char mark : {'\x80', '\x82', '\x40'})
         CHECK(error_of("a.laz", with_bytes(file, 104, {mark}))
               == "a.laz: is LAZ, which is compressed and not read; unpack it first: `laszip -i scan.laz -o "
@@ -123,7 +122,7 @@ TEST_CASE("a LAS file that is cut off anywhere is refused", "[io]") {
         layout.minor = minor;
         layout.format = 3;
         layout.records = {"words"};
-        const std::string file = las_file(layout, three_points);
+        const std::string file = las_file(layout, las_points);
         for (std::size_t size = 0; size < file.size(); ++size) {
             CAPTURE(minor, size);
             const std::string message = error_of("a.las", file.substr(0, size));
@@ -139,7 +138,7 @@ TEST_CASE("a LAS file that is cut off anywhere is refused", "[io]") {
 TEST_CASE("LAS headers that lie are refused with the place of the lie", "[io]") {
     LasLayout layout;
     layout.records = {"words"};
-    const std::string file = las_file(layout, three_points);
+    const std::string file = las_file(layout, las_points);
     const auto lie = [&](std::size_t at, const std::string& bytes) {
         return error_of("a.las", with_bytes(file, at, bytes));
     };
@@ -163,7 +162,7 @@ TEST_CASE("LAS headers that lie are refused with the place of the lie", "[io]") 
     CHECK_THAT(lie(163, bytes_of(std::nan(""))),
                Contains("an offset that is no number") && Contains("(at byte 163)"));
     layout.minor = 4;
-    const std::string newest = las_file(layout, three_points);
+    const std::string newest = las_file(layout, las_points);
     CHECK_THAT(error_of("a.las", with_bytes(newest, 247, bytes_of(std::uint64_t(1) << 60))),
                Contains("the file ends after 3 of 1152921504606846976 points"));
 }

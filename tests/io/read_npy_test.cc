@@ -117,6 +117,8 @@ TEST_CASE("NPY arrays that are no points say so, and what to save instead", "[io
     CHECK_THAT(error_of("a.npy", "\x93NUMPY\x09" + std::string(20, '\0')),
                Contains("version 9 is not known (at byte 6)"));
     CHECK_THAT(complaint(std::string(100, '['), "(2, 3)", 48), Contains("lists within lists"));
+    CHECK_THAT(error_of("a.npy", "\x93NUMPY" + std::string("\2\0\xff\xff\xff\x7f", 6) + "{'descr': "),
+               Contains("an NPY header of 2147483647 bytes (at byte 8)"));
 }
 
 TEST_CASE("an NPY file that is cut off anywhere is refused", "[io]") {

@@ -114,6 +114,8 @@ PointCloud read_columns(std::span<const BinaryColumn> values, const std::vector<
 }
 
 bool is_any_nonzero(const BinaryColumn& values, std::size_t count) {
+    const auto sample = sample_rows({&values, 1}, count, block_rows); // most columns are told by it
+    if (std::ranges::any_of(sample, [](double number) { return number != 0; })) return true;
     std::atomic<bool> found = false;
     for_each_block({&values, 1}, {{Role::scalar, ""}}, count, [&](std::size_t, std::size_t, auto numbers) {
         if (std::any_of(numbers.begin(), numbers.end(), [](double number) { return number != 0; }))

@@ -10,6 +10,8 @@ namespace hsdm::io {
 namespace {
 
 constexpr std::string_view npy_magic{"\x93NUMPY", 6};
+/// More than the names of all columns that are allowed take; what is parsed takes many times its bytes.
+constexpr double longest_header = 1 << 20;
 constexpr int deepest_literal = 12; ///< fields in fields, of which each takes some of the stack
 
 /// A value of the header, which is a literal of Python: a text, a number, a truth, or a list of values. Of a
@@ -214,6 +216,9 @@ std::string_view header_text(const SourceBytes& bytes) {
     if (head.size() < begin) cut_off(begin);
     double length = 0;
     gather_of(version == 1 ? NumberType::uint16 : NumberType::uint32, false)(head.data() + 8, 0, 1, &length);
+    if (length > longest_header)
+        throw Error(bytes.name(), "an NPY header of " + std::to_string(static_cast<std::size_t>(length))
+                                      + " bytes (at byte 8), which no array of numbers needs; save it again");
     const std::size_t end = begin + static_cast<std::size_t>(length);
     if (end > bytes.size()) cut_off(end);
     return (end <= head.size() ? head : bytes.view()).substr(begin, end - begin);

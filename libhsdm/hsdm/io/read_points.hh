@@ -36,9 +36,8 @@ struct PointFile {
     std::size_t faces = 0; ///< faces in the file, which were skipped
     /// Points without coordinates, left out while reading: pixels and rays without a return.
     std::size_t nonfinite = 0;
-    /// Points that a LAS file marks as deleted, left out while reading, and where the first of them was.
-    std::size_t withheld = 0;
-    Vec3 first_withheld{0, 0, 0};
+    std::size_t withheld = 0;     ///< points that a LAS file marks as deleted, left out while reading
+    Vec3 first_withheld{0, 0, 0}; ///< where the first of them was
     /// Tables and plain arrays whose columns were told from their values alone: what each was taken for, e.g.
     /// "x,y,z,nx,ny,nz", so that whoever knows better can say so in ReadOptions::columns. Else empty.
     std::string columns{};
