@@ -291,9 +291,11 @@ def blender():
     program = need_program("blender")
     positions, polygons = prepare(FAR)
     reconstruct("part.glb", "--quiet")
-    script = ("import bpy; bpy.ops.wm.read_factory_settings(use_empty=True); "
-              "bpy.ops.import_scene.gltf(filepath='part.glb'); o = [o for o in bpy.data.objects if o.type == 'MESH'][0]; "
-              "print('read', len(o.data.polygons), *[x for p in o.bound_box for x in (o.matrix_world @ o.data.vertices[0].co)][:3])")
+    # Blender 3.4's importer asks NumPy for a name that 1.24 has no more.
+    script = ("import bpy, numpy; numpy.bool = bool; bpy.ops.wm.read_factory_settings(use_empty=True); "
+              "bpy.ops.import_scene.gltf(filepath='part.glb'); "
+              "o = [o for o in bpy.data.objects if o.type == 'MESH'][0]; "
+              "print('read', len(o.data.polygons), *(o.matrix_world @ o.data.vertices[0].co))")
     words = run(program, "-b", "--python-expr", script).split("read ")[1].split()
     check(int(words[0]) == sum(len(f) - 2 for f in polygons), "triangles")
     p = tuple(map(float, words[1:4]))
