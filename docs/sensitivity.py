@@ -21,7 +21,7 @@ more. Angles are never more than 180 degrees, that of a sine 90.
 
 Needs python3 and what the build needs; HSDM_SHARED_DIR, or ../shared, must hold the suites and their tools.
 """
-import argparse, datetime, json, math, os, re, subprocess, sys, time
+import argparse, datetime, glob, itertools, json, math, os, re, subprocess, sys, time
 
 HOME = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 PAGE = os.path.join(HOME, "docs", "constants.md")
@@ -51,7 +51,8 @@ def values():
     found = []
     for folder in FOLDERS:
         stage, comment = None, []
-        for line in open(os.path.join(HOME, "libhsdm", "hsdm", folder, "constants.hh")):
+        files = sorted(glob.glob(os.path.join(HOME, "libhsdm", "hsdm", folder, "*constants.hh")))
+        for line in itertools.chain.from_iterable(map(open, files)):
             line = line.strip()
             if line.startswith("namespace hsdm::"):
                 stage = line.split("::")[1].split()[0]

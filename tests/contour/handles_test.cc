@@ -2,6 +2,7 @@
 
 #include "hsdm/contour/dual_contour.hh"
 #include "hsdm/contour/handles.hh"
+#include "hsdm/contour/witnesses.hh"
 #include "hsdm/mesh/remove_facets.hh"
 #include "hsdm/quality/topology.hh"
 #include "hsdm/reconstruct.hh"
@@ -83,6 +84,37 @@ TEST_CASE("a bridge through the air is taken away, and a tunnel that no points s
         CHECK(topology.closed());
         CHECK(faults(mesh) == (turned_normals ? "closed but not outward; " : ""));
         CHECK(cut_handles(stages.octree, stages.level, stages.sets, part.voxel, mesh) == 0);
+    }
+}
+
+TEST_CASE("points across a ring of edges are a sheet where no facet serves them", "[contour]") {
+    for (const bool turned_normals : {false, true}) {
+        const Stages stages(facing_boxes(turned_normals, 5), 5);
+        DualContour part = dual_contour(stages.octree, stages.level, stages.sets);
+        PolygonMesh& mesh = part.mesh;
+        mesh.origin.resize(mesh.vertex_count());
+        std::iota(mesh.origin.begin(), mesh.origin.end(), Index{0});
+        const Vec3 origin = stages.octree.origin;
+        for (Vec3& p : mesh.positions) p += origin;
+        const std::size_t from = quad_at(mesh, -0.07), to = quad_at(mesh, 0.07);
+        for (Vec3& p : mesh.positions) p -= origin;
+        const std::vector<Index> ring(mesh.facet(from).begin(), mesh.facet(from).end());
+        const auto is_spanned = [&](const Octree& octree) {
+            return Witnesses(octree, stages.level, part.voxel, mesh).span(ring);
+        };
+        CHECK_FALSE(is_spanned(stages.octree)); // the quad serves them
+        bridge(mesh, from, to);
+        CHECK(is_spanned(stages.octree));
+        Octree completed = stages.octree;
+        std::ranges::fill(completed.source, no_index);
+        CHECK_FALSE(is_spanned(completed));
+        Octree round = stages.octree; // as if they lay round a rod: every second one faces away from its axis
+        for (std::size_t i = 0; i < round.size(); i += 2) {
+            Vec3 away = round.positions[i] + origin;
+            away[0] = 0;
+            round.normals[i] = away.normalized();
+        }
+        CHECK_FALSE(is_spanned(round));
     }
 }
 

@@ -2,6 +2,7 @@
 // Tuning values of the extended method (section 3.4), in the order of docs/sheets.md. Lengths are in voxels.
 // What half and double of each do: docs/constants.md.
 
+#include "hsdm/contour/facet_constants.hh"
 #include "hsdm/core/tuned.hh"
 
 #include <cstddef>
@@ -165,6 +166,15 @@ namespace hsdm::widths {
 /// spacings: between the two sheets of a wall or gap that stands on something; nearer ones are doubtful.
 /// Why: where a sheet ends is known to a spacing; two that end on each other's ground need one each.
 inline constexpr double least = 1;
+
+/// voxels: between the two sheets of a bore or rod, at most, and radians that both turn across a voxel, at
+/// least.
+/// Why: a cylinder two voxels in diameter turns by one radian a voxel across its axis, by none along it.
+inline constexpr double of_cylinder = 2, turn_of_cylinder = 0.5;
+
+/// share: of the scatter of a set's normals, that its turn explains, at least.
+/// Why: round a cylinder half, as positions scatter along its axis, too; of noise one in the number of points.
+inline constexpr double explained = 0.3;
 
 } // namespace hsdm::widths
 
@@ -473,125 +483,3 @@ inline constexpr std::size_t most_refilled = 64;
 inline constexpr std::size_t most_pairs = 100;
 
 } // namespace hsdm::untangling
-
-namespace hsdm::handles {
-
-/// cosine: of the normals of a facet and of a set that speaks for it.
-/// Why: 60 degrees: a facet at a crease lies between the two faces, no farther than that from one.
-inline constexpr double agreeing_cosine = 0.5;
-
-/// voxels: from a facet's middle to the plane of a set that speaks for it.
-/// Why: a vertex lies on its sets' planes, a facet's middle not farther off than it is bent.
-inline constexpr double agreeing_gap = 0.5;
-
-/// points: nearest to a facet, that are asked whether they face its way, and fewest that must.
-/// Why: eight lie within one and a half spacings; one of them may be a stray or stand at a crease.
-inline constexpr std::size_t witnesses = 8, fewest_witnesses = 2;
-
-/// share: of the facets beside a ring, that no points speak for.
-/// Why: a web has four sides, above, below and at its ends, and below at least there are no points.
-inline constexpr double least_contradicted = 0.25;
-
-/// edges: from a vertex to the farthest of a ring through it.
-/// Why: a web that one voxel decides has rings of four to six edges; half as many more for those of several.
-inline constexpr int reach = 4;
-
-/// facets: seen on both sides of a ring that do not meet; then they are two parts, or meet far off.
-/// Why: a pin that a ring of nine edges goes round is shorter than that, unless it is a rod.
-inline constexpr std::size_t far = 4096;
-
-/// facets: of a part that a ring cuts off, fewest.
-/// Why: those of a cube of six voxels; what is smaller may be a knob or a spike of the part that it is on.
-inline constexpr std::size_t fewest_of_part = 216;
-
-/// facets: looked at for each of the mesh, in all; after that no more rings are looked for.
-/// Why: bounds the time where normals are at random.
-inline constexpr std::size_t most_work = 32;
-
-/// rounds: of cutting rings that do not touch each other.
-/// Why: bounds the work; a round that cuts none ends it.
-inline constexpr int rounds = 8;
-
-} // namespace hsdm::handles
-
-// spikes.hh
-namespace hsdm::spikes {
-
-/// voxels: from a vertex to the nearest point; farther ones stand out from the surface.
-/// Why: half of a voxel's diagonal: a vertex whose voxel the sampling missed has points beside it.
-inline constexpr double farthest = 0.87;
-
-/// spacings: the same where points are few.
-/// Why: beside a corner of three faces the nearest point of each is expected within one, and seldom beyond
-/// two.
-inline constexpr double spacings = 2;
-
-/// rounds: half of the way to the mean of the neighbours in each.
-/// Why: bounds the work; where there are points to come near to, ten are enough.
-inline constexpr int rounds = 30;
-
-} // namespace hsdm::spikes
-
-// which holes dual_contour.hh closes
-namespace hsdm::holes {
-
-/// edges: longer loops stay open.
-/// Why: by trial; longer than a defect (pairing.longest_defect) with room for the loops of several that met.
-inline constexpr int most_edges = 24;
-
-/// voxels: wider loops stay open, where voxels are wide against the spacing.
-/// Why: as wide as a loop of 24 edges can be round.
-HSDM_TUNED double widest = 6;
-
-} // namespace hsdm::holes
-
-// sheet_features.hh
-namespace hsdm::edge_hints {
-
-/// cosine: between a facet and its set.
-/// Why: 60 degrees: a facet across a right angle lies 45 degrees off either set.
-HSDM_TUNED double least_cosine = 0.5;
-
-/// per voxel: of distance from a set's centroid, in what is minimised beside angle and height to find a
-/// facet's set.
-/// Why: a twentieth tells sets of one sheet apart and sways nothing else.
-HSDM_TUNED double arm_weight = 0.05;
-
-/// share: of the crease angle; flatter edges are not looked at.
-/// Why: facets of a crease fold less than its sheets where vertices are off by a fraction of a voxel; by
-/// trial.
-HSDM_TUNED double least_fold = 0.7;
-
-/// sine: normals farther out of the fold's plane belong to other sheets.
-/// Why: 30 degrees; by trial on the clouds of docs/features.md.
-HSDM_TUNED double off_fold_sine = 0.5;
-
-/// share: of the fold's angle; normals this close to one sheet's are that sheet's.
-/// Why: the middle half is left for what lies between.
-HSDM_TUNED double end_band = 0.25;
-
-/// share: of the points round a crease, that may lie between its sheets.
-/// Why: a bend of one direction to the other has half of them there; a tenth are noise.
-HSDM_TUNED double most_between = 0.1;
-
-/// share: of them, that each side of a crease has at least.
-/// Why: half of most_between, or the sheet beside is hardly there.
-HSDM_TUNED double least_side = 0.05;
-
-/// voxels: from the edge; a second look where a small radius would show.
-/// Why: by trial on the clouds of docs/features.md; less than a voxel's diagonal, more than half its edge.
-HSDM_TUNED double nearby = 0.75;
-
-/// voxels: how far positions are compared with normals.
-/// Why: by trial on the clouds of docs/features.md; some ten points of a usual cloud.
-HSDM_TUNED double chord = 0.5;
-
-/// share: of the points between in the whole cloud that chords contradict; of more, normals are smeared.
-/// Why: by trial on the clouds of docs/features.md: clean normals have next to none, smeared ones most.
-HSDM_TUNED double most_tilted = 0.4;
-
-/// share: of the fold's angle, between chords and normals.
-/// Why: half of end_band.
-HSDM_TUNED double most_tilt = 0.125;
-
-} // namespace hsdm::edge_hints

@@ -1,6 +1,7 @@
 #include "hsdm/contour/handles.hh"
 
 #include "hsdm/contour/constants.hh"
+#include "hsdm/contour/witnesses.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/interruption.hh"
 #include "hsdm/core/large_vector.hh"
@@ -188,44 +189,6 @@ private:
     std::vector<Index> ring_, beside_;
 };
 
-/// Do the measured points nearest to a facet face its way? Completed ones are guesses, by what the facets did
-/// not say.
-class Witnesses {
-public:
-    Witnesses(const Octree& octree, const OctreeLevel& level, std::span<const Index> voxel,
-              const PolygonMesh& mesh)
-        : octree_(octree), level_(level), voxel_(voxel), mesh_(mesh) {}
-
-    bool speak_for(Index f) {
-        const auto facet = mesh_.facet(f);
-        const Vec3 normal = unit(area_vector(mesh_, facet));
-        const Vec3 centre = centroid(mesh_, facet);
-        near_.clear();
-        const Index own = voxel_[mesh_.origin[facet[0]]];
-        gather(own, centre);
-        for_neighbors(level_, own, [&](Index v) { gather(v, centre); });
-        const std::size_t count = std::min(near_.size(), handles::witnesses);
-        std::partial_sort(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(count), near_.end());
-        std::size_t agree = 0;
-        for (std::size_t k = 0; k < count; ++k)
-            agree += (octree_.normals[near_[k].second] | normal) > handles::agreeing_cosine;
-        return agree >= handles::fewest_witnesses;
-    }
-
-private:
-    void gather(Index v, const Vec3& centre) {
-        for (Index p = level_.first_point[v]; p < level_.first_point[v + 1]; ++p)
-            if (octree_.source[p] != no_index)
-                near_.emplace_back((octree_.positions[p] - centre).sqrnorm(), p);
-    }
-
-    const Octree& octree_;
-    const OctreeLevel& level_;
-    std::span<const Index> voxel_; // per origin
-    const PolygonMesh& mesh_;
-    std::vector<std::pair<double, Index>> near_;
-};
-
 /// One round: all rings that can be cut without touching each other.
 class Round {
 public:
@@ -258,8 +221,10 @@ public:
             if (work_ > most_work_) return;
             Interruption::poll();
             const std::vector<Index> ring = vicinity.ring_at(roots[i]);
-            if (share_contradicted(vicinity, ring) >= handles::least_contradicted && !bounds()
-                && are_contradicted_beside(vicinity, ring))
+            const double share = share_contradicted(vicinity, ring);
+            if (share < 0 || bounds()) return;
+            if (witnesses_.span(ring)
+                || (share >= handles::least_contradicted && are_contradicted_beside(vicinity, ring)))
                 keep(vicinity, ring);
         });
         for (const Ring& ring : rings_) open(ring);

@@ -31,6 +31,18 @@ double width_between(const NormalSet& a, const NormalSet& b) {
     return std::abs((a.normal - b.normal).normalized() | (b.centroid - a.centroid));
 }
 
+/// Does a set turn as fast as round a cylinder two voxels in diameter, and is that what scatters its normals?
+bool bends_like_cylinder(const Octree& octree, const OctreeLevel& level, const NormalSets& sets, Index s) {
+    const NormalSet& set = sets.sets[s];
+    const auto& m = set.spread.moments;
+    const double along = m[0] + m[1] + m[2] - set.spread.along(set.normal);
+    if (!(std::abs(set.turn) * level.voxel_size > widths::turn_of_cylinder * along)) return false;
+    double scatter = 0;
+    for (Index p = level.first_point[set.voxel]; p < level.first_point[set.voxel + 1]; ++p)
+        if (sets.of_point[p] == s) scatter += (octree.normals[p] - set.normal).sqrnorm();
+    return set.turn * set.turn * set.count > widths::explained * along * scatter;
+}
+
 /// The pairs that the sets of a voxel make with those of the same voxel and of its neighbours.
 template <class Visit>
 void for_facing_pairs(const OctreeLevel& level, const NormalSets& sets, Index voxel, const Visit& visit) {
@@ -85,6 +97,23 @@ Occurrences crowded_sheets(const OctreeLevel& level, const NormalSets& sets, dou
         if (doubts.count++ == 0) doubts.first = nearest_pair(level, sets, v)->middle;
     }
     return doubts;
+}
+
+std::size_t count_narrow_cylinders(const Octree& octree, const OctreeLevel& level, const NormalSets& sets) {
+    const auto bends = [&](const NormalSet& set) {
+        return bends_like_cylinder(octree, level, sets, static_cast<Index>(&set - sets.sets.data()));
+    };
+    const std::vector<Index> found = indices_where(level.size(), chunks::usual, [&](Index v) {
+        bool any = false;
+        for_facing_pairs(level, sets, v, [&](const NormalSet& a, const NormalSet& b) {
+            any = any
+                  || (width_between(a, b) < widths::of_cylinder * level.voxel_size && a.turn * b.turn > 0
+                      && bends(a) && bends(b));
+        });
+        return any;
+    });
+    return static_cast<std::size_t>(
+        std::ranges::count_if(found, [&](Index v) { return has_neighbor(level, v, found); }));
 }
 
 } // namespace hsdm

@@ -1,5 +1,6 @@
 #pragma once
-// How far the two sheets of a wall or gap are from each other, against what their points can tell.
+// How far the two sheets of a wall or gap are from each other, against what their points can tell, and how
+// far those of a bore or rod, against the voxels.
 
 #include "hsdm/contour/normal_sets.hh"
 #include "hsdm/core/occurrences.hh"
@@ -24,5 +25,11 @@ std::optional<SheetPair> nearest_pair(const OctreeLevel& level, const NormalSets
 /// apart by their normals, however thin. A voxel with no such voxel beside it does not count: there points
 /// lie unevenly, for what is narrow goes on. O(sets), parallel.
 Occurrences crowded_sheets(const OctreeLevel& level, const NormalSets& sets, double least = widths::least);
+
+/// How many voxels, with another one beside them, a bore or a rod under two voxels in diameter passes: two
+/// sheets face each other or turn their backs less than two voxels apart, and both turn round as fast as such
+/// a cylinder. The few facets round it are one voxel's decision each, so finer voxels do better. O(points),
+/// parallel.
+std::size_t count_narrow_cylinders(const Octree& octree, const OctreeLevel& level, const NormalSets& sets);
 
 } // namespace hsdm

@@ -59,18 +59,19 @@ double estimate_spacing(const Octree& octree) {
     return h * std::sqrt(voxels / (voxels_per_area * seen * n));
 }
 
-VoxelChoice choose_voxel(const Octree& octree, double spacing, double noise, double unit) {
+VoxelChoice choose_voxel(const Octree& octree, double spacing, double noise, double unit,
+                         double spacings_per_voxel) {
     VoxelChoice choice;
     char text[160];
-    if (spacings::noises_per_voxel * noise > spacings::spacings_per_voxel * spacing) {
+    if (spacings::noises_per_voxel * noise > spacings_per_voxel * spacing) {
         choice.size = spacings::noises_per_voxel * noise;
         std::snprintf(text, sizeof text,
                       "%g times the noise (standard deviation %.4g, spacing of the points %.4g)",
                       spacings::noises_per_voxel, noise * unit, spacing * unit);
     } else {
-        choice.size = spacings::spacings_per_voxel * spacing;
-        std::snprintf(text, sizeof text, "%g spacings of the points (spacing %.4g)",
-                      spacings::spacings_per_voxel, spacing * unit);
+        choice.size = spacings_per_voxel * spacing;
+        std::snprintf(text, sizeof text, "%g spacings of the points (spacing %.4g)", spacings_per_voxel,
+                      spacing * unit);
     }
     choice.size = std::clamp(choice.size, octree.voxel_size(deepest_level), octree.voxel_size(1));
     choice.reason = text;

@@ -24,11 +24,12 @@ struct VoxelChoice {
     std::string reason; ///< one clause for a person
 };
 
-/// Three spacings: a surface in general pose then leaves few voxels empty by chance (about six points per
-/// voxel). If that is more, twice the standard deviation of the noise (in the cloud's units, 0 if there is
-/// none), below which nothing can be told from it. At most half the cube. The reason gives lengths times
-/// `unit`.
-VoxelChoice choose_voxel(const Octree& octree, double spacing, double noise, double unit = 1);
+/// So many spacings, by default three: a surface in general pose then leaves few voxels empty by chance
+/// (about six points per voxel). If that is more, twice the standard deviation of the noise (in the cloud's
+/// units, 0 if there is none), below which nothing can be told from it. At most half the cube. The reason
+/// gives lengths times `unit`.
+VoxelChoice choose_voxel(const Octree& octree, double spacing, double noise, double unit = 1,
+                         double spacings_per_voxel = spacings::spacings_per_voxel);
 
 /// A depth and why.
 struct DepthChoice {

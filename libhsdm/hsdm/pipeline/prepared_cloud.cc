@@ -1,5 +1,7 @@
 #include "hsdm/pipeline/prepared_cloud.hh"
 
+#include "hsdm/contour/normal_sets.hh"
+#include "hsdm/contour/sheet_widths.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/normals/noise.hh"
 #include "hsdm/normals/normals.hh"
@@ -38,6 +40,14 @@ void check_spread(const Octree& octree) {
     for (const Vec3& p : octree.positions)
         if (((p - first) % along).norm() > tolerance) return;
     throw Error("all points lie on a line; there is no surface in them");
+}
+
+/// Are bores or rods under two voxels wide more than a detail?
+bool has_narrow_cylinders(const Octree& octree, int depth) {
+    const OctreeLevel level = extract_level(octree, depth);
+    const NormalSets sets = build_normal_sets(octree, level);
+    return static_cast<double>(count_narrow_cylinders(octree, level, sets))
+           > resolution::share_of_cylinders * static_cast<double>(level.size());
 }
 
 } // namespace
@@ -117,7 +127,14 @@ int PreparedCloud::choose_resolution(const ReconstructOptions& options) {
     }
     const VoxelChoice choice = choose_voxel(octree, report.input.spacing, noise_, frame.unit());
     report.options["resolution"] = choice.reason;
-    return fit_voxels(choice.size);
+    const int depth = fit_voxels(choice.size);
+    if (method_for(options) != Method::extended) return depth;
+    const VoxelChoice finer =
+        choose_voxel(octree, report.input.spacing, noise_, frame.unit(), resolution::adaptive_spacings);
+    if (finer.size >= choice.size || !has_narrow_cylinders(octree, depth)) return depth;
+    report.options["resolution"] = finer.reason + ", as bores or rods are under two voxels of "
+                                   + text_of(choice.size * frame.unit()) + " wide";
+    return fit_voxels(finer.size);
 }
 
 void PreparedCloud::smooth_for_depth(int depth, const Phases& phases) {

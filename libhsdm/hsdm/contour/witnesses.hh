@@ -1,0 +1,44 @@
+#pragma once
+// What measured points say of facets, and of rings of edges that may be cut. Completed points (those without
+// a source) are guesses, by what the facets did not say: they are not asked.
+
+#include "hsdm/core/groups.hh"
+#include "hsdm/octree/octree.hh"
+#include "hsdm/polygon_mesh.hh"
+
+#include <optional>
+
+namespace hsdm {
+
+class Witnesses {
+public:
+    /// All must outlive it; `voxel` is per origin of the mesh's vertices. The mesh's facets may not change.
+    Witnesses(const Octree& octree, const OctreeLevel& level, std::span<const Index> voxel,
+              const PolygonMesh& mesh)
+        : octree_(octree), level_(level), voxel_(voxel), mesh_(mesh) {}
+
+    /// Do at least two of the eight points nearest to a facet face its way?
+    bool speak_for(Index facet);
+
+    /// Do points make a sheet across a ring of vertices, all facing one way along its axis, where no facet
+    /// serves them? A tunnel passes a wall like that, and a bridge a gap; inside a hole of the part or round
+    /// a rod points face away from the axis.
+    bool span(std::span<const Index> ring);
+
+private:
+    Index voxel_of(Index vertex) const { return voxel_[mesh_.origin[vertex]]; }
+    void gather(Index voxel, const Vec3& centre);
+    /// The voxels of the ring's vertices and those round them, each once.
+    std::vector<Index> voxels_at(std::span<const Index> ring) const;
+    /// Does a facet near the point lie on it and face its way?
+    bool is_served(Index point);
+
+    const Octree& octree_;
+    const OctreeLevel& level_;
+    std::span<const Index> voxel_;
+    const PolygonMesh& mesh_;
+    std::vector<std::pair<double, Index>> near_;
+    std::optional<Groups> corners_of_voxel_; ///< made when first needed
+};
+
+} // namespace hsdm
