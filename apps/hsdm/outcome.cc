@@ -1,5 +1,7 @@
 #include "outcome.hh"
 
+#include "page_text.hh"
+
 #include <algorithm>
 #include <cstdint>
 #include <string_view>
@@ -8,8 +10,6 @@ namespace hsdm::command {
 namespace {
 
 using OrderedJson = nlohmann::ordered_json;
-
-constexpr std::string_view digits_of_64 = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 OrderedJson json_of(const AgainstBaseline& baseline) {
     OrderedJson object{{"seconds", baseline.seconds},     {"peak_memory_bytes", baseline.peak_memory_bytes},
@@ -93,36 +93,6 @@ std::string to_json(const std::vector<Outcome>& outcomes) {
     OrderedJson results = OrderedJson::array();
     for (const Outcome& one : outcomes) results.push_back(json_of(one));
     return results.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + '\n';
-}
-
-std::string base64(const std::string& bytes) {
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-        std::uint32_t word = 0;
-        for (std::size_t k = 0; k < 3; ++k)
-            word = word << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-        for (std::size_t k = 0; k < 4; ++k)
-            text += k <= count ? digits_of_64[word >> (18 - 6 * k) & 63] : '=';
-    }
-    return text;
-}
-
-std::string from_base64(const std::string& text) {
-    std::string bytes;
-    if (text.size() % 4 != 0) return bytes;
-    std::uint32_t word = 0;
-    std::size_t held = 0;
-    for (const char c : text.substr(0, text.find('='))) {
-        const std::size_t digit = digits_of_64.find(c);
-        if (digit == std::string_view::npos) return "";
-        word = word << 6 | static_cast<std::uint32_t>(digit);
-        if ((held += 6) < 8) continue;
-        held -= 8;
-        bytes += static_cast<char>(word >> held & 255);
-    }
-    return bytes;
 }
 
 } // namespace hsdm::command

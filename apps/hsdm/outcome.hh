@@ -53,8 +53,4 @@ nlohmann::ordered_json json_of(const Outcome& outcome);
 /// The outcome that json_of() made an object of; what is not there, or of another type, is as in none.
 Outcome outcome_of(const nlohmann::ordered_json& object);
 
-/// A text of bytes in the 64 characters of RFC 4648, and back; what is no such text gives none.
-std::string base64(const std::string& bytes);
-std::string from_base64(const std::string& text);
-
 } // namespace hsdm::command

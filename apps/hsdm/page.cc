@@ -1,8 +1,8 @@
 #include "page.hh"
 
 #include "embedded.hh"
-#include "messages.hh"
 #include "page_mesh.hh"
+#include "page_text.hh"
 #include "page_words.hh"
 
 #include "hsdm/errors.hh"
@@ -13,12 +13,6 @@
 
 namespace hsdm::command {
 namespace {
-
-std::string whole_text(embedded::Text text) {
-    std::string whole;
-    for (const std::string_view part : text) whole += part;
-    return whole;
-}
 
 /// JSON text in a script element: nothing in it can end the element or begin a comment.
 std::string json_in_script(std::string text) {
@@ -43,32 +37,6 @@ std::string filled(std::string_view text, const std::map<std::string, std::strin
 
 bool can_write_pages() {
     return !embedded::three_js.empty();
-}
-
-std::string html_text(std::string_view text) {
-    std::string result;
-    for (const char c : printable(text)) {
-        switch (c) {
-        case '&':
-            result += "&amp;";
-            break;
-        case '<':
-            result += "&lt;";
-            break;
-        case '>':
-            result += "&gt;";
-            break;
-        case '"':
-            result += "&quot;";
-            break;
-        case '\'':
-            result += "&#39;";
-            break;
-        default:
-            result += c;
-        }
-    }
-    return result;
 }
 
 std::string viewer_scripts() {

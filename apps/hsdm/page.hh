@@ -30,10 +30,6 @@ struct PageContent {
 /// million.
 std::string page_of(const PageContent& content);
 
-/// The text in HTML, between tags and in quoted attributes: what is not printable is written out by
-/// printable().
-std::string html_text(std::string_view text);
-
 /// `<script>` elements: three.js with its notice, then the viewer, which is the function `hsdm.view(canvas,
 /// data)` of page/viewer.js. To stand once in a page.
 std::string viewer_scripts();

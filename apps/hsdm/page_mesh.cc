@@ -1,5 +1,6 @@
 #include "page_mesh.hh"
 
+#include "page_text.hh"
 #include "summary.hh"
 
 #include "hsdm/core/hash.hh"
@@ -23,21 +24,6 @@ constexpr double largest_step = 32767;
 constexpr std::size_t most_facets = 2000000; // some 50 MB of page
 constexpr std::size_t histogram_bins = 400;
 
-std::string base64_text(std::string_view bytes) {
-    constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
-    const auto byte = [&](std::size_t i) {
-        return i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0u;
-    };
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const unsigned three = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
-        const std::size_t given = std::min<std::size_t>(3, bytes.size() - i);
-        for (unsigned k = 0; k < 4; ++k) text += k <= given ? digits[(three >> (18 - 6 * k)) & 63] : '=';
-    }
-    return text;
-}
-
 /// Arrays as bytes, numbers with the lowest byte first whatever the machine.
 class Bytes {
 public:
@@ -57,7 +43,7 @@ public:
         last_ = vertex;
     }
     bool empty() const { return bytes_.empty(); }
-    std::string text() const { return base64_text(bytes_); }
+    std::string text() const { return base64(bytes_); }
 
 private:
     void add_bytes(std::uint32_t value, unsigned count) {

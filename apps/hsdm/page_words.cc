@@ -1,5 +1,6 @@
 #include "page_words.hh"
 
+#include "page_text.hh"
 #include "summary.hh"
 
 #include <algorithm>

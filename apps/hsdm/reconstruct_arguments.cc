@@ -262,12 +262,13 @@ void add_file_options(CLI::App& app, ReconstructArguments& a) {
         ->type_name(joined(mesh_format_names(), "|"))
         ->group(files);
     add_writing_options(app, a);
-    add_choice<LengthUnit>(app, "--units", a.units,
-                           {{"mm", LengthUnit::millimetre},
-                            {"cm", LengthUnit::centimetre},
-                            {"m", LengthUnit::metre},
-                            {"in", LengthUnit::inch}},
-                           "what the cloud's lengths are in: 3MF says so, GLB becomes metres")
+    add_choice<LengthUnit>(
+        app, "--units", a.units,
+        {{"mm", LengthUnit::millimetre},
+         {"cm", LengthUnit::centimetre},
+         {"m", LengthUnit::metre},
+         {"in", LengthUnit::inch}},
+        "what the cloud's lengths are in: 3MF says so, GLB becomes metres (default: not said)")
         ->group(files);
     app.add_flag("--recentre", a.recentre,
                  "write coordinates relative to a shift, which summary and report tell: far from the origin "

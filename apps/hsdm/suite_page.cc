@@ -1,6 +1,7 @@
 #include "suite_page.hh"
 
 #include "messages.hh"
+#include "page_text.hh"
 
 #include "hsdm/version.hh"
 
@@ -14,28 +15,10 @@
 namespace hsdm::command {
 namespace {
 
-/// Between tags and in attributes.
-std::string html(std::string_view text) {
-    std::string result;
-    for (const char c : printable(text)) {
-        const std::string_view escaped = c == '&'    ? "&amp;"
-                                         : c == '<'  ? "&lt;"
-                                         : c == '>'  ? "&gt;"
-                                         : c == '"'  ? "&quot;"
-                                         : c == '\'' ? "&#39;"
-                                                     : std::string_view();
-        if (escaped.empty())
-            result += c;
-        else
-            result += escaped;
-    }
-    return result;
-}
-
 std::string html_lines(const std::string& text) {
     std::istringstream lines(text);
     std::string result;
-    for (std::string line; std::getline(lines, line);) result += html(line) + '\n';
+    for (std::string line; std::getline(lines, line);) result += html_text(line) + '\n';
     return result;
 }
 
@@ -103,15 +86,15 @@ void put_tiles(std::ostream& out, const SuitePage& page) {
 /// A cell that is sorted by a value.
 void put_cell(std::ostream& out, const char* label, const std::string& value, const std::string& text,
               const char* kind = "number") {
-    out << "<td class=\"" << kind << "\" data-label=\"" << label << "\" data-value=\"" << html(value) << "\">"
-        << text << "</td>\n";
+    out << "<td class=\"" << kind << "\" data-label=\"" << label << "\" data-value=\"" << html_text(value)
+        << "\">" << text << "</td>\n";
 }
 
 void put_number(std::ostream& out, const char* label, const Outcome& one, const char* key) {
     const Json* const value = find_in(one, key);
     const bool is_number = value && value->is_number();
     put_cell(out, label, is_number ? value->dump() : "",
-             is_number ? html(value_text(value)) : "\xe2\x80\x93");
+             is_number ? html_text(value_text(value)) : "\xe2\x80\x93");
 }
 
 /// `1.21 s` and, under it, how much that is of the baseline's.
@@ -143,9 +126,9 @@ const char* mesh_word(const Outcome& one) {
 void put_picture(std::ostream& out, const std::string& file, const std::string& caption,
                  const std::string& name, bool is_alone = false) {
     if (file.empty()) return;
-    out << "<figure><img alt=\"" << html(caption + ": " + name) << "\" width=\"240\" height=\"180\" "
+    out << "<figure><img alt=\"" << html_text(caption + ": " + name) << "\" width=\"240\" height=\"180\" "
         << "src=\"data:image/png;base64," << base64(file) << "\">";
-    if (!is_alone) out << "<figcaption>" << html(caption) << "</figcaption>";
+    if (!is_alone) out << "<figcaption>" << html_text(caption) << "</figcaption>";
     out << "</figure>";
 }
 
@@ -170,8 +153,8 @@ constexpr std::pair<const char*, const char*> compared[] = {
 };
 
 void put_change(std::ostream& out, const char* label, const std::string& before, const std::string& now) {
-    out << "<tr><th scope=\"row\">" << label << "</th><td class=\"number\">" << html(before)
-        << "</td><td class=\"number\">" << html(now) << "</td></tr>\n";
+    out << "<tr><th scope=\"row\">" << label << "</th><td class=\"number\">" << html_text(before)
+        << "</td><td class=\"number\">" << html_text(now) << "</td></tr>\n";
 }
 
 void put_changes(std::ostream& out, const Outcome& before, const Outcome& now) {
@@ -187,26 +170,27 @@ void put_changes(std::ostream& out, const Outcome& before, const Outcome& now) {
                number_text(static_cast<double>(now.peak_memory_bytes) / 1e6, "%.1f"));
     out << "</tbody></table>\n";
     if (now.baseline && !now.baseline->not_judged.empty())
-        out << "<p>Time and memory were not judged: " << html(now.baseline->not_judged) << ".</p>\n";
+        out << "<p>Time and memory were not judged: " << html_text(now.baseline->not_judged) << ".</p>\n";
     else if (now.baseline && now.baseline->machine > 1.005)
         out << "<p>The machine is " << number_text(now.baseline->machine, "%.2f")
             << " times slower than the baseline's was, which is allowed for.</p>\n";
 }
 
 void put_details(std::ostream& out, const Outcome* before, const Outcome& one) {
-    out << "<p>Input <code>" << html(one.input) << "</code>";
+    out << "<p>Input <code>" << html_text(one.input) << "</code>";
     if (!one.arguments.empty()) out << ", options <code>";
     for (const std::string& word : one.arguments)
-        out << (&word == &one.arguments.front() ? "" : " ") << html(word);
+        out << (&word == &one.arguments.front() ? "" : " ") << html_text(word);
     out << (one.arguments.empty() ? ".</p>\n" : "</code>.</p>\n");
     if (is_failure(one))
-        out << "<p>It failed as it must, with status " << one.status << ": " << html(one.failure) << "</p>\n";
+        out << "<p>It failed as it must, with status " << one.status << ": " << html_text(one.failure)
+            << "</p>\n";
     if (one.runs > 1) out << "<p>The best of " << one.runs << " runs.</p>\n";
     if (const Json* const warnings = find_in(one, "warnings"); warnings && !warnings->empty()) {
         out << "<p>Warnings:</p><ul>";
         for (const Json& warning : *warnings)
-            out << "<li>" << html(warning.value("what", "")) << ": "
-                << html(value_text(find_key(warning, "how_much"))) << "</li>";
+            out << "<li>" << html_text(warning.value("what", "")) << ": "
+                << html_text(value_text(find_key(warning, "how_much"))) << "</li>";
         out << "</ul>\n";
     }
     if (before) put_changes(out, *before, one);
@@ -224,13 +208,13 @@ std::string searched_text(const Outcome& one) {
 }
 
 void put_name(std::ostream& out, const Outcome* before, const Outcome& one) {
-    out << "<td class=\"name\" data-value=\"" << html(one.name) << "\"><details><summary>" << html(one.name)
-        << "</summary>\n";
+    out << "<td class=\"name\" data-value=\"" << html_text(one.name) << "\"><details><summary>"
+        << html_text(one.name) << "</summary>\n";
     put_details(out, before, one);
     out << "</details>";
     if (!is_ok(one)) {
         out << "<ul class=\"misses\">";
-        for (const std::string& reason : one.misses) out << "<li>" << html(reason) << "</li>";
+        for (const std::string& reason : one.misses) out << "<li>" << html_text(reason) << "</li>";
         out << "</ul>";
     }
     out << "</td>\n";
@@ -243,7 +227,7 @@ void put_row(std::ostream& out, const SuitePage& page, std::size_t i) {
     for (std::size_t k = 1; k < row_kinds_of(page); ++k)
         if (row_kinds[k].holds(one)) out << ' ' << row_kinds[k].name;
     out << "\" id=\"case-" << i + 1 << "\" data-index=\"" << i << "\" data-text=\""
-        << html(searched_text(one)) << "\">\n<td class=\"mark " << (is_ok(one) ? "good" : "bad")
+        << html_text(searched_text(one)) << "\">\n<td class=\"mark " << (is_ok(one) ? "good" : "bad")
         << "\" data-value=\"" << (is_ok(one) ? "1" : "0") << "\">"
         << (is_ok(one) ? "\xe2\x9c\x93 ok" : "\xe2\x9c\x97 miss") << "</td>\n"
         << "<td class=\"picture\"><div class=\"pictures\">";
@@ -255,7 +239,7 @@ void put_row(std::ostream& out, const SuitePage& page, std::size_t i) {
     put_number(out, "faces", one, "mesh.faces");
     put_number(out, "genus", one, "mesh.genus");
     const std::string closed = value_text(find_in(one, "mesh.closed"));
-    put_cell(out, "closed", closed, closed.empty() ? "\xe2\x80\x93" : html(closed), "other");
+    put_cell(out, "closed", closed, closed.empty() ? "\xe2\x80\x93" : html_text(closed), "other");
     const Json* const error = find_in(one, "error.normalised_max");
     const bool has_error = error && error->is_number();
     put_cell(out, "error %", has_error ? error->dump() : "",
@@ -289,8 +273,8 @@ void put_missed(std::ostream& out, const SuitePage& page) {
     out << "<h2>What missed</h2>\n<ul class=\"misses\">\n";
     for (std::size_t i = 0; i < page.outcomes.size(); ++i)
         if (const Outcome& one = page.outcomes[i]; !is_ok(one))
-            out << "<li><a href=\"#case-" << i + 1 << "\">" << html(one.name)
-                << "</a>: " << html(one.misses.front()) << "</li>\n";
+            out << "<li><a href=\"#case-" << i + 1 << "\">" << html_text(one.name)
+                << "</a>: " << html_text(one.misses.front()) << "</li>\n";
     out << "</ul>\n";
 }
 
@@ -305,10 +289,10 @@ std::string now_in_words() {
 void put_summary(std::ostream& out, const SuitePage& page) {
     const auto passed = std::count_if(page.outcomes.begin(), page.outcomes.end(), is_ok);
     const bool all = passed == static_cast<std::ptrdiff_t>(page.cases.size());
-    out << "<h1>" << html(page.suite) << "</h1>\n<p class=\"verdict " << (all ? "good" : "bad") << "\">"
+    out << "<h1>" << html_text(page.suite) << "</h1>\n<p class=\"verdict " << (all ? "good" : "bad") << "\">"
         << (all ? "\xe2\x9c\x93 " : "\xe2\x9c\x97 ") << passed << " of " << page.cases.size()
         << " as they must be</p>\n<p class=\"faint\">hsdm " << version << ", " << now_in_words();
-    if (page.before) out << ", against <code>" << html(page.baseline) << "</code>";
+    if (page.before) out << ", against <code>" << html_text(page.baseline) << "</code>";
     out << "</p>\n";
     put_tiles(out, page);
     if (page.outcomes.size() < page.cases.size())
@@ -316,7 +300,8 @@ void put_summary(std::ostream& out, const SuitePage& page) {
             << " cases did not begin.</p>\n";
     if (page.gone.empty()) return;
     out << "<p>In the baseline alone: ";
-    for (const std::string& name : page.gone) out << (&name == &page.gone.front() ? "" : ", ") << html(name);
+    for (const std::string& name : page.gone)
+        out << (&name == &page.gone.front() ? "" : ", ") << html_text(name);
     out << ".</p>\n";
 }
 
@@ -329,8 +314,8 @@ std::string to_html(const SuitePage& page) {
            // Nothing may be loaded, whatever a name in here should try.
            "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
            "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n<title>"
-        << html(page.suite) << ", hsdm regress</title>\n<style>\n"
-        << suite_page::style << "</style>\n</head>\n<body>\n";
+        << html_text(page.suite) << ", hsdm regress</title>\n<style>\n"
+        << whole_text(embedded::suite_css) << "</style>\n</head>\n<body>\n";
     put_summary(out, page);
     put_missed(out, page);
     out << "<div class=\"tools\"><input type=\"search\" id=\"filter\" placeholder=\"filter: words of name, "
@@ -341,7 +326,7 @@ std::string to_html(const SuitePage& page) {
            "case, <kbd>Enter</kbd> open it, <kbd>m</kbd> those that missed, <kbd>c</kbd> those with another "
            "mesh, <kbd>a</kbd> all; a click on a head sorts, one on a picture "
            "enlarges.</p></footer>\n<script>\n"
-        << suite_page::script << "</script>\n</body>\n</html>\n";
+        << whole_text(embedded::suite_js) << "</script>\n</body>\n</html>\n";
     return out.str();
 }
 

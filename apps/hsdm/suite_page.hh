@@ -23,12 +23,4 @@ struct SuitePage {
 /// says all the same; with it rows are sorted and filtered.
 std::string to_html(const SuitePage& page);
 
-namespace suite_page {
-
-/// Files of suite_page/, as they were when the command was built.
-extern const char* const style;
-extern const char* const script;
-
-} // namespace suite_page
-
 } // namespace hsdm::command
