@@ -1,0 +1,72 @@
+"""A reconstruction's report in words, a line each."""
+
+from functools import lru_cache
+import json
+
+
+@lru_cache(maxsize=8)  # panels are drawn again and again
+def parsed(text):
+    """The report of its JSON; an empty one where the property was changed into something else."""
+    try:
+        report = json.loads(text)
+    except ValueError:
+        return {}
+    return report if isinstance(report, dict) else {}
+
+
+def counts(mesh):
+    """Facets by their sizes, and vertices."""
+    sizes = [(mesh.get(key, 0), key) for key in ("quads", "triangles", "larger")]
+    kinds = [f"{count:,} {name}" for count, name in sizes if count]
+    facets = kinds[0] if len(kinds) == 1 else f"{mesh.get('faces', 0):,} facets ({', '.join(kinds)})"
+    return [facets, f"{mesh.get('vertices', 0):,} vertices"]
+
+
+def topology(mesh):
+    """Parts, borders and handles."""
+    closed = "closed" if mesh.get("closed") else _several(mesh.get("boundary_loops", 0), "open border")
+    line = f"{_several(mesh.get('components', 0), 'part')}, {closed}"
+    return line + (f", genus {mesh['genus']}" if "genus" in mesh else "")
+
+
+def error(measured):
+    """Distances of the points, or None where they were not measured."""
+    if "points_to_mesh_mean" not in measured:
+        return None
+    return f"off the points: mean {measured['points_to_mesh_mean']:.4g}, most {measured['points_to_mesh_max']:.4g}"
+
+
+def summary(report):
+    """Counts and topology, for one line."""
+    mesh = report.get("mesh", {})
+    return [*counts(mesh), topology(mesh)]
+
+
+def lines(report):
+    """What became of it: counts, topology, resolution, edges, error."""
+    grid, features = report.get("grid", {}), report.get("features", {})
+    said = summary(report)
+    if "sharp_edges" in features:
+        said.append(f"{_several(features['sharp_edges'], 'sharp edge')}, {_several(features.get('corner_vertices', 0), 'corner')}")
+    if "voxel_size" in grid:
+        said.append(f"voxels of {grid['voxel_size']:.4g}, depth {grid.get('depth', '?')}")
+    said.append(error(report.get("error", {})))
+    return [line for line in said if line]
+
+
+def warnings(report):
+    """The warnings as (text, place)."""
+    told = []
+    for warning in report.get("warnings", []):
+        how_much = warning.get("how_much")
+        text = warning.get("what", "") if how_much is None else f"{warning.get('what', '')}: {_number(how_much)}"
+        told.append((text, tuple(warning.get("where", (0, 0, 0)))))
+    return told
+
+
+def _several(count, name):
+    return f"{count:,} {name}" if count == 1 else f"{count:,} {name}s"
+
+
+def _number(value):
+    return value if isinstance(value, str) else f"{value:,.6g}"

@@ -1,0 +1,93 @@
+"""Scans that tests share, from seeds, and Blender as tests want it."""
+
+import os
+import unittest
+
+import bpy
+import numpy as np
+
+
+def scan_of_box(points=12000, seed=1, size=(2.0, 1.0, 1.5)):
+    """Points and outward normals of an axis-aligned box round the origin."""
+    random = np.random.default_rng(seed)
+    half = np.asarray(size) / 2
+    areas = np.array([half[1] * half[2], half[0] * half[2], half[0] * half[1]])
+    axis = random.choice(3, points, p=areas / areas.sum())
+    sign = random.choice([-1.0, 1.0], points)
+    places = random.uniform(-half, half, (points, 3))
+    rows = np.arange(points)
+    places[rows, axis] = sign * half[axis]
+    normals = np.zeros((points, 3))
+    normals[rows, axis] = sign
+    return places, normals
+
+
+def scan_of_bowl(points=12000, seed=1):
+    """Points and outward normals of a sphere of radius 1, but for what is above 0.6."""
+    random = np.random.default_rng(seed)
+    places = random.normal(size=(points, 3))
+    places /= np.linalg.norm(places, axis=1)[:, None]
+    places = places[places[:, 2] < 0.6]
+    return places, places
+
+
+def path_of(name):
+    """A file that is removed with the test's home."""
+    return os.path.join(os.environ["HSDM_TEST_HOME"], name)
+
+
+def write_table(name, *columns):
+    """A text file of these columns, side by side; its path."""
+    path = path_of(name)
+    np.savetxt(path, np.column_stack(columns), fmt="%.17g")
+    return path
+
+
+def numbers(items, name, columns=1, kind=np.float32):
+    """What foreach_get has of items."""
+    values = np.empty(len(items) * columns, kind)
+    items.foreach_get(name, values)
+    return values if columns == 1 else values.reshape(-1, columns)
+
+
+def attribute(owner, name, kind=np.float32):
+    """An attribute of vertices, a number each."""
+    found = owner.data.attributes[name]
+    assert found.domain == "POINT"
+    return numbers(found.data, "value", 1, kind)
+
+
+class BlenderTest(unittest.TestCase):
+    """Each test begins with an empty scene and the options as they are at first."""
+
+    def setUp(self):
+        if bpy.context.mode != "OBJECT":
+            bpy.ops.object.mode_set(mode="OBJECT")
+        for owner in list(bpy.data.objects):
+            bpy.data.objects.remove(owner)
+        for name in self.options.bl_rna.properties.keys():
+            if name not in ("rna_type", "name"):
+                self.options.property_unset(name)
+
+    @property
+    def options(self):
+        return bpy.context.scene.hsdm
+
+    def add_points(self, points, normals=None):
+        """An object of these points, active."""
+        from hsdm_blender import clouds
+
+        owner = clouds.add_cloud("scan", clouds.Cloud(points, normals), bpy.context.collection)
+        bpy.context.view_layer.objects.active = owner
+        return owner
+
+    def reconstruct(self, **arguments):
+        """The object that the operator makes."""
+        self.assertEqual(bpy.ops.hsdm.reconstruct(**arguments), {"FINISHED"})
+        return bpy.context.active_object
+
+    def message(self, call, *arguments, **named):
+        """What an operator says when it refuses."""
+        with self.assertRaises(RuntimeError) as caught:
+            call(*arguments, **named)
+        return str(caught.exception)
