@@ -39,6 +39,14 @@ def begin(depth):
         assert bpy.ops.hsdm.reconstruct("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
 
 
+def begin_on(points, normals):
+    with in_view():
+        owner = clouds.add_cloud("scan", clouds.Cloud(points, normals), bpy.context.collection)
+        bpy.context.view_layer.objects.active = owner
+    begin(depth=10)
+    yield from until(lambda: operators.running().share > 0.05, 100)
+
+
 def until(condition, seconds):
     """Lets Blender go on until something is so; says after how long."""
     begun = time.monotonic()
@@ -91,12 +99,25 @@ def steps():
     yield from until(lambda: operators.running() is None, 100)
     assert names() == ["scan mesh", "scan mesh.001"], names()
 
-    print("Blender is closed meanwhile")
+    print("a file goes the same way, whatever the file browser does")
+    path = scans.write_table("file.xyz", *scans.scan_of_box())
     with in_view():
-        clouds.add_cloud("scan", clouds.Cloud(points, normals), bpy.context.collection)
-        bpy.context.view_layer.objects.active = bpy.data.objects["scan"]
-    begin(depth=10)
-    yield from until(lambda: operators.running().share > 0.05, 100)
+        assert bpy.ops.hsdm.reconstruct_file(filepath=path) == {"FINISHED"}
+    yield from until(lambda: operators.running() is None, 100)
+    assert names() == ["file mesh", "scan mesh", "scan mesh.001"], names()
+
+    print("another file is opened meanwhile")
+    yield from begin_on(points, normals)
+    job = operators.running()
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    yield from until(job.is_done, 30)
+    assert job.was_cancelled and operators.running() is None and names() == [], names()
+
+    print("Blender is closed meanwhile")
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+    yield
+    bpy.ops.preferences.addon_enable(module="hsdm_blender")
+    yield from begin_on(points, normals)
     with in_view():
         bpy.ops.wm.quit_blender()
     yield
@@ -116,4 +137,4 @@ def go_on():
         os._exit(1)
 
 
-bpy.app.timers.register(go_on, first_interval=0.5)
+bpy.app.timers.register(go_on, first_interval=0.5, persistent=True)  # also when another file is opened

@@ -18,8 +18,9 @@ def counts(mesh):
     """Facets by their sizes, and vertices."""
     sizes = [(mesh.get(key, 0), key) for key in ("quads", "triangles", "larger")]
     kinds = [f"{count:,} {name}" for count, name in sizes if count]
-    facets = kinds[0] if len(kinds) == 1 else f"{mesh.get('faces', 0):,} facets ({', '.join(kinds)})"
-    return [facets, f"{mesh.get('vertices', 0):,} vertices"]
+    if len(kinds) > 1:
+        kinds.insert(0, f"{mesh.get('faces', 0):,} facets")
+    return [*kinds, f"{mesh.get('vertices', 0):,} vertices"]
 
 
 def topology(mesh):
@@ -29,11 +30,10 @@ def topology(mesh):
     return line + (f", genus {mesh['genus']}" if "genus" in mesh else "")
 
 
-def error(measured):
-    """Distances of the points, or None where they were not measured."""
-    if "points_to_mesh_mean" not in measured:
-        return None
-    return f"off the points: mean {measured['points_to_mesh_mean']:.4g}, most {measured['points_to_mesh_max']:.4g}"
+def errors(measured):
+    """Distances of the points from the mesh, where they were measured."""
+    told = (("mean error", "points_to_mesh_mean"), ("largest error", "points_to_mesh_max"))
+    return [f"{name} {measured[key]:.4g}" for name, key in told if key in measured]
 
 
 def summary(report):
@@ -50,8 +50,7 @@ def lines(report):
         said.append(f"{_several(features['sharp_edges'], 'sharp edge')}, {_several(features.get('corner_vertices', 0), 'corner')}")
     if "voxel_size" in grid:
         said.append(f"voxels of {grid['voxel_size']:.4g}, depth {grid.get('depth', '?')}")
-    said.append(error(report.get("error", {})))
-    return [line for line in said if line]
+    return said + errors(report.get("error", {}))
 
 
 def warnings(report):

@@ -11,6 +11,7 @@ CLASS = "hsdm_class"
 CONFIDENCE = "hsdm_confidence"
 COMPLETED = "hsdm_completed"
 REPORT = "hsdm_report"
+SOURCE = "hsdm_source"  # name of the object of the points
 
 _COLORS = ("red", "green", "blue", "alpha")
 

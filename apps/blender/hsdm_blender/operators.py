@@ -105,7 +105,7 @@ def _said_of(made, points):
 
 
 class HSDM_OT_reconstruct(bpy.types.Operator):
-    """Reconstructs the surface of the active object's points, or of a file, as a new object"""
+    """Reconstructs the surface of the active object's points, of those it was itself made of, or of a file, as a new object"""
 
     bl_idname = "hsdm.reconstruct"
     bl_label = "Reconstruct"
@@ -186,18 +186,20 @@ class HSDM_OT_reconstruct(bpy.types.Operator):
             return None
         options = settings.keywords(context.scene.hsdm)
         if self.filepath:
-            self._name, self._matrix, self._collections = _name_of(self.filepath), Matrix(), []
+            self._name, self._source, self._matrix = _name_of(self.filepath), None, Matrix()
+            self._collections = []
             source = ScanFile(bpy.path.abspath(self.filepath), self.columns, clouds.known_shifts())
             return Job(hsdm, source, options)
         owner = context.active_object
         if owner is None or owner.type != "MESH":
             self.report({"ERROR"}, "No mesh is active: import scanned points, or select an object that has vertices")
             return None
+        owner = points_behind(owner)
         cloud = clouds.cloud_of_object(owner, context.evaluated_depsgraph_get())
         if len(cloud.positions) == 0:
             self.report({"ERROR"}, f"{owner.name}: has no vertices to take for points")
             return None
-        self._name, self._matrix = owner.name, owner.matrix_world.copy()
+        self._name, self._source, self._matrix = owner.name, owner.name, owner.matrix_world.copy()
         scale = [abs(one) for one in self._matrix.to_scale()]
         if max(scale) > 1.01 * min(scale):
             self.report({"WARNING"}, f"{owner.name}: is scaled unevenly; apply its scale for voxels that are cubes as you see it")
@@ -212,6 +214,8 @@ class HSDM_OT_reconstruct(bpy.types.Operator):
             self.report({"ERROR"}, _one_line(job.error))
             return {"CANCELLED"}
         made = meshes.add_mesh(f"{self._name} mesh", job.mesh, job.shift, context.scene.hsdm.crease)
+        if self._source is not None:
+            made[meshes.SOURCE] = self._source
         self._collection(context).objects.link(made)
         made.matrix_world = self._matrix
         _make_active(context, made)
@@ -317,11 +321,20 @@ class HSDM_OT_show_place(bpy.types.Operator):
         return {"FINISHED"}
 
 
+def points_behind(owner):
+    """The object of the points that a mesh was made of, so that one can try other options; else the object itself."""
+    source = bpy.data.objects.get(str(owner.get(meshes.SOURCE, "")))
+    is_there = source is not None and source.type == "MESH" and source.users_scene
+    return source if is_there else owner
+
+
 def _name_of(path):
     return os.path.splitext(bpy.path.display_name_from_filepath(path))[0] or "scan"
 
 
 def _make_active(context, made):
+    if context.mode != "OBJECT":  # entered while the job ran: what is edited stays active
+        return
     for other in context.selected_objects:
         other.select_set(False)
     if made.name in context.view_layer.objects:  # not where its collection is excluded

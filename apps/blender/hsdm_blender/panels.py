@@ -66,7 +66,7 @@ def _draw_run(layout, context):
 def _points_of(owner):
     if owner is None or owner.type != "MESH":
         return "Active Object"
-    return f"{len(owner.data.vertices):,} Points"
+    return f"{len(operators.points_behind(owner).data.vertices):,} Points"
 
 
 class HSDM_PT_more(_Tab, bpy.types.Panel):

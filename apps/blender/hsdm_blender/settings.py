@@ -28,10 +28,10 @@ class HSDM_Settings(bpy.types.PropertyGroup):
         precision=4,
     )
     error_is_share: BoolProperty(
-        name="Of the diagonal", description="The error is a share of the diagonal of the points' box", default=True
+        name="Of diagonal", description="The error is a share of the diagonal of the points' box", default=True
     )
     error_share: FloatProperty(
-        name="Largest error",
+        name="Within",
         description="Share of the diagonal of the points' box",
         subtype="PERCENTAGE",
         min=0,
@@ -41,7 +41,7 @@ class HSDM_Settings(bpy.types.PropertyGroup):
         precision=3,
     )
     error_length: FloatProperty(
-        name="Largest error", description="In the object's own units, before its scale", min=0, default=0.01, precision=4
+        name="Within", description="In the object's own units, before its scale", min=0, default=0.01, precision=4
     )
     normals: EnumProperty(
         name="Normals",
@@ -55,7 +55,7 @@ class HSDM_Settings(bpy.types.PropertyGroup):
     holes: EnumProperty(
         name="Holes",
         items=(
-            ("automatic", "Close small ones", "Close what is small against the sampling, keep real borders"),
+            ("automatic", "Close small", "Close what is small against the sampling, keep real borders"),
             ("keep", "Keep", "Close nothing"),
             ("complete", "Complete", "Close all by the surface that is missing, and mark it"),
             ("close", "Close flat", "Close all by facets over the vertices of the border"),
