@@ -1,5 +1,6 @@
 """The add-on as such: registered, installed, without its package."""
 
+import json
 import os
 import subprocess
 import sys
@@ -79,7 +80,7 @@ class AddonTest(scans.BlenderTest):
         try:
             said = " ".join(drawn(panels.HSDM_PT_reconstruct))
             self.assertIn("is missing", said)
-            self.assertIn("pip install", said)
+            self.assertIn("preferences", said)
             self.assertNotIn("hsdm.reconstruct", said)
             for call in (bpy.ops.hsdm.import_points, bpy.ops.hsdm.reconstruct):
                 self.assertIn("the panel says how", self.message(call, filepath="scan.ply"))
@@ -88,8 +89,6 @@ class AddonTest(scans.BlenderTest):
         self.assertEqual(package.reason_missing(), "")
 
     def test_a_folder_of_the_preferences_is_looked_in_until_another_is(self):
-        from hsdm_blender import package
-
         preferences = bpy.context.preferences.addons["hsdm_blender"].preferences
         for folder in ("/nowhere/one", "/nowhere/two"):
             preferences.folder = folder
@@ -106,3 +105,23 @@ class AddonTest(scans.BlenderTest):
         for components in ("ALL", "LARGEST", "SHARE", "FACETS"):
             self.options.components = components
             self.assertIn("method", drawn(panels.HSDM_PT_more))
+
+    def test_the_result_tells_counts_warnings_with_their_places_and_the_shift(self):
+        from hsdm_blender import panels
+
+        owner = self.add_points(*scans.scan_of_box(8))
+        self.assertFalse(panels.HSDM_PT_result.poll(bpy.context))
+        what = "walls or gaps too narrow for the points there, and further words of a long text"
+        warning = {"what": what, "where": [1.0, 2.0, 3.0], "how_much": 5}
+        owner["hsdm_report"] = json.dumps({"mesh": {"quads": 6, "faces": 6}, "warnings": [warning]})
+        owner["hsdm_shift"] = [1e6, 2e6, 0.0]
+        self.assertTrue(panels.HSDM_PT_result.poll(bpy.context))
+        said = drawn(panels.HSDM_PT_result)
+        self.assertEqual(said[0], "6 quads")
+        self.assertIn(f"{what}: 5", " ".join(said))
+        self.assertTrue(all(len(line) < 50 for line in said))
+        self.assertIn('["hsdm_shift"]', said)
+        owner.location = (10, 0, 0)
+        bpy.context.view_layer.update()
+        self.assertEqual(bpy.ops.hsdm.show_place(place=(1, 2, 3)), {"FINISHED"})
+        self.assertEqual(tuple(bpy.context.scene.cursor.location), (11, 2, 3))

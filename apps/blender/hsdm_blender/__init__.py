@@ -1,7 +1,8 @@
 """Scanned points to CAD-ready meshes in Blender: the door of the package hsdm, which does the work.
 
 Files: `package` finds hsdm; `clouds` and `meshes` are points and meshes in Blender; `settings` the options; `job` a
-reconstruction beside Blender's own work; `operators` and `panels` what people see; `findings` the report in words.
+reconstruction beside Blender's own work; `operators` and `panels` what people see; `findings` the report in words,
+`wording` how they are broken into lines.
 """
 
 bl_info = {

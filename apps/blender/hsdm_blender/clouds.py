@@ -16,7 +16,7 @@ COLOR = "Color"
 _SENSORS = "hsdm_sensors"
 _SENSOR_OF = "hsdm_sensor_of"
 
-# Floats have 24 bits: a cloud within so many of its own diagonals of the origin is rounded by at most a millionth of one.
+# Floats have 24 bits: a cloud within so many of its diagonals of the origin is rounded by at most a millionth of one.
 _NEAR = 16.0
 
 # What Blender has under these names is something else, and it does not give them away.
@@ -42,27 +42,37 @@ class Cloud:
 
 
 def cloud_of_points(points, shifts):
-    """The Cloud of what hsdm.read_points returned, without the points that are not finite; see shift_for."""
-    finite = np.isfinite(points.positions).all(axis=1)
-    kept = slice(None) if finite.all() else finite
-    positions = points.positions[kept]
-    shift = shift_for(positions, shifts)
+    """The Cloud of what hsdm.read_points returned; see shift_for."""
+    positions = points.positions
     sensors = points.sensors
     if sensors is None and points.sensor is not None:
         sensors = np.array([points.sensor])
-    sensor_of = points.sensor_of
+    shift = shift_for(positions[np.isfinite(positions).all(axis=1)], shifts)
     if shift is not None:
         positions = positions - shift
         sensors = None if sensors is None else sensors - shift
+    labels = {name: values.astype(np.int32) for name, values in points.labels.items()}
+    return Cloud(positions, points.normals, points.colors, points.scalars, labels, sensors, points.sensor_of, shift)
+
+
+def finite_part(cloud):
+    """The cloud without the points that have no finite coordinates, which Blender could not show."""
+    finite = np.isfinite(cloud.positions).all(axis=1)
+    if finite.all():
+        return cloud
+
+    def kept(values):
+        return None if values is None else values[finite]
+
     return Cloud(
-        positions,
-        None if points.normals is None else points.normals[kept],
-        None if points.colors is None else points.colors[kept],
-        {name: values[kept] for name, values in points.scalars.items()},
-        {name: values[kept].astype(np.int32) for name, values in points.labels.items()},
-        sensors,
-        None if sensor_of is None else sensor_of[kept],
-        shift,
+        kept(cloud.positions),
+        kept(cloud.normals),
+        kept(cloud.colors),
+        {name: kept(values) for name, values in cloud.scalars.items()},
+        {name: kept(values) for name, values in cloud.labels.items()},
+        cloud.sensors,
+        kept(cloud.sensor_of),
+        cloud.shift,
     )
 
 

@@ -36,6 +36,13 @@ def errors(measured):
     return [f"{name} {measured[key]:.4g}" for name, key in told if key in measured]
 
 
+def left_out(report):
+    """Points and facets that are not in the mesh."""
+    unknown = report.get("input", {}).get("dropped_nonfinite", 0)
+    said = [f"points without coordinates: {unknown:,}"] if unknown else []
+    return said + [f"{one['what']}: {one['count']:,}" for one in report.get("dropped", [])]
+
+
 def summary(report):
     """Counts and topology, for one line."""
     mesh = report.get("mesh", {})
@@ -47,10 +54,11 @@ def lines(report):
     grid, features = report.get("grid", {}), report.get("features", {})
     said = summary(report)
     if "sharp_edges" in features:
-        said.append(f"{_several(features['sharp_edges'], 'sharp edge')}, {_several(features.get('corner_vertices', 0), 'corner')}")
+        corners = _several(features.get("corner_vertices", 0), "corner")
+        said.append(f"{_several(features['sharp_edges'], 'sharp edge')}, {corners}")
     if "voxel_size" in grid:
         said.append(f"voxels of {grid['voxel_size']:.4g}, depth {grid.get('depth', '?')}")
-    return said + errors(report.get("error", {}))
+    return said + errors(report.get("error", {})) + left_out(report)
 
 
 def warnings(report):

@@ -1,4 +1,4 @@
-"""What hsdm returns, as a mesh of Blender: facets as they are, sharp edges marked, numbers of vertices as attributes."""
+"""What hsdm returns as a mesh of Blender: facets as they are, sharp edges marked, numbers of vertices as attributes."""
 
 import json
 

@@ -4,7 +4,7 @@ import os
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, CollectionProperty, FloatProperty, FloatVectorProperty, StringProperty
+from bpy.props import CollectionProperty, FloatProperty, FloatVectorProperty, StringProperty
 from bpy.utils import register_class, unregister_class
 from bpy_extras.io_utils import ImportHelper
 from mathutils import Matrix, Vector
@@ -80,7 +80,7 @@ class HSDM_OT_import_points(bpy.types.Operator, _ScanFile):
         except (hsdm.Error, MemoryError) as error:
             self.report({"ERROR"}, _one_line(error))
             return False
-        cloud = clouds.cloud_of_points(points, clouds.known_shifts())
+        cloud = clouds.finite_part(clouds.cloud_of_points(points, clouds.known_shifts()))
         if len(cloud.positions) == 0:
             self.report({"ERROR"}, f"{path}: no point has finite coordinates")
             return False
@@ -105,14 +105,17 @@ def _said_of(made, points):
 
 
 class HSDM_OT_reconstruct(bpy.types.Operator):
-    """Reconstructs the surface of the active object's points, of those it was itself made of, or of a file, as a new object"""
+    """Reconstructs the surface of the active object's points, or of those that it was itself made of, as a new object"""
 
     bl_idname = "hsdm.reconstruct"
     bl_label = "Reconstruct"
     bl_options = {"UNDO"}
 
     filepath: StringProperty(
-        name="File", description="A file of points, in place of the active object", subtype="FILE_PATH", options={"SKIP_SAVE"}
+        name="File",
+        description="A file of points, in place of the active object",
+        subtype="FILE_PATH",
+        options={"SKIP_SAVE"},
     )
     columns: StringProperty(name="Columns", description="What the columns of the file are", options={"SKIP_SAVE"})
 
@@ -202,7 +205,8 @@ class HSDM_OT_reconstruct(bpy.types.Operator):
         self._name, self._source, self._matrix = owner.name, owner.name, owner.matrix_world.copy()
         scale = [abs(one) for one in self._matrix.to_scale()]
         if max(scale) > 1.01 * min(scale):
-            self.report({"WARNING"}, f"{owner.name}: is scaled unevenly; apply its scale for voxels that are cubes as you see it")
+            said = f"{owner.name}: is scaled unevenly; apply its scale for voxels that are cubes as you see it"
+            self.report({"WARNING"}, said)
         self._collections = [one.name for one in owner.users_collection]
         return Job(hsdm, cloud, options)
 
@@ -290,7 +294,7 @@ class HSDM_OT_select_doubtful(bpy.types.Operator):
     def execute(self, context):
         owner = context.active_object
         if context.mode != "OBJECT":
-            bpy.ops.object.mode_set(mode="OBJECT")  # attributes are written back, and selections read, outside of edit mode
+            bpy.ops.object.mode_set(mode="OBJECT")  # where attributes are written back, and selections read
         found = meshes.doubtful(owner.data, self.confidence)
         if found is None:
             self.report({"ERROR"}, f"{owner.name}: its attributes are not those of vertices")
@@ -310,7 +314,9 @@ class HSDM_OT_show_place(bpy.types.Operator):
     bl_label = "Show Place"
     bl_options = {"REGISTER", "UNDO"}
 
-    place: FloatVectorProperty(description="In the active object's own coordinates", subtype="XYZ", options={"SKIP_SAVE"})
+    place: FloatVectorProperty(
+        description="In the active object's own coordinates", subtype="XYZ", options={"SKIP_SAVE"}
+    )
 
     @classmethod
     def poll(cls, context):
@@ -343,7 +349,7 @@ def _make_active(context, made):
 
 
 def _show(context, text):
-    """Text in the status bar, or None for Blender's own, and the sidebars anew: a view of many points is dear to draw."""
+    """Text in the status bar, or None for Blender's own, and the sidebars drawn anew, for a view of many points is dear."""
     if context.workspace is not None:
         context.workspace.status_text_set(text)
     for area in context.screen.areas if context.screen is not None else ():

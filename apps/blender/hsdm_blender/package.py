@@ -7,11 +7,11 @@ import sys
 import bpy
 from bpy.utils import register_class, unregister_class
 
+from . import wording
+
 ADVICE = (
-    "In a terminal, in hsdm's sources:",
-    "/usr/bin/python3 -m pip install .",
-    "or name its folder in the add-on's preferences,",
-    "then disable and enable the add-on.",
+    "Install it for /usr/bin/python3, by its Debian package or by pip as root, or name the folder that holds it in the "
+    "add-on's preferences: build/release/python of hsdm's sources, or site-packages of a virtual environment."
 )
 
 _added = []
@@ -66,16 +66,10 @@ class HSDM_Preferences(bpy.types.AddonPreferences):
         self.layout.prop(self, "folder")
         reason = reason_missing()
         if reason:
-            self.layout.label(text=reason, icon="ERROR")
-            draw_advice(self.layout)
+            self.layout.label(text=f"The Python package hsdm is missing: {reason}", icon="ERROR")
+            wording.draw(self.layout, context, ADVICE)
         else:
             self.layout.label(text=f"hsdm {load().__version__} of {os.path.dirname(load().__file__)}", icon="CHECKMARK")
-
-
-def draw_advice(layout):
-    """How to get the package, a line each."""
-    for line in ADVICE:
-        layout.label(text=line)
 
 
 def register():

@@ -3,7 +3,7 @@
 import bpy
 from bpy.utils import register_class, unregister_class
 
-from . import clouds, findings, meshes, operators, package
+from . import clouds, findings, meshes, operators, package, wording
 
 
 class _Tab:
@@ -19,7 +19,7 @@ class HSDM_PT_reconstruct(_Tab, bpy.types.Panel):
         layout = self.layout
         reason = package.reason_missing()
         if reason:
-            _draw_missing(layout, reason)
+            _draw_missing(layout, context, reason)
             return
         layout.use_property_split = True
         layout.use_property_decorate = False
@@ -28,12 +28,10 @@ class HSDM_PT_reconstruct(_Tab, bpy.types.Panel):
         _draw_run(layout, context)
 
 
-def _draw_missing(layout, reason):
-    layout.label(text="The Python package hsdm is missing", icon="ERROR")
-    column = layout.column(align=True)
-    column.scale_y = 0.8
-    column.label(text=reason)
-    package.draw_advice(column)
+def _draw_missing(layout, context, reason):
+    wording.draw(layout, context, "The Python package hsdm is missing", icon="ERROR")
+    wording.draw(layout, context, reason)
+    wording.draw(layout, context, package.ADVICE)
     layout.operator("preferences.addon_show", text="Preferences").module = package.__package__
 
 
@@ -104,20 +102,20 @@ class HSDM_PT_result(_Tab, bpy.types.Panel):
     def draw(self, context):
         layout, owner = self.layout, context.active_object
         if meshes.REPORT in owner:
-            _draw_report(layout, findings.parsed(str(owner[meshes.REPORT])))
+            _draw_report(layout, context, findings.parsed(str(owner[meshes.REPORT])))
             layout.operator("hsdm.select_doubtful", icon="RESTRICT_SELECT_OFF")
         if clouds.SHIFT in owner:
-            layout.label(text="Moved beside the origin; the scan lies at")
+            wording.draw(layout, context, "Moved to the origin; the file has this more in x, y and z:")
             layout.prop(owner, f'["{clouds.SHIFT}"]', text="")
 
 
-def _draw_report(layout, report):
+def _draw_report(layout, context, report):
     column = layout.column(align=True)
     for line in findings.lines(report):
-        column.label(text=line)
+        wording.draw(column, context, line)
     for text, place in findings.warnings(report):
         row = layout.row()
-        row.label(text=text, icon="ERROR")
+        wording.draw(row, context, text, icon="ERROR", beside=5)
         row.operator("hsdm.show_place", text="", icon="PIVOT_CURSOR").place = place
 
 

@@ -85,7 +85,7 @@ class HSDM_Settings(bpy.types.PropertyGroup):
         default=math.radians(35),
     )
     smoothing: IntProperty(
-        name="Normal smoothing",
+        name="Smoothing",
         description="Rounds of smoothing of normals, not across sharp edges",
         min=0,
         soft_max=20,
@@ -126,7 +126,7 @@ class HSDM_Settings(bpy.types.PropertyGroup):
         description="Scans that do not register: sheets of one voxel that face the same way become one",
     )
     crease: BoolProperty(
-        name="Crease sharp edges",
+        name="Crease edges",
         description="Also give sharp edges a crease of 1, so that a Subdivision Surface modifier keeps them",
     )
     threads: IntProperty(name="Threads", description="0 takes all; the mesh does not depend on it", min=0, default=0)
