@@ -106,6 +106,15 @@ def steps():
     yield from until(lambda: operators.running() is None, 100)
     assert names() == ["file mesh", "scan mesh", "scan mesh.001"], names()
 
+    print("the add-on is disabled meanwhile")
+    yield from begin_on(points, normals)
+    job = operators.running()
+    bpy.ops.preferences.addon_disable(module="hsdm_blender")
+    assert operators.running() is None
+    yield from until(job.is_done, 30)
+    assert job.was_cancelled
+    bpy.ops.preferences.addon_enable(module="hsdm_blender")
+
     print("another file is opened meanwhile")
     yield from begin_on(points, normals)
     job = operators.running()

@@ -45,6 +45,20 @@ class ImportTest(scans.BlenderTest):
             file.write(ends)
         self.assertEqual(len(self.imported(scans.path_of("cloud.obj")).data.vertices), 50)
 
+    def test_where_the_scanner_stood_turns_the_normals(self):
+        random = np.random.default_rng(3)
+        sheet = np.column_stack([random.uniform(-1, 1, (4000, 2)), np.zeros(4000)])
+        for height in (5, -5):
+            head = (f"VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 4000\nHEIGHT 1\n"
+                    f"VIEWPOINT 0 0 {height} 1 0 0 0\nPOINTS 4000\nDATA ascii\n")
+            path = scans.path_of("sheet.pcd")
+            with open(path, "w") as file:
+                file.write(head + "".join("%.9g %.9g %.9g\n" % tuple(place) for place in sheet))
+            self.imported(path)
+            self.assertEqual(bpy.ops.hsdm.reconstruct(), {"FINISHED"})
+            normals = numbers(bpy.context.active_object.data.polygons, "normal", 3)
+            self.assertTrue((normals[:, 2] * height > 0).all())
+
     def test_several_files_become_an_object_each_and_a_bad_one_stops_none(self):
         points, _ = scans.scan_of_box(50)
         for name in ("one.xyz", "two.xyz"):

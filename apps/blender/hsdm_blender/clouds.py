@@ -37,8 +37,11 @@ class Cloud:
     shift: Optional[tuple] = None
 
     def arguments(self):
-        names = ("normals", "colors", "scalars", "labels", "sensors", "sensor_of")
-        return {"points": self.positions, **{name: getattr(self, name) for name in names}}
+        names = ("normals", "colors", "scalars", "labels")
+        made = {"points": self.positions, **{name: getattr(self, name) for name in names}}
+        if self.sensor_of is not None:
+            return {**made, "sensors": self.sensors, "sensor_of": self.sensor_of}
+        return {**made, "sensor": None if self.sensors is None else self.sensors[0]}
 
 
 def cloud_of_points(points, shifts):
@@ -51,7 +54,8 @@ def cloud_of_points(points, shifts):
     if shift is not None:
         positions = positions - shift
         sensors = None if sensors is None else sensors - shift
-    labels = {name: values.astype(np.int32) for name, values in points.labels.items()}
+    # Numbers from 2^31 on become negative: labels stay apart.
+    labels = {name: values.astype(np.int64).astype(np.int32) for name, values in points.labels.items()}
     return Cloud(positions, points.normals, points.colors, points.scalars, labels, sensors, points.sensor_of, shift)
 
 

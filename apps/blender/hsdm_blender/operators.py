@@ -1,5 +1,6 @@
 """What people call: import, reconstruct, and look at what is doubtful."""
 
+from dataclasses import dataclass
 import os
 
 import bpy
@@ -14,12 +15,21 @@ from .job import Job, ScanFile
 
 _INTERVAL = 0.1  # seconds between two looks at a job: what is shown is as fresh as that
 
-_running = []
+_runs = []
+
+
+@dataclass
+class _Run:
+    """A job and what shows it."""
+
+    job: Job
+    timer: bpy.types.Timer
+    told: str = ""
 
 
 def running():
     """The job that runs, or None."""
-    return _running[0] if _running else None
+    return _runs[0].job if _runs else None
 
 
 def _loaded(operator):
@@ -142,45 +152,31 @@ class HSDM_OT_reconstruct(bpy.types.Operator):
         job = self._prepared(context)
         if job is None:
             return {"CANCELLED"}
-        self._job, self._told = job, ""
-        _running.append(job)
         job.start()
         manager = context.window_manager
         manager.progress_begin(0, 100)
-        self._timer = manager.event_timer_add(_INTERVAL, window=context.window)
+        self._run = _Run(job, manager.event_timer_add(_INTERVAL, window=context.window))
+        _runs.append(self._run)
         manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
+        job = self._run.job
         if event.type == "ESC" and event.value == "PRESS":
-            self._job.cancel()
+            job.cancel()
             return {"RUNNING_MODAL"}  # nothing else is to see it
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
-        if not self._job.is_done():
-            self._tell(context)
+        if not job.is_done():
+            _tell(context, self._run)
             return {"PASS_THROUGH"}
-        self._leave(context)
-        return self._finished(context, self._job)
+        _end(context, self._run)
+        return self._finished(context, job)
 
     def cancel(self, context):
         """Blender ends it: another file is opened, or none any more."""
-        self._job.cancel()
-        self._leave(context)
-
-    def _leave(self, context):
-        if self._job in _running:
-            _running.remove(self._job)
-        context.window_manager.event_timer_remove(self._timer)
-        context.window_manager.progress_end()
-        _show(context, None)
-
-    def _tell(self, context):
-        told = f"hsdm: {self._job.phase} {self._job.share:.0%}    Esc: cancel"
-        if told != self._told:
-            self._told = told
-            context.window_manager.progress_update(100 * self._job.share)
-            _show(context, told)
+        self._run.job.cancel()
+        _end(context, self._run)
 
     def _prepared(self, context):
         """The job, and what is to be known of the object when it is done, by value: the object may be gone then."""
@@ -348,6 +344,23 @@ def _make_active(context, made):
         context.view_layer.objects.active = made
 
 
+def _tell(context, run):
+    """What the job does, where that has changed."""
+    told = f"hsdm: {run.job.phase} {run.job.share:.0%}    Esc: cancel"
+    if told != run.told:
+        run.told = told
+        context.window_manager.progress_update(100 * run.job.share)
+        _show(context, told)
+
+
+def _end(context, run):
+    """Nothing shows the job any more."""
+    _runs.remove(run)
+    context.window_manager.event_timer_remove(run.timer)
+    context.window_manager.progress_end()
+    _show(context, None)
+
+
 def _show(context, text):
     """Text in the status bar, or None for Blender's own, and the sidebars drawn anew, for a view of many points is dear."""
     if context.workspace is not None:
@@ -379,8 +392,9 @@ def register():
 
 
 def unregister():
-    for job in _running:
-        job.cancel()
+    for run in list(_runs):  # Blender drops the operator without a word
+        run.job.cancel()
+        _end(bpy.context, run)
     bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
     for one in reversed(_CLASSES):
         unregister_class(one)
