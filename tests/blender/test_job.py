@@ -25,7 +25,7 @@ class JobTest(scans.BlenderTest):
         self.assertIsNone(job.error)
         self.assertEqual(job.mesh.digest(), hsdm.reconstruct(points, normals, depth=4).digest())
 
-    def test_it_is_cancelled_within_a_second_and_has_no_mesh(self):
+    def test_it_is_cancelled_long_before_its_end_and_has_no_mesh(self):
         points, normals = scans.scan_of_box(400000)
         job = Job(hsdm, clouds.Cloud(points, normals), {"depth": 10})
         job.start()
@@ -33,7 +33,7 @@ class JobTest(scans.BlenderTest):
         job.cancel()
         begun = time.monotonic()
         wait_for(job.is_done)
-        self.assertLess(time.monotonic() - begun, 1)
+        self.assertLess(time.monotonic() - begun, 5)
         self.assertTrue(job.was_cancelled)
         self.assertIsNone(job.mesh)
         self.assertIsNone(job.error)
