@@ -1,4 +1,4 @@
-# HSDM_BUILD_PYTHON: the Python package, by default where pybind11 and Python's headers are. Debian's own Python, which has
+# HSDM_BUILD_PYTHON: the Python package, unless told otherwise where pybind11 and Python's headers are. Debian's own Python, which has
 # NumPy, goes before one that comes first in a user's PATH; -DPython_EXECUTABLE=... takes another.
 if(NOT DEFINED Python_EXECUTABLE AND NOT SKBUILD AND EXISTS /usr/bin/python3)
   set(Python_EXECUTABLE /usr/bin/python3)
@@ -14,7 +14,11 @@ if(PROJECT_IS_TOP_LEVEL AND HSDM_BUILD_APPS AND NOT HSDM_SANITIZE AND NOT HSDM_C
     set(buildable ON)
   endif()
 endif()
-option(HSDM_BUILD_PYTHON "Build the Python package" ${buildable})
+# AUTO asks anew each time: what is missing may be installed when the tree is there.
+set(HSDM_BUILD_PYTHON AUTO CACHE STRING "Build the Python package: ON, OFF, or AUTO: where it can be built")
+if(HSDM_BUILD_PYTHON STREQUAL "AUTO")
+  set(HSDM_BUILD_PYTHON ${buildable})
+endif()
 if(HSDM_BUILD_PYTHON AND NOT buildable)
   message(FATAL_ERROR "HSDM_BUILD_PYTHON needs pybind11 2.10, the headers of Python 3.9 or later and the command, in a build "
     "without sanitizers: install pybind11-dev and python3-dev, or configure with -DHSDM_BUILD_PYTHON=OFF")
