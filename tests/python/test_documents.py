@@ -38,6 +38,17 @@ def test_the_blocks_of_a_page_run_one_after_the_other(page, count, scan_here):
     assert hsdm.read_mesh("part.stl").topology()["closed"]
 
 
+def test_what_the_page_shows_of_the_example_stands_in_it():
+    def bare(text):
+        return [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
+
+    page = (ROOT / "docs/python.md").read_text(encoding="utf-8")
+    (shown,) = re.findall(r"^```py\n(.*?)^```$", page, re.M | re.S)
+    script = bare((ROOT / "docs/examples/scan_to_part.py").read_text(encoding="utf-8"))
+    begin = script.index(bare(shown)[0])
+    assert script[begin : begin + len(bare(shown))] == bare(shown)
+
+
 def test_the_example_makes_a_closed_part_of_its_size(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     names = runpy.run_path(str(ROOT / "docs/examples/scan_to_part.py"))
