@@ -268,12 +268,13 @@ void add_baseline_options(CLI::App& sub, Arguments& given) {
         ->type_name("FILE")
         ->group(group);
     sub.add_option("--max-slower", given.bounds.most_slower,
-                   "a case may take so many times the baseline's seconds, such as 1.3")
+                   "a case may take so many times the baseline's seconds, such as 1.3 (default: not judged)")
         ->check(times_wanted())
         ->type_name("TIMES")
         ->group(group);
     sub.add_option("--max-memory", given.bounds.most_memory,
-                   "a case may take so many times the baseline's memory (and 16 MB), such as 1.2")
+                   "a case may take so many times the baseline's memory (and 16 MB), such as 1.2 (default: "
+                   "not judged)")
         ->check(times_wanted())
         ->type_name("TIMES")
         ->group(group);

@@ -111,7 +111,7 @@ TEST_CASE("the end of memory is told with file and phase, and the other inputs g
         const Json reports = Json::parse(read_file(folder / "r.json"));
         CHECK(reports[0]["failure"].get<std::string>().find("out of memory in phase") != std::string::npos);
     }
-    const CommandResult mesh = run(folder, "compare large.xyz small.xyz", "ulimit -v 30000;");
+    const CommandResult mesh = run(folder, "compare large.xyz small.xyz", "ulimit -v 38000;");
     CHECK(mesh.status == 1);
     CHECK(mesh.err.starts_with("hsdm: large.xyz: "));
     CHECK(mesh.err.find(" in phase read") != std::string::npos);

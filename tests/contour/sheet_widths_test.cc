@@ -9,7 +9,7 @@ using namespace hsdm::support;
 
 namespace {
 
-constexpr double voxel = 1.0 / 32; // of the boxes below, at depth 5
+constexpr double cube = 1.2, voxel = cube / 32; // at depth 5
 
 /// A block with a row of bores, and the opposite: rods between two plates.
 Solid with_bores(double diameter) {
@@ -27,7 +27,7 @@ Solid with_rods(double diameter) {
 }
 
 double share_of_cylinders(const Solid& solid) {
-    const Stages stages(sample(solid.placed(random_pose(7)), {.points = 30000, .seed = 7}), 5, 1);
+    const Stages stages(sample(solid.placed(random_pose(7)), {.points = 30000, .seed = 7}), 5, cube);
     return static_cast<double>(count_narrow_cylinders(stages.octree, stages.level, stages.sets))
            / static_cast<double>(stages.level.size());
 }
