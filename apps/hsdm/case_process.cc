@@ -9,6 +9,7 @@
 #include "threads.hh"
 
 #include "hsdm/core/number_of.hh"
+#include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/file_registry.hh"
 
@@ -30,7 +31,6 @@
 #include <poll.h>
 #include <pthread.h>
 #include <spawn.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -259,12 +259,6 @@ int status_of_end(int status) {
     return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
 }
 
-std::size_t peak_memory_here() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
-}
-
 /// The task's two pipes, which programs that this one starts do not get.
 std::pair<Descriptor, Descriptor> open_pipes(const std::string& pipes) {
     const std::size_t colon = std::min(pipes.find(':'), pipes.size() - 1);
@@ -292,7 +286,7 @@ Outcome run_task(const Case& one, const CaseTask& task) {
     std::optional<PolygonMesh> mesh;
     if (task.picture) mesh.emplace();
     Outcome outcome = run_case(one, mesh ? &*mesh : nullptr);
-    outcome.peak_memory_bytes = peak_memory_here();
+    outcome.peak_memory_bytes = os::peak_memory();
     if (task.measure_machine) outcome.machine_seconds = (before + time_fixed_work()) / 2;
     if (mesh && mesh->facet_count() > 0) outcome.picture = draw_picture(*mesh);
     return outcome;

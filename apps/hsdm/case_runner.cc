@@ -20,25 +20,40 @@ bool is_beyond(const AgainstBaseline& held) {
 
 } // namespace
 
-Outcome CaseRunner::run_once(const Case& one, bool alone) {
-    std::unique_lock lock(mutex_);
-    if (alone) {
-        ++waiting_;
-        changed_.wait(lock, [this] { return running_ == 0; });
-        --waiting_;
-        alone_ = true;
-    } else {
-        changed_.wait(lock, [this] { return !alone_ && waiting_ == 0; });
+/// A case's turn, which ends even where running it throws: the others wait for it.
+class CaseRunner::Turn {
+public:
+    Turn(CaseRunner& runner, bool alone) : runner_(runner), alone_(alone) {
+        std::unique_lock lock(runner_.mutex_);
+        if (alone_) {
+            ++runner_.waiting_;
+            runner_.changed_.wait(lock, [this] { return runner_.running_ == 0; });
+            --runner_.waiting_;
+            runner_.alone_ = true;
+        } else {
+            runner_.changed_.wait(lock, [this] { return !runner_.alone_ && runner_.waiting_ == 0; });
+        }
+        ++runner_.running_;
     }
-    ++running_;
-    lock.unlock();
-    Outcome outcome = run_in_process(one, task_);
-    lock.lock();
-    --running_;
-    if (alone) alone_ = false;
-    lock.unlock();
-    changed_.notify_all();
-    return outcome;
+    ~Turn() {
+        {
+            const std::lock_guard lock(runner_.mutex_);
+            --runner_.running_;
+            if (alone_) runner_.alone_ = false;
+        }
+        runner_.changed_.notify_all();
+    }
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+
+private:
+    CaseRunner& runner_;
+    const bool alone_;
+};
+
+Outcome CaseRunner::run_once(const Case& one, bool alone) {
+    const Turn turn(*this, alone);
+    return run_in_process(one, task_);
 }
 
 Outcome CaseRunner::run_again(const Case& one, Outcome outcome, const Outcome& before) {

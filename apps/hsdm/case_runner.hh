@@ -21,6 +21,8 @@ public:
     Outcome run(const Case& one);
 
 private:
+    class Turn;
+
     Outcome run_again(const Case& one, Outcome outcome, const Outcome& before);
     Outcome run_once(const Case& one, bool alone);
 

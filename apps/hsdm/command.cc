@@ -8,10 +8,12 @@
 #include "threads.hh"
 #include "usage.hh"
 
+#include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/file_registry.hh"
 #include "hsdm/version.hh"
 
+#include <cerrno>
 #include <iostream>
 #include <new>
 
@@ -72,6 +74,19 @@ void add_subcommands(CLI::App& app, Run& run) {
     add_manual(app, run);
 }
 
+/// A standard descriptor that is closed becomes one that cannot be used either: else the next file or pipe
+/// that is opened takes its number, and gets what goes there.
+void take_standard_descriptors() {
+    os::FileStatus status;
+    for (const int wanted : {os::standard_input, os::standard_output, os::standard_error})
+        if (!os::status_of(wanted, status) && errno == EBADF) {
+            if (wanted == os::standard_input)
+                os::open_to_write("/dev/null");
+            else
+                os::open_to_read("/dev/null");
+        }
+}
+
 /// The subcommand's status, or the one that the arguments deserve.
 int parse_and_run(int argc, char** argv) {
     CLI::App app("scanned points in, CAD-ready meshes out", "hsdm");
@@ -103,6 +118,7 @@ void complain(const std::string& message) {
 }
 
 int run_command(int argc, char** argv) {
+    take_standard_descriptors();
     try {
         return parse_and_run(argc, argv);
     } catch (const std::bad_alloc&) { // while the options are set up

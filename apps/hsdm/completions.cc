@@ -1,5 +1,7 @@
 #include "completions.hh"
 
+#include "usage.hh"
+
 #include <algorithm>
 #include <functional>
 
@@ -12,12 +14,6 @@ constexpr const char* words_for_options[] = {"help", "version"};
 void for_each_option(const CommandText& command, const std::function<void(const OptionText&)>& act) {
     for (const OptionGroup& group : command.groups)
         for (const OptionText& option : group.options) act(option);
-}
-
-std::string spliced(const std::vector<std::string>& words, const std::string& between) {
-    std::string text;
-    for (const std::string& word : words) text += (text.empty() ? "" : between) + word;
-    return text;
 }
 
 std::string subcommand_names(const CommandText& command) {
@@ -35,7 +31,7 @@ std::string all_words(const CommandText& command) {
 std::string names_of_options(const CommandText& command) {
     std::string names;
     for_each_option(command, [&names](const OptionText& option) {
-        names += (names.empty() ? "" : " ") + spliced(option.names, " ");
+        names += (names.empty() ? "" : " ") + joined(option.names, " ");
     });
     return names;
 }
@@ -55,7 +51,7 @@ std::string value_branch(const CommandText& command, const OptionText& option) {
     std::string action = "return";
     if (option.offer == Offer::files) action = "_hsdm_offer -f; return";
     if (option.offer == Offer::folders) action = "_hsdm_offer -d; return";
-    if (option.offer == Offer::words) action = "_hsdm_offer -W '" + spliced(option.words, " ") + "'; return";
+    if (option.offer == Offer::words) action = "_hsdm_offer -W '" + joined(option.words, " ") + "'; return";
     return "    " + patterns + ") " + action + " ;;\n";
 }
 
@@ -99,7 +95,7 @@ std::string value_spec(const OptionText& option) {
     std::string action = " ";
     if (option.offer == Offer::files) action = "_files";
     if (option.offer == Offer::folders) action = "_files -/";
-    if (option.offer == Offer::words) action = '(' + spliced(option.words, " ") + ')';
+    if (option.offer == Offer::words) action = '(' + joined(option.words, " ") + ')';
     return ':' + spec_text(option.offer == Offer::words ? "value" : option.value) + ':' + action;
 }
 
@@ -109,7 +105,7 @@ std::string zsh_specs(const CommandText& command, const std::string& indent) {
         for (const std::string& name : option.names) {
             std::vector<std::string> without = option.excludes;
             if (!option.repeats) without.insert(without.end(), option.names.begin(), option.names.end());
-            const std::string before = option.repeats ? "*" : '(' + spliced(without, " ") + ')';
+            const std::string before = option.repeats ? "*" : '(' + joined(without, " ") + ')';
             const std::string equals = option.value.empty() ? "" : name.starts_with("--") ? "=" : "+";
             specs += " \\\n" + indent
                      + single_quoted(before + name + equals + '[' + spec_text(option.description) + ']'
@@ -130,7 +126,7 @@ std::string fish_option(const OptionText& option, const std::string& condition) 
         line += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
     if (!option.value.empty()) line += option.offer == Offer::files ? " -r -F" : " -x";
     if (option.offer == Offer::folders) line += " -a '(__fish_complete_directories)'";
-    if (option.offer == Offer::words) line += " -a '" + spliced(option.words, " ") + "'";
+    if (option.offer == Offer::words) line += " -a '" + joined(option.words, " ") + "'";
     return line + " -d " + single_quoted(option.description, "\\'") + '\n';
 }
 

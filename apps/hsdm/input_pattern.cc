@@ -62,7 +62,7 @@ bool is_pattern(std::string_view text) {
     return text.find_first_of("*?[") != std::string_view::npos;
 }
 
-/// Names in a folder that match, sorted; those of `**` are folders.
+/// Names in a folder that match, in the folder's own order; those of `**` are folders.
 std::vector<fs::path> entries(const fs::path& folder, std::string_view pattern) {
     std::vector<fs::path> found;
     os::for_each_name(folder.empty() ? "." : folder.string(), [&](const char* name) {

@@ -1,40 +1,14 @@
 #include "junit.hh"
 
-#include "messages.hh"
+#include "page_text.hh"
 
 #include <algorithm>
 #include <ctime>
 #include <iomanip>
 #include <sstream>
-#include <string_view>
-#include <utility>
 
 namespace hsdm::command {
 namespace {
-
-std::string xml(std::string_view text) {
-    // The last two are UTF-8, but no characters of XML.
-    constexpr std::pair<std::string_view, std::string_view> written[] = {{"&", "&amp;"},
-                                                                         {"<", "&lt;"},
-                                                                         {">", "&gt;"},
-                                                                         {"\"", "&quot;"},
-                                                                         {"\xef\xbf\xbe", "\\ufffe"},
-                                                                         {"\xef\xbf\xbf", "\\uffff"}};
-    std::string result = printable(text);
-    for (const auto& [from, to] : written)
-        for (std::size_t at = result.find(from); at != std::string::npos;
-             at = result.find(from, at + to.size()))
-            result.replace(at, from.size(), to);
-    return result;
-}
-
-/// Line by line, so that line ends stay.
-std::string xml_lines(const std::string& text) {
-    std::istringstream lines(text);
-    std::string result;
-    for (std::string line; std::getline(lines, line);) result += xml(line) + '\n';
-    return result;
-}
 
 /// An error is what did not come to a report, though it had to; of a failure there are numbers.
 bool is_error(const Outcome& one) {
@@ -42,7 +16,7 @@ bool is_error(const Outcome& one) {
 }
 
 void put_case(std::ostream& out, const std::string& suite, const Outcome& one) {
-    out << "    <testcase classname=\"" << suite << "\" name=\"" << xml(one.name) << "\" time=\""
+    out << "    <testcase classname=\"" << suite << "\" name=\"" << html_text(one.name) << "\" time=\""
         << one.seconds << '"';
     if (is_ok(one)) {
         out << "/>\n";
@@ -50,9 +24,10 @@ void put_case(std::ostream& out, const std::string& suite, const Outcome& one) {
     }
     const char* const kind = is_error(one) ? "error" : "failure";
     const char* const type = one.interrupted ? "interrupted" : is_error(one) ? "failed" : "out of tolerance";
-    out << ">\n      <" << kind << " message=\"" << xml(one.misses.front()) << "\" type=\"" << type << "\">";
-    for (const std::string& reason : one.misses) out << xml(reason) << '\n';
-    if (!one.printed.empty()) out << "printed:\n" << xml_lines(one.printed);
+    out << ">\n      <" << kind << " message=\"" << html_text(one.misses.front()) << "\" type=\"" << type
+        << "\">";
+    for (const std::string& reason : one.misses) out << html_text(reason) << '\n';
+    if (!one.printed.empty()) out << "printed:\n" << html_lines(one.printed);
     out << "</" << kind << ">\n    </testcase>\n";
 }
 
@@ -60,11 +35,11 @@ void put_case(std::ostream& out, const std::string& suite, const Outcome& one) {
 std::string counts_of(const std::vector<Outcome>& outcomes) {
     std::ostringstream lines;
     for (const Outcome& one : outcomes) {
-        lines << xml(one.name) << ": " << std::fixed << std::setprecision(3) << one.seconds << " s, "
+        lines << html_text(one.name) << ": " << std::fixed << std::setprecision(3) << one.seconds << " s, "
               << one.peak_memory_bytes / 1000000 << " MB";
         if (one.report.is_object() && one.report.contains("mesh"))
             lines << ", " << one.report["mesh"].value("faces", 0) << " faces, digest "
-                  << xml(one.report["mesh"].value("digest", ""));
+                  << html_text(one.report["mesh"].value("digest", ""));
         lines << '\n';
     }
     return lines.str();
@@ -85,14 +60,14 @@ std::string to_junit(const JunitRun& run, const std::vector<Outcome>& outcomes) 
     const auto errors = std::count_if(outcomes.begin(), outcomes.end(), is_error);
     const auto misses =
         std::count_if(outcomes.begin(), outcomes.end(), [](const Outcome& one) { return !is_ok(one); });
-    const std::string name = xml(run.suite);
+    const std::string name = html_text(run.suite);
     std::ostringstream out;
     out << std::fixed << std::setprecision(3) << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
         << "  <testsuite name=\"" << name << "\" package=\"hsdm\" id=\"0\" timestamp=\"" << timestamp()
         << "\" hostname=\"localhost\" tests=\"" << outcomes.size() << "\" failures=\"" << misses - errors
         << "\" errors=\"" << errors << "\" time=\"" << run.seconds << "\">\n    <properties>\n";
     for (const auto& [key, value] : run.properties)
-        out << "      <property name=\"" << xml(key) << "\" value=\"" << xml(value) << "\"/>\n";
+        out << "      <property name=\"" << html_text(key) << "\" value=\"" << html_text(value) << "\"/>\n";
     out << "    </properties>\n";
     for (const Outcome& one : outcomes) put_case(out, name, one);
     out << "    <system-out>" << counts_of(outcomes) << "</system-out>\n    <system-err></system-err>\n"

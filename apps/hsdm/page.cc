@@ -41,7 +41,8 @@ bool can_write_pages() {
 
 std::string viewer_scripts() {
     return "<script>\n/*\n" + whole_text(embedded::three_notice) + "*/\n" + whole_text(embedded::three_js)
-           + "\n</script>\n<script>\n" + whole_text(embedded::viewer_js) + "</script>\n";
+           + "\n</script>\n<script>\n" + whole_text(embedded::mesh_js) + "</script>\n<script>\n"
+           + whole_text(embedded::viewer_js) + "</script>\n";
 }
 
 std::string page_styles() {

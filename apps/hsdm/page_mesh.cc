@@ -8,6 +8,9 @@
 #include "hsdm/io/json_text.hh"
 #include "hsdm/mesh/triangulate.hh"
 #include "hsdm/mesh/vertex_class.hh"
+#include "hsdm/mesh/vertex_normals.hh"
+#include "hsdm/pipeline/confidence.hh"
+#include "hsdm/pipeline/extended_method.hh"
 #include "hsdm/quality/deviations.hh"
 #include "hsdm/quality/percentiles.hh"
 
@@ -114,7 +117,7 @@ void put_mesh(const PolygonMesh& mesh, const PageSpace& space, JsonText& json) {
     for (const auto& edge : mesh.sharp_edges)
         for (const Index v : edge) sharp.add_step_to(v);
     json.member("sharp_edges", sharp.text());
-    if (const auto* classes = find_property(mesh, "hsdm_vertex_class"))
+    if (const auto* classes = find_property(mesh, vertex_class_property))
         for (std::size_t v = 0; v < classes->values.size(); ++v)
             if (classes->values[v] == static_cast<int>(VertexClass::corner))
                 corners.add_step_to(static_cast<Index>(v));
@@ -287,8 +290,8 @@ MeshElement describe_mesh(const std::string& id, const PageContent& content) {
     JsonText json;
     json.begin_object();
     put_mesh(content.mesh, space, json);
-    put_shares(content.mesh, "hsdm_confidence", "confidence", json);
-    put_shares(content.mesh, "hsdm_completed", "completed", json);
+    put_shares(content.mesh, confidence_property, "confidence", json);
+    put_shares(content.mesh, completed_property, "completed", json);
     if (!content.points.empty()) result.figures = put_deviations(content, space, json);
     json.end();
     result.html = "<script type=\"application/json\" id=\"" + html_text(id) + "\">" + std::move(json).take()

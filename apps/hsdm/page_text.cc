@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
+#include <sstream>
+#include <utility>
 
 namespace hsdm::command {
 namespace {
@@ -13,19 +16,29 @@ constexpr std::string_view digits_of_64 = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijk
 } // namespace
 
 std::string html_text(std::string_view text) {
+    constexpr std::pair<std::string_view, std::string_view> written[] = {{"&", "&amp;"},
+                                                                         {"<", "&lt;"},
+                                                                         {">", "&gt;"},
+                                                                         {"\"", "&quot;"},
+                                                                         {"'", "&#39;"},
+                                                                         {"\xef\xbf\xbe", "\\ufffe"},
+                                                                         {"\xef\xbf\xbf", "\\uffff"}};
+    const std::string shown = printable(text);
     std::string result;
-    for (const char c : printable(text)) {
-        const std::string_view escaped = c == '&'    ? "&amp;"
-                                         : c == '<'  ? "&lt;"
-                                         : c == '>'  ? "&gt;"
-                                         : c == '"'  ? "&quot;"
-                                         : c == '\'' ? "&#39;"
-                                                     : std::string_view();
-        if (escaped.empty())
-            result += c;
-        else
-            result += escaped;
+    for (std::string_view rest = shown; !rest.empty();) {
+        const auto found =
+            std::ranges::find_if(written, [rest](const auto& one) { return rest.starts_with(one.first); });
+        const bool stays = found == std::end(written);
+        result += stays ? rest.substr(0, 1) : found->second;
+        rest.remove_prefix(stays ? 1 : found->first.size());
     }
+    return result;
+}
+
+std::string html_lines(const std::string& text) {
+    std::istringstream lines(text);
+    std::string result;
+    for (std::string line; std::getline(lines, line);) result += html_text(line) + '\n';
     return result;
 }
 

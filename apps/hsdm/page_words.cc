@@ -11,20 +11,6 @@
 namespace hsdm::command {
 namespace {
 
-std::size_t rejected(const Report& report, const char* stage) {
-    const auto found = report.rejected.find(stage);
-    return found == report.rejected.end() ? 0 : found->second;
-}
-
-std::string option_text(const Report& report, const char* name) {
-    const auto found = report.options.find(name);
-    return found == report.options.end() ? std::string() : html_text(found->second);
-}
-
-std::string counted(std::size_t count, const std::string& one, const std::string& many) {
-    return grouped(count) + ' ' + (count == 1 ? one : many);
-}
-
 std::string paragraph(const std::string& text) {
     return "<p>" + text + "</p>\n";
 }
@@ -42,7 +28,7 @@ std::string input_words(const Report& report) {
     const std::size_t points = report.input.points;
     if (points == 0) return "";
     const bool normals = report.input.has_normals;
-    const bool estimated = option_text(report, "normals") == "estimate";
+    const bool estimated = option_value(report, "normals") == "estimate";
     std::string text = "<b>" + counted(points, "point", "points") + "</b> from <b class=\"file\">"
                        + html_text(report.input.file) + "</b>, "
                        + (estimated ? normals ? "with normals, which were estimated anew"
@@ -57,9 +43,9 @@ std::string input_words(const Report& report) {
         text += paragraph(counted(n, "point had", "points had") + " no finite coordinates and was left out.");
     if (const std::size_t n = report.input.merged_duplicates)
         text += paragraph(counted(n, "duplicate was", "duplicates were") + " merged.");
-    if (rejected(report, "points_moved"))
+    if (rejected_count(report, "points_moved"))
         text += paragraph("The points are noisy: they were moved onto their surface first.");
-    if (const std::size_t n = rejected(report, "normals_mended"))
+    if (const std::size_t n = rejected_count(report, "normals_mended"))
         text += paragraph(counted(n, "normal was", "normals were") + " turned to the side of the others.");
     return text;
 }
@@ -70,7 +56,7 @@ std::string resolution_words(const Report& report) {
     std::string text = "Voxels of edge <b>" + page_number(voxel) + "</b>, octree depth "
                        + std::to_string(report.grid.depth) + "; " + grouped(report.grid.voxels)
                        + " of them hold points. What is smaller is not " + "reproduced.";
-    if (const std::string why = option_text(report, "resolution"); !why.empty())
+    if (const std::string why = html_text(option_value(report, "resolution")); !why.empty())
         text += " The size is " + why + ".";
     text = paragraph(text);
     if (report.grid.kind == "adaptive") {
@@ -95,11 +81,11 @@ std::string mesh_words(const Report& report) {
     if (larger) text += ", " + grouped(larger) + " with more corners";
     text += "; " + counted(report.mesh.vertices, "vertex", "vertices") + ", "
             + counted(report.mesh.edges, "edge", "edges") + ".";
-    text =
-        paragraph(text)
-        + paragraph("<b>" + counted(report.features.sharp_edges, "edge is", "edges are")
-                    + " sharp</b>, sharper than " + option_text(report, "crease-degrees") + "°; they meet in "
-                    + counted(report.features.corner_vertices, "corner", "corners") + ".");
+    text = paragraph(text)
+           + paragraph("<b>" + counted(report.features.sharp_edges, "edge is", "edges are")
+                       + " sharp</b>, sharper than " + html_text(option_value(report, "crease-degrees"))
+                       + "°; they meet in " + counted(report.features.corner_vertices, "corner", "corners")
+                       + ".");
     for (const Report::Stage& stage : report.stages)
         text +=
             paragraph("Then <code>" + html_text(stage.call) + "</code>: " + html_text(stage.summary) + ".");

@@ -15,13 +15,6 @@
 namespace hsdm::command {
 namespace {
 
-std::string html_lines(const std::string& text) {
-    std::istringstream lines(text);
-    std::string result;
-    for (std::string line; std::getline(lines, line);) result += html_text(line) + '\n';
-    return result;
-}
-
 std::string number_text(double number, const char* format) {
     char text[64];
     std::snprintf(text, sizeof text, format, number);

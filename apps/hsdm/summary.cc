@@ -19,39 +19,27 @@ std::string number(double value, int digits = 4) {
     return text;
 }
 
-std::string plural(std::size_t count, const std::string& one, const std::string& many) {
-    return grouped(count) + " " + (count == 1 ? one : many);
-}
-
-std::string option(const Report& report, const std::string& name) {
-    const auto found = report.options.find(name);
-    return found == report.options.end() ? std::string() : found->second;
-}
-
 std::string normals_words(const Report& report) {
     std::string given = report.input.has_normals ? "with normals" : "no normals";
-    const auto mended = report.rejected.find("normals_mended");
-    if (mended != report.rejected.end() && mended->second > 0)
-        given += " (" + grouped(mended->second) + " turned to one side)";
-    if (option(report, "normals") != "estimate") return given;
+    if (const std::size_t mended = rejected_count(report, "normals_mended"))
+        given += " (" + grouped(mended) + " turned to one side)";
+    if (option_value(report, "normals") != "estimate") return given;
     return report.input.has_normals ? "normals estimated anew" : "normals estimated";
 }
 
 std::string small_component_words(const Report& report) {
-    const auto dropped = report.rejected.find("components_small");
-    if (dropped == report.rejected.end() || dropped->second == 0) return "";
-    return "; " + plural(dropped->second, "small component", "small components") + " dropped";
+    const std::size_t dropped = rejected_count(report, "components_small");
+    return dropped ? "; " + counted(dropped, "small component", "small components") + " dropped" : "";
 }
 
 /// Whether the bound of an adaptive grid was kept, in words.
 std::string bound_words(const Report& report) {
     if (report.grid.max_error == 0) return {};
     const std::string bound = "\nbound     " + number(report.grid.max_error, 3) + ": ";
-    const auto dropped = report.rejected.find("components_small");
-    const bool incomplete = dropped != report.rejected.end() && dropped->second > 0;
+    const bool incomplete = rejected_count(report, "components_small") > 0;
     if (report.grid.points_beyond == 0)
         return bound + "kept by all points" + (incomplete ? " but those of the components dropped" : "");
-    return bound + "not met at " + plural(report.grid.points_beyond, "point", "points")
+    return bound + "not met at " + counted(report.grid.points_beyond, "point", "points")
            + ", which the finest surface misses already"
            + (incomplete ? ", nor at those of the components dropped" : "");
 }
@@ -87,7 +75,7 @@ std::string warning_words(const Report::Warning& warning) {
 }
 
 std::string intersection_words(const Report::Mesh& mesh) {
-    return mesh.intersections ? ", " + plural(*mesh.intersections, "intersection", "intersections") : "";
+    return mesh.intersections ? ", " + counted(*mesh.intersections, "intersection", "intersections") : "";
 }
 
 } // namespace
@@ -98,6 +86,20 @@ std::string grouped(std::size_t value) {
     return text;
 }
 
+std::string counted(std::size_t count, const std::string& one, const std::string& many) {
+    return grouped(count) + ' ' + (count == 1 ? one : many);
+}
+
+std::string option_value(const Report& report, const std::string& name) {
+    const auto found = report.options.find(name);
+    return found == report.options.end() ? std::string() : found->second;
+}
+
+std::size_t rejected_count(const Report& report, const std::string& stage) {
+    const auto found = report.rejected.find(stage);
+    return found == report.rejected.end() ? 0 : found->second;
+}
+
 std::string columns_words(const std::string& columns, bool has_normals) {
     const auto count = 1 + std::count(columns.begin(), columns.end(), ',');
     return printable(columns) + ", told from the values"
@@ -105,12 +107,12 @@ std::string columns_words(const std::string& columns, bool has_normals) {
 }
 
 std::string topology_words(const Report::Mesh& mesh) {
-    std::string text = plural(mesh.components, "component", "components") + ", ";
+    std::string text = counted(mesh.components, "component", "components") + ", ";
     if (mesh.closed) {
         text += "closed";
     } else {
-        text += "open: " + plural(mesh.boundary_loops, "boundary loop", "boundary loops") + " of "
-                + plural(mesh.boundary_edges, "edge", "edges");
+        text += "open: " + counted(mesh.boundary_loops, "boundary loop", "boundary loops") + " of "
+                + counted(mesh.boundary_edges, "edge", "edges");
     }
     return text + ", genus " + std::to_string(mesh.genus);
 }
@@ -118,7 +120,7 @@ std::string topology_words(const Report::Mesh& mesh) {
 std::string summary_of(const Report& r, const std::string& written) {
     Text out;
     const Vec3 size = r.input.bbox.size();
-    out << "cloud     " << plural(r.input.points, "point", "points") << ", " << normals_words(r) << ", "
+    out << "cloud     " << counted(r.input.points, "point", "points") << ", " << normals_words(r) << ", "
         << number(size[0]) << " x " << number(size[1]) << " x " << number(size[2]) << ", spacing "
         << number(r.input.spacing, 3);
     if (r.input.dropped_nonfinite > 0)
@@ -129,15 +131,14 @@ std::string summary_of(const Report& r, const std::string& written) {
             << " dropped";
     if (r.input.merged_duplicates > 0)
         out << "; " << grouped(r.input.merged_duplicates) << " duplicates, merged";
-    if (const auto moved = r.rejected.find("points_moved"); moved != r.rejected.end() && moved->second > 0)
-        out << "; noisy, moved onto their surface";
-    if (const std::string columns = option(r, "columns"); !columns.empty())
+    if (rejected_count(r, "points_moved")) out << "; noisy, moved onto their surface";
+    if (const std::string columns = option_value(r, "columns"); !columns.empty())
         out << "\ncolumns   " << columns_words(columns, r.input.has_normals);
     out << "\nvoxels    " << grouped(r.grid.voxels) << " of edge " << number(r.grid.voxel_size) << ", depth "
-        << r.grid.depth << ": " << option(r, "resolution") << "\nmesh      "
-        << plural(r.mesh.vertices, "vertex", "vertices") << ", " << plural(r.mesh.faces, "face", "faces")
+        << r.grid.depth << ": " << option_value(r, "resolution") << "\nmesh      "
+        << counted(r.mesh.vertices, "vertex", "vertices") << ", " << counted(r.mesh.faces, "face", "faces")
         << " (" << grouped(r.mesh.quads) << " quads, " << grouped(r.mesh.triangles) << " triangles), "
-        << plural(r.features.sharp_edges, "sharp edge", "sharp edges") << "\ntopology  "
+        << counted(r.features.sharp_edges, "sharp edge", "sharp edges") << "\ntopology  "
         << topology_words(r.mesh) << intersection_words(r.mesh) << small_component_words(r);
     for (const Report::Dropped& dropped : r.dropped) out << "\ndropped   " << dropped_words(dropped);
     for (const Report::Stage& stage : r.stages)

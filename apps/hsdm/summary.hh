@@ -31,5 +31,12 @@ std::string columns_words(const std::string& columns, bool has_normals);
 
 /// 12345678 -> "12,345,678".
 std::string grouped(std::size_t number);
+/// "1 edge", "2,000 edges".
+std::string counted(std::size_t count, const std::string& one, const std::string& many);
+
+/// The report's text of an option; empty if there is none.
+std::string option_value(const Report& report, const std::string& name);
+/// What a stage rejected; 0 if nothing was counted.
+std::size_t rejected_count(const Report& report, const std::string& stage);
 
 } // namespace hsdm::command

@@ -33,13 +33,13 @@ inline py::array borrowed(const std::vector<Vec3>& vectors, const py::handle& ow
                     {static_cast<py::ssize_t>(vectors.size()), 3}, owner);
 }
 
-/// An array that owns a vector, whose memory becomes its own.
-template <class Number>
-py::array owning(std::vector<Number>&& values) {
-    auto kept = std::make_unique<std::vector<Number>>(std::move(values));
-    const py::capsule owner(kept.get(), [](void* v) { delete static_cast<std::vector<Number>*>(v); });
-    const std::vector<Number>& numbers = *kept.release();
-    return borrowed(numbers.data(), {static_cast<py::ssize_t>(numbers.size())}, owner);
+/// An array of `shape` that owns a vector of numbers, or of rows of them, whose memory becomes its own.
+template <class Number, class Row>
+py::array owning(std::vector<Row>&& values, std::vector<py::ssize_t> shape) {
+    static_assert(sizeof(Row) % sizeof(Number) == 0);
+    auto kept = std::make_unique<std::vector<Row>>(std::move(values));
+    const py::capsule owner(kept.get(), [](void* v) { delete static_cast<std::vector<Row>*>(v); });
+    return borrowed(reinterpret_cast<const Number*>(kept.release()->data()), std::move(shape), owner);
 }
 
 /// Values of doubles as an array of numbers that all of them fit; read-only.
@@ -47,7 +47,7 @@ template <class Number>
 py::array converted(const std::vector<double>& values) {
     std::vector<Number> numbers(values.size());
     for (std::size_t i = 0; i < values.size(); ++i) numbers[i] = static_cast<Number>(values[i]);
-    return owning(std::move(numbers));
+    return owning<Number>(std::move(numbers), {static_cast<py::ssize_t>(values.size())});
 }
 
 } // namespace hsdm::python

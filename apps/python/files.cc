@@ -57,6 +57,12 @@ py::object sensor_of(const py::object& self) {
     return py::make_tuple((*sensor)[0], (*sensor)[1], (*sensor)[2]);
 }
 
+py::object first_withheld_of(const PointFile& file) {
+    if (file.withheld == 0) return py::none();
+    const Vec3& place = file.first_withheld;
+    return py::make_tuple(place[0], place[1], place[2]);
+}
+
 } // namespace
 
 void bind_files(py::module_& core) {
@@ -80,6 +86,8 @@ void bind_files(py::module_& core) {
         .def_readonly("format", &PointFile::format)
         .def_readonly("faces", &PointFile::faces)
         .def_readonly("nonfinite", &PointFile::nonfinite)
+        .def_readonly("withheld", &PointFile::withheld)
+        .def_property_readonly("first_withheld", &first_withheld_of)
         .def_property_readonly("columns", [](const PointFile& file) { return text_of(file.columns); });
     core.def("read_points", &read_cloud, py::arg("path"), py::arg("format"), py::arg("columns"),
              py::arg("sensors"), py::arg("sensor_column"));

@@ -8,8 +8,10 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
+#include <iterator>
 
 namespace hsdm::python {
 namespace {
@@ -100,20 +102,27 @@ py::array sharp_edges_of(const py::object& self) {
 
 py::array triangles_of(const PolygonMesh& mesh) {
     Triangulation cut = run_interruptibly([&] { return triangulate(mesh); });
-    auto kept = std::make_unique<std::vector<Triangle>>(std::move(cut.triangles));
-    const py::capsule owner(kept.get(), [](void* v) { delete static_cast<std::vector<Triangle>*>(v); });
-    const std::vector<Triangle>& triangles = *kept.release();
-    return borrowed(triangles.empty() ? nullptr : triangles.front().data(),
-                    {static_cast<py::ssize_t>(triangles.size()), 3}, owner);
+    const auto count = static_cast<py::ssize_t>(cut.triangles.size());
+    return owning<Index>(std::move(cut.triangles), {count, 3});
 }
 
-/// Whether STL became text for its precision.
-bool write(const PolygonMesh& mesh, const std::string& path, bool ascii) {
-    return run_interruptibly([&] {
-        return on_file(path, [&] {
-            return write_mesh(path, mesh, mesh_format(path), {.ascii = ascii}).text_for_precision;
-        });
+constexpr LengthUnit units_known[] = {LengthUnit::millimetre, LengthUnit::centimetre, LengthUnit::metre,
+                                      LengthUnit::inch};
+
+/// None of an empty name; others _mesh.py has checked.
+LengthUnit unit_of(const std::string& name) {
+    const auto found = std::ranges::find(units_known, name, &name_of);
+    return found == std::end(units_known) ? LengthUnit::none : *found;
+}
+
+/// The shift that recentring took off all positions.
+py::tuple write(const PolygonMesh& mesh, const std::string& path, bool ascii, const std::string& units,
+                bool recentre) {
+    const WriteOptions options{.ascii = ascii, .unit = unit_of(units), .recentre = recentre};
+    const Vec3 shift = run_interruptibly([&] {
+        return on_file(path, [&] { return write_mesh(path, mesh, mesh_format(path), options).shift; });
     });
+    return py::make_tuple(shift[0], shift[1], shift[2]);
 }
 
 } // namespace
@@ -142,8 +151,11 @@ void bind_polygons(py::module_& core) {
         .def_property_readonly("sharp_edges", &sharp_edges_of)
         .def("properties", &properties_of)
         .def("triangles", &triangles_of)
-        .def("write", &write, py::arg("path"), py::arg("ascii"))
+        .def("write", &write, py::arg("path"), py::arg("ascii"), py::arg("units"), py::arg("recentre"))
         .def("digest", [](const PolygonMesh& mesh) { return mesh_digest(mesh); });
+    py::list units;
+    for (const LengthUnit unit : units_known) units.append(py::str(std::string(name_of(unit))));
+    core.attr("length_units") = py::tuple(units);
 }
 
 } // namespace hsdm::python

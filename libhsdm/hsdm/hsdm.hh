@@ -21,6 +21,7 @@
 #include "hsdm/point_view.hh"
 #include "hsdm/polygon_mesh.hh"
 #include "hsdm/quality/compare.hh"
+#include "hsdm/quality/deviations.hh"
 #include "hsdm/quality/distance.hh"
 #include "hsdm/quality/mesh_digest.hh"
 #include "hsdm/quality/percentiles.hh"

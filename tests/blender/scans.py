@@ -1,6 +1,7 @@
 """Scans that tests share, from seeds, and Blender as tests want it."""
 
 import os
+import struct
 import unittest
 
 import bpy
@@ -40,6 +41,21 @@ def write_table(name, *columns):
     """A text file of these columns, side by side; its path."""
     path = path_of(name)
     np.savetxt(path, np.column_stack(columns), fmt="%.17g")
+    return path
+
+
+def write_las(name, places, withheld):
+    """LAS 1.2, point format 0, steps of a thousandth; its path. The points of these numbers are marked as withheld."""
+    head = bytearray(227)
+    head[0:4], head[24:26] = b"LASF", b"\x01\x02"
+    struct.pack_into("<HIIBHI", head, 94, 227, 227, 0, 0, 20, len(places))
+    struct.pack_into("<3d", head, 131, *[0.001] * 3)
+    path = path_of(name)
+    with open(path, "wb") as file:
+        file.write(head)
+        for i, place in enumerate(places):
+            steps = [round(1000 * x) for x in place]
+            file.write(struct.pack("<iiiHBBbBH", *steps, 0, 9, 128 * (i in withheld), 0, 0, 0))
     return path
 
 

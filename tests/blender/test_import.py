@@ -89,6 +89,19 @@ class ImportTest(scans.BlenderTest):
         near = self.imported(scans.write_table("near.xyz", points + 10))
         self.assertNotIn("hsdm_shift", near)
 
+    def test_points_that_a_las_file_marks_as_withheld_are_told(self):
+        import hsdm
+        from hsdm_blender import operators
+
+        points, _ = scans.scan_of_box(500)
+        path = scans.write_las("box.las", points, {3, 4, 499})
+        owner = self.imported(path)
+        self.assertEqual(len(owner.data.vertices), 497)
+        self.assertEqual(
+            operators._said_of(owner, hsdm.read_points(path)),
+            "box: 497 points, 3 that the file marks as withheld left out",
+        )
+
     def test_points_that_are_not_finite_are_left_out(self):
         points, normals = scans.scan_of_box(500)
         points[7, 1] = np.nan

@@ -67,7 +67,8 @@ TEST_CASE("an STL file that becomes text for its precision says why, and how it 
     CHECK_THAT(run(folder, "process far.stl --stage classify -o again.stl").out, Contains(text));
 }
 
-TEST_CASE("mesh and features are written relative to a shift by --recentre, which summary and report tell", "[cli]") {
+TEST_CASE("mesh and features are written relative to a shift by --recentre, which summary and report tell",
+          "[cli]") {
     const Folder folder;
     folder.write("far.xyz", cube_scan({1e7, -2e6, 5}));
     REQUIRE(run(folder, "reconstruct far.xyz --depth 3 -o far.off --features far.txt").status == 0);

@@ -55,6 +55,18 @@ public:
 
 } // namespace
 
+TEST_CASE("closed standard descriptors change no file that is written", "[cli]") {
+    const ScanFolder folder;
+    const std::string one = "{" + sphere_case + R"(, "expect": {"mesh.genus": 0}})";
+    REQUIRE(regress(folder, one, "--json open.json").status == 0);
+    for (const char* closed : {"<&-", ">&-", "2>&-", "<&- >&-", "<&- >&- 2>&-"}) {
+        INFO(closed);
+        regress(folder, one, std::string("--json closed.json ") + closed);
+        CHECK(without_times(results_of(folder, "closed.json"))
+              == without_times(results_of(folder, "open.json")));
+    }
+}
+
 TEST_CASE("a mesh has one digest, whatever it is written as, and a case can expect it", "[cli]") {
     const ScanFolder folder;
     for (const char* format : {"off", "ply", "obj", "om"})

@@ -24,18 +24,33 @@ std::string common_fields(const std::string& content) {
            + bytes_of(static_cast<std::uint32_t>(content.size()));
 }
 
+std::string fields_of(const std::string& name, const std::string& content) {
+    return common_fields(content) + bytes_of(static_cast<std::uint16_t>(name.size()));
+}
+
+std::string directory_entry(const std::string& name, const std::string& content, std::size_t at) {
+    return "PK\1\2" + bytes_of(std::uint16_t(20)) + fields_of(name, content) + std::string(12, '\0')
+           + bytes_of(static_cast<std::uint32_t>(at)) + name;
+}
+
+std::string local_file(const std::string& name, const std::string& content) {
+    return "PK\3\4" + fields_of(name, content) + std::string(2, '\0') + name + content;
+}
+
+std::string with_directory(const std::string& file, const std::string& directory, std::size_t members) {
+    const std::string count = bytes_of(static_cast<std::uint16_t>(members));
+    return file + directory + "PK\5\6" + std::string(4, '\0') + count + count
+           + bytes_of(static_cast<std::uint32_t>(directory.size()))
+           + bytes_of(static_cast<std::uint32_t>(file.size())) + std::string(2, '\0');
+}
+
 std::string stored(const std::vector<std::pair<std::string, std::string>>& members) {
     std::string file, directory;
     for (const auto& [name, content] : members) {
-        const std::string fields = common_fields(content) + bytes_of(static_cast<std::uint16_t>(name.size()));
-        directory += "PK\1\2" + bytes_of(std::uint16_t(20)) + fields + std::string(12, '\0')
-                     + bytes_of(static_cast<std::uint32_t>(file.size())) + name;
-        file += "PK\3\4" + fields + std::string(2, '\0') + name + content;
+        directory += directory_entry(name, content, file.size());
+        file += local_file(name, content);
     }
-    const auto count = static_cast<std::uint16_t>(members.size());
-    return file + directory + "PK\5\6" + std::string(4, '\0') + bytes_of(count) + bytes_of(count)
-           + bytes_of(static_cast<std::uint32_t>(directory.size()))
-           + bytes_of(static_cast<std::uint32_t>(file.size())) + std::string(2, '\0');
+    return with_directory(file, directory, members.size());
 }
 
 } // namespace
@@ -57,6 +72,12 @@ std::string zip_file(const std::vector<std::pair<std::string, std::string>>& mem
     io::write_zip(file, folder / "a.zip", members);
     file.commit();
     return support::read_file(folder / "a.zip");
+}
+
+std::string shared_zip_file(const std::vector<std::string>& names, const std::string& content) {
+    std::string directory;
+    for (const std::string& name : names) directory += directory_entry(name, content, 0);
+    return with_directory(local_file(names.front(), content), directory, names.size());
 }
 
 } // namespace hsdm::test

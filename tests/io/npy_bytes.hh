@@ -15,4 +15,7 @@ std::string npy_file(const std::string& type, bool fortran, const std::string& s
 /// A ZIP archive of members, each a name and its content.
 std::string zip_file(const std::vector<std::pair<std::string, std::string>>& members, bool deflated);
 
+/// An archive of one stored content that the directory lists under each of the names.
+std::string shared_zip_file(const std::vector<std::string>& names, const std::string& content);
+
 } // namespace hsdm::test

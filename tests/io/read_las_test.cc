@@ -75,6 +75,34 @@ TEST_CASE(
     CHECK(read("a.las", las_file(layout, bare)).cloud.colors.empty());
 }
 
+TEST_CASE("flags that share a byte with a LAS file's classes make no classes", "[io]") {
+    constexpr std::uint8_t synthetic = 0x20, key = 0x40;
+    const std::vector<LasPoint> flagged{{{1, 2, 3}, 0, synthetic, false, 0, {}},
+                                        {{4, 5, 6}, 0, key, false, 0, {}}};
+    CHECK(read("a.las", las_file({}, flagged)).cloud.scalars.empty());
+    std::vector<LasPoint> classed = flagged;
+    classed[1].classification |= 6;
+    const PointCloud cloud = read("a.las", las_file({}, classed)).cloud;
+    REQUIRE(las_scalar(cloud, "classification"));
+    CHECK(las_scalar(cloud, "classification")->values == std::vector<double>{0, 6});
+}
+
+TEST_CASE("records of a LAS file are followed beyond what is read at once", "[io]") {
+    LasLayout layout;
+    for (std::size_t i = 0; i < 5000; ++i) layout.records.emplace_back(i * 7919 % 97, 'r');
+    layout.records.emplace_back(65535, 'r');
+    layout.records.emplace_back("the last");
+    const std::string file = las_file(layout, las_points);
+    CHECK(read("a.las", file).cloud.size() == 3);
+    CHECK(error_of("a.las", with_bytes(file, 100, bytes_of(std::uint32_t(5003))))
+              .find("record 5002 of 5003 does not fit")
+          != std::string::npos);
+    const std::size_t last = file.size() - 3 * 20 - 8 - 54;
+    CHECK(error_of("a.las", with_bytes(file, last + 20, bytes_of(std::uint16_t(9))))
+              .find("record 5001 of 5002 is longer")
+          != std::string::npos);
+}
+
 TEST_CASE("points that a LAS file marks as withheld are left out and counted", "[io]") {
     for (const int format : {0, 2, 6, 7}) {
         CAPTURE(format);

@@ -196,6 +196,24 @@ TEST_CASE("NPZ archives without points, with arrays that do not fit, or damaged 
                Contains("is a ZIP file, which is not read"));
 }
 
+TEST_CASE("an NPZ archive whose members share their bytes is refused, since together they are longer than it",
+          "[io]") {
+    const std::string points = npy_file("'<f8'", false, "(20, 3)", std::string(480, '\1'));
+    CHECK(read("a.npz", shared_zip_file({"points.npy"}, points)).cloud.size() == 20);
+    CHECK(error_of("a.npz", shared_zip_file({"points.npy", "b.npy", "c.npy"}, points))
+          == "a.npz: the ZIP archive has members that lie over each other; it was cut off, or is damaged");
+}
+
+TEST_CASE("an array of texts in an NPZ archive is not taken for points, whatever its shape", "[io]") {
+    const std::string points = npy_file("'<f8'", false, "(2, 3)", doubles_of<double>({1, 2, 3, 4, 5, 6}));
+    const std::string texts = npy_file("'<U1'", false, "(2, 3)", std::string(24, 'u'));
+    const PointFile file = read("a.npz", zip_file({{"who.npy", texts}, {"scan.npy", points}}, true));
+    CHECK(file.cloud.positions == std::vector<Vec3>{Vec3(1, 2, 3), Vec3(4, 5, 6)});
+    CHECK(
+        error_of("a.npz", zip_file({{"points.npy", texts}}, true)).find("is an array of texts; save numbers")
+        != std::string::npos);
+}
+
 TEST_CASE("an NPZ archive that is cut off anywhere is refused", "[io]") {
     const std::string points = npy_file("'<f4'", false, "(2, 3)", doubles_of<float>({1, 2, 3, 4, 5, 6}));
     for (const bool deflated : {false, true}) {

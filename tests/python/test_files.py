@@ -1,7 +1,10 @@
 """Files in and out, by the library's readers and writers."""
 
+import json
 import os
 import pickle
+import struct
+import zipfile
 
 import numpy as np
 import pytest
@@ -60,6 +63,56 @@ def test_a_mesh_that_is_written_reads_back_to_the_same_bits(tmp_path, adaptive_m
         assert (again.crease_normals == adaptive_mesh.crease_normals).all()
     if name == "part.om":
         assert sorted(again.sharp_edges.tolist()) == sorted(adaptive_mesh.sharp_edges.tolist())
+
+
+def las_file(path, places, withheld):
+    """LAS 1.2, point format 0, steps of a thousandth."""
+    head = bytearray(227)
+    head[0:4], head[24:26] = b"LASF", b"\x01\x02"
+    struct.pack_into("<HIIBHI", head, 94, 227, 227, 0, 0, 20, len(places))
+    struct.pack_into("<3d", head, 131, *[0.001] * 3)
+    points = b"".join(
+        struct.pack("<iiiHBBbBH", *(round(1000 * x) for x in place), 0, 9, 128 * (i in withheld), 0, 0, 0)
+        for i, place in enumerate(places)
+    )
+    path.write_bytes(bytes(head) + points)
+
+
+def test_points_that_a_las_file_marks_as_withheld_are_counted(tmp_path):
+    places = [(0, 0, 0), (1, 2, 3), (4, 5, 6), (7, 8, 9)]
+    las_file(tmp_path / "some.las", places, {1, 2})
+    some = hsdm.read_points(tmp_path / "some.las")
+    assert len(some) == 2 and some.withheld == 2 and some.first_withheld == pytest.approx((1, 2, 3))
+    las_file(tmp_path / "none.las", places, ())
+    none = hsdm.read_points(tmp_path / "none.las")
+    assert len(none) == 4 and none.withheld == 0 and none.first_withheld is None
+
+
+def test_glb_is_scaled_to_metres_and_3mf_says_its_unit(tmp_path, box_mesh):
+    size = np.ptp(box_mesh.vertices, axis=0)
+    for units, metres in ((None, 1), ("mm", 0.001), ("cm", 0.01), ("m", 1), ("in", 0.0254)):
+        box_mesh.write(tmp_path / "part.glb", units=units)
+        content = (tmp_path / "part.glb").read_bytes()
+        scene = json.loads(content[20 : 20 + struct.unpack_from("<I", content, 12)[0]])
+        (box,) = (one for one in scene["accessors"] if one["type"] == "VEC3" and "max" in one)
+        extent = np.subtract(box["max"], box["min"]) * scene["nodes"][0].get("scale", [1, 1, 1])
+        assert sorted(extent) == pytest.approx(sorted(size * metres), rel=1e-5), units
+    for units, name in ((None, "millimeter"), ("in", "inch")):
+        box_mesh.write(tmp_path / "part.3mf", units=units)
+        with zipfile.ZipFile(tmp_path / "part.3mf") as parts:
+            assert f'unit="{name}"'.encode() in parts.read("3D/3dmodel.model")
+    with pytest.raises(hsdm.OptionError, match="units 'ft': must be None or one of mm, cm, m, in"):
+        box_mesh.write(tmp_path / "other.glb", units="ft")
+    assert not (tmp_path / "other.glb").exists()
+
+
+def test_a_mesh_far_from_the_origin_is_written_round_it_and_the_shift_returned(tmp_path, box_mesh):
+    far = hsdm.Mesh(box_mesh.vertices + [5e6, 0, -2e6], box_mesh.face_vertices, box_mesh.face_offsets)
+    assert far.write(tmp_path / "as_it_is.off") == (0, 0, 0)
+    shift = far.write(tmp_path / "round.off", recentre=True)
+    again = hsdm.read_mesh(tmp_path / "round.off")
+    assert np.abs(again.vertices).max() < 100
+    assert np.abs(again.vertices + shift - far.vertices).max() < 1e-6
 
 
 def test_stl_has_the_triangles(tmp_path, box_mesh):

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 using namespace hsdm;
@@ -115,4 +116,19 @@ TEST_CASE("deviations of meshes of any size are right", "[distance]") {
 
 TEST_CASE("nothing deviates from a mesh without facets", "[distance]") {
     CHECK_THROWS_AS(measure_deviations(std::vector<Vec3>(3), PolygonMesh()), Error);
+}
+
+TEST_CASE("points that are not finite deviate by nothing that is known, and from no vertex", "[quality]") {
+    const double nan = std::numeric_limits<double>::quiet_NaN(),
+                 infinity = std::numeric_limits<double>::infinity();
+    std::vector<Vec3> points{{0, 0, 1.5}};
+    const Deviations without = measure_deviations(points, cube());
+    points.insert(points.begin(), {Vec3(nan, 0, 0), Vec3(0, infinity, 0)});
+    const Deviations with = measure_deviations(points, cube());
+    CHECK(std::isnan(with.of_points[0]));
+    CHECK(std::isnan(with.of_points[1]));
+    CHECK(with.of_points[2] == 0.5);
+    for (std::size_t v = 0; v < 8; ++v)
+        CHECK((with.at_vertices[v] == without.at_vertices[v]
+               || (std::isnan(with.at_vertices[v]) && std::isnan(without.at_vertices[v]))));
 }

@@ -105,6 +105,8 @@ def _said_of(made, points):
     left_out = len(points.positions) - len(made.data.vertices) + points.nonfinite
     if left_out:
         said += f", {left_out:,} without coordinates left out"
+    if points.withheld:
+        said += f", {points.withheld:,} that the file marks as withheld left out"
     if points.faces:
         said += f", {points.faces:,} faces left out"
     if points.columns:

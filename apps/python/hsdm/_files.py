@@ -87,6 +87,16 @@ class Points:
         return self._cloud.nonfinite
 
     @property
+    def withheld(self) -> int:
+        """Points that a LAS file marks as withheld, which is how it deletes them; they were left out."""
+        return self._cloud.withheld
+
+    @property
+    def first_withheld(self) -> Optional[tuple[float, float, float]]:
+        """Where the first of them was, or None."""
+        return self._cloud.first_withheld
+
+    @property
     def columns(self) -> str:
         """What the columns of a table were taken for, where nothing but their values told."""
         return self._cloud.columns

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _arrays, _convert, _core
+from ._errors import OptionError
 
 _NORMALS = "hsdm_normals"
 _COMPONENTS = tuple(f"{_NORMALS}_{normal}_{axis}" for normal in range(3) for axis in "xyz")
@@ -202,13 +203,30 @@ class Mesh:
         report["stages"] = report.get("stages", []) + done
         return Mesh._of(polygons, json.dumps(report))
 
-    def write(self, path: Union[str, "os.PathLike[str]"], *, ascii: bool = False) -> None:
-        """Writes an OFF, STL, PLY, OBJ or .om file, as the extension says; STL gets triangles.
+    def write(
+        self,
+        path: Union[str, "os.PathLike[str]"],
+        *,
+        ascii: bool = False,
+        units: Optional[str] = None,
+        recentre: bool = False,
+    ) -> tuple[float, float, float]:
+        """Writes an OFF, STL, PLY, OBJ, .om, GLB or 3MF file, as the extension says; STL, GLB and 3MF get triangles.
 
         PLY and .om hold the properties, .om the sharp edges too. Either the whole file is there afterwards or the
-        old one still is. ``ascii``: PLY and STL as text. Raises FileError.
+        old one still is.
+
+        ascii: PLY and STL as text.
+        units: what lengths are in, "mm", "cm", "m" or "in": GLB is scaled to metres by it, 3MF says it (without, mm
+            are taken), other formats have no place for it.
+        recentre: coordinates less a shift, so that a mesh far from the origin lies round it.
+
+        Returns the shift, to be added to the file's coordinates for the mesh's own; zeros without ``recentre``.
+        Raises FileError, OptionError for other units.
         """
-        self._polygons.write(os.fsencode(path), bool(ascii))
+        if units is not None and units not in _core.length_units:
+            raise OptionError(f"units {units!r}: must be None or one of {', '.join(_core.length_units)}")
+        return self._polygons.write(os.fsencode(path), bool(ascii), units or "", bool(recentre))
 
     def to_trimesh(self) -> Any:
         """A trimesh.Trimesh of the faces as triangles; vertices keep their numbers, normals and colours."""

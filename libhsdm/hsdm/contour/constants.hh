@@ -173,7 +173,8 @@ inline constexpr double least = 1;
 inline constexpr double of_cylinder = 2, turn_of_cylinder = 0.5;
 
 /// share: of the scatter of a set's normals, that its turn explains, at least.
-/// Why: round a cylinder half, as positions scatter along its axis, too; of noise one in the number of points.
+/// Why: round a cylinder half, as positions scatter along its axis, too; of noise one in the number of
+/// points.
 inline constexpr double explained = 0.3;
 
 } // namespace hsdm::widths

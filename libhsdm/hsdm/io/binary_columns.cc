@@ -91,7 +91,7 @@ double factor_by_values(std::span<const BinaryColumn> values, const std::vector<
         if (!is_color(columns[c]))
             colors[c].role = Role::skip;
         else
-            fractions |= values[c].type >= NumberType::float32;
+            fractions |= values[c].type >= StoredType::float32;
     }
     std::vector<double> maxima((count + block_rows - 1) / block_rows, 0);
     for_each_block(values, colors, count, [&](std::size_t, std::size_t first, auto numbers) {

@@ -2,8 +2,8 @@
 // Columns of numbers in binary files -> the columns of a cloud, in parallel.
 
 #include "hsdm/io/columns.hh"
-#include "hsdm/io/number_type.hh"
 #include "hsdm/io/source_bytes.hh"
+#include "hsdm/io/stored_type.hh"
 
 #include <optional>
 
@@ -13,7 +13,7 @@ namespace hsdm::io {
 struct BinaryColumn {
     const SourceBytes* source = nullptr;
     std::size_t first = 0, stride = 0;
-    NumberType type = NumberType::float64;
+    StoredType type = StoredType::float64;
     bool big_endian = false;
     double scale = 1, offset = 0; ///< a number stands for number * scale + offset
 };

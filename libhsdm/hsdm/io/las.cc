@@ -6,8 +6,8 @@
 #include "hsdm/io/binary_columns.hh"
 #include "hsdm/io/formats.hh"
 
+#include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 
 namespace hsdm::io {
@@ -60,29 +60,29 @@ private:
     [[noreturn]] void fail(std::size_t at, const std::string& what) const {
         throw Error(bytes_.name(), what + " (at byte " + std::to_string(at) + ")");
     }
-    double number(NumberType type, std::size_t at) const {
+    double number(StoredType type, std::size_t at) const {
         double value = 0;
         gather_of(type, false)(head_.data() + at, 0, 1, &value);
         return value;
     }
-    std::size_t count(NumberType type, std::size_t at) const {
+    std::size_t count(StoredType type, std::size_t at) const {
         return static_cast<std::size_t>(number(type, at));
     }
     /// Of eight bytes, none of them lost.
     std::uint64_t long_count(std::size_t at) const {
-        return std::uint64_t(count(NumberType::uint32, at))
-               | std::uint64_t(count(NumberType::uint32, at + 4)) << 32;
+        return std::uint64_t(count(StoredType::uint32, at))
+               | std::uint64_t(count(StoredType::uint32, at + 4)) << 32;
     }
 
     void read_places() {
-        const std::size_t major = count(NumberType::uint8, 24);
-        header_.minor = static_cast<unsigned>(count(NumberType::uint8, 25));
+        const std::size_t major = count(StoredType::uint8, 24);
+        header_.minor = static_cast<unsigned>(count(StoredType::uint8, 25));
         if (major != 1 || header_.minor > 4)
             fail(24, "LAS version " + std::to_string(major) + '.' + std::to_string(header_.minor)
                          + " is not known; export the file as 1.2 or 1.4");
         const std::size_t least = header_.minor == 4 ? 375 : header_.minor == 3 ? 235 : 227;
-        header_.size = count(NumberType::uint16, 94);
-        header_.points_at = count(NumberType::uint32, 96);
+        header_.size = count(StoredType::uint16, 94);
+        header_.points_at = count(StoredType::uint32, 96);
         if (header_.size < least)
             fail(94, "a LAS header of " + std::to_string(header_.size) + " bytes, version 1."
                          + std::to_string(header_.minor) + " has " + std::to_string(least)
@@ -97,7 +97,7 @@ private:
     }
 
     void read_format() {
-        const std::size_t number = count(NumberType::uint8, 104);
+        const std::size_t number = count(StoredType::uint8, 104);
         if (number & compressed_bits)
             throw Error(bytes_.name(),
                         "is LAZ, which is compressed and not read; unpack it first: `laszip -i "
@@ -106,7 +106,7 @@ private:
             fail(104, "LAS point format " + std::to_string(number)
                           + " is not known; export the file with one from 0 to 10");
         header_.format = static_cast<unsigned>(number);
-        header_.record = count(NumberType::uint16, 105);
+        header_.record = count(StoredType::uint16, 105);
         const std::size_t least = point_formats_of_las[number].size;
         if (header_.record < least)
             fail(105, "points of " + std::to_string(header_.record) + " bytes, format "
@@ -116,15 +116,23 @@ private:
 
     /// The records of variable length lie between header and points, each with its own header of 54 bytes.
     void check_records() const {
-        const std::size_t records = count(NumberType::uint32, 100);
+        const std::size_t records = count(StoredType::uint32, 100);
         std::size_t at = header_.size;
+        // Millions of short records would each take a call to the system.
+        std::vector<char> scratch(std::min(SourceBytes::head_size, header_.points_at));
+        const char* block = nullptr;
+        std::size_t block_begin = 0, block_end = 0;
         for (std::size_t i = 0; i < records; ++i) {
             if (header_.points_at - at < record_header)
                 fail(at, "record " + std::to_string(i) + " of " + std::to_string(records)
                              + " does not fit before the points; the file is damaged, export it again");
-            std::array<char, 2> scratch;
+            if (at + record_header > block_end) {
+                block_begin = at;
+                block_end = at + std::min(scratch.size(), header_.points_at - at);
+                block = bytes_.piece(at, block_end - at, scratch.data());
+            }
             double length = 0;
-            gather_of(NumberType::uint16, false)(bytes_.piece(at + 20, 2, scratch.data()), 0, 1, &length);
+            gather_of(StoredType::uint16, false)(block + (at - block_begin) + 20, 0, 1, &length);
             at += record_header;
             if (header_.points_at - at < static_cast<std::size_t>(length))
                 fail(at, "record " + std::to_string(i) + " of " + std::to_string(records)
@@ -135,7 +143,7 @@ private:
     }
 
     void read_count() {
-        header_.points = count(NumberType::uint32, 107);
+        header_.points = count(StoredType::uint32, 107);
         std::size_t at = 107;
         if (header_.minor == 4 && long_count(247) > 0) header_.points = long_count(at = 247);
         if (header_.points == 0) throw Error(bytes_.name(), "holds no points: the header says 0");
@@ -155,8 +163,8 @@ private:
 
     void read_frame() {
         for (std::size_t k = 0; k < 3; ++k) {
-            header_.scale[k] = number(NumberType::float64, 131 + 8 * k);
-            header_.offset[k] = number(NumberType::float64, 155 + 8 * k);
+            header_.scale[k] = number(StoredType::float64, 131 + 8 * k);
+            header_.offset[k] = number(StoredType::float64, 155 + 8 * k);
             if (!std::isfinite(header_.scale[k]) || header_.scale[k] == 0)
                 fail(131 + 8 * k, "a scale that is zero or no number; export the file again");
             if (!std::isfinite(header_.offset[k]))
@@ -182,7 +190,7 @@ struct LasColumns {
     }
 };
 
-BinaryColumn column_at(const SourceBytes& bytes, const LasHeader& header, std::size_t at, NumberType type) {
+BinaryColumn column_at(const SourceBytes& bytes, const LasHeader& header, std::size_t at, StoredType type) {
     return {&bytes, header.points_at + at, header.record, type};
 }
 
@@ -191,7 +199,7 @@ LasColumns columns_of(const SourceBytes& bytes, const LasHeader& header) {
     const auto count = static_cast<std::size_t>(header.points);
     LasColumns all;
     for (std::size_t k = 0; k < 3; ++k) {
-        BinaryColumn axis = column_at(bytes, header, 4 * k, NumberType::int32);
+        BinaryColumn axis = column_at(bytes, header, 4 * k, StoredType::int32);
         axis.scale = header.scale[k];
         axis.offset = header.offset[k];
         all.add(static_cast<Role>(k), std::string(1, static_cast<char>('x' + k)), axis);
@@ -200,21 +208,21 @@ LasColumns columns_of(const SourceBytes& bytes, const LasHeader& header) {
     if (red != no_field) {
         std::array<BinaryColumn, 3> colors;
         for (std::size_t k = 0; k < 3; ++k)
-            colors[k] = column_at(bytes, header, red + 2 * k, NumberType::uint16);
+            colors[k] = column_at(bytes, header, red + 2 * k, StoredType::uint16);
         if (std::any_of(colors.begin(), colors.end(),
                         [count](const BinaryColumn& color) { return is_any_nonzero(color, count); }))
             for (std::size_t k = 0; k < 3; ++k)
                 all.add(static_cast<Role>(static_cast<std::size_t>(Role::red) + k),
                         std::array{"red", "green", "blue"}[k], colors[k]);
     }
-    const auto add_scalar = [&](const char* name, std::size_t at, NumberType type) {
+    const auto add_scalar = [&](const char* name, std::size_t at, StoredType type) {
         const BinaryColumn column = column_at(bytes, header, at, type);
         if (is_any_nonzero(column, count)) all.add(Role::scalar, name, column);
     };
-    add_scalar("intensity", 12, NumberType::uint16);
-    add_scalar("classification", header.is_wide() ? 16 : 15, NumberType::uint8);
+    add_scalar("intensity", 12, StoredType::uint16);
+    add_scalar("classification", header.is_wide() ? 16 : 15, StoredType::uint8);
     add_scalar("point_source_id", header.is_wide() ? source_id_of_wide : source_id_of_narrow,
-               NumberType::uint16);
+               StoredType::uint16);
     return all;
 }
 
@@ -260,10 +268,12 @@ void apply_flags(const SourceBytes& bytes, const LasHeader& header, PointFile& f
         for (Scalar& scalar : cloud.scalars) keep(scalar.values, flags);
     }
     if (header.is_wide()) return;
-    for (Scalar& scalar : cloud.scalars)
-        if (scalar.name == "classification")
-            for (double& value : scalar.values)
-                value = static_cast<double>(static_cast<unsigned>(value) & class_mask_of_narrow);
+    const auto classes = std::ranges::find(cloud.scalars, "classification", &Scalar::name);
+    if (classes == cloud.scalars.end()) return;
+    for (double& value : classes->values)
+        value = static_cast<double>(static_cast<unsigned>(value) & class_mask_of_narrow);
+    if (std::ranges::all_of(classes->values, [](double value) { return value == 0; }))
+        cloud.scalars.erase(classes);
 }
 
 } // namespace

@@ -12,7 +12,7 @@ namespace hsdm::io {
 struct NpyField {
     std::string name;       ///< empty in a plain array
     std::size_t offset = 0; ///< in an element
-    NumberType type = NumberType::float64;
+    StoredType type = StoredType::float64;
     bool big_endian = false;
     std::size_t count = 1; ///< of a field that is an array itself, all its dimensions together
 };

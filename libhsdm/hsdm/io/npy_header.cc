@@ -170,7 +170,7 @@ private:
             fail("holds Python objects, which are not read; save an array of numbers (astype(float))");
         if (!size) fail("has elements of type " + io::quoted(type) + ", which is not known; save numbers");
         const std::size_t bytes = product(static_cast<std::size_t>(*size), kind == 'U' ? 4 : 1);
-        if (const auto number = number_type(kind, bytes)) {
+        if (const auto number = stored_type(kind, bytes)) {
             if (array_.fields.size() == most_columns || count > most_columns)
                 fail("has more than " + std::to_string(most_columns) + " fields; leave some out");
             array_.fields.push_back({name, offset_, *number, type[0] == '>', count});
@@ -181,16 +181,16 @@ private:
         return product(bytes, count);
     }
 
-    static std::optional<NumberType> number_type(char kind, std::size_t bytes) {
+    static std::optional<StoredType> stored_type(char kind, std::size_t bytes) {
         const bool is_signed = kind == 'i';
-        if (kind == 'b' && bytes == 1) return NumberType::uint8;
-        if (kind == 'f' && bytes == 4) return NumberType::float32;
-        if (kind == 'f' && bytes == 8) return NumberType::float64;
+        if (kind == 'b' && bytes == 1) return StoredType::uint8;
+        if (kind == 'f' && bytes == 4) return StoredType::float32;
+        if (kind == 'f' && bytes == 8) return StoredType::float64;
         if (kind != 'i' && kind != 'u') return std::nullopt;
-        if (bytes == 1) return is_signed ? NumberType::int8 : NumberType::uint8;
-        if (bytes == 2) return is_signed ? NumberType::int16 : NumberType::uint16;
-        if (bytes == 4) return is_signed ? NumberType::int32 : NumberType::uint32;
-        if (bytes == 8) return is_signed ? NumberType::int64 : NumberType::uint64;
+        if (bytes == 1) return is_signed ? StoredType::int8 : StoredType::uint8;
+        if (bytes == 2) return is_signed ? StoredType::int16 : StoredType::uint16;
+        if (bytes == 4) return is_signed ? StoredType::int32 : StoredType::uint32;
+        if (bytes == 8) return is_signed ? StoredType::int64 : StoredType::uint64;
         return std::nullopt;
     }
 
@@ -215,7 +215,7 @@ std::string_view header_text(const SourceBytes& bytes) {
     const std::size_t begin = version == 1 ? 10 : 12;
     if (head.size() < begin) cut_off(begin);
     double length = 0;
-    gather_of(version == 1 ? NumberType::uint16 : NumberType::uint32, false)(head.data() + 8, 0, 1, &length);
+    gather_of(version == 1 ? StoredType::uint16 : StoredType::uint32, false)(head.data() + 8, 0, 1, &length);
     if (length > longest_header)
         throw Error(bytes.name(), "an NPY header of " + std::to_string(static_cast<std::size_t>(length))
                                       + " bytes (at byte 8), which no array of numbers needs; save it again");

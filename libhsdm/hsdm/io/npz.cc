@@ -69,7 +69,8 @@ private:
             if (!is_table(member)) continue;
             if (!named && vector_name(member.name) == VectorName::position) named = &member;
             const bool other = vector_name(member.name) == VectorName::normal
-                               || vector_name(member.name) == VectorName::color;
+                               || vector_name(member.name) == VectorName::color
+                               || member.array.fields.empty(); // texts
             if (!other) any = &member;
             tables += !other;
         }
@@ -153,7 +154,7 @@ bool is_npz(const SourceBytes& bytes) {
     const std::string_view head = bytes.head();
     if (!head.starts_with("PK\x03\x04") || head.size() < header) return false;
     double length = 0;
-    gather_of(NumberType::uint16, false)(head.data() + length_at, 0, 1, &length);
+    gather_of(StoredType::uint16, false)(head.data() + length_at, 0, 1, &length);
     return head.substr(header, static_cast<std::size_t>(length)).ends_with(".npy");
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // The header of a PLY file: which elements follow, how many, made of what.
 
-#include "hsdm/io/number_type.hh"
+#include "hsdm/io/stored_type.hh"
 #include "hsdm/io/text.hh"
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace hsdm::io {
 
-using PlyType = NumberType; // PLY itself has no integers of eight bytes
+using PlyType = StoredType; // PLY itself has no integers of eight bytes
 enum class PlyEncoding : std::uint8_t { ascii, little_endian, big_endian };
 
 struct PlyProperty {

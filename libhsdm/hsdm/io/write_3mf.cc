@@ -74,18 +74,19 @@ std::string model_of(const PolygonMesh& mesh, LengthUnit unit) {
     append_vertices(mesh, xml);
     xml += "</vertices>\n<triangles>\n";
     append_triangles(triangulate(mesh), xml);
-    return xml
-           + "</triangles>\n</mesh>\n</object>\n</resources>\n<build>\n<item "
-             "objectid=\"1\"/>\n</build>\n</model>\n";
+    xml += "</triangles>\n</mesh>\n</object>\n</resources>\n<build>\n<item "
+           "objectid=\"1\"/>\n</build>\n</model>\n";
+    return xml;
 }
 
 } // namespace
 
 void write_3mf(AtomicFile& file, const std::string& path, const PolygonMesh& mesh, LengthUnit unit) {
-    io::write_zip(file, path,
-                  {{"[Content_Types].xml", content_types},
-                   {"_rels/.rels", relationships},
-                   {"3D/3dmodel.model", model_of(mesh, unit)}});
+    // Not as a list of members, out of which the model would be copied.
+    std::vector<std::pair<std::string, std::string>> members{{"[Content_Types].xml", content_types},
+                                                             {"_rels/.rels", relationships}};
+    members.emplace_back("3D/3dmodel.model", model_of(mesh, unit));
+    io::write_zip(file, path, members);
 }
 
 } // namespace hsdm

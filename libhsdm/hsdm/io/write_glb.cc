@@ -52,6 +52,17 @@ GlbMesh prepare(const PolygonMesh& mesh, LengthUnit unit) {
     return glb;
 }
 
+/// Floats have no numbers above their range, and fewer digits the farther a mesh is below it.
+void check_lengths(const GlbMesh& glb, const std::string& path) {
+    using Floats = std::numeric_limits<float>;
+    double largest = 0;
+    for (const Vec3& p : glb.mesh.positions) largest = std::max(largest, (p - glb.shift).max_abs());
+    const double farthest = std::max(largest, glb.shift.max_abs()) * glb.scale;
+    largest *= glb.scale;
+    if (farthest > double{Floats::max()} || (largest > 0 && largest < double{Floats::min()}))
+        throw Error(path, "cannot write: lengths beyond a float; write PLY");
+}
+
 std::array<float, 3> position_of(const GlbMesh& glb, std::size_t v) {
     std::array<float, 3> at;
     for (unsigned k = 0; k < 3; ++k)
@@ -164,6 +175,7 @@ void write_arrays(AtomicFile& file, const GlbMesh& glb) {
 
 void write_glb(AtomicFile& file, const std::string& path, const PolygonMesh& mesh, LengthUnit unit) {
     const GlbMesh glb = prepare(mesh, unit);
+    check_lengths(glb, path);
     std::size_t bytes = 0;
     std::string json = json_of(glb, bytes).dump();
     json.resize((json.size() + 3) / 4 * 4, ' ');

@@ -29,6 +29,14 @@ void check(const std::string& path, const PolygonMesh& mesh) {
                                   + " vertices; the mesh is inconsistent");
 }
 
+/// Of formats that have no empty mesh.
+void check_facets(const std::string& path, const PolygonMesh& mesh, const MeshFormatInfo& info) {
+    if (info.format != MeshFormat::glb && info.format != MeshFormat::mf3) return;
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f)
+        if (mesh.facet(f).size() >= 3) return;
+    throw Error(path, "cannot write: no facets, which " + std::string(info.title) + " wants; write PLY");
+}
+
 } // namespace
 
 std::span<const MeshFormatInfo> mesh_formats() {
@@ -113,6 +121,7 @@ WrittenMesh write_as_it_is(const std::string& path, const PolygonMesh& mesh, Mes
 WrittenMesh write_mesh(const std::string& path, const PolygonMesh& mesh, MeshFormat format,
                        const WriteOptions& options) {
     check(path, mesh);
+    check_facets(path, mesh, info_of(format));
     if (!options.recentre) return write_as_it_is(path, mesh, format, options);
     PolygonMesh near = mesh;
     const Vec3 shift = recentring_shift(mesh.positions);

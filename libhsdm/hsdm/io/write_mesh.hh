@@ -70,7 +70,8 @@ MeshFormat mesh_format(const std::string& path);
 /// polygons, and all three and 3MF write doubles that read back to the same bits. Either the complete file is
 /// there afterwards or the old one is untouched. Binary STL holds floats: where that would move a vertex by
 /// more than 1e-6 of the mesh's diagonal (coordinates far from the origin), text is written instead, and
-/// said. GLB holds floats relative to a translation of its node then. Throws Error.
+/// said. GLB holds floats relative to a translation of its node then. Throws Error; so do GLB and 3MF of a
+/// mesh without facets, and GLB of lengths outside a float's range in metres.
 WrittenMesh write_mesh(const std::string& path, const PolygonMesh& mesh, MeshFormat format,
                        const WriteOptions& options = {});
 

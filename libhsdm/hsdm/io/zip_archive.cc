@@ -39,13 +39,20 @@ ZipArchive::ZipArchive(const SourceBytes& bytes) : bytes_(bytes), archive_(nullp
         if (!name) fail("has a member without a name");
         names_.emplace_back(name);
     }
+    // Members that share their bytes would together expand to more than the file can hold.
+    std::size_t free = bytes_.size();
+    for (std::size_t member = 0; member < names_.size(); ++member) {
+        const std::size_t packed = lengths_of(member).packed;
+        if (packed > free) fail("has members that lie over each other");
+        free -= packed;
+    }
 }
 
 void ZipArchive::fail(const std::string& what) const {
     throw Error(bytes_.name(), "the ZIP archive " + what + "; it was cut off, or is damaged");
 }
 
-std::size_t ZipArchive::bytes_of(std::size_t member) const {
+ZipArchive::Lengths ZipArchive::lengths_of(std::size_t member) const {
     zip_stat_t stat;
     constexpr zip_uint64_t wanted = ZIP_STAT_SIZE | ZIP_STAT_COMP_SIZE;
     if (zip_stat_index(archive_.get(), member, 0, &stat) != 0 || (stat.valid & wanted) != wanted)
@@ -54,7 +61,7 @@ std::size_t ZipArchive::bytes_of(std::size_t member) const {
     if (stat.comp_size > bytes_.size() || stat.size / most_expansion > stat.comp_size)
         fail("says that " + std::to_string(stat.comp_size) + " bytes of " + io::quoted(names_[member])
              + " hold " + std::to_string(stat.size));
-    return static_cast<std::size_t>(stat.size);
+    return {static_cast<std::size_t>(stat.comp_size), static_cast<std::size_t>(stat.size)};
 }
 
 SourceBytes ZipArchive::read(std::size_t member, std::size_t most) const {

@@ -17,17 +17,22 @@ namespace hsdm::io {
 /// An archive to read, stored or deflated; names no file beside the source.
 class ZipArchive {
 public:
-    /// Throws Error for what is no archive or a damaged one. The source must outlive it.
+    /// Throws Error for what is no archive or a damaged one, and for members that together are longer than
+    /// the source. The source must outlive it.
     explicit ZipArchive(const SourceBytes& bytes);
 
     std::size_t size() const { return names_.size(); }
     const std::string& name(std::size_t member) const { return names_[member]; }
     /// Bytes of a member, expanded; held against what its packed bytes can hold.
-    std::size_t bytes_of(std::size_t member) const;
+    std::size_t bytes_of(std::size_t member) const { return lengths_of(member).expanded; }
     /// The first `most` bytes of a member; all, and their checksum, if it has no more. Throws Error.
     SourceBytes read(std::size_t member, std::size_t most) const;
 
 private:
+    struct Lengths {
+        std::size_t packed, expanded;
+    };
+    Lengths lengths_of(std::size_t member) const;
     [[noreturn]] void fail(const std::string& what) const;
 
     const SourceBytes& bytes_;

@@ -11,8 +11,9 @@ namespace hsdm::resolution {
 HSDM_TUNED double adaptive_spacings = 2;
 
 /// share: of the voxels, that bores or rods narrower than two of them pass, if voxels are as fine as that.
-/// Why: a bore ten voxels long in a part of 20,000; where there is less of it the whole part is not made finer.
-HSDM_TUNED double share_of_cylinders = 0.001;
+/// Why: a bore ten voxels long in a part of 20,000; where there is less of it the whole part is not made
+/// finer.
+inline constexpr double share_of_cylinders = 0.001;
 
 /// voxels: the error bound of an adaptive grid that none is asked of.
 /// Why: a tenth: what a uniform grid of such voxels keeps in the mean on curved ground.

@@ -225,7 +225,7 @@ void complete(const MethodInput& measured, const Report& base, Draft& draft) {
 /// and scalars everywhere.
 void return_to(const MethodInput& measured, const Draft& draft, std::span<const Index> voxel,
                PolygonMesh& mesh, FacetKnowledge& known) {
-    VertexProperty marks{"hsdm_completed", VertexProperty::Type::uint8,
+    VertexProperty marks{completed_property, VertexProperty::Type::uint8,
                          std::vector<double>(mesh.vertex_count())};
     if (draft.cloud) {
         const std::vector<std::uint8_t> completed = draft.cloud->completed_voxels();

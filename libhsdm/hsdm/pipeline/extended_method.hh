@@ -6,6 +6,8 @@
 
 namespace hsdm {
 
+inline constexpr const char* completed_property = "hsdm_completed"; ///< std::uint8_t, 1 where no point was
+
 /// Facets relative to the octree's origin, an oriented 2-manifold with the vertices' properties. The octree
 /// must have normals. Adds its seconds (graph, facets) and what each stage counted to the report. Fills in
 /// those parts of `known` that it finds out. Throws Cancelled.

@@ -95,7 +95,7 @@ std::vector<double> means_at_vertices(std::span<const Foot> feet, std::span<cons
                                       std::span<const Triangle> triangles, std::size_t vertices) {
     std::vector<double> sums(vertices, 0), weights(vertices, 0);
     for (std::size_t i = 0; i < feet.size(); ++i)
-        for (unsigned k = 0; k < 3; ++k) {
+        for (unsigned k = 0; k < 3 && feet[i].triangle != no_index; ++k) {
             const Index v = triangles[feet[i].triangle][k];
             sums[v] += feet[i].weights[k] * distances[i];
             weights[v] += feet[i].weights[k];
@@ -120,7 +120,8 @@ Deviations measure_deviations(std::span<const Vec3> points, const PolygonMesh& m
     if (cut.size() == 0) throw Error("a mesh without facets: nothing deviates from it");
     Box box;
     for (const Vec3& p : mesh.positions) box.add(p);
-    for (const Vec3& p : points) box.add(p);
+    for (const Vec3& p : points)
+        if (is_finite(p)) box.add(p);
     const double unit = CloudFrame(box).unit();
     const std::vector<Vec3> places = in_units(mesh.positions, unit), measured = in_units(points, unit);
     const TriangleTree tree(places, cut.triangles);
@@ -132,6 +133,8 @@ Deviations measure_deviations(std::span<const Vec3> points, const PolygonMesh& m
     for_chunks(points.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
         Index hint = no_index;
         for (std::size_t i = begin; i < end; ++i) {
+            result.of_points[i] = std::numeric_limits<double>::quiet_NaN();
+            if (!is_finite(points[i])) continue;
             hint = tree.nearest(measured[i], hint).triangle;
             const NearestOfTriangle nearest = sides.nearest(hint, measured[i]);
             feet[i] = {hint, nearest.weights};

@@ -10,7 +10,7 @@ namespace hsdm {
 /// Signed distances in the units of points and mesh, positive on the side that facets' normals point to: for
 /// a closed mesh, outside.
 struct Deviations {
-    std::vector<double> of_points; ///< one per point; its magnitude is the exact distance
+    std::vector<double> of_points; ///< one per point: its magnitude is the exact distance; NaN if not finite
     /// One per vertex: the mean over the points nearest to a triangle of the vertex, weighted by their feet's
     /// barycentric coordinates; NaN where there is no such point.
     std::vector<double> at_vertices;

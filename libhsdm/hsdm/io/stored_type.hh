@@ -7,7 +7,7 @@
 namespace hsdm::io {
 
 /// Floating types are the last ones.
-enum class NumberType : std::uint8_t {
+enum class StoredType : std::uint8_t {
     int8,
     uint8,
     int16,
@@ -21,12 +21,12 @@ enum class NumberType : std::uint8_t {
 };
 
 /// Bytes of a number.
-std::size_t size_of(NumberType type);
+std::size_t size_of(StoredType type);
 
 /// Reads `count` numbers that lie `stride` bytes apart, at any address.
 using Gather = void (*)(const char* at, std::size_t stride, std::size_t count, double* out);
 
 /// For numbers of the type, the most significant byte first if `big_endian`.
-Gather gather_of(NumberType type, bool big_endian);
+Gather gather_of(StoredType type, bool big_endian);
 
 } // namespace hsdm::io

@@ -1,4 +1,4 @@
-#include "hsdm/io/number_type.hh"
+#include "hsdm/io/stored_type.hh"
 
 #include <algorithm>
 #include <array>
@@ -25,27 +25,27 @@ void gather(const char* at, std::size_t stride, std::size_t count, double* out) 
 }
 
 template <bool swap>
-Gather gather_of(NumberType type) {
+Gather gather_of(StoredType type) {
     switch (type) {
-    case NumberType::int8:
+    case StoredType::int8:
         return gather<std::int8_t, swap>;
-    case NumberType::uint8:
+    case StoredType::uint8:
         return gather<std::uint8_t, swap>;
-    case NumberType::int16:
+    case StoredType::int16:
         return gather<std::int16_t, swap>;
-    case NumberType::uint16:
+    case StoredType::uint16:
         return gather<std::uint16_t, swap>;
-    case NumberType::int32:
+    case StoredType::int32:
         return gather<std::int32_t, swap>;
-    case NumberType::uint32:
+    case StoredType::uint32:
         return gather<std::uint32_t, swap>;
-    case NumberType::int64:
+    case StoredType::int64:
         return gather<std::int64_t, swap>;
-    case NumberType::uint64:
+    case StoredType::uint64:
         return gather<std::uint64_t, swap>;
-    case NumberType::float32:
+    case StoredType::float32:
         return gather<float, swap>;
-    case NumberType::float64:
+    case StoredType::float64:
         return gather<double, swap>;
     }
     return nullptr;
@@ -53,12 +53,12 @@ Gather gather_of(NumberType type) {
 
 } // namespace
 
-std::size_t size_of(NumberType type) {
+std::size_t size_of(StoredType type) {
     constexpr std::size_t sizes[] = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
     return sizes[static_cast<std::size_t>(type)];
 }
 
-Gather gather_of(NumberType type, bool big_endian) {
+Gather gather_of(StoredType type, bool big_endian) {
     const bool swap = big_endian == (std::endian::native == std::endian::little);
     return swap ? gather_of<true>(type) : gather_of<false>(type);
 }
