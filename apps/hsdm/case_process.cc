@@ -268,12 +268,12 @@ std::pair<Descriptor, Descriptor> open_pipes(const std::string& pipes) {
     return {Descriptor(*in), Descriptor(*out)};
 }
 
-/// Ends this process when the pipe does.
-void end_with(int pipe) {
+/// Ends this process when the pipe does, which therefore stays open to the end.
+void end_with(Descriptor pipe) {
     try {
-        std::thread([pipe] {
+        std::thread([from = std::move(pipe)] {
             std::string nothing;
-            while (read_some(pipe, nothing)) nothing.clear();
+            while (read_some(from.number(), nothing)) nothing.clear();
             abandon_files();
             _exit(failed);
         }).detach();
@@ -330,12 +330,12 @@ Outcome run_in_process(const Case& one, const CaseTask& task) {
 }
 
 int serve_case(const std::string& pipes) {
-    const auto [in, out] = open_pipes(pipes);
+    auto [in, out] = open_pipes(pipes);
     std::string bytes;
     std::optional<Json> task;
     while (!(task = unpacked(bytes)))
         if (!read_some(in.number(), bytes)) return failed;
-    end_with(in.number());
+    end_with(std::move(in));
     pthread_setname_np(pthread_self(), "hsdm"); // it may have been started by a link
     const auto [one, what] = case_of(*task);
     if (what.threads > 0) bound_threads(std::min(what.threads, most_threads));

@@ -9,7 +9,7 @@ using namespace hsdm::support;
 
 namespace {
 
-constexpr double cube = 1.2, voxel = cube / 32; // at depth 5
+constexpr double cube_edge = 1.2, finest_edge = cube_edge / 32; // of the voxels at depth 5
 
 /// A block with a row of bores, and the opposite: rods between two plates.
 Solid with_bores(double diameter) {
@@ -27,7 +27,7 @@ Solid with_rods(double diameter) {
 }
 
 double share_of_cylinders(const Solid& solid) {
-    const Stages stages(sample(solid.placed(random_pose(7)), {.points = 30000, .seed = 7}), 5, cube);
+    const Stages stages(sample(solid.placed(random_pose(7)), {.points = 30000, .seed = 7}), 5, cube_edge);
     return static_cast<double>(count_narrow_cylinders(stages.octree, stages.level, stages.sets))
            / static_cast<double>(stages.level.size());
 }
@@ -37,15 +37,15 @@ double share_of_cylinders(const Solid& solid) {
 TEST_CASE("voxels that bores or rods under two of them wide pass are counted", "[contour]") {
     for (const double diameter : {0.8, 1.2, 1.5}) {
         INFO("diameter " << diameter);
-        CHECK(share_of_cylinders(with_bores(diameter * voxel)) > 0.005);
-        CHECK(share_of_cylinders(with_rods(diameter * voxel)) > 0.005);
+        CHECK(share_of_cylinders(with_bores(diameter * finest_edge)) > 0.005);
+        CHECK(share_of_cylinders(with_rods(diameter * finest_edge)) > 0.005);
     }
 }
 
 TEST_CASE("wide bores, thin walls, narrow slots and creases are no narrow cylinders", "[contour]") {
-    CHECK(share_of_cylinders(with_bores(4 * voxel)) == 0);
-    CHECK(share_of_cylinders(with_rods(4 * voxel)) == 0);
-    CHECK(share_of_cylinders(box({1, 0.6, 0.5 * voxel})) == 0);
-    CHECK(share_of_cylinders(box({1, 0.6, 0.4}) - box({0.8, voxel, 0.5})) == 0);
-    CHECK(share_of_cylinders(box({1, voxel, 1.5 * voxel})) == 0);
+    CHECK(share_of_cylinders(with_bores(4 * finest_edge)) == 0);
+    CHECK(share_of_cylinders(with_rods(4 * finest_edge)) == 0);
+    CHECK(share_of_cylinders(box({1, 0.6, 0.5 * finest_edge})) == 0);
+    CHECK(share_of_cylinders(box({1, 0.6, 0.4}) - box({0.8, finest_edge, 0.5})) == 0);
+    CHECK(share_of_cylinders(box({1, finest_edge, 1.5 * finest_edge})) == 0);
 }

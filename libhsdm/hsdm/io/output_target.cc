@@ -4,6 +4,8 @@
 #include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <optional>
 
@@ -13,6 +15,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int most_links = 40; // as the kernel
+
+std::string last_error() {
+    return std::strerror(errno);
+}
 
 fs::path folder_of(const fs::path& path) {
     return path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -34,7 +40,7 @@ void check_folder(const std::string& path, const fs::path& folder) {
         throw Error(path, "the folder cannot be looked at: " + error.message() + "; check its permissions");
     if (!fs::is_directory(status)) throw Error(path, "the folder does not exist; make it first");
     if (!os::may_write_into(folder.string()))
-        throw Error(path, "the folder cannot be written; check its permissions");
+        throw Error(path, "the folder cannot be written: " + last_error() + "; check its permissions");
 }
 
 } // namespace
@@ -65,7 +71,8 @@ void check_replaceable(const std::string& path, const OutputTarget& target) {
     std::error_code ignored;
     if (fs::is_directory(target.path, ignored)) throw Error(path, "is a folder; name a file in it");
     if (fs::exists(target.path, ignored) && !os::may_write(target.path))
-        throw Error(path, "is write-protected; choose another name, or allow writing with chmod u+w");
+        throw Error(path, "is write-protected (" + last_error()
+                              + "); choose another name, or allow writing with chmod u+w");
 }
 
 void check_writable(const std::string& path) {
@@ -74,7 +81,8 @@ void check_writable(const std::string& path) {
         if (!os::is_open_for_writing(target.descriptor))
             throw Error(spoken_name(path), "is not open for writing; check the redirection");
     } else if (target.kind == OutputTarget::Kind::stream) {
-        if (!os::may_write(target.path)) throw Error(path, "cannot be written; check its permissions");
+        if (!os::may_write(target.path))
+            throw Error(path, "cannot be written: " + last_error() + "; check its permissions");
     } else {
         check_replaceable(path, target);
         check_folder(path, folder_of(target.path));
