@@ -94,7 +94,7 @@ demo() {
     $hsdm reconstruct demo/scan.ply --depth 5 -o demo/part.off --report demo/part.json \
         --features demo/part.features.txt >demo/summary.txt
     $hsdm reconstruct demo/scan.ply --depth 5 -o demo/part.stl --quiet
-    $hsdm reconstruct demo/scan.ply --depth 5 -o demo/part.ply --quiet
+    $hsdm reconstruct demo/scan.ply --depth 5 -o demo/part.ply --html demo/part.html --quiet
     # Without vertex normals the picture shows every facet flat, as it is.
     $hsdm reconstruct demo/scan.ply --depth 5 -o build/picture.ply --plain --quiet
     rm -f demo/part.png
@@ -112,6 +112,7 @@ demo() {
         exit 1
     fi
     echo "picture   demo/part.png"
+    echo "page      demo/part.html, to turn the part in a browser"
 }
 
 run_tests() {
