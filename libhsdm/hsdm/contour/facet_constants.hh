@@ -6,6 +6,7 @@
 
 #include <cstddef>
 
+// handles.hh, witnesses.hh
 namespace hsdm::handles {
 
 /// cosine: of the normals of a facet and of a set that speaks for it.
