@@ -10,6 +10,7 @@
 
 #include "hsdm/core/number_of.hh"
 #include "hsdm/core/system.hh"
+#include "hsdm/core/system_process.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/file_registry.hh"
 
@@ -17,24 +18,13 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
-#include <csignal>
 #include <cstring>
-#include <filesystem>
 #include <new>
 #include <optional>
-#include <span>
+#include <string_view>
 #include <system_error>
 #include <thread>
 #include <utility>
-
-#include <fcntl.h>
-#include <poll.h>
-#include <pthread.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-extern char** environ; // NOLINT: POSIX has it in no header
 
 namespace hsdm::command {
 namespace {
@@ -55,7 +45,7 @@ public:
 
     int number() const { return number_; }
     void close() {
-        if (number_ >= 0) ::close(number_);
+        if (number_ >= 0) os::close(number_);
         number_ = -1;
     }
 
@@ -63,7 +53,8 @@ private:
     int number_ = -1;
 };
 
-[[noreturn]] void fail_to_start(const std::string& what, int error) {
+[[noreturn]] void fail_to_start(const std::string& what) {
+    const int error = errno;
     if (error == ENOMEM) throw std::bad_alloc();
     throw Error("a process for the case could not be " + what + ": " + std::strerror(error)
                 + "; are there too many processes or open files? try fewer --jobs");
@@ -73,41 +64,30 @@ struct Pipe {
     Descriptor read, write;
 
     Pipe() {
-        int ends[2];
-        if (pipe2(ends, O_CLOEXEC) != 0) fail_to_start("reached", errno);
-        read = Descriptor(ends[0]);
-        write = Descriptor(ends[1]);
+        int read_end = -1, write_end = -1;
+        if (!os::open_pipe(read_end, write_end)) fail_to_start("reached");
+        read = Descriptor(read_end);
+        write = Descriptor(write_end);
     }
 };
-
-/// False where the reader is gone.
-bool write_all(int descriptor, std::span<const std::uint8_t> bytes) {
-    while (!bytes.empty()) {
-        const auto count = ::write(descriptor, bytes.data(), bytes.size());
-        if (count <= 0 && errno != EINTR) return false;
-        if (count > 0) bytes = bytes.subspan(static_cast<std::size_t>(count));
-    }
-    return true;
-}
 
 /// Appends what there is; false at the end.
 bool read_some(int descriptor, std::string& text) {
     std::array<char, 65536> bytes;
-    ssize_t count = 0;
-    do count = ::read(descriptor, bytes.data(), bytes.size());
+    std::ptrdiff_t count = 0;
+    do count = os::read(descriptor, bytes.data(), bytes.size());
     while (count < 0 && errno == EINTR);
     if (count > 0) text.append(bytes.data(), static_cast<std::size_t>(count));
     return count > 0;
 }
 
 /// One JSON value with its length before it. Texts need not be UTF-8.
-std::vector<std::uint8_t> packed(const Json& value) {
-    const std::vector<std::uint8_t> body = Json::to_cbor(value);
-    std::vector<std::uint8_t> all;
+std::string packed(const Json& value) {
+    std::string body, all;
+    Json::to_cbor(value, body);
     for (int shift = 56; shift >= 0; shift -= 8)
-        all.push_back(static_cast<std::uint8_t>(std::uint64_t{body.size()} >> shift & 255));
-    all.insert(all.end(), body.begin(), body.end());
-    return all;
+        all.push_back(static_cast<char>(std::uint64_t{body.size()} >> shift & 255));
+    return all + body;
 }
 
 /// The value, once its bytes are all there.
@@ -147,72 +127,26 @@ std::pair<Case, CaseTask> case_of(const Json& object) {
              object.at("picture").get<bool>()}};
 }
 
-/// What posix_spawn() asks for, freed in the end.
-struct SpawnSettings {
-    posix_spawn_file_actions_t actions;
-    posix_spawnattr_t attributes;
-
-    SpawnSettings() {
-        if (const int error = posix_spawn_file_actions_init(&actions)) fail_to_start("started", error);
-        if (const int error = posix_spawnattr_init(&attributes)) {
-            posix_spawn_file_actions_destroy(&actions);
-            fail_to_start("started", error);
-        }
-    }
-    ~SpawnSettings() {
-        posix_spawn_file_actions_destroy(&actions);
-        posix_spawnattr_destroy(&attributes);
-    }
-    SpawnSettings(const SpawnSettings&) = delete;
-    SpawnSettings& operator=(const SpawnSettings&) = delete;
-};
-
-/// This program's file: by its name, which tools that run it see through; by the link itself if it was
-/// replaced.
-std::string this_program() {
-    const std::string link = "/proc/self/exe";
-    std::error_code error;
-    const std::filesystem::path file = std::filesystem::read_symlink(link, error);
-    return !error && std::filesystem::exists(file, error) ? file.string() : link;
-}
-
 /// The three pipes between the two processes.
 struct Lines {
     Pipe task, result, printed;
 };
 
-/// A process of its own group, so that what a terminal sends ends this one alone, which ends the others.
-pid_t start_process(const Lines& lines) {
-    SpawnSettings settings;
+/// Its interrupts are this process's, which ends it by the pipe of its task.
+std::int64_t start_process(const Lines& lines) {
     const int in = lines.task.read.number(), out = lines.result.write.number();
-    sigset_t none;
-    sigemptyset(&none);
-    posix_spawnattr_setsigmask(&settings.attributes, &none);
-    posix_spawnattr_setpgroup(&settings.attributes, 0);
-    posix_spawnattr_setflags(&settings.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
-    // A descriptor copied onto itself is one that the new program keeps.
-    const std::pair<int, int> kept[] = {{in, in},
-                                        {out, out},
-                                        {lines.printed.write.number(), STDOUT_FILENO},
-                                        {lines.printed.write.number(), STDERR_FILENO}};
-    for (const auto& [from, to] : kept)
-        if (const int error = posix_spawn_file_actions_adddup2(&settings.actions, from, to))
-            fail_to_start("started", error);
-    std::string pipes = std::to_string(in) + ':' + std::to_string(out);
-    std::string words[] = {"hsdm", "regress", "--case", std::move(pipes), "-"};
-    char* arguments[] = {words[0].data(), words[1].data(), words[2].data(),
-                         words[3].data(), words[4].data(), nullptr};
-    pid_t child = -1;
-    if (const int error = posix_spawn(&child, this_program().c_str(), &settings.actions, &settings.attributes,
-                                      arguments, environ))
-        fail_to_start("started", error);
-    return child;
+    const std::int64_t process = os::start_this_program(
+        {.words = {"hsdm", "regress", "--case", std::to_string(in) + ':' + std::to_string(out), "-"},
+         .kept = {in, out},
+         .printed = lines.printed.write.number()});
+    if (process < 0) fail_to_start("started");
+    return process;
 }
 
 /// What came through the pipes until the process ended.
 struct Received {
     std::string result, printed;
-    int status = 0; ///< as of waitpid()
+    os::ProcessEnd end;
 };
 
 void keep_end(std::string& text) {
@@ -222,30 +156,31 @@ void keep_end(std::string& text) {
 }
 
 /// Until the result's pipe ends: grandchildren may keep the other open.
-Received receive(Lines& lines, pid_t child) {
+Received receive(Lines& lines, std::int64_t process) {
     Received got;
-    pollfd ends[] = {{lines.result.read.number(), POLLIN, 0}, {lines.printed.read.number(), POLLIN, 0}};
-    for (bool open = true; open;) {
-        if (poll(ends, 2, -1) < 0 && errno != EINTR) break;
-        if (ends[1].revents != 0 && !read_some(ends[1].fd, got.printed)) ends[1].fd = -1;
-        if (ends[0].revents != 0) open = read_some(ends[0].fd, got.result);
+    const int result = lines.result.read.number();
+    int printed = lines.printed.read.number(); // -1 once it has ended
+    const auto read_printed = [&] {
+        if (!read_some(printed, got.printed)) printed = -1;
         keep_end(got.printed);
+    };
+    for (bool open = true; open;) {
+        const std::int64_t ready = os::ready_to_read(std::array{result, printed}, -1);
+        if (ready < 0 && errno == EINTR) continue;
+        if (ready < 0) break;
+        if (ready & 2) read_printed();
+        if (ready & 1) open = read_some(result, got.result);
     }
-    while (waitpid(child, &got.status, 0) < 0 && errno == EINTR) {
-    }
-    while (ends[1].fd >= 0 && poll(ends + 1, 1, 0) == 1 && read_some(ends[1].fd, got.printed)) {
-    }
-    keep_end(got.printed);
+    got.end = os::wait_for_end(process);
+    while (printed >= 0 && os::ready_to_read(std::array{printed}, 0) == 1) read_printed();
     return got;
 }
 
 /// Why a process gave no outcome: its own last word, or how it ended.
 std::string words_of_end(const Received& got) {
-    const bool by_signal = WIFSIGNALED(got.status);
-    std::string end = by_signal ? std::string("signal ") + std::to_string(WTERMSIG(got.status)) + " ("
-                                      + strsignal(WTERMSIG(got.status)) + ')'
-                                : "status " + std::to_string(WEXITSTATUS(got.status));
-    if (by_signal && WTERMSIG(got.status) == SIGKILL) end += ", as by a system without memory";
+    std::string end =
+        got.end.signal.empty() ? "status " + std::to_string(got.end.status) : "signal " + got.end.signal;
+    if (got.end.was_killed) end += ", as by a system without memory";
     const std::string mark = "hsdm: ";
     const std::size_t last = got.printed.rfind(mark);
     const std::string word =
@@ -255,15 +190,11 @@ std::string words_of_end(const Received& got) {
     return word + " ended by " + end;
 }
 
-int status_of_end(int status) {
-    return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
-}
-
 /// The task's two pipes, which programs that this one starts do not get.
 std::pair<Descriptor, Descriptor> open_pipes(const std::string& pipes) {
     const std::size_t colon = std::min(pipes.find(':'), pipes.size() - 1);
     const auto in = number_of<int>(pipes.substr(0, colon)), out = number_of<int>(pipes.substr(colon + 1));
-    if (!in || !out || fcntl(*in, F_SETFD, FD_CLOEXEC) != 0 || fcntl(*out, F_SETFD, FD_CLOEXEC) != 0)
+    if (!in || !out || !os::keep_from_others(*in) || !os::keep_from_others(*out))
         throw UsageError("--case is for the command itself, which runs the cases of a suite by it");
     return {Descriptor(*in), Descriptor(*out)};
 }
@@ -275,7 +206,7 @@ void end_with(Descriptor pipe) {
             std::string nothing;
             while (read_some(from.number(), nothing)) nothing.clear();
             abandon_files();
-            _exit(failed);
+            os::end_at_once(failed);
         }).detach();
     } catch (const std::system_error&) { // it ends when it is done
     }
@@ -301,17 +232,17 @@ Outcome run_in_process(const Case& one, const CaseTask& task) {
     bool came = false;
     try {
         Lines lines;
-        const pid_t child = start_process(lines);
+        const std::int64_t process = start_process(lines);
         lines.task.read.close();
         lines.result.write.close();
         lines.printed.write.close();
-        write_all(lines.task.write.number(), packed(task_json(one, task)));
-        const Received got = receive(lines, child);
+        os::write_all(lines.task.write.number(), packed(task_json(one, task))); // or it has ended before
+        const Received got = receive(lines, process);
         if (const std::optional<Json> result = unpacked(got.result); result && result->is_object()) {
             outcome = outcome_of(*result);
             came = true;
         } else {
-            outcome.status = status_of_end(got.status);
+            outcome.status = got.end.status;
             outcome.failure = one.input + ": " + words_of_end(got);
         }
         outcome.printed = got.printed;
@@ -336,11 +267,11 @@ int serve_case(const std::string& pipes) {
     while (!(task = unpacked(bytes)))
         if (!read_some(in.number(), bytes)) return failed;
     end_with(std::move(in));
-    pthread_setname_np(pthread_self(), "hsdm"); // it may have been started by a link
+    os::set_process_name("hsdm"); // it may have been started by a link
     const auto [one, what] = case_of(*task);
     if (what.threads > 0) bound_threads(std::min(what.threads, most_threads));
-    const std::vector<std::uint8_t> result = packed(json_of(run_task(one, what)));
-    return write_all(out.number(), result) ? done : failed;
+    const std::string result = packed(json_of(run_task(one, what)));
+    return os::write_all(out.number(), result) ? done : failed;
 }
 
 } // namespace hsdm::command

@@ -1,6 +1,5 @@
 #pragma once
-// Cases in processes of their own: what one takes of memory is its own, and one that crashes ends alone. All
-// that is particular to the operating system's processes is here.
+// Cases in processes of their own: what one takes of memory is its own, and one that crashes ends alone.
 
 #include "outcome.hh"
 #include "suite_file.hh"

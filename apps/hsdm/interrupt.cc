@@ -3,22 +3,18 @@
 #include "activity.hh"
 #include "command.hh"
 
+#include "hsdm/core/system.hh"
+#include "hsdm/core/system_process.hh"
 #include "hsdm/io/file_registry.hh"
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <string_view>
-#include <system_error>
 #include <thread>
 #include <utility>
-
-#include <poll.h>
-#include <pthread.h>
-#include <unistd.h>
 
 namespace hsdm::command {
 namespace {
@@ -42,17 +38,16 @@ public:
         constexpr std::string_view wipe = "\r\033[K";
         constexpr int patience = 300; // milliseconds, twice: every core may be busy with other processes
         text_[length_++] = '\n';
-        for (int waited = 0; ftrylockfile(stderr) != 0 && waited < patience; ++waited)
+        for (int waited = 0; !os::try_lock(stderr) && waited < patience; ++waited)
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        pollfd error{STDERR_FILENO, POLLOUT, 0};
-        if (poll(&error, 1, patience) != 1) return;
-        if (isatty(STDERR_FILENO) == 1) write_some(wipe);
+        if (!os::is_ready_to_write(os::standard_error, patience)) return;
+        if (os::is_terminal(os::standard_error)) write_some(wipe);
         write_some({text_, length_});
     }
 
 private:
     static void write_some(std::string_view text) {
-        [[maybe_unused]] const auto written = write(STDERR_FILENO, text.data(), text.size());
+        [[maybe_unused]] const auto written = os::write(os::standard_error, text.data(), text.size());
     }
 
     char text_[4096]; // what a pipe that is ready takes without waiting
@@ -77,7 +72,7 @@ void say_what_stands(LastWords& words, const FilesWritten& files) {
 std::mutex last_work_mutex;
 const std::function<void()>* last_work = nullptr;
 
-[[noreturn]] void end_by_signal(int signal) {
+[[noreturn]] void end_as_asked(int status) {
     last_work_mutex.lock(); // and never unlocked
     try {
         if (last_work) (*last_work)();
@@ -88,7 +83,7 @@ const std::function<void()>* last_work = nullptr;
     words << "hsdm: cancelled";
     say_what_stands(words, files);
     words.say();
-    _exit(128 + signal);
+    os::end_at_once(status);
 }
 
 /// The terminate handler: an exception has met code that lets none through.
@@ -109,36 +104,15 @@ const std::function<void()>* last_work = nullptr;
     words << " in phase " << current_phase();
     say_what_stands(words, files);
     words.say();
-    _exit(failed);
-}
-
-bool is_ignored(int signal) {
-    struct sigaction action {};
-    return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+    os::end_at_once(failed);
 }
 
 } // namespace
 
 void handle_signals() {
-    std::signal(SIGPIPE, SIG_IGN);
-    std::signal(SIGXFSZ, SIG_IGN);
+    os::let_writing_fail();
     std::set_terminate(end_by_exception);
-    sigset_t awaited;
-    sigemptyset(&awaited);
-    for (const int signal : {SIGINT, SIGQUIT}) sigaddset(&awaited, signal);
-    for (const int signal : {SIGTERM, SIGHUP, SIGXCPU})
-        if (!is_ignored(signal)) sigaddset(&awaited, signal);
-    pthread_sigmask(SIG_BLOCK, &awaited, nullptr); // every thread that is started inherits it
-    try {
-        std::thread([awaited] {
-            int signal = 0;
-            while (sigwait(&awaited, &signal) != 0) {
-            }
-            end_by_signal(signal);
-        }).detach();
-    } catch (const std::system_error&) { // no room for a thread: the kernel ends the process as usual
-        pthread_sigmask(SIG_UNBLOCK, &awaited, nullptr);
-    }
+    os::on_request_to_end(end_as_asked);
 }
 
 LastWork::LastWork(std::function<void()> work) : work_(std::move(work)) {

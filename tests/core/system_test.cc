@@ -53,6 +53,12 @@ TEST_CASE("a lock keeps others off until its descriptor is closed") {
     CHECK(errno == EEXIST);
 }
 
+TEST_CASE("the folder of this process's descriptors is known, and that of another is not") {
+    CHECK(os::is_folder_of_descriptors(fs::canonical("/dev/fd").string()));
+    CHECK_FALSE(os::is_folder_of_descriptors("/proc/1/fd"));
+    CHECK_FALSE(os::is_folder_of_descriptors("/dev"));
+}
+
 TEST_CASE("space set aside is not part of a file") {
     const Folder folder;
     const int file = os::create(folder / "file", 0600);

@@ -1,19 +1,34 @@
 #include "hsdm/core/system.hh"
 
+#include "hsdm/core/system_process.hh"
+
+#include <algorithm>
+#include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <memory>
+#include <system_error>
+#include <thread>
+#include <utility>
 
 #include <dirent.h>
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <poll.h>
+#include <pthread.h>
+#include <spawn.h>
 #include <sys/file.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
+#include <sys/wait.h>
 #include <unistd.h>
+
+extern char** environ; // NOLINT: POSIX has it in no header
 
 namespace hsdm::os {
 namespace {
@@ -55,6 +70,96 @@ bool fill(FileStatus& status, int result, const struct stat& found) {
 
 bool may(const std::string& path, int what) {
     return ::faccessat(AT_FDCWD, path.c_str(), what, AT_EACCESS) == 0;
+}
+
+/// This program's file: by its name, which tools that run it see through; by the link itself if it was
+/// replaced.
+std::string this_program() {
+    const std::string link = "/proc/self/exe";
+    std::error_code error;
+    const std::filesystem::path file = std::filesystem::read_symlink(link, error);
+    return !error && std::filesystem::exists(file, error) ? file.string() : link;
+}
+
+/// What posix_spawn() is asked for, freed in the end. The first error is kept.
+class Spawn {
+public:
+    Spawn() {
+        error_ = ::posix_spawn_file_actions_init(&actions_);
+        has_actions_ = error_ == 0;
+        note(::posix_spawnattr_init(&attributes_));
+        has_attributes_ = error_ == 0;
+    }
+    ~Spawn() {
+        if (has_actions_) ::posix_spawn_file_actions_destroy(&actions_);
+        if (has_attributes_) ::posix_spawnattr_destroy(&attributes_);
+    }
+    Spawn(const Spawn&) = delete;
+    Spawn& operator=(const Spawn&) = delete;
+
+    /// A process group of its own, and no signal blocked.
+    void apart() {
+        if (error_ != 0) return;
+        sigset_t none;
+        sigemptyset(&none);
+        note(::posix_spawnattr_setsigmask(&attributes_, &none));
+        note(::posix_spawnattr_setpgroup(&attributes_, 0));
+        note(::posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP));
+    }
+    /// A descriptor copied onto itself is one that the new program keeps.
+    void copy(int from, int to) {
+        if (error_ == 0) note(::posix_spawn_file_actions_adddup2(&actions_, from, to));
+    }
+    /// The new process, or -1 with errno.
+    pid_t start(const std::string& file, char* const* arguments) {
+        pid_t child = -1;
+        if (error_ == 0)
+            note(::posix_spawn(&child, file.c_str(), &actions_, &attributes_, arguments, environ));
+        errno = error_;
+        return error_ == 0 ? child : -1;
+    }
+
+private:
+    void note(int error) {
+        if (error_ == 0) error_ = error;
+    }
+
+    posix_spawn_file_actions_t actions_;
+    posix_spawnattr_t attributes_;
+    int error_ = 0;
+    bool has_actions_ = false, has_attributes_ = false;
+};
+
+bool is_ignored(int signal) {
+    struct sigaction action {};
+    return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+struct Crash {
+    int signal;
+    const char* name;
+};
+constexpr std::array<Crash, 5> crashes{{{SIGSEGV, "segmentation fault"},
+                                        {SIGBUS, "bus error"},
+                                        {SIGFPE, "arithmetic exception"},
+                                        {SIGILL, "illegal instruction"},
+                                        {SIGABRT, "abort"}}};
+
+// A handler of signals finds all it needs here.
+bool (*tell_crash)(const char*) = nullptr;
+std::array<struct sigaction, crashes.size()> actions_before;
+stack_t stack_before;
+alignas(16) std::array<char, 1 << 16> stack_of_handlers;
+
+void on_crash(int signal) {
+    const auto found = std::find_if(crashes.begin(), crashes.end(),
+                                    [=](const Crash& crash) { return crash.signal == signal; });
+    if (!tell_crash(found == crashes.end() ? "signal" : found->name))
+        for (;;) ::pause();
+    struct sigaction action {};
+    action.sa_handler = SIG_DFL;
+    ::sigaction(signal, &action, nullptr);
+    ::raise(signal); // is delivered when this handler has returned
 }
 
 } // namespace
@@ -126,6 +231,10 @@ bool is_open_for_writing(int descriptor) noexcept {
     return mode >= 0 && (mode & O_ACCMODE) != O_RDONLY;
 }
 
+bool is_folder_of_descriptors(const std::string& folder) {
+    return folder == "/proc/" + std::to_string(::getpid()) + "/fd";
+}
+
 std::ptrdiff_t read(int descriptor, char* bytes, std::size_t count) noexcept {
     return ::read(descriptor, bytes, count);
 }
@@ -136,6 +245,17 @@ std::ptrdiff_t read_at(int descriptor, char* bytes, std::size_t count, std::uint
 
 std::ptrdiff_t write(int descriptor, const char* bytes, std::size_t count) noexcept {
     return ::write(descriptor, bytes, count);
+}
+
+bool write_all(int descriptor, std::string_view bytes) noexcept {
+    while (!bytes.empty()) {
+        const ssize_t count = ::write(descriptor, bytes.data(), std::min(bytes.size(), std::size_t{1} << 30));
+        if (count < 0 && errno == EINTR) continue;
+        if (count == 0) errno = EIO; // what takes nothing would be asked for ever
+        if (count <= 0) return false;
+        bytes.remove_prefix(static_cast<std::size_t>(count));
+    }
+    return true;
 }
 
 bool flush_to_disk(int descriptor) noexcept {
@@ -216,6 +336,117 @@ void* symbol_of(void* library, const char* name) noexcept {
 std::string library_error() {
     const char* const text = ::dlerror();
     return text == nullptr ? "unknown reason" : text;
+}
+
+bool open_pipe(int& read_end, int& write_end) noexcept {
+    int ends[2];
+    if (::pipe2(ends, O_CLOEXEC) != 0) return false;
+    read_end = ends[0];
+    write_end = ends[1];
+    return true;
+}
+
+std::int64_t ready_to_read(std::span<const int> descriptors, int milliseconds) {
+    std::vector<pollfd> ends;
+    ends.reserve(descriptors.size());
+    for (const int descriptor : descriptors) ends.push_back({descriptor, POLLIN, 0});
+    if (::poll(ends.data(), ends.size(), milliseconds) < 0) return -1;
+    std::int64_t ready = 0;
+    for (std::size_t i = 0; i < ends.size(); ++i)
+        if (ends[i].revents != 0) ready |= std::int64_t{1} << i;
+    return ready;
+}
+
+bool is_ready_to_write(int descriptor, int milliseconds) noexcept {
+    pollfd end{descriptor, POLLOUT, 0};
+    return ::poll(&end, 1, milliseconds) == 1;
+}
+
+bool keep_from_others(int descriptor) noexcept {
+    return ::fcntl(descriptor, F_SETFD, FD_CLOEXEC) == 0;
+}
+
+std::int64_t start_this_program(const ProcessStart& start) {
+    Spawn spawn;
+    spawn.apart();
+    for (const int descriptor : start.kept) spawn.copy(descriptor, descriptor);
+    for (const int stream : {standard_output, standard_error}) spawn.copy(start.printed, stream);
+    std::vector<std::string> words = start.words;
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    return spawn.start(this_program(), arguments.data());
+}
+
+ProcessEnd wait_for_end(std::int64_t process) {
+    int status = 0;
+    while (::waitpid(static_cast<pid_t>(process), &status, 0) < 0 && errno == EINTR) {
+    }
+    ProcessEnd end;
+    if (WIFSIGNALED(status)) {
+        const int signal = WTERMSIG(status);
+        end.status = 128 + signal;
+        end.signal = std::to_string(signal) + " (" + ::strsignal(signal) + ')';
+        end.was_killed = signal == SIGKILL;
+    } else {
+        end.status = WEXITSTATUS(status);
+    }
+    return end;
+}
+
+void set_process_name(const char* name) noexcept {
+    ::pthread_setname_np(::pthread_self(), name);
+}
+
+void end_at_once(int status) noexcept {
+    ::_exit(status); // not std::_Exit, which sanitizers do not see
+}
+
+void let_writing_fail() noexcept {
+    for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
+}
+
+void on_request_to_end(void (*end)(int status)) {
+    sigset_t awaited;
+    sigemptyset(&awaited);
+    for (const int signal : {SIGINT, SIGQUIT}) sigaddset(&awaited, signal);
+    for (const int signal : {SIGTERM, SIGHUP, SIGXCPU})
+        if (!is_ignored(signal)) sigaddset(&awaited, signal);
+    ::pthread_sigmask(SIG_BLOCK, &awaited, nullptr); // every thread that is started inherits it
+    try {
+        std::thread([awaited, end] {
+            int signal = 0;
+            while (sigwait(&awaited, &signal) != 0) {
+            }
+            end(128 + signal);
+        }).detach();
+    } catch (const std::system_error&) { // the kernel ends the process as usual
+        ::pthread_sigmask(SIG_UNBLOCK, &awaited, nullptr);
+    }
+}
+
+bool try_lock(std::FILE* stream) noexcept {
+    return ::ftrylockfile(stream) == 0;
+}
+
+void watch_crashes(bool (*tell)(const char* crash)) noexcept {
+    tell_crash = tell;
+    stack_t stack{};
+    stack.ss_sp = stack_of_handlers.data();
+    stack.ss_size = stack_of_handlers.size();
+    ::sigaltstack(&stack, &stack_before);
+    struct sigaction action {};
+    action.sa_handler = on_crash;
+    action.sa_flags = SA_ONSTACK;
+    sigemptyset(&action.sa_mask);
+    for (std::size_t i = 0; i < crashes.size(); ++i)
+        ::sigaction(crashes[i].signal, &action, &actions_before[i]);
+}
+
+void unwatch_crashes() noexcept {
+    for (std::size_t i = 0; i < crashes.size(); ++i)
+        ::sigaction(crashes[i].signal, &actions_before[i], nullptr);
+    ::sigaltstack(&stack_before, nullptr); // a sanitizer's, or none
 }
 
 } // namespace hsdm::os

@@ -1,6 +1,7 @@
 #pragma once
 // What is asked of the operating system beyond the standard library. Another system than POSIX needs another
-// system.cc (docs/portability.md); nothing else of the library calls it.
+// system.cc (docs/portability.md); nothing else of the library or the command calls it. Processes and how
+// they end: system_process.hh.
 //
 // What fails returns false, -1 or null, with the reason in errno. Descriptors are not inherited by other
 // programs.
@@ -9,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 
 namespace hsdm::os {
 
@@ -48,11 +50,15 @@ int create_with_new_name(std::string& pattern, std::size_t extension_length) noe
 int duplicate(int descriptor) noexcept;
 void close(int descriptor) noexcept;
 bool is_open_for_writing(int descriptor) noexcept;
+/// Whether the names in a folder, which is no link, are the numbers of this process's descriptors.
+bool is_folder_of_descriptors(const std::string& folder);
 
 /// At most so many bytes; 0 at the end. EINTR: again.
 std::ptrdiff_t read(int descriptor, char* bytes, std::size_t count) noexcept;
 std::ptrdiff_t read_at(int descriptor, char* bytes, std::size_t count, std::uint64_t offset) noexcept;
 std::ptrdiff_t write(int descriptor, const char* bytes, std::size_t count) noexcept;
+/// All of the bytes, in as many turns as that takes.
+bool write_all(int descriptor, std::string_view bytes) noexcept;
 bool flush_to_disk(int descriptor) noexcept;
 bool resize(int descriptor, std::uint64_t size) noexcept;
 /// Sets space aside, without a change of size. Done where the file system cannot.

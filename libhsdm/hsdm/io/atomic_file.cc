@@ -5,7 +5,6 @@
 #include "hsdm/io/file_registry.hh"
 #include "hsdm/io/temporary_file.hh"
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -34,18 +33,6 @@ std::string advice(int error) {
     }
 }
 
-/// False with errno on failure.
-bool write_all(int descriptor, std::string_view bytes) {
-    while (!bytes.empty()) {
-        const std::ptrdiff_t written =
-            os::write(descriptor, bytes.data(), std::min(bytes.size(), std::size_t{1} << 30));
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) return false;
-        bytes.remove_prefix(static_cast<std::size_t>(written));
-    }
-    return true;
-}
-
 /// Copies all of one file over the content of another, from its first byte; false with errno on failure.
 bool overwrite(int from, int to, std::uint64_t size) {
     std::array<char, 1 << 16> buffer;
@@ -53,7 +40,7 @@ bool overwrite(int from, int to, std::uint64_t size) {
         const std::ptrdiff_t count = os::read_at(from, buffer.data(), buffer.size(), done);
         if (count < 0 && errno == EINTR) continue;
         if (count == 0) errno = EIO; // another process truncated it meanwhile
-        if (count <= 0 || !write_all(to, {buffer.data(), static_cast<std::size_t>(count)})) return false;
+        if (count <= 0 || !os::write_all(to, {buffer.data(), static_cast<std::size_t>(count)})) return false;
         done += static_cast<std::uint64_t>(count);
     }
     return os::resize(to, size) && os::flush_to_disk(to);
@@ -131,7 +118,7 @@ void AtomicFile::forget_temporary(bool unlink) noexcept {
 }
 
 void AtomicFile::write(std::string_view bytes) {
-    if (!write_all(descriptor_, bytes)) fail("cannot write");
+    if (!os::write_all(descriptor_, bytes)) fail("cannot write");
 }
 
 void AtomicFile::commit() {

@@ -24,12 +24,12 @@ fs::path folder_of(const fs::path& path) {
     return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-/// N for a path /proc/PID/fd/N of this process. It looks like a link to what is open there, but names the
-/// descriptor itself: a pipe has no other name, and a file must be written on from where it stands.
+/// N for a path that stands for descriptor N of this process. It looks like a link to what is open there, but
+/// names the descriptor itself: a pipe has no other name, and a file must be written on from where it stands.
 std::optional<int> own_descriptor(const fs::path& path) {
     std::error_code ignored;
     const std::string folder = fs::canonical(folder_of(path), ignored).string();
-    if (folder != "/proc/" + std::to_string(os::process_id()) + "/fd") return std::nullopt;
+    if (!os::is_folder_of_descriptors(folder)) return std::nullopt;
     return number_of<int>(path.filename().string());
 }
 
