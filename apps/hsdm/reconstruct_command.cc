@@ -166,13 +166,7 @@ private:
             std::vector<Report> made;
             for (Reconstruction& result : results) {
                 result.report.input.file = input;
-                result.report.input.dropped_nonfinite += file.nonfinite;
                 result.report.seconds.read = read_seconds;
-                if (!file.columns.empty()) result.report.options["columns"] = file.columns;
-                if (file.withheld > 0)
-                    result.report.dropped.insert(
-                        result.report.dropped.begin(),
-                        {"points that the file marks as withheld", file.withheld, file.first_withheld});
                 write_one(name, scan, result);
                 result.report.seconds.total = seconds_since(start);
                 write_page(scan.positions, result);
@@ -182,11 +176,11 @@ private:
         };
         if (levels_) {
             std::vector<Reconstruction> results = named(name, [&] {
-                return reconstruct_levels(std::move(file.cloud), levels_->first, levels_->second, options);
+                return reconstruct_levels(std::move(file), levels_->first, levels_->second, options);
             });
             return write_all(results);
         }
-        Reconstruction result = named(name, [&] { return reconstruct(std::move(file.cloud), options); });
+        Reconstruction result = named(name, [&] { return reconstruct(std::move(file), options); });
         return write_all({&result, 1});
     }
 

@@ -36,10 +36,9 @@ Reconstruction reconstruct_case(const Case& one, const CaseOptions& asked) {
     set_activity(one.input.c_str(), "read");
     PointFile file = read_points(one.input, asked.read);
     const PointCloud scan = scan_for_stages(stages, file.cloud, true);
-    Reconstruction result = reconstruct(std::move(file.cloud), options);
+    Reconstruction result = reconstruct(std::move(file), options);
     run_stages(one.input, stages, scan, true, false, result);
     result.report.input.file = one.input;
-    result.report.input.dropped_nonfinite += file.nonfinite;
     return result;
 }
 

@@ -4,6 +4,7 @@
 #include "bindings.hh"
 #include "interpreter.hh"
 
+#include "hsdm/io/read_points.hh"
 #include "hsdm/mesh/to_mesh.hh"
 
 #include <pybind11/stl.h>
@@ -38,6 +39,7 @@ struct View {
     }
 
     PointView points;
+    std::shared_ptr<const PointFile> file; ///< that the positions come from, if any
 
 private:
     StridedSpan keep(const py::array& array, py::ssize_t columns) {
@@ -55,7 +57,8 @@ struct Made {
     std::string report;
 };
 
-Made made_of(const Reconstruction& result) {
+Made made_of(const View& view, Reconstruction result) {
+    if (view.file) note_reading(*view.file, result.report);
     return {std::make_shared<PolygonMesh>(to_polygons(result.mesh)), to_json(result.report)};
 }
 
@@ -72,7 +75,7 @@ ReconstructOptions watched(ReconstructOptions options, Watch& watch) {
 py::tuple reconstruct_one(const View& view, const ReconstructOptions& given, const py::object& progress) {
     Watch watch(progress);
     const ReconstructOptions options = watched(given, watch);
-    return tuple_of(watch.run([&] { return made_of(reconstruct(view.points, options)); }));
+    return tuple_of(watch.run([&] { return made_of(view, reconstruct(view.points, options)); }));
 }
 
 py::list reconstruct_several(const View& view, int first_depth, int last_depth,
@@ -81,8 +84,8 @@ py::list reconstruct_several(const View& view, int first_depth, int last_depth,
     const ReconstructOptions options = watched(given, watch);
     const std::vector<Made> levels = watch.run([&] {
         std::vector<Made> made;
-        for (const Reconstruction& result : reconstruct_levels(view.points, first_depth, last_depth, options))
-            made.push_back(made_of(result));
+        for (Reconstruction& result : reconstruct_levels(view.points, first_depth, last_depth, options))
+            made.push_back(made_of(view, std::move(result)));
         return made;
     });
     py::list list;
@@ -100,6 +103,9 @@ void bind_reconstruct(py::module_& core) {
              py::arg("positions"), py::arg("normals"), py::arg("colors"), py::arg("sensor"),
              py::arg("sensors"), py::arg("sensor_of"))
         .def("add_scalar", &View::add_scalar, py::arg("name"), py::arg("values"), py::arg("is_label"))
+        .def(
+            "note_file", [](View& view, std::shared_ptr<PointFile> file) { view.file = std::move(file); },
+            py::arg("cloud"))
         .def("address",
              [](const View& view) { return reinterpret_cast<std::uintptr_t>(view.points.positions.data); });
     core.def("reconstruct", &reconstruct_one, py::arg("view"), py::arg("options"), py::arg("progress"));

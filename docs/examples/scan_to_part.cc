@@ -3,11 +3,8 @@
 #include <hsdm/mesh/to_mesh.hh>
 #include <hsdm/reconstruct.hh>
 
-#include <utility>
-
 int main() {
-    hsdm::PointFile scan = hsdm::read_points("scan.ply");
-    const hsdm::Reconstruction part = hsdm::reconstruct(std::move(scan.cloud), {.depth = 6});
+    const hsdm::Reconstruction part = hsdm::reconstruct(hsdm::read_points("scan.ply"), {.depth = 6});
     hsdm::write_mesh("part.stl", hsdm::to_polygons(part.mesh), hsdm::MeshFormat::stl);
     return part.report.mesh.closed ? 0 : 1;
 }

@@ -12,6 +12,8 @@
 
 namespace hsdm {
 
+struct PointFile;
+
 /// How facets are made of the points of a level.
 enum class Method {
     automatic, ///< the better one: extended
@@ -111,6 +113,8 @@ Reconstruction reconstruct(const PointView& cloud, const ReconstructOptions& opt
 /// The same in less memory, by a third for given normals: each array of a cloud that is moved is freed as
 /// soon as nobody asks for it. What is left of the cloud is unspecified, whatever is thrown.
 Reconstruction reconstruct(PointCloud&& cloud, const ReconstructOptions& options = {});
+/// The same of the cloud of a file; the report tells what reading left out of it, as by note_reading().
+Reconstruction reconstruct(PointFile&& file, const ReconstructOptions& options = {});
 
 /// One octree, one mesh per level first_depth .. last_depth (section 3.2.3, Fig. 9). A level that fails,
 /// since no facet comes out of it or the memory ends, does not stop the others: its result has an empty mesh
@@ -123,5 +127,13 @@ std::vector<Reconstruction> reconstruct_levels(const PointView& cloud, int first
 /// The same in less memory, as reconstruct() of a cloud that is moved.
 std::vector<Reconstruction> reconstruct_levels(PointCloud&& cloud, int first_depth, int last_depth,
                                                const ReconstructOptions& options = {});
+/// The same of the cloud of a file, as reconstruct() of one.
+std::vector<Reconstruction> reconstruct_levels(PointFile&& file, int first_depth, int last_depth,
+                                               const ReconstructOptions& options = {});
+
+/// For who reconstructs from a file's arrays: points that the file marks as withheld go to the front of
+/// Report::dropped, those without coordinates into Input::dropped_nonfinite, and what columns were taken for
+/// into `options`, as "columns". Once for each report.
+void note_reading(const PointFile& file, Report& report);
 
 } // namespace hsdm

@@ -1,4 +1,8 @@
+#include "hsdm/io/read_points.hh"
+#include "hsdm/reconstruct.hh"
 #include "hsdm/report.hh"
+
+#include "support/sample.hh"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -55,4 +59,29 @@ TEST_CASE("a report leaves out what is not finite instead of writing null", "[re
     CHECK_FALSE(json["input"].contains("bbox_min"));
     CHECK_FALSE(json["error"].contains("points_to_mesh_max"));
     CHECK(json["error"]["points_to_mesh_mean"] == 0);
+}
+
+TEST_CASE("the report of a file's cloud tells what reading left out and took columns for", "[report]") {
+    PointFile file;
+    file.cloud = support::sample(support::sphere(1), {.points = 2000});
+    file.nonfinite = 7;
+    file.withheld = 3;
+    file.first_withheld = Vec3(1, 2, 3);
+    file.columns = "x,y,z,nx,ny,nz";
+    file.cloud.positions.front() = Vec3(std::numeric_limits<double>::infinity(), 0, 0);
+    const std::size_t points = file.cloud.size();
+    PointFile again = file;
+    std::vector<Reconstruction> results = reconstruct_levels(std::move(again), 2, 3);
+    results.push_back(reconstruct(std::move(file), {.depth = 3}));
+    REQUIRE(results.size() == 3);
+    for (const Reconstruction& result : results) {
+        const Report& report = result.report;
+        CHECK(report.input.points == points - 1);
+        CHECK(report.input.dropped_nonfinite == 8);
+        CHECK(report.options.at("columns") == "x,y,z,nx,ny,nz");
+        REQUIRE_FALSE(report.dropped.empty());
+        CHECK(report.dropped[0].what == "points that the file marks as withheld");
+        CHECK(report.dropped[0].count == 3);
+        CHECK(report.dropped[0].where == Vec3(1, 2, 3));
+    }
 }

@@ -88,6 +88,19 @@ def test_points_that_a_las_file_marks_as_withheld_are_counted(tmp_path):
     assert len(none) == 4 and none.withheld == 0 and none.first_withheld is None
 
 
+def test_the_report_tells_the_points_that_a_file_marks_as_withheld(tmp_path):
+    angles = [(a, b) for a in np.arange(0, 6.2, 0.2) for b in np.arange(0.1, 3.1, 0.2)]
+    around = [(np.cos(a) * np.sin(b), np.sin(a) * np.sin(b), np.cos(b)) for a, b in angles]
+    las_file(tmp_path / "ball.las", around, {5, 7})
+    points = hsdm.read_points(tmp_path / "ball.las")
+    meshes = [hsdm.reconstruct(points, depth=3), *hsdm.reconstruct_levels(points, 2, 3)]
+    for mesh in meshes:
+        (told,) = mesh.report["dropped"]
+        assert told["what"] == "points that the file marks as withheld" and told["count"] == 2
+        assert told["where"] == pytest.approx(around[5], abs=0.001)
+    assert hsdm.reconstruct(points.positions, depth=3).report["dropped"] == []
+
+
 def test_glb_is_scaled_to_metres_and_3mf_says_its_unit(tmp_path, box_mesh):
     size = np.ptp(box_mesh.vertices, axis=0)
     for units, metres in ((None, 1), ("mm", 0.001), ("cm", 0.01), ("m", 1), ("in", 0.0254)):

@@ -183,6 +183,7 @@ def _view_of(
     numbers, marks = dict(scalars or {}), dict(labels or {})
     read_numbers: Mapping[str, npt.NDArray[np.float64]] = {}
     read_marks: Mapping[str, npt.NDArray[np.float64]] = {}
+    file: Optional[_core.Cloud] = None
     if isinstance(points, Points):
         normals = points.normals if normals is None else normals
         colors = points.colors if colors is None else colors
@@ -191,6 +192,7 @@ def _view_of(
         given = {**numbers, **marks}
         read_numbers = {name: values for name, values in points.scalars.items() if name not in given}
         read_marks = {name: values for name, values in points.labels.items() if name not in given}
+        file = points._cloud
         points = points.positions
     positions = _arrays.vectors("points", points)
     rows = len(positions)
@@ -202,6 +204,8 @@ def _view_of(
         None if sensors is None else _arrays.vectors("sensors", sensors).tolist(),
         None if sensor_of is None else _arrays.labels("sensor_of", sensor_of, rows).astype(np.int32),
     )
+    if file is not None:
+        view.note_file(file)
     for name, values in numbers.items():
         view.add_scalar(_arrays.property_name(name), _arrays.scalars(f"scalars {name}", values, rows), False)
     for name, values in read_numbers.items():

@@ -2,6 +2,7 @@
 
 #include "hsdm/core/system.hh"
 #include "hsdm/features/features.hh"
+#include "hsdm/io/read_points.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/mesh/turn_outward.hh"
 #include "hsdm/pipeline/adaptive_grid.hh"
@@ -259,6 +260,20 @@ Reconstruction reconstruct(PointCloud&& cloud, const ReconstructOptions& options
     return run_once(InputCloud(std::move(cloud)), options);
 }
 
+void note_reading(const PointFile& file, Report& report) {
+    report.input.dropped_nonfinite += file.nonfinite;
+    if (!file.columns.empty()) report.options["columns"] = file.columns;
+    if (file.withheld > 0)
+        report.dropped.insert(report.dropped.begin(),
+                              {"points that the file marks as withheld", file.withheld, file.first_withheld});
+}
+
+Reconstruction reconstruct(PointFile&& file, const ReconstructOptions& options) {
+    Reconstruction result = reconstruct(std::move(file.cloud), options);
+    note_reading(file, result.report);
+    return result;
+}
+
 std::vector<Reconstruction> reconstruct_levels(const PointView& cloud, int first_depth, int last_depth,
                                                const ReconstructOptions& options) {
     return run_levels(InputCloud(cloud), first_depth, last_depth, options);
@@ -272,6 +287,14 @@ std::vector<Reconstruction> reconstruct_levels(const PointCloud& cloud, int firs
 std::vector<Reconstruction> reconstruct_levels(PointCloud&& cloud, int first_depth, int last_depth,
                                                const ReconstructOptions& options) {
     return run_levels(InputCloud(std::move(cloud)), first_depth, last_depth, options);
+}
+
+std::vector<Reconstruction> reconstruct_levels(PointFile&& file, int first_depth, int last_depth,
+                                               const ReconstructOptions& options) {
+    std::vector<Reconstruction> results =
+        reconstruct_levels(std::move(file.cloud), first_depth, last_depth, options);
+    for (Reconstruction& result : results) note_reading(file, result.report);
+    return results;
 }
 
 } // namespace hsdm
