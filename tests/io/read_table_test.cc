@@ -185,6 +185,31 @@ TEST_CASE("an unnamed index column and empty fields do not shift the others", "[
     CHECK(std::isnan(cloud.scalars[0].values[1]));
 }
 
+TEST_CASE("an unnamed index column may stand before a tab", "[io]") {
+    const auto cloud = read("a.txt", "\tx\ty\tz\t\t\r\n7\t1\t2\t3\r\n8\t4\t5\t6\r\n").cloud;
+    CHECK(cloud.positions == std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}});
+    CHECK(cloud.scalars.empty());
+    CHECK(read("a.txt", "\tx\ty\tz\n\t1\t2\t3\n").cloud.positions
+          == std::vector<Vec3>{{1, 2, 3}}); // indented
+}
+
+TEST_CASE("fields may stand in quotation marks, numbers and what is skipped", "[io]") {
+    const auto rows = read("a.csv", "\"\",\"x\",\"y\",\"z\"\n\"1\",1,2,3\n\"2\",4,5,6\n").cloud; // row names
+    CHECK(rows.positions == std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}});
+    CHECK(rows.scalars.empty());
+    const auto all = read("a.csv", "\"x\",\"y\",\"z\",\"q\"\n\"1\",\"2e0\",\"-3\",\"7\"\n").cloud;
+    CHECK(all.positions == std::vector<Vec3>{{1, 2, -3}});
+    CHECK(all.scalars.at(0).values == std::vector<double>{7});
+    const std::string notes = "\"a; #1, \"\"so\"\"\",1,2,3\n\"b\",4,5,6\n";
+    CHECK(read("a.csv", notes, {.columns = "_,x,y,z"}).cloud.positions
+          == std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}});
+    for (const char* bad :
+         {"\"1,2,3\n", "1,2,\"3\n", "1,2,\"3\"4\n", "1,2,3\n1,2,\"x\"\n", "1,2,3\n1,2,\"\n"}) {
+        INFO(bad);
+        CHECK_THROWS_AS(read("a.csv", bad), Error);
+    }
+}
+
 TEST_CASE("colours in fractions and in 16 bits are scaled to bytes", "[io]") {
     CHECK(read("a.csv", "x,y,z,r,g,b\n1,2,3,0.5,0,1\n4,5,6,0,0,0\n").cloud.colors
           == std::vector<Color>{{128, 0, 255, 255}, {0, 0, 0, 255}});

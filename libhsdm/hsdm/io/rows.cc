@@ -75,7 +75,16 @@ private:
         return true;
     }
 
+    /// A number in quotation marks, which some programs put round every field of a table.
+    const char* parse_quoted(double& value) const {
+        if (!layout_.quotes || *at_ != '"') return nullptr;
+        const char* const ends = parse_number(at_ + 1, end_, value);
+        return ends && ends != end_ && *ends == '"' ? ends + 1 : nullptr;
+    }
+
     bool skip_field() {
+        if (const char* const ends = layout_.quotes ? end_of_quotes(at_, text_.find_newline(at_)) : nullptr)
+            at_ = ends;
         while (!field_ends(at_)) ++at_;
         return end_field(at_);
     }
@@ -94,6 +103,7 @@ private:
                 separated = skip_field();
             } else {
                 const char* field_end = parse_number(at_, end_, value);
+                if (!field_end) field_end = parse_quoted(value);
                 if (!field_end || !field_ends(field_end)) return fail(RowError::not_a_number, at_, column);
                 separated = end_field(field_end);
                 if (layout_.cells[column] == Cell::list && !skip_list(value, row, column)) return false;

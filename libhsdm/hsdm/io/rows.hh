@@ -20,6 +20,7 @@ struct RowLayout {
     std::vector<Cell> cells;
     bool more_allowed = false; ///< whether a row may go on behind its cells
     bool comments = false;     ///< whether `#` and `//` end a line
+    bool quotes = false;       ///< whether fields may stand in quotation marks
     bool counts = false;       ///< whether a line with one number counts the rows of a block
     /// For messages: where the number of cells comes from ("line 3 has 6"), and what to do about a bad field.
     std::string origin, advice;

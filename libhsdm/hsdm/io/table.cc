@@ -25,6 +25,10 @@ std::vector<std::string> split_names(std::string_view line) {
     char separator = ' ';
     for (char candidate : {'\t', ',', ';'})
         if (line.find(candidate) != std::string_view::npos) separator = candidate;
+    const std::string_view inner = trim(line);
+    const auto indent = static_cast<std::size_t>(inner.data() - line.data());
+    line =
+        separator == '\t' ? line.substr(0, indent + inner.size()) : inner; // a leading tab ends an empty name
     std::vector<std::string> names;
     while (names.size() <= most_columns) {
         const std::size_t end = std::min(line.find(separator), line.size());
@@ -39,9 +43,25 @@ std::vector<std::string> split_names(std::string_view line) {
     return names;
 }
 
+std::string_view unquoted(std::string_view cell) {
+    const bool quoted = cell.size() > 1 && cell.front() == '"' && cell.back() == '"';
+    return quoted ? cell.substr(1, cell.size() - 2) : cell;
+}
+
 std::size_t comment_mark(std::string_view line) {
     if (line.starts_with("//")) return 2;
     return line.starts_with('#') ? 1 : 0;
+}
+
+/// The line less what stands in quotation marks.
+std::string without_quotes(std::string_view line) {
+    std::string rest;
+    while (!line.empty()) {
+        const char* const ends = end_of_quotes(line.data(), line.data() + line.size());
+        if (!ends) rest += line.front();
+        line.remove_prefix(ends ? static_cast<std::size_t>(ends - line.data()) : 1);
+    }
+    return rest;
 }
 
 /// A comma that is the decimal separator shows by a second separator beside it, and by no point anywhere.
@@ -70,16 +90,16 @@ public:
         const char* first_text = nullptr;
         for (const char* at = text_.begin; at != text_.end;) {
             const char* line_begin = at;
-            const std::string_view line = trim(text_.line(at));
+            const std::string_view whole = text_.line(at), line = trim(whole);
             if (line.empty()) continue;
             if (const std::size_t mark = comment_mark(line)) {
-                keep_names(line.substr(mark), line_begin, true);
+                keep_names(trim(line.substr(mark)), line_begin, true);
             } else if (is_row(trim(without_comment(line)), line_begin)) {
                 prelude_.first_row = line_begin;
                 return prelude_;
             } else if (!prelude_.count || prelude_.count_at != line_begin) {
                 if (!first_text) first_text = line_begin;
-                keep_names(line, line_begin, false);
+                keep_names(whole, line_begin, false);
             }
         }
         if (prelude_.count)
@@ -99,13 +119,13 @@ private:
         for (std::size_t i = 0; i < cells.size(); ++i) {
             const bool needed = asked_.empty() || (i < asked_.size() && asked_[i].role != Role::skip);
             if (!needed || cells[i].empty()) continue;
-            if (to_number(cells[i]))
+            if (to_number(unquoted(cells[i])))
                 ++numbers;
             else
                 first_bad = std::min(first_bad, i);
         }
         if (numbers == 0) return false;
-        if (has_decimal_comma(line))
+        if (has_decimal_comma(without_quotes(line)))
             text_.fail(at, "commas beside other separators look like decimal commas; write 1.5 for 1,5, or "
                            "separate columns in one way only");
         if (first_bad < cells.size())
@@ -119,6 +139,9 @@ private:
         prelude_.columns = cells.size();
         // The header's last column may be empty in the first row.
         if (is_separator(line.back()) && prelude_.names.size() == cells.size() + 1) ++prelude_.columns;
+        // Header and rows may be indented by a tab.
+        if (*at == '\t' && prelude_.names.size() == prelude_.columns + 1 && prelude_.names.front().empty())
+            prelude_.names.erase(prelude_.names.begin());
         check_width(cells.size(), at);
         return true;
     }
@@ -136,7 +159,7 @@ private:
     }
 
     void keep_names(std::string_view line, const char* at, bool comment) {
-        auto names = split_names(trim(line));
+        auto names = split_names(line);
         if (names.size() > most_columns || (comment && !columns_from_names(names))) return;
         prelude_.names = std::move(names);
         prelude_.names_at = at;
@@ -156,6 +179,7 @@ RowLayout layout_of(const Text& text, const Prelude& prelude, const std::vector<
                     TableKind kind) {
     RowLayout layout;
     layout.comments = true;
+    layout.quotes = true;
     layout.counts = kind == TableKind::pts;
     layout.advice = "correct the line, or name the columns and give this one as _";
     layout.origin = line_number(text, prelude.first_row) + " has " + std::to_string(prelude.columns);

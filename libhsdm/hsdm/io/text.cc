@@ -91,10 +91,24 @@ std::string lower(std::string_view text) {
     return result;
 }
 
+const char* end_of_quotes(const char* at, const char* end) {
+    if (at == end || *at != '"') return nullptr;
+    while ((at = std::find(at + 1, end, '"')) != end) {
+        if (at + 1 == end || at[1] != '"') return at + 1;
+        ++at;
+    }
+    return nullptr;
+}
+
 std::string_view without_comment(std::string_view line) {
     for (std::size_t i = 0; i < line.size(); ++i) {
         const bool starts_field = i == 0 || is_blank(line[i - 1]) || is_separator(line[i - 1]);
-        if (starts_field && (line[i] == '#' || line.substr(i, 2) == "//")) return line.substr(0, i);
+        const char* const quotes =
+            starts_field ? end_of_quotes(line.data() + i, line.data() + line.size()) : nullptr;
+        if (quotes)
+            i = static_cast<std::size_t>(quotes - line.data()) - 1;
+        else if (starts_field && (line[i] == '#' || line.substr(i, 2) == "//"))
+            return line.substr(0, i);
     }
     return line;
 }
@@ -102,7 +116,8 @@ std::string_view without_comment(std::string_view line) {
 std::vector<std::string_view> fields(std::string_view line, std::size_t most) {
     std::vector<std::string_view> found;
     for (line = trim(line); !line.empty() && found.size() < most; line = trim(line)) {
-        std::size_t length = 0;
+        const char* const quotes = end_of_quotes(line.data(), line.data() + line.size());
+        std::size_t length = quotes ? static_cast<std::size_t>(quotes - line.data()) : 0;
         while (length < line.size() && !is_blank(line[length]) && !is_separator(line[length])) ++length;
         found.push_back(line.substr(0, length));
         line = trim(line.substr(length));

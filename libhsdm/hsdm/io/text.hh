@@ -94,10 +94,14 @@ std::optional<std::uint64_t> to_count(std::string_view field);
 
 std::string_view trim(std::string_view text);
 std::string lower(std::string_view text);
+/// Behind the quotation mark that ends the field which one begins at `at`, two of them standing for one in
+/// it; null if none begins there or none ends it.
+const char* end_of_quotes(const char* at, const char* end);
 /// The line up to a field that begins with `#` or `//`.
 std::string_view without_comment(std::string_view line);
 /// Fields between blanks, commas and semicolons; an empty field between two commas is one, a trailing comma
-/// opens none. The first `most` only, for lines that may be of any length.
+/// opens none. In quotation marks these are part of a field. The first `most` only, for lines that may be of
+/// any length.
 std::vector<std::string_view> fields(std::string_view line,
                                      std::size_t most = std::numeric_limits<std::size_t>::max());
 /// `text` as a message quotes it: in quotation marks, printable, at most 40 characters.
