@@ -168,10 +168,11 @@ def assimp():
     positions, polygons = prepare()
     write_off("up.off", y_up(positions), polygons)
     for form in ("glb", "3mf", "ply", "obj", "stl", "off"):
-        reconstruct("part." + form, "--quiet")
-        run(program, "export", "part." + form, "read.ply", "-ptv")
-        off = farthest("read.ply", "up.off" if form == "glb" else "part.off")
-        check(off < 1e-4, f"{form} is {off} off")
+        for words in ([], ["--ascii"]) if form in ("ply", "stl") else ([],):
+            reconstruct("part." + form, "--quiet", *words)
+            run(program, "export", "part." + form, "read.ply", "-ptv")
+            off = farthest("read.ply", "up.off" if form == "glb" else "part.off")
+            check(off < 1e-4, f"{form} {words} is {off} off")
 
 
 def vtk():
@@ -208,15 +209,21 @@ def vtk():
 def meshio():
     module = need_module("meshio")
     positions, polygons = prepare()
-    for form in ("ply", "obj", "stl", "off"):
-        reconstruct("part." + form, "--quiet")
-        if form == "off":  # meshio's reader knows triangles alone
-            continue
-        mesh = module.read("part." + form)
-        count = sum(len(block.data) for block in mesh.cells)
-        check(count == (sum(len(f) - 2 for f in polygons) if form == "stl" else len(polygons)), f"cells of {form}")
-        lowest = min(min(p) for p in mesh.points.tolist())
-        check(abs(lowest - min(map(min, positions))) < 1e-5, f"points of {form}")
+    for form in ("ply", "obj", "stl"):  # of OFF its reader knows triangles alone
+        for words in ([], ["--ascii"]) if form in ("ply", "stl") else ([],):
+            reconstruct("part." + form, "--quiet", *words)
+            mesh = module.read("part." + form)
+            count = sum(len(block.data) for block in mesh.cells)
+            check(count == (sum(len(f) - 2 for f in polygons) if form == "stl" else len(polygons)), f"cells of {form}")
+            lowest = min(min(p) for p in mesh.points.tolist())
+            check(abs(lowest - min(map(min, positions))) < 1e-5, f"points of {form}")
+            if form == "ply":
+                data = {name: values.tolist() for name, values in mesh.point_data.items()}
+                check(mesh.points.tolist() == [list(p) for p in positions], "places to the last bit")
+                check(sorted(set(data["hsdm_vertex_class"])) == [0, 1, 2], "classes")
+                check(all(abs(sum(n * n for n in normal) - 1) < 1e-6 for normal in zip(data["nx"], data["ny"], data["nz"])),
+                      "normals")
+                check(data["hsdm_vertex_class"].count(2) == 8, "a cube has eight corners")
 
 
 class Lib3mf:
@@ -300,6 +307,13 @@ def blender():
     check(int(words[0]) == sum(len(f) - 2 for f in polygons), "triangles")
     p = tuple(map(float, words[1:4]))
     check(distance(p, nearest(p, positions)) < 1, f"{p} is where the scan is, to Blender's floats")
+    prepare()
+    reconstruct("part.off", "--quiet", "--features", "lines.obj")
+    script = ("import bpy; bpy.ops.wm.read_factory_settings(use_empty=True); bpy.ops.wm.obj_import(filepath='lines.obj'); "
+              "print('read', *(len(o.data.edges) for o in bpy.data.objects))")
+    lines = sum(line.startswith("l ") for line in open("lines.obj"))
+    words = run(program, "-b", "--python-expr", script).split("read ")[1].split()
+    check(int(words[0]) == lines > 0, f"{words[0]} lines of {lines}")
 
 
 if __name__ == "__main__":
