@@ -44,6 +44,13 @@ inline bool is_ok(const Outcome& outcome) {
     return outcome.misses.empty();
 }
 
+/// Its mesh beside the baseline's, in one word: none, new, same, other.
+inline const char* mesh_word(const Outcome& outcome) {
+    if (outcome.report.is_null()) return "none";
+    if (!outcome.baseline) return "new";
+    return outcome.baseline->same_mesh ? "same" : "other";
+}
+
 /// A list of objects, docs/command.md has their keys.
 std::string to_json(const std::vector<Outcome>& outcomes);
 

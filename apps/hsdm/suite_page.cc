@@ -110,12 +110,6 @@ void put_costs(std::ostream& out, const Outcome& one) {
                         static_cast<double>(before.peak_memory_bytes), before.more));
 }
 
-const char* mesh_word(const Outcome& one) {
-    if (one.report.is_null()) return "none";
-    if (!one.baseline) return "new";
-    return one.baseline->same_mesh ? "same" : "other";
-}
-
 void put_picture(std::ostream& out, const std::string& file, const std::string& caption,
                  const std::string& name, bool is_alone = false) {
     if (file.empty()) return;

@@ -56,14 +56,14 @@ void SuiteTable::print_row(const Outcome& outcome) {
          << std::setw(8) << cell_text(outcome, "mesh.closed") << std::setw(7)
          << cell_text(outcome, "mesh.genus") << std::setw(10) << error_text(outcome) << std::setw(9)
          << fixed_text(outcome.seconds, 2) << std::setw(8) << outcome.peak_memory_bytes / 1000000;
-    if (against_baseline_ && !outcome.baseline) out_ << "       -       -   new";
-    if (const auto& before = outcome.baseline; before && !before->not_judged.empty())
-        out_ << "       -       -" << (before->same_mesh ? "  same" : " other");
-    else if (before)
+    const auto& before = outcome.baseline;
+    if (before && before->not_judged.empty())
         out_ << std::setw(8) << times_text(outcome.seconds, before->seconds * before->machine) << std::setw(8)
              << times_text(static_cast<double>(outcome.peak_memory_bytes),
-                           static_cast<double>(before->peak_memory_bytes))
-             << (before->same_mesh ? "  same" : " other");
+                           static_cast<double>(before->peak_memory_bytes));
+    else if (against_baseline_)
+        out_ << "       -       -";
+    if (against_baseline_) out_ << std::setw(6) << mesh_word(outcome);
     out_ << '\n';
     for (const std::string& reason : outcome.misses) out_ << "      " << printable(reason) << '\n';
     out_ << std::flush;

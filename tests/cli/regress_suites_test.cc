@@ -138,6 +138,9 @@ TEST_CASE("a case that must fail passes when it does as it says, and misses othe
     CHECK(status(R"("input": "broken.xyz", "fails": "broken\\.xyz:2: ")") == 0);
     CHECK(miss() == "[]");
     CHECK(OrderedJson::parse(read_file(folder / "r.json"))[0]["status"] == 1);
+    const CommandResult again =
+        regress_suite(folder, R"({"input": "broken.xyz", "fails": "broken"})", "--baseline r.json");
+    CHECK_THAT(again.out, Contains("       -       -  none\n")); // there is no mesh to be another
     CHECK(status(R"("input": "none.xyz", "fails": "no such file", "status": 1)") == 0);
     CHECK(status(R"("input": "scan.xyz", "args": ["--depth", "17"], "fails": "--depth 17", "status": 2)")
           == 0);
