@@ -101,6 +101,7 @@ TEST_CASE("a module that never asks is cancelled all the same, also the last one
     const Folder folder;
     const std::string modules = with_ill_module(folder);
     for (const char* after : {"", " --module smooth-normals"}) {
+        fs::remove(folder / "out"); // or the command would be thought to have come that far before
         const CommandResult shell =
             run(folder,
                 process + "loop" + after
