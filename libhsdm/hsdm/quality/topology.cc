@@ -193,18 +193,18 @@ bool has_no_area(std::span<const Vec3> ring) {
     for (const Vec3& p : ring) size = std::max(size, (p - ring[0]).max_abs());
     if (!(size > 0) || !std::isfinite(size)) return true;
     // Scaled by a power of two to a size near 1, so that neither overflow nor rounding depends on the size.
+    // In two steps: for the smallest sizes the factor itself is no number.
     const int exponent = -std::ilogb(size);
-    const auto from_first = [&](std::size_t i) {
-        Vec3 d = ring[i % ring.size()] - ring[0];
-        for (double& x : d) x = std::ldexp(x, exponent);
-        return d;
-    };
+    const double half = std::ldexp(1.0, exponent / 2), rest = std::ldexp(1.0, exponent - exponent / 2);
     double longest = 0, twice = 0;
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-        const Vec3 p = from_first(i), q = from_first(i + 1);
+    Vec3 p(0, 0, 0); // the corner before, from the first
+    const auto go_to = [&](const Vec3& q) {
         longest = std::max(longest, (q - p).sqrnorm());
         twice += (p % q).norm();
-    }
+        p = q;
+    };
+    for (std::size_t i = 1; i < ring.size(); ++i) go_to((ring[i] - ring[0]) * half * rest);
+    go_to({0, 0, 0});
     return !(twice / 2 > negligible * longest);
 }
 
