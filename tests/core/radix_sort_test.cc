@@ -91,3 +91,16 @@ TEST_CASE("the order of keys does not depend on the number of threads", "[radix_
     radix_sort(one, 24);
     CHECK(same(many, one));
 }
+
+TEST_CASE("numbers are sorted by the bits asked for and keep their order otherwise", "[radix_sort]") {
+    for (const int low : {0, 32}) {
+        INFO("from bit " << low);
+        std::vector<std::uint64_t> numbers;
+        for (const CodeIndex& key : random_keys(70000, 31, 6))
+            numbers.push_back(low == 0 ? key.code : key.code << low | key.index);
+        std::vector<std::uint64_t> sorted = numbers;
+        radix_sort(sorted, 64, low);
+        std::ranges::stable_sort(numbers, {}, [low](std::uint64_t number) { return number >> low; });
+        CHECK(sorted == numbers);
+    }
+}

@@ -21,9 +21,10 @@ class Digit {
 public:
     Digit(int shift, int high)
         : shift_(shift), mask_((std::size_t{1} << std::min(digit_bits, high - shift)) - 1) {}
-    std::size_t operator()(const CodeIndex& key) const {
-        return static_cast<std::size_t>(key.code >> shift_) & mask_;
+    std::size_t operator()(std::uint64_t key) const {
+        return static_cast<std::size_t>(key >> shift_) & mask_;
     }
+    std::size_t operator()(const CodeIndex& key) const { return (*this)(key.code); }
 
 private:
     int shift_;
@@ -46,12 +47,11 @@ bool counts_to_offsets(std::vector<Histogram>& histograms, std::size_t n) {
     return true;
 }
 
-} // namespace
-
-void radix_sort(std::vector<CodeIndex>& keys, int high, int low) {
+template <class Key>
+void sort_by_digits(std::vector<Key>& keys, int high, int low) {
     const std::size_t n = keys.size();
     const std::size_t chunks = (n + chunk_size - 1) / chunk_size;
-    std::vector<CodeIndex> buffer = large_vector<CodeIndex>(n);
+    std::vector<Key> buffer = large_vector<Key>(n);
     std::vector<Histogram> histograms(chunks);
     for (int shift = low; shift < high; shift += digit_bits) {
         const Digit digit(shift, high);
@@ -69,6 +69,16 @@ void radix_sort(std::vector<CodeIndex>& keys, int high, int low) {
         });
         keys.swap(buffer);
     }
+}
+
+} // namespace
+
+void radix_sort(std::vector<CodeIndex>& keys, int high, int low) {
+    sort_by_digits(keys, high, low);
+}
+
+void radix_sort(std::vector<std::uint64_t>& keys, int high, int low) {
+    sort_by_digits(keys, high, low);
 }
 
 } // namespace hsdm

@@ -77,90 +77,136 @@ MortonCode code_of(const Vec3& relative, double scale) {
     return morton_encode(c[0], c[1], c[2]);
 }
 
-/// Sorts by cells of level 11, or by all of the code where one of these is crowded: an outlier far away
-/// leaves few cells to all other points. Returns by how many bits codes of one cell may differ.
-int sort_by_cells(std::vector<CodeIndex>& keys) {
-    constexpr int in_cell = 3 * (morton_levels - 11);
+/// Points in the octree's order: their codes, and their indices in the cloud.
+struct Order {
+    std::vector<MortonCode> codes;
+    std::vector<Index> source;
+};
+
+constexpr int index_bits = 8 * sizeof(Index);
+/// A cell is what the other bits of a key tell apart: by so many bits codes of one cell may differ.
+constexpr int in_cell = 3 * morton_levels - (64 - index_bits);
+
+/// A point's cell and, below it, its index.
+std::uint64_t key_of(MortonCode code, Index i) {
+    return code >> in_cell << index_bits | i;
+}
+
+/// The order of sorted keys.
+Order order_of(const std::vector<MortonCode>& codes, const std::vector<std::uint64_t>& keys) {
+    Order order{large_vector<MortonCode>(keys.size()), large_vector<Index>(keys.size())};
+    for_each_index(keys.size(), chunks::light, [&](Index i) {
+        if (i + ahead < keys.size()) __builtin_prefetch(&codes[static_cast<Index>(keys[i + ahead])]);
+        order.source[i] = static_cast<Index>(keys[i]);
+        order.codes[i] = codes[order.source[i]];
+    });
+    return order;
+}
+
+/// Sorts by all of the codes.
+void sort_by_codes(Order& order) {
+    std::vector<CodeIndex> points = large_vector<CodeIndex>(order.codes.size());
+    for_each_index(points.size(), chunks::light, [&](Index i) {
+        points[i] = {order.codes[i], order.source[i]};
+    });
+    radix_sort(points, 3 * morton_levels);
+    for_each_index(points.size(), chunks::light, [&](Index i) {
+        order.codes[i] = points[i].code;
+        order.source[i] = points[i].index;
+    });
+}
+
+/// Sorts by cells, or by all of the code where one of these is crowded: an outlier far away leaves few cells
+/// to all other points. Returns by how many bits codes of one cell may differ.
+int sort_by_cells(std::vector<MortonCode> codes, std::vector<std::uint64_t> keys, Order& order) {
     constexpr std::size_t crowd = 256;
-    radix_sort(keys, 3 * morton_levels, in_cell);
+    radix_sort(keys, 64, index_bits);
+    order = order_of(codes, keys);
+    codes = std::vector<MortonCode>();
     for (std::size_t i = 0; i + crowd < keys.size(); i += crowd)
-        if (keys[i].code >> in_cell == keys[i + crowd].code >> in_cell) {
-            radix_sort(keys, 3 * morton_levels);
+        if (keys[i] >> index_bits == keys[i + crowd] >> index_bits) {
+            keys = std::vector<std::uint64_t>();
+            sort_by_codes(order);
             return 0;
         }
     return in_cell;
 }
 
-/// Orders points by code, then position, then normal if there are some. Cells are sorted by digits; few
-/// points of a surface share one, and those few are compared.
-void order_points(const StridedSpan& positions, const StridedSpan& normals, std::vector<CodeIndex>& keys) {
-    const int in_cell = sort_by_cells(keys);
+/// Orders the points of one cell by code, then position, then normal if there are some. `points`: space to
+/// work in.
+void order_cell(const StridedSpan& positions, const StridedSpan& normals, std::size_t begin, std::size_t end,
+                Order& order, std::vector<CodeIndex>& points) {
     const auto key = [&](Index i) {
         const Vec3 p = vec3_at(positions, i);
         const Vec3 n = normals.count == 0 ? zero : directed_or_zero(vec3_at(normals, i)); // NaN has no order
         return std::tuple(p[0], p[1], p[2], n[0], n[1], n[2], i);
     };
-    const auto same_cell = [in_cell](const CodeIndex& a, const CodeIndex& b) {
-        return a.code >> in_cell == b.code >> in_cell;
-    };
+    points.clear();
+    for (std::size_t i = begin; i < end; ++i) points.push_back({order.codes[i], order.source[i]});
+    std::sort(points.begin(), points.end(), [&](const CodeIndex& a, const CodeIndex& b) {
+        return a.code != b.code ? a.code < b.code : key(a.index) < key(b.index);
+    });
+    for (std::size_t i = begin; i < end; ++i) {
+        order.codes[i] = points[i - begin].code;
+        order.source[i] = points[i - begin].index;
+    }
+}
+
+/// Orders points by code, then position, then normal. Cells are sorted by digits; few points of a surface
+/// share one, and those few are compared.
+Order order_points(const StridedSpan& positions, const StridedSpan& normals, std::vector<MortonCode> codes,
+                   std::vector<std::uint64_t> keys) {
+    Order order;
+    const int differing = sort_by_cells(std::move(codes), std::move(keys), order);
+    const std::size_t size = order.codes.size();
+    const auto cell = [&](std::size_t i) { return order.codes[i] >> differing; };
     // chunks end at cell boundaries
-    std::vector<std::size_t> first(chunk_count(keys.size(), chunks::light) + 1, keys.size());
+    std::vector<std::size_t> first(chunk_count(size, chunks::light) + 1, size);
     for (std::size_t chunk = 0; chunk + 1 < first.size(); ++chunk) {
         std::size_t i = chunk * chunks::light;
         if (chunk > 0) i = std::max(i, first[chunk - 1]);
-        while (i > 0 && i < keys.size() && same_cell(keys[i - 1], keys[i])) ++i;
+        while (i > 0 && i < size && cell(i - 1) == cell(i)) ++i;
         first[chunk] = i;
     }
     for_each_task(first.size() - 1, [&](std::size_t chunk) {
-        const auto last = keys.begin() + static_cast<std::ptrdiff_t>(first[chunk + 1]);
-        for (auto begin = keys.begin() + static_cast<std::ptrdiff_t>(first[chunk]); begin < last;) {
-            auto end = begin + 1;
-            while (end != last && same_cell(*begin, *end)) ++end;
-            std::sort(begin, end, [&](const CodeIndex& a, const CodeIndex& b) {
-                return a.code != b.code ? a.code < b.code : key(a.index) < key(b.index);
-            });
-            begin = end;
+        std::vector<CodeIndex> points;
+        for (std::size_t begin = first[chunk], end; begin < first[chunk + 1]; begin = end) {
+            for (end = begin + 1; end < first[chunk + 1] && cell(begin) == cell(end);) ++end;
+            if (end > begin + 1) order_cell(positions, normals, begin, end, order, points);
         }
     });
+    return order;
 }
 
 /// Removes points equal to their predecessor in position and normal; equal points are neighbours by now, the
 /// first in the cloud before the others. Adds the others to `duplicates` if it is not null. Returns how many.
-std::size_t merge_equal(const StridedSpan& positions, const StridedSpan& normals,
-                        std::vector<CodeIndex>& keys, std::vector<Octree::Duplicate>* duplicates) {
-    const auto direction = [&](const CodeIndex& key) {
-        return directed_or_zero(vec3_at(normals, key.index));
-    };
-    const auto equal = [&](const CodeIndex& a, const CodeIndex& b) {
-        return a.code == b.code && vec3_at(positions, a.index) == vec3_at(positions, b.index)
-               && (normals.count == 0 || direction(a) == direction(b));
-    };
-    std::size_t kept = 0;
-    for_each_in_order(keys.size(), [&](std::size_t i) {
-        if (kept == 0 || !equal(keys[kept - 1], keys[i]))
-            keys[kept++] = keys[i];
-        else if (duplicates)
-            duplicates->push_back({keys[kept - 1].index, keys[i].index});
+std::size_t merge_equal(const StridedSpan& positions, const StridedSpan& normals, Order& order,
+                        std::vector<Octree::Duplicate>* duplicates) {
+    const std::size_t size = order.codes.size();
+    const auto direction = [&](std::size_t i) { return directed_or_zero(vec3_at(normals, order.source[i])); };
+    const std::vector<Index> equal = indices_where(size, chunks::light, [&](Index i) {
+        return i > 0 && order.codes[i - 1] == order.codes[i]
+               && vec3_at(positions, order.source[i - 1]) == vec3_at(positions, order.source[i])
+               && (normals.count == 0 || direction(i - 1) == direction(i));
     });
-    const std::size_t merged = keys.size() - kept;
-    keys.resize(kept);
+    if (equal.empty()) return 0;
+    std::size_t kept = 0, merged = 0;
+    for_each_in_order(size, [&](std::size_t i) {
+        if (merged < equal.size() && equal[merged] == i) {
+            ++merged;
+            if (duplicates) duplicates->push_back({order.source[kept - 1], order.source[i]});
+            return;
+        }
+        order.codes[kept] = order.codes[i];
+        order.source[kept++] = order.source[i];
+    });
+    order.codes.resize(kept);
+    order.source.resize(kept);
     if (duplicates)
         std::sort(duplicates->begin(), duplicates->end(), [](const auto& a, const auto& b) {
             return std::tie(a.first, a.other) < std::tie(b.first, b.other);
         });
     return merged;
-}
-
-/// The points in sorted order, and their codes; frees the keys, because here large clouds need most memory.
-std::vector<Index> take_order(std::vector<CodeIndex>& keys, std::vector<MortonCode>& codes) {
-    std::vector<Index> order = large_vector<Index>(keys.size());
-    resize_large(codes, keys.size());
-    for_each_index(keys.size(), chunks::light, [&](Index i) {
-        codes[i] = keys[i].code;
-        order[i] = keys[i].index;
-    });
-    keys = std::vector<CodeIndex>();
-    return order;
 }
 
 template <class T>
@@ -198,17 +244,21 @@ void place_cube(const PointView& cloud, const OctreeOptions& options, Octree& oc
             throw OptionError("the cube at `origin`, of edge `cube_extent`, must hold the cloud");
 }
 
-/// The codes of the cloud's points, in their order.
-std::vector<CodeIndex> keys_of(const PointView& cloud, const OctreeOptions& options, const Octree& octree) {
+/// The octree's codes of its cloud's points, and its order. Equal points are not merged.
+Order order_of_cloud(const PointView& cloud, const StridedSpan& normals, const OctreeOptions& options,
+                     const Octree& octree) {
     const double scale = cells / octree.extent, per_unit = 1 / options.unit;
-    std::vector<CodeIndex> keys = large_vector<CodeIndex>(cloud.size());
-    for_each_index(keys.size(), chunks::light, [&](Index i) {
-        keys[i] = {code_of(vec3_at(cloud.positions, i) * per_unit - octree.origin, scale), i};
+    std::vector<MortonCode> codes = large_vector<MortonCode>(cloud.size());
+    std::vector<std::uint64_t> keys = large_vector<std::uint64_t>(cloud.size());
+    for_each_index(codes.size(), chunks::light, [&](Index i) {
+        codes[i] = code_of(vec3_at(cloud.positions, i) * per_unit - octree.origin, scale);
+        keys[i] = key_of(codes[i], i);
     });
     if (options.skip_nonfinite)
-        std::erase_if(keys,
-                      [&](const CodeIndex& key) { return !is_finite(vec3_at(cloud.positions, key.index)); });
-    return keys;
+        std::erase_if(keys, [&](std::uint64_t key) {
+            return !is_finite(vec3_at(cloud.positions, static_cast<Index>(key)));
+        });
+    return order_points(cloud.positions, normals, std::move(codes), std::move(keys));
 }
 
 /// `ours`: the cloud's normals if we may take them, or null.
@@ -218,12 +268,12 @@ Octree build(const PointView& cloud, std::vector<Vec3>* ours, const OctreeOption
     place_cube(cloud, options, octree);
     const bool with_values = cloud.colors.count > 0 || !cloud.scalars.empty();
     const StridedSpan normals = options.use_normals ? cloud.normals : StridedSpan();
-    std::vector<CodeIndex> keys = keys_of(cloud, options, octree);
-    order_points(cloud.positions, normals, keys);
+    Order order = order_of_cloud(cloud, normals, options, octree);
     if (options.merge_duplicates)
         octree.merged_duplicates =
-            merge_equal(cloud.positions, normals, keys, with_values ? &octree.duplicates : nullptr);
-    octree.source = take_order(keys, octree.codes);
+            merge_equal(cloud.positions, normals, order, with_values ? &octree.duplicates : nullptr);
+    octree.codes = std::move(order.codes);
+    octree.source = std::move(order.source);
     if (normals.count > 0) octree.normals = gathered(normals, octree.source, unit_with_one_zero);
     if (ours) *ours = std::vector<Vec3>();
     const double per_unit = 1 / options.unit;
@@ -253,16 +303,20 @@ void rearrange(Octree& octree, std::vector<Vec3> positions, double extent) {
     octree.extent = extent;
     const Vec3 shift = before - octree.origin;
     const double scale = cells / extent;
-    std::vector<CodeIndex> keys = large_vector<CodeIndex>(positions.size());
+    std::vector<MortonCode> codes = std::move(octree.codes);
+    resize_large(codes, positions.size());
+    std::vector<std::uint64_t> keys = large_vector<std::uint64_t>(positions.size());
     for_each_index(keys.size(), chunks::light, [&](Index i) {
         positions[i] += shift;
-        keys[i] = {code_of(positions[i], scale), i};
+        codes[i] = code_of(positions[i], scale);
+        keys[i] = key_of(codes[i], i);
     });
-    order_points(rows_of(positions), rows_of(octree.normals), keys);
-    const std::vector<Index> order = take_order(keys, octree.codes);
-    octree.source = gathered(octree.source, order);
-    if (octree.has_normals()) octree.normals = gathered(octree.normals, order);
-    octree.positions = gathered(positions, order);
+    Order order =
+        order_points(rows_of(positions), rows_of(octree.normals), std::move(codes), std::move(keys));
+    octree.codes = std::move(order.codes);
+    octree.source = gathered(octree.source, order.source);
+    if (octree.has_normals()) octree.normals = gathered(octree.normals, order.source);
+    octree.positions = gathered(positions, order.source);
 }
 
 Occurrences remove_points(Octree& octree, std::span<const std::uint8_t> marked) {
