@@ -1,5 +1,6 @@
 #include "hsdm/errors.hh"
 #include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/quality/mesh_digest.hh"
 #include "hsdm/reconstruct.hh"
 #include "support/check.hh"
 #include "support/sample.hh"
@@ -500,5 +501,18 @@ TEST_CASE("a far stray has no part in any resolution that is asked for", "[pipel
         check_stray(by_voxel, away);
         by_error.max_error = MaxError{0.01, true};
         check_stray(by_error, away);
+    }
+}
+
+TEST_CASE("a voxel that is chosen gives the mesh that asking for it gives", "[pipeline]") {
+    const PointCloud cloud = support::sample(support::box({1.4, 1.1, 0.8}), {.points = 6000, .seed = 4});
+    for (const bool merge_layers : {false, true}) {
+        INFO("layers merged: " << merge_layers);
+        ReconstructOptions options{.merge_layers = merge_layers};
+        const Reconstruction chosen = reconstruct(cloud, options);
+        options.voxel_size = chosen.report.grid.voxel_size;
+        const Reconstruction asked = reconstruct(cloud, options);
+        CHECK(asked.report.grid.sets == chosen.report.grid.sets);
+        CHECK(mesh_digest(to_polygons(asked.mesh)) == mesh_digest(to_polygons(chosen.mesh)));
     }
 }

@@ -20,6 +20,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 namespace hsdm {
 namespace {
@@ -69,9 +70,16 @@ void note_counts(const DualContour& facets, Report& report) {
     report.rejected["vertices_split"] = facets.manifold.split_vertices;
 }
 
+/// The level's sets as they come; those that have been made already if layers need not be merged.
+NormalSets sets_of(const MethodInput& in) {
+    const bool made = in.sets && *in.sets && !in.options.merge_layers;
+    return made ? *std::exchange(*in.sets, std::nullopt)
+                : build_normal_sets(in.octree, in.level, {.merge_layers = in.options.merge_layers});
+}
+
 /// The level's sets without outliers, parted at walls and gaps; notes what was dropped or is doubtful.
 NormalSets separated_sets(const MethodInput& in, Report& report) {
-    NormalSets all = build_normal_sets(in.octree, in.level, {.merge_layers = in.options.merge_layers});
+    NormalSets all = sets_of(in);
     const RelationTest related({}, in.level.voxel_size);
     const Occurrences outliers = drop_outlier_sets(in.level, related, all);
     report.rejected["points_stray"] = outliers.count;

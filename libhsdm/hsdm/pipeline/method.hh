@@ -2,6 +2,7 @@
 // The common input and output of both methods.
 
 #include "hsdm/cloud/cloud_frame.hh"
+#include "hsdm/contour/normal_sets.hh"
 #include "hsdm/core/occurrences.hh"
 #include "hsdm/mesh/facet_links.hh"
 #include "hsdm/mesh/feature_hints.hh"
@@ -22,6 +23,8 @@ struct MethodInput {
     const OctreeLevel& level;
     const ReconstructOptions& options;
     const Phases& phases;
+    /// The level's normal sets where they have been made, to be taken; null or nothing where not.
+    std::optional<NormalSets>* sets = nullptr;
 };
 
 /// What is known about facets beyond the mesh, valid as long as they do not change.

@@ -1,6 +1,5 @@
 #include "hsdm/pipeline/prepared_cloud.hh"
 
-#include "hsdm/contour/normal_sets.hh"
 #include "hsdm/contour/sheet_widths.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/normals/noise.hh"
@@ -14,6 +13,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 namespace hsdm {
 namespace {
@@ -40,14 +40,6 @@ void check_spread(const Octree& octree) {
     for (const Vec3& p : octree.positions)
         if (((p - first) % along).norm() > tolerance) return;
     throw Error("all points lie on a line; there is no surface in them");
-}
-
-/// Are bores or rods under two voxels wide more than a detail?
-bool has_narrow_cylinders(const Octree& octree, int depth) {
-    const OctreeLevel level = extract_level(octree, depth);
-    const NormalSets sets = build_normal_sets(octree, level);
-    return static_cast<double>(count_narrow_cylinders(octree, level, sets))
-           > resolution::share_of_cylinders * static_cast<double>(level.size());
 }
 
 } // namespace
@@ -131,7 +123,7 @@ int PreparedCloud::choose_resolution(const ReconstructOptions& options) {
     if (method_for(options) != Method::extended) return depth;
     const VoxelChoice finer =
         choose_voxel(octree, report.input.spacing, noise_, frame.unit(), resolution::adaptive_spacings);
-    if (finer.size >= choice.size || !has_narrow_cylinders(octree, depth)) return depth;
+    if (finer.size >= choice.size || !has_narrow_cylinders(depth)) return depth;
     report.options["resolution"] = finer.reason + ", as bores or rods are under two voxels of "
                                    + text_of(choice.size * frame.unit()) + " wide";
     return fit_voxels(finer.size);
@@ -139,10 +131,26 @@ int PreparedCloud::choose_resolution(const ReconstructOptions& options) {
 
 void PreparedCloud::smooth_for_depth(int depth, const Phases& phases) {
     if (moved_ || noise_ <= resolution::harmless_noise * octree.voxel_size(depth)) return;
+    looked_.reset();
     note_smoothing(phases.run("noise", 0.1, report.seconds.normals, [&] {
         Neighbors neighbors;
         return smooth_known_noise(octree, noise_, neighbors);
     }));
+}
+
+bool PreparedCloud::has_narrow_cylinders(int depth) {
+    looked_.emplace(Looked{extract_level(octree, depth), {}});
+    looked_->sets = build_normal_sets(octree, looked_->level);
+    return static_cast<double>(count_narrow_cylinders(octree, looked_->level, looked_->sets))
+           > resolution::share_of_cylinders * static_cast<double>(looked_->level.size());
+}
+
+OctreeLevel PreparedCloud::take_level(int depth, std::optional<NormalSets>& sets) {
+    if (!looked_ || looked_->level.depth != depth) return extract_level(octree, depth);
+    Looked looked = std::move(*looked_);
+    looked_.reset();
+    sets = std::move(looked.sets);
+    return std::move(looked.level);
 }
 
 void PreparedCloud::note_outliers(const Occurrences& outliers) {
@@ -191,6 +199,7 @@ int PreparedCloud::fit_voxels(double voxel_size) {
         throw OptionError("voxel_size " + text_of(voxel_size * frame.unit()) + ": must be at least "
                           + text_of(extent * frame.unit() / (1 << deepest_level))
                           + ", the cloud's extent over 2^16");
+    looked_.reset();
     rearrange(octree, std::move(octree.positions), cube);
     return depth;
 }

@@ -2,6 +2,7 @@
 // Phase 1 of a reconstruction: a cloud's frame, its octree and what has been found out about it.
 
 #include "hsdm/cloud/cloud_frame.hh"
+#include "hsdm/contour/normal_sets.hh"
 #include "hsdm/normals/mend_normals.hh"
 #include "hsdm/normals/smooth_points.hh"
 #include "hsdm/octree/octree.hh"
@@ -33,6 +34,9 @@ public:
     /// crisper. Points already moved for their normals have little noise left.
     void smooth_for_depth(int depth, const Phases& phases);
 
+    /// The voxels of a depth, and their normal sets if choose_resolution() has made these. To be called once.
+    OctreeLevel take_level(int depth, std::optional<NormalSets>& sets);
+
     /// Have points been moved from their positions in the cloud, or might smooth_for_depth() still move them?
     bool has_moved() const { return moved_; }
     bool may_move() const { return noise_ > 0; }
@@ -45,6 +49,9 @@ public:
     Report report; // lengths and box in the octree's units until the end
 
 private:
+    /// Are bores or rods under two voxels wide more than a detail?
+    bool has_narrow_cylinders(int depth);
+
     /// Enters outliers in the report, and measures spacing and size again, because outliers make a cloud look
     /// sparser and larger.
     void note_outliers(const Occurrences& outliers);
@@ -61,6 +68,12 @@ private:
     /// returns N.
     int fit_voxels(double voxel_size);
 
+    /// What has_narrow_cylinders() made, as long as it holds.
+    struct Looked {
+        OctreeLevel level;
+        NormalSets sets;
+    };
+    std::optional<Looked> looked_;
     std::size_t far_away_ = 0; // points removed first, by drop_far_outliers
     double noise_ = 0;         // standard deviation of the noise, if it is large
     bool moved_ = false;       // have points been moved because of it?

@@ -106,15 +106,16 @@ void reconstruct_level(InputCloud& cloud, PreparedCloud& prepared, int depth, bo
     const Octree& octree = prepared.octree;
     Report report = prepared.report;
     Report::Seconds& seconds = report.seconds;
+    std::optional<NormalSets> sets;
     const OctreeLevel level =
-        phases.run("voxels", 0.15, seconds.octree, [&] { return extract_level(octree, depth); });
+        phases.run("voxels", 0.15, seconds.octree, [&] { return prepared.take_level(depth, sets); });
     report.grid.depth = depth;
     report.grid.voxel_size = level.voxel_size;
     report.grid.voxels = report.grid.sets = level.size();
     report.grid.leaves_per_level.assign(static_cast<std::size_t>(depth) + 1, 0);
     report.grid.leaves_per_level.back() = level.size();
 
-    const MethodInput input{prepared.frame, *cloud, octree, level, options, phases};
+    const MethodInput input{prepared.frame, *cloud, octree, level, options, phases, &sets};
     FacetKnowledge known;
     PolygonMesh facets = method_for(options) == Method::extended ? extended_method(input, report, known)
                                                                  : basic_method(input, report);
