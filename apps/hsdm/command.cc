@@ -118,6 +118,7 @@ void complain(const std::string& message) {
 }
 
 int run_command(int argc, char** argv) {
+    os::keep_freed_memory();
     take_standard_descriptors();
     try {
         return parse_and_run(argc, argv);

@@ -27,6 +27,9 @@
 #include <sys/sysmacros.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 extern char** environ; // NOLINT: POSIX has it in no header
 
@@ -319,6 +322,15 @@ std::size_t peak_memory() noexcept {
 
 const char* trusted_variable(const char* name) noexcept {
     return ::secure_getenv(name);
+}
+
+void keep_freed_memory() noexcept {
+#ifdef __GLIBC__
+    constexpr int largest = 1 << 28; // 24 bytes a point of 10 million points
+    constexpr int kept = 1 << 30;    // at the end of the heap: little beside such clouds
+    ::mallopt(M_MMAP_THRESHOLD, largest);
+    ::mallopt(M_TRIM_THRESHOLD, kept);
+#endif
 }
 
 void advise_huge_pages(void* memory, std::size_t bytes) noexcept {

@@ -81,6 +81,10 @@ bool is_terminal(int descriptor) noexcept;
 std::size_t peak_memory() noexcept;
 /// Null where the process has rights of another user than who started it.
 const char* trusted_variable(const char* name) noexcept;
+/// Advice to the allocator of the whole process: memory that is freed stays, to be given out again. Pages
+/// that went back to the system would be cleared when they come again. Not so for the largest blocks, which
+/// could not share what is kept. To be called by programs, before there are threads.
+void keep_freed_memory() noexcept;
 /// Only advice, on whole pages in the block.
 void advise_huge_pages(void* memory, std::size_t bytes) noexcept;
 
