@@ -1,6 +1,7 @@
 #include "hsdm/quality/distance.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/quality/distance_to_surface.hh"
 #include "hsdm/spatial/cell_search.hh"
 #include "hsdm/spatial/mesh_distance.hh"
@@ -136,7 +137,7 @@ Distance points_to_mesh_by_cells(std::span<const Vec3> points, const PolygonMesh
                                  const FacetCells& cells, double beyond) {
     if (!cells.usable()) return points_to_mesh(points, MeshDistance(mesh), beyond);
     const Triangulation cut = triangulate(mesh);
-    std::vector<double> squared(points.size());
+    std::vector<double> squared = large_vector<double>(points.size());
     for_chunks(points.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
         CellSearch search(mesh, cut, cells);
         for (std::size_t i = begin; i < end; ++i) squared[i] = search.squared_distance(points[i]);
@@ -157,7 +158,7 @@ Distance points_to_mesh_by_cells(std::span<const Vec3> points, const PolygonMesh
 }
 
 std::vector<double> squared_distances(std::span<const Vec3> points, const MeshDistance& mesh) {
-    std::vector<double> squared(points.size());
+    std::vector<double> squared = large_vector<double>(points.size());
     for_chunks(points.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
         Packets packets(mesh.tree(), points);
         for (std::size_t i = begin; i < end; ++i) squared[i] = packets(i).squared;
