@@ -1,7 +1,7 @@
 // hsdm_generate: a scan of a known solid, for the demo, the tests and anyone's own trials.
 
 #include "hsdm/errors.hh"
-#include "support/crowded_parts.hh"
+#include "support/named_solid.hh"
 #include "support/scanner.hh"
 
 #include <CLI/CLI.hpp>
@@ -11,22 +11,6 @@
 using namespace hsdm::support;
 
 namespace {
-
-Solid solid_named(const std::string& name, std::uint64_t seed, double width) {
-    if (name == "sphere") return sphere(1);
-    if (name == "torus") return torus(1, 0.4);
-    if (name == "box") return box(hsdm::Vec3(1, 1, 1));
-    if (name == "cylinder") return cylinder(0.5, 2);
-    if (name == "plate") return box(hsdm::Vec3(1, 1, 0.05));
-    if (name == "wedge") return wedge(std::numbers::pi / 6, 1, 1);
-    if (name == "cup") return cylinder(0.8, 1.4) - cylinder(0.6, 1.4).placed({.shift = {0, 0, 0.2}});
-    if (name == "fillet") return rounded_block(0.35);
-    if (name == "nested") return nested_spheres(1, 0.8);
-    if (name == "part") return mechanical_part();
-    for (const CrowdedPart& part : crowded_parts())
-        if (name == part.name) return part.of_width(width);
-    return random_solid(seed);
-}
 
 /// Of a ball about the origin that holds the solid.
 double radius_of(const Solid& solid) {
@@ -46,9 +30,7 @@ int main(int argc, char** argv) {
     ScannerOptions scanner{.positions = 0};
     app.add_option("shape", shape, "the solid; `random` is a tree of solids that --seed chooses")
         ->required()
-        ->check(
-            CLI::IsMember({"sphere", "torus", "box", "cylinder", "cup", "plate", "wedge", "fillet", "nested",
-                           "part", "comb", "honeycomb", "heat-sink", "hinge", "can", "roll", "random"}));
+        ->check(CLI::IsMember(solid_names()));
     app.add_option("--width", width,
                    "of the walls and gaps of a comb, honeycomb, heat-sink, hinge, can or roll")
         ->check(CLI::Range(0.001, 0.2))
@@ -73,8 +55,7 @@ int main(int argc, char** argv) {
     options.normals = !no_normals;
     try {
         Solid solid = solid_named(shape, options.seed, width);
-        Random random(options.seed + 0x9e3779b97f4a7c15u);
-        if (turn) solid = solid.placed(random_pose(random));
+        if (turn) solid = solid.placed(pose_by_seed(options.seed));
         scanner.points = options.points, scanner.seed = options.seed;
         scanner.noise = options.position_noise, scanner.outliers = options.outliers;
         write_ply(output, scanner.positions > 0 ? scan_from_above(solid, radius_of(solid), scanner)
