@@ -29,7 +29,7 @@ python) packages="$packages $python python3-skbuild python3-venv" ;;
 test) packages="$packages $python python3-pytest python3-meshio mypy" ;;
 demo) packages="$packages f3d xvfb xauth" ;;
 tools) packages="$packages clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 llvm-14 doxygen git
-    python3 lintian zsh fish man-db libxml2-utils
+    python3 libbenchmark-dev lintian zsh fish man-db libxml2-utils
     python3-numpy python3-ezdxf assimp-utils lib3mf1 chromium blender xvfb xauth" ;; # these for tests
 esac
 

@@ -8,13 +8,17 @@ namespace hsdm::bench {
 double now();
 
 int creases(int argc, char** argv);
+int growth(int argc, char** argv);
 int input(int argc, char** argv);
+int judge_mesh(int argc, char** argv);
 int neighbors(int argc, char** argv);
 int normals(int argc, char** argv);
 int phases(int argc, char** argv);
 int robustness(int argc, char** argv);
 int scans(int argc, char** argv);
 int silences(int argc, char** argv);
+int threads(int argc, char** argv);
 int walls(int argc, char** argv);
+int yard(int argc, char** argv);
 
 } // namespace hsdm::bench

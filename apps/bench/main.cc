@@ -1,7 +1,6 @@
 // hsdm_bench NAME [ARGUMENT...]: the measurements that docs/ shows, one of them at a time.
 #include "benchmarks.hh"
 
-#include <chrono>
 #include <cstdio>
 #include <cstring>
 
@@ -15,20 +14,20 @@ struct Benchmark {
 
 constexpr Benchmark benchmarks[] = {
     {"creases", hsdm::bench::creases, "how blunt an edge may be and come out sharp"},
+    {"growth", hsdm::bench::growth, "seconds of a whole run, by phase, over clouds of growing size"},
     {"input", hsdm::bench::input, "memory and time by the way that points come in"},
+    {"judge", hsdm::bench::judge_mesh, "topology and error of anyone's mesh of a known solid"},
     {"neighbors", hsdm::bench::neighbors, "neighbours for normals, by the octree and by FLANN"},
     {"normals", hsdm::bench::normals, "estimated normals against true ones"},
-    {"phases", hsdm::bench::phases, "time of each phase over clouds of growing size"},
+    {"phases", hsdm::bench::phases, "where the nanoseconds go: time, bytes and bandwidth of each phase"},
     {"robustness", hsdm::bench::robustness, "noise, outliers, holes, density: what comes out right"},
     {"scans", hsdm::bench::scans, "scans from a few places, completed"},
     {"silences", hsdm::bench::silences, "the longest times between two questions whether to go on"},
-    {"walls", hsdm::bench::walls, "how thin walls and gaps may be"}};
+    {"threads", hsdm::bench::threads, "time of each phase by the number of threads"},
+    {"walls", hsdm::bench::walls, "how thin walls and gaps may be"},
+    {"yard", hsdm::bench::yard, "what seconds and bytes of different machines are measured by"}};
 
 } // namespace
-
-double hsdm::bench::now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 int main(int argc, char** argv) {
     for (const Benchmark& benchmark : benchmarks)

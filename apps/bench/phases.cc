@@ -1,64 +1,149 @@
-// Seconds of each phase over clouds of growing size: the table of docs/benchmark.md.
-#include "benchmarks.hh"
+// hsdm_bench phases: where the nanoseconds of a reconstruction go, phase by phase, and how far each is from
+// what copying its arrays would take.
 
-#include "hsdm/octree/spacing.hh"
+#include "benchmarks.hh"
+#include "phase_steps.hh"
+#include "plot.hh"
+#include "yard.hh"
+
+#include "hsdm/io/read_points.hh"
+#include "hsdm/io/write_mesh.hh"
+#include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/reconstruct.hh"
-#include "support/sample.hh"
+#include "support/folder.hh"
+#include "support/named_solid.hh"
 
 #include <CLI/CLI.hpp>
+#include <tbb/task_arena.h>
 
-#include <cmath>
+#include <algorithm>
 #include <cstdio>
 
 using namespace hsdm;
 
 namespace {
 
-/// The cloud with the wanted number of points per voxel on average: the surface occupies voxels in proportion
-/// to 1 / h^2, so the right edge follows from the spacing.
-double voxel_for(const PointCloud& cloud, double points_per_voxel) {
-    constexpr double voxels_per_area = 1.5;
-    return estimate_spacing(build_octree(cloud)) * std::sqrt(points_per_voxel * voxels_per_area);
+/// What is known of a phase.
+struct Row {
+    std::string name, function;
+    double seconds, bytes;
+    bench::Role role = bench::Role::phase;
+};
+
+struct Size {
+    double points, voxels;
+};
+
+/// The fastest of so many runs of each.
+std::vector<Row> time_steps(bench::Work& work, int repeats) {
+    std::vector<Row> rows;
+    for (const bench::Step& step : bench::phase_steps()) {
+        double best = bench::seconds_of(step, work);
+        for (int i = 1; i < repeats; ++i) best = std::min(best, bench::seconds_of(step, work));
+        rows.push_back({step.name, step.function, best, step.bytes(work), step.role});
+    }
+    return rows;
 }
 
-Report best_of(const PointCloud& cloud, const ReconstructOptions& options, int repeats) {
-    Report best;
-    for (int i = 0; i < repeats; ++i) {
-        Report report = reconstruct(cloud, options).report;
-        if (i == 0 || report.seconds.total < best.seconds.total) best = std::move(report);
+/// A whole becomes what its parts, the rows before it, leave of it.
+void take_parts_off(std::vector<Row>& rows) {
+    double parts = 0;
+    for (Row& row : rows) {
+        if (row.role == bench::Role::part) parts += row.seconds;
+        if (row.role != bench::Role::whole) continue;
+        row.name = "facets", row.function = "the rest of " + row.function;
+        row.seconds = std::max(0.0, row.seconds - parts);
+        parts = 0;
     }
-    return best;
+}
+
+void print_phase(const Row& row, const Size& size, double total, double bandwidth) {
+    const double rate = row.bytes / row.seconds;
+    std::printf("| %s | `%s` | %.1f | %.1f | %.0f | %.0f | %.0f | %.2f | %.1f |\n", row.name.c_str(),
+                row.function.c_str(), 1e3 * row.seconds, 100 * row.seconds / total,
+                1e9 * row.seconds / size.points, 1e9 * row.seconds / size.voxels, row.bytes / size.points,
+                rate / 1e9, 100 * rate / bandwidth);
+}
+
+void print_phases(const std::vector<Row>& rows, const Size& size, double bandwidth) {
+    Row all{"all", "", 0, 0};
+    for (const Row& row : rows) all.seconds += row.seconds, all.bytes += row.bytes;
+    std::printf(
+        "| phase | function | ms | %% of all | ns per point | ns per voxel | bytes per point | GB/s | "
+        "%% of copying |\n|---|---|---|---|---|---|---|---|---|\n");
+    for (const Row& row : rows) print_phase(row, size, all.seconds, bandwidth);
+    std::printf("| all | | %.1f | 100 | %.0f | %.0f | %.0f | %.2f | %.1f |\n", 1e3 * all.seconds,
+                1e9 * all.seconds / size.points, 1e9 * all.seconds / size.voxels, all.bytes / size.points,
+                all.bytes / all.seconds / 1e9, 100 * all.bytes / all.seconds / bandwidth);
+}
+
+/// Nanoseconds over bytes, both of a point, and what copying the bytes would take.
+void draw_phases(const std::vector<Row>& rows, const Size& size, double bandwidth, const std::string& path) {
+    const bench::Axis bytes{"bytes read and made, per point", 5, 2000, {10, 20, 50, 100, 200, 500, 1000}};
+    const bench::Axis time{"ns per point", 0.5, 1000, {1, 2, 5, 10, 20, 50, 100, 200, 500}};
+    bench::Plot plot(bytes, time);
+    for (const double share : {1.0, 0.1, 0.01}) {
+        const double slope = 1e9 / (share * bandwidth); // ns per byte
+        const double from = std::max(bytes.least, time.least / slope);
+        const double to = std::min(bytes.most, time.most / slope);
+        char name[32];
+        std::snprintf(name, sizeof name, "%g %% of copying", 100 * share);
+        plot.guide({from, from * slope}, {to, to * slope}, name);
+    }
+    for (const Row& row : rows)
+        plot.mark({row.bytes / size.points, 1e9 * row.seconds / size.points}, row.name);
+    plot.write(path);
+}
+
+/// Reading, reconstruct() and writing in one piece.
+double time_whole(const bench::Work& work) {
+    const double start = bench::now();
+    PointFile file = read_points(work.points_file);
+    const double voxel_size = work.cube_extent / static_cast<double>(1u << work.depth);
+    const Reconstruction part = reconstruct(std::move(file.cloud), {.voxel_size = voxel_size});
+    write_mesh(work.mesh_file, to_polygons(part.mesh), MeshFormat::ply);
+    return bench::now() - start;
 }
 
 } // namespace
 
 int bench::phases(int argc, char** argv) {
-    CLI::App app("Times the phases of a reconstruction over clouds of growing size.");
-    std::vector<std::size_t> sizes{100000, 300000, 1000000, 3000000, 10000000};
-    double points_per_voxel = 8;
-    int repeats = 3, threads = 0;
-    app.add_option("--sizes", sizes, "numbers of points")->delimiter(',');
+    CLI::App app(
+        "Times every phase of a reconstruction as a function of its own: nanoseconds of a point and of "
+        "a voxel, the bytes of the arrays that it reads and makes, and how soon a copy would move them.");
+    std::string shape = "torus", plot_file;
+    std::size_t points = 1000000;
+    double points_per_voxel = 7;
+    int repeats = 5, threads = 0;
+    app.add_option("--shape", shape, "of hsdm_generate, in general pose")
+        ->check(CLI::IsMember(support::solid_names()))
+        ->capture_default_str();
+    app.add_option("--points", points, "how many")->capture_default_str();
     app.add_option("--points-per-voxel", points_per_voxel, "on average")->capture_default_str();
     app.add_option("--repeats", repeats, "the fastest of so many runs counts")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     app.add_option("--threads", threads, "at most so many; 0: all");
+    app.add_option("--plot", plot_file, "an SVG file: nanoseconds over bytes");
     CLI11_PARSE(app, argc, argv);
-
-    support::Random random(1);
-    const support::Solid solid = support::torus(1, 0.4).placed(support::random_pose(random));
-    std::printf("%10s %10s %8s %8s %8s %8s %8s %8s %8s %12s %8s\n", "points", "voxels", "octree", "graph",
-                "facets", "error", "mesh", "features", "total", "ns / point", "MB");
-    for (std::size_t points : sizes) {
-        const PointCloud cloud = support::sample(solid, {.points = points, .normals = false});
-        const ReconstructOptions options{
-            .voxel_size = voxel_for(cloud, points_per_voxel), .method = Method::basic, .threads = threads};
-        const Report r = best_of(cloud, options, repeats);
-        const Report::Seconds& s = r.seconds;
-        std::printf("%10zu %10zu %8.3f %8.3f %8.3f %8.3f %8.3f %8.3f %8.3f %12.1f %8zu\n", points,
-                    r.grid.voxels, s.octree, s.graph, s.facets, s.error, s.mesh, s.features, s.total,
-                    1e9 * s.total / static_cast<double>(points), r.peak_memory_bytes / 1000000);
-        std::fflush(stdout);
-    }
+    const int used = threads > 0 ? threads : all_threads();
+    tbb::task_arena arena(used);
+    const double y = sort_seconds(), bandwidth = copy_bandwidth(used);
+    const support::Folder folder;
+    Work work = make_work(shape, points, points_per_voxel, folder.path());
+    double whole = 0;
+    std::vector<Row> rows;
+    arena.execute([&] {
+        rows = time_steps(work, repeats);
+        whole = time_whole(work);
+        for (int i = 1; i < repeats; ++i) whole = std::min(whole, time_whole(work));
+    });
+    take_parts_off(rows);
+    const Size size{static_cast<double>(points), static_cast<double>(work.level.size())};
+    std::printf("%s, %zu points, %zu voxels, threads: %d; Y %.3f s, copying %.2f GB/s\n\n", shape.c_str(),
+                points, work.level.size(), used, y, bandwidth / 1e9);
+    print_phases(rows, size, bandwidth);
+    std::printf("\nIn one piece, from file to file: %.1f ms, %.2f Y\n", 1e3 * whole, whole / y);
+    if (!plot_file.empty()) draw_phases(rows, size, bandwidth, plot_file);
     return 0;
 }

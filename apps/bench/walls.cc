@@ -2,6 +2,7 @@
 // and the plot of docs/sheets.md.
 
 #include "benchmarks.hh"
+#include "plot.hh"
 
 #include "hsdm/errors.hh"
 #include "hsdm/reconstruct.hh"
@@ -13,9 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <functional>
-#include <sstream>
 #include <string>
 
 using namespace hsdm;
@@ -114,65 +113,22 @@ std::vector<double> print_table(NormalSource normals, const std::vector<double>&
     return percents;
 }
 
-/// Draws percentages over the width, to a logarithmic scale, and where the width is a spacing of the points.
-class Plot {
-public:
-    explicit Plot(const std::vector<double>& widths) : widths_(widths) {
-        const auto [least, most] = std::ranges::minmax(widths);
-        least_ = least, most_ = std::max(most, 1.001 * least);
-    }
+/// Percentages over the width, and where the width is a spacing of the points.
+bench::Plot plot_of(const std::vector<double>& widths) {
+    const auto [least, most] = std::ranges::minmax(widths);
+    const double spacing = 1 / std::sqrt(per_voxel);
+    bench::Plot plot({"width in voxels", least, std::max(most, 1.001 * least), widths},
+                     {"% right", 0, 100, {0, 50, 95, 100}, false});
+    plot.guide({spacing, 100}, {spacing, 0}, "a spacing");
+    return plot;
+}
 
-    void add(const std::vector<double>& percents, const char* name, const char* colour) {
-        lines_ << "<polyline fill='none' stroke='" << colour << "' stroke-width='2' points='";
-        for (std::size_t i = 0; i < widths_.size(); ++i)
-            lines_ << x(widths_[i]) << ',' << y(percents[i]) << ' ';
-        lines_ << "'/>\n";
-        for (std::size_t i = 0; i < widths_.size(); ++i)
-            lines_ << "<circle cx='" << x(widths_[i]) << "' cy='" << y(percents[i]) << "' r='3' fill='"
-                   << colour << "'/>\n";
-        text(right - 150, bottom - 44 + 18 * names_++, name, colour);
-    }
-
-    void write(const std::string& path) {
-        const double spacing = 1 / std::sqrt(per_voxel);
-        lines_ << "<path stroke='#777' stroke-dasharray='4 3' d='M" << x(spacing) << ' ' << top << "V"
-               << bottom << "'/>\n";
-        text(x(spacing) + 4, bottom - 90, "a spacing", "#777");
-        for (const double percent : {0.0, 50.0, 95.0, 100.0}) {
-            lines_ << "<path stroke='#ddd' d='M" << left << ' ' << y(percent) << "H" << right << "'/>\n";
-            text(4, y(percent) + (percent == 95 ? 10 : 2), (number(percent) + " %").c_str(), "#333");
-        }
-        for (const double width : widths_) text(x(width) - 6, bottom + 16, number(width).c_str(), "#333");
-        text(left, bottom + 32, "width in voxels", "#333");
-        std::ofstream file(path);
-        file << "<svg xmlns='http://www.w3.org/2000/svg' width='560' height='300' font-family='sans-serif' "
-                "font-size='12'>\n<rect width='560' height='300' fill='white'/>\n"
-             << lines_.str() << "</svg>\n";
-        if (!file.flush()) throw Error(path, "cannot be written");
-    }
-
-private:
-    static constexpr double left = 50, right = 545, top = 10, bottom = 255;
-
-    static std::string number(double value) {
-        std::ostringstream out;
-        out << value;
-        return out.str();
-    }
-    double x(double width) const {
-        return left + (right - left) * std::log(width / least_) / std::log(most_ / least_);
-    }
-    static double y(double percent) { return bottom - (bottom - top) * percent / 100; }
-    void text(double at_x, double at_y, const char* what, const char* colour) {
-        lines_ << "<text x='" << at_x << "' y='" << at_y << "' fill='" << colour << "'>" << what
-               << "</text>\n";
-    }
-
-    const std::vector<double>& widths_;
-    double least_, most_;
-    int names_ = 0;
-    std::ostringstream lines_;
-};
+void add_line(const std::vector<double>& widths, const std::vector<double>& percents, const char* name,
+              bench::Plot& plot) {
+    std::vector<bench::PlotPoint> line;
+    for (std::size_t i = 0; i < widths.size(); ++i) line.push_back({widths[i], percents[i]});
+    plot.line(line, name);
+}
 
 } // namespace
 
@@ -186,11 +142,11 @@ int bench::walls(int argc, char** argv) {
     app.add_option("--widths", widths, "in voxels; a spacing is 0.35");
     app.add_option("--plot", plot_file, "an SVG file: what is right of all shapes, by width");
     CLI11_PARSE(app, argc, argv);
-    Plot plot(widths);
+    Plot plot = plot_of(widths);
     std::printf("Normals given:\n\n");
-    plot.add(print_table(NormalSource::given, widths, poses), "normals given", "#1f5fa8");
+    add_line(widths, print_table(NormalSource::given, widths, poses), "normals given", plot);
     std::printf("\nNormals estimated:\n\n");
-    plot.add(print_table(NormalSource::estimate, widths, poses), "normals estimated", "#c4611a");
+    add_line(widths, print_table(NormalSource::estimate, widths, poses), "normals estimated", plot);
     if (!plot_file.empty()) plot.write(plot_file);
     return 0;
 }
