@@ -128,18 +128,17 @@ def python_with_open3d():
     return None
 
 
-def build_cgal_peers(folder):
-    """Returns the program, or None and why there is none."""
-    if not os.path.exists("/usr/include/CGAL/version.h") or not shutil.which("g++"):
-        return None, "libcgal-dev is not installed, or g++"
-    source, program = os.path.join(SOURCES, "cgal_peers.cc"), os.path.join(folder, "cgal_peers")
+def cgal_missing():
+    found = os.path.exists("/usr/include/CGAL/version.h") and shutil.which("g++")
+    return None if found else "libcgal-dev is not installed, or g++"
+
+
+def build_cgal_peers(program):
+    """Once. Raises CalledProcessError."""
+    source = os.path.join(SOURCES, "cgal_peers.cc")
     if not os.path.exists(program) or os.path.getmtime(program) < os.path.getmtime(source):
-        print("peers: compiling cgal_peers.cc, a minute", file=sys.stderr)
-        made = subprocess.run(["g++", *CGAL_FLAGS, source, "-o", program, "-lgmp", "-lmpfr", "-ltbb", "-lpthread"],
-                              capture_output=True, text=True)
-        if made.returncode:
-            return None, "cgal_peers.cc does not compile: " + made.stderr.strip().splitlines()[-1]
-    return program, None
+        print("peers: compiling cgal_peers.cc, a minute or two", file=sys.stderr)
+        subprocess.run(["g++", *CGAL_FLAGS, source, "-o", program, "-lgmp", "-lmpfr", "-ltbb", "-lpthread"], check=True)
 
 
 def write_text(path, text):
@@ -152,7 +151,7 @@ def vtk_to_ply(source, target):
 
 
 def all_methods(tools, folder):
-    cgal, no_cgal = build_cgal_peers(folder)
+    cgal = os.path.join(folder, "cgal_peers")
     python = python_with_open3d()
     no_open3d = None if python else "python3-open3d is not installed"
     open3d = os.path.join(SOURCES, "open3d_peers.py")
@@ -161,7 +160,8 @@ def all_methods(tools, folder):
         no_meshlab = program_missing("Xvfb", "xvfb, which MeshLab needs,")
 
     def cgal_run(method, value=None):
-        return lambda s, out: [cgal, method, s.ply, out] + ([str(value(s))] if value else [])
+        return dict(command=lambda s, out: [cgal, method, s.ply, out] + ([str(value(s))] if value else []),
+                    before=lambda s: build_cgal_peers(cgal), absent=cgal_missing())
 
     def open3d_run(method, value):
         return dict(command=lambda s, out: [python, open3d, method, s.ply, out, str(value(s))], absent=no_open3d,
@@ -187,9 +187,9 @@ def all_methods(tools, folder):
         Method("Open3D, Poisson", "python3-open3d", **open3d_run("poisson", depth)),
         Method("MeshLab, screened Poisson", "meshlab", absent=no_meshlab, **meshlab_run(SCREENED_POISSON)),
         Method("PCL, Poisson", "pcl-tools", **pcl_run("pcl_poisson_reconstruction", "-depth", depth)),
-        Method("CGAL, Poisson", "libcgal-dev", cgal_run("poisson", voxel), absent=no_cgal),
-        Method("CGAL, advancing front", "libcgal-dev", cgal_run("advancing-front"), absent=no_cgal),
-        Method("CGAL, scale space", "libcgal-dev", cgal_run("scale-space"), absent=no_cgal),
+        Method("CGAL, Poisson", "libcgal-dev", **cgal_run("poisson", voxel)),
+        Method("CGAL, advancing front", "libcgal-dev", **cgal_run("advancing-front")),
+        Method("CGAL, scale space", "libcgal-dev", **cgal_run("scale-space")),
         Method("Open3D, ball pivoting", "python3-open3d", **open3d_run("ball-pivoting", spacing)),
         Method("MeshLab, ball pivoting", "meshlab", absent=no_meshlab, **meshlab_run(BALL_PIVOTING)),
         Method("PCL, greedy triangulation", "pcl-tools",
@@ -246,8 +246,11 @@ def run_method(method, scan, arguments):
     out = f"{stem}.{method.suffix}"
     if os.path.exists(out):
         os.remove(out)
-    if method.before:
-        method.before(scan)
+    try:
+        if method.before:
+            method.before(scan)
+    except subprocess.CalledProcessError as error:
+        return {"seconds": 0, "processor": 0, "megabytes": 0, "fault": f"not made ready: {error}"}, out
     run = timed_run(method.command(scan, out), arguments.limit, stem + ".log")
     if not run["fault"] and not os.path.exists(out):
         run["fault"] = "no mesh"
@@ -256,10 +259,12 @@ def run_method(method, scan, arguments):
 
 def judge(method, scan, out, tools):
     """What came out of the last run."""
-    mesh = out
-    if method.after:
-        mesh = out + ".ply"
-        method.after(out, mesh)
+    mesh = out + ".ply" if method.after else out
+    try:
+        if method.after:
+            method.after(out, mesh)
+    except subprocess.CalledProcessError as error:
+        return {"fault": f"not converted: {error}"}
     told = subprocess.run([tools["hsdm_bench"], "judge", scan.shape, scan.ply, mesh, "--turn", "--seed", str(SEED)],
                           capture_output=True, text=True)
     return json.loads(told.stdout) if told.returncode == 0 else {"fault": told.stderr.strip()}
@@ -297,14 +302,17 @@ def summary(result, name):
     whole = [r for r in result["methods"][name]["runs"] if not r["fault"]]
     if not whole:
         return None
-    ours = {r["round"]: r["seconds"] for r in result["methods"]["hsdm"]["runs"]}
+    ours = {r["round"]: r["seconds"] for r in result["methods"]["hsdm"]["runs"] if not r["fault"]}
+    ratios = [r["seconds"] / ours[r["round"]] for r in whole if r["round"] in ours]
     middle = statistics.median
     return {"seconds": middle(r["seconds"] for r in whole), "megabytes": max(r["megabytes"] for r in whole),
-            "ratio": middle(r["seconds"] / ours[r["round"]] for r in whole), "runs": len(whole),
+            "ratio": middle(ratios) if ratios else None, "runs": len(whole),
             "yards": middle(r["seconds"] / result["yards"][r["round"]]["sort_seconds"] for r in whole)}
 
 
 def number(value):
+    if value is None:
+        return ""
     return f"{value:.3g}" if value < 100 else f"{value:,.0f}"
 
 
@@ -352,9 +360,9 @@ def plot(results, methods):
         rows.append((f"{result['shape']}, {result['points']:,} points", None))
         for method in methods:
             told = summary(result, method.name)
-            if told:
+            if told and told["ratio"]:
                 rows.append((method.name, told))
-    ratios = [told["ratio"] for _, told in rows if told]
+    ratios = [told["ratio"] for _, told in rows if told] or [1]
     least, most = min(0.5, 0.8 * min(ratios)), max(20, 1.3 * max(ratios))
     left, right, height = 190, 640, 17
 
