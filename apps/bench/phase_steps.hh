@@ -60,7 +60,8 @@ double voxel_for(double spacing, double points_per_voxel);
 Work make_work(const std::string& shape, std::size_t points, double points_per_voxel,
                const std::string& folder);
 
-/// Seconds of one run of a step, prepared before.
+/// Seconds of one run of a step, prepared before. Callgrind writes what it counted meanwhile, under the
+/// step's name.
 double seconds_of(const Step& step, Work& work);
 
 } // namespace hsdm::bench

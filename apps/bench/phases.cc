@@ -105,6 +105,19 @@ double time_whole(const bench::Work& work) {
     return bench::now() - start;
 }
 
+void print_json(const std::vector<Row>& rows, const Size& size, double bandwidth) {
+    std::printf("{\"points\": %.0f, \"voxels\": %.0f, \"copy_bytes_per_second\": %.0f, "
+                "\"additions_per_second\": %.0f, \"phases\": [",
+                size.points, size.voxels, bandwidth, bench::addition_rate());
+    for (const Row& row : rows)
+        std::printf("%s\n  {\"name\": \"%s\", \"seconds\": %.9f, \"bytes\": %.0f, \"role\": \"%s\"}",
+                    &row == rows.data() ? "" : ",", row.name.c_str(), row.seconds, row.bytes,
+                    row.role == bench::Role::whole  ? "whole"
+                    : row.role == bench::Role::part ? "part"
+                                                    : "phase");
+    std::printf("]}\n");
+}
+
 } // namespace
 
 int bench::phases(int argc, char** argv) {
@@ -115,6 +128,7 @@ int bench::phases(int argc, char** argv) {
     std::size_t points = 1000000;
     double points_per_voxel = 7;
     int repeats = 5, threads = 0;
+    bool bare = false, json = false;
     app.add_option("--shape", shape, "of hsdm_generate, in general pose")
         ->check(CLI::IsMember(support::solid_names()))
         ->capture_default_str();
@@ -125,9 +139,17 @@ int bench::phases(int argc, char** argv) {
         ->capture_default_str();
     app.add_option("--threads", threads, "at most so many; 0: all");
     app.add_option("--plot", plot_file, "an SVG file: nanoseconds over bytes");
+    app.add_flag("--json", json, "for programs: without what is left of a whole");
+    app.add_flag("--bare", bare, "phases and nothing else, without a table: for what counts instructions");
     CLI11_PARSE(app, argc, argv);
     const int used = threads > 0 ? threads : all_threads();
     tbb::task_arena arena(used);
+    if (bare) {
+        const support::Folder folder;
+        Work work = make_work(shape, points, points_per_voxel, folder.path());
+        arena.execute([&] { time_steps(work, 1); });
+        return 0;
+    }
     const double y = sort_seconds(), bandwidth = copy_bandwidth(used);
     const support::Folder folder;
     Work work = make_work(shape, points, points_per_voxel, folder.path());
@@ -136,10 +158,14 @@ int bench::phases(int argc, char** argv) {
     arena.execute([&] {
         rows = time_steps(work, repeats);
         whole = time_whole(work);
-        for (int i = 1; i < repeats; ++i) whole = std::min(whole, time_whole(work));
+        for (int i = 1; i < repeats && !json; ++i) whole = std::min(whole, time_whole(work));
     });
-    take_parts_off(rows);
     const Size size{static_cast<double>(points), static_cast<double>(work.level.size())};
+    if (json) {
+        print_json(rows, size, bandwidth);
+        return 0;
+    }
+    take_parts_off(rows);
     std::printf("%s, %zu points, %zu voxels, threads: %d; Y %.3f s, copying %.2f GB/s\n\n", shape.c_str(),
                 points, work.level.size(), used, y, bandwidth / 1e9);
     print_phases(rows, size, bandwidth);

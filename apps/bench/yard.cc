@@ -61,6 +61,23 @@ double bench::copy_bandwidth(int threads, std::size_t bytes, int repeats) {
     return best;
 }
 
+double bench::addition_rate() {
+    constexpr int trials = 100, rounds = 2000000;
+    constexpr double instructions = 8 + 3; // the loop's own: add, compare, jump
+    double best = 0;
+    for (int trial = 0; trial < trials; ++trial) {
+        std::uint64_t a = 1, b = 1, c = 1, d = 1, e = 1, f = 1, g = 1, h = 1;
+        const double start = now();
+        for (int i = 0; i < rounds; ++i) {
+            a += 1, b += 2, c += 3, d += 4, e += 5, f += 6, g += 7, h += 8;
+            // Nothing may be known of them, or the loop would be left out.
+            asm volatile("" : "+r"(a), "+r"(b), "+r"(c), "+r"(d), "+r"(e), "+r"(f), "+r"(g), "+r"(h));
+        }
+        best = std::max(best, instructions * rounds / (now() - start));
+    }
+    return best;
+}
+
 int bench::all_threads() {
     return tbb::this_task_arena::max_concurrency();
 }

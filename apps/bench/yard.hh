@@ -12,6 +12,10 @@ double sort_seconds(int repeats = 3);
 /// threads (0: all): the fastest of so many trials. Arrays that caches hold would be copied sooner.
 double copy_bandwidth(int threads, std::size_t bytes = std::size_t{1} << 28, int repeats = 7);
 
+/// Instructions in a second of a loop of additions that do not wait for each other: the fastest of some short
+/// trials.
+double addition_rate();
+
 /// Threads that parallel loops run on unless told otherwise.
 int all_threads();
 

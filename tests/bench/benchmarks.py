@@ -80,6 +80,9 @@ def phases(tools, folder):
     reading = rows[names.index("reading")]
     expect(96 <= float(reading[6]) < 97, f"48 bytes of a point in the file, 48 in memory, and the file's head: {reading}")
     xml.etree.ElementTree.parse(plot)
+    told = json.loads(tools.bench("phases", "--points", 3000, "--repeats", 1, "--json"))
+    expect([p["name"] for p in told["phases"] if p["role"] == "whole"] == ["facets, whole"], told)
+    expect(all(p["bytes"] > 0 for p in told["phases"]) and told["additions_per_second"] > 0, told)
 
 
 def threads(tools, folder):
@@ -122,6 +125,21 @@ def microbench(tools, _):
     tools.run(tools.microbench, "many", status=2)
 
 
+def roofline(tools, folder):
+    """Callgrind has counted every phase, and the plot is XML."""
+    plot = os.path.join(folder, "roofline.svg")
+    script = os.path.join(tools.source, "apps", "bench", "roofline.py")
+    told = subprocess.run([sys.executable, script, "--build", tools.build, "--points", "2000", "--repeats", "1", "--plot", plot],
+                          capture_output=True, text=True)
+    if "valgrind" in told.stderr:
+        print("skipped: " + told.stderr)
+        sys.exit(SKIPPED)
+    expect(told.returncode == 0, told.stderr)
+    rows = rows_of(told.stdout)
+    expect(len(rows) > 20 and all(float(row[1].replace(",", "")) > 0 for row in rows), told.stdout)
+    xml.etree.ElementTree.parse(plot)
+
+
 def peers(tools, folder):
     """The table has hsdm's closed mesh and the right topology; methods that are not asked for are left out."""
     plot, kept = os.path.join(folder, "peers.svg"), os.path.join(folder, "peers.json")
@@ -150,7 +168,7 @@ def limits(tools, folder):
 
 def main():
     name, build, source, microbench_ = sys.argv[1:]
-    tests = {t.__name__: t for t in (judge, phases, threads, growth, yard, microbench, peers, limits)}
+    tests = {t.__name__: t for t in (judge, phases, threads, growth, yard, microbench, roofline, peers, limits)}
     with tempfile.TemporaryDirectory() as folder:
         tests[name](Tools(build, source, microbench_), folder)
 
