@@ -50,11 +50,11 @@ struct Column {
 };
 
 constexpr Column columns[] = {
-    {"read", &Report::Seconds::read},       {"octree", &Report::Seconds::octree},
-    {"normals", &Report::Seconds::normals}, {"sets", &Report::Seconds::graph},
-    {"facets", &Report::Seconds::facets},   {"error", &Report::Seconds::error},
-    {"mesh", &Report::Seconds::mesh},       {"features", &Report::Seconds::features},
-    {"write", &Report::Seconds::write},     {"all", &Report::Seconds::total},
+    {"all", &Report::Seconds::total},         {"read", &Report::Seconds::read},
+    {"octree", &Report::Seconds::octree},     {"normals", &Report::Seconds::normals},
+    {"sets", &Report::Seconds::graph},        {"facets", &Report::Seconds::facets},
+    {"error", &Report::Seconds::error},       {"mesh", &Report::Seconds::mesh},
+    {"features", &Report::Seconds::features}, {"write", &Report::Seconds::write},
 };
 
 void print_sizes_head() {
@@ -79,7 +79,7 @@ void draw_growth(const std::vector<std::size_t>& sizes, const std::vector<Report
     bench::Plot plot({"points", least, std::max(most, 1.001 * least), bench::round_ticks(least, most)},
                      {"ns per point", 1, 5000, {1, 10, 100, 1000}});
     for (const Column& column : columns) {
-        std::vector<bench::PlotPoint> line;
+        std::vector<bench::PlotPoint> line; // of phases below 1 ns at the foot
         for (std::size_t i = 0; i < sizes.size(); ++i) {
             const auto n = static_cast<double>(sizes[i]);
             line.push_back({n, 1e9 * (reports[i].seconds.*column.seconds) / n});

@@ -60,19 +60,38 @@ Plot::Plot(const Axis& x, const Axis& y) : x_(x), y_(y) {
 
 void Plot::line(const std::vector<PlotPoint>& points, const std::string& name) {
     const char* const colour = line_colours[lines_ % line_colours.size()];
-    shapes_ << "<polyline fill='none' stroke='" << colour << "' stroke-width='2' points='";
+    const bool again = lines_ >= line_colours.size(); // the same colours, dashed
+    shapes_ << "<polyline fill='none' stroke='" << colour << "' stroke-width='2'"
+            << (again ? " stroke-dasharray='6 3'" : "") << " points='";
     for (const PlotPoint& p : points) shapes_ << across(p.x) << ',' << down(p.y) << ' ';
     shapes_ << "'/>\n";
     for (const PlotPoint& p : points)
         shapes_ << "<circle cx='" << across(p.x) << "' cy='" << down(p.y) << "' r='3' fill='" << colour
                 << "'/>\n";
-    text(right + 10, top + 12 + 18 * static_cast<double>(lines_), name, colour);
+    text(right + 10, top + 12 + 18 * static_cast<double>(lines_), again ? "- " + name : name, colour);
     ++lines_;
 }
 
 void Plot::mark(const PlotPoint& point, const std::string& name) {
     shapes_ << "<circle cx='" << across(point.x) << "' cy='" << down(point.y) << "' r='4' fill='#0072b2'/>\n";
-    text(across(point.x) + 6, down(point.y) + 4, name, "#333");
+    constexpr double letter = 6.4; // in the mean
+    const double x = across(point.x) + 6, y = down(point.y) + 4;
+    text(x, free_height(x, y, letter * static_cast<double>(name.size())), name, "#333");
+}
+
+/// The nearest height at which a label of this width covers no other.
+double Plot::free_height(double x, double y, double width) {
+    constexpr double line = 11, step = 4;
+    const auto is_free = [&](double height) {
+        return std::none_of(labels_.begin(), labels_.end(), [&](const Label& other) {
+            return std::abs(height - other.y) < line && x < other.x + other.width && other.x < x + width;
+        });
+    };
+    double height = y;
+    for (int i = 1; i < 60 && !is_free(height); ++i)
+        height = std::clamp(y + (i % 2 ? -step : step) * (i + 1) / 2, top + line, bottom);
+    labels_.push_back({x, height, width});
+    return height;
 }
 
 void Plot::guide(const PlotPoint& from, const PlotPoint& to, const std::string& name) {

@@ -27,7 +27,7 @@ public:
 
     /// A line through points, its name in the legend.
     void line(const std::vector<PlotPoint>& points, const std::string& name);
-    /// A point with its name beside it.
+    /// A point with its name beside it, higher or lower where another's name would be in the way.
     void mark(const PlotPoint& point, const std::string& name);
     /// A thin line between two points, its name at the second.
     void guide(const PlotPoint& from, const PlotPoint& to, const std::string& name);
@@ -39,8 +39,15 @@ private:
     double down(double y) const;
     void text(double x, double y, const std::string& what, const char* colour);
 
+    double free_height(double x, double y, double width);
+
+    struct Label {
+        double x, y, width;
+    };
+
     Axis x_, y_;
     std::size_t lines_ = 0;
+    std::vector<Label> labels_;
     std::ostringstream shapes_;
 };
 

@@ -70,7 +70,7 @@ def table(rows, told):
 def plot(rows, told):
     bandwidth, peak = told["copy_bytes_per_second"], told["additions_per_second"]
     left, right, top, bottom = 60, 700, 14, 380
-    xs, ys = (0.01, 300), (0.1, 20)
+    xs, ys = (0.3, 300), (0.5, 50)
 
     def across(x):
         return left + (right - left) * math.log(min(max(x, xs[0]), xs[1]) / xs[0]) / math.log(xs[1] / xs[0])
@@ -78,22 +78,34 @@ def plot(rows, told):
     def down(y):
         return bottom - (bottom - top) * math.log(min(max(y, ys[0]), ys[1]) / ys[0]) / math.log(ys[1] / ys[0])
 
+    labels = []
+
+    def free_height(x, y, name):
+        """The nearest height at which the name covers no other."""
+        width = 6 * len(name)
+        for i in range(60):
+            height = y + (-4 if i % 2 else 4) * ((i + 1) // 2)
+            if all(abs(height - b) >= 11 or x >= a + w or a >= x + width for a, b, w in labels):
+                break
+        labels.append((x, height, width))
+        return height
+
     parts = []
-    for tick in (0.01, 0.1, 1, 10, 100):
+    for tick in (1, 10, 100):
         parts.append(f"<path stroke='#ddd' d='M{across(tick):.1f} {top}V{bottom}'/><text x='{across(tick) - 8:.1f}' y='{bottom + 16}'>{tick:g}</text>")
-    for tick in (0.1, 0.2, 0.5, 1, 2, 5, 10, 20):
+    for tick in (0.5, 1, 2, 5, 10, 20, 50):
         parts.append(f"<path stroke='#ddd' d='M{left} {down(tick):.1f}H{right}'/><text x='28' y='{down(tick) + 4:.1f}'>{tick:g}</text>")
     knee = peak / bandwidth
     foot = max(xs[0], ys[0] * 1e9 / bandwidth)
     parts.append(f"<path stroke='#d55e00' stroke-width='2' fill='none' d='M{across(foot):.1f} {down(foot * bandwidth / 1e9):.1f}"
                  f"L{across(knee):.1f} {down(peak / 1e9):.1f}H{right}'/>")
-    parts.append(f"<text fill='#d55e00' x='{left + 8}' y='{down(peak / 1e9) - 6:.1f}'>copying {bandwidth / 1e9:.1f} GB/s, then "
+    parts.append(f"<text fill='#d55e00' x='{right - 260}' y='{down(peak / 1e9) - 6:.1f}'>copying {bandwidth / 1e9:.1f} GB/s, then "
                  f"{peak / 1e9:.1f} billion additions a second</text>")
     for row in rows:
         x, y = across(row["instructions"] / row["bytes"]), down(row["instructions"] / row["seconds"] / 1e9)
         size = 2 + 10 * math.sqrt(row["seconds"] / sum(r["seconds"] for r in rows))
         parts.append(f"<circle cx='{x:.1f}' cy='{y:.1f}' r='{size:.1f}' fill='#0072b2' fill-opacity='0.6'/>"
-                     f"<text x='{x + size + 2:.1f}' y='{y + 4:.1f}'>{row['name']}</text>")
+                     f"<text x='{x + size + 2:.1f}' y='{free_height(x + size + 2, y + 4, row['name']):.1f}'>{row['name']}</text>")
     parts.append(f"<text x='{left}' y='{bottom + 34}'>instructions per byte read and made (areas of the dots: seconds)</text>"
                  f"<text transform='translate(14 {bottom}) rotate(-90)'>billion instructions a second</text>")
     return (f"<svg xmlns='http://www.w3.org/2000/svg' width='800' height='{bottom + 44}' font-family='sans-serif' font-size='11'>\n"

@@ -73,14 +73,16 @@ int bench::threads(int argc, char** argv) {
     std::printf(" ratio |\n|---|---|");
     for (std::size_t t = 0; t < threads.size(); ++t) std::printf("---|");
     std::printf("\n");
+    constexpr double shortest = 1e-3; // seconds
     const double most = static_cast<double>(threads.back()) / threads.front();
-    Plot plot({"ms by the least number of threads", 0.5, 1000, round_ticks(0.5, 1000)},
-              {"times as fast by the greatest", 0, 1.1 * most, {0, 0.5 * most, 0.75 * most, most}, false});
+    Plot plot({"ms by the least number of threads", 1, 1000, round_ticks(1, 1000)},
+              {"times as fast by the greatest", 0, 1.2 * most, {0, 0.5 * most, 0.75 * most, most}, false});
     std::vector<double> all(threads.size(), 0.0);
     const std::vector<Step>& steps = phase_steps();
     for (std::size_t i = 0; i < steps.size(); ++i) {
         print_ratio(steps[i].name, seconds[i]);
-        plot.mark({1e3 * seconds[i].front(), seconds[i].front() / seconds[i].back()}, steps[i].name);
+        if (seconds[i].front() >= shortest) // others have no time to divide
+            plot.mark({1e3 * seconds[i].front(), seconds[i].front() / seconds[i].back()}, steps[i].name);
         for (std::size_t t = 0; t < threads.size() && steps[i].role != Role::part; ++t)
             all[t] += seconds[i][t];
     }
