@@ -53,16 +53,14 @@ SCREENED_POISSON = """<!DOCTYPE FilterScript>
  </filter>
 </FilterScript>
 """
-BALL_PIVOTING = """<!DOCTYPE FilterScript>
-<FilterScript>
- <filter name="Surface Reconstruction: Ball Pivoting">
-  <Param type="RichAbsPerc" name="BallRadius" value="0" min="0" max="10"/>
+BALL = """ <filter name="Surface Reconstruction: Ball Pivoting">
+  <Param type="RichAbsPerc" name="BallRadius" value="{radius}" min="0" max="{extent}"/>
   <Param type="RichFloat" name="Clustering" value="20"/>
   <Param type="RichFloat" name="CreaseThr" value="90"/>
   <Param type="RichBool" name="DeleteFaces" value="false"/>
  </filter>
-</FilterScript>
 """
+BALL_RADII = 1.5, 3  # spacings
 
 
 class Scan:
@@ -163,21 +161,26 @@ def all_methods(tools, folder):
         return dict(command=lambda s, out: [cgal, method, s.ply, out] + ([str(value(s))] if value else []),
                     before=lambda s: build_cgal_peers(cgal), absent=cgal_missing())
 
-    def open3d_run(method, value):
-        return dict(command=lambda s, out: [python, open3d, method, s.ply, out, str(value(s))], absent=no_open3d,
+    def open3d_run(method, *values):
+        return dict(command=lambda s, out: [python, open3d, method, s.ply, out, *(str(value(s)) for value in values)],
+                    absent=no_open3d,
                     start=[python, "-c", "import open3d"])
 
-    def meshlab_run(script):
+    def meshlab_run(script_of):
         path = os.path.join(folder, "script.mlx")
-        return dict(command=lambda s, out: ["meshlabserver", "-i", s.ply, "-o", out, "-s", path],
-                    before=lambda s: write_text(path, script.format(depth=s.depth)))
+        return dict(command=lambda s, out: ["meshlabserver", "-i", s.ply, "-o", out, "-s", path], absent=no_meshlab,
+                    before=lambda s: write_text(path, script_of(s)))
+
+    def balls(s):
+        filters = [BALL.format(radius=r * s.spacing, extent=s.extent) for r in BALL_RADII]
+        return "".join(["<!DOCTYPE FilterScript>\n<FilterScript>\n", *filters, "</FilterScript>\n"])
 
     def pcl_run(*command):
         return dict(command=lambda s, out: [command[0], s.pcd, out] + [str(c(s)) if callable(c) else c for c in command[1:]],
                     before=Scan.write_pcd, after=vtk_to_ply, suffix="vtk",
                     absent=program_missing(command[0], "pcl-tools"))
 
-    depth, spacing, voxel = (lambda s: s.depth), (lambda s: s.spacing), (lambda s: s.voxel)
+    depth, voxel = (lambda s: s.depth), (lambda s: s.voxel)
     return [
         Method("hsdm", None,
                lambda s, out: [tools["hsdm"], "reconstruct", s.ply, "--depth", str(s.depth), "-o", out, "--quiet"]),
@@ -185,13 +188,13 @@ def all_methods(tools, folder):
                lambda s, out: ["PoissonRecon", "--in", s.ply, "--out", out, "--depth", str(s.depth)],
                absent=None if shutil.which("PoissonRecon") else "Debian 12 does not package it, and it is not on the PATH"),
         Method("Open3D, Poisson", "python3-open3d", **open3d_run("poisson", depth)),
-        Method("MeshLab, screened Poisson", "meshlab", absent=no_meshlab, **meshlab_run(SCREENED_POISSON)),
+        Method("MeshLab, screened Poisson", "meshlab", **meshlab_run(lambda s: SCREENED_POISSON.format(depth=s.depth))),
         Method("PCL, Poisson", "pcl-tools", **pcl_run("pcl_poisson_reconstruction", "-depth", depth)),
         Method("CGAL, Poisson", "libcgal-dev", **cgal_run("poisson", voxel)),
         Method("CGAL, advancing front", "libcgal-dev", **cgal_run("advancing-front")),
         Method("CGAL, scale space", "libcgal-dev", **cgal_run("scale-space")),
-        Method("Open3D, ball pivoting", "python3-open3d", **open3d_run("ball-pivoting", spacing)),
-        Method("MeshLab, ball pivoting", "meshlab", absent=no_meshlab, **meshlab_run(BALL_PIVOTING)),
+        Method("Open3D, ball pivoting", "python3-open3d", **open3d_run("ball-pivoting", *(lambda s, r=r: r * s.spacing for r in BALL_RADII))),
+        Method("MeshLab, ball pivoting", "meshlab", **meshlab_run(balls)),
         Method("PCL, greedy triangulation", "pcl-tools",
                **pcl_run("pcl_gp3_surface", "-radius", lambda s: 5 * s.spacing, "-mu", "3")),
     ]
@@ -394,9 +397,9 @@ def parse_arguments():
     parser.add_argument("--inputs", default="torus:100000,part:100000,torus:1000000,part:1000000",
                         help="SHAPE:POINTS, of hsdm_generate (%(default)s)")
     parser.add_argument("--noise", type=float, default=0, help="standard deviation along the normal, in the solid's units")
-    parser.add_argument("--rounds", type=int, default=5, help="in each of which every method runs once (%(default)s)")
+    parser.add_argument("--rounds", type=int, default=3, help="in each of which every method runs once (%(default)s)")
     parser.add_argument("--limit", type=float, default=600, help="seconds, after which a run is ended (%(default)g)")
-    parser.add_argument("--once-above", type=float, default=120,
+    parser.add_argument("--once-above", type=float, default=60,
                         help="seconds: methods that take longer run in one round alone (%(default)g)")
     parser.add_argument("--only", default="", help="a regular expression: hsdm and the methods whose names match")
     parser.add_argument("--build", default=os.path.join(HOME, "build", "release"), help="where hsdm was built (%(default)s)")

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""open3d_peers.py ball-pivoting|poisson POINTS MESH VALUE - the reconstructions of Open3D that docs/performance.md compares with.
+"""open3d_peers.py ball-pivoting|poisson POINTS MESH VALUE... - the reconstructions of Open3D that docs/performance.md compares with.
 
-POINTS is a PLY file with normals, MESH a PLY file. VALUE of `poisson` is the octree's depth, that of `ball-pivoting` the
-spacing of the points: balls of radii 1.5 and 3 spacings.
+POINTS is a PLY file with normals, MESH a PLY file. The value of `poisson` is the octree's depth, those of `ball-pivoting` the
+radii of the balls.
 """
 import sys
 
@@ -10,16 +10,16 @@ import open3d
 
 
 def main():
-    if len(sys.argv) != 5:
+    if len(sys.argv) < 5:
         sys.exit(__doc__)
-    method, source, target, value = sys.argv[1:]
+    method, source, target, *values = sys.argv[1:]
     open3d.utility.set_verbosity_level(open3d.utility.VerbosityLevel.Error)
     points = open3d.io.read_point_cloud(source)
     geometry = open3d.geometry.TriangleMesh
     if method == "poisson":
-        mesh, _ = geometry.create_from_point_cloud_poisson(points, depth=int(value))
+        mesh, _ = geometry.create_from_point_cloud_poisson(points, depth=int(values[0]))
     elif method == "ball-pivoting":
-        radii = open3d.utility.DoubleVector([1.5 * float(value), 3 * float(value)])
+        radii = open3d.utility.DoubleVector([float(value) for value in values])
         mesh = geometry.create_from_point_cloud_ball_pivoting(points, radii)
     else:
         sys.exit(__doc__)
