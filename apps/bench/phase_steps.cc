@@ -2,15 +2,19 @@
 
 #include "benchmarks.hh"
 
+#include "hsdm/contour/flat_facets.hh"
 #include "hsdm/contour/grid_signs.hh"
+#include "hsdm/contour/handles.hh"
 #include "hsdm/contour/outlier_sets.hh"
 #include "hsdm/contour/patches.hh"
 #include "hsdm/contour/sheet_features.hh"
+#include "hsdm/contour/spikes.hh"
 #include "hsdm/contour/trim_crossings.hh"
 #include "hsdm/contour/webs.hh"
 #include "hsdm/features/features.hh"
 #include "hsdm/io/read_points.hh"
 #include "hsdm/io/write_mesh.hh"
+#include "hsdm/mesh/doublets.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/normals/mend_normals.hh"
 #include "hsdm/normals/outliers.hh"
@@ -23,6 +27,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 
 #if __has_include(<valgrind/callgrind.h>)
 #include <valgrind/callgrind.h>
@@ -161,6 +166,49 @@ void contour(Work& w) {
     w.contour = dual_contour(w.octree, w.level, w.sets);
 }
 
+// What dual_contour does once there are facets, on the mesh that it returns: its last pass over each, which
+// finds nothing to mend
+
+void copy_mesh(Work& w) {
+    w.mended = w.contour.mesh;
+    w.mended.origin.resize(w.mended.vertex_count());
+    std::iota(w.mended.origin.begin(), w.mended.origin.end(), Index(0));
+}
+void find_handles(Work& w) {
+    w.checksum += static_cast<double>(cut_handles(w.octree, w.level, w.sets, w.contour.voxel, w.mended));
+}
+void find_holes(Work& w) {
+    w.checksum += static_cast<double>(fill_holes(w.mended, {.max_edges = holes::most_edges}).closed);
+}
+void find_doublets(Work& w) {
+    const auto is_smooth = [&](Index v) { return w.contour.classes[v] == VertexClass::smooth; };
+    w.checksum += static_cast<double>(merge_doublets(w.mended, is_smooth));
+}
+void find_nonmanifold(Work& w) {
+    w.checksum += static_cast<double>(make_manifold(w.mended).degenerate);
+}
+void find_small(Work& w) {
+    w.checksum += static_cast<double>(drop_splinters(w.mended).count);
+    w.checksum += static_cast<double>(collapse_flat_facets(w.octree.origin, w.mended));
+}
+void find_spikes(Work& w) {
+    w.checksum += static_cast<double>(draw_in_spikes(w.octree, w.level, w.contour.voxel, w.mended));
+}
+void make_cells(Work& w) {
+    w.cells.emplace(w.mended, w.level.voxel_size);
+}
+void find_intersections(Work& w) {
+    const double h = w.level.voxel_size;
+    const UntangleOptions options{.reach = untangling::reach * h, .nearby = untangling::nearby * h};
+    w.checksum += static_cast<double>(untangle(w.mended, options, &*w.cells).before);
+}
+double mended_mesh(const Work& w) {
+    return bytes_of(w.mended);
+}
+double mended_and_points(const Work& w) {
+    return bytes_of(w.mended) + bytes_of(w.octree.positions);
+}
+
 // The mesh
 
 void link(Work& w) {
@@ -270,6 +318,25 @@ std::vector<Step> steps_of_contour() {
     };
 }
 
+std::vector<Step> steps_of_mending() {
+    return {
+        {"handles", "cut_handles", copy_mesh, find_handles,
+         [](const Work& w) { return bytes_of(w.mended) + bytes_of(w.sets.sets); }},
+        {"holes", "fill_holes", copy_mesh, find_holes, mended_mesh},
+        {"doublets", "merge_doublets", copy_mesh, find_doublets, mended_mesh},
+        {"2-manifold", "make_manifold", copy_mesh, find_nonmanifold, mended_mesh},
+        {"splinters", "drop_splinters, collapse_flat_facets", copy_mesh, find_small, mended_mesh},
+        {"spikes", "draw_in_spikes", copy_mesh, find_spikes, mended_and_points},
+        {"cells", "FacetCells",
+         [](Work& w) {
+             copy_mesh(w);
+             w.cells.reset();
+         },
+         make_cells, mended_mesh},
+        {"intersections", "untangle", nullptr, find_intersections, mended_mesh},
+    };
+}
+
 std::vector<Step> steps_after_contour() {
     return {
         {"twins of sides", "link_facets", [](Work& w) { w.links = {}; }, link,
@@ -300,12 +367,14 @@ std::vector<Step> steps_after_contour() {
 const std::vector<Step>& phase_steps() {
     static const std::vector<Step> steps = [] {
         std::vector<Step> all = steps_before_contour();
-        for (Step part : steps_of_contour()) {
-            part.role = Role::part;
-            all.push_back(part);
-        }
+        const auto add_parts = [&](std::vector<Step> parts) {
+            for (Step& part : parts) part.role = Role::part;
+            all.insert(all.end(), parts.begin(), parts.end());
+        };
+        add_parts(steps_of_contour());
         all.push_back({"facets, whole", "dual_contour", [](Work& w) { w.contour = {}; }, contour,
                        whole_contour, Role::whole});
+        add_parts(steps_of_mending());
         const std::vector<Step> after = steps_after_contour();
         all.insert(all.end(), after.begin(), after.end());
         return all;

@@ -10,6 +10,7 @@
 #include "hsdm/point_cloud.hh"
 
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace hsdm::bench {
@@ -31,6 +32,8 @@ struct Work {
     DualMesh dual{};
     PlacedVertices vertices{};
     DualContour contour{};
+    PolygonMesh mended{};              ///< its mesh, mended once more
+    std::optional<FacetCells> cells{}; ///< of that
     FacetLinks links{};
     FeatureHints hints{};
     std::unique_ptr<PolyMesh> mesh{}; ///< OpenMesh's own cannot be moved

@@ -45,15 +45,15 @@ std::vector<Row> time_steps(bench::Work& work, int repeats) {
     return rows;
 }
 
-/// A whole becomes what its parts, the rows before it, leave of it.
+/// A whole becomes what its parts, beside it, leave of it.
 void take_parts_off(std::vector<Row>& rows) {
     double parts = 0;
-    for (Row& row : rows) {
+    for (const Row& row : rows)
         if (row.role == bench::Role::part) parts += row.seconds;
+    for (Row& row : rows) {
         if (row.role != bench::Role::whole) continue;
         row.name = "facets", row.function = "the rest of " + row.function;
-        row.seconds = std::max(0.0, row.seconds - parts);
-        parts = 0;
+        row.seconds = std::max(1e-9, row.seconds - parts);
     }
 }
 

@@ -41,16 +41,13 @@ def count_instructions(bench, options):
 
 def with_rests(told, counts):
     """Phases with their instructions; of a whole what its parts leave."""
-    rows, parts = [], []
-    for phase in told["phases"]:
-        row = dict(phase, instructions=counts[phase["name"]])
-        if row["role"] == "part":
-            parts.append(row)
+    rows = [dict(phase, instructions=counts[phase["name"]]) for phase in told["phases"]]
+    parts = [row for row in rows if row["role"] == "part"]
+    for row in rows:
         if row["role"] == "whole":
             row["name"] = "facets, the rest"
             for key in ("seconds", "instructions"):
                 row[key] = max(row[key] - sum(part[key] for part in parts), 1e-9)
-        rows.append(row)
     return rows
 
 
