@@ -27,11 +27,11 @@ def measured(command):
     told = subprocess.run(words, cwd=HOME, stdout=subprocess.PIPE, text=True)
     if told.returncode:
         sys.exit(f"performance: {command}: status {told.returncode}; the page stays as it is")
-    text = f"```sh\n{command}\n```\n\n{told.stdout.strip()}\n"
+    text = f"```sh\n{command}\n```\n\n{told.stdout.strip()}\n\n"
     if "--plot" in words:
         plot = os.path.relpath(words[words.index("--plot") + 1], "docs")
         name = os.path.splitext(os.path.basename(plot))[0].replace("performance-", "")
-        text += f"\n![{name.capitalize()}]({plot})\n"
+        text += f"![{name.capitalize()}]({plot})\n\n"
     return text
 
 

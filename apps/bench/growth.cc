@@ -131,7 +131,7 @@ int bench::growth(int argc, char** argv) {
             options.max_error = MaxError{max_error, true};
         else
             options.voxel_size = work.cube_extent / static_cast<double>(1u << work.depth);
-        const double y = sort_seconds();
+        const double y = sort_seconds(1);
         reports.push_back(best_run(work, options, repeats));
         print_size(points, y, reports.back());
     }

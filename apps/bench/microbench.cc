@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
     }
     if (sizes.empty()) sizes = {100000, 1000000};
     const double bandwidth = bench::copy_bandwidth(0);
-    std::fprintf(stderr, "Y %.3f s, copying %.2f GB/s\n", bench::sort_seconds(), bandwidth / 1e9);
+    std::fprintf(stderr, "Y %.3f s, copying %.2f GB/s\n", bench::sort_seconds(1), bandwidth / 1e9);
     Works works;
     for (const std::size_t points : sizes) add_benchmarks(works, points, bandwidth);
     benchmark::RunSpecifiedBenchmarks();

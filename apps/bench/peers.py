@@ -330,7 +330,15 @@ def mesh_cells(mesh, voxel):
             f"{share('truth_to_mesh_mean')} / {share('truth_to_mesh_max')}"]
 
 
-def table(result, methods):
+def version_of(method, tools):
+    if method.package:
+        return installed(method.package) or ""
+    if method.name != "hsdm":
+        return ""
+    return subprocess.run([tools["hsdm"], "--version"], capture_output=True, text=True).stdout.split()[-1]
+
+
+def table(result, methods, tools):
     """Markdown."""
     yards = result["yards"]
     y = statistics.median(yard["sort_seconds"] for yard in yards)
@@ -343,13 +351,12 @@ def table(result, methods):
              "points to mesh, mean / max | mesh to truth | truth to mesh |", "|" + "---|" * 15]
     for method in methods:
         known, told = result["methods"][method.name], summary(result, method.name)
-        version = (method.package and installed(method.package)) or ""
         if told is None:
             cells = ["0", known["runs"][-1]["fault"] if known["runs"] else "not run"] + [""] * 11
         else:
             cells = [str(told["runs"]), number(told["seconds"]), number(told["yards"]), number(told["ratio"]),
                      number(told["megabytes"])] + mesh_cells(known["mesh"], result["voxel"])
-        lines.append("| " + " | ".join([method.name, version] + cells) + " |")
+        lines.append("| " + " | ".join([method.name, version_of(method, tools)] + cells) + " |")
     starts = {m.package: result["methods"][m.name].get("start") for m in methods if m.start}
     lines += [""] * bool(starts) + [f"Of the seconds of {package}, {number(seconds)} pass before its work starts."
                                      for package, seconds in starts.items() if seconds]
@@ -438,7 +445,7 @@ def main():
         for text in arguments.inputs.split(","):
             scan = Scan(tools, text, arguments.noise, arguments.work)
             results.append(measure(scan, methods, arguments, tools))
-            print(table(results[-1], methods), end="\n\n", flush=True)
+            print(table(results[-1], methods, tools), end="\n\n", flush=True)
             if arguments.json:
                 write_text(arguments.json, json.dumps(results, indent=1) + "\n")
     print("\n".join(absent))

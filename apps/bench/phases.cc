@@ -150,7 +150,7 @@ int bench::phases(int argc, char** argv) {
         arena.execute([&] { time_steps(work, 1); });
         return 0;
     }
-    const double y = sort_seconds(), bandwidth = copy_bandwidth(used);
+    const double y = sort_seconds(1), bandwidth = copy_bandwidth(used);
     const support::Folder folder;
     Work work = make_work(shape, points, points_per_voxel, folder.path());
     double whole = 0;

@@ -68,7 +68,7 @@ int bench::threads(int argc, char** argv) {
     const auto seconds = time_by_threads(work, threads, repeats);
 
     std::printf("%s, %zu points, %zu voxels; Y %.3f s\n\n| phase |", shape.c_str(), points, work.level.size(),
-                sort_seconds());
+                sort_seconds(1));
     for (const int t : threads) std::printf(" ms by %d |", t);
     std::printf(" ratio |\n|---|---|");
     for (std::size_t t = 0; t < threads.size(); ++t) std::printf("---|");

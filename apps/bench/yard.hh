@@ -6,7 +6,7 @@
 namespace hsdm::bench {
 
 /// Seconds of std::sort over 8,000,000 random 64-bit numbers on one core: the middle one of so many trials.
-double sort_seconds(int repeats = 3);
+double sort_seconds(int repeats);
 
 /// Bytes read and written in a second, both counted, by copying one array of `bytes` to another on so many
 /// threads (0: all): the fastest of so many trials. Arrays that caches hold would be copied sooner.
