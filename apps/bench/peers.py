@@ -203,9 +203,12 @@ def all_methods(tools, folder):
 class Screen:
     """An X server without a screen for MeshLab, for as long as the measurement takes."""
 
-    def __enter__(self):
+    def __init__(self, methods):
+        self.needed = any(m.package == "meshlab" for m in methods) and "DISPLAY" not in os.environ
         self.server = None
-        if "DISPLAY" in os.environ or not shutil.which("Xvfb"):
+
+    def __enter__(self):
+        if not self.needed:
             return self
         read, write = os.pipe()
         self.server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "640x480x24"], pass_fds=[write],
@@ -441,7 +444,7 @@ def main():
         print("\n".join([f"- {m.name}" for m in methods] + absent))
         return
     results = []
-    with Screen():
+    with Screen(methods):
         for text in arguments.inputs.split(","):
             scan = Scan(tools, text, arguments.noise, arguments.work)
             results.append(measure(scan, methods, arguments, tools))
