@@ -104,8 +104,13 @@ int bench::growth(int argc, char** argv) {
     app.add_option("--shape", shape, "of hsdm_generate, in general pose")
         ->check(CLI::IsMember(support::solid_names()))
         ->capture_default_str();
-    app.add_option("--sizes", sizes, "numbers of points")->delimiter(',')->capture_default_str();
-    app.add_option("--points-per-voxel", points_per_voxel, "on average")->capture_default_str();
+    app.add_option("--sizes", sizes, "numbers of points")
+        ->delimiter(',')
+        ->check(CLI::Range(1000, 2000000000))
+        ->capture_default_str();
+    app.add_option("--points-per-voxel", points_per_voxel, "on average")
+        ->check(CLI::Range(1.0, 1000.0))
+        ->capture_default_str();
     app.add_option("--normals", normals, "given or estimate")
         ->check(CLI::IsMember({"given", "estimate"}))
         ->capture_default_str();
@@ -116,7 +121,7 @@ int bench::growth(int argc, char** argv) {
     app.add_option("--repeats", repeats, "the fastest of so many runs counts")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
-    app.add_option("--threads", options.threads, "at most so many; 0: all");
+    app.add_option("--threads", options.threads, "at most so many; 0: all")->check(CLI::NonNegativeNumber);
     app.add_option("--plot", plot_file, "an SVG file: nanoseconds of a point by phase, over the points");
     CLI11_PARSE(app, argc, argv);
     if (normals == "estimate") options.normals = NormalSource::estimate;

@@ -3,6 +3,7 @@
 
 #include "benchmarks.hh"
 
+#include "hsdm/errors.hh"
 #include "hsdm/io/read_mesh.hh"
 #include "hsdm/io/read_points.hh"
 #include "hsdm/quality/distance.hh"
@@ -56,28 +57,23 @@ int bench::judge_mesh(int argc, char** argv) {
     app.add_flag("--turn", turn, "as hsdm_generate was given");
     app.add_option("--samples", samples, "points on mesh and solid")->capture_default_str();
     CLI11_PARSE(app, argc, argv);
-    try {
-        support::Solid solid = support::solid_named(shape, seed);
-        if (turn) solid = solid.placed(support::pose_by_seed(seed));
-        const PolygonMesh mesh = read_mesh(mesh_file);
-        const Topology t = measure_topology(mesh);
-        const Distance points = points_to_mesh(read_points(cloud_file).cloud.positions, mesh);
-        const Distance truth =
-            points_to_mesh(support::sample(solid, {.points = samples, .seed = seed + 1}).positions, mesh);
-        const Distances surface = from_solid(mesh, solid, samples);
-        std::printf(
-            "{\"vertices\": %zu, \"facets\": %zu, \"quads\": %zu, \"components\": %zu, \"euler\": %ld, "
-            "\"boundary_edges\": %zu, \"boundary_loops\": %zu, \"manifold\": %s, \"closed\": %s, "
-            "\"misoriented_edges\": %zu, "
-            "\"points_to_mesh_mean\": %.9g, \"points_to_mesh_max\": %.9g, "
-            "\"truth_to_mesh_mean\": %.9g, \"truth_to_mesh_max\": %.9g, "
-            "\"mesh_to_truth_mean\": %.9g, \"mesh_to_truth_max\": %.9g}\n",
-            t.vertices, t.faces, t.quads, t.components, t.euler, t.boundary_edges, t.boundary_loops,
-            t.manifold() ? "true" : "false", t.closed() ? "true" : "false", t.misoriented_edges, points.mean,
-            points.max, truth.mean, truth.max, surface.mean, surface.max);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "hsdm_bench judge: %s\n", error.what());
-        return 1;
-    }
+    support::Solid solid = support::solid_named(shape, seed);
+    if (turn) solid = solid.placed(support::pose_by_seed(seed));
+    const PolygonMesh mesh = read_mesh(mesh_file);
+    if (mesh.facet_count() == 0) throw Error(mesh_file, "holds no facet; there is nothing to judge");
+    const Topology t = measure_topology(mesh);
+    const Distance points = points_to_mesh(read_points(cloud_file).cloud.positions, mesh);
+    const Distance truth =
+        points_to_mesh(support::sample(solid, {.points = samples, .seed = seed + 1}).positions, mesh);
+    const Distances surface = from_solid(mesh, solid, samples);
+    std::printf("{\"vertices\": %zu, \"facets\": %zu, \"quads\": %zu, \"components\": %zu, \"euler\": %ld, "
+                "\"boundary_edges\": %zu, \"boundary_loops\": %zu, \"manifold\": %s, \"closed\": %s, "
+                "\"misoriented_edges\": %zu, "
+                "\"points_to_mesh_mean\": %.9g, \"points_to_mesh_max\": %.9g, "
+                "\"truth_to_mesh_mean\": %.9g, \"truth_to_mesh_max\": %.9g, "
+                "\"mesh_to_truth_mean\": %.9g, \"mesh_to_truth_max\": %.9g}\n",
+                t.vertices, t.faces, t.quads, t.components, t.euler, t.boundary_edges, t.boundary_loops,
+                t.manifold() ? "true" : "false", t.closed() ? "true" : "false", t.misoriented_edges,
+                points.mean, points.max, truth.mean, truth.max, surface.mean, surface.max);
     return 0;
 }

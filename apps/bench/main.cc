@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <cstring>
+#include <exception>
 
 namespace {
 
@@ -30,8 +31,14 @@ constexpr Benchmark benchmarks[] = {
 } // namespace
 
 int main(int argc, char** argv) {
-    for (const Benchmark& benchmark : benchmarks)
-        if (argc > 1 && std::strcmp(argv[1], benchmark.name) == 0) return benchmark.run(argc - 1, argv + 1);
+    try {
+        for (const Benchmark& benchmark : benchmarks)
+            if (argc > 1 && std::strcmp(argv[1], benchmark.name) == 0)
+                return benchmark.run(argc - 1, argv + 1);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "hsdm_bench %s: %s\n", argv[1], error.what());
+        return 1;
+    }
     const bool asked = argc > 1 && (std::strcmp(argv[1], "--help") == 0 || std::strcmp(argv[1], "-h") == 0);
     std::FILE* out = asked ? stdout : stderr;
     std::fprintf(out, "usage: hsdm_bench NAME [ARGUMENT...]; NAME --help tells its arguments\n\n");

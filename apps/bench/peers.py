@@ -324,7 +324,7 @@ def number(value):
 
 def mesh_cells(mesh, voxel):
     if "fault" in mesh:
-        return [mesh["fault"]] + [""] * 6
+        return [mesh["fault"]] + [""] * 7
     share = lambda key: number(100 * mesh[key] / voxel)
     sound = "yes" if mesh["closed"] else f"no, {mesh['boundary_edges']:,} open edges"
     return [f"{mesh['facets']:,}", sound, "yes" if mesh["manifold"] else "no", f"{mesh['components']:,}",

@@ -132,12 +132,16 @@ int bench::phases(int argc, char** argv) {
     app.add_option("--shape", shape, "of hsdm_generate, in general pose")
         ->check(CLI::IsMember(support::solid_names()))
         ->capture_default_str();
-    app.add_option("--points", points, "how many")->capture_default_str();
-    app.add_option("--points-per-voxel", points_per_voxel, "on average")->capture_default_str();
+    app.add_option("--points", points, "how many")
+        ->check(CLI::Range(1000, 2000000000))
+        ->capture_default_str();
+    app.add_option("--points-per-voxel", points_per_voxel, "on average")
+        ->check(CLI::Range(1.0, 1000.0))
+        ->capture_default_str();
     app.add_option("--repeats", repeats, "the fastest of so many runs counts")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
-    app.add_option("--threads", threads, "at most so many; 0: all");
+    app.add_option("--threads", threads, "at most so many; 0: all")->check(CLI::NonNegativeNumber);
     app.add_option("--plot", plot_file, "an SVG file: nanoseconds over bytes");
     app.add_flag("--json", json, "for programs: without what is left of a whole");
     app.add_flag("--bare", bare, "phases and nothing else, without a table: for what counts instructions");

@@ -52,8 +52,12 @@ int bench::threads(int argc, char** argv) {
     app.add_option("--shape", shape, "of hsdm_generate, in general pose")
         ->check(CLI::IsMember(support::solid_names()))
         ->capture_default_str();
-    app.add_option("--points", points, "how many")->capture_default_str();
-    app.add_option("--points-per-voxel", points_per_voxel, "on average")->capture_default_str();
+    app.add_option("--points", points, "how many")
+        ->check(CLI::Range(1000, 2000000000))
+        ->capture_default_str();
+    app.add_option("--points-per-voxel", points_per_voxel, "on average")
+        ->check(CLI::Range(1.0, 1000.0))
+        ->capture_default_str();
     app.add_option("--threads", threads, "how many, the least first")
         ->delimiter(',')
         ->check(CLI::PositiveNumber)

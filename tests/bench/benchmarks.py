@@ -65,6 +65,8 @@ def judge(tools, folder):
     moved = json.loads(tools.bench("judge", "box", scan, mesh, "--turn", "--samples", 5000))
     expect(moved["mesh_to_truth_max"] > 0.01, f"the solid is turned: {moved}")
     tools.bench("judge", "box", scan, mesh + ".none", status=1)
+    write_off(mesh, [])
+    tools.bench("judge", "box", scan, mesh, status=1)
 
 
 def phases(tools, folder):
@@ -80,6 +82,7 @@ def phases(tools, folder):
     reading = rows[names.index("reading")]
     expect(96 <= float(reading[6]) < 97, f"48 bytes of a point in the file, 48 in memory, and the file's head: {reading}")
     xml.etree.ElementTree.parse(plot)
+    tools.bench("phases", "--points", 3000, "--repeats", 1, "--plot", os.path.join(folder, "none", "x.svg"), status=1)
     told = json.loads(tools.bench("phases", "--points", 3000, "--repeats", 1, "--json"))
     expect([p["name"] for p in told["phases"] if p["role"] == "whole"] == ["facets, whole"], told)
     expect(all(p["bytes"] > 0 for p in told["phases"]) and told["additions_per_second"] > 0, told)
