@@ -157,9 +157,10 @@ def peers(tools, folder):
 
 
 def limits(tools, folder):
-    """A run that takes too long is ended and told, as is one that makes no mesh."""
+    """A run that takes too long is ended and told, as are one that makes no mesh and a file that is none."""
     for name, body, limit, fault in (("slow", "sleep 60", 0.5, "over 0.5 s"), ("idle", "exit 0", 60, "no mesh"),
-                                     ("bad", "exit 3", 60, "status 3")):
+                                     ("bad", "exit 3", 60, "status 3"),
+                                     ("odd", 'echo OFF >"$6"', 60, "| hsdm_bench judge: ")):
         program = os.path.join(folder, name)
         with open(program, "w") as file:
             real = os.path.join(tools.build, "apps", "hsdm", "hsdm")
