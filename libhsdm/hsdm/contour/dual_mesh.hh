@@ -17,9 +17,7 @@ struct DualMesh {
         return crossing_position(grid, crossings.of(corner), voxel_size);
     }
     /// Integer coordinates of the voxel whose chain of crossings the dual vertex is.
-    VoxelCoord voxel_of(Index dual) const {
-        return CornerVoxel(grid, crossings, duals.corners_of(dual)[0]).coord;
-    }
+    const VoxelCoord& voxel_of(Index dual) const { return duals.voxels[dual].coord; }
 };
 
 } // namespace hsdm

@@ -211,6 +211,7 @@ private:
 struct ChunkDualVertices {
     std::vector<FacetCorner> corners;
     std::vector<Index> sizes;
+    std::vector<CornerVoxel> voxels;
     std::vector<std::uint8_t> shared, open;
     struct Cap {
         std::size_t first, count; // dual vertices
@@ -220,7 +221,7 @@ struct ChunkDualVertices {
     std::vector<std::size_t> after_cut;
 
     /// Dual vertices are numbered along the chain as it was cut; the corners of each run as facets do.
-    void add(const Cut& cut_chain, bool closed, bool turned) {
+    void add(const Cut& cut_chain, const CornerVoxel& voxel, bool closed, bool turned) {
         const std::size_t pieces = cut_chain.pieces.size();
         for (std::size_t i = 1; i < pieces; ++i) after_cut.push_back(sizes.size() + i);
         if (pieces > 2 && closed) caps.push_back({sizes.size(), pieces, turned});
@@ -233,6 +234,7 @@ struct ChunkDualVertices {
             sizes.push_back(static_cast<Index>(piece.end - piece.first));
             const unsigned swapped = piece.shared >> 1 | (piece.shared & 1u) << 1;
             shared.push_back(turned ? static_cast<std::uint8_t>(swapped) : piece.shared);
+            voxels.push_back(voxel);
             open.push_back(!closed);
         }
     }
@@ -241,6 +243,7 @@ struct ChunkDualVertices {
 void append(const ChunkDualVertices& chunk, DualVertices& duals) {
     const auto base = static_cast<Index>(duals.size());
     duals.corners.insert(duals.corners.end(), chunk.corners.begin(), chunk.corners.end());
+    duals.voxels.insert(duals.voxels.end(), chunk.voxels.begin(), chunk.voxels.end());
     duals.open.insert(duals.open.end(), chunk.open.begin(), chunk.open.end());
     for (Index size : chunk.sizes) duals.first.push_back(duals.first.back() + size);
     for (std::size_t dual : chunk.after_cut) duals.after_cut.push_back(base + static_cast<Index>(dual));
@@ -291,7 +294,7 @@ DualVertices build_dual_vertices(const GridPoints& grid, const Crossings& crossi
                 if (std::ranges::min(chain.corners) != corner) continue; // another corner's chain
                 chain.turn_by_number();
                 cutter.cut(chain, cut);
-                chunks[c].add(cut, chain.closed, chain.turned);
+                chunks[c].add(cut, {grid, crossings, corner}, chain.closed, chain.turned);
             }
     });
     std::size_t corners = 0, vertices = 0;
@@ -300,6 +303,7 @@ DualVertices build_dual_vertices(const GridPoints& grid, const Crossings& crossi
     DualVertices duals;
     reserve_large(duals.corners, corners);
     reserve_large(duals.first, vertices + 1);
+    reserve_large(duals.voxels, vertices);
     reserve_large(duals.open, vertices);
     std::vector<std::uint8_t> shared;
     reserve_large(shared, vertices);

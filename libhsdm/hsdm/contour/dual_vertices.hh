@@ -6,6 +6,15 @@
 
 namespace hsdm {
 
+/// The voxel of a facet corner, one of the four round its grid edge.
+struct CornerVoxel {
+    CornerVoxel() = default;
+    CornerVoxel(const GridPoints& grid, const Crossings& crossings, FacetCorner corner);
+
+    VoxelCoord coord;
+    Index voxel; ///< or no_index, if no point lies in it
+};
+
 /// The vertices: dual vertex v has corners[first[v]] .. corners[first[v + 1]], in order around the vertex.
 /// Where a chain is cut at a corner, that corner is the last of one dual vertex and the first of the next:
 /// the facet gets two corners there, with an edge between.
@@ -18,7 +27,8 @@ struct DualVertices {
     /// Polygons between the three or more dual vertices of a closed chain that was cut at that many places
     /// (the sides of a thin part and its rims); each of their sides is the twin of one beside it.
     std::vector<std::vector<Index>> caps;
-    std::vector<std::uint8_t> open; ///< per dual vertex, is it at a border of the surface (an open chain)?
+    std::vector<CornerVoxel> voxels; ///< per dual vertex, that of its corners
+    std::vector<std::uint8_t> open;  ///< per dual vertex, is it at a border of the surface (an open chain)?
     /// Dual vertices v that come from the same cut chain, and so voxel, as v - 1.
     std::vector<Index> after_cut;
 
@@ -42,14 +52,6 @@ struct DualVertices {
         const bool forward = all.front() <= all.back();
         for (std::size_t i = 0; i < all.size(); ++i) f(all[forward ? i : all.size() - 1 - i]);
     }
-};
-
-/// The voxel of a facet corner, one of the four round its grid edge.
-struct CornerVoxel {
-    CornerVoxel(const GridPoints& grid, const Crossings& crossings, FacetCorner corner);
-
-    VoxelCoord coord;
-    Index voxel; ///< or no_index, if no point lies in it
 };
 
 /// Walks the chains. A chain that passes both sides of a thin part is cut between them, at a rim link or in a

@@ -225,7 +225,7 @@ private:
         by_crease_ = false;
         problem_.size = mesh_.voxel_size;
         const auto corners = mesh_.duals.corners_of(dual);
-        const CornerVoxel at(mesh_.grid, mesh_.crossings, corners[0]);
+        const CornerVoxel& at = mesh_.duals.voxels[dual];
         voxel_ = at.voxel;
         for (unsigned k = 0; k < 3; ++k) problem_.lo[k] = at.coord[k] * mesh_.voxel_size;
         problem_.mean = Vec3(0, 0, 0);
@@ -410,15 +410,17 @@ private:
 std::vector<std::uint8_t> sets_that_cross(const DualMesh& mesh, const NormalSets& sets,
                                           const RelationTest& related) {
     const auto find = [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
-        for (auto v = static_cast<Index>(begin); v < end; ++v)
-            for (FacetCorner corner : mesh.duals.corners_of(v)) {
-                const Crossing& x = mesh.crossings.of(corner);
-                const Index voxel = CornerVoxel(mesh.grid, mesh.crossings, corner).voxel;
-                if (voxel == no_index) continue;
-                for (Index s = sets.first[voxel]; s < sets.first[voxel + 1]; ++s)
-                    if (s == x.set || related(sets.sets[s], sets.sets[x.set]) == Relation::smooth)
-                        found.push_back(s);
-            }
+        for (auto v = static_cast<Index>(begin); v < end; ++v) {
+            const Index voxel = mesh.duals.voxels[v].voxel;
+            if (voxel == no_index) continue;
+            const auto corners = mesh.duals.corners_of(v);
+            for (Index s = sets.first[voxel]; s < sets.first[voxel + 1]; ++s)
+                if (std::ranges::any_of(corners, [&](FacetCorner corner) {
+                        const Index t = mesh.crossings.of(corner).set;
+                        return s == t || related(sets.sets[s], sets.sets[t]) == Relation::smooth;
+                    }))
+                    found.push_back(s);
+        }
     };
     std::vector<std::uint8_t> crosses(sets.sets.size(), 0);
     for (Index s : collected<Index>(mesh.duals.size(), chunks::slow, find)) crosses[s] = 1;

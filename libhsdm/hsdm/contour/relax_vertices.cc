@@ -15,7 +15,7 @@ namespace {
 
 /// The point on the way from `from` to `to` where it leaves the dual vertex's voxel, or `to`.
 Vec3 within_voxel(const DualMesh& mesh, Index dual, const Vec3& from, const Vec3& to) {
-    const VoxelCoord voxel = mesh.voxel_of(dual);
+    const VoxelCoord& voxel = mesh.voxel_of(dual);
     const double h = mesh.voxel_size;
     const Vec3 way = to - from;
     double share = 1;

@@ -40,7 +40,7 @@ public:
             const Index s = mesh_.crossings.of(corner).set;
             if (std::exchange(last, s) != s) look(s);
         }
-        const Index own = CornerVoxel(mesh_.grid, mesh_.crossings, mesh_.duals.corners_of(dual)[0]).voxel;
+        const Index own = mesh_.duals.voxels[dual].voxel;
         if (own != no_index)
             for (Index s = sets_.first[own]; s < sets_.first[own + 1]; ++s) look(s);
         // A full set covers about one face of a voxel.
