@@ -33,7 +33,7 @@ void check_next(const GridPoints& grid) {
     REQUIRE(grid.next.size() == grid.size());
     std::size_t wrong = 0;
     for (const auto& [at, c] : number) {
-        wrong += grid.index.find(grid.codes[c]) != c || GridPoints::code(at) != grid.codes[c];
+        wrong += grid.find(grid.codes[c]) != c || GridPoints::code(at) != grid.codes[c];
         for (unsigned axis = 0; axis < 3; ++axis) {
             const auto found = number.find(shifted(at, axis, 1));
             wrong += grid.next[c][axis] != (found == number.end() ? no_index : found->second);
@@ -62,8 +62,7 @@ std::vector<MortonCode> beside(const GridPoints& grid, std::size_t count) {
         VoxelCoord at = grid.coord(static_cast<Index>(random.below(grid.size())));
         const auto axis = static_cast<unsigned>(random.below(3));
         at = shifted(at, axis, random.below(2) == 0 ? -1 : 1);
-        if (at[axis] >= -1 && grid.index.find(GridPoints::code(at)) == no_index)
-            found.insert(GridPoints::code(at));
+        if (at[axis] >= -1 && grid.find(GridPoints::code(at)) == no_index) found.insert(GridPoints::code(at));
     }
     CHECK(*found.rbegin() > last); // beyond what was there
     return {found.begin(), found.end()};

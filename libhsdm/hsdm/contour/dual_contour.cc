@@ -298,7 +298,6 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     dual.duals = build_dual_vertices(dual.grid, dual.crossings, dual.links);
     result.webs_opened = open_all_webs(dual);
     PlacedVertices vertices = place_vertices(dual, sets, related);
-    dual.grid.index = {}; // place_vertices was the last to look for grid points
     extend_borders(dual, sets, vertices);
     relax_vertices(octree, level, dual, options.relax, vertices);
     draw_in_rims(octree, level, sets, dual, vertices);

@@ -2,9 +2,9 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
-#include "hsdm/core/radix_sort.hh"
+#include "hsdm/core/parallel_sort.hh"
 
-#include <bitset>
+#include <bit>
 
 namespace hsdm {
 namespace {
@@ -12,66 +12,94 @@ namespace {
 constexpr std::array<Index, 8> no_voxels{no_index, no_index, no_index, no_index,
                                          no_index, no_index, no_index, no_index};
 
-/// The corners of the voxels in one block of 4 x 4 x 4, each once: neighbouring voxels share most of theirs.
-class BlockGridPoints {
-public:
-    static constexpr MortonCode voxels = 64;
-    /// Index of a voxel's corner in the block's 5 x 5 x 5 grid; bit k of `corner` is set on the upper side of
-    /// axis k.
-    static std::size_t place(MortonCode voxel, unsigned corner) {
-        const VoxelCoord c = morton_decode(voxel & (voxels - 1));
-        const int x = c[0] + static_cast<int>(corner & 1), y = c[1] + static_cast<int>(corner >> 1 & 1),
-                  z = c[2] + static_cast<int>(corner >> 2);
-        return static_cast<std::size_t>(x) + 5 * static_cast<std::size_t>(y)
-               + 25 * static_cast<std::size_t>(z);
-    }
+/// Codes that agree in all but their last six bits: a block of 4 x 4 x 4 voxels or grid points.
+constexpr MortonCode per_block = 64;
 
-    void add(MortonCode voxel) {
-        for (unsigned corner = 0; corner < 8; ++corner) used_.set(place(voxel, corner));
-    }
-    /// Calls each(place, code) for the corners of the voxels added, then clears the block.
-    template <class Each>
-    void take(MortonCode block, Each each) {
-        const VoxelCoord c = morton_decode(block * voxels);
-        for (int i = 0; i < 125; ++i)
-            if (used_[static_cast<std::size_t>(i)])
-                each(i, GridPoints::code({c[0] + i % 5, c[1] + i / 5 % 5, c[2] + i / 25}));
-        used_.reset();
-    }
-
-private:
-    std::bitset<125> used_;
+/// Where the corners of a block's voxels lie: a voxel at c has its corners at c + 1 and c + 2, as grid points
+/// count (GridPoints::code), so in the block of grid points with the same number or the next up some axes.
+struct CornerPlace {
+    std::uint8_t block; ///< bit k is set in the next block up axis k
+    std::uint8_t point; ///< the last six bits of the code
 };
 
-/// Calls each(points, block, begin, end, chunk) per block with the range of its voxels; a block that
-/// straddles two chunks comes in two calls.
+/// Per voxel of a block and corner; bit k of `corner` is set on the upper side of axis k.
+constexpr std::array<std::array<CornerPlace, 8>, per_block> corner_places = [] {
+    std::array<std::array<CornerPlace, 8>, per_block> places{};
+    for (MortonCode voxel = 0; voxel < per_block; ++voxel)
+        for (unsigned corner = 0; corner < 8; ++corner) {
+            VoxelCoord c = morton_decode(voxel);
+            unsigned block = 0;
+            for (unsigned k = 0; k < 3; ++k) {
+                c[k] += 1 + static_cast<int>(corner >> k & 1u);
+                block |= unsigned{c[k] >= 4} << k;
+                c[k] %= 4;
+            }
+            places[voxel][corner] = {static_cast<std::uint8_t>(block),
+                                     static_cast<std::uint8_t>(morton_encode(c))};
+        }
+    return places;
+}();
+
+/// The numbers of the eight blocks of grid points that a block of voxels has corners in.
+std::array<MortonCode, 8> blocks_of_corners(MortonCode block) {
+    std::array<MortonCode, 8> blocks;
+    for (unsigned k = 0; k < 8; ++k) {
+        blocks[k] = block;
+        for (unsigned axis = 0; axis < 3; ++axis)
+            if (k >> axis & 1u) blocks[k] = morton_up(blocks[k], axis);
+    }
+    return blocks;
+}
+
+/// Calls each(block, begin, end, chunk) per block with the range of its voxels; a block that straddles two
+/// chunks comes in two calls.
 template <class Each>
 void for_blocks(const OctreeLevel& level, Each each) {
     for_chunks(level.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        BlockGridPoints points;
         for (std::size_t first = begin, v = begin; v < end; ++v) {
-            const MortonCode block = level.codes[v] / BlockGridPoints::voxels;
-            points.add(level.codes[v]);
-            if (v + 1 < end && level.codes[v + 1] / BlockGridPoints::voxels == block) continue;
-            each(points, block, first, v + 1, chunk);
+            const MortonCode block = level.codes[v] / per_block;
+            if (v + 1 < end && level.codes[v + 1] / per_block == block) continue;
+            each(block, first, v + 1, chunk);
             first = v + 1;
         }
     });
 }
 
-/// Every corner of every voxel, sorted, each once.
+/// A block of grid points, and a bit for each of those that there are.
+struct UsedPoints {
+    MortonCode block;
+    std::uint64_t used;
+};
+
+/// The blocks that have any, ascending; some several times.
+std::vector<UsedPoints> used_points(const OctreeLevel& level) {
+    std::vector<std::vector<UsedPoints>> parts(chunk_count(level.size(), chunks::usual));
+    for_blocks(level, [&](MortonCode block, std::size_t begin, std::size_t end, std::size_t chunk) {
+        std::array<std::uint64_t, 8> used{};
+        for (std::size_t v = begin; v < end; ++v)
+            for (const CornerPlace& place : corner_places[level.codes[v] % per_block])
+                used[place.block] |= std::uint64_t{1} << place.point;
+        const std::array<MortonCode, 8> blocks = blocks_of_corners(block);
+        for (unsigned k = 0; k < 8; ++k)
+            if (used[k] != 0) parts[chunk].push_back({blocks[k], used[k]});
+    });
+    std::vector<UsedPoints> points = joined(parts);
+    parallel_sort(points, [](const UsedPoints& a, const UsedPoints& b) { return a.block < b.block; });
+    return points;
+}
+
+/// Every corner of every voxel, ascending, each once.
 std::vector<MortonCode> grid_point_codes(const OctreeLevel& level) {
-    std::vector<std::vector<CodeIndex>> parts(chunk_count(level.size(), chunks::usual));
-    for_blocks(level,
-               [&](BlockGridPoints& points, MortonCode block, std::size_t, std::size_t, std::size_t chunk) {
-                   points.take(block, [&](int, MortonCode code) { parts[chunk].push_back({code, 0}); });
-               });
-    std::vector<CodeIndex> points = joined(parts);
-    radix_sort(points, 3 * (level.depth + 2));
+    const std::vector<UsedPoints> points = used_points(level);
     std::vector<MortonCode> codes;
-    reserve_large(codes, points.size());
+    reserve_large(codes, 2 * level.size());
     for_each_in_order(points.size(), [&](std::size_t i) {
-        if (codes.empty() || codes.back() != points[i].code) codes.push_back(points[i].code);
+        if (i > 0 && points[i].block == points[i - 1].block) return; // done with the first one
+        std::uint64_t used = 0;
+        for (std::size_t k = i; k < points.size() && points[k].block == points[i].block; ++k)
+            used |= points[k].used;
+        for (; used != 0; used &= used - 1)
+            push_large(codes, points[i].block * per_block + static_cast<unsigned>(std::countr_zero(used)));
     });
     return codes;
 }
@@ -79,25 +107,19 @@ std::vector<MortonCode> grid_point_codes(const OctreeLevel& level) {
 /// Enters each voxel at its eight corners.
 void connect_voxels(const OctreeLevel& level, GridPoints& grid) {
     resize_large(grid.voxels, grid.size(), no_voxels);
-    for_blocks(level,
-               [&](BlockGridPoints& points, MortonCode block, std::size_t begin, std::size_t end, auto) {
-                   std::array<Index, 125> point_at;
-                   points.take(block, [&](int place, MortonCode code) {
-                       point_at[static_cast<std::size_t>(place)] = grid.index.find(code);
-                   });
-                   for (std::size_t v = begin; v < end; ++v)
-                       for (unsigned k = 0; k < 8; ++k)
-                           grid.voxels[point_at[BlockGridPoints::place(level.codes[v], k)]][7 - k] =
-                               static_cast<Index>(v);
-               });
+    for_blocks(level, [&](MortonCode block, std::size_t begin, std::size_t end, std::size_t) {
+        const std::array<MortonCode, 8> blocks = blocks_of_corners(block);
+        for (std::size_t v = begin; v < end; ++v)
+            for (unsigned k = 0; k < 8; ++k) {
+                const CornerPlace& place = corner_places[level.codes[v] % per_block][k];
+                const Index point = grid.index.find(blocks[place.block] * per_block + place.point);
+                grid.voxels[point][7 - k] = static_cast<Index>(v);
+            }
+    });
 }
 
 void connect_grid_point(GridPoints& grid, std::size_t i) {
-    for (unsigned axis = 0; axis < 3; ++axis) {
-        VoxelCoord next = grid.coord(static_cast<Index>(i));
-        ++next[axis];
-        grid.next[i][axis] = grid.index.find(grid.code(next));
-    }
+    for (unsigned axis = 0; axis < 3; ++axis) grid.next[i][axis] = grid.find(morton_up(grid.codes[i], axis));
 }
 
 } // namespace
@@ -126,18 +148,19 @@ void add_grid_points(GridPoints& grid, std::span<const MortonCode> codes) {
     const std::size_t n = grid.size();
     reserve_large(grid.codes, n + codes.size());
     grid.codes.insert(grid.codes.end(), codes.begin(), codes.end());
-    grid.index.build(grid.codes);
+    grid.added_index.build({codes.begin(), codes.end()});
+    grid.first_added = static_cast<Index>(n);
     resize_large(grid.voxels, grid.size(), no_voxels);
     resize_large(grid.next, grid.size());
     for_chunks(codes.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = n + begin; i < n + end; ++i) {
             connect_grid_point(grid, i);
+            const VoxelCoord c = morton_decode(grid.codes[i]);
             for (unsigned axis = 0; axis < 3; ++axis) {
-                VoxelCoord below = grid.coord(static_cast<Index>(i));
-                --below[axis];
-                const Index point = grid.index.find(GridPoints::code(below));
+                if (c[axis] == 0) continue;
                 // Added grid points set their own `next`.
-                if (point != no_index && point < n) grid.next[point][axis] = static_cast<Index>(i);
+                const Index point = grid.index.find(morton_down(grid.codes[i], axis));
+                if (point != no_index) grid.next[point][axis] = static_cast<Index>(i);
             }
         }
     });

@@ -16,7 +16,7 @@ struct GridPoints {
     /// Per grid point, the next up each axis, or no_index.
     std::vector<std::array<Index, 3>> next;
 
-    MortonIndex index; ///< code -> grid point
+    MortonIndex index, added_index; ///< of the codes, and of those that were added
 
     std::size_t size() const { return codes.size(); }
     /// Integer coordinates, in voxels, from -1 to 2^depth + 1: there is a margin of one voxel around the
@@ -28,6 +28,14 @@ struct GridPoints {
     static MortonCode code(const VoxelCoord& c) {
         return morton_encode(VoxelCoord{c[0] + 1, c[1] + 1, c[2] + 1});
     }
+    /// The grid point of a code, or no_index.
+    Index find(MortonCode code) const {
+        const Index point = index.find(code);
+        if (point != no_index || first_added == no_index) return point;
+        const Index added = added_index.find(code);
+        return added == no_index ? no_index : first_added + added;
+    }
+    Index first_added = no_index; ///< no_index: none was
 };
 GridPoints build_grid_points(const OctreeLevel& level);
 /// Per grid point, the next down each axis, or no_index: the inverse of `next`.

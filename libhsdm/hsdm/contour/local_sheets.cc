@@ -141,15 +141,22 @@ LocalSheets connect_members(const GridPoints& grid, const NormalSets& sets, cons
     return result;
 }
 
-/// Do two sets belong to one sheet at a neighbouring grid point?
-bool joined_nearby(const GridPoints& grid, const LocalSheets& sheets, const VoxelCoord& c, Index a, Index b) {
-    for (const VoxelCoord& o : neighbor_offsets) {
-        const Index grid_point = grid.index.find(GridPoints::code({c[0] + o[0], c[1] + o[1], c[2] + o[2]}));
+/// Do two sets seen from a grid point belong to one sheet at a neighbouring one? Only where a neighbour's
+/// voxels are both sets' too: along axes along which both lie on one side, and to that side.
+bool joined_nearby(const GridPoints& grid, const LocalSheets& sheets, Index c, const SheetMember& a,
+                   const SheetMember& b) {
+    const unsigned same_side = ~unsigned{static_cast<std::uint8_t>(a.octant ^ b.octant)} & 7u;
+    for (unsigned way = 1; way < 8; ++way) {
+        if ((way & ~same_side) != 0) continue;
+        VoxelCoord at = grid.coord(c);
+        for (unsigned k = 0; k < 3; ++k)
+            if (way >> k & 1u) at[k] += a.octant >> k & 1u ? 1 : -1;
+        const Index grid_point = grid.find(GridPoints::code(at));
         if (grid_point == no_index) continue;
         int sheet_a = -1, sheet_b = -2;
         for (const SheetMember& m : sheets.members_at(grid_point)) {
-            if (m.set == a) sheet_a = m.sheet;
-            if (m.set == b) sheet_b = m.sheet;
+            if (m.set == a.set) sheet_a = m.sheet;
+            if (m.set == b.set) sheet_b = m.sheet;
         }
         if (sheet_a == sheet_b) return true;
     }
@@ -194,14 +201,13 @@ void close_sheets(const GridPoints& grid, const NormalSets& sets, const Relation
         for_chunks(open.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
             for (std::size_t k = begin; k < end; ++k) {
                 const auto members = sheets.members_at(open[k]);
-                const VoxelCoord c = grid.coord(open[k]);
                 for (std::size_t i = 0; i < members.size(); ++i)
                     for (std::size_t j = i + 1; j < members.size(); ++j) {
                         if (members[i].sheet == members[j].sheet) continue;
                         const Index a = members[i].set, b = members[j].set;
                         if ((sets.sets[a].normal | sets.sets[b].normal) < sheets::least_closure_cosine)
                             continue;
-                        if (!joined_nearby(grid, sheets, c, a, b)) continue;
+                        if (!joined_nearby(grid, sheets, open[k], members[i], members[j])) continue;
                         if (are_apart(members, members[i].sheet, members[j].sheet, sets, related)) continue;
                         found[chunk].push_back({open[k], std::min(members[i].sheet, members[j].sheet),
                                                 std::max(members[i].sheet, members[j].sheet)});
@@ -254,7 +260,7 @@ private:
     /// exist.
     void add(const VoxelCoord& c, std::vector<MortonCode>& missing, bool in_doubt) const {
         if (std::any_of(c.begin(), c.end(), [&](int x) { return x < -1 || x > side_ + 1; })) return;
-        if (!in_doubt || grid_.index.find(grid_.code(c)) == no_index) missing.push_back(grid_.code(c));
+        if (!in_doubt || grid_.find(grid_.code(c)) == no_index) missing.push_back(grid_.code(c));
     }
 
     const GridPoints& grid_;

@@ -363,7 +363,7 @@ private:
         for (unsigned corner = 0; corner < 8; ++corner) {
             VoxelCoord c = voxel;
             for (unsigned k = 0; k < 3; ++k) c[k] += static_cast<int>(corner >> k & 1u);
-            const Index lower = mesh_.grid.index.find(GridPoints::code(c));
+            const Index lower = mesh_.grid.find(GridPoints::code(c));
             if (lower == no_index) continue;
             for (unsigned axis = 0; axis < 3; ++axis) {
                 if (corner >> axis & 1u) continue;

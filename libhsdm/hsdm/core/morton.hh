@@ -56,6 +56,16 @@ constexpr VoxelCoord morton_decode(MortonCode code) {
             static_cast<std::int32_t>(detail::gather_bits(code >> 2))};
 }
 
+/// The code of the next voxel up or down an axis. It must have one: there the bits of the axis would wrap.
+constexpr MortonCode morton_up(MortonCode code, unsigned axis) {
+    const MortonCode bits = 0x1249249249249249ull << axis; // of the axis; a carry runs through all others
+    return (((code | ~bits) + 1) & bits) | (code & ~bits);
+}
+constexpr MortonCode morton_down(MortonCode code, unsigned axis) {
+    const MortonCode bits = 0x1249249249249249ull << axis;
+    return (((code & bits) - 1) & bits) | (code & ~bits);
+}
+
 /// The first level at which two codes of level 21 lie in different voxels; morton_levels + 1 if equal.
 inline int split_level(MortonCode a, MortonCode b) {
     return a == b ? morton_levels + 1 : morton_levels - (63 - std::countl_zero(a ^ b)) / 3;
