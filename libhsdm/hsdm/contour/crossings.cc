@@ -34,19 +34,45 @@ struct Candidate {
     bool standing;
 };
 
+/// What is seen from a grid point: the one sheet that there is, from which side, and the octants that hold
+/// points of it.
+struct SeenFrom {
+    std::uint8_t side, octants;
+};
+constexpr std::uint8_t inside_one = 0, outside_one = 1, several = 2; // or none, or one without weight
+
+std::vector<SeenFrom> seen_from_all(const LocalSheets& local, std::size_t grid_points) {
+    std::vector<SeenFrom> seen = large_vector<SeenFrom>(grid_points, {several, 0});
+    for_each_index(grid_points, chunks::usual, [&](Index c) {
+        const auto sheets = local.sheets_at(c);
+        if (sheets.size() != 1 || !(sheets[0].weight > 0)) return;
+        unsigned octants = 0;
+        for (const SheetMember& m : local.members_at(c)) octants |= 1u << m.octant;
+        seen[c] = {sheets[0].distance < 0 ? inside_one : outside_one, static_cast<std::uint8_t>(octants)};
+    });
+    return seen;
+}
+
 /// Finds the crossings of one edge. Reused from edge to edge.
 class EdgeCrossings {
 public:
-    EdgeCrossings(const GridPoints& grid, const LocalSheets& local, const NormalSets& sets,
-                  const RelationTest& related, double voxel_size, const CrossingOptions& options)
-        : grid_(grid), local_(local), sets_(sets), related_(related), h_(voxel_size), options_(options) {}
+    EdgeCrossings(const GridPoints& grid, const LocalSheets& local, const std::vector<SeenFrom>& seen,
+                  const NormalSets& sets, const RelationTest& related, double voxel_size,
+                  const CrossingOptions& options)
+        : grid_(grid),
+          local_(local),
+          seen_(seen),
+          sets_(sets),
+          related_(related),
+          h_(voxel_size),
+          options_(options) {}
 
     std::size_t dropped_beyond_crease = 0;
 
     void find(Index grid_point, unsigned axis, std::vector<Candidate>& found) {
         ends_[0] = grid_point, ends_[1] = grid_.next[grid_point][axis], axis_ = axis;
-        if (ends_[1] == no_index
-            || (local_.members_at(ends_[0]).empty() && local_.members_at(ends_[1]).empty()) || passes_by())
+        if (ends_[1] == no_index || passes_by()
+            || (local_.members_at(ends_[0]).empty() && local_.members_at(ends_[1]).empty()))
             return;
         const VoxelCoord c = grid_.coord(grid_point);
         low_ = Vec3(c[0], c[1], c[2]) * h_;
@@ -88,15 +114,9 @@ private:
     /// Is there only one sheet, with both ends of the edge on its same side? So it is at most edges, and they
     /// are skipped.
     bool passes_by() const {
-        const auto low = local_.sheets_at(ends_[0]), high = local_.sheets_at(ends_[1]);
-        if (low.size() != 1 || high.size() != 1 || !(low[0].weight > 0) || !(high[0].weight > 0))
-            return false;
-        if ((low[0].distance < 0) != (high[0].distance < 0)) return false;
-        const auto others = local_.members_at(ends_[1]);
-        return std::ranges::any_of(local_.members_at(ends_[0]), [&](const SheetMember& a) {
-            return beside(a, 0)
-                   && std::ranges::any_of(others, [&](const SheetMember& b) { return b.set == a.set; });
-        });
+        const SeenFrom &low = seen_[ends_[0]], &high = seen_[ends_[1]];
+        static constexpr std::array<std::uint8_t, 3> upper{0xaa, 0xcc, 0xf0}; // octants, per axis
+        return low.side != several && low.side == high.side && (low.octants & upper[axis_]) != 0;
     }
 
     /// Local sheets at the two ends are one along the edge if they share a set of a voxel beside it.
@@ -332,6 +352,7 @@ private:
 
     const GridPoints& grid_;
     const LocalSheets& local_;
+    const std::vector<SeenFrom>& seen_;
     const NormalSets& sets_;
     const RelationTest& related_;
     double h_;
@@ -358,12 +379,13 @@ CrossingCandidates find_crossings(const GridPoints& grid, const LocalSheets& loc
     CrossingCandidates result;
     const std::size_t n = grid.size();
     assign_large(result.crossings.first, 3 * n + 1, 0);
+    const std::vector<SeenFrom> seen = seen_from_all(local, n);
     const std::size_t chunks = chunk_count(n, chunks::slow);
     std::vector<std::vector<Crossing>> found(chunks);
     std::vector<std::vector<std::uint8_t>> standing(chunks);
     std::vector<std::size_t> dropped(chunks);
     for_chunks(n, chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        EdgeCrossings edge(grid, local, sets, related, voxel_size, options);
+        EdgeCrossings edge(grid, local, seen, sets, related, voxel_size, options);
         std::vector<Candidate> on_edge;
         for (std::size_t c = begin; c < end; ++c)
             for (unsigned axis = 0; axis < 3; ++axis) {

@@ -10,6 +10,7 @@ namespace hsdm {
 RelationTest::RelationTest(const RelationOptions& options, double voxel_size)
     : cos_smooth_(std::cos(options.smooth_angle)),
       gap_(options.smooth_gap * voxel_size),
+      least_gap_(gap_ * std::sqrt(2 + 2 * cos_smooth_) * (1 - 1e-9)),
       crease_gap_(options.crease_gap * voxel_size),
       voxel_size_(voxel_size) {
     check_option(options.smooth_angle > 0 && options.smooth_angle < 1.5707963, "smooth_angle",
@@ -37,7 +38,7 @@ Relation RelationTest::by_planes(const NormalSet& a, const NormalSet& b) const {
     if (cosine < cos_smooth_) return crease(a, b, cosine);
     const Vec3 sum = a.normal + b.normal;
     const double gap = std::abs(sum | (b.centroid - a.centroid));
-    return gap < gap_ * sum.norm() ? Relation::smooth : Relation::none;
+    return gap < least_gap_ || gap < gap_ * sum.norm() ? Relation::smooth : Relation::none;
 }
 
 Relation RelationTest::crease(const NormalSet& a, const NormalSet& b, double cosine) const {

@@ -44,7 +44,9 @@ private:
     Relation crease(const NormalSet& a, const NormalSet& b, double cosine) const;
     bool ends_at(const NormalSet& set, const Vec3& plane, double above, bool convex, double cosine) const;
 
-    double cos_smooth_, gap_, crease_gap_, voxel_size_;
+    double cos_smooth_, gap_;
+    double least_gap_; // gap_ times the least length of the sum of two normals of one sheet
+    double crease_gap_, voxel_size_;
     const NormalSets* sets_ = nullptr;
 };
 
