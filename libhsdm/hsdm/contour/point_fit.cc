@@ -3,19 +3,21 @@
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
-#include "hsdm/spatial/point_triangle.hh"
+#include "hsdm/spatial/prepared_quad.hh"
 
 #include <cmath>
 
 namespace hsdm {
 namespace {
 
-/// A triangle of a facet round a vertex.
+/// A facet round a vertex: two triangles with its first corner, the vertex.
 struct Around {
-    Around(const std::vector<Vec3>& at, Index a, Index b, Index c)
-        : triangle(at[a], at[b], at[c]), corners{a, b, c} {}
-    PreparedTriangle triangle;
-    std::array<Index, 3> corners;
+    Around(const std::vector<Vec3>& at, const std::array<Index, 4>& corners)
+        : quad(at[corners[0]], at[corners[1]], at[corners[2]], at[corners[3]]), ring(corners) {}
+    PreparedQuad quad;
+    std::array<Index, 4> ring;
+
+    std::array<Index, 3> triangle(unsigned t) const { return {ring[0], ring[t + 1], ring[t + 2]}; }
 };
 
 /// The point of the facets nearest to a given one, and the vertices of its triangle.
@@ -24,29 +26,31 @@ struct Foot {
     NearestOfTriangle nearest{Vec3(0, 0, 0), std::numeric_limits<double>::infinity(), {}};
 };
 
-/// Appends the triangles round a vertex, two of each facet.
-void list_triangles(Index dual, const DualVertices& duals, const std::vector<Vec3>& at,
-                    std::vector<Around>& around) {
+/// Appends the facets round a vertex.
+void list_facets(Index dual, const DualVertices& duals, const std::vector<Vec3>& at,
+                 std::vector<Around>& around) {
     duals.for_each_corner(dual, [&](FacetCorner corner) {
-        const Index opposite = duals.from(corner.opposite());
-        around.emplace_back(at, dual, duals.to(corner), opposite);
-        around.emplace_back(at, dual, opposite, duals.from(corner.previous()));
+        around.emplace_back(at, std::array{dual, duals.to(corner), duals.from(corner.opposite()),
+                                           duals.from(corner.previous())});
     });
 }
 
 /// The foot of p: the nearest perpendicular foot inside a triangle, or, if there is none, the nearest point
 /// of any triangle.
-Foot find_foot(const Vec3& p, const std::vector<Around>& around) {
-    Foot best, foot;
-    for (const Around& a : around) {
-        if (!a.triangle.foot_inside(p, foot.nearest)) continue;
-        if (foot.nearest.squared_distance < best.nearest.squared_distance) best = {a.corners, foot.nearest};
-    }
+Foot find_foot(const Vec3& p, const std::vector<Around>& around, const std::vector<Vec3>& at) {
+    Foot best;
+    for (const Around& a : around)
+        a.quad.for_feet(p, [&](unsigned t, const NearestOfTriangle& foot) {
+            if (foot.squared_distance < best.nearest.squared_distance) best = {a.triangle(t), foot};
+        });
     if (best.nearest.squared_distance < std::numeric_limits<double>::infinity()) return best;
-    for (const Around& a : around) {
-        foot.nearest = a.triangle.nearest(p);
-        if (foot.nearest.squared_distance < best.nearest.squared_distance) best = {a.corners, foot.nearest};
-    }
+    for (const Around& a : around)
+        for (const unsigned t : {0u, 1u}) {
+            const std::array<Index, 3> corners = a.triangle(t);
+            const PreparedTriangle triangle(at[corners[0]], at[corners[1]], at[corners[2]]);
+            const NearestOfTriangle nearest = triangle.nearest(p);
+            if (nearest.squared_distance < best.nearest.squared_distance) best = {corners, nearest};
+        }
     return best;
 }
 
@@ -97,13 +101,13 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
             if (of_voxel_.of(x).empty()) gather_beside(static_cast<Index>(x), beside);
             const std::span<const Index> near = of_voxel_.of(x).empty() ? beside : of_voxel_.of(x);
             around.clear();
-            for (Index dual : near) list_triangles(dual, duals_, positions, around);
+            for (Index dual : near) list_facets(dual, duals_, positions, around);
             if (around.empty()) continue;
             const std::size_t first = level_.first_point[x], last = level_.first_point[x + 1];
             const std::size_t stride =
                 (last - first + relaxation::points_per_voxel - 1) / relaxation::points_per_voxel;
             for (std::size_t i = first; i < last; i += stride) {
-                const Foot foot = find_foot(octree_.positions[i], around);
+                const Foot foot = find_foot(octree_.positions[i], around, positions);
                 const double distance = std::sqrt(foot.nearest.squared_distance);
                 result.misfit[x] += distance;
                 const Vec3 way = octree_.positions[i] - foot.nearest.point;

@@ -74,9 +74,11 @@ public:
     }
 
 private:
-    /// A neighbouring vertex, and how many facets' half-edges join the two: an interior edge has two.
+    /// A neighbouring vertex.
     struct Neighbour {
-        Index vertex, sides;
+        Index vertex;
+        std::uint16_t sides; // facets' half-edges that join the two: an interior edge has two
+        bool carries;        // is it where its sheet is known, and is that the vertex's own?
     };
     std::span<const Neighbour> neighbours(Index dual) const {
         return {neighbours_.data() + 2 * std::size_t{duals_.first[dual]}, neighbour_count_[dual]};
@@ -91,7 +93,7 @@ private:
             const auto add = [&](Index n) {
                 Neighbour* const known =
                     std::find_if(first, last, [n](const Neighbour& other) { return other.vertex == n; });
-                if (known == last) *last++ = {n, 0};
+                if (known == last) *last++ = {n, 0, carries(n, v)};
                 ++known->sides;
             };
             duals_.for_each_corner(v, [&](FacetCorner corner) {
@@ -100,6 +102,13 @@ private:
             });
             neighbour_count_[v] = static_cast<Index>(last - first);
         });
+    }
+
+    /// Does a neighbour's place tell where the sheet of a smooth vertex is?
+    bool carries(Index neighbour, Index dual) const {
+        return vertices_.classes[neighbour] == VertexClass::smooth && !vertices_.is_clamped[neighbour]
+               && (vertices_.directions[neighbour] | vertices_.directions[dual])
+                      > relations::same_sheet_cosine;
     }
 
     Vec3 moved_on_sheet(Index dual, double step) const {
@@ -114,7 +123,6 @@ private:
     /// Projects p onto the sheet: to the mean height of the vertices of the sheet around it, as they were
     /// placed.
     Vec3 on_sheet(Index dual, const Vec3& p) const {
-        const Vec3& own = vertices_.directions[dual];
         Vec3 normal(0, 0, 0), place(0, 0, 0);
         double sum = 0;
         const auto add = [&](Index v, double share) {
@@ -126,10 +134,8 @@ private:
             sum += weight;
         };
         if (!vertices_.is_clamped[dual]) add(dual, 1);
-        for (const auto& [n, sides] : neighbours(dual))
-            if (vertices_.classes[n] == VertexClass::smooth && !vertices_.is_clamped[n]
-                && (vertices_.directions[n] | own) > relations::same_sheet_cosine)
-                add(n, relaxation::side_weight * sides);
+        for (const Neighbour& n : neighbours(dual))
+            if (n.carries) add(n.vertex, relaxation::side_weight * n.sides);
         if (!(sum > 0)) return p;
         normal.normalize();
         return p - normal * (normal | (p - place / sum));
@@ -141,7 +147,7 @@ private:
         const Vec3& p = vertices_.positions[dual];
         const Vec3& along = vertices_.directions[dual];
         double ahead = 0, behind = 0;
-        for (const auto& [n, sides] : neighbours(dual)) {
+        for (const auto& [n, sides, carries] : neighbours(dual)) {
             if (vertices_.is_clamped[n]) return p;
             if (vertices_.classes[n] == VertexClass::smooth) continue;
             const Vec3 way = vertices_.positions[n] - p;
