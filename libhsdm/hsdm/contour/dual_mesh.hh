@@ -16,6 +16,16 @@ struct DualMesh {
     Vec3 crossing_position_of(FacetCorner corner) const {
         return crossing_position(grid, crossings.of(corner), voxel_size);
     }
+    /// The same, given the corner's dual vertex: what is found by the voxel needs no look at the grid.
+    Vec3 crossing_position_of(FacetCorner corner, Index dual) const {
+        const Crossing& crossing = crossings.of(corner);
+        const unsigned axis = crossing.edge % 3, octant = corner.octant(axis);
+        Vec3 p;
+        for (unsigned k = 0; k < 3; ++k)
+            p[k] = voxel_of(dual)[k] + (octant >> k & 1u ? 0 : 1); // of the edge's lower grid point
+        p[axis] += crossing.t;
+        return p * voxel_size;
+    }
     /// Integer coordinates of the voxel whose chain of crossings the dual vertex is.
     const VoxelCoord& voxel_of(Index dual) const { return duals.voxels[dual].coord; }
 };

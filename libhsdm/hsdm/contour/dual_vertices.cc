@@ -25,19 +25,21 @@ public:
     bool turned = false; // do the corners run against the facets?
 
     /// Collects the chain through a corner in the direction in which facets run round the vertex: each
-    /// facet's half-edge to the vertex lies across the face by which the chain enters the corner.
-    void walk(FacetCorner start) {
+    /// facet's half-edge to the vertex lies across the face by which the chain enters the corner. False as
+    /// soon as it comes to a corner before this one, from which the chain will be, or was, walked.
+    bool walk(FacetCorner start) {
         corners.clear();
         closed = turned = false;
         const FacetSide exit = side_after(crossings_, start);
-        forward(start, exit);
-        if (closed) return;
+        if (!forward(start, exit)) return false;
+        if (closed) return true;
         // Open: walk the other half too, then put both in order from end to end.
         std::vector<FacetCorner> tail = std::move(corners);
         corners.clear();
-        forward(start, start.other_side(exit));
+        if (!forward(start, start.other_side(exit))) return false;
         std::reverse(corners.begin(), corners.end());
         corners.insert(corners.end(), tail.begin() + 1, tail.end());
+        return true;
     }
 
     /// Lets the corners run from the lower end, or from the same corner to the lower of the two beside it, as
@@ -55,17 +57,19 @@ public:
     }
 
 private:
-    /// Leaves `start` by one of its sides and goes on until the chain closes or ends.
-    void forward(FacetCorner start, FacetSide exit) {
+    /// Leaves `start` by one of its sides and goes on until the chain closes or ends; false if it comes to a
+    /// corner before `start`.
+    bool forward(FacetCorner start, FacetSide exit) {
         FacetCorner corner = start;
         do {
             corners.push_back(corner);
             const Link& link = links_.of(exit);
-            if (link.open()) return;
+            if (link.open()) return true;
             corner = across(corner, exit, link.twin);
+            if (corner < start) return false;
             exit = corner.other_side(link.twin);
         } while (corner != start);
-        closed = true;
+        return closed = true;
     }
 
     const Crossings& crossings_;
@@ -290,8 +294,7 @@ DualVertices build_dual_vertices(const GridPoints& grid, const Crossings& crossi
         Cut cut;
         for (auto x = static_cast<Index>(begin); x < end; ++x)
             for (const FacetCorner corner : corners_of_facet(x)) {
-                chain.walk(corner);
-                if (std::ranges::min(chain.corners) != corner) continue; // another corner's chain
+                if (!chain.walk(corner)) continue;
                 chain.turn_by_number();
                 cutter.cut(chain, cut);
                 chunks[c].add(cut, {grid, crossings, corner}, chain.closed, chain.turned);

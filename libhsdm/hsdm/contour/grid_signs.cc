@@ -247,6 +247,7 @@ private:
             return;
         }
         const Side low = side_[edge / 3], high = side_[upper];
+        if (begin == end && low == high) return;                             // most edges
         const double invention = begin == end ? 0 : cost_of_invention(edge); // without any it changes nothing
         const Side reached = choice_.choose(edge, low, high, invention, [&](Index x, bool taken) {
             if (taken) out.push_back(list_.crossings[x]);

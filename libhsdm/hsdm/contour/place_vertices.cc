@@ -8,6 +8,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace hsdm {
@@ -33,6 +34,7 @@ struct SheetNormals {
     std::array<Vec3, 3> normals;
     int count = 0;
 
+    explicit SheetNormals(const Vec3& normal) : normals{normal}, count(1) {}
     explicit SheetNormals(const std::vector<WeightedPlane>& planes) {
         while (count < 3) {
             const WeightedPlane* best = nullptr;
@@ -159,22 +161,36 @@ Vec3 least_in_box(const Solution& solution, const Problem& problem) {
     return clamped(problem.mean + Vec3(best[0], best[1], best[2]), problem);
 }
 
+/// Per set, does its sheet cross an edge of the set's own voxel? Noted when the voxel's vertices are placed.
+struct Crossers {
+    std::vector<std::uint8_t> of_set;
+    bool known = false; // have all vertices been looked at?
+
+    void note(Index s) { std::atomic_ref(of_set[s]).store(1, std::memory_order_relaxed); }
+};
+
 class Placer {
 public:
-    Placer(const DualMesh& mesh, const NormalSets& sets, const RelationTest& related,
-           const std::vector<std::uint8_t>& crosses)
-        : mesh_(mesh), sets_(sets), related_(related), crosses_(crosses) {}
+    Placer(const DualMesh& mesh, const NormalSets& sets, const RelationTest& related, Crossers& crosses)
+        : mesh_(mesh),
+          sets_(sets),
+          related_(related),
+          crosses_(crosses),
+          half_sheet_cosine_(std::sqrt((1 + relations::same_sheet_cosine) / 2) + 1e-9) {}
 
     std::vector<PlacedVertices::Beyond> beyond;
     std::vector<PlacedVertices::OnCrease> on_creases;
 
-    void place(Index dual, PlacedVertices& result) {
-        gather(dual);
+    /// False, and nothing is done but to note the sets that cross, if all of these must be known before.
+    bool place(Index dual, PlacedVertices& result) {
+        if (!gather(dual)) return false;
         const auto corners = mesh_.duals.corners_of(dual);
         const FacetCorner first = std::min(corners.front(), corners.back());
         const Index nearest = sets_.sets[mesh_.crossings.of(first).set].voxel;
         result.voxel[dual] = voxel_ != no_index ? voxel_ : nearest;
-        SheetNormals faces = by_crease_ ? faces_that_meet() : SheetNormals(problem_.planes);
+        SheetNormals faces = by_crease_       ? faces_that_meet()
+                             : is_one_sheet() ? SheetNormals(problem_.planes[0].normal)
+                                              : SheetNormals(problem_.planes);
         Solution solution = least_squares(problem_, faces.count);
         if (faces.count == 2 && solution.rank == 2 && add_corner_plane(dual)) {
             faces.normals[2] = problem_.planes.back().normal;
@@ -197,9 +213,18 @@ public:
         result.classes[dual] = faces.count == 1 || solution.rank < 2 ? VertexClass::smooth
                                : solution.rank == 2                  ? VertexClass::edge
                                                                      : VertexClass::corner;
+        return true;
     }
 
 private:
+    /// Are all normals so near the first one that any two of them are of one sheet?
+    bool is_one_sheet() const {
+        const Vec3& first = problem_.planes[0].normal;
+        return std::ranges::all_of(problem_.planes, [&](const WeightedPlane& plane) {
+            return (plane.normal | first) > half_sheet_cosine_;
+        });
+    }
+
     /// One normal per sheet, but two for a sheet whose two faces meet in a blunt crease in the voxel.
     SheetNormals faces_that_meet() {
         const SheetNormals sheets(problem_.planes);
@@ -220,7 +245,7 @@ private:
         return is_inside(meeting, problem_, -placement::crease_out) ? faces : sheets;
     }
 
-    void gather(Index dual) {
+    bool gather(Index dual) {
         problem_.planes.clear();
         by_crease_ = false;
         problem_.size = mesh_.voxel_size;
@@ -230,19 +255,19 @@ private:
         for (unsigned k = 0; k < 3; ++k) problem_.lo[k] = at.coord[k] * mesh_.voxel_size;
         problem_.mean = Vec3(0, 0, 0);
         mesh_.duals.for_each_corner(dual, [&](FacetCorner corner) {
-            const Vec3 p = mesh_.crossing_position_of(corner);
+            const Vec3 p = mesh_.crossing_position_of(corner, dual);
             problem_.planes.push_back({mesh_.crossings.of(corner).normal, p, 1});
             by_crease_ |= mesh_.crossings.of(corner).by_crease;
             problem_.mean += p;
         });
         std::ranges::reverse(problem_.planes); // either order would do, and must not turn with the normals
         problem_.mean /= static_cast<double>(corners.size());
-        if (voxel_ != no_index) add_own_sets(corners);
+        return voxel_ == no_index || add_own_sets(corners);
     }
 
     /// The voxel's own sets: those of the dual vertex's sheets, and those in a crease with them that cross no
-    /// edge of the voxel (a narrow rim).
-    void add_own_sets(std::span<const FacetCorner> corners) {
+    /// edge of the voxel (a narrow rim). False if it must be known first whether a set does.
+    bool add_own_sets(std::span<const FacetCorner> corners) {
         near_.clear();
         for (FacetCorner corner : corners) near_.push_back(mesh_.crossings.of(corner).set);
         sort_unique(near_);
@@ -253,17 +278,21 @@ private:
                     return s == t || related_(sets_.sets[s], sets_.sets[t]) == Relation::smooth;
                 });
             if (!same) continue;
+            if (!crosses_.known) crosses_.note(s);
             add_plane(s);
             near_.push_back(s);
         }
+        if (near_.size() - crossing_sets == sets_.first[voxel_ + 1] - sets_.first[voxel_]) return true;
+        if (!crosses_.known) return false;
         for (Index s = sets_.first[voxel_]; s < sets_.first[voxel_ + 1]; ++s) {
-            if (crosses_[s] || std::find(near_.begin(), near_.end(), s) != near_.end()) continue;
+            if (crosses_.of_set[s] || std::find(near_.begin(), near_.end(), s) != near_.end()) continue;
             const bool crease = std::any_of(near_.begin(), near_.end(), [&](Index t) {
                 const Relation r = related_(sets_.sets[s], sets_.sets[t]);
                 return r == Relation::convex || r == Relation::concave;
             });
             if (crease) add_plane(s);
         }
+        return true;
     }
 
     /// The tip of a corner may reach into a voxel that holds no point of the third sheet. Adds the plane of a
@@ -397,7 +426,8 @@ private:
     const DualMesh& mesh_;
     const NormalSets& sets_;
     const RelationTest& related_;
-    const std::vector<std::uint8_t>& crosses_;
+    Crossers& crosses_;
+    double half_sheet_cosine_; // of half the angle that normals of one sheet may make
     Problem problem_;
     std::vector<Index> near_;
     std::vector<CreaseSample> samples_;
@@ -405,27 +435,6 @@ private:
     bool by_crease_ = false; // is a crossing on one face of a blunt crease?
     Index voxel_ = no_index;
 };
-
-/// Per set, does its sheet cross an edge of the set's own voxel?
-std::vector<std::uint8_t> sets_that_cross(const DualMesh& mesh, const NormalSets& sets,
-                                          const RelationTest& related) {
-    const auto find = [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
-        for (auto v = static_cast<Index>(begin); v < end; ++v) {
-            const Index voxel = mesh.duals.voxels[v].voxel;
-            if (voxel == no_index) continue;
-            const auto corners = mesh.duals.corners_of(v);
-            for (Index s = sets.first[voxel]; s < sets.first[voxel + 1]; ++s)
-                if (std::ranges::any_of(corners, [&](FacetCorner corner) {
-                        const Index t = mesh.crossings.of(corner).set;
-                        return s == t || related(sets.sets[s], sets.sets[t]) == Relation::smooth;
-                    }))
-                    found.push_back(s);
-        }
-    };
-    std::vector<std::uint8_t> crosses(sets.sets.size(), 0);
-    for (Index s : collected<Index>(mesh.duals.size(), chunks::slow, find)) crosses[s] = 1;
-    return crosses;
-}
 
 } // namespace
 
@@ -454,17 +463,28 @@ PlacedVertices place_vertices(const DualMesh& mesh, const NormalSets& sets, cons
     resize_large(result.directions, count);
     resize_large(result.voxel, count);
     resize_large(result.is_clamped, count);
-    const auto crosses = sets_that_cross(mesh, sets, related);
-    std::vector<std::vector<PlacedVertices::Beyond>> beyond(chunk_count(count, chunks::slow));
-    std::vector<std::vector<PlacedVertices::OnCrease>> on_creases(beyond.size());
-    for_chunks(count, chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        Placer placer(mesh, sets, related, crosses);
-        for (std::size_t v = begin; v < end; ++v) placer.place(static_cast<Index>(v), result);
-        beyond[chunk] = std::move(placer.beyond);
-        on_creases[chunk] = std::move(placer.on_creases);
-    });
-    result.beyond = joined(beyond);
-    result.on_creases = joined(on_creases);
+    Crossers crosses{large_vector<std::uint8_t>(sets.sets.size())};
+    // Places the vertices but those that have to wait; returns these.
+    const auto place = [&](std::size_t n, const auto& vertex) {
+        std::vector<std::vector<PlacedVertices::Beyond>> beyond(chunk_count(n, chunks::slow));
+        std::vector<std::vector<PlacedVertices::OnCrease>> on_creases(beyond.size());
+        std::vector<std::vector<Index>> waiting(beyond.size());
+        for_chunks(n, chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+            Placer placer(mesh, sets, related, crosses);
+            for (std::size_t i = begin; i < end; ++i)
+                if (!placer.place(vertex(i), result)) waiting[chunk].push_back(vertex(i));
+            beyond[chunk] = std::move(placer.beyond);
+            on_creases[chunk] = std::move(placer.on_creases);
+        });
+        append_large(result.beyond, joined(beyond));
+        append_large(result.on_creases, joined(on_creases));
+        return joined(waiting);
+    };
+    const std::vector<Index> waiting = place(count, [](std::size_t i) { return static_cast<Index>(i); });
+    crosses.known = true;
+    place(waiting.size(), [&](std::size_t i) { return waiting[i]; });
+    std::ranges::sort(result.beyond, {}, &PlacedVertices::Beyond::dual);
+    std::ranges::sort(result.on_creases, {}, &PlacedVertices::OnCrease::dual);
     result.clamped = static_cast<std::size_t>(std::ranges::count(result.is_clamped, 1));
     return result;
 }
