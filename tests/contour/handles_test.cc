@@ -104,13 +104,15 @@ TEST_CASE("a bridge through the air is taken away, and a tunnel that no points s
         for (Vec3& p : mesh.positions) p -= stages.octree.origin;
         REQUIRE(measure_topology(mesh).euler == 2);
         REQUIRE(measure_topology(mesh).components == 1);
-        CHECK(cut_handles(stages.octree, stages.level, stages.sets, part.voxel, mesh) == 1);
+        std::optional<FacetLinks> links; // of the mesh before, which are not to be taken for those after
+        CHECK(cut_handles(stages.octree, stages.level, stages.sets, part.voxel, mesh, links) == 1);
         const Topology topology = measure_topology(mesh);
         CHECK(topology.euler == 4);
         CHECK(topology.components == 2);
         CHECK(topology.closed());
         CHECK(faults(mesh) == (turned_normals ? "closed but not outward; " : ""));
-        CHECK(cut_handles(stages.octree, stages.level, stages.sets, part.voxel, mesh) == 0);
+        CHECK(cut_handles(stages.octree, stages.level, stages.sets, part.voxel, mesh, links) == 0);
+        if (links) CHECK(links->twin == link_facets(mesh).twin);
     }
 }
 
@@ -170,10 +172,12 @@ TEST_CASE("measured points speak for a bridge, completed ones do not", "[contour
         beside.push_back(i);
     }
     REQUIRE(beside.size() > 20);
-    CHECK(cut_handles(octree, stages.level, stages.sets, part.voxel, mesh) == 0);
+    std::optional<FacetLinks> links;
+    CHECK(cut_handles(octree, stages.level, stages.sets, part.voxel, mesh, links) == 0);
     mesh = bridged;
     for (std::size_t i : beside) octree.source[i] = no_index;
-    CHECK(cut_handles(octree, stages.level, stages.sets, part.voxel, mesh) == 1);
+    CHECK(cut_handles(octree, stages.level, stages.sets, part.voxel, mesh, links) == 1);
+    CHECK_FALSE(links);
 }
 
 TEST_CASE("holes and rods of the part that points speak for stay, however short the way round", "[contour]") {

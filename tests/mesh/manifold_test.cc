@@ -121,6 +121,7 @@ TEST_CASE("a manifold mesh is left as it is", "[manifold]") {
     const PolygonMesh before = cube;
     const ManifoldCounts counts = make_manifold(cube);
     CHECK_FALSE(counts.changed());
+    CHECK(is_manifold(cube, link_facets(cube)));
     CHECK(cube.corners == before.corners);
     CHECK(cube.positions == before.positions);
     CHECK(manifold_fault(cube) == "");
@@ -240,7 +241,9 @@ TEST_CASE("random soups become manifolds, however wild", "[manifold]") {
             for (Index& v : facet) v = static_cast<Index>(random() % vertices);
             soup.add_facet(facet);
         }
-        make_manifold(soup);
+        const bool sound = is_manifold(soup, link_facets(soup));
+        CHECK(make_manifold(soup).changed() == !sound);
+        CHECK(is_manifold(soup, link_facets(soup)));
         CHECK(manifold_fault(soup) == "");
         CHECK(soup.normals.size() == soup.vertex_count());
         CHECK(soup.properties[0].values.size() == soup.vertex_count());

@@ -338,22 +338,32 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     splinters.flat *= h;
     result.splinters = drop_splinters(result.mesh, splinters);
     const auto cut = [&] {
-        result.handles_cut += cut_handles(octree, level, sets, result.voxel, result.mesh);
+        result.handles_cut += cut_handles(octree, level, sets, result.voxel, result.mesh, result.links);
     };
     cut();
     if (options.fill) {
         FillHolesOptions holes = options.holes;
         holes.max_diameter *= h;
-        result.holes = fill_holes(result.mesh, holes);
-        if (result.holes.closed > 0) cut(); // those of which a hole was a side
+        if (!result.links) result.links = link_facets(result.mesh);
+        result.holes = fill_holes(result.mesh, *result.links, holes);
+        if (result.holes.closed > 0) {
+            result.links.reset();
+            cut(); // those of which a hole was a side
+        }
     }
     result.doublets = merge_doublets(
         result.mesh, [&](Index v) { return result.classes[result.mesh.origin[v]] == VertexClass::smooth; });
-    result.manifold = make_manifold(result.mesh);
-    result.splinters.add(drop_splinters(result.mesh, splinters));
+    if (result.doublets > 0) result.links.reset();
+    if (!result.links || !is_manifold(result.mesh, *result.links)) {
+        result.manifold = make_manifold(result.mesh);
+        result.links.reset();
+    }
+    const Occurrences more_splinters = drop_splinters(result.mesh, splinters);
+    if (more_splinters.count > 0) result.links.reset();
+    result.splinters.add(more_splinters);
     if (result.splinters.count > 0) remove_isolated_vertices(result.mesh);
     result.drawn_in = draw_in_spikes(octree, level, result.voxel, result.mesh);
-    collapse_flat_facets(octree.origin, result.mesh);
+    if (collapse_flat_facets(octree.origin, result.mesh) > 0) result.links.reset();
     UntangleOptions untangle_options = options.untangle;
     untangle_options.reach *= h;
     untangle_options.nearby *= h;
@@ -364,11 +374,17 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
         result.intersections.moved += merged.moved;
         result.intersections.after = merged.after;
         result.intersections.first = merged.first;
-        if (merged.moved > 0) remove_isolated_vertices(result.mesh);
+        if (merged.moved > 0) {
+            remove_isolated_vertices(result.mesh);
+            result.links.reset();
+        }
     }
     if (result.intersections.moved > 0) {
         result.cells.reset();
-        if (collapse_flat_facets(octree.origin, result.mesh) > 0) count_intersections(result);
+        if (collapse_flat_facets(octree.origin, result.mesh) > 0) {
+            result.links.reset();
+            count_intersections(result);
+        }
     }
     settle_origins(result);
     return result;

@@ -44,6 +44,7 @@ struct DualContour {
     FillHolesCounts holes;
     UntangleCounts intersections;
     std::optional<FacetCells> cells; ///< the mesh's facets by voxel; empty if untangling moved vertices
+    std::optional<FacetLinks> links; ///< the mesh's; empty if facets changed after they were found
     ManifoldCounts manifold;         ///< what make_manifold still had to mend at the end
 };
 

@@ -7,7 +7,6 @@
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/copy_vertex.hh"
-#include "hsdm/mesh/facet_links.hh"
 #include "hsdm/mesh/split_polygon.hh"
 
 #include <algorithm>
@@ -193,8 +192,10 @@ private:
 class Round {
 public:
     Round(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
-          std::span<const Index> voxel, std::size_t& work, PolygonMesh& mesh)
+          std::span<const Index> voxel, std::size_t& work, PolygonMesh& mesh,
+          std::optional<FacetLinks>& links)
         : mesh_(mesh),
+          known_links_(links),
           witnesses_(octree, level, voxel, mesh),
           work_(work),
           most_work_(handles::most_work * mesh.facet_count()) {
@@ -207,7 +208,8 @@ public:
 
     std::size_t cut() {
         if (std::ranges::count(contradicted_, 1) == 0) return 0;
-        links_ = link_facets(mesh_);
+        links_ = known_links_ ? std::move(*known_links_) : link_facets(mesh_);
+        known_links_.reset();
         Vicinity vicinity(mesh_, links_);
         assign_large(touched_, mesh_.vertex_count(), 0);
         assign_large(seen_, mesh_.facet_count(), 0);
@@ -229,6 +231,7 @@ public:
         });
         for (const Ring& ring : rings_) open(ring);
         for (const auto& [v, place] : moves_) mesh_.positions[v] = place;
+        if (rings_.empty()) known_links_ = std::move(links_);
         return rings_.size();
     }
 
@@ -397,6 +400,7 @@ private:
     }
 
     PolygonMesh& mesh_;
+    std::optional<FacetLinks>& known_links_;
     Witnesses witnesses_;
     std::size_t& work_; // facets looked at, in all rounds
     std::size_t most_work_;
@@ -412,10 +416,10 @@ private:
 } // namespace
 
 std::size_t cut_handles(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
-                        std::span<const Index> voxel, PolygonMesh& mesh) {
+                        std::span<const Index> voxel, PolygonMesh& mesh, std::optional<FacetLinks>& links) {
     std::size_t cut = 0, work = 0;
     for (int round = 0; round < handles::rounds; ++round) {
-        const std::size_t rings = Round(octree, level, sets, voxel, work, mesh).cut();
+        const std::size_t rings = Round(octree, level, sets, voxel, work, mesh, links).cut();
         cut += rings;
         if (rings == 0) break;
     }

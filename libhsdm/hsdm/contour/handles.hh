@@ -3,7 +3,9 @@
 // through a wall, by the mesh alone.
 
 #include "hsdm/contour/normal_sets.hh"
-#include "hsdm/polygon_mesh.hh"
+#include "hsdm/mesh/facet_links.hh"
+
+#include <optional>
 
 namespace hsdm {
 
@@ -13,8 +15,9 @@ namespace hsdm {
 /// that, and a tunnel filled. Each cut raises the Euler characteristic by two, so it comes to an end. A
 /// 2-manifold remains one; vertices are copied with their origins, `voxel` is per origin. Returns how many
 /// rings were cut. O(facets): rings are looked for near facets that no set of their vertices' voxels agrees
-/// with, and no more once that has taken so much work. Serial but for the first look at all facets.
+/// with, and no more once that has taken so much work. Serial but for the first look at all facets. `links`
+/// are the mesh's if they are known; they are found if needed, and none are left once the mesh has changed.
 std::size_t cut_handles(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
-                        std::span<const Index> voxel, PolygonMesh& mesh);
+                        std::span<const Index> voxel, PolygonMesh& mesh, std::optional<FacetLinks>& links);
 
 } // namespace hsdm

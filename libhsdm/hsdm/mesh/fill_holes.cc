@@ -3,7 +3,6 @@
 #include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/area_vector.hh"
-#include "hsdm/mesh/facet_links.hh"
 #include "hsdm/mesh/split_polygon.hh"
 
 #include <algorithm>
@@ -31,8 +30,8 @@ double diameter(const PolygonMesh& mesh, std::span<const Index> loop) {
 /// Finds which side without twin follows which around a hole: the side after one from a to b ends in a.
 class HoleTracer {
 public:
-    explicit HoleTracer(const PolygonMesh& mesh)
-        : mesh_(mesh), links_(link_facets(mesh)), open_(sides_without_twin()) {
+    HoleTracer(const PolygonMesh& mesh, const FacetLinks& links)
+        : mesh_(mesh), links_(links), open_(sides_without_twin()) {
         if (open_.empty()) return;
         list_fans();
         next_.assign(mesh.corners.size(), no_index);
@@ -138,7 +137,7 @@ private:
     }
 
     const PolygonMesh& mesh_;
-    FacetLinks links_;
+    const FacetLinks& links_;
     std::vector<Index> open_; ///< sides without twin
     std::vector<Fan> shared_;
     std::vector<Index> next_; ///< per side without twin; cleared as loops are traced
@@ -181,11 +180,19 @@ void validate(const FillHolesOptions& options) {
 }
 
 BoundaryLoops boundary_loops(const PolygonMesh& mesh) {
-    return HoleTracer(mesh).trace();
+    return boundary_loops(mesh, link_facets(mesh));
+}
+
+BoundaryLoops boundary_loops(const PolygonMesh& mesh, const FacetLinks& links) {
+    return HoleTracer(mesh, links).trace();
 }
 
 FillHolesCounts fill_holes(PolygonMesh& mesh, const FillHolesOptions& options) {
-    const BoundaryLoops loops = boundary_loops(mesh);
+    return fill_holes(mesh, link_facets(mesh), options);
+}
+
+FillHolesCounts fill_holes(PolygonMesh& mesh, const FacetLinks& links, const FillHolesOptions& options) {
+    const BoundaryLoops loops = boundary_loops(mesh, links);
     FillHolesCounts counts;
     counts.loops = loops.size();
     if (loops.size() == 0) return counts;

@@ -3,7 +3,7 @@
 // vertices.
 
 #include "hsdm/mesh/constants.hh"
-#include "hsdm/polygon_mesh.hh"
+#include "hsdm/mesh/facet_links.hh"
 
 namespace hsdm {
 
@@ -70,6 +70,8 @@ void for_each_sample(const PolygonMesh& mesh, const BoundaryLoops& loops, double
 /// several fans each loop stays in the gap between two fans that are next to each other, so that closing the
 /// loops joins the fans; fans that face different ways keep their gaps to themselves. O(facets).
 BoundaryLoops boundary_loops(const PolygonMesh& mesh);
+/// The same by the mesh's links.
+BoundaryLoops boundary_loops(const PolygonMesh& mesh, const FacetLinks& links);
 
 /// Closes boundary loops, without adding vertices unless `insist` is set. Each loop is triangulated so that
 /// edges are short and bends small (exactly, by dynamic programming, up to 128 edges; longer loops lose their
@@ -78,5 +80,7 @@ BoundaryLoops boundary_loops(const PolygonMesh& mesh);
 /// called before make_manifold it mends vertices with several fans where it can; make_manifold splits the
 /// rest. O(facets + sum of loop length ^ 3, for lengths up to 128).
 FillHolesCounts fill_holes(PolygonMesh& mesh, const FillHolesOptions& options = {});
+/// The same by the mesh's links, which are those of the mesh before.
+FillHolesCounts fill_holes(PolygonMesh& mesh, const FacetLinks& links, const FillHolesOptions& options);
 
 } // namespace hsdm

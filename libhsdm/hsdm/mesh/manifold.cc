@@ -437,6 +437,24 @@ std::size_t remove_isolated_vertices(PolygonMesh& mesh) {
     return removed;
 }
 
+bool is_manifold(const PolygonMesh& mesh, const FacetLinks& links) {
+    if (links.rejected > 0 || links.split_vertices > 0 || links.source.size() != mesh.vertex_count())
+        return false;
+    std::atomic<bool> doubled{
+        false}; // does another facet, round any one of its vertices, have the same ones?
+    for_each_index(mesh.facet_count(), chunks::quick, [&](Index f) {
+        const Index begin = links.side_out[links.vertex[mesh.first[f]]];
+        Index side = begin;
+        do {
+            const Index g = links.facet[side];
+            if (g != f && same_vertices(mesh.facet(f), mesh.facet(g)))
+                doubled.store(true, std::memory_order_relaxed);
+            side = links.twin[previous_side(mesh, g, side)];
+        } while (side != no_index && side != begin);
+    });
+    return !doubled;
+}
+
 ManifoldCounts make_manifold(PolygonMesh& mesh) {
     ManifoldCounts counts;
     keep_simple(mesh, counts);

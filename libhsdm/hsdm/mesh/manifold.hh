@@ -1,7 +1,7 @@
 #pragma once
 // Any oriented facets -> an oriented 2-manifold, possibly with boundary, before a half-edge mesh sees them.
 
-#include "hsdm/polygon_mesh.hh"
+#include "hsdm/mesh/facet_links.hh"
 
 namespace hsdm {
 
@@ -35,6 +35,10 @@ struct ManifoldCounts {
 /// boundary afterwards either. O(facets) but for the few edges with more than two; the result does not depend
 /// on the number of threads. 1 million quads take about 0.2 s.
 ManifoldCounts make_manifold(PolygonMesh& mesh);
+
+/// Is the mesh, whose links these are, an oriented 2-manifold, so that make_manifold() would change nothing?
+/// O(corners), parallel.
+bool is_manifold(const PolygonMesh& mesh, const FacetLinks& links);
 
 /// Removes the vertices of no facet, and sharp edges that end there; the others keep their order. Returns how
 /// many vertices. O(vertices).

@@ -110,10 +110,12 @@ PolygonMesh finished(const MethodInput& in, const NormalSets& sets, DualContour 
     note_counts(facets, report);
     note_dropped("facets of splinters", facets.splinters, in, report);
     const bool turned = turn_solid_outward(facets.mesh);
+    if (turned) facets.links.reset();
     report.rejected["normals_turned"] = turned ? measured_points(in.octree) : 0;
     if (in.options.classify) {
         SheetFeatures features = in.phases.run("sheet features", 0.5, report.seconds.features, [&] {
-            known.links = link_facets(facets.mesh);
+            if (!facets.links) facets.links = link_facets(facets.mesh);
+            known.links = std::move(facets.links);
             return sheet_features(in.octree, in.level, sets, facets.mesh, *known.links, facets.voxel,
                                   in.options.crease_angle, turned);
         });
