@@ -28,6 +28,21 @@ TEST_CASE("an index gives every code its position and no other code one", "[octr
     CHECK(index.find(codes[0]) == no_index);
 }
 
+TEST_CASE("the next code up or down an axis is that of the next voxel", "[octree]") {
+    std::mt19937 random(5);
+    std::size_t wrong = 0;
+    for (int i = 0; i < 1000; ++i)
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            VoxelCoord c;
+            for (auto& x : c) x = static_cast<std::int32_t>(random() % ((1u << (1 + random() % 20)) - 1));
+            const MortonCode code = morton_encode(c);
+            ++c[axis];
+            wrong += morton_up(code, axis) != morton_encode(c);
+            wrong += morton_down(morton_encode(c), axis) != code;
+        }
+    CHECK(wrong == 0);
+}
+
 TEST_CASE("sets joined by many threads are those that one thread joins", "[disjoint_sets]") {
     constexpr Index n = 200000;
     std::mt19937 random(2);

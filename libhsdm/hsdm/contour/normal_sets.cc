@@ -173,8 +173,14 @@ private:
     void split_parallel_sheets(std::uint8_t k) {
         while (static_cast<int>(modes_.size()) < options_.max_sets) {
             offsets_.clear();
-            for_each(k, [&](Index i) { offsets_.emplace_back(modes_[k] | octree_.positions[i], i); });
-            if (offsets_.size() < 2) return;
+            double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+            for_each(k, [&](Index i) {
+                offsets_.emplace_back(modes_[k] | octree_.positions[i], i);
+                lowest = std::min(lowest, offsets_.back().first);
+                highest = std::max(highest, offsets_.back().first);
+            });
+            // No gap is wider than all: so it is in most voxels.
+            if (!(highest - lowest > options_.sheet_gap * voxel_size_)) return;
             std::sort(offsets_.begin(), offsets_.end());
             const std::size_t cut = where_to_cut(modes_[k]);
             if (cut == 0) return;

@@ -56,14 +56,6 @@ Foot find_foot(const Vec3& p, const std::vector<Around>& around, const std::vect
 
 } // namespace
 
-void PointFit::Heights::add(double w, double h) {
-    weight += w;
-    height += w * h;
-    weight2 += w * w;
-    weight2_height += w * w * h;
-    height2 += w * w * h * h;
-}
-
 double PointFit::Heights::variance() const {
     if (!(weight > 0)) return 0;
     const double m = mean(), squares = height2 - 2 * m * weight2_height + m * m * weight2;
@@ -78,7 +70,12 @@ PointFit::PointFit(const Octree& octree, const OctreeLevel& level, const DualVer
       level_(level),
       duals_(duals),
       vertices_(vertices),
-      of_voxel_(std::span(vertices.voxel).first(duals.size()), level.size()) {}
+      of_voxel_(std::span(vertices.voxel).first(duals.size()), level.size()),
+      upward_(large_vector<Vec3>(duals.size(), Vec3(0, 0, 0))) {
+    for_each_index(duals.size(), chunks::light, [&](Index v) {
+        if (vertices.classes[v] == VertexClass::smooth && !duals.open[v]) upward_[v] = vertices.directions[v];
+    });
+}
 
 void PointFit::gather_beside(Index voxel, std::vector<Index>& duals) const {
     duals.clear();
@@ -113,9 +110,8 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
                 const Vec3 way = octree_.positions[i] - foot.nearest.point;
                 for (std::size_t k = 0; k < 3; ++k) {
                     const Index v = foot.corners[k];
-                    const double height = vertices_.directions[v] | way;
-                    if (vertices_.classes[v] != VertexClass::smooth || duals_.open[v]
-                        || (octree_.normals[i] | vertices_.directions[v]) < relations::same_sheet_cosine
+                    const double height = upward_[v] | way;
+                    if ((octree_.normals[i] | upward_[v]) < relations::same_sheet_cosine
                         // the point lies beside the facets, not above
                         || std::abs(height) < relaxation::upright_cosine * distance)
                         continue;

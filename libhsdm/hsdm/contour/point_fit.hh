@@ -19,7 +19,13 @@ public:
     struct Heights {
         double weight = 0, height = 0;                       ///< sums of w and w h
         double weight2 = 0, weight2_height = 0, height2 = 0; ///< of w^2, w^2 h and w^2 h^2
-        void add(double w, double h);
+        void add(double w, double h) {
+            weight += w;
+            height += w * h;
+            weight2 += w * w;
+            weight2_height += w * w * h;
+            height2 += w * w * h * h;
+        }
         double mean() const { return weight > 0 ? height / weight : 0.0; }
         double variance() const; ///< of the mean
     };
@@ -48,6 +54,8 @@ private:
     const DualVertices& duals_;
     const PlacedVertices& vertices_;
     Groups of_voxel_; // its dual vertices
+    /// per vertex, its direction; zero, which no normal agrees with, where no heights are asked for
+    std::vector<Vec3> upward_;
 };
 
 } // namespace hsdm

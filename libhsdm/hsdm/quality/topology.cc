@@ -192,9 +192,9 @@ bool has_no_area(std::span<const Vec3> ring) {
     double size = 0;
     for (const Vec3& p : ring) size = std::max(size, (p - ring[0]).max_abs());
     if (!(size > 0) || !std::isfinite(size)) return true;
-    // Scaled by a power of two to a size near 1, so that neither overflow nor rounding depends on the size.
-    // In two steps: for the smallest sizes the factor itself is no number.
-    const int exponent = -std::ilogb(size);
+    // Scaled by a power of two, unless the size is a usual one, so that neither overflow nor rounding depends
+    // on it. In two steps: for the smallest sizes the factor itself is no number.
+    const int exponent = size > 1e-50 && size < 1e50 ? 0 : -std::ilogb(size);
     const double half = std::ldexp(1.0, exponent / 2), rest = std::ldexp(1.0, exponent - exponent / 2);
     double longest = 0, twice = 0;
     Vec3 p(0, 0, 0); // the corner before, from the first
