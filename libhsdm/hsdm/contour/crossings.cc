@@ -115,8 +115,14 @@ private:
     /// are skipped.
     bool passes_by() const {
         const SeenFrom &low = seen_[ends_[0]], &high = seen_[ends_[1]];
+        return low.side != several && low.side == high.side && holds_beside(ends_[0]);
+    }
+
+    /// Does a voxel beside the edge hold points of the one sheet seen from its lower end? Then the one seen
+    /// from the upper end is the same.
+    bool holds_beside(Index lower) const {
         static constexpr std::array<std::uint8_t, 3> upper{0xaa, 0xcc, 0xf0}; // octants, per axis
-        return low.side != several && low.side == high.side && (low.octants & upper[axis_]) != 0;
+        return (seen_[lower].octants & upper[axis_]) != 0;
     }
 
     /// Local sheets at the two ends are one along the edge if they share a set of a voxel beside it.
@@ -124,13 +130,17 @@ private:
         const auto low = local_.members_at(ends_[0]), high = local_.members_at(ends_[1]);
         const std::size_t n0 = local_.sheets_at(ends_[0]).size(), n1 = local_.sheets_at(ends_[1]).size();
         for (std::size_t i = 0; i < n0 + n1; ++i) parent_[i] = static_cast<std::uint8_t>(i);
-        for (const SheetMember& a : low) {
-            if (!beside(a, 0)) continue;
-            for (const SheetMember& b : high)
-                if (b.set == a.set) {
-                    const std::size_t ra = root(a.sheet), rb = root(n0 + b.sheet);
-                    parent_[std::max(ra, rb)] = static_cast<std::uint8_t>(std::min(ra, rb));
-                }
+        if (n0 == 1 && n1 == 1 && holds_beside(ends_[0])) {
+            parent_[1] = 0;
+        } else {
+            for (const SheetMember& a : low) {
+                if (!beside(a, 0)) continue;
+                for (const SheetMember& b : high)
+                    if (b.set == a.set) {
+                        const std::size_t ra = root(a.sheet), rb = root(n0 + b.sheet);
+                        parent_[std::max(ra, rb)] = static_cast<std::uint8_t>(std::min(ra, rb));
+                    }
+            }
         }
         count_ = 0;
         for (std::size_t i = 0; i < n0 + n1; ++i) {
@@ -349,7 +359,8 @@ private:
         const Vec3 x = position(i);
         double nearest = std::numeric_limits<double>::infinity();
         Index set = no_index;
-        for_each_member(i, [&](const SheetMember& m, unsigned) {
+        for_each_member(i, [&](const SheetMember& m, unsigned end) {
+            if (end == 1 && beside(m, end)) return; // seen from the lower end, too
             const double d = (sets_.sets[m.set].centroid - x).sqrnorm();
             if (d < nearest || (d == nearest && m.set < set)) nearest = d, set = m.set;
         });

@@ -33,7 +33,7 @@ struct SheetsAtPoint {
         sheet_count = label_components(
             member_count, [&](std::size_t i) -> std::uint8_t& { return members[i].sheet; },
             [&](std::size_t i, std::size_t j) {
-                return related(sets.sets[members[i].set], sets.sets[members[j].set]) == Relation::smooth;
+                return related.smooth(sets.sets[members[i].set], sets.sets[members[j].set]);
             });
     }
 

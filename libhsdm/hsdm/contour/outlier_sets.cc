@@ -29,7 +29,7 @@ bool reaches_few(const OctreeLevel& level, const RelationTest& related, const No
             const Index voxel = level.find({at[0] + offset[0], at[1] + offset[1], at[2] + offset[2]});
             if (voxel == no_index) continue;
             for (Index t = sets.first[voxel]; t < sets.first[voxel + 1]; ++t) {
-                if (related(set, sets.sets[t]) != Relation::smooth) continue;
+                if (!related.smooth(set, sets.sets[t])) continue;
                 if (sets.sets[t].count > most) return false;
                 if (std::find(group.begin(), group.end(), t) == group.end()) group.push_back(t);
             }

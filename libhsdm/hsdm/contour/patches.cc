@@ -243,8 +243,7 @@ private:
     bool one_sheet(std::size_t i, std::size_t j) {
         std::uint8_t* const row = at_.one_sheet.data() + i * size();
         if (!at_.has_row[i]) {
-            for (std::size_t k = 0; k < size(); ++k)
-                row[k] = k == i || related_(set(i), set(k)) == Relation::smooth;
+            for (std::size_t k = 0; k < size(); ++k) row[k] = k == i || related_.smooth(set(i), set(k));
             at_.has_row[i] = 1;
         }
         return row[j];

@@ -273,10 +273,9 @@ private:
         sort_unique(near_);
         const std::size_t crossing_sets = near_.size();
         for (Index s = sets_.first[voxel_]; s < sets_.first[voxel_ + 1]; ++s) {
-            const bool same = std::any_of(
-                near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(crossing_sets), [&](Index t) {
-                    return s == t || related_(sets_.sets[s], sets_.sets[t]) == Relation::smooth;
-                });
+            const bool same =
+                std::any_of(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(crossing_sets),
+                            [&](Index t) { return s == t || related_.smooth(sets_.sets[s], sets_.sets[t]); });
             if (!same) continue;
             if (!crosses_.known) crosses_.note(s);
             add_plane(s);

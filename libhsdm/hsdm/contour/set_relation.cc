@@ -24,21 +24,10 @@ Relation RelationTest::operator()(const NormalSet& a, const NormalSet& b) const 
     return relation != Relation::none && apart(a, b) ? Relation::none : relation;
 }
 
-bool RelationTest::apart(const NormalSet& a, const NormalSet& b) const {
-    if (sets_ == nullptr) return false;
-    const NormalSet* const sets = sets_->sets.data();
-    const auto* const others = sets_->apart.data();
-    return std::binary_search(others + sets_->first_apart[static_cast<std::size_t>(&a - sets)],
-                              others + sets_->first_apart[static_cast<std::size_t>(&a - sets) + 1],
-                              static_cast<Index>(&b - sets));
-}
-
 Relation RelationTest::by_planes(const NormalSet& a, const NormalSet& b) const {
     const double cosine = a.normal | b.normal;
     if (cosine < cos_smooth_) return crease(a, b, cosine);
-    const Vec3 sum = a.normal + b.normal;
-    const double gap = std::abs(sum | (b.centroid - a.centroid));
-    return gap < least_gap_ || gap < gap_ * sum.norm() ? Relation::smooth : Relation::none;
+    return one_sheet(a, b) ? Relation::smooth : Relation::none;
 }
 
 Relation RelationTest::crease(const NormalSet& a, const NormalSet& b, double cosine) const {

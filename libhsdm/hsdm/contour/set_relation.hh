@@ -4,6 +4,9 @@
 
 #include "hsdm/contour/normal_sets.hh"
 
+#include <algorithm>
+#include <cmath>
+
 namespace hsdm {
 
 enum class Relation : std::uint8_t {
@@ -36,10 +39,26 @@ public:
         if (!sets.first_apart.empty()) sets_ = &sets;
     }
     Relation operator()(const NormalSet& a, const NormalSet& b) const;
+    /// Is that relation smooth? Costs less to ask.
+    bool smooth(const NormalSet& a, const NormalSet& b) const { return one_sheet(a, b) && !apart(a, b); }
     /// Are they known to have a wall or gap between them?
-    bool apart(const NormalSet& a, const NormalSet& b) const;
+    bool apart(const NormalSet& a, const NormalSet& b) const {
+        if (sets_ == nullptr) return false;
+        const NormalSet* const sets = sets_->sets.data();
+        const auto* const first = sets_->first_apart.data() + (&a - sets);
+        const auto* const others = sets_->apart.data();
+        return first[0] != first[1]
+               && std::binary_search(others + first[0], others + first[1], static_cast<Index>(&b - sets));
+    }
 
 private:
+    /// By their planes alone.
+    bool one_sheet(const NormalSet& a, const NormalSet& b) const {
+        if ((a.normal | b.normal) < cos_smooth_) return false;
+        const Vec3 sum = a.normal + b.normal;
+        const double gap = std::abs(sum | (b.centroid - a.centroid));
+        return gap < least_gap_ || gap < gap_ * sum.norm();
+    }
     Relation by_planes(const NormalSet& a, const NormalSet& b) const;
     Relation crease(const NormalSet& a, const NormalSet& b, double cosine) const;
     bool ends_at(const NormalSet& set, const Vec3& plane, double above, bool convex, double cosine) const;

@@ -50,7 +50,7 @@ void SetsRoundFace::find_patches() {
         members_.size(), [&](std::size_t i) -> std::uint8_t& { return members_[i].patch; },
         [&](std::size_t i, std::size_t j) {
             const Member &a = members_[i], &b = members_[j];
-            return adjacent(a.at, b.at) && related_(set(a), set(b)) == Relation::smooth;
+            return adjacent(a.at, b.at) && related_.smooth(set(a), set(b));
         });
 }
 
