@@ -37,6 +37,18 @@ struct SheetsAtPoint {
             });
     }
 
+    /// How many sheets members with known sheets belong to.
+    static Index count_sheets(std::span<const SheetMember> known) {
+        std::uint64_t seen = 0; // a bit for each, of 64 at most
+        Index count = 0;
+        for (const SheetMember& m : known) {
+            const std::uint64_t bit = std::uint64_t{1} << m.sheet;
+            count += (seen & bit) == 0;
+            seen |= bit;
+        }
+        return count;
+    }
+
     /// Takes members with known sheets; renumbers the sheets without gaps, in order of their first member.
     void take(std::span<const SheetMember> known) {
         std::array<std::uint8_t, most> number;
@@ -125,19 +137,21 @@ LocalSheets connect_members(const GridPoints& grid, const NormalSets& sets, cons
     LocalSheets result;
     const std::size_t n = grid.size();
     assign_large(result.first_member, n + 1, 0);
-    const auto connect = [&](std::size_t i, std::size_t end, std::vector<SheetMember>& members) {
+    for_each_index(n, chunks::usual, [&](Index i) {
+        for (const Index voxel : grid.voxels[i])
+            if (voxel != no_index) result.first_member[i + 1] += sets.first[voxel + 1] - sets.first[voxel];
+    });
+    counts_to_first(result.first_member);
+    resize_large(result.members, result.first_member.back());
+    for_chunks(n, chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
         SheetsAtPoint grid_point;
-        for (; i < end; ++i) {
+        for (std::size_t i = begin; i < end; ++i) {
             grid_point.gather(grid.voxels[i], sets);
             grid_point.connect(sets, related);
-            const auto last =
-                grid_point.members.begin() + static_cast<std::ptrdiff_t>(grid_point.member_count);
-            members.insert(members.end(), grid_point.members.begin(), last);
-            result.first_member[i + 1] = static_cast<Index>(grid_point.member_count);
+            std::copy_n(grid_point.members.begin(), grid_point.member_count,
+                        result.members.data() + result.first_member[i]);
         }
-    };
-    result.members = collected<SheetMember>(n, chunks::usual, connect);
-    counts_to_first(result.first_member);
+    });
     return result;
 }
 
@@ -276,8 +290,12 @@ LocalSheets group_local_sheets(const GridPoints& grid, const NormalSets& sets, c
     close_sheets(grid, sets, related, result);
     const std::size_t n = grid.size();
     assign_large(result.first_sheet, n + 1, 0);
-    std::vector<std::vector<LocalSheet>> sheets(chunk_count(n, chunks::usual));
-    for_chunks(n, chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+    for_each_index(n, chunks::usual, [&](Index i) {
+        result.first_sheet[i + 1] = SheetsAtPoint::count_sheets(result.members_at(i));
+    });
+    counts_to_first(result.first_sheet);
+    resize_large(result.sheets, result.first_sheet.back());
+    for_chunks(n, chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
         SheetsAtPoint grid_point;
         for (std::size_t i = begin; i < end; ++i) {
             SheetMember* first = result.members.data() + result.first_member[i];
@@ -286,13 +304,10 @@ LocalSheets group_local_sheets(const GridPoints& grid, const NormalSets& sets, c
             grid_point.measure(Vec3(c[0], c[1], c[2]) * voxel_size, sets, voxel_size);
             grid_point.snap(voxel_size);
             std::copy_n(grid_point.members.begin(), grid_point.member_count, first);
-            const auto last = grid_point.sheets.begin() + static_cast<std::ptrdiff_t>(grid_point.sheet_count);
-            sheets[chunk].insert(sheets[chunk].end(), grid_point.sheets.begin(), last);
-            result.first_sheet[i + 1] = static_cast<Index>(grid_point.sheet_count);
+            std::copy_n(grid_point.sheets.begin(), grid_point.sheet_count,
+                        result.sheets.data() + result.first_sheet[i]);
         }
     });
-    result.sheets = joined(sheets);
-    counts_to_first(result.first_sheet);
     return result;
 }
 
