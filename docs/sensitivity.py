@@ -30,7 +30,7 @@ SHARED = os.environ.get("HSDM_SHARED_DIR", os.path.normpath(os.path.join(HOME, "
 SUITES = ("data/suite.json", "data/crowd/suite.json")
 TRIALS = os.path.join(TREE, "trials.json")
 COUNTS = ("int", "std::int32_t", "std::size_t", "Index")
-FOLDERS = ("octree", "contour", "mesh", "pipeline", "features", "normals", "simplify")
+FOLDERS = ("core", "octree", "contour", "mesh", "pipeline", "features", "normals", "simplify")
 SAMPLES = 20000
 TOPOLOGICAL = ("manifold", "closed", "genus", "components", "boundary_loops", "euler", "oriented", "inside out", "exit",
                "no face", "judge")  # as suite.py

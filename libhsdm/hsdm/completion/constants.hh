@@ -67,8 +67,4 @@ inline constexpr double least_slenderness = 16;
 /// Why: what closes them is found in the square of their length; bounds it to a second.
 inline constexpr std::size_t most_edges = 4096;
 
-/// cosine: mean, of the angle between what closes a slit and the mesh beside it; less goes back over the
-/// mesh. Why: 120 degrees; the rim of a blade is at 90, the back of a ribbon at 180.
-inline constexpr double least_agreement = -0.5;
-
 } // namespace hsdm::slits

@@ -2,6 +2,7 @@
 
 #include "hsdm/completion/constants.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/split_polygon.hh"
 
@@ -52,7 +53,7 @@ struct Closing {
 
     bool is_slit(double widest) const {
         return 4 * area <= widest * length && length * length >= slits::least_slenderness * 2 * area
-               && agreeing > slits::least_agreement * length;
+               && agreeing > angles::opposed * length;
     }
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Section 3.4.2: creases too blunt for their two faces to be two sheets (relations::smooth_angle). See
+// Section 3.4.2: creases too blunt for their two faces to be two sheets (angles::one_sheet). See
 // docs/sheets.md.
 
 #include "hsdm/contour/normal_sets.hh"

@@ -36,10 +36,6 @@ HSDM_TUNED int lloyd_rounds = 2;
 /// may be off.
 HSDM_TUNED double most_lift = 0.1;
 
-/// cosine: with a direction, of the normals of a sheet that faces back.
-/// Why: by trial; 135 degrees, halfway from a right angle to opposite.
-inline constexpr double faces_back = -0.7;
-
 } // namespace hsdm::sets
 
 // outlier_sets.hh
@@ -58,15 +54,6 @@ HSDM_TUNED std::size_t most_sets = 4;
 // set_relation.hh, and who else asks whether two normals belong to one sheet
 namespace hsdm::relations {
 
-/// radians: normals closer than this belong to one sheet.
-/// Why: 40 degrees, beyond the 35 that a set may spread to: sets beside each other on round ground of a voxel
-/// and a half's radius are one sheet. Creases that are flatter lie within a sheet (blunt_creases.hh).
-HSDM_TUNED double smooth_angle = 0.70;
-
-/// cosine: of the same angle, where normals of crossings, planes and vertices are compared.
-/// Why: smooth_angle to two digits; its own cosine, 0.765, would change results by as little.
-HSDM_TUNED double same_sheet_cosine = 0.77;
-
 /// voxels: how far two sets of one sheet may lie apart along their mean normal.
 /// Why: by trial; docs/sheets.md promises to tell sheets apart from there on.
 HSDM_TUNED double smooth_gap = 0.3;
@@ -76,7 +63,7 @@ HSDM_TUNED double smooth_gap = 0.3;
 HSDM_TUNED double crease_gap = 0.5;
 
 /// squared sine: planes closer to parallel have no line in common.
-/// Why: 6 degrees; beyond smooth_angle only opposite sheets are that parallel, the two sides of a plate.
+/// Why: 6 degrees; beyond angles.one_sheet only opposite sheets are that parallel, the two sides of a plate.
 inline constexpr double least_sine_squared = 0.01;
 
 /// voxels: how far a set's points may reach beyond the plane they should end at.
@@ -109,10 +96,6 @@ HSDM_TUNED double most_astray = 0.2;
 // patches.hh
 namespace hsdm::patches {
 
-/// cosine: of the normals of two sheets that bound a wall or a gap.
-/// Why: 120 degrees: the sides of a groove of 60 degrees part what lies beside it.
-inline constexpr double opposed_cosine = -0.5;
-
 /// voxels: between the two sheets of a wall or gap.
 /// Why: beyond that the sets beside it are no neighbours.
 inline constexpr double widest = 1.5;
@@ -125,10 +108,6 @@ inline constexpr double beside = 1.0;
 /// Why: with two, six points of each sheet are expected round a place on its end; that none is has a chance
 /// of a four hundredth.
 inline constexpr double reach = 2;
-
-/// cosine: of the normals of a wall and of the surface that it parts.
-/// Why: 45 degrees: less steep, they are parts of one curved surface or the two sides of a blade.
-inline constexpr double most_along = 0.7;
 
 /// points: of a sheet in the voxels round one; fewer are strays with odd normals and no wall.
 /// Why: by trial; a sheet that passes two voxels has more in any scan that shows walls.
@@ -273,11 +252,6 @@ HSDM_TUNED double end_gap = 0.01;
 // crossing_pairs.hh, trim_crossings.hh
 namespace hsdm::pairing {
 
-/// cosine: of the normals of two crossings that face opposite ways, as the two sides of a thin part or of a
-/// wedge.
-/// Why: 107 degrees: creases at a right angle are not opposite, noise of 15 degrees included.
-HSDM_TUNED double opposed_cosine = -0.3;
-
 /// cost: of pairing two crossings across a crease, beside the angle and the distance from each other's
 /// planes.
 /// Why: by trial; one sheet is to be preferred at any angle of less than 90 degrees, whose cost is 1.
@@ -291,10 +265,6 @@ HSDM_TUNED double cost_of_strangers = 2;
 /// Why: twice that of a rim, across which two strangers face opposite ways a voxel apart.
 inline constexpr double cost_of_parted = 10;
 
-/// cosine: of the normals of two that face one way.
-/// Why: 60 degrees: walls of a honeycomb go on into each other, the faces of a block do not.
-inline constexpr double parted_cosine = 0.5;
-
 /// cost: of a crossing without a partner.
 /// Why: more than all pairs of a face.
 inline constexpr double cost_of_open = 100;
@@ -307,7 +277,7 @@ HSDM_TUNED int longest_defect = 16;
 /// Why: its outline is more ragged; with a slot beside a pipe's end 26 sides were found.
 HSDM_TUNED int longest_outline = 20;
 
-/// rounds: of taking back crossings beyond the data and pairing the others anew; the same of tips.
+/// rounds: of taking back crossings beyond the data and pairing the others anew.
 /// Why: bounds the work; a round that takes nothing back ends it.
 HSDM_TUNED int trim_rounds = 3;
 
@@ -390,10 +360,6 @@ HSDM_TUNED int rounds = 3;
 /// Why: by trial; the whole way makes neighbours change places on a grid.
 HSDM_TUNED double step = 0.7;
 
-/// cosine: an edge this parallel to a crease lies on it.
-/// Why: 37 degrees; by trial, below the 45 degrees of a quad's diagonal.
-HSDM_TUNED double along_cosine = 0.8;
-
 /// share: by which a voxel's points may get farther off before its vertices go back.
 /// Why: by trial; a tenth is within the chance of eight points.
 HSDM_TUNED double farther = 0.1;
@@ -414,11 +380,6 @@ HSDM_TUNED std::size_t points_per_voxel = 8;
 /// Why: where they are equal noise explains the rise; twice moves less than noise would in the mean.
 HSDM_TUNED double doubt = 2;
 
-/// cosine: of the way from the facets to a point with the vertex's direction; less upright, and it lies
-/// beside them.
-/// Why: 40 degrees, as of normals of one sheet.
-HSDM_TUNED double upright_cosine = 0.77;
-
 } // namespace hsdm::relaxation
 
 // move_to_creases.hh, shared_corners.hh, and the diagonals of dual_contour.hh
@@ -427,10 +388,6 @@ namespace hsdm::creases {
 /// rounds: of moving vertices to creases.
 /// Why: bounds the work; one that moves may make way for another.
 inline constexpr int move_rounds = 4;
-
-/// cosine: of a facet's normal with that before, and with its sheet's.
-/// Why: 45 degrees: a facet laid along the other sheet of a right angle turns by more.
-HSDM_TUNED double turn_cosine = 0.7;
 
 /// voxels: least distance from a vertex that moves to another.
 /// Why: a tenth of a voxel, below which facets are slivers.
@@ -443,15 +400,6 @@ HSDM_TUNED double least_sine = 0.02;
 /// voxels: corners this near are one, planes this near pass through it.
 /// Why: by trial; three times clear_corner, as the planes are those of another voxel.
 HSDM_TUNED double same_place = 0.1;
-
-/// cosine: between the two halves of a quad that is cut along its diagonal on a crease.
-/// Why: 30 degrees: blunter folds are those of round parts a voxel or two thick, nearer to the shape without
-/// the cut.
-HSDM_TUNED double fold_cosine = 0.866;
-
-/// cosine: the same along the other diagonal: a quad that is flat that way is no fold.
-/// Why: 18 degrees; by trial.
-HSDM_TUNED double other_fold_cosine = 0.95;
 
 } // namespace hsdm::creases
 

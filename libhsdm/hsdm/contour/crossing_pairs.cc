@@ -2,6 +2,7 @@
 
 #include "hsdm/contour/sets_round_face.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
 
 #include <algorithm>
@@ -79,7 +80,7 @@ private:
     double cost(const Stop& a, const Stop& b) const {
         const Crossing &x = of(a), &y = of(b);
         const double cosine = x.normal | y.normal;
-        if (crowded_ && cosine > pairing::parted_cosine && around_.parted(x.set, y.set))
+        if (crowded_ && cosine > angles::facing && around_.parted(x.set, y.set))
             return pairing::cost_of_parted;
         const Vec3 d = b.position - a.position;
         const double off_plane = std::abs(x.normal | d) + std::abs(y.normal | d);

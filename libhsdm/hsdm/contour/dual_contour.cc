@@ -10,6 +10,7 @@
 #include "hsdm/contour/trim_crossings.hh"
 #include "hsdm/contour/webs.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/doublets.hh"
 #include "hsdm/spatial/self_intersections.hh"
@@ -153,7 +154,7 @@ private:
             const Vec3 m0 = triangle_normal(b, c, e), m1 = triangle_normal(b, e, a);
             const double fold = (n0 | n1) / std::max(n0.norm() * n1.norm(), 1e-300);
             const double other = (m0 | m1) / std::max(m0.norm() * m1.norm(), 1e-300);
-            if (fold <= creases::fold_cosine && other <= creases::other_fold_cosine) return d;
+            if (fold <= angles::smooth && other <= angles::smooth) return d;
         }
         return 2;
     }
@@ -292,9 +293,6 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
          round < pairing::trim_rounds && trim_unsupported(dual.crossings, dual.links, options.all_round) > 0;
          ++round)
         pair();
-    for (int round = 0;
-         round < pairing::trim_rounds && drop_tips(sets, related, dual.links, dual.crossings) > 0; ++round)
-        pair();
     dual.duals = build_dual_vertices(dual.grid, dual.crossings, dual.links);
     result.webs_opened = open_all_webs(dual);
     PlacedVertices vertices = place_vertices(dual, sets, related);
@@ -321,7 +319,6 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     result.beyond_crease = dual.crossings.dropped_beyond_crease;
     result.settled = dual.crossings.settled;
     result.trimmed = dual.crossings.trimmed;
-    result.tips = dual.crossings.tips;
     result.clamped = vertices.clamped;
     return to_corners;
 }

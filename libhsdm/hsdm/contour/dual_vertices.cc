@@ -2,6 +2,7 @@
 
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
 
 #include <algorithm>
@@ -189,7 +190,7 @@ private:
         for (FacetCorner side : {a, b}) {
             const Vec3& n = of(side).normal;
             const double cosine = of(face).normal | n;
-            if (cosine > relations::same_sheet_cosine) return 0;
+            if (cosine > angles::one_sheet) return 0;
             const Vec3 d = crossing_position(grid_, of(side), 1) - crossing_position(grid_, of(face), 1);
             sum += (n | d) / std::sqrt(std::max(1 - cosine * cosine, 0.01));
         }

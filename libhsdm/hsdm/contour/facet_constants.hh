@@ -9,10 +9,6 @@
 // handles.hh, witnesses.hh
 namespace hsdm::handles {
 
-/// cosine: of the normals of a facet and of a set that speaks for it.
-/// Why: 60 degrees: a facet at a crease lies between the two faces, no farther than that from one.
-inline constexpr double agreeing_cosine = 0.5;
-
 /// voxels: from a facet's middle to the plane of a set that speaks for it.
 /// Why: a vertex lies on its sets' planes, a facet's middle not farther off than it is bent.
 inline constexpr double agreeing_gap = 0.5;
@@ -30,10 +26,6 @@ inline constexpr double least_contradicted = 0.25;
 /// seven tenths if the ring is no rounder than a square. Walls and gaps that decide wrongly are under a voxel
 /// wide.
 inline constexpr double share_of_ring = 0.7, reach_along = 1;
-
-/// cosine: of a point's normal and a ring's axis, if the point's sheet passes across the ring.
-/// Why: 45 degrees: halfway between along and across.
-inline constexpr double across_cosine = 0.7;
 
 /// points: of a sheet across a ring, fewest, and how many there are for each that says otherwise.
 /// Why: three are a plane. Where a suite's handles were wrong, one in four at most said otherwise; round true
@@ -99,10 +91,6 @@ HSDM_TUNED double widest = 6;
 
 // sheet_features.hh
 namespace hsdm::edge_hints {
-
-/// cosine: between a facet and its set.
-/// Why: 60 degrees: a facet across a right angle lies 45 degrees off either set.
-HSDM_TUNED double least_cosine = 0.5;
 
 /// per voxel: of distance from a set's centroid, in what is minimised beside angle and height to find a
 /// facet's set.

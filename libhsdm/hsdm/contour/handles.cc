@@ -3,6 +3,7 @@
 #include "hsdm/contour/constants.hh"
 #include "hsdm/contour/witnesses.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/interruption.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/area_vector.hh"
@@ -29,7 +30,7 @@ bool is_contradicted(const PolygonMesh& mesh, Index f, const NormalSets& sets, s
     for (const Index v : facet)
         for (const NormalSet& set : sets.of_voxel(voxel[mesh.origin[v]])) {
             any = true;
-            if ((set.normal | area) > handles::agreeing_cosine * length
+            if ((set.normal | area) > angles::facing * length
                 && std::abs(set.normal | (centre - set.centroid)) < handles::agreeing_gap * voxel_size)
                 return false;
         }

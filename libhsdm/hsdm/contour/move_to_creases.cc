@@ -2,6 +2,7 @@
 
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/part_of.hh"
 #include "hsdm/spatial/self_intersections.hh"
@@ -157,9 +158,9 @@ private:
                 return false;
         }
         const Vec3 now = area_vector(after_), then = area_vector(before_);
-        if ((now | then) <= creases::turn_cosine * now.norm() * then.norm()) return false;
+        if ((now | then) <= angles::one_sheet * now.norm() * then.norm()) return false;
         const double is = along(after_, to.normals);
-        return is > creases::turn_cosine || is >= along(before_, to.normals);
+        return is > angles::one_sheet || is >= along(before_, to.normals);
     }
 
     PolygonMesh& mesh_;

@@ -3,6 +3,7 @@
 #include "hsdm/contour/components.hh"
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/parallel_sort.hh"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -91,8 +92,7 @@ public:
         if (end == 0) {
             begin = at_.standing.size();
             for (const Disc& disc : at_.discs)
-                if (std::abs(set(i).normal | disc.normal) <= patches::most_along)
-                    at_.standing.push_back(&disc);
+                if (std::abs(set(i).normal | disc.normal) <= angles::one_sheet) at_.standing.push_back(&disc);
             end = at_.standing.size();
         }
         return {at_.standing.data() + begin, at_.standing.data() + end};
@@ -195,7 +195,7 @@ private:
     }
 
     static bool opposed(const NormalSet& a, const NormalSet& b) {
-        return (a.normal | b.normal) < patches::opposed_cosine;
+        return (a.normal | b.normal) < angles::opposed;
     }
 
     bool any_opposed() const {
@@ -257,7 +257,7 @@ private:
         if (radius == 0) return;
         at_.facing.clear();
         for (std::size_t j = 0; j < size(); ++j)
-            if (const double cosine = a.normal | set(j).normal; j != i && cosine < patches::opposed_cosine)
+            if (const double cosine = a.normal | set(j).normal; j != i && cosine < angles::opposed)
                 at_.facing.push_back({set(j).normal, set(j).centroid, cosine});
         for (const Vec3& p : samples(i)) {
             double nearest[2] = {patches::widest * h, patches::widest * h}; // behind, before

@@ -3,6 +3,7 @@
 #include "hsdm/contour/blunt_creases.hh"
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
 
 #include <Eigen/Eigenvalues>
@@ -54,7 +55,7 @@ struct SheetNormals {
 private:
     bool is_covered(const Vec3& normal) const {
         return std::any_of(normals.begin(), normals.begin() + count,
-                           [&](const Vec3& n) { return (n | normal) > relations::same_sheet_cosine; });
+                           [&](const Vec3& n) { return (n | normal) > angles::one_sheet; });
     }
 };
 
@@ -176,7 +177,7 @@ public:
           sets_(sets),
           related_(related),
           crosses_(crosses),
-          half_sheet_cosine_(std::sqrt((1 + relations::same_sheet_cosine) / 2) + 1e-9) {}
+          half_sheet_cosine_(std::sqrt((1 + angles::one_sheet) / 2) + 1e-9) {}
 
     std::vector<PlacedVertices::Beyond> beyond;
     std::vector<PlacedVertices::OnCrease> on_creases;
@@ -233,7 +234,7 @@ private:
             const Vec3& sheet = sheets.normals[static_cast<std::size_t>(k)];
             samples_.clear();
             for (const WeightedPlane& plane : problem_.planes)
-                if ((plane.normal | sheet) > relations::same_sheet_cosine)
+                if ((plane.normal | sheet) > angles::one_sheet)
                     samples_.push_back({plane.point, plane.normal, plane.weight});
             face_.resize(samples_.size());
             BluntCrease crease;
@@ -404,7 +405,7 @@ private:
 
     bool has_sheet(const Vec3& normal) const {
         return std::any_of(problem_.planes.begin(), problem_.planes.end(), [&](const WeightedPlane& plane) {
-            return (plane.normal | normal) > relations::same_sheet_cosine;
+            return (plane.normal | normal) > angles::one_sheet;
         });
     }
 

@@ -2,6 +2,7 @@
 
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/spatial/prepared_quad.hh"
 
@@ -111,9 +112,9 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
                 for (std::size_t k = 0; k < 3; ++k) {
                     const Index v = foot.corners[k];
                     const double height = upward_[v] | way;
-                    if ((octree_.normals[i] | upward_[v]) < relations::same_sheet_cosine
+                    if ((octree_.normals[i] | upward_[v]) < angles::one_sheet
                         // the point lies beside the facets, not above
-                        || std::abs(height) < relaxation::upright_cosine * distance)
+                        || std::abs(height) < angles::one_sheet * distance)
                         continue;
                     if (vertices_.voxel[v] >= begin && vertices_.voxel[v] < end)
                         result.heights[v].add(foot.nearest.weights[k], height);

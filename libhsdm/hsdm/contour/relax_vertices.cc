@@ -4,6 +4,7 @@
 #include "hsdm/contour/point_fit.hh"
 #include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/area_vector.hh"
 
@@ -108,7 +109,7 @@ private:
     bool carries(Index neighbour, Index dual) const {
         return vertices_.classes[neighbour] == VertexClass::smooth && !vertices_.is_clamped[neighbour]
                && (vertices_.directions[neighbour] | vertices_.directions[dual])
-                      > relations::same_sheet_cosine;
+                      > angles::one_sheet;
     }
 
     Vec3 moved_on_sheet(Index dual, double step) const {
@@ -152,7 +153,7 @@ private:
             if (vertices_.classes[n] == VertexClass::smooth) continue;
             const Vec3 way = vertices_.positions[n] - p;
             const double s = way | along;
-            if (std::abs(s) < relaxation::along_cosine * way.norm()) continue;
+            if (std::abs(s) < angles::one_sheet * way.norm()) continue;
             (s > 0 ? ahead : behind) = s > 0 ? std::max(ahead, s) : std::min(behind, s);
         }
         return ahead > 0 && behind < 0 ? p + along * (0.5 * step * (ahead + behind)) : p;
@@ -185,8 +186,7 @@ private:
 const NormalSet* own_set(const NormalSets& sets, Index voxel, const Vec3& normal) {
     const NormalSet* best = nullptr;
     for (const NormalSet& set : sets.of_voxel(voxel))
-        if ((set.normal | normal) > relations::same_sheet_cosine && (!best || set.count > best->count))
-            best = &set;
+        if ((set.normal | normal) > angles::one_sheet && (!best || set.count > best->count)) best = &set;
     return best;
 }
 

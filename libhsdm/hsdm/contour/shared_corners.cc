@@ -2,6 +2,7 @@
 
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -60,8 +61,8 @@ private:
     }
 
     static bool has_sheet(const PlacedVertices::Beyond& beyond, const Vec3& normal) {
-        return std::ranges::any_of(
-            beyond.normals, [&](const Vec3& n) { return (n | normal) > relations::same_sheet_cosine; });
+        return std::ranges::any_of(beyond.normals,
+                                   [&](const Vec3& n) { return (n | normal) > angles::one_sheet; });
     }
 
     /// How far a point lies beyond the faces of a dual vertex's voxel, in voxels; 0 inside.

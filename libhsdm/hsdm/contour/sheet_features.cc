@@ -2,6 +2,7 @@
 
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/facet_normal.hh"
@@ -155,7 +156,7 @@ Index SheetFacets::set(Index f) const {
             const NormalSet& set = sets_.sets[s];
             const Vec3 arm = (centre - set.centroid) / level_.voxel_size;
             const double cosine = set.normal | normals_[f];
-            if (cosine < edge_hints::least_cosine) continue;
+            if (cosine < angles::facing) continue;
             // The arm's small weight (a twentieth) chooses the nearest of one sheet's sets and sways nothing
             // else.
             const double cost = 1 - cosine + std::abs(set.normal | arm) + edge_hints::arm_weight * arm.norm();

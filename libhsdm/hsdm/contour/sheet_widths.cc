@@ -3,6 +3,7 @@
 #include "hsdm/contour/constants.hh"
 #include "hsdm/contour/plane_area.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +21,7 @@ double area_in_voxel(const OctreeLevel& level, const NormalSet& set) {
 
 /// Do two sets face each other or turn their backs, one before the other?
 bool is_facing(const NormalSet& a, const NormalSet& b, double voxel_size) {
-    if ((a.normal | b.normal) >= patches::opposed_cosine) return false;
+    if ((a.normal | b.normal) >= angles::opposed) return false;
     if (std::min(a.count, b.count) < sets::points_of_plane) return false;
     const Vec3 way = b.centroid - a.centroid, across = (a.normal - b.normal).normalized();
     const double beside = patches::beside * voxel_size;

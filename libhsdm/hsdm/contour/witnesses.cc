@@ -1,6 +1,7 @@
 #include "hsdm/contour/witnesses.hh"
 
 #include "hsdm/contour/constants.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/spatial/point_triangle.hh"
 
@@ -80,7 +81,7 @@ bool Witnesses::speak_for(Index f) {
     std::partial_sort(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(count), near_.end());
     std::size_t agree = 0;
     for (std::size_t k = 0; k < count; ++k)
-        agree += (octree_.normals[near_[k].second] | normal) > handles::agreeing_cosine;
+        agree += (octree_.normals[near_[k].second] | normal) > angles::facing;
     return agree >= handles::fewest_witnesses;
 }
 
@@ -109,7 +110,7 @@ bool Witnesses::span(std::span<const Index> ring) {
             const Vec3& at = octree_.positions[p];
             if (octree_.source[p] == no_index || !tube.holds(at)) continue;
             const double cosine = octree_.normals[p] | tube.axis();
-            if (std::abs(cosine) < handles::across_cosine)
+            if (std::abs(cosine) < angles::one_sheet)
                 ++aside;
             else
                 facing[(cosine > 0) != (tube.along(at) > 0)].push_back(p);
@@ -134,7 +135,7 @@ bool Witnesses::is_served(Index point) {
         const auto next = std::upper_bound(mesh_.first.begin(), mesh_.first.end(), corner);
         const auto facet = mesh_.facet(static_cast<std::size_t>(next - mesh_.first.begin()) - 1);
         const Vec3 area = area_vector(mesh_, facet);
-        return (area | normal) > handles::agreeing_cosine * area.norm()
+        return (area | normal) > angles::facing * area.norm()
                && squared_distance(mesh_, facet, at) < farthest * farthest;
     };
     bool served = false;

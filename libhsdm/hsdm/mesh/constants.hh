@@ -40,15 +40,6 @@ inline constexpr int pairing_rounds = 6;
 
 } // namespace hsdm::manifolds
 
-// doublets.hh
-namespace hsdm::doublets {
-
-/// cosine: of two facets round one vertex that lie back to back.
-/// Why: 107 degrees, as of sheets that face opposite ways (pairing.opposed_cosine).
-HSDM_TUNED double folded_cosine = -0.3;
-
-} // namespace hsdm::doublets
-
 // collapse_edges.hh
 namespace hsdm::edge_collapses {
 

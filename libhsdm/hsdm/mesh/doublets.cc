@@ -1,5 +1,6 @@
 #include "hsdm/mesh/doublets.hh"
 
+#include "hsdm/core/constants.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/constants.hh"
 #include "hsdm/mesh/facet_unions.hh"
@@ -17,7 +18,7 @@ std::size_t merge_once(PolygonMesh& mesh, const std::function<bool(Index)>& expe
         if (at.count[v] != 2 || !unions.is_free(f, g)) continue;
         const Vec3 one = unit(area_vector(mesh, mesh.facet(f))),
                    other = unit(area_vector(mesh, mesh.facet(g)));
-        if (!expendable(v) && (one | other) > doublets::folded_cosine) continue;
+        if (!expendable(v) && (one | other) > angles::opposed) continue;
         UnitedFacets whole = united(mesh, at, v);
         // Beside another vertex of only two facets the union might be the reverse of a third facet.
         if (whole.ring.size() < 3

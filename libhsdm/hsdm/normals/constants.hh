@@ -88,7 +88,7 @@ HSDM_TUNED int least_support = 3;
 HSDM_TUNED double most_distance = 8;
 
 /// radians: between normals of one plane.
-/// Why: 45 degrees: more than two sets of one sheet (relations.smooth_angle), as sparse ground bends more
+/// Why: 45 degrees: more than two sets of one sheet (angles.one_sheet), as sparse ground bends more
 /// from point to point.
 HSDM_TUNED double most_angle = 0.79;
 
@@ -213,10 +213,6 @@ HSDM_TUNED double clear_gain = 1.3;
 /// angle.
 HSDM_TUNED double differing_cosine = 0.97;
 
-/// cosine: the same once planes were looked for.
-/// Why: 26 degrees; by trial.
-HSDM_TUNED double crease_cosine = 0.9;
-
 /// points: by their weights, that a plane is fitted to at least.
 /// Why: three and a half: the point and two and a half others.
 HSDM_TUNED double fewest = 3.5;
@@ -328,10 +324,6 @@ inline constexpr int sweeps = 8;
 // vote_on_normals.hh
 namespace hsdm::normal_votes {
 
-/// cosine: neighbours within this angle of the point's own normal leave it as it is.
-/// Why: 37 degrees, about the angle of a sharp edge.
-HSDM_TUNED double settled_cosine = 0.8;
-
 /// factor: that another normal's support must be of the point's own.
 /// Why: by trial; less changes sides with noise.
 HSDM_TUNED double clear_gain = 1.2;
@@ -349,21 +341,9 @@ HSDM_TUNED int rounds = 2;
 // mend_normals.hh
 namespace hsdm::contradictions {
 
-/// cosine: of normals of one plane, of either sign.
-/// Why: 26 degrees: pairs of neighbours on smooth ground differ by less.
-inline constexpr double parallel = 0.9;
-
-/// cosine: of normals across a crease that says something.
-/// Why: 60 degrees and more: blunter creases are not told from noise in a normal.
-inline constexpr double crossing = 0.5;
-
 /// sine: of the rise of a chord out of a plane that both points are on.
 /// Why: 12 degrees; by trial.
 inline constexpr double flattest = 0.2;
-
-/// cosine: of one normal with the other's mirror image that says something.
-/// Why: 60 degrees, as far as the crease itself.
-inline constexpr double clear = 0.5;
 
 /// spacings: between points that say something.
 /// Why: twice, so that most of successors in the octree's order count and none of another sheet.

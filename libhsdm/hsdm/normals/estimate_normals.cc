@@ -2,6 +2,7 @@
 
 #include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/normals/constants.hh"
 #include "hsdm/normals/height_fit.hh"
@@ -75,7 +76,7 @@ public:
 private:
     bool may_be_curved(Index i) const {
         return !(estimate_.spread[i] < estimation::flat_spread * neighbors_.reach[i]
-                 || normals_[i].sqrnorm() == 0 || differs(i, estimation::crease_cosine));
+                 || normals_[i].sqrnorm() == 0 || differs(i, angles::smooth));
     }
 
     /// A plane has the normal of the neighbours' centroid, not of the point, where the surface is curved.
@@ -140,8 +141,7 @@ public:
         for (int round = 0; round < options.rounds; ++round) renew([this](Index i) { return best_plane(i); });
         for (int round = 0; round < options.rounds; ++round)
             renew([this](Index i) {
-                return renewal_.differs(i, estimation::crease_cosine) ? renewal_.averaged(i)
-                                                                      : result_.normals[i];
+                return renewal_.differs(i, angles::smooth) ? renewal_.averaged(i) : result_.normals[i];
             });
     }
 

@@ -1,6 +1,7 @@
 #include "hsdm/normals/mend_normals.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/normals/constants.hh"
 #include "hsdm/normals/orient_normals.hh"
 #include "hsdm/octree/spacing.hh"
@@ -26,11 +27,11 @@ Pair compare(const Octree& octree, std::size_t i, std::size_t j, double farthest
     if (n.sqrnorm() == 0 || m.sqrnorm() == 0 || length == 0 || length > farthest) return {};
     const double rise_n = (n | d) / length, rise_m = (m | d) / length;
     const double rise = std::max(std::abs(rise_n), std::abs(rise_m));
-    if (std::abs(cosine) > contradictions::parallel && rise < contradictions::flattest)
+    if (std::abs(cosine) > angles::smooth && rise < contradictions::flattest)
         return {Pair::flat, cosine < 0, rise};
-    if (cosine > contradictions::parallel) return {Pair::steep, false, rise};
+    if (cosine > angles::smooth) return {Pair::steep, false, rise};
     const double mirrored = cosine - 2 * rise_n * rise_m; // see patch_evidence
-    if (std::abs(cosine) < contradictions::crossing && std::abs(mirrored) > contradictions::clear)
+    if (std::abs(cosine) < angles::facing && std::abs(mirrored) > angles::facing)
         return {Pair::creased, mirrored < 0, rise};
     return {};
 }

@@ -1,6 +1,7 @@
 #include "hsdm/normals/vote_on_normals.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/normals/constants.hh"
 #include "hsdm/normals/neighborhood.hh"
 
@@ -61,9 +62,8 @@ void vote_on_normals(const Octree& octree, const Neighbors& neighbors, Estimated
         for_each_index(bent.size(), chunks::heavy, [&](Index b) {
             const Vec3& own = settled[b] = estimate.normals[bent[b]];
             const auto around = neighbors.of(bent[b]);
-            if (std::any_of(around.begin(), around.end(), [&](Index j) {
-                    return (own | estimate.normals[j]) < normal_votes::settled_cosine;
-                }))
+            if (std::any_of(around.begin(), around.end(),
+                            [&](Index j) { return (own | estimate.normals[j]) < angles::one_sheet; }))
                 settled[b] = Agreement(octree, neighbors, estimate, bent[b]).settled(own);
         });
         for (std::size_t b = 0; b < bent.size(); ++b) estimate.normals[bent[b]] = settled[b];

@@ -1,6 +1,7 @@
 #include "hsdm/simplify/collapse_by_distance.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/hash.hh"
 #include "hsdm/core/parallel_sort.hh"
 #include "hsdm/simplify/constants.hh"
@@ -161,7 +162,7 @@ private:
             normals.push_back(n.sqrnorm() > 0 ? n.normalized() : n);
             sum += normals.back();
         }
-        const double least = drops::smooth_cosine * sum.norm();
+        const double least = angles::smooth * sum.norm();
         return std::all_of(normals.begin(), normals.end(),
                            [&](const Vec3& normal) { return (normal | sum) >= least; });
     }

@@ -1,5 +1,6 @@
 #include "hsdm/simplify/collapsing_mesh.hh"
 
+#include "hsdm/core/constants.hh"
 #include "hsdm/simplify/constants.hh"
 #include "hsdm/simplify/triangle_shape.hh"
 
@@ -10,7 +11,7 @@ namespace hsdm {
 namespace {
 
 bool is_along(const Vec3& a, const Vec3& b) {
-    return (a | b) > collapses::turn_cosine * a.norm() * b.norm();
+    return (a | b) > angles::one_sheet * a.norm() * b.norm();
 }
 
 bool faces_along(const Vec3& normal, std::span<const Vec3> faces) {

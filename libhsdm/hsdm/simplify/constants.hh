@@ -58,11 +58,6 @@ namespace hsdm::surroundings {
 /// Why: by trial; some twenty-five facets, which levels noise and keeps strips of six facets apart.
 HSDM_TUNED int most_sides_away = 3;
 
-/// cosine: of normals of neighbours; a sharper edge is not crossed.
-/// Why: 26 degrees, under the 35 of a sharp edge; facets of a round part of two voxels' radius differ by
-/// that.
-HSDM_TUNED double smooth_cosine = 0.9;
-
 } // namespace hsdm::surroundings
 
 // planar_patches.hh
@@ -76,10 +71,6 @@ HSDM_TUNED double flat_spread = 0.03;
 /// Why: a quarter: the distance from a tangent goes with the square, so that round ground gains 1.7 times the
 /// width beyond.
 HSDM_TUNED double core_share = 0.25;
-
-/// cosine: of a facet's normal with its patch's.
-/// Why: as of neighbours (surroundings.smooth_cosine).
-HSDM_TUNED double along_cosine = 0.9;
 
 /// facets: of the core of flat ground at least.
 /// Why: by trial; as many as surroundings have, fewer have no surroundings of their own.
@@ -155,10 +146,6 @@ HSDM_TUNED double bin_width = 0.02;
 /// Why: by trial; a closed shaft sums up to nothing but its rounding.
 HSDM_TUNED double least_lean = 0.05;
 
-/// cosine: of a facet's mean normal with its strip's.
-/// Why: 45 degrees: a strip of a shaft must not turn by a right angle.
-HSDM_TUNED double least_along = 0.7;
-
 /// tries: of numbers of strips.
 /// Why: bounds the work: what bends two ways takes ever more.
 HSDM_TUNED int most_tries = 16;
@@ -202,11 +189,6 @@ HSDM_TUNED double next_to_nothing = 0.01;
 
 // collapse_by_planes.hh, collapsing_mesh.hh
 namespace hsdm::collapses {
-
-/// cosine: normals of facets turn by less.
-/// Why: 40 degrees, as of normals of one sheet (relations.same_sheet_cosine): no facet goes round an edge of
-/// a box.
-HSDM_TUNED double turn_cosine = 0.77;
 
 /// shape: of triangles, 1 for an equilateral one; no change of the facets makes thinner ones.
 /// Why: a fiftieth: long facets on rims and strips are the price of few, thinner ones have no reliable
@@ -257,15 +239,6 @@ inline constexpr std::size_t most_neighbours = 64;
 
 } // namespace hsdm::flat_vertices
 
-// collapse_by_distance.hh
-namespace hsdm::drops {
-
-/// cosine: of normals round a vertex with their mean.
-/// Why: 18 degrees: half the angle of a sharp edge, whose sides are as far from their mean.
-HSDM_TUNED double smooth_cosine = 0.95;
-
-} // namespace hsdm::drops
-
 // decimate.hh
 namespace hsdm::decimation {
 
@@ -294,17 +267,9 @@ HSDM_TUNED int most_sweeps = 4;
 /// Why: by trial; less goes to and fro with noise.
 HSDM_TUNED double better_shape = 1.1;
 
-/// cosine: of normals of triangles that are flipped for shape.
-/// Why: 20 degrees: sharper folds may be creases, which only distance may turn.
-HSDM_TUNED double flip_cosine = 0.94;
-
 /// share: of a diagonal's distance from the fine surface, that the other one must stay within.
 /// Why: at most half as far off, so that nothing flips to and fro.
 HSDM_TUNED double nearer_share = 0.5;
-
-/// cosine: of normals of a quad's halves.
-/// Why: 40 degrees, as far as normals may turn (collapses.turn_cosine).
-HSDM_TUNED double join_cosine = 0.77;
 
 /// sine: of the sharpest or bluntest corner of a quad.
 /// Why: 12 degrees: worse ones are better two triangles. As quad_splitting.least_corner.

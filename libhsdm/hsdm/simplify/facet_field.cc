@@ -1,6 +1,7 @@
 #include "hsdm/simplify/facet_field.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/edge_table.hh"
 #include "hsdm/simplify/constants.hh"
@@ -34,8 +35,7 @@ void link_facets(const PolygonMesh& mesh, FacetField& field) {
     EdgeTable(mesh).for_edges([&](Index, std::span<const EdgeSide> edge, std::size_t) {
         if (edge.size() != 2) return;
         const Index a = edge[0].side, b = edge[1].side, f = facet_of[a], g = facet_of[b];
-        if ((field.normal[f] | field.normal[g]) > surroundings::smooth_cosine)
-            field.beside[a] = g, field.beside[b] = f;
+        if ((field.normal[f] | field.normal[g]) > angles::smooth) field.beside[a] = g, field.beside[b] = f;
     });
 }
 

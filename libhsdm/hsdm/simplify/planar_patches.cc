@@ -1,6 +1,7 @@
 #include "hsdm/simplify/planar_patches.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/parallel_sort.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/simplify/constants.hh"
@@ -131,8 +132,7 @@ private:
         for (std::size_t next = 0; next < facets.size() && facets.size() <= most; ++next) {
             if (next % chunks::quick == 0) Interruption::poll();
             field_.for_beside(facets[next], [&](Index g) {
-                if (patches_.patch[g] != no_index
-                    || (field_.normal[g] | plane.normal) <= flat_ground::along_cosine
+                if (patches_.patch[g] != no_index || (field_.normal[g] | plane.normal) <= angles::smooth
                     || std::abs(plane.height(field_.centre[g])) > tolerance_)
                     return;
                 patches_.patch[g] = static_cast<Index>(patches_.planes.size());

@@ -1,6 +1,7 @@
 #include "hsdm/simplify/remesh_by_flips.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/disjoint_sets.hh"
 #include "hsdm/core/groups.hh"
 #include "hsdm/core/parallel_sort.hh"
@@ -218,9 +219,9 @@ private:
                                           triangle_shape(second_norm, db2 + bc2 + cd2));
         if (new_shape < std::min(collapses::least_shape, old_shape)) return {false, before, Look::none};
         const bool gains = new_shape >= flips::better_shape * old_shape
-                           && (first | second) >= flips::flip_cosine * first_norm * second_norm
+                           && (first | second) >= angles::smooth * first_norm * second_norm
                            && (old_shape <= collapses::least_shape
-                               || (old1 | old2) >= flips::flip_cosine * old1_norm * old2_norm);
+                               || (old1 | old2) >= angles::smooth * old1_norm * old2_norm);
         if (warp(a, b, c, d) <= tolerance_) return {gains, before, before};
         return judge_bent({a, b, c, d}, before, gains, hint);
     }
@@ -279,7 +280,7 @@ private:
     std::optional<Quad> quad_across(Index s) const {
         const Index t = twin(s), a = start(s), b = start(t), c = opposite(s), d = opposite(t);
         const Vec3 one = triangle_normal(at(a), at(b), at(c)), two = triangle_normal(at(b), at(a), at(d));
-        if (c == d || (one | two) < flips::join_cosine * one.norm() * two.norm()) return std::nullopt;
+        if (c == d || (one | two) < angles::one_sheet * one.norm() * two.norm()) return std::nullopt;
         const std::array<Vec3, 4> along{at(d) - at(a), at(b) - at(d), at(c) - at(b), at(a) - at(c)};
         std::array<double, 4> length;
         for (std::size_t i = 0; i < 4; ++i) length[i] = along[i].norm();

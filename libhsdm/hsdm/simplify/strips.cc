@@ -1,5 +1,6 @@
 #include "hsdm/simplify/strips.hh"
 
+#include "hsdm/core/constants.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/simplify/constants.hh"
 
@@ -143,7 +144,7 @@ private:
             if (!(sums[k].weight > 0)) continue;
             Plane& plane = strips_.planes[k];
             const Vec3& area = sums[k].area;
-            if (area.norm() < strips::least_along * sums[k].weight)
+            if (area.norm() < angles::one_sheet * sums[k].weight)
                 missed = std::numeric_limits<double>::infinity();
             const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
             plane.normal = axis * cosine + unit(area - axis * (axis | area)) * sine;
@@ -167,7 +168,7 @@ private:
             double highest = std::numeric_limits<double>::lowest();
             for (const std::size_t k : {(was + m - 1) % m, was, (was + 1) % m}) {
                 const Plane& plane = strips_.planes[k];
-                if ((plane.normal | field_.mean_normal[f]) < strips::least_along) continue;
+                if ((plane.normal | field_.mean_normal[f]) < angles::one_sheet) continue;
                 const double height = outward() * plane.height(field_.centre[f]);
                 if (height > highest) {
                     highest = height;

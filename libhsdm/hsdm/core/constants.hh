@@ -1,0 +1,29 @@
+#pragma once
+// Tuning values that several folders share: how normals compare. docs/constants.md has what half and double
+// of each do.
+
+#include "hsdm/core/tuned.hh"
+
+// Of all places that ask whether two directions are one surface's, along each other, or opposite: one answer
+// each. What asks for another angle has it in its own folder, with its reason.
+namespace hsdm::angles {
+
+/// cosine: normals closer than this belong to one sheet; a facet that turns by more goes round an edge.
+/// Why: 40 degrees, beyond the 35 that a set may spread to (sets.cluster_angle): sets beside each other on
+/// round ground of a voxel and a half's radius are one sheet. Flatter creases lie within a sheet.
+HSDM_TUNED double one_sheet = 0.77;
+
+/// cosine: normals closer than this lie on one smooth piece of a surface; a fold is none, a crease is.
+/// Why: 26 degrees, under the 35 of a sharp edge; facets of a round part of two voxels' radius differ by
+/// that.
+HSDM_TUNED double smooth = 0.9;
+
+/// cosine: normals closer than this face one way, whatever noise did to them.
+/// Why: 60 degrees, a third of the half-turn that wrong ones are off.
+HSDM_TUNED double facing = 0.5;
+
+/// cosine: with less, two normals face opposite ways.
+/// Why: 120 degrees: the sides of a groove of 60 degrees part what lies beside it.
+HSDM_TUNED double opposed = -0.5;
+
+} // namespace hsdm::angles
