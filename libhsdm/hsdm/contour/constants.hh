@@ -10,18 +10,10 @@
 // normal_sets.hh
 namespace hsdm::sets {
 
-/// points: of which a plane can be told: of a set, a sheet or a face that says where it lies.
-/// Why: as many as a plane has; the rim of a wall has few.
-inline constexpr unsigned points_of_plane = 3;
-
 /// radians: points of a set lie within this angle of its mean normal.
 /// Why: 35 degrees, the default angle above which an edge is sharp, so that the faces beside a sharp edge are
 /// two sets.
 HSDM_TUNED double cluster_angle = 0.61;
-
-/// voxels: parallel sheets farther apart than this are two sets.
-/// Why: what a relation takes for one sheet (relations.smooth_gap) must not be split before.
-HSDM_TUNED double sheet_gap = 0.3;
 
 /// rounds: mean shifts from the normal that most others agree with to the mode.
 /// Why: by trial.
@@ -65,10 +57,6 @@ HSDM_TUNED double crease_gap = 0.5;
 /// squared sine: planes closer to parallel have no line in common.
 /// Why: 6 degrees; beyond angles.one_sheet only opposite sheets are that parallel, the two sides of a plate.
 inline constexpr double least_sine_squared = 0.01;
-
-/// voxels: how far a set's points may reach beyond the plane they should end at.
-/// Why: as far as sheets may be off each other (smooth_gap).
-HSDM_TUNED double overshoot = 0.3;
 
 } // namespace hsdm::relations
 
@@ -133,10 +121,6 @@ inline constexpr double goes_on_within = 1.5;
 /// Why: by trial; fits of the other sheet are off by less.
 inline constexpr double goes_on_from = 0.25;
 
-/// points: beyond the crease, and at least half as many as before it.
-/// Why: by trial; on a sheet that goes on nine are expected along a voxel of it.
-inline constexpr unsigned fewest_beyond = 3;
-
 } // namespace hsdm::patches
 
 // sheet_widths.hh
@@ -164,10 +148,6 @@ namespace hsdm::sheets {
 /// voxels: how far off its planes a sheet may pass.
 /// Why: half of smooth_gap: two sets of one sheet that far apart each miss their mean by half of it.
 HSDM_TUNED double surface_error = 0.15;
-
-/// rounds: of joining sheets that are one elsewhere.
-/// Why: bounds the work; a round without change ends it.
-HSDM_TUNED int closure_rounds = 8;
 
 /// pairs: of sets apart, between two sheets that do not become one though they are one elsewhere.
 /// Why: one pair may be an error.
@@ -277,10 +257,6 @@ HSDM_TUNED int longest_defect = 16;
 /// Why: its outline is more ragged; with a slot beside a pipe's end 26 sides were found.
 HSDM_TUNED int longest_outline = 20;
 
-/// rounds: of taking back crossings beyond the data and pairing the others anew.
-/// Why: bounds the work; a round that takes nothing back ends it.
-HSDM_TUNED int trim_rounds = 3;
-
 } // namespace hsdm::pairing
 
 // dual_vertices.hh
@@ -384,10 +360,6 @@ HSDM_TUNED double doubt = 2;
 
 // move_to_creases.hh, shared_corners.hh, and the diagonals of dual_contour.hh
 namespace hsdm::creases {
-
-/// rounds: of moving vertices to creases.
-/// Why: bounds the work; one that moves may make way for another.
-inline constexpr int move_rounds = 4;
 
 /// voxels: least distance from a vertex that moves to another.
 /// Why: a tenth of a voxel, below which facets are slivers.

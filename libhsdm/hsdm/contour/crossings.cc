@@ -4,6 +4,7 @@
 #include "hsdm/contour/constants.hh"
 #include "hsdm/contour/plane_area.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
 
 #include <algorithm>
@@ -204,7 +205,7 @@ private:
             samples[n++] = crease_sample(sets_.sets[m.set]);
         });
         BluntCrease crease;
-        if (!find_blunt_crease({samples.data(), n}, sets::points_of_plane, {face.data(), n}, crease)) return;
+        if (!find_blunt_crease({samples.data(), n}, points_of_plane, {face.data(), n}, crease)) return;
         std::array<EdgeSheet, 2> faces;
         for_each_member(i, [&](const SheetMember& m, unsigned end) {
             EdgeSheet& of_set = faces[face[place_of(m.set)]];

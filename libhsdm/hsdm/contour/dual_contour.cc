@@ -290,7 +290,7 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     const auto pair = [&] { dual.links = pair_crossings(dual.grid, dual.crossings, sets, related); };
     pair();
     for (int round = 0;
-         round < pairing::trim_rounds && trim_unsupported(dual.crossings, dual.links, options.all_round) > 0;
+         round < enough_rounds && trim_unsupported(dual.crossings, dual.links, options.all_round) > 0;
          ++round)
         pair();
     dual.duals = build_dual_vertices(dual.grid, dual.crossings, dual.links);

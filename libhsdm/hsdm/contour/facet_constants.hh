@@ -27,10 +27,10 @@ inline constexpr double least_contradicted = 0.25;
 /// wide.
 inline constexpr double share_of_ring = 0.7, reach_along = 1;
 
-/// points: of a sheet across a ring, fewest, and how many there are for each that says otherwise.
-/// Why: three are a plane. Where a suite's handles were wrong, one in four at most said otherwise; round true
-/// ones they were more than half.
-inline constexpr std::size_t fewest_across = 3, across_per_other = 4;
+/// points: of a sheet across a ring, for each that says otherwise.
+/// Why: where a suite's handles were wrong, one in four at most said otherwise; round true ones they were
+/// more than half.
+inline constexpr std::size_t across_per_other = 4;
 
 /// voxels: from a point to a facet that serves it.
 /// Why: by trial; facets lie nearer, but for those beside a rim or corner that was not found.
@@ -51,10 +51,6 @@ inline constexpr std::size_t fewest_of_part = 216;
 /// facets: looked at for each of the mesh, in all; after that no more rings are looked for.
 /// Why: bounds the time where normals are at random.
 inline constexpr std::size_t most_work = 32;
-
-/// rounds: of cutting rings that do not touch each other.
-/// Why: bounds the work; a round that cuts none ends it.
-inline constexpr int rounds = 8;
 
 } // namespace hsdm::handles
 

@@ -419,7 +419,7 @@ private:
 std::size_t cut_handles(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
                         std::span<const Index> voxel, PolygonMesh& mesh, std::optional<FacetLinks>& links) {
     std::size_t cut = 0, work = 0;
-    for (int round = 0; round < handles::rounds; ++round) {
+    for (int round = 0; round < enough_rounds; ++round) {
         const std::size_t rings = Round(octree, level, sets, voxel, work, mesh, links).cut();
         cut += rings;
         if (rings == 0) break;

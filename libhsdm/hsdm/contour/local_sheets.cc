@@ -4,6 +4,7 @@
 #include "hsdm/contour/components.hh"
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/core/parallel_sort.hh"
 
@@ -91,7 +92,7 @@ struct SheetsAtPoint {
         for (std::size_t i = 0; i < member_count; ++i)
             if (members[i].sheet == k) samples[n++] = crease_sample(sets.sets[members[i].set]);
         BluntCrease crease;
-        if (!find_blunt_crease({samples.data(), n}, sets::points_of_plane, {face.data(), n}, crease)) return;
+        if (!find_blunt_crease({samples.data(), n}, points_of_plane, {face.data(), n}, crease)) return;
         std::array<double, 2> weight{0, 0}, distance{0, 0};
         n = 0;
         for (std::size_t i = 0; i < member_count; ++i) {
@@ -189,7 +190,7 @@ bool are_apart(std::span<const SheetMember> members, std::uint8_t one, std::uint
         for (const SheetMember& b : members)
             pairs += b.sheet == other && related.apart(sets.sets[a.set], sets.sets[b.set]);
     }
-    return pairs >= sheets::fewest_apart && std::min(points_of_one, points_of_other) >= sets::points_of_plane;
+    return pairs >= sheets::fewest_apart && std::min(points_of_one, points_of_other) >= points_of_plane;
 }
 
 std::vector<Index> grid_points_with_several(const LocalSheets& sheets) {
@@ -210,7 +211,7 @@ void close_sheets(const GridPoints& grid, const NormalSets& sets, const Relation
         Index grid_point;
         std::uint8_t kept, merged;
     };
-    for (int round = 0; round < sheets::closure_rounds; ++round) {
+    for (int round = 0; round < enough_rounds; ++round) {
         std::vector<std::vector<Merge>> found(chunk_count(open.size(), 256));
         for_chunks(open.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
             for (std::size_t k = begin; k < end; ++k) {

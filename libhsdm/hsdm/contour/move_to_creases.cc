@@ -80,7 +80,7 @@ public:
     /// Returns, per wanted vertex, whether it has moved.
     const std::vector<std::uint8_t>& run() {
         bool any = true; // a vertex may become free to move when another has moved
-        for (int round = 0; round < creases::move_rounds && any; ++round) {
+        for (int round = 0; round < enough_rounds && any; ++round) {
             any = false;
             for (std::size_t i = 0; i < moved_.size(); ++i)
                 if (!moved_[i] && suits_all(i)) {

@@ -11,7 +11,7 @@ struct NormalSetOptions {
     /// radians, (0, pi/2): points of a set lie within this angle of its mean normal
     double cluster_angle = sets::cluster_angle;
     /// voxels, > 0: parallel sheets farther apart than this are two sets
-    double sheet_gap = sets::sheet_gap;
+    double sheet_gap = relations::smooth_gap;
     /// Parallel sheets stay one set if they lie over each other, face the same way and no points between them
     /// face back. No solid has such sheets: they are one surface scanned twice.
     bool merge_layers = false;

@@ -186,7 +186,7 @@ public:
                 beyond += t > highest + least && !parted(a.centroid, p, a.normal, discs);
             }
         }
-        return beyond >= patches::fewest_beyond && 2 * beyond >= before;
+        return beyond >= points_of_plane && 2 * beyond >= before;
     }
 
 private:

@@ -52,7 +52,7 @@ bool RelationTest::ends_at(const NormalSet& set, const Vec3& plane, double above
     const double sine = std::sqrt(1 - cosine * cosine);
     const double spacing = 0.5 * voxel_size_ / std::sqrt(static_cast<double>(set.count));
     return short_of - reach < (crease_gap_ + spacing) * sine
-           && reach - short_of < relations::overshoot * voxel_size_;
+           && reach - short_of < relations::smooth_gap * voxel_size_;
 }
 
 } // namespace hsdm

@@ -22,7 +22,7 @@ double area_in_voxel(const OctreeLevel& level, const NormalSet& set) {
 /// Do two sets face each other or turn their backs, one before the other?
 bool is_facing(const NormalSet& a, const NormalSet& b, double voxel_size) {
     if ((a.normal | b.normal) >= angles::opposed) return false;
-    if (std::min(a.count, b.count) < sets::points_of_plane) return false;
+    if (std::min(a.count, b.count) < points_of_plane) return false;
     const Vec3 way = b.centroid - a.centroid, across = (a.normal - b.normal).normalized();
     const double beside = patches::beside * voxel_size;
     return way.sqrnorm() - (across | way) * (across | way) < beside * beside;

@@ -117,8 +117,7 @@ bool Witnesses::span(std::span<const Index> ring) {
         }
     const std::vector<Index>& most = facing[facing[0].size() < facing[1].size()];
     const std::size_t others = aside + std::min(facing[0].size(), facing[1].size());
-    if (most.size() < handles::fewest_across || handles::across_per_other * others > most.size())
-        return false;
+    if (most.size() < points_of_plane || handles::across_per_other * others > most.size()) return false;
     const auto unserved = std::ranges::count_if(most, [&](Index p) { return !is_served(p); });
     return 2 * static_cast<std::size_t>(unserved) >= most.size();
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Tuning values that several folders share: how normals compare. docs/constants.md has what half and double
+// Tuning values that several folders share. docs/constants.md has what half and double
 // of each do.
 
 #include "hsdm/core/tuned.hh"
@@ -27,3 +27,15 @@ HSDM_TUNED double facing = 0.5;
 HSDM_TUNED double opposed = -0.5;
 
 } // namespace hsdm::angles
+
+namespace hsdm {
+
+/// points: of which a plane can be told: of a set, a sheet or a face that says where it lies.
+/// Why: as many as a plane has; the rim of a wall has few, and outliers agree with two by chance.
+inline constexpr unsigned points_of_plane = 3;
+
+/// rounds: of whatever is repeated until a round changes nothing.
+/// Why: bounds the work; what is left after so many is rare, and told or mended elsewhere.
+inline constexpr int enough_rounds = 16;
+
+} // namespace hsdm

@@ -1,6 +1,7 @@
 #include "hsdm/mesh/collapse_edges.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/constants.hh"
 
@@ -227,7 +228,7 @@ private:
     /// Are the sides of a ring at `centre` long enough?
     bool has_sides(const RingVertices& ring, Index centre) const {
         const std::size_t at = find_in(ring, centre), i = longest_side(ring);
-        const double least = edge_collapses::least_side * edge_collapses::least_side
+        const double least = edge_collapses::least_area * edge_collapses::least_area
                              * squared_length(ring[i], ring[(i + 1) % ring.size()]);
         return squared_length(centre, ring[(at + 1) % ring.size()]) > least
                && squared_length(centre, ring[(at + ring.size() - 1) % ring.size()]) > least;
@@ -280,7 +281,7 @@ std::vector<std::uint8_t> collapse_edges(PolygonMesh& mesh, std::span<const Edge
     if (edges.empty()) return collapsed;
     Patch patch(mesh, edges);
     bool changed = true, any = false;
-    for (int round = 0; changed && round < edge_collapses::most_rounds; ++round) {
+    for (int round = 0; changed && round < enough_rounds; ++round) {
         changed = false;
         for (std::size_t i = 0; i < edges.size(); ++i)
             if (!collapsed[i] && patch.collapse(edges[i])) collapsed[i] = 1, changed = any = true;

@@ -22,7 +22,7 @@ inline constexpr double bend_cost = 4;
 HSDM_TUNED double quad_bend = 1.05;
 
 /// sine: of the sharpest or bluntest corner of a quad.
-/// Why: 12 degrees: worse ones are better two triangles. As flips.least_corner.
+/// Why: 12 degrees: worse ones are better two triangles.
 HSDM_TUNED double least_corner = 0.2;
 
 /// edges: of a polygon that is split exactly, larger ones lose their best ears first.
@@ -31,19 +31,11 @@ inline constexpr std::size_t exact_edges = 128;
 
 } // namespace hsdm::quad_splitting
 
-// manifold.hh
-namespace hsdm::manifolds {
-
-/// rounds: of pairing facets at crowded edges anew.
-/// Why: bounds the work; what is left is subdivided.
-inline constexpr int pairing_rounds = 6;
-
-} // namespace hsdm::manifolds
-
 // collapse_edges.hh
 namespace hsdm::edge_collapses {
 
-/// share: twice a facet's area over its longest side squared; with less it has lost its area.
+/// share: twice a facet's area over its longest side squared; with less it has lost its area. A side over the
+/// longest one likewise: with less its ends are one place.
 /// Why: by trial; a hundredth of a square, the normal of less is rounding.
 HSDM_TUNED double least_area = 0.01;
 
@@ -51,17 +43,9 @@ HSDM_TUNED double least_area = 0.01;
 /// Why: by trial; half, so that what was thin already does not refuse.
 inline constexpr double least_share = 0.5;
 
-/// share: of a side over the longest one; with less its ends are one place.
-/// Why: as least_area.
-inline constexpr double least_side = 0.01;
-
 /// corners: of two facets that are united.
 /// Why: two quads with an edge in common have six.
 HSDM_TUNED std::size_t most_corners = 6;
-
-/// rounds: of trying again those that were refused.
-/// Why: bounds the work; a round without change ends it.
-inline constexpr int most_rounds = 16;
 
 } // namespace hsdm::edge_collapses
 

@@ -1,6 +1,7 @@
 #include "hsdm/mesh/manifold.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/core/radix_sort.hh"
 #include "hsdm/mesh/area_vector.hh"
@@ -158,8 +159,7 @@ public:
         link_corners();
         pair_edges();
         assign_vertices();
-        for (int round = 0; round < manifolds::pairing_rounds && flip_crowded_edges(); ++round)
-            assign_vertices();
+        for (int round = 0; round < enough_rounds && flip_crowded_edges(); ++round) assign_vertices();
         subdivide_crowded_edges();
         for (const ComplexEdge& edge : complex_)
             for (Index h : half_edges(edge)) counts_.opened_edges += twin_[h] == no_index;

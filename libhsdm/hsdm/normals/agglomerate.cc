@@ -1,6 +1,7 @@
 #include "hsdm/normals/agglomerate.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/interruption.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/core/parallel_sort.hh"
@@ -161,7 +162,7 @@ public:
             support_[e.a] += agreement;
             support_[e.b] += agreement;
         });
-        for (int sweep = 0; sweep < turning::sweeps && find_contradicted(edges); ++sweep) {
+        for (int sweep = 0; sweep < enough_rounds && find_contradicted(edges); ++sweep) {
             mark();
             turn();
         }

@@ -71,17 +71,9 @@ HSDM_TUNED int rounds = 3;
 // outliers.hh: drop_outliers_by_normals
 namespace hsdm::normal_outliers {
 
-/// points: of a typical point's voxel; on such a level sparse voxels are looked for.
-/// Why: the voxels of the spacing's measure (spacing.points_per_voxel), under three spacings wide.
-HSDM_TUNED double points_per_voxel = 8;
-
 /// share: of those points in a sparse voxel.
 /// Why: one point: a few percent of a clean cloud's are alone in a voxel that they clip.
 HSDM_TUNED double most_share = 0.125;
-
-/// neighbours: that must continue the point's own plane.
-/// Why: three points are a plane; outliers agree with two by chance now and then.
-HSDM_TUNED int least_support = 3;
 
 /// voxels: how far those may be that are not of a sparse voxel themselves.
 /// Why: by trial: a distant surface does not hold an outlier, a dense one beside a sparse one does.
@@ -165,11 +157,6 @@ inline constexpr int most_rounds = 4;
 /// share: of the noise that was thought; found less, all is done again.
 /// Why: by trial; a twentieth makes no difference.
 HSDM_TUNED double clearly_less = 0.95;
-
-/// factor: of a moved point's reach on the median reach of its neighbours; beyond, it was left between two
-/// sheets.
-/// Why: as what is doubtful (distance_outliers.doubtful_stretch): smoothed sheets have no others.
-HSDM_TUNED double most_stretch = 1.25;
 
 /// rounds: of removing those.
 /// Why: some lie there in twos.
@@ -314,10 +301,6 @@ inline constexpr float sensor_weight = 16;
 /// share: of the views that must fit the signs that came out, net of the others.
 /// Why: three of four agree; of a shell thinner than voxels views are right as often as wrong.
 inline constexpr double clear_views = 0.5;
-
-/// sweeps: of turning components that evidence contradicts, in each round that is undone.
-/// Why: bounds the work.
-inline constexpr int sweeps = 8;
 
 } // namespace hsdm::turning
 

@@ -1,9 +1,11 @@
 #pragma once
 // Points that are of no surface: outliers between and around the surfaces.
 
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/occurrences.hh"
 #include "hsdm/normals/constants.hh"
 #include "hsdm/normals/neighbors.hh"
+#include "hsdm/octree/constants.hh"
 
 namespace hsdm {
 
@@ -35,13 +37,13 @@ Occurrences drop_outliers_by_distance(Octree& octree, Neighbors& neighbors,
 
 struct NormalOutlierOptions {
     /// points in a typical point's voxel on the level where sparse voxels are looked for
-    double points_per_voxel = normal_outliers::points_per_voxel;
+    double points_per_voxel = spacings::points_per_voxel;
     /// share of those points that a sparse voxel holds at most
     double most_share = normal_outliers::most_share;
     /// neighbours per point of a sparse voxel, [3, 64]
     int neighbors = neighborhoods::neighbors;
     /// so many of them must continue the point's own plane
-    int least_support = normal_outliers::least_support;
+    int least_support = points_of_plane;
     /// in voxels: largest distance of those that do and are not in a sparse voxel themselves
     double most_distance = normal_outliers::most_distance;
     /// radians: largest angle between normals of one plane (45 degrees)

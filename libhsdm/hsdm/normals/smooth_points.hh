@@ -12,7 +12,7 @@ struct SmoothOptions {
     double least_noise = smoothing::least_noise;
     /// > 1: ratio of a moved point's reach to the median reach of its neighbours beyond which it was left
     /// between two sheets and is removed
-    double most_stretch = smoothing::most_stretch;
+    double most_stretch = distance_outliers::doubtful_stretch;
 };
 
 struct SmoothReport {

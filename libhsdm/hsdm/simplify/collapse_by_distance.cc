@@ -37,7 +37,7 @@ public:
     }
 
     std::vector<DistanceCollapse> run() {
-        for (int sweep = 0; sweep < collapses::most_sweeps && drop_once(); ++sweep) {
+        for (int sweep = 0; sweep < enough_rounds && drop_once(); ++sweep) {
         }
         return std::move(drops_);
     }

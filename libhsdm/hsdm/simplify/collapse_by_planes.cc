@@ -1,6 +1,7 @@
 #include "hsdm/simplify/collapse_by_planes.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/parallel_sort.hh"
 #include "hsdm/simplify/constants.hh"
 #include "hsdm/simplify/remove_flat_vertices.hh"
@@ -98,7 +99,7 @@ private:
     }
 
     void sweep() {
-        for (int sweep = 0; sweep < collapses::most_sweeps && merge_once() > 0; ++sweep) {
+        for (int sweep = 0; sweep < enough_rounds && merge_once() > 0; ++sweep) {
         }
     }
 

@@ -76,10 +76,6 @@ HSDM_TUNED double core_share = 0.25;
 /// Why: by trial; as many as surroundings have, fewer have no surroundings of their own.
 HSDM_TUNED std::size_t least_facets = 30;
 
-/// sides: away from a facet without a patch, in which a margin of flat ground is let go.
-/// Why: as far as surroundings reach (surroundings.most_sides_away).
-HSDM_TUNED int released_sides = 3;
-
 /// factor: by which a height may have grown while the facet waited.
 /// Why: by trial; less looks at facets again and again, more takes them out of order.
 inline constexpr double stale = 1.3;
@@ -199,13 +195,9 @@ HSDM_TUNED double least_shape = 0.02;
 /// Why: bounds the work; fans of more are the middles of discs.
 HSDM_TUNED std::size_t most_facets = 24;
 
-/// facets: of a vertex that flips give facets.
-/// Why: bounds the work.
-inline constexpr std::size_t most_flipped = 64;
-
-/// sweeps: of merging, and of dropping.
-/// Why: bounds the work; each leaves two thirds at most of what can merge.
-HSDM_TUNED int most_sweeps = 32;
+/// facets: of a vertex that flips give facets, or that may go.
+/// Why: bounds the work, which grows with the square.
+inline constexpr std::size_t most_ring = 64;
 
 /// share: of the tolerance, that a vertex may be off its shared planes and count as where they meet.
 /// Why: far below what is seen, far above rounding.
@@ -228,14 +220,6 @@ namespace hsdm::flat_vertices {
 /// cosine: of normals beside an edge that is flat.
 /// Why: 2 degrees, as flat ground.
 HSDM_TUNED double flat_cosine = 0.9994;
-
-/// rounds: of removing.
-/// Why: bounds the work; one that goes may leave its neighbours straight.
-inline constexpr int rounds = 4;
-
-/// facets: of a vertex that may go.
-/// Why: bounds the work, which grows with the square.
-inline constexpr std::size_t most_neighbours = 64;
 
 } // namespace hsdm::flat_vertices
 
@@ -271,10 +255,6 @@ HSDM_TUNED double better_shape = 1.1;
 /// Why: at most half as far off, so that nothing flips to and fro.
 HSDM_TUNED double nearer_share = 0.5;
 
-/// sine: of the sharpest or bluntest corner of a quad.
-/// Why: 12 degrees: worse ones are better two triangles. As quad_splitting.least_corner.
-HSDM_TUNED double least_corner = 0.2;
-
 /// sine: of a corner that counts as reflex.
 /// Why: straight ones do no harm, and a cut costs a facet.
 HSDM_TUNED double reflex = -0.01;
@@ -284,12 +264,3 @@ HSDM_TUNED double reflex = -0.01;
 HSDM_TUNED double was_quad = 0.3;
 
 } // namespace hsdm::flips
-
-// leaf_doublets.hh
-namespace hsdm::leaf_doublets {
-
-/// rounds: of taking out vertices with two facets.
-/// Why: bounds the work; a chain of such vertices goes one a round.
-inline constexpr int most_rounds = 16;
-
-} // namespace hsdm::leaf_doublets

@@ -1,6 +1,7 @@
 #include "hsdm/simplify/leaf_doublets.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/mesh/facet_unions.hh"
 #include "hsdm/simplify/constants.hh"
 
@@ -30,7 +31,7 @@ std::size_t dissolve_once(PolygonMesh& mesh, std::vector<Index>& stands_for) {
 
 std::vector<Index> dissolve_doublets(PolygonMesh& mesh) {
     std::vector<Index> stands_for = indices_below(mesh.vertex_count());
-    for (int round = 0; round < leaf_doublets::most_rounds && dissolve_once(mesh, stands_for) > 0; ++round) {
+    for (int round = 0; round < enough_rounds && dissolve_once(mesh, stands_for) > 0; ++round) {
     }
     for_each_in_order(stands_for.size(), [&](std::size_t i) {
         Index& v = stands_for[i];

@@ -161,7 +161,7 @@ private:
     void release_margins() {
         std::vector<Index> released = indices_where(field_.size(), chunks::light,
                                                     [&](Index f) { return patches_.patch[f] == no_index; });
-        for (int away = 0; away < flat_ground::released_sides; ++away) {
+        for (int away = 0; away < surroundings::most_sides_away; ++away) {
             std::vector<Index> next;
             for_each_in_order(released.size(), [&](std::size_t i) {
                 field_.for_beside(released[i], [&](Index g) {

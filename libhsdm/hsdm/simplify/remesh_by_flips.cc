@@ -5,6 +5,7 @@
 #include "hsdm/core/disjoint_sets.hh"
 #include "hsdm/core/groups.hh"
 #include "hsdm/core/parallel_sort.hh"
+#include "hsdm/mesh/constants.hh"
 #include "hsdm/mesh/editable_triangles.hh"
 #include "hsdm/mesh/straight_corners.hh"
 #include "hsdm/simplify/constants.hh"
@@ -288,7 +289,7 @@ private:
         double least = 1;
         for (std::size_t i = 0, before = 3; i < 4; before = i++) {
             const double sine = ((along[before] % along[i]) | up) / (length[before] * length[i]);
-            if (!(sine >= flips::least_corner)) return std::nullopt; // NaN where corners coincide
+            if (!(sine >= quad_splitting::least_corner)) return std::nullopt; // NaN where corners coincide
             least = std::min(least, sine);
         }
         // triangulate() cuts a quad along its shorter diagonal: that must be this one, or be no farther off a

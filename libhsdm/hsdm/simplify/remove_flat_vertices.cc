@@ -1,5 +1,6 @@
 #include "hsdm/simplify/remove_flat_vertices.hh"
 
+#include "hsdm/core/constants.hh"
 #include "hsdm/simplify/constants.hh"
 #include "hsdm/simplify/triangle_shape.hh"
 
@@ -29,8 +30,7 @@ private:
     /// at one end of the crease, and the position of its other end in other_end_ (0 on a flat place).
     bool may_go(Index side) {
         vertex_ = mesh_.start(side);
-        if (!gives_way(vertex_) || !mesh_.ring_of(side, ring_)
-            || ring_.size() > flat_vertices::most_neighbours)
+        if (!gives_way(vertex_) || !mesh_.ring_of(side, ring_) || ring_.size() > collapses::most_ring)
             return false;
         normals_.clear();
         for (std::size_t i = 0; i < ring_.size(); ++i)
@@ -152,7 +152,7 @@ private:
 std::size_t remove_flat_vertices(CollapsingMesh& mesh, const std::vector<double>& reach) {
     FlatVertexRemoval removal(mesh, reach);
     std::size_t removed = 0;
-    for (int round = 0; round < flat_vertices::rounds; ++round) {
+    for (int round = 0; round < enough_rounds; ++round) {
         const std::size_t now = removal.round();
         if (now == 0) break;
         removed += now;
