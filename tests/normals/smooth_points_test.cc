@@ -36,6 +36,13 @@ double mean_distance(const Solid& solid, const Octree& octree) {
     return sum / static_cast<double>(octree.size());
 }
 
+/// Outward positive.
+double mean_signed_distance(const Solid& solid, const Octree& octree) {
+    double sum = 0;
+    for (const Vec3& p : octree.positions) sum += solid.distance(p + octree.origin);
+    return sum / static_cast<double>(octree.size());
+}
+
 } // namespace
 
 TEST_CASE("noisy points come to lie near their surface, and the noise is what they were moved by",
@@ -46,9 +53,21 @@ TEST_CASE("noisy points come to lie near their surface, and the noise is what th
         const Solid sphere = support::sphere(1);
         const Smoothed s = smoothed(support::sample(sphere, {.points = points, .position_noise = sigma}));
         CHECK(s.report.noise == Approx(sigma).epsilon(0.15));
-        CHECK(mean_distance(sphere, s.octree) < 0.4 * sigma);
+        CHECK(mean_distance(sphere, s.octree) < 0.2 * sigma);
         CHECK(s.octree.size() + s.report.between.count == points);
         CHECK(s.report.between.count < points / 50);
+    }
+}
+
+TEST_CASE("noisy points of a round surface come to lie on neither side of it", "[normals]") {
+    for (double noise : {1.5, 3.0}) {
+        for (const Solid& solid : {support::sphere(1), support::cylinder(0.5, 2), support::torus(1, 0.4)}) {
+            const double sigma = noise * spacing;
+            const Smoothed s = smoothed(support::sample(solid, {.points = points, .position_noise = sigma}));
+            INFO("noise of " << noise << " spacings");
+            CHECK(std::abs(mean_signed_distance(solid, s.octree)) < 0.1 * sigma);
+            CHECK(mean_distance(solid, s.octree) < 0.25 * sigma);
+        }
     }
 }
 

@@ -27,53 +27,44 @@ void add(PlaneSums& sums, const VoxelSums& voxel, const Vec3& base, double weigh
     for (std::size_t k = 0; k < 6; ++k) sums.second[k] += weight * voxel.spread[k];
 }
 
-class Smoothing {
+/// Points in voxels, and what lies round each: all voxels that come within `reach` of its own.
+class Surroundings {
 public:
-    Smoothing(const Octree& octree, double noise)
-        : noise_(noise),
-          radius_(std::max(smoothing::least_radius * noise,
-                           smoothing::steady_radius * std::sqrt(noise * estimate_spacing(octree)))),
-          grid_(grid_of(octree, radius_ / smoothing::reach)) {}
+    Surroundings(const std::vector<Vec3>& positions, double edge) : points_(in_voxels(positions, edge)) {
+        level_ = extract_level(points_, depth_);
+    }
 
-    /// The new positions, in the octree's order, relative to its origin.
-    std::vector<Vec3> run() {
-        sum_voxels();
-        std::vector<Vec3> moved(grid_.size());
+    const Vec3& origin() const { return points_.origin; }
+    std::size_t voxels() const { return level_.size(); }
+
+    /// work(position relative to the origin, index among the positions given) for the points of a voxel.
+    template <class Work>
+    void for_points_of(Index voxel, const Work& work) const {
+        for (Index i = level_.first_point[voxel]; i < level_.first_point[voxel + 1]; ++i)
+            work(points_.positions[i], points_.source[i]);
+    }
+
+    /// work(position relative to the origin, index among the positions given, voxels around) for all points.
+    template <class Work>
+    void for_each_point(const Work& work) const {
         for_chunks(level_.size(), chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t) {
             std::vector<Index> around;
-            for (std::size_t v = begin; v < end; ++v) {
-                find_around(static_cast<Index>(v), around);
-                for (Index i = level_.first_point[v]; i < level_.first_point[v + 1]; ++i)
-                    moved[grid_.source[i]] = project(grid_.positions[i], around) + grid_.origin;
+            for (auto v = static_cast<Index>(begin); v < end; ++v) {
+                find_around(v, around);
+                for_points_of(v, [&](const Vec3& p, Index i) { work(p, i, around); });
             }
         });
-        return moved;
     }
 
 private:
-    /// The same points in a cube for which the voxels of some level have the edge wanted.
-    Octree grid_of(const Octree& octree, double edge) {
+    /// The points in a cube for which the voxels of some level have the edge wanted.
+    Octree in_voxels(const std::vector<Vec3>& positions, double edge) {
         PointCloud cloud;
-        cloud.positions = octree.positions;
+        cloud.positions = positions;
         const double extent = cloud.bounds().extent();
         double cube = edge;
         for (depth_ = 0; cube < extent && depth_ < morton_levels; ++depth_) cube *= 2;
         return build_octree(cloud, {.merge_duplicates = false, .cube_extent = std::max(cube, extent)});
-    }
-
-    void sum_voxels() {
-        level_ = extract_level(grid_, depth_);
-        sums_.resize(level_.size());
-        for_each_index(level_.size(), chunks::heavy, [&](Index v) {
-            const Index first = level_.first_point[v], last = level_.first_point[v + 1];
-            VoxelSums& sum = sums_[v];
-            sum.count = last - first;
-            for (Index i = first; i < last; ++i) sum.mean += grid_.positions[i];
-            sum.mean /= sum.count;
-            PlaneSums spread;
-            for (Index i = first; i < last; ++i) spread.add(grid_.positions[i] - sum.mean, 1);
-            sum.spread = spread.second;
-        });
     }
 
     void find_around(Index voxel, std::vector<Index>& around) const {
@@ -86,17 +77,103 @@ private:
                         around.push_back(v);
     }
 
+    int depth_ = 0;
+    Octree points_;
+    OctreeLevel level_;
+};
+
+/// Moved points, and the normals, of either sign, of the planes that they were moved to.
+struct MovedPoints {
+    std::vector<Vec3> positions, normals;
+};
+
+class Smoothing {
+public:
+    Smoothing(double spacing, double noise)
+        : radius_(
+            std::max(smoothing::least_radius * noise, smoothing::steady_radius * std::sqrt(noise * spacing))),
+          inverse_radius_(1 / radius_),
+          inverse_gap_(1 / (smoothing::another_sheet * noise)) {}
+
+    /// Each point on the plane of its surroundings.
+    MovedPoints onto_planes(const std::vector<Vec3>& positions) const {
+        const Surroundings surroundings = around(positions);
+        const std::vector<VoxelSums> sums = sums_of(surroundings);
+        MovedPoints moved{std::vector<Vec3>(positions.size()), std::vector<Vec3>(positions.size())};
+        surroundings.for_each_point([&](const Vec3& p, Index i, const std::vector<Index>& around) {
+            moved.positions[i] = project(p, sums, around, moved.normals[i]) + surroundings.origin();
+        });
+        return moved;
+    }
+
+    /// A plane through a bent sheet lies on its hollow side, so all points came to lie there. What tells how
+    /// far is where they came from: they scatter about the true surface, so the mean of their ways back says
+    /// where that is. Moves the points by it, along their normals (twicing: Tukey 1977).
+    void undo_shrinking(const std::vector<Vec3>& from, MovedPoints& moved) const {
+        const Surroundings surroundings = around(moved.positions);
+        const std::vector<WayBack> ways = ways_back(surroundings, from, moved.positions);
+        std::vector<Vec3> centred(moved.positions.size());
+        surroundings.for_each_point([&](const Vec3& p, Index i, const std::vector<Index>& around) {
+            const Vec3& normal = moved.normals[i];
+            double sum = 0, way = 0;
+            for (const Index v : around) {
+                const double weight = ways[v].count * weight_of(ways[v].at - p, normal);
+                sum += weight, way += weight * (ways[v].way | normal);
+            }
+            centred[i] = moved.positions[i] + (sum > 0 ? way / sum : 0) * normal;
+        });
+        moved.positions = std::move(centred);
+    }
+
+private:
+    /// Points, their mean, and that of their ways back, of one voxel.
+    struct WayBack {
+        double count = 0;
+        Vec3 at{0, 0, 0}, way{0, 0, 0};
+    };
+
+    Surroundings around(const std::vector<Vec3>& positions) const {
+        return {positions, radius_ / smoothing::reach};
+    }
+    double weight_of(const Vec3& away, const Vec3& normal) const {
+        return closeness(away.norm(), inverse_radius_) * closeness(away | normal, inverse_gap_);
+    }
+
+    static std::vector<VoxelSums> sums_of(const Surroundings& surroundings) {
+        std::vector<VoxelSums> sums(surroundings.voxels());
+        for_each_index(sums.size(), chunks::heavy, [&](Index v) {
+            VoxelSums& sum = sums[v];
+            surroundings.for_points_of(v, [&](const Vec3& p, Index) { sum.mean += p, ++sum.count; });
+            sum.mean /= sum.count;
+            PlaneSums spread;
+            surroundings.for_points_of(v, [&](const Vec3& p, Index) { spread.add(p - sum.mean, 1); });
+            sum.spread = spread.second;
+        });
+        return sums;
+    }
+
+    static std::vector<WayBack> ways_back(const Surroundings& surroundings, const std::vector<Vec3>& from,
+                                          const std::vector<Vec3>& to) {
+        std::vector<WayBack> ways(surroundings.voxels());
+        for_each_index(ways.size(), chunks::heavy, [&](Index v) {
+            WayBack& mean = ways[v];
+            surroundings.for_points_of(
+                v, [&](const Vec3& p, Index i) { mean.at += p, mean.way += from[i] - to[i], ++mean.count; });
+            mean.at /= mean.count, mean.way /= mean.count;
+        });
+        return ways;
+    }
+
     /// Projects onto the plane around the point itself, then onto that around the result.
-    Vec3 project(const Vec3& point, const std::vector<Index>& around) const {
-        const double inverse_radius = 1 / radius_, inverse_gap = 1 / (smoothing::another_sheet * noise_);
-        Vec3 p = point, normal(0, 0, 0);
+    Vec3 project(const Vec3& point, const std::vector<VoxelSums>& voxels, const std::vector<Index>& around,
+                 Vec3& normal) const {
+        Vec3 p = point;
+        normal = Vec3(0, 0, 0);
         for (int round = 0; round < smoothing::rounds; ++round) {
             PlaneSums sums;
-            for (Index v : around) {
-                const Vec3 d = sums_[v].mean - p;
-                const double weight =
-                    closeness(d.norm(), inverse_radius) * closeness(d | normal, inverse_gap);
-                if (weight > 0) add(sums, sums_[v], p, weight);
+            for (const Index v : around) {
+                const double weight = weight_of(voxels[v].mean - p, normal);
+                if (weight > 0) add(sums, voxels[v], p, weight);
             }
             const PlaneFit plane = fit_plane(sums);
             if (plane.normal.sqrnorm() == 0) return p;
@@ -106,11 +183,7 @@ private:
         return p;
     }
 
-    double noise_, radius_;
-    int depth_ = 0;
-    Octree grid_;
-    OctreeLevel level_;
-    std::vector<VoxelSums> sums_;
+    double radius_, inverse_radius_, inverse_gap_;
 };
 
 /// Most points lie on surfaces that no smoothing moves; creases move theirs farther, so the lower third of
@@ -132,14 +205,18 @@ void validate(const SmoothOptions& options) {
 } // namespace
 
 double smooth_points(Octree& octree, double noise) {
-    std::vector<Vec3> moved;
+    const double spacing = estimate_spacing(octree);
+    MovedPoints moved;
     for (int round = 0; round < smoothing::most_rounds; ++round) {
-        moved = Smoothing(octree, noise).run();
-        const double found = noise_of_moves(octree.positions, moved);
-        if (found > smoothing::clearly_less * noise || found == 0) break;
+        const Smoothing smoothing(spacing, noise);
+        moved = smoothing.onto_planes(octree.positions);
+        const double found = noise_of_moves(octree.positions, moved.positions);
+        const bool again = found > 0 && found <= smoothing::clearly_less * noise;
+        if (!again || round + 1 == smoothing::most_rounds) smoothing.undo_shrinking(octree.positions, moved);
+        if (!again) break;
         noise = found;
     }
-    rearrange(octree, std::move(moved), octree.extent);
+    rearrange(octree, std::move(moved.positions), octree.extent);
     return noise;
 }
 

@@ -35,8 +35,10 @@ SmoothReport smooth_known_noise(Octree& octree, double noise, Neighbors& neighbo
 /// reach four standard deviations of the noise (in the cloud's units, > 0), farther if that holds too few
 /// points for a steady plane; points more than four deviations off the plane belong to another sheet. Sums
 /// over voxels, whose edge follows that reach, stand for the points, so the cost does not depend on how many
-/// points they hold. The moves tell what the noise was: if clearly less, it is all done again with that. The
-/// octree's points are sorted anew. Returns the noise. O(n), parallel.
+/// points they hold. The moves tell what the noise was: if clearly less, it is all done again with that. Then
+/// points are moved along the normals until they lie in the middle of where they came from: a plane through a
+/// bent sheet lies on its hollow side. The octree's points are sorted anew. Returns the noise. O(n),
+/// parallel.
 double smooth_points(Octree& octree, double noise);
 
 } // namespace hsdm
