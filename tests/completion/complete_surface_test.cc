@@ -55,6 +55,22 @@ TEST_CASE("a hole in a sphere is completed by a cap that continues its slope", "
     }
 }
 
+TEST_CASE("a hole that a sphere turns through by 106 degrees is completed by a cap, too", "[completion]") {
+    // A disc over the border would be 0.4 off in the middle.
+    const PolygonMesh mesh = without(support::divided_sphere(40), [](const Vec3& p) { return p[2] > 0.6; });
+    const CompletedPoints points = complete_surface(mesh, 0.05);
+    REQUIRE(points.positions.size() > 9 * 700);
+    double farthest = 0, mean = 0, highest = 0;
+    for (const Vec3& p : points.positions) {
+        farthest = std::max(farthest, std::abs(p.norm() - 1));
+        mean += std::abs(p.norm() - 1) / static_cast<double>(points.positions.size());
+        highest = std::max(highest, p[2]);
+    }
+    CHECK(farthest < 0.25); // a plate is flatter than the sphere
+    CHECK(mean < 0.08);
+    CHECK(highest > 0.77);
+}
+
 TEST_CASE("the missing face of a cube is flat and meets the others in creases", "[completion][accuracy]") {
     const PolygonMesh mesh = without(support::divided_cube(30), [](const Vec3& p) { return p[2] < -0.999; });
     const CompletedPoints points = complete_surface(mesh, 0.07);

@@ -6,6 +6,7 @@
 
 #include <Eigen/SparseCholesky>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -105,15 +106,18 @@ public:
 
     void to_plate() {
         if (free_.size() > completing::most_bending) return;
+        const std::vector<Vec3> normals = steady_normals();
         std::vector<Index> at = free_;
-        for (Index v = 0; v < patch_.net.positions.size(); ++v)
-            if (patch_.held[v] != 0 && continues(v)) at.push_back(v);
+        for_each_in_order(number_.size(), [&](std::size_t i) {
+            const auto v = static_cast<Index>(i);
+            if (patch_.held[v] != 0 && continues(v, normals[v])) at.push_back(v);
+        });
         const Rows rows = each_less_mean(at);
         Eigen::MatrixX3d target = -rows.of_held;
         // A plate resists bends across its surface; along it vertices stay spread as the membrane spreads
         // them.
         for (std::size_t r = free_.size(); r < at.size(); ++r) {
-            const Vec3 &normal = patch_.normals[at[r]], bend = bend_at(at[r]);
+            const Vec3 &normal = normals[at[r]], bend = bend_at(at[r]);
             for (unsigned k = 0; k < 3; ++k)
                 target(static_cast<Eigen::Index>(r), k) += bend[k] - normal[k] * (normal | bend);
         }
@@ -152,16 +156,46 @@ private:
         return attached;
     }
 
-    /// Does the patch continue the mesh here, rather than meet it in a crease?
-    bool continues(Index v) const {
-        Vec3 away(0, 0, 0);
-        bool any = false;
-        for (const Index k : around(v)) {
-            if (patch_.held[k] != 0) continue;
-            any = true;
-            away += patch_.net.positions[k] - patch_.net.positions[v];
+    /// The mesh's normals at held vertices, levelled along each side of its creases: where points end noise
+    /// tilts single ones, and a whole patch goes on along what they say.
+    std::vector<Vec3> steady_normals() const {
+        std::vector<Vec3> normals = patch_.normals;
+        for (int round = 0; round < completing::slope_rounds; ++round) {
+            std::vector<Vec3> next = normals;
+            for_each_in_order(normals.size(), [&](std::size_t i) {
+                const auto v = static_cast<Index>(i);
+                if (patch_.held[v] == 0) return;
+                for (const Index k : around(v))
+                    if (patch_.held[k] != 0 && (normals[k] | normals[v]) > completing::smooth_cosine)
+                        next[v] += normals[k];
+                if (const double length = next[v].norm(); length > 0) next[v] *= 1 / length;
+            });
+            normals = std::move(next);
         }
-        return any && std::abs(away | patch_.normals[v]) <= completing::crease_sine * away.norm();
+        return normals;
+    }
+
+    /// From a held vertex to the free ones that few edges lead to, summed; 0 where none is beside it.
+    Vec3 into_patch(Index v) const {
+        Vec3 away(0, 0, 0);
+        std::vector<Index> reached{v};
+        std::size_t from = 0;
+        for (int step = 0; step < completing::crease_reach; ++step)
+            for (const std::size_t end = reached.size(); from < end; ++from)
+                for (const Index k : around(reached[from])) {
+                    if (patch_.held[k] != 0 || std::ranges::find(reached, k) != reached.end()) continue;
+                    reached.push_back(k);
+                    away += patch_.net.positions[k] - patch_.net.positions[v];
+                }
+        return away;
+    }
+
+    /// Does the patch continue the mesh at a held vertex, rather than meet it in a crease?
+    bool continues(Index v, const Vec3& normal) const {
+        const auto is_free = [&](Index k) { return patch_.held[k] == 0; };
+        if (std::ranges::none_of(around(v), is_free)) return false;
+        const Vec3 away = into_patch(v);
+        return std::abs(away | normal) <= completing::crease_sine * away.norm();
     }
 
     Rows each_less_mean(std::span<const Index> vertices) const {
