@@ -10,6 +10,7 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <utility>
 
 using namespace hsdm;
 using namespace hsdm::support;
@@ -117,10 +118,14 @@ const VertexProperty* property(const PolygonMesh& mesh, const char* name) {
     return found == mesh.properties.end() ? nullptr : &*found;
 }
 
-} // namespace
+/// A scan of a box with a slit of 1 by 0.14 in its top, and beside it, if asked for, a window of 0.32 by
+/// 0.32.
+struct BoxWithSlit {
+    PointCloud cloud;
+    Vec3 middle, up, x, y; ///< of the top; x along the slit, y across
+};
 
-TEST_CASE("a slit that the sampling left is closed and marked, a window stays open", "[completion]") {
-    // In the top of a box: a slit of 1 by 0.14, a window of 0.32 by 0.32; voxels of 0.05.
+BoxWithSlit box_with_slit(bool window) {
     const Solid part = in_general_pose(box({2, 1.6, 1.2}));
     const PointCloud all = sample(part, {.points = 60000});
     const Vec3 up = all.normals[0];
@@ -138,11 +143,20 @@ TEST_CASE("a slit that the sampling left is closed and marked, a window stays op
         const Vec3 d = all.positions[i] - middle;
         const double u = d | x, v = d | y;
         const bool slit = std::abs(u) < 0.5 && std::abs(v - 0.2) < 0.07;
-        const bool window = std::abs(u) < 0.16 && std::abs(v + 0.12) < 0.16;
-        if ((all.normals[i] | up) > 0.99 && (slit || window)) continue;
+        const bool in_window = window && std::abs(u) < 0.16 && std::abs(v + 0.12) < 0.16;
+        if ((all.normals[i] | up) > 0.99 && (slit || in_window)) continue;
         cloud.positions.push_back(all.positions[i]);
         cloud.normals.push_back(all.normals[i]);
     }
+    return {std::move(cloud), middle, up, x, y};
+}
+
+} // namespace
+
+TEST_CASE("a slit that the sampling left is closed and marked, a window stays open", "[completion]") {
+    const BoxWithSlit scan = box_with_slit(true);
+    const Vec3 &middle = scan.middle, &up = scan.up, &x = scan.x, &y = scan.y;
+    PointCloud cloud = scan.cloud;
     ReconstructOptions options;
     options.voxel_size = 0.05;
     const auto loops = [&](Holes holes) {
@@ -208,4 +222,20 @@ TEST_CASE("a slit that the sampling left is closed and marked, a window stays op
     CHECK(coarse.mesh.boundary_loops == 1);
     CHECK(coarse.mesh.euler == 1);
     CHECK(coarse.mesh.faces < report.mesh.faces / 4);
+}
+
+TEST_CASE("where nothing but slits is open all is completed as slits are", "[completion]") {
+    ReconstructOptions options;
+    options.voxel_size = 0.05;
+    const auto completed = [&](Holes holes) {
+        options.holes = holes;
+        Reconstruction result = reconstruct(box_with_slit(false).cloud, options);
+        CHECK(result.report.mesh.closed);
+        REQUIRE(result.report.loops.size() == 1);
+        CHECK(result.report.loops[0].completed);
+        return to_polygons(result.mesh);
+    };
+    const PolygonMesh slits = completed(Holes::automatic), all = completed(Holes::complete);
+    CHECK(slits.positions == all.positions);
+    CHECK(slits.corners == all.corners);
 }

@@ -162,7 +162,10 @@ void make_facets(const MethodInput& measured, double done, const DualContourOpti
                                  [&] { return dual_contour(in.octree, in.level, draft.sets, options); });
 }
 
-/// What completes a draft, and where: at all loops, or at slits if borders are to stay.
+/// What is completed: slits, so that borders stay, or all loops.
+enum class Missing { slits, all };
+
+/// What completes a draft, and where.
 struct Completion {
     BoundaryLoops loops;
     CompletedPoints points;
@@ -170,26 +173,25 @@ struct Completion {
 };
 
 /// May there be something to complete?
-bool has_loops(const MethodInput& in, const Draft& draft) {
-    return in.options.holes == Holes::complete
-           || (in.options.holes == Holes::automatic && draft.facets.holes.loops > draft.facets.holes.closed);
+bool has_loops(Missing missing, const Draft& draft) {
+    return missing == Missing::all || draft.facets.holes.loops > draft.facets.holes.closed;
 }
 
-Completion completion_of(const MethodInput& in, const Draft& draft) {
+Completion completion_of(const MethodInput& in, Missing missing, const Draft& draft) {
     const DualContour& facets = draft.facets;
     const double h = in.level.voxel_size;
     Completion result;
-    if (in.options.holes == Holes::complete) {
-        result.loops = boundary_loops(facets.mesh);
-        result.border = result.loops.vertices.size();
+    result.loops = boundary_loops(facets.mesh);
+    result.border = result.loops.vertices.size();
+    if (missing == Missing::all) {
         result.points = complete_surface(facets.mesh, result.loops, h);
-    } else {
-        const BoundaryLoops loops = boundary_loops(facets.mesh);
-        Slits slits = find_slits(facets.mesh, loops, h * options_for(in, draft.report).holes.max_diameter);
-        result.border = loops.vertices.size();
-        result.points = points_across(slits, h);
-        result.loops = std::move(slits.loops);
+        return result;
     }
+    Slits slits = find_slits(facets.mesh, result.loops, h * options_for(in, draft.report).holes.max_diameter);
+    // Where more than slits is open all is completed at once: what closes one loop may meet another's.
+    if (in.options.holes == Holes::complete && slits.loops.size() < result.loops.size()) return {};
+    result.points = points_across(slits, h);
+    result.loops = std::move(slits.loops);
     return result;
 }
 
@@ -200,15 +202,16 @@ bool is_better(const DualContour& guess, const DualContour& draft, const Complet
            && boundary_loops(guess.mesh).vertices.size() < completion.border;
 }
 
-/// Completes the facets' surface, and once more where loops are left. Where borders are to stay a guess that
-/// is no better is not taken. `base` is the report before there were facets.
-void complete(const MethodInput& measured, const Report& base, Draft& draft) {
-    const bool all_round = measured.options.holes == Holes::complete;
-    for (int round = 1; round <= completing::most_rounds && has_loops(measured, draft); ++round) {
+/// Completes what is missing of the facets' surface, and once more where loops are left. Where borders are to
+/// stay a guess that is no better is not taken. `base` is the report before there were facets, `done` the
+/// share of the whole run before it.
+void complete(const MethodInput& measured, const Report& base, Missing missing, double done, Draft& draft) {
+    const bool all_round = missing == Missing::all;
+    for (int round = 1; round <= completing::most_rounds && has_loops(missing, draft);
+         ++round, done += 0.03) {
         const MethodInput in = draft.input(measured);
-        const double done = 0.35 + 0.05 * round;
         const Completion completion = in.phases.run("completion", done, draft.report.seconds.facets,
-                                                    [&] { return completion_of(in, draft); });
+                                                    [&] { return completion_of(in, missing, draft); });
         if (completion.loops.size() == 0) return;
         Draft next{{}, base};
         next.report.seconds = draft.report.seconds;
@@ -221,7 +224,7 @@ void complete(const MethodInput& measured, const Report& base, Draft& draft) {
         DualContourOptions options = options_for(measured, base);
         if (all_round && round == completing::most_rounds) options.holes = every_hole;
         options.all_round = all_round;
-        make_facets(measured, done + 0.01, options, next);
+        make_facets(measured, done + 0.005, options, next);
         if (!all_round && !is_better(next.facets, draft.facets, completion)) {
             draft.report.seconds = next.report.seconds;
             return;
@@ -261,7 +264,9 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
     Draft draft{{}, report};
     make_facets(in, 0.2, options_for(in, report), draft);
     const std::size_t measured_sets = draft.sets.sets.size();
-    complete(in, report, draft);
+    if (in.options.holes == Holes::automatic || in.options.holes == Holes::complete)
+        complete(in, report, Missing::slits, 0.38, draft);
+    if (in.options.holes == Holes::complete) complete(in, report, Missing::all, 0.44, draft);
     report = std::move(draft.report);
     report.grid.sets = measured_sets;
     const bool marked = draft.cloud || in.options.holes == Holes::complete;
