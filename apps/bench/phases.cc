@@ -53,11 +53,18 @@ void take_parts_off(std::vector<Row>& rows) {
     for (Row& row : rows) {
         if (row.role != bench::Role::whole) continue;
         row.name = "facets", row.function = "the rest of " + row.function;
-        row.seconds = std::max(1e-9, row.seconds - parts);
+        row.seconds = std::max(0.0, row.seconds - parts);
     }
 }
 
+/// The rest of a whole has no bytes of its own.
 void print_phase(const Row& row, const Size& size, double total, double bandwidth) {
+    if (row.role == bench::Role::whole) {
+        std::printf("| %s | `%s` | %.1f | %.1f | %.0f | %.0f | | | |\n", row.name.c_str(),
+                    row.function.c_str(), 1e3 * row.seconds, 100 * row.seconds / total,
+                    1e9 * row.seconds / size.points, 1e9 * row.seconds / size.voxels);
+        return;
+    }
     const double rate = row.bytes / row.seconds;
     std::printf("| %s | `%s` | %.1f | %.1f | %.0f | %.0f | %.0f | %.2f | %.1f |\n", row.name.c_str(),
                 row.function.c_str(), 1e3 * row.seconds, 100 * row.seconds / total,
@@ -67,7 +74,10 @@ void print_phase(const Row& row, const Size& size, double total, double bandwidt
 
 void print_phases(const std::vector<Row>& rows, const Size& size, double bandwidth) {
     Row all{"all", "", 0, 0};
-    for (const Row& row : rows) all.seconds += row.seconds, all.bytes += row.bytes;
+    for (const Row& row : rows) {
+        all.seconds += row.seconds;
+        all.bytes += row.role == bench::Role::whole ? 0 : row.bytes;
+    }
     std::printf(
         "| phase | function | ms | %% of all | ns per point | ns per voxel | bytes per point | GB/s | "
         "%% of copying |\n|---|---|---|---|---|---|---|---|---|\n");
@@ -91,7 +101,8 @@ void draw_phases(const std::vector<Row>& rows, const Size& size, double bandwidt
         plot.guide({from, from * slope}, {to, to * slope}, name);
     }
     for (const Row& row : rows)
-        plot.mark({row.bytes / size.points, 1e9 * row.seconds / size.points}, row.name);
+        if (row.role != bench::Role::whole)
+            plot.mark({row.bytes / size.points, 1e9 * row.seconds / size.points}, row.name);
     plot.write(path);
 }
 

@@ -55,6 +55,9 @@ def table(rows, told):
     points, bandwidth, peak = told["points"], told["copy_bytes_per_second"], told["additions_per_second"]
     lines = ["| phase | instructions per point | instructions per byte | 10^9 instructions/s | % of the roof | which |", "|" + "---|" * 6]
     for row in rows:
+        if row["role"] == "whole":  # its rest has no bytes of its own
+            lines.append(f"| {row['name']} | {row['instructions'] / points:,.0f} | | {row['instructions'] / row['seconds'] / 1e9:.2f} | | |")
+            continue
         intensity, rate = row["instructions"] / row["bytes"], row["instructions"] / row["seconds"]
         roof = min(peak, intensity * bandwidth)
         lines.append(f"| {row['name']} | {row['instructions'] / points:,.0f} | {intensity:.2g} | {rate / 1e9:.2f} | "
@@ -99,6 +102,8 @@ def plot(rows, told):
     parts.append(f"<text fill='#d55e00' x='{right - 260}' y='{down(peak / 1e9) - 6:.1f}'>copying {bandwidth / 1e9:.1f} GB/s, then "
                  f"{peak / 1e9:.1f} billion additions a second</text>")
     for row in rows:
+        if row["role"] == "whole":
+            continue
         x, y = across(row["instructions"] / row["bytes"]), down(row["instructions"] / row["seconds"] / 1e9)
         size = 2 + 10 * math.sqrt(row["seconds"] / sum(r["seconds"] for r in rows))
         parts.append(f"<circle cx='{x:.1f}' cy='{y:.1f}' r='{size:.1f}' fill='#0072b2' fill-opacity='0.6'/>"
