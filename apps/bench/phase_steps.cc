@@ -172,7 +172,9 @@ void copy_mesh(Work& w) {
     std::iota(w.mended.origin.begin(), w.mended.origin.end(), Index(0));
 }
 void find_handles(Work& w) {
-    w.checksum += static_cast<double>(cut_handles(w.octree, w.level, w.sets, w.contour.voxel, w.mended));
+    std::optional<FacetLinks> links; // found here, as for what comes after
+    w.checksum +=
+        static_cast<double>(cut_handles(w.octree, w.level, w.sets, w.contour.voxel, w.mended, links));
 }
 void find_holes(Work& w) {
     w.checksum += static_cast<double>(fill_holes(w.mended, {.max_edges = holes::most_edges}).closed);
