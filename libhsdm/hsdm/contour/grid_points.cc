@@ -112,7 +112,7 @@ void connect_voxels(const OctreeLevel& level, GridPoints& grid) {
         for (std::size_t v = begin; v < end; ++v)
             for (unsigned k = 0; k < 8; ++k) {
                 const CornerPlace& place = corner_places[level.codes[v] % per_block][k];
-                const Index point = grid.index.find(blocks[place.block] * per_block + place.point);
+                const Index point = grid.find(blocks[place.block] * per_block + place.point);
                 grid.voxels[point][7 - k] = static_cast<Index>(v);
             }
     });
@@ -137,7 +137,7 @@ std::vector<std::array<Index, 3>> grid_points_below(const GridPoints& grid) {
 GridPoints build_grid_points(const OctreeLevel& level) {
     GridPoints grid;
     grid.codes = grid_point_codes(level);
-    grid.index.build(grid.codes);
+    grid.add_part(0);
     connect_voxels(level, grid);
     resize_large(grid.next, grid.size());
     for_each_index(grid.size(), chunks::usual, [&](Index i) { connect_grid_point(grid, i); });
@@ -148,8 +148,7 @@ void add_grid_points(GridPoints& grid, std::span<const MortonCode> codes) {
     const std::size_t n = grid.size();
     reserve_large(grid.codes, n + codes.size());
     grid.codes.insert(grid.codes.end(), codes.begin(), codes.end());
-    grid.added_index.build({codes.begin(), codes.end()});
-    grid.first_added = static_cast<Index>(n);
+    grid.add_part(static_cast<Index>(n));
     resize_large(grid.voxels, grid.size(), no_voxels);
     resize_large(grid.next, grid.size());
     for_chunks(codes.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -159,8 +158,8 @@ void add_grid_points(GridPoints& grid, std::span<const MortonCode> codes) {
             for (unsigned axis = 0; axis < 3; ++axis) {
                 if (c[axis] == 0) continue;
                 // Added grid points set their own `next`.
-                const Index point = grid.index.find(morton_down(grid.codes[i], axis));
-                if (point != no_index) grid.next[point][axis] = static_cast<Index>(i);
+                const Index point = grid.find(morton_down(grid.codes[i], axis));
+                if (point < n) grid.next[point][axis] = static_cast<Index>(i);
             }
         }
     });

@@ -16,7 +16,12 @@ struct GridPoints {
     /// Per grid point, the next up each axis, or no_index.
     std::vector<std::array<Index, 3>> next;
 
-    MortonIndex index, added_index; ///< of the codes, and of those that were added
+    /// Grid points whose codes ascend: those built, and those of each call that added some.
+    struct Part {
+        Index first;
+        MortonIndex index; ///< code -> number in the part
+    };
+    std::vector<Part> parts;
 
     std::size_t size() const { return codes.size(); }
     /// Integer coordinates, in voxels, from -1 to 2^depth + 1: there is a margin of one voxel around the
@@ -30,12 +35,15 @@ struct GridPoints {
     }
     /// The grid point of a code, or no_index.
     Index find(MortonCode code) const {
-        const Index point = index.find(code);
-        if (point != no_index || first_added == no_index) return point;
-        const Index added = added_index.find(code);
-        return added == no_index ? no_index : first_added + added;
+        for (const Part& part : parts)
+            if (const Index number = part.index.find(code); number != no_index) return part.first + number;
+        return no_index;
     }
-    Index first_added = no_index; ///< no_index: none was
+    /// Makes those from one to the last findable.
+    void add_part(Index first_of_part) {
+        parts.push_back({first_of_part, {}});
+        parts.back().index.build({codes.begin() + first_of_part, codes.end()});
+    }
 };
 GridPoints build_grid_points(const OctreeLevel& level);
 /// Per grid point, the next down each axis, or no_index: the inverse of `next`.
