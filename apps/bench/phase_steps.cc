@@ -145,7 +145,8 @@ void make_links(Work& w) {
     const RelationTest related = relation_of(w);
     const auto pair = [&] { w.dual.links = pair_crossings(w.dual.grid, w.dual.crossings, w.sets, related); };
     pair();
-    for (int i = 0; i < enough_rounds && trim_unsupported(w.dual.crossings, w.dual.links) > 0; ++i)
+    for (int i = 0; i < enough_rounds && trim_unsupported(w.dual.crossings, w.dual.links) > 0; ++i) pair();
+    for (int i = 0; i < enough_rounds && drop_tips(w.sets, related, w.dual.links, w.dual.crossings) > 0; ++i)
         pair();
 }
 void make_vertices(Work& w) {
@@ -292,7 +293,7 @@ std::vector<Step> steps_of_contour() {
              return bytes_of(w.dual.grid) + bytes_of(w.sheets) + bytes_of(w.candidates.crossings)
                     + bytes_of(w.candidates.standing) + bytes_of(w.signed_crossings);
          }},
-        {"links", "pair_crossings, trim_unsupported",
+        {"links", "pair_crossings, trim_unsupported, drop_tips",
          [](Work& w) {
              w.dual.links = {}, w.dual.crossings = w.signed_crossings, w.dual.voxel_size = w.level.voxel_size;
          },

@@ -33,6 +33,8 @@ Steps::Steps(const PointCloud& cloud, int depth)
     links = pair_crossings(grid, crossings, sets, related);
     for (int round = 0; round < 3 && trim_unsupported(crossings, links) > 0; ++round)
         links = pair_crossings(grid, crossings, sets, related);
+    for (int round = 0; round < 3 && drop_tips(sets, related, links, crossings) > 0; ++round)
+        links = pair_crossings(grid, crossings, sets, related);
     duals = build_dual_vertices(grid, crossings, links);
     open_all_webs(*this);
     placed = place_vertices(*this, sets, related);

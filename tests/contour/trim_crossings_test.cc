@@ -54,6 +54,29 @@ std::pair<std::size_t, std::size_t> trimmed_about(double hole, double ring) {
     return {count(marked), gone};
 }
 
+/// Two crossings on one edge, the only one, joined to each other on so many sides.
+struct Pair {
+    NormalSets sets;
+    Crossings crossings;
+    Links links;
+
+    Pair(const NormalSet& a, const NormalSet& b, int joined) {
+        sets.sets = {a, b};
+        crossings.crossings = {{0.4, a.normal, 1, 0, false, true}, {0.6, b.normal, 1, 1, true, true}};
+        crossings.first = {0, 0, 2, 2};
+        links.of_crossing.resize(2);
+        for (unsigned j = 0; j < static_cast<unsigned>(joined); ++j) {
+            links.of({0, j}).twin = {1, j};
+            links.of({1, j}).twin = {0, j};
+        }
+    }
+    std::size_t drop() { return drop_tips(sets, RelationTest({}, 1), links, crossings); }
+};
+
+NormalSet set_at(const Vec3& centroid, const Vec3& normal) {
+    return {centroid, normal.normalized(), 20, 0, Spread{{0.05, 0.05, 0.05, 0, 0, 0}}};
+}
+
 } // namespace
 
 TEST_CASE("a closed surface loses no crossing, whatever the data carry", "[contour]") {
@@ -145,4 +168,45 @@ TEST_CASE("a crossing that hangs by one side goes, whether carried or not", "[co
     stages.pair();
     CHECK(trim_unsupported(stages.crossings, stages.links) == 1);
     for (Index x = 0; x < stages.crossings.crossings.size(); ++x) CHECK(place_of(stages, x) != place);
+}
+
+TEST_CASE("two crossings of one edge joined on three sides are a tip and go", "[contour]") {
+    const NormalSet left = set_at({-0.3, 0, 0}, {-1, 0, 1}), right = set_at({0.3, 0, 0}, {1, 0, 1});
+    for (int joined = 0; joined <= 4; ++joined) {
+        INFO("joined on " << joined << " sides");
+        Pair pair(left, right, joined);
+        CHECK(pair.drop() == (joined >= 3 ? 1 : 0));
+        CHECK(pair.crossings.tips == (joined >= 3 ? 1 : 0));
+        CHECK(pair.crossings.crossings.size() == (joined >= 3 ? 0 : 2));
+        CHECK(pair.crossings.first.back() == pair.crossings.crossings.size());
+    }
+}
+
+TEST_CASE("the two sides of a thin part stay, others go", "[contour]") {
+    const NormalSet below = set_at({0, 0, 0}, {0, 0, -1}), above = set_at({0, 0, 0.5}, {0, 0, 1});
+    REQUIRE(RelationTest({}, 1)(below, above) == Relation::none);
+    CHECK(Pair(below, above, 4).drop() == 0);
+    const NormalSet left = set_at({-0.1, 0, -0.2}, {-1, 0, 0.4}), right = set_at({0.1, 0, -0.2}, {1, 0, 0.4});
+    REQUIRE(RelationTest({}, 1)(left, right) == Relation::convex);
+    REQUIRE((left.normal | right.normal) < -0.3);
+    CHECK(Pair(left, right, 4).drop() == 1);
+    const NormalSet lower = set_at({0, 0, 0}, {0, 0, 1});
+    REQUIRE(RelationTest({}, 1)(lower, above) == Relation::none);
+    CHECK(Pair(lower, above, 4).drop() == 1); // both face up
+}
+
+TEST_CASE("a surface stays closed without its tips", "[contour]") {
+    std::size_t tips = 0;
+    support::Random random(5);
+    for (int i = 0; i < 12; ++i) {
+        Stages stages(support::wedge(0.4, 1, 0.5).placed(support::random_pose(random)), 1500, 3);
+        if (support::open_sides(stages.links) > 0) continue;
+        for (int round = 0; round < 3; ++round) {
+            tips += drop_tips(stages.sets, stages.related, stages.links, stages.crossings);
+            stages.pair();
+        }
+        CHECK(support::open_sides(stages.links) == 0);
+        CHECK(drop_tips(stages.sets, stages.related, stages.links, stages.crossings) == 0);
+    }
+    CHECK(tips > 0);
 }

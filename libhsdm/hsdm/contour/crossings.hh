@@ -33,6 +33,8 @@ struct Crossings {
     std::size_t dropped_beyond_crease = 0; ///< clipped by the sheet's crease partner
     std::size_t settled = 0;               ///< crossings dropped, restored or invented (label_grid_signs)
     std::size_t trimmed = 0;               ///< dropped beyond the end of the data (trim_unsupported)
+    /// pairs of crossings dropped because only the tip of a corner made them (drop_tips)
+    std::size_t tips = 0;
 
     /// The crossing that a facet is dual to.
     const Crossing& of(FacetCorner corner) const { return crossings[corner.crossing()]; }

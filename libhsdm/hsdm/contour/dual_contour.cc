@@ -293,6 +293,9 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
          round < enough_rounds && trim_unsupported(dual.crossings, dual.links, options.all_round) > 0;
          ++round)
         pair();
+    for (int round = 0; round < enough_rounds && drop_tips(sets, related, dual.links, dual.crossings) > 0;
+         ++round)
+        pair();
     dual.duals = build_dual_vertices(dual.grid, dual.crossings, dual.links);
     result.webs_opened = open_all_webs(dual);
     PlacedVertices vertices = place_vertices(dual, sets, related);
@@ -319,6 +322,7 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     result.beyond_crease = dual.crossings.dropped_beyond_crease;
     result.settled = dual.crossings.settled;
     result.trimmed = dual.crossings.trimmed;
+    result.tips = dual.crossings.tips;
     result.clamped = vertices.clamped;
     return to_corners;
 }

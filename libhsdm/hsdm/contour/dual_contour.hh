@@ -31,6 +31,7 @@ struct DualContour {
     std::size_t beyond_crease = 0;    ///< crossings clipped where another sheet crosses theirs
     std::size_t settled = 0;          ///< crossings dropped, restored or added so that signs agree
     std::size_t trimmed = 0;          ///< crossings dropped beyond the end of the data
+    std::size_t tips = 0;             ///< pairs of crossings dropped
     std::size_t webs_opened = 0;      ///< rows of links that changed partners (open_webs)
     std::size_t handles_cut = 0;      ///< rings of edges that no points speak for (cut_handles)
     std::size_t clamped = 0;          ///< vertices kept in their voxels

@@ -135,4 +135,22 @@ std::size_t trim_unsupported(Crossings& crossings, const Links& links, bool all_
     return count;
 }
 
+std::size_t drop_tips(const NormalSets& sets, const RelationTest& related, const Links& links,
+                      Crossings& crossings) {
+    const auto& list = crossings.crossings;
+    const auto are_sides = [&](const Crossing& x, const Crossing& y) {
+        return opposed(x, y) && related(sets.sets[x.set], sets.sets[y.set]) == Relation::none;
+    };
+    std::vector<std::uint8_t> removed(list.size(), 0);
+    for (Index x = 0; x + 1 < list.size(); ++x) {
+        if (list[x].edge != list[x + 1].edge) continue;
+        const auto joined = std::ranges::count_if(
+            links.of_crossing[x], [&](const Link& link) { return link.twin.crossing() == x + 1; });
+        if (joined >= 3 && !are_sides(list[x], list[x + 1])) removed[x] = removed[x + 1] = 1;
+    }
+    const std::size_t count = remove_crossings(removed, crossings);
+    crossings.tips += count / 2;
+    return count / 2;
+}
+
 } // namespace hsdm

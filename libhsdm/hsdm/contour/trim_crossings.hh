@@ -12,4 +12,11 @@ namespace hsdm {
 /// number of crossings dropped; if it is not 0 the crossings must be paired again. O(crossings).
 std::size_t trim_unsupported(Crossings& crossings, const Links& links, bool all_round = false);
 
+/// Drops the two crossings of an edge through which only the tip of a corner or the end of a crease pokes:
+/// two that are joined to each other on three or four sides and are not the two sides of a thin part. Their
+/// facets would lie back to back, between vertices of which two have no other facet. Returns the number of
+/// pairs; if it is not 0 the crossings must be paired again. O(crossings).
+std::size_t drop_tips(const NormalSets& sets, const RelationTest& related, const Links& links,
+                      Crossings& crossings);
+
 } // namespace hsdm
