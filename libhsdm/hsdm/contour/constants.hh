@@ -33,10 +33,6 @@ HSDM_TUNED double most_lift = 0.1;
 // outlier_sets.hh
 namespace hsdm::stray_sets {
 
-/// share: of the points of a typical set; a set of more is no outlier.
-/// Why: by trial; a surface that clips a voxel by an eighth of its area has neighbours with more.
-HSDM_TUNED double most_share = 0.125;
-
 /// sets: that are smoothly related from voxel to voxel; more are a surface.
 /// Why: by trial; a patch of two by two voxels.
 HSDM_TUNED std::size_t most_sets = 4;
@@ -45,6 +41,10 @@ HSDM_TUNED std::size_t most_sets = 4;
 
 // set_relation.hh, and who else asks whether two normals belong to one sheet
 namespace hsdm::relations {
+
+/// radians: normals closer than this belong to one sheet.
+/// Why: 40 degrees, as angles.one_sheet, to the second digit.
+HSDM_TUNED double smooth_angle = 0.70;
 
 /// voxels: how far two sets of one sheet may lie apart along their mean normal.
 /// Why: by trial; docs/sheets.md promises to tell sheets apart from there on.
@@ -232,6 +232,10 @@ HSDM_TUNED double end_gap = 0.01;
 // crossing_pairs.hh, trim_crossings.hh
 namespace hsdm::pairing {
 
+/// cosine: of the normals of two crossings that face opposite ways, as the two sides of a thin part.
+/// Why: 107 degrees: creases at a right angle are not opposite, noise of 15 degrees included.
+HSDM_TUNED double opposed_cosine = -0.3;
+
 /// cost: of pairing two crossings across a crease, beside the angle and the distance from each other's
 /// planes.
 /// Why: by trial; one sheet is to be preferred at any angle of less than 90 degrees, whose cost is 1.
@@ -294,7 +298,8 @@ HSDM_TUNED double hold = 0.002;
 /// Why: by trial; facets between them keep an area.
 HSDM_TUNED double side_gap = 0.02;
 
-/// voxels: how far outside its voxel a vertex may lie where no other can be in its way.
+/// voxels: how far outside its voxel a vertex may lie where no other can be in its way; planes that meet
+/// farther outside say nothing, and the sheet alone decides.
 /// Why: half the next voxel; farther off that one's other half would have a vertex of its own.
 HSDM_TUNED double farthest_out = 0.5;
 
@@ -318,10 +323,6 @@ HSDM_TUNED double point_weight = 0.5;
 /// points: a set of more has no more weight.
 /// Why: by trial; three crossings' worth, as many as pass by a vertex on one sheet.
 HSDM_TUNED double most_points = 6;
-
-/// voxels: planes that meet farther outside say nothing, and the sheet alone decides.
-/// Why: as far as a vertex may lie outside (farthest_out).
-HSDM_TUNED double far_meeting = 0.5;
 
 } // namespace hsdm::placement
 
@@ -361,15 +362,11 @@ HSDM_TUNED double doubt = 2;
 // move_to_creases.hh, shared_corners.hh, and the diagonals of dual_contour.hh
 namespace hsdm::creases {
 
-/// voxels: least distance from a vertex that moves to another.
-/// Why: a tenth of a voxel, below which facets are slivers.
-HSDM_TUNED double least_distance = 0.1;
-
 /// sine: of the corners of triangles at such a vertex.
 /// Why: 1 degree: thinner ones have no normal to judge by.
 HSDM_TUNED double least_sine = 0.02;
 
-/// voxels: corners this near are one, planes this near pass through it.
+/// voxels: corners this near are one, planes this near pass through it; no vertex comes this near to another.
 /// Why: by trial; three times clear_corner, as the planes are those of another voxel.
 HSDM_TUNED double same_place = 0.1;
 

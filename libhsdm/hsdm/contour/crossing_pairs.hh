@@ -4,13 +4,12 @@
 
 #include "hsdm/contour/constants.hh"
 #include "hsdm/contour/crossings.hh"
-#include "hsdm/core/constants.hh"
 
 namespace hsdm {
 
 /// Do two crossings face opposite ways, as the two sides of a thin part or of a wedge?
 inline bool opposed(const Crossing& x, const Crossing& y) {
-    return (x.normal | y.normal) < angles::opposed;
+    return (x.normal | y.normal) < pairing::opposed_cosine;
 }
 
 /// What a side of a facet is joined to.

@@ -153,14 +153,14 @@ private:
             before_.push_back(v == to.dual ? was_[i] : mesh_.positions[v]);
             after_.push_back(v == to.dual ? to.position : mesh_.positions[v]);
             const double side = (after_.back() - to.position).norm();
-            if (v != to.dual && side < creases::least_distance * voxel_size_
+            if (v != to.dual && side < creases::same_place * voxel_size_
                 && side < (after_.back() - was_[i]).norm())
                 return false;
         }
         const Vec3 now = area_vector(after_), then = area_vector(before_);
-        if ((now | then) <= angles::one_sheet * now.norm() * then.norm()) return false;
+        if ((now | then) <= angles::halfway * now.norm() * then.norm()) return false;
         const double is = along(after_, to.normals);
-        return is > angles::one_sheet || is >= along(before_, to.normals);
+        return is > angles::halfway || is >= along(before_, to.normals);
     }
 
     PolygonMesh& mesh_;

@@ -224,7 +224,7 @@ private:
         const auto [above, width_above] = across(mode, cut, offsets_.size());
         if ((above - below).norm() > std::max(width_below, width_above)) return false;
         for (Index i = 0; i < size_; ++i) {
-            if (!has_normal(i) || (normal(i) | mode) > angles::opposed) continue;
+            if (!has_normal(i) || (normal(i) | mode) > -angles::halfway) continue;
             const double offset = mode | octree_.positions[begin_ + i];
             if (offset > offsets_[cut - 1].first && offset < offsets_[cut].first) return false;
         }

@@ -3,12 +3,13 @@
 
 #include "hsdm/contour/set_relation.hh"
 #include "hsdm/core/occurrences.hh"
+#include "hsdm/normals/constants.hh"
 
 namespace hsdm {
 
 struct OutlierSetOptions {
     /// An outlier set has at most this share of the points of a typical set, or a single point.
-    double most_share = stray_sets::most_share;
+    double most_share = normal_outliers::most_share;
     /// At most so many outlier sets are connected by smooth relations from voxel to voxel; more are a
     /// surface.
     std::size_t most_sets = stray_sets::most_sets;

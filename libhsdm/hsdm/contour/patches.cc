@@ -92,7 +92,7 @@ public:
         if (end == 0) {
             begin = at_.standing.size();
             for (const Disc& disc : at_.discs)
-                if (std::abs(set(i).normal | disc.normal) <= angles::one_sheet) at_.standing.push_back(&disc);
+                if (std::abs(set(i).normal | disc.normal) <= angles::halfway) at_.standing.push_back(&disc);
             end = at_.standing.size();
         }
         return {at_.standing.data() + begin, at_.standing.data() + end};

@@ -413,7 +413,7 @@ private:
     /// to be clamped.
     bool keep_inside(Solution& solution) const {
         if ((solution.position - clamped(solution.position, problem_)).norm()
-                > placement::far_meeting * problem_.size
+                > placement::farthest_out * problem_.size
             && solution.rank > 1) {
             // Planes that meet far away say nothing about this voxel: use the steepest direction alone.
             solution = least_squares(problem_, 1);

@@ -108,8 +108,7 @@ private:
     /// Does a neighbour's place tell where the sheet of a smooth vertex is?
     bool carries(Index neighbour, Index dual) const {
         return vertices_.classes[neighbour] == VertexClass::smooth && !vertices_.is_clamped[neighbour]
-               && (vertices_.directions[neighbour] | vertices_.directions[dual])
-                      > angles::one_sheet;
+               && (vertices_.directions[neighbour] | vertices_.directions[dual]) > angles::one_sheet;
     }
 
     Vec3 moved_on_sheet(Index dual, double step) const {

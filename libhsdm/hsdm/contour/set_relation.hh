@@ -3,12 +3,8 @@
 // related.
 
 #include "hsdm/contour/normal_sets.hh"
-#include "hsdm/core/constants.hh"
-
-#include <cmath>
 
 #include <algorithm>
-#include <cmath>
 
 namespace hsdm {
 
@@ -20,8 +16,8 @@ enum class Relation : std::uint8_t {
 };
 
 struct RelationOptions {
-    /// radians, (0, pi/2): normals closer than this belong to one sheet (39.6 degrees)
-    double smooth_angle = std::acos(angles::one_sheet);
+    /// radians, (0, pi/2): normals closer than this belong to one sheet (40 degrees)
+    double smooth_angle = relations::smooth_angle;
     /// voxels: how far two sets of one sheet may lie apart along their mean normal
     double smooth_gap = relations::smooth_gap;
     /// voxels: how far from the points of both sets the planes of a crease may meet

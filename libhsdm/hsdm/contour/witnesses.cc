@@ -110,7 +110,7 @@ bool Witnesses::span(std::span<const Index> ring) {
             const Vec3& at = octree_.positions[p];
             if (octree_.source[p] == no_index || !tube.holds(at)) continue;
             const double cosine = octree_.normals[p] | tube.axis();
-            if (std::abs(cosine) < angles::one_sheet)
+            if (std::abs(cosine) < angles::halfway)
                 ++aside;
             else
                 facing[(cosine > 0) != (tube.along(at) > 0)].push_back(p);

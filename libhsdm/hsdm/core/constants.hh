@@ -18,6 +18,11 @@ HSDM_TUNED double one_sheet = 0.77;
 /// that.
 HSDM_TUNED double smooth = 0.9;
 
+/// cosine: a direction closer than this to another goes along it rather than across.
+/// Why: 45 degrees, halfway. A wall less steep on a surface is a part of it or the side of a blade, a point's
+/// normal more askew to a tube says nothing of it; with the sign turned, 135 degrees, a sheet faces back.
+HSDM_TUNED double halfway = 0.7;
+
 /// cosine: normals closer than this face one way, whatever noise did to them.
 /// Why: 60 degrees, a third of the half-turn that wrong ones are off.
 HSDM_TUNED double facing = 0.5;

@@ -71,8 +71,9 @@ HSDM_TUNED int rounds = 3;
 // outliers.hh: drop_outliers_by_normals
 namespace hsdm::normal_outliers {
 
-/// share: of those points in a sparse voxel.
-/// Why: one point: a few percent of a clean cloud's are alone in a voxel that they clip.
+/// share: of those points in a sparse voxel; of the points of a typical set in one that is an outlier.
+/// Why: one point: a few percent of a clean cloud's are alone in a voxel that they clip. A surface that clips
+/// a voxel by an eighth of its area has neighbours with more.
 HSDM_TUNED double most_share = 0.125;
 
 /// voxels: how far those may be that are not of a sparse voxel themselves.

@@ -161,7 +161,7 @@ private:
         if (!(tolerance_[from] > 0 && tolerance_[to] > 0)) return false;
         const double most = std::min(tolerance_[from], tolerance_[to]);
         const double there = planes_[from].rms(at(to));
-        return there <= most && there <= planes_[from].rms(at(from)) + collapses::free_share * most
+        return there <= most && there <= planes_[from].rms(at(from)) + collapses::straight_share * most
                && planes_[to].rms(at(to)) <= most;
     }
 

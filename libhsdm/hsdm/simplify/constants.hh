@@ -203,14 +203,10 @@ inline constexpr std::size_t most_ring = 64;
 /// Why: far below what is seen, far above rounding.
 HSDM_TUNED double settled_share = 1e-3;
 
-/// share: of the tolerance: what may be off a plane or a line that is called flat or straight.
+/// share: of the tolerance: what may be off a plane or a line that is called flat or straight, and by which a
+/// neighbour may miss the planes more than the vertex itself and stand for it.
 /// Why: 0.035 of the error: what is cut anew there costs no error worth to be told.
 HSDM_TUNED double straight_share = 0.1;
-
-/// share: of the tolerance, by which a neighbour may miss the planes more than the vertex itself and stand
-/// for it.
-/// Why: by trial; a tenth is "about as well".
-HSDM_TUNED double free_share = 0.1;
 
 } // namespace hsdm::collapses
 

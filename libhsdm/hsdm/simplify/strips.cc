@@ -144,7 +144,7 @@ private:
             if (!(sums[k].weight > 0)) continue;
             Plane& plane = strips_.planes[k];
             const Vec3& area = sums[k].area;
-            if (area.norm() < angles::one_sheet * sums[k].weight)
+            if (area.norm() < angles::halfway * sums[k].weight)
                 missed = std::numeric_limits<double>::infinity();
             const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
             plane.normal = axis * cosine + unit(area - axis * (axis | area)) * sine;
@@ -168,7 +168,7 @@ private:
             double highest = std::numeric_limits<double>::lowest();
             for (const std::size_t k : {(was + m - 1) % m, was, (was + 1) % m}) {
                 const Plane& plane = strips_.planes[k];
-                if ((plane.normal | field_.mean_normal[f]) < angles::one_sheet) continue;
+                if ((plane.normal | field_.mean_normal[f]) < angles::halfway) continue;
                 const double height = outward() * plane.height(field_.centre[f]);
                 if (height > highest) {
                     highest = height;
