@@ -99,14 +99,15 @@ std::pair<std::size_t, std::size_t> place_of(const SuiteChange& change, const st
 /// What the reports of a case hold at a key: of several files each that the case's input stands for.
 using Found = std::vector<Json>;
 
-/// Nothing if one of the reports does not have the key, or there is none.
+/// Nothing if one of the reports does not have the key, or there is none. Nor of a whole object, which no
+/// expectation is: its parts are.
 Found found_at(const std::string& key, std::size_t index, std::span<const Case> cases,
                std::span<const Outcome> outcomes) {
     Found found;
     for (std::size_t i = 0; i < outcomes.size(); ++i) {
         if (cases[i].index != index || outcomes[i].report.is_null()) continue;
         const Json* const value = find_key(outcomes[i].report, key);
-        if (!value) return {};
+        if (!value || value->is_object()) return {};
         found.push_back(*value);
     }
     return found;

@@ -139,7 +139,8 @@ def roofline(tools, folder):
         sys.exit(SKIPPED)
     expect(told.returncode == 0, told.stderr)
     rows = rows_of(told.stdout)
-    expect(len(rows) > 20 and all(float(row[1].replace(",", "")) > 0 for row in rows), told.stdout)
+    counted = [float(row[1].replace(",", "")) for row in rows if not row[0].endswith("the rest")] # a difference, maybe 0
+    expect(len(rows) > 20 and all(count > 0 for count in counted), told.stdout)
     xml.etree.ElementTree.parse(plot)
 
 

@@ -125,6 +125,17 @@ TEST_CASE("an update gives a case of several files bounds that hold for all", "[
     CHECK_THAT(differing.out, Contains("no expectation of suite.json changes"));
 }
 
+TEST_CASE("an update leaves an expectation of a whole object, which no value is", "[cli]") {
+    const Folder folder;
+    make_scans(folder);
+    const std::string one =
+        R"({"input": "scans/a.xyz", "args": ["--depth", "3"], "expect": {"grid": 3, "grid.depth": 4}})";
+    const CommandResult result = regress_suite(folder, one, "--update");
+    INFO(result.out << result.err);
+    CHECK(result.status == 1);
+    CHECK_THAT(read_file(folder / "suite.json"), Contains(R"({"grid": 3, "grid.depth": 3})"));
+}
+
 TEST_CASE("a case that must fail passes when it does as it says, and misses otherwise", "[cli]") {
     const Folder folder;
     folder.write("scan.xyz", xyz(sphere_scan(500)));

@@ -15,8 +15,12 @@ namespace {
 // Costs are in units of one supported crossing dropped.
 constexpr double impossible = 1e30;
 
-// Of two sides that cost the same a grid point keeps the one it had.
-constexpr double tie = 1e-5;
+/// Of two sides that cost the same a grid point keeps the one it had. A little more at some than at others,
+/// so that as many that change to one side as to the other are no tie again, which would go to one of the
+/// sides whichever way the normals point.
+double tie_at(const VoxelCoord& c) {
+    return 1e-5 * (1 + ((c[0] + 2 * c[1] + 3 * c[2]) & 7) / 8.0);
+}
 
 using Side = std::uint8_t;
 constexpr Side inside = 0, outside = 1, unknown = 2; // the labels of cheapest_labels
@@ -140,9 +144,17 @@ private:
         });
     }
 
+    /// That of the first neighbour that has one, so that it turns with the normals; outside if none has.
+    Side side_of_neighbour(Index c) const {
+        for (unsigned a = 0; a < 3; ++a)
+            for (const Index neighbour : {grid_.next[c][a], below_[c][a]})
+                if (neighbour != no_index && side_[neighbour] != unknown) return side_[neighbour];
+        return outside;
+    }
+
     /// One round of votes for the grid points still unknown: `carried_only`, by crossings that the data
     /// carry; later also by the sides of neighbours, which tell more farther off, where sheets are only
-    /// continued. Ties stay unknown if `undecided`, else count as outside: after the last round none is.
+    /// continued. Ties stay unknown if `undecided`, else follow a neighbour: after the last round none is.
     void vote(bool carried_only, bool undecided = true) {
         std::vector<Side> next = side_;
         for_each_index(grid_.size(), chunks::usual, [&](Index c) {
@@ -153,7 +165,10 @@ private:
                 if (up != no_index) sum += vote(3 * c + a, false, side_[up], carried_only);
                 if (down != no_index) sum += vote(3 * down + a, true, side_[down], carried_only);
             }
-            if (sum != 0 || !undecided) next[c] = sum < 0 ? inside : outside;
+            if (sum != 0)
+                next[c] = sum < 0 ? inside : outside;
+            else if (!undecided)
+                next[c] = side_of_neighbour(c);
         });
         side_ = std::move(next);
     }
@@ -226,6 +241,7 @@ private:
         LabelCosts costs(points.size());
         for (std::size_t i = 0; i < points.size(); ++i) {
             const Index c = points[i];
+            const double tie = tie_at(grid_.coord(c));
             costs.add(static_cast<Index>(i), 0, -belief_[c] + (side_[c] == outside ? -tie : tie));
             for (unsigned a = 0; a < 3; ++a) {
                 add_edge(3 * c + a, number, costs);
