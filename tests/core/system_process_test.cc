@@ -39,11 +39,15 @@ struct Ends {
     }
 };
 
-/// Whether a process has a descriptor of this number.
-bool has(std::int64_t process, int descriptor) {
-    const std::string name = "/proc/" + std::to_string(process) + "/fd/" + std::to_string(descriptor);
+/// What a descriptor of a process leads to, such as a pipe by its number; empty without one.
+std::filesystem::path target_of(const std::string& process, int descriptor) {
     std::error_code error;
-    return std::filesystem::is_symlink(std::filesystem::symlink_status(name, error));
+    return std::filesystem::read_symlink("/proc/" + process + "/fd/" + std::to_string(descriptor), error);
+}
+
+/// Whether a process has a descriptor of ours: one that it opened itself may have the same number.
+bool has(std::int64_t process, int descriptor) {
+    return target_of(std::to_string(process), descriptor) == target_of("self", descriptor);
 }
 
 } // namespace
