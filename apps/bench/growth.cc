@@ -3,6 +3,7 @@
 #include "benchmarks.hh"
 #include "phase_steps.hh"
 #include "plot.hh"
+#include "timed_scan.hh"
 #include "yard.hh"
 
 #include "hsdm/io/read_points.hh"
@@ -95,21 +96,16 @@ int bench::growth(int argc, char** argv) {
     CLI::App app(
         "Seconds of a reconstruction from file to file by phase, over clouds of growing size; the points "
         "of a voxel stay as many.");
-    std::string shape = "torus", plot_file, normals = "given";
+    TimedScan scan{.repeats = 3};
+    scan.add_options(app);
+    std::string plot_file, normals = "given";
     std::vector<std::size_t> sizes{100000, 300000, 1000000, 3000000, 10000000};
-    double points_per_voxel = 7, max_error = 0;
-    int repeats = 3;
+    double max_error = 0;
     bool basic = false;
     ReconstructOptions options;
-    app.add_option("--shape", shape, "of hsdm_generate, in general pose")
-        ->check(CLI::IsMember(support::solid_names()))
-        ->capture_default_str();
     app.add_option("--sizes", sizes, "numbers of points")
         ->delimiter(',')
         ->check(CLI::Range(1000, 2000000000))
-        ->capture_default_str();
-    app.add_option("--points-per-voxel", points_per_voxel, "on average")
-        ->check(CLI::Range(1.0, 1000.0))
         ->capture_default_str();
     app.add_option("--normals", normals, "given or estimate")
         ->check(CLI::IsMember({"given", "estimate"}))
@@ -118,9 +114,6 @@ int bench::growth(int argc, char** argv) {
     app.add_option("--max-error", max_error,
                    "share of the diagonal, for adaptive grids, whose voxels follow "
                    "from it; 0: none");
-    app.add_option("--repeats", repeats, "the fastest of so many runs counts")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
     app.add_option("--threads", options.threads, "at most so many; 0: all")->check(CLI::NonNegativeNumber);
     app.add_option("--plot", plot_file, "an SVG file: nanoseconds of a point by phase, over the points");
     CLI11_PARSE(app, argc, argv);
@@ -131,13 +124,13 @@ int bench::growth(int argc, char** argv) {
     const support::Folder folder;
     print_sizes_head();
     for (const std::size_t points : sizes) {
-        const Work work = make_work(shape, points, points_per_voxel, folder.path());
+        const Work work = make_work(scan.shape, points, scan.points_per_voxel, folder.path());
         if (max_error > 0)
             options.max_error = MaxError{max_error, true};
         else
             options.voxel_size = work.cube_extent / static_cast<double>(1u << work.depth);
         const double y = sort_seconds(1);
-        reports.push_back(best_run(work, options, repeats));
+        reports.push_back(best_run(work, options, scan.repeats));
         print_size(points, y, reports.back());
     }
     if (!plot_file.empty()) draw_growth(sizes, reports, plot_file);

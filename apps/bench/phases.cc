@@ -4,6 +4,7 @@
 #include "benchmarks.hh"
 #include "phase_steps.hh"
 #include "plot.hh"
+#include "timed_scan.hh"
 #include "yard.hh"
 
 #include "hsdm/io/read_points.hh"
@@ -135,23 +136,12 @@ int bench::phases(int argc, char** argv) {
     CLI::App app(
         "Times every phase of a reconstruction as a function of its own: nanoseconds of a point and of "
         "a voxel, the bytes of the arrays that it reads and makes, and how soon a copy would move them.");
-    std::string shape = "torus", plot_file;
-    std::size_t points = 1000000;
-    double points_per_voxel = 7;
-    int repeats = 5, threads = 0;
+    TimedScan scan;
+    scan.add_options(app);
+    scan.add_points(app);
+    std::string plot_file;
+    int threads = 0;
     bool bare = false, json = false;
-    app.add_option("--shape", shape, "of hsdm_generate, in general pose")
-        ->check(CLI::IsMember(support::solid_names()))
-        ->capture_default_str();
-    app.add_option("--points", points, "how many")
-        ->check(CLI::Range(1000, 2000000000))
-        ->capture_default_str();
-    app.add_option("--points-per-voxel", points_per_voxel, "on average")
-        ->check(CLI::Range(1.0, 1000.0))
-        ->capture_default_str();
-    app.add_option("--repeats", repeats, "the fastest of so many runs counts")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
     app.add_option("--threads", threads, "at most so many; 0: all")->check(CLI::NonNegativeNumber);
     app.add_option("--plot", plot_file, "an SVG file: nanoseconds over bytes");
     app.add_flag("--json", json, "for programs: without what is left of a whole");
@@ -161,28 +151,28 @@ int bench::phases(int argc, char** argv) {
     tbb::task_arena arena(used);
     if (bare) {
         const support::Folder folder;
-        Work work = make_work(shape, points, points_per_voxel, folder.path());
+        Work work = make_work(scan.shape, scan.points, scan.points_per_voxel, folder.path());
         arena.execute([&] { time_steps(work, 1); });
         return 0;
     }
     const double y = sort_seconds(1), bandwidth = copy_bandwidth(used);
     const support::Folder folder;
-    Work work = make_work(shape, points, points_per_voxel, folder.path());
+    Work work = make_work(scan.shape, scan.points, scan.points_per_voxel, folder.path());
     double whole = 0;
     std::vector<Row> rows;
     arena.execute([&] {
-        rows = time_steps(work, repeats);
+        rows = time_steps(work, scan.repeats);
         whole = time_whole(work);
-        for (int i = 1; i < repeats && !json; ++i) whole = std::min(whole, time_whole(work));
+        for (int i = 1; i < scan.repeats && !json; ++i) whole = std::min(whole, time_whole(work));
     });
-    const Size size{static_cast<double>(points), static_cast<double>(work.level.size())};
+    const Size size{static_cast<double>(scan.points), static_cast<double>(work.level.size())};
     if (json) {
         print_json(rows, size, bandwidth);
         return 0;
     }
     take_parts_off(rows);
-    std::printf("%s, %zu points, %zu voxels, threads: %d; Y %.3f s, copying %.2f GB/s\n\n", shape.c_str(),
-                points, work.level.size(), used, y, bandwidth / 1e9);
+    std::printf("%s, %zu points, %zu voxels, threads: %d; Y %.3f s, copying %.2f GB/s\n\n",
+                scan.shape.c_str(), scan.points, work.level.size(), used, y, bandwidth / 1e9);
     print_phases(rows, size, bandwidth);
     std::printf("\nIn one piece, from file to file: %.1f ms, %.2f Y\n", 1e3 * whole, whole / y);
     if (!plot_file.empty()) draw_phases(rows, size, bandwidth, plot_file);

@@ -3,6 +3,7 @@
 #include "benchmarks.hh"
 #include "phase_steps.hh"
 #include "plot.hh"
+#include "timed_scan.hh"
 #include "yard.hh"
 
 #include "support/folder.hh"
@@ -44,35 +45,23 @@ void print_ratio(const std::string& name, const std::vector<double>& seconds) {
 int bench::threads(int argc, char** argv) {
     CLI::App app("Milliseconds of every phase by the number of threads, and how often the last goes into the "
                  "first.");
-    std::string shape = "torus", plot_file;
-    std::size_t points = 1000000;
-    double points_per_voxel = 7;
-    int repeats = 5;
+    TimedScan scan;
+    scan.add_options(app);
+    scan.add_points(app);
+    std::string plot_file;
     std::vector<int> threads{1, 2};
-    app.add_option("--shape", shape, "of hsdm_generate, in general pose")
-        ->check(CLI::IsMember(support::solid_names()))
-        ->capture_default_str();
-    app.add_option("--points", points, "how many")
-        ->check(CLI::Range(1000, 2000000000))
-        ->capture_default_str();
-    app.add_option("--points-per-voxel", points_per_voxel, "on average")
-        ->check(CLI::Range(1.0, 1000.0))
-        ->capture_default_str();
     app.add_option("--threads", threads, "how many, the least first")
         ->delimiter(',')
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
-    app.add_option("--repeats", repeats, "the fastest of so many runs counts")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     app.add_option("--plot", plot_file, "an SVG file: the ratio over the time of the least");
     CLI11_PARSE(app, argc, argv);
     const support::Folder folder;
-    Work work = make_work(shape, points, points_per_voxel, folder.path());
-    const auto seconds = time_by_threads(work, threads, repeats);
+    Work work = make_work(scan.shape, scan.points, scan.points_per_voxel, folder.path());
+    const auto seconds = time_by_threads(work, threads, scan.repeats);
 
-    std::printf("%s, %zu points, %zu voxels; Y %.3f s\n\n| phase |", shape.c_str(), points, work.level.size(),
-                sort_seconds(1));
+    std::printf("%s, %zu points, %zu voxels; Y %.3f s\n\n| phase |", scan.shape.c_str(), scan.points,
+                work.level.size(), sort_seconds(1));
     for (const int t : threads) std::printf(" ms by %d |", t);
     std::printf(" ratio |\n|---|---|");
     for (std::size_t t = 0; t < threads.size(); ++t) std::printf("---|");

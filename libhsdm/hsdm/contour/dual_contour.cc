@@ -338,6 +338,11 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     SplinterOptions splinters = options.splinters;
     splinters.flat *= h;
     result.splinters = drop_splinters(result.mesh, splinters);
+    // Links are found once, for as long as facets stay as they are.
+    const auto changed = [&](std::size_t count) {
+        if (count > 0) result.links.reset();
+        return count;
+    };
     const auto cut = [&] {
         result.handles_cut += cut_handles(octree, level, sets, result.voxel, result.mesh, result.links);
     };
@@ -347,24 +352,20 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
         holes.max_diameter *= h;
         if (!result.links) result.links = link_facets(result.mesh);
         result.holes = fill_holes(result.mesh, *result.links, holes);
-        if (result.holes.closed > 0) {
-            result.links.reset();
-            cut(); // those of which a hole was a side
-        }
+        if (changed(result.holes.closed) > 0) cut(); // those of which a hole was a side
     }
-    result.doublets = merge_doublets(
-        result.mesh, [&](Index v) { return result.classes[result.mesh.origin[v]] == VertexClass::smooth; });
-    if (result.doublets > 0) result.links.reset();
+    result.doublets = changed(merge_doublets(
+        result.mesh, [&](Index v) { return result.classes[result.mesh.origin[v]] == VertexClass::smooth; }));
     if (!result.links || !is_manifold(result.mesh, *result.links)) {
         result.manifold = make_manifold(result.mesh);
         result.links.reset();
     }
     const Occurrences more_splinters = drop_splinters(result.mesh, splinters);
-    if (more_splinters.count > 0) result.links.reset();
+    changed(more_splinters.count);
     result.splinters.add(more_splinters);
     if (result.splinters.count > 0) remove_isolated_vertices(result.mesh);
     result.drawn_in = draw_in_spikes(octree, level, result.voxel, result.mesh);
-    if (collapse_flat_facets(octree.origin, result.mesh) > 0) result.links.reset();
+    changed(collapse_flat_facets(octree.origin, result.mesh));
     UntangleOptions untangle_options = options.untangle;
     untangle_options.reach *= h;
     untangle_options.nearby *= h;
@@ -375,17 +376,11 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
         result.intersections.moved += merged.moved;
         result.intersections.after = merged.after;
         result.intersections.first = merged.first;
-        if (merged.moved > 0) {
-            remove_isolated_vertices(result.mesh);
-            result.links.reset();
-        }
+        if (changed(merged.moved) > 0) remove_isolated_vertices(result.mesh);
     }
     if (result.intersections.moved > 0) {
         result.cells.reset();
-        if (collapse_flat_facets(octree.origin, result.mesh) > 0) {
-            result.links.reset();
-            count_intersections(result);
-        }
+        if (changed(collapse_flat_facets(octree.origin, result.mesh)) > 0) count_intersections(result);
     }
     settle_origins(result);
     return result;

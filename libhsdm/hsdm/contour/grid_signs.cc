@@ -15,12 +15,8 @@ namespace {
 // Costs are in units of one supported crossing dropped.
 constexpr double impossible = 1e30;
 
-/// Of two sides that cost the same a grid point keeps the one it had. A little more at some than at others,
-/// so that as many that change to one side as to the other are no tie again, which would go to one of the
-/// sides whichever way the normals point.
-double tie_at(const VoxelCoord& c) {
-    return 1e-5 * (1 + ((c[0] + 2 * c[1] + 3 * c[2]) & 7) / 8.0);
-}
+// Of two sides that cost the same a grid point keeps the one it had.
+constexpr double tie = 1e-5;
 
 using Side = std::uint8_t;
 constexpr Side inside = 0, outside = 1, unknown = 2; // the labels of cheapest_labels
@@ -241,7 +237,6 @@ private:
         LabelCosts costs(points.size());
         for (std::size_t i = 0; i < points.size(); ++i) {
             const Index c = points[i];
-            const double tie = tie_at(grid_.coord(c));
             costs.add(static_cast<Index>(i), 0, -belief_[c] + (side_[c] == outside ? -tie : tie));
             for (unsigned a = 0; a < 3; ++a) {
                 add_edge(3 * c + a, number, costs);
