@@ -45,6 +45,9 @@ std::string input_words(const Report& report) {
         text += paragraph(counted(n, "duplicate was", "duplicates were") + " merged.");
     if (rejected_count(report, "points_moved"))
         text += paragraph("The points are noisy: they were moved onto their surface first.");
+    if (const std::size_t n = rejected_count(report, "normals_steadied"))
+        text += paragraph("The normals are noisier than the points: " + counted(n, "one was", "of them were")
+                          + " made anew from the points, each on its own side.");
     if (const std::size_t n = rejected_count(report, "normals_mended"))
         text += paragraph(counted(n, "normal was", "normals were") + " turned to the side of the others.");
     return text;

@@ -23,6 +23,8 @@ std::string normals_words(const Report& report) {
     std::string given = report.input.has_normals ? "with normals" : "no normals";
     if (const std::size_t mended = rejected_count(report, "normals_mended"))
         given += " (" + grouped(mended) + " turned to one side)";
+    if (const std::size_t steadied = rejected_count(report, "normals_steadied"))
+        given += " (noisy: " + grouped(steadied) + " got their axes from positions)";
     if (option_value(report, "normals") != "estimate") return given;
     return report.input.has_normals ? "normals estimated anew" : "normals estimated";
 }

@@ -322,6 +322,19 @@ HSDM_TUNED int rounds = 2;
 
 } // namespace hsdm::normal_votes
 
+// steady_normals.hh
+namespace hsdm::scattered_normals {
+
+/// radians: the angle between the axes of most neighbours' given normals, from which on positions are asked.
+/// Why: eight degrees; clean clouds stay below five, and normals of less noise than that do no harm.
+HSDM_TUNED double least = 0.14;
+
+/// share: of that angle, which the axes that positions tell may scatter at most.
+/// Why: half; of clean normals both scatter alike, to a tenth.
+HSDM_TUNED double share = 0.5;
+
+} // namespace hsdm::scattered_normals
+
 // mend_normals.hh
 namespace hsdm::contradictions {
 

@@ -4,6 +4,7 @@
 #include "hsdm/errors.hh"
 #include "hsdm/normals/noise.hh"
 #include "hsdm/normals/normals.hh"
+#include "hsdm/normals/steady_normals.hh"
 #include "hsdm/octree/far_outliers.hh"
 #include "hsdm/octree/spacing.hh"
 #include "hsdm/pipeline/constants.hh"
@@ -83,6 +84,9 @@ void PreparedCloud::provide_normals(const PointView& cloud, const Phases& phases
 }
 
 void PreparedCloud::check_given_normals(const PointView& cloud, const Phases& phases) {
+    report.rejected["normals_steadied"] = phases.run("normals", 0.05, report.seconds.normals, [&] {
+        return are_scattered(octree) ? steady_normals(octree) : 0;
+    });
     report.rejected["normals_mended"] = phases.run("normals", 0.05, report.seconds.normals, [&] {
         NormalConsistency consistency = check_normals(octree);
         if (consistency.rough() && octree.size() > 1)
