@@ -114,12 +114,9 @@ public:
         });
         const Rows rows = each_less_mean(at);
         Eigen::MatrixX3d target = -rows.of_held;
-        // A plate resists bends across its surface; along it vertices stay spread as the membrane spreads
-        // them.
         for (std::size_t r = free_.size(); r < at.size(); ++r) {
-            const Vec3 &normal = normals[at[r]], bend = bend_at(at[r]);
-            for (unsigned k = 0; k < 3; ++k)
-                target(static_cast<Eigen::Index>(r), k) += bend[k] - normal[k] * (normal | bend);
+            const Vec3 bend = bend_of_slope(at[r], normals[at[r]]);
+            for (unsigned k = 0; k < 3; ++k) target(static_cast<Eigen::Index>(r), k) += bend[k];
         }
         const Matrix transposed = rows.of_free.transpose();
         solve(transposed * rows.of_free, transposed * target);
@@ -135,10 +132,25 @@ private:
     };
 
     std::span<const Index> around(Index v) const { return neighbors_.of(v); }
-    Vec3 bend_at(Index v) const {
+    /// A held vertex less the mean of those around it where the patch goes on in the mesh's plane: the
+    /// membrane's edges turned into it. They are longer by 1 / cos^2 of half the angle of turning, so that a
+    /// plate over a disc or a gap becomes as high as the arc that leaves at that angle; as short as the
+    /// membrane leaves them across the plane, a dome would be flat.
+    Vec3 bend_of_slope(Index v, const Vec3& normal) const {
+        const Vec3& p = patch_.net.positions[v];
+        const Vec3 away = into_patch(v);
+        const double length = away.norm(), rise = length > 0 ? (away | normal) / length : 0,
+                     stretch = 2 / (1 + std::sqrt(std::max(0.0, 1 - rise * rise)));
         Vec3 sum(0, 0, 0);
-        for (const Index k : around(v)) sum += patch_.net.positions[k];
-        return patch_.net.positions[v] - sum / static_cast<double>(around(v).size());
+        for (const Index k : around(v)) {
+            Vec3 edge = patch_.net.positions[k] - p;
+            if (patch_.held[k] == 0) {
+                const Vec3 along = edge - normal * (normal | edge);
+                if (const double flat = along.norm(); flat > 0) edge = along * (stretch * edge.norm() / flat);
+            }
+            sum -= edge;
+        }
+        return sum / static_cast<double>(around(v).size());
     }
 
     /// Per vertex, do quads lead from it to one that is held? What hangs on nothing completes nothing.

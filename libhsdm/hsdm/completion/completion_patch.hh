@@ -19,7 +19,7 @@ CompletionPatch completion_patch(const CompletionField& field, const PolygonMesh
                                  const BoundaryLoops& border);
 
 /// Moves the vertices that are not held: to a membrane over the border first; then to a thin plate, which
-/// continues the slope of the mesh where the membrane leaves it at less than 40 degrees, and meets it in a
+/// continues the slope of the mesh where the membrane leaves it at less than 58 degrees, and meets it in a
 /// crease elsewhere (after Kobbelt, Campagna, Vorsatz, Seidel, Interactive multi-resolution modeling, 1998).
 void fair(CompletionPatch& patch);
 

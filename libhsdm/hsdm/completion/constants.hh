@@ -30,11 +30,11 @@ inline constexpr double membrane_tolerance = 1e-6;
 /// vertices give it position and slope.
 inline constexpr int rim = 2;
 
-/// sine of 64 degrees: a membrane that leaves the mesh at a greater angle meets it in a crease, else it goes
+/// sine of 58 degrees: a membrane that leaves the mesh at a greater angle meets it in a crease, else it goes
 /// on smoothly. Across a round part a membrane leaves at half the angle that the surface turns by, and at
 /// more where the hole is round, too; across the end of a straight one at 90 degrees, less what noise tilts.
-/// By trial: with 40 and 60 degrees caps of balls are flatter, with 70 noisy ends of straight walls bulge.
-inline constexpr double crease_sine = 0.9;
+/// By trial: with 53 degrees caps of balls are flatter, with 60 to 64 noisy ends of straight walls bulge.
+inline constexpr double crease_sine = 0.85;
 
 /// edges of the patch: so far from the border that angle is measured.
 /// Why: a border of points is ragged by a cell or two, in whose notches the patch goes on along the mesh.
