@@ -18,6 +18,7 @@ int robustness(int argc, char** argv);
 int scans(int argc, char** argv);
 int silences(int argc, char** argv);
 int threads(int argc, char** argv);
+int uneven(int argc, char** argv);
 int walls(int argc, char** argv);
 int yard(int argc, char** argv);
 

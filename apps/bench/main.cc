@@ -25,6 +25,7 @@ constexpr Benchmark benchmarks[] = {
     {"scans", hsdm::bench::scans, "scans from a few places, completed"},
     {"silences", hsdm::bench::silences, "the longest times between two questions whether to go on"},
     {"threads", hsdm::bench::threads, "time of each phase by the number of threads"},
+    {"uneven", hsdm::bench::uneven, "density that differs by place: what comes out right"},
     {"walls", hsdm::bench::walls, "how thin walls and gaps may be"},
     {"yard", hsdm::bench::yard, "what seconds and bytes of different machines are measured by"}};
 

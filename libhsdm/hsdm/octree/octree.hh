@@ -32,6 +32,13 @@ struct OctreeOptions {
     std::optional<Vec3> origin{};
 };
 
+/// In place of the number of a point in the cloud: a point made between sparse ones. (no_index: a completed
+/// one.)
+inline constexpr Index between_points = no_index - 1;
+inline bool is_measured(Index source) {
+    return source < between_points;
+}
+
 /// The cloud in Morton order inside its bounding cube (Fig. 3b). One sort serves every level, 0 to 21: the
 /// voxels of a level are the runs of points whose codes agree in their first 3 * level bits.
 struct Octree {

@@ -22,7 +22,7 @@ public:
             for (std::size_t v = begin; v != end; ++v) {
                 values.clear();
                 for (Index p = level_.first_point[voxel_[v]]; p < level_.first_point[voxel_[v] + 1]; ++p)
-                    if (octree_.source[p] != no_index)
+                    if (is_measured(octree_.source[p]))
                         values.push_back({value_at(octree_.source[p], attribute), 1});
                 property.values[v] = average_of(attribute.type, values);
             }

@@ -37,20 +37,31 @@ struct Cube {
     }
 };
 
+/// Per voxel, what a test says of the sources of its points.
+template <class Test>
+std::vector<std::uint8_t> voxels_where(const CompletedCloud& cloud, Test&& test) {
+    std::vector<std::uint8_t> passed = large_vector<std::uint8_t>(cloud.level.size());
+    const auto source = cloud.octree.source.begin();
+    for_each_index(passed.size(), chunks::usual, [&](Index v) {
+        passed[v] = test(source + cloud.level.first_point[v], source + cloud.level.first_point[v + 1]);
+    });
+    return passed;
+}
+
 } // namespace
 
 std::vector<std::uint8_t> CompletedCloud::completed_voxels() const {
-    std::vector<std::uint8_t> completed = large_vector<std::uint8_t>(level.size());
-    for_each_index(level.size(), chunks::usual, [&](Index v) {
-        completed[v] = std::all_of(octree.source.begin() + level.first_point[v],
-                                   octree.source.begin() + level.first_point[v + 1],
-                                   [](Index source) { return source == no_index; });
+    return voxels_where(*this, [](auto begin, auto end) {
+        return std::all_of(begin, end, [](Index source) { return source == no_index; });
     });
-    return completed;
+}
+
+std::vector<std::uint8_t> CompletedCloud::measured_voxels() const {
+    return voxels_where(*this, [](auto begin, auto end) { return std::any_of(begin, end, is_measured); });
 }
 
 CompletedCloud complete_cloud(const Octree& octree, const OctreeLevel& level, const CompletedPoints& points,
-                              double shift) {
+                              double shift, Index source_of_added) {
     PointCloud cloud = joined_cloud(octree, points);
     Box box;
     for (const Vec3& p : cloud.positions) box.add(p);
@@ -64,7 +75,7 @@ CompletedCloud complete_cloud(const Octree& octree, const OctreeLevel& level, co
     completed.octree.duplicates = octree.duplicates;
     for_each_index(completed.octree.size(), chunks::light, [&](Index i) {
         Index& source = completed.octree.source[i];
-        source = source < octree.size() ? octree.source[source] : no_index;
+        source = source < octree.size() ? octree.source[source] : source_of_added;
     });
     completed.level = extract_level(completed.octree, cube.depth);
     return completed;

@@ -7,18 +7,21 @@
 namespace hsdm {
 
 /// A cloud with the points that complete it: an octree of the same voxels, or more of them, whose planes go
-/// on, and the level of the mesh. Completed points have no `source`.
+/// on, and the level of the mesh. Completed points have no number as `source`.
 struct CompletedCloud {
     Octree octree;
     OctreeLevel level;
 
     /// Per voxel: has it no point but completed ones?
     std::vector<std::uint8_t> completed_voxels() const;
+    /// Per voxel: has it a measured point?
+    std::vector<std::uint8_t> measured_voxels() const;
 };
 
-/// Adds points, relative to the octree's origin, to those of a level. The voxels are moved down by `shift` of
-/// their edge along all axes, [0, 1). O(n), parallel.
+/// Adds points whose `source` is what is given, no_index or between_points; relative to the octree's origin,
+/// to those of a level. The voxels are moved down by `shift` of their edge along all axes, [0, 1). O(n),
+/// parallel.
 CompletedCloud complete_cloud(const Octree& octree, const OctreeLevel& level, const CompletedPoints& points,
-                              double shift = 0);
+                              double shift = 0, Index source = no_index);
 
 } // namespace hsdm

@@ -34,3 +34,42 @@ namespace hsdm::holes {
 HSDM_TUNED double widest_in_spacings = 20;
 
 } // namespace hsdm::holes
+
+// sparse_areas.hh
+namespace hsdm::uneven {
+
+/// points: per voxel that the surface passes; of fewer, voxels are too fine for it.
+/// Why: one voxel in three is empty then by chance; with more, meshes close by themselves, and nearer to the
+/// points.
+inline constexpr double points_per_voxel = 1;
+
+/// points: of the same, on the coarsest level that helps.
+/// Why: by trial; nothing helps that level, so it has more.
+inline constexpr double points_of_coarsest = 2;
+
+/// points: of the same, the least that is told apart.
+/// Why: a quarter: single points that stand alone in their window must not count as a large area.
+inline constexpr double fewest_points = 0.25;
+
+/// levels: above the voxels, whose voxels these are counted in.
+/// Why: a surface passes some 100 voxels of the 512 in one. With 2 slivers of even clouds count, too.
+inline constexpr int window_levels = 3;
+
+/// points: in such a window; with fewer it is not looked at.
+/// Why: outliers stand alone in theirs; a surface of half a point a voxel leaves some 50.
+inline constexpr double fewest_of_window = 8;
+
+/// share: of the surface, that may have fewer points than that.
+/// Why: by trial; the borders of single scans have 2 %.
+inline constexpr double most_sparse = 0.03;
+
+/// levels: coarser than the voxels that are asked for, at most.
+/// Why: each is worth four times the density: 256.
+inline constexpr int most_levels = 4;
+
+/// points: in the 27 voxels round a place, facing alike; with fewer it is sparse.
+/// Why: a plane has some 81 there at three spacings a voxel, 36 at two; these are fewer than the
+/// half that a border leaves of it.
+inline constexpr int points_around = 16;
+
+} // namespace hsdm::uneven

@@ -15,6 +15,7 @@
 #include "hsdm/pipeline/extended_graph.hh"
 #include "hsdm/pipeline/options.hh"
 #include "hsdm/pipeline/phase_geometry.hh"
+#include "hsdm/pipeline/sparse_areas.hh"
 #include "hsdm/pipeline/warnings.hh"
 #include "hsdm/quality/topology.hh"
 
@@ -93,7 +94,7 @@ NormalSets separated_sets(const MethodInput& in, Report& report) {
 
 /// How many are not completed ones.
 std::size_t measured_points(const Octree& octree) {
-    return octree.size() - static_cast<std::size_t>(std::ranges::count(octree.source, no_index));
+    return static_cast<std::size_t>(std::ranges::count_if(octree.source, is_measured));
 }
 
 /// Facets face where the points' normals point. If these point into a closed solid, the whole surface is
@@ -242,12 +243,13 @@ void return_to(const MethodInput& measured, const Draft& draft, std::span<const 
                          std::vector<double>(mesh.vertex_count())};
     if (draft.cloud) {
         const std::vector<std::uint8_t> completed = draft.cloud->completed_voxels();
-        std::vector<std::uint8_t> is_measured(voxel.size());
+        const std::vector<std::uint8_t> measured_voxels = draft.cloud->measured_voxels();
+        std::vector<std::uint8_t> has_measured(voxel.size());
         for (std::size_t v = 0; v < voxel.size(); ++v) {
-            is_measured[v] = completed[voxel[v]] == 0;
+            has_measured[v] = measured_voxels[voxel[v]];
             marks.values[v] = completed[voxel[v]];
         }
-        spread_attributes(mesh, std::move(is_measured));
+        spread_attributes(mesh, std::move(has_measured));
         for (VertexProperty& property : mesh.properties) // the larger cube's level is no one's concern
             if (property.name == "hsdm_level")
                 std::ranges::fill(property.values, static_cast<double>(measured.level.depth));
@@ -259,11 +261,54 @@ void return_to(const MethodInput& measured, const Draft& draft, std::span<const 
     mesh.properties.push_back(std::move(marks));
 }
 
+/// How many coarser levels help out where points are too few for the voxels; none where these were asked for.
+int levels_to_help(const MethodInput& in, const Report& report) {
+    const bool asked_for = in.options.depth || in.options.voxel_size || report.options.contains("levels");
+    return asked_for ? 0 : levels_above_sparse(in.level);
+}
+
+/// The facets of a level with so many coarser ones to help: from the coarsest on, each has points between
+/// sparse ones on the facets of the last.
+Draft helped_draft(const MethodInput& in, const Report& report, int levels) {
+    const SparseAreas areas(in.octree, in.level, levels);
+    Draft draft{{}, report};
+    for (int above = levels; above >= 0; --above) {
+        const MethodInput wide{in.frame, in.cloud, in.octree, areas.level(above), in.options, in.phases};
+        const double done = 0.2 + 0.16 * (levels - above) / (levels + 1);
+        Draft next{{}, report};
+        if (above < levels) {
+            next.report.seconds = draft.report.seconds;
+            next.cloud = in.phases.run("sparse areas", done, next.report.seconds.facets, [&] {
+                PolygonMesh& facets = draft.facets.mesh;
+                const Vec3 moved =
+                    draft.cloud ? draft.cloud->octree.origin - in.octree.origin : Vec3(0, 0, 0);
+                for (Vec3& p : facets.positions) p += moved;
+                const CompletedPoints points = areas.points_between(facets, above);
+                draft.facets = DualContour();
+                return complete_cloud(in.octree, wide.level, points, 0, between_points);
+            });
+        }
+        make_facets(wide, done, options_for(wide, report), next);
+        draft = std::move(next);
+    }
+    return draft;
+}
+
+Draft first_draft(const MethodInput& in, Report& report) {
+    if (const int levels = levels_to_help(in, report); levels > 0) {
+        report.options["resolution"] +=
+            ", and up to " + std::to_string(1 << levels) + " times as wide where the points are sparser";
+        return helped_draft(in, report, levels);
+    }
+    Draft draft{{}, report};
+    make_facets(in, 0.2, options_for(in, report), draft);
+    return draft;
+}
+
 } // namespace
 
 PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledge& known) {
-    Draft draft{{}, report};
-    make_facets(in, 0.2, options_for(in, report), draft);
+    Draft draft = first_draft(in, report);
     const std::size_t measured_sets = draft.sets.sets.size();
     if (in.options.holes == Holes::automatic || in.options.holes == Holes::complete)
         complete(in, report, Missing::slits, 0.38, draft);

@@ -1,0 +1,200 @@
+#include "hsdm/pipeline/sparse_areas.hh"
+
+#include "hsdm/completion/constants.hh"
+#include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
+#include "hsdm/core/groups.hh"
+#include "hsdm/mesh/area_vector.hh"
+#include "hsdm/pipeline/constants.hh"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+VoxelCoord voxel_at(const Vec3& place, double h) {
+    VoxelCoord at;
+    for (unsigned k = 0; k < 3; ++k) at[k] = static_cast<std::int32_t>(std::floor(place[k] / h));
+    return at;
+}
+
+/// Calls visit(voxel) for the occupied ones of the 27 round a place until it returns true; does it?
+template <class Visit>
+bool any_voxel_round(const OctreeLevel& level, const Vec3& place, Visit&& visit) {
+    const VoxelCoord at = voxel_at(place, level.voxel_size);
+    const auto look = [&](const VoxelCoord& c) {
+        const Index voxel = level.find(c);
+        return voxel != no_index && visit(voxel);
+    };
+    return look(at) || std::ranges::any_of(neighbor_offsets, [&](const VoxelCoord& o) {
+               return look({at[0] + o[0], at[1] + o[1], at[2] + o[2]});
+           });
+}
+
+/// The voxels a surface passes, as points in them fall by chance: of c points in k voxels, on the average m
+/// in each that is passed, c / k is m / (1 - exp(-m)). Returns m.
+double mean_points(double points_per_occupied) {
+    double mean = std::max(points_per_occupied - 1, uneven::fewest_points);
+    for (int step = 0; step < 20; ++step) // a contraction from any start
+        mean = std::max(points_per_occupied * (1 - std::exp(-mean)), uneven::fewest_points);
+    return mean;
+}
+
+/// Share of the surface that has fewer points to a level's voxels than `fewest`.
+double sparse_share(const OctreeLevel& level, double fewest) {
+    const OctreeLevel wide = coarser_level(level, level.depth - std::min(level.depth, uneven::window_levels));
+    double sparse = 0, all = 0;
+    Index voxel = 0;
+    for (std::size_t w = 0; w < wide.size(); ++w) {
+        const Index begin = voxel, end_point = wide.first_point[w + 1];
+        while (voxel < level.size() && level.first_point[voxel] < end_point) ++voxel;
+        const auto points = static_cast<double>(end_point - wide.first_point[w]);
+        if (points < uneven::fewest_of_window) continue;
+        const double mean = mean_points(points / static_cast<double>(voxel - begin));
+        all += points / mean;
+        if (mean < fewest) sparse += points / mean;
+    }
+    return all > 0 ? sparse / all : 0;
+}
+
+/// Per corner of the facets, the normal of the surface there on the facet's side of creases.
+std::vector<Vec3> corner_normals(const PolygonMesh& mesh) {
+    std::vector<Vec3> areas = large_vector<Vec3>(mesh.facet_count());
+    std::vector<Index> facet_of = large_vector<Index>(mesh.corners.size());
+    for_each_index(mesh.facet_count(), chunks::usual, [&](Index f) {
+        areas[f] = area_vector(mesh, mesh.facet(f));
+        std::fill(facet_of.begin() + mesh.first[f], facet_of.begin() + mesh.first[f + 1], f);
+    });
+    const Groups corners_at(mesh.corners, mesh.vertex_count());
+    std::vector<Vec3> normals = large_vector<Vec3>(mesh.corners.size());
+    for_each_index(mesh.corners.size(), chunks::usual, [&](Index c) {
+        const Vec3& own = areas[facet_of[c]];
+        Vec3 sum(0, 0, 0);
+        for (const Index other : corners_at.of(mesh.corners[c])) {
+            const Vec3& area = areas[facet_of[other]];
+            if ((area | own) > angles::one_sheet * area.norm() * own.norm()) sum += area;
+        }
+        normals[c] = unit(sum);
+    });
+    return normals;
+}
+
+/// Places all over a facet that is bent as the normals at its corners tell: halfway from where it is flat to
+/// the mean of the corners' planes, which is exact for a quadratic (Phong tessellation: Boubekeur, Alexa
+/// 2008). Calls put(place, normal).
+template <class Put>
+void for_places(const PolygonMesh& mesh, std::size_t f, const std::vector<Vec3>& normals, double voxel_size,
+                Put&& put) {
+    const auto ring = mesh.facet(f);
+    const Vec3* normal = normals.data() + mesh.first[f];
+    const std::size_t size = ring.size();
+    const Vec3 middle = centroid(mesh, ring);
+    std::vector<double> weight(size);
+    const auto place = [&](std::size_t i, double b, double c) {
+        std::fill(weight.begin(), weight.end(), (1 - b - c) / static_cast<double>(size));
+        weight[i] += b, weight[(i + 1) % size] += c;
+        Vec3 flat(0, 0, 0), along(0, 0, 0), lift(0, 0, 0);
+        for (std::size_t k = 0; k < size; ++k) flat += mesh.positions[ring[k]] * weight[k];
+        for (std::size_t k = 0; k < size; ++k) {
+            lift += normal[k] * (weight[k] * ((mesh.positions[ring[k]] - flat) | normal[k]));
+            along += normal[k] * weight[k];
+        }
+        if (along.norm() > 0) put(flat + lift * 0.5, unit(along));
+    };
+    for (std::size_t i = 0; i < size; ++i) {
+        const Vec3 &a = mesh.positions[ring[i]], &b = mesh.positions[ring[(i + 1) % size]];
+        const double twice = ((a - middle) % (b - middle)).norm();
+        const int n =
+            std::max(1, static_cast<int>(std::ceil(std::sqrt(twice) * completing::samples / voxel_size)));
+        for (int j = 0; j < n; ++j)
+            for (int k = 0; j + k < n; ++k) place(i, (j + 1.0 / 3) / n, (k + 1.0 / 3) / n);
+    }
+}
+
+} // namespace
+
+int levels_above_sparse(const OctreeLevel& level) {
+    if (sparse_share(level, uneven::points_per_voxel) <= uneven::most_sparse) return 0;
+    int above = 1;
+    while (above < std::min(uneven::most_levels, level.depth - 1)
+           && sparse_share(coarser_level(level, level.depth - above), uneven::points_of_coarsest)
+                  > uneven::most_sparse)
+        ++above;
+    return above;
+}
+
+SparseAreas::SparseAreas(const Octree& octree, const OctreeLevel& level, int coarser_levels)
+    : octree_(octree), finest_(level), sparse_on_(large_vector<std::uint8_t>(octree.size(), 0)) {
+    coarser_.reserve(static_cast<std::size_t>(coarser_levels));
+    for (int above = 1; above <= coarser_levels; ++above)
+        coarser_.push_back(coarser_level(level, level.depth - above));
+    for (int above = 0; above < coarser_levels; ++above) find_sparse(above);
+    for (int above = 0; above <= coarser_levels; ++above) {
+        const OctreeLevel& at = this->level(above);
+        std::vector<std::uint8_t> most = large_vector<std::uint8_t>(at.size());
+        for_each_index(at.size(), chunks::usual, [&](Index v) {
+            most[v] = *std::max_element(sparse_on_.begin() + at.first_point[v],
+                                        sparse_on_.begin() + at.first_point[v + 1]);
+        });
+        most_sparse_.push_back(std::move(most));
+    }
+}
+
+bool SparseAreas::is_full(const Vec3& place, const Vec3& normal, int above) const {
+    const OctreeLevel& at = level(above);
+    int count = 0;
+    return any_voxel_round(at, place, [&](Index voxel) {
+        for (Index p = at.first_point[voxel]; p < at.first_point[voxel + 1]; ++p)
+            if ((octree_.normals[p] | normal) > angles::facing && ++count >= uneven::points_around)
+                return true;
+        return false;
+    });
+}
+
+void SparseAreas::find_sparse(int above) {
+    for_each_index(octree_.size(), chunks::slow, [&](Index p) {
+        if (sparse_on_[p] == above && !is_full(octree_.positions[p], octree_.normals[p], above))
+            ++sparse_on_[p];
+    });
+}
+
+bool SparseAreas::is_among_sparse(const Vec3& place, const Vec3& normal, int above) const {
+    for (int wide = above + 1; wide <= static_cast<int>(coarser_.size()); ++wide) {
+        const OctreeLevel& at = level(wide);
+        const bool found = any_voxel_round(at, place, [&](Index voxel) {
+            if (most_sparse_[static_cast<std::size_t>(wide)][voxel] < wide) return false;
+            for (Index p = at.first_point[voxel]; p < at.first_point[voxel + 1]; ++p)
+                if (sparse_on_[p] >= wide && (octree_.normals[p] | normal) > angles::facing) return true;
+            return false;
+        });
+        if (found) return true;
+    }
+    return false;
+}
+
+CompletedPoints SparseAreas::points_between(const PolygonMesh& facets, int above) const {
+    const std::vector<Vec3> normals = corner_normals(facets);
+    const double h = level(above).voxel_size;
+    std::vector<CompletedPoints> parts(chunk_count(facets.facet_count(), chunks::heavy));
+    for_chunks(facets.facet_count(), chunks::heavy,
+               [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+                   CompletedPoints& part = parts[chunk];
+                   for (std::size_t f = begin; f < end; ++f)
+                       for_places(facets, f, normals, h, [&](const Vec3& place, const Vec3& normal) {
+                           if (is_full(place, normal, above) || !is_among_sparse(place, normal, above))
+                               return;
+                           part.positions.push_back(place);
+                           part.normals.push_back(normal);
+                       });
+               });
+    CompletedPoints points;
+    for (const CompletedPoints& part : parts) {
+        points.positions.insert(points.positions.end(), part.positions.begin(), part.positions.end());
+        points.normals.insert(points.normals.end(), part.normals.begin(), part.normals.end());
+    }
+    return points;
+}
+
+} // namespace hsdm

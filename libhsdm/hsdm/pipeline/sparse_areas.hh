@@ -1,0 +1,42 @@
+#pragma once
+// Where a cloud has too few points for the voxels of a level, and points between them on coarser facets.
+
+#include "hsdm/completion/complete_surface.hh"
+#include "hsdm/octree/octree.hh"
+
+namespace hsdm {
+
+/// How many levels coarser than this one voxels are such that hardly any of the surface is too sparsely
+/// sampled for them; 0 where that holds for this level, at most uneven::most_levels. O(voxels), parallel.
+int levels_above_sparse(const OctreeLevel& level);
+
+/// The measured points of a cloud that has normals, on a level and some coarser ones.
+class SparseAreas {
+public:
+    /// Of a level and so many coarser ones. Octree and level must outlive it. O(n levels), parallel.
+    SparseAreas(const Octree& octree, const OctreeLevel& level, int coarser_levels);
+
+    /// The level so many above the finest.
+    const OctreeLevel& level(int above) const {
+        return above == 0 ? finest_ : coarser_[static_cast<std::size_t>(above) - 1];
+    }
+
+    /// Points on a mesh of facets of a coarser level, relative to the octree's origin, where measured points
+    /// are too few for the voxels of the level `above` the finest, but not missing: within a ball about one
+    /// that holds few others. As dense as completed ones, on the facets bent as the normals at their corners
+    /// tell. O(facets + points).
+    CompletedPoints points_between(const PolygonMesh& facets, int above) const;
+
+private:
+    bool is_full(const Vec3& place, const Vec3& normal, int above) const;
+    bool is_among_sparse(const Vec3& place, const Vec3& normal, int above) const;
+    void find_sparse(int above);
+
+    const Octree& octree_;
+    const OctreeLevel& finest_;
+    std::vector<OctreeLevel> coarser_;
+    std::vector<std::uint8_t> sparse_on_;                ///< per point, how many levels are too fine for it
+    std::vector<std::vector<std::uint8_t>> most_sparse_; ///< per level and voxel, the most of its points
+};
+
+} // namespace hsdm
