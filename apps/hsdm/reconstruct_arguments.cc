@@ -50,8 +50,21 @@ std::string joined_formats() {
     return joined({point_formats().begin(), point_formats().end()}, "|");
 }
 
-void refuse(bool given, const std::string& what) {
-    if (given) throw UsageError(what + " is not available yet");
+/// "4G", "500MB", "2000000000": bytes, K, M, G and T being powers of 1000. Nothing if it is none.
+std::optional<std::size_t> bytes_of(std::string text) {
+    double factor = 1;
+    if (text.ends_with('B') || text.ends_with('b')) text.pop_back();
+    constexpr std::string_view prefixes = "KMGT";
+    if (!text.empty())
+        if (const auto k = prefixes.find(static_cast<char>(std::toupper(text.back()))); k != prefixes.npos) {
+            factor = std::pow(1000.0, static_cast<double>(k + 1));
+            text.pop_back();
+        }
+    double value = 0;
+    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (fault != std::errc() || end != text.data() + text.size() || !(value > 0) || value * factor > 1e18)
+        return std::nullopt;
+    return static_cast<std::size_t>(value * factor);
 }
 
 /// A number, or a percentage as a share.
@@ -196,8 +209,15 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
     app.add_flag("--strict", a.strict,
                  "a warning is a failure: status 1, though files are written; counts intersections")
         ->group(method);
-    app.add_option("--memory", a.memory, "not available yet: upper bound on memory")
+    app.add_option(
+           "--memory", a.memory,
+           "bytes (or 500M, 4G) of memory that are used at most: points lie sorted on disk and are worked "
+           "through in tiles, with the same result; with --depth and given normals (default: no bound)")
         ->type_name("SIZE")
+        ->group(method);
+    app.add_option("--scratch", a.scratch,
+                   "the folder for these points, 48 bytes each (default: TMPDIR, or /tmp)")
+        ->type_name("DIR")
         ->group(method);
 }
 
@@ -313,7 +333,6 @@ void add_file_options(CLI::App& app, ReconstructArguments& a) {
 }
 
 ReconstructOptions ReconstructArguments::options() const {
-    refuse(!memory.empty(), "--memory");
     if (normals == NormalSource::estimate && method == Method::basic)
         throw UsageError("--normals estimate: the basic method uses no normals; use --method extended");
     if (!max_error.empty() && grid == Grid::uniform)
@@ -336,6 +355,24 @@ ReconstructOptions ReconstructArguments::options() const {
     o.threads = threads;
     o.debug_dir = debug_dir;
     return o;
+}
+
+std::optional<TileOptions> ReconstructArguments::tiles() const {
+    if (memory.empty()) {
+        if (!scratch.empty())
+            throw UsageError("--scratch " + scratch + ": is used with --memory alone; give that");
+        return std::nullopt;
+    }
+    const std::optional<std::size_t> bytes = bytes_of(memory);
+    if (!bytes) throw UsageError("--memory " + memory + ": must be a number of bytes, or as 500M or 4G");
+    for (const auto& [given, option] :
+         {std::pair(!levels.empty(), "--levels"), {!stages.empty(), "--stage"}, {!html.empty(), "--html"}})
+        if (given) throw UsageError(std::string("--memory cannot come with ") + option + " yet");
+    TileOptions tiles;
+    tiles.memory = *bytes;
+    tiles.scratch = scratch;
+    check_options(options(), tiles);
+    return tiles;
 }
 
 std::optional<std::pair<int, int>> ReconstructArguments::level_range() const {
@@ -364,6 +401,8 @@ CaseOptions case_options(const std::string& name, const std::vector<std::string>
         throw Error(name, "args: " + fault_of(app, error));
     }
     if (!arguments.levels.empty()) throw Error(name, "args: --levels makes several meshes; give one --depth");
+    if (!arguments.memory.empty() || !arguments.scratch.empty())
+        throw Error(name, "args: --memory and --scratch are for hsdm reconstruct; leave them out");
     try {
         return {arguments.options(), arguments.read,  arguments.stages,
                 arguments.strict,    arguments.ascii, arguments.plain};

@@ -6,6 +6,7 @@
 
 #include "hsdm/io/read_points.hh"
 #include "hsdm/io/write_mesh.hh"
+#include "hsdm/pipeline/reconstruct_in_tiles.hh"
 #include "hsdm/reconstruct.hh"
 
 #include <optional>
@@ -33,7 +34,7 @@ struct ReconstructArguments {
     int smoothing = 3;
     std::vector<std::string> stages;
     bool strict = false;
-    std::string memory;
+    std::string memory, scratch;
     int threads = 0;
     std::string debug_dir;
 
@@ -46,8 +47,11 @@ struct ReconstructArguments {
     bool quiet = false, verbose = false;
     Progress progress = Progress::automatic;
 
-    /// Options of the library; set after parsing. Throws UsageError for options that are not there yet.
+    /// Options of the library; set after parsing. Throws UsageError for options that do not fit each other.
     ReconstructOptions options() const;
+    /// What bounds the memory, if something is to: --memory and --scratch. Throws UsageError, for options too
+    /// that do not go with it.
+    std::optional<TileOptions> tiles() const;
     /// First and last depth of --levels A:B; nothing if it was not given. Throws UsageError.
     std::optional<std::pair<int, int>> level_range() const;
 };

@@ -13,6 +13,7 @@
 #include "hsdm/errors.hh"
 #include "hsdm/io/json_text.hh"
 #include "hsdm/io/output_target.hh"
+#include "hsdm/io/points_in_parts.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/pipeline/measure.hh"
 
@@ -48,6 +49,7 @@ auto named(const std::string& name, const Make& make) {
     try {
         return make();
     } catch (const Error& error) {
+        if (std::string_view(error.what()).starts_with(name + ":")) throw; // of reading: it has the name
         throw Error(name, error.what());
     } catch (const OptionError& error) {
         throw OptionError(words_of(error) + " (" + name + ")");
@@ -60,6 +62,7 @@ public:
         : arguments_(arguments),
           levels_(arguments.level_range()),
           stages_(parse_stages(arguments.stages)),
+          tiles_(arguments.tiles()),
           options_(checked_options(arguments, levels_)),
           plan_(arguments, levels_, stages_),
           text_(plan_.uses_standard_output() ? std::cerr : std::cout) {
@@ -150,17 +153,14 @@ private:
         const auto start = Clock::now();
         ProgressBar bar(arguments_.progress, name);
         bar.show("read", 0);
+        if (tiles_) return make_in_tiles(input, name, bar);
         PointFile file = read_points(input, arguments_.read);
         const double read_seconds = seconds_since(start);
         PointCloud scan = scan_for_stages(stages_, file.cloud, options_.measure);
         if (!arguments_.html.empty() && scan.positions.empty()) scan.positions = file.cloud.positions;
         ReconstructOptions options = options_;
         options.debug_dir = plan_.debug_dir(input);
-        options.progress = [&bar](const char* phase, double share) {
-            set_phase(phase);
-            bar.show(phase, 0.1 + 0.85 * share);
-            return true;
-        };
+        options.progress = shown_on(bar);
         const auto write_all = [&](std::span<Reconstruction> results) {
             bar.show(stages_.empty() ? "write" : "stages", 0.97);
             std::vector<Report> made;
@@ -182,6 +182,50 @@ private:
         }
         Reconstruction result = named(name, [&] { return reconstruct(std::move(file), options); });
         return write_all({&result, 1});
+    }
+
+    static std::function<bool(const char*, double)> shown_on(ProgressBar& bar) {
+        return [&bar](const char* phase, double share) {
+            set_phase(phase);
+            bar.show(phase, 0.1 + 0.85 * share);
+            return true;
+        };
+    }
+
+    /// The same in bounded memory. Reading is part of the other phases.
+    std::vector<Report> make_in_tiles(const std::string& input, const std::string& name, ProgressBar& bar) {
+        const auto start = Clock::now();
+        const PointsInParts points(input, arguments_.read);
+        const double read_seconds = seconds_since(start);
+        ReconstructOptions options = options_;
+        options.progress = shown_on(bar);
+        TileOptions tiles = *tiles_;
+        const std::size_t held = points.in_memory() ? bytes_of_cloud(points.file().cloud) : 0;
+        if (held >= tiles.memory)
+            throw Error(name, "its points take " + std::to_string(held / 1000000)
+                                  + " MB once they are read; of binary PLY files they need not be in memory");
+        tiles.memory -= held;
+        const PointParts parts = [&](const auto& visit) {
+            points.visit([&](const PointCloud& part) { visit(view_of(part)); });
+        };
+        TileReport how;
+        Reconstruction result =
+            named(name, [&] { return reconstruct_in_tiles(parts, options, tiles, &how); });
+        note_reading(points.file(), result.report);
+        result.report.options["memory"] = arguments_.memory;
+        result.report.options["tiles"] = std::to_string(how.tiles);
+        result.report.input.file = input;
+        result.report.seconds.read = read_seconds;
+        bar.show("write", 0.97);
+        write_one(name, {}, result);
+        result.report.seconds.total = seconds_since(start);
+        std::vector<Report> made;
+        made.push_back(std::move(result.report));
+        return made;
+    }
+
+    static std::size_t bytes_of_cloud(const PointCloud& cloud) {
+        return cloud.positions.size() * sizeof(Vec3) + cloud.normals.size() * sizeof(Vec3);
     }
 
     MeshTarget target(const Report& report) const {
@@ -289,6 +333,7 @@ private:
     const ReconstructArguments& arguments_;
     std::optional<std::pair<int, int>> levels_;
     std::vector<StageCall> stages_;
+    std::optional<TileOptions> tiles_;
     ReconstructOptions options_;
     OutputPlan plan_;
     std::ostream& text_;

@@ -324,6 +324,8 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     result.trimmed = dual.crossings.trimmed;
     result.tips = dual.crossings.tips;
     result.clamped = vertices.clamped;
+    result.misfit_placed = vertices.misfit_placed;
+    result.misfit_moved = vertices.misfit_moved;
     return to_corners;
 }
 
@@ -344,7 +346,10 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
         return count;
     };
     const auto cut = [&] {
-        result.handles_cut += cut_handles(octree, level, sets, result.voxel, result.mesh, result.links);
+        bool gave_up = false;
+        result.handles_cut +=
+            cut_handles(octree, level, sets, result.voxel, result.mesh, result.links, &gave_up);
+        result.depends_on_all |= gave_up;
     };
     cut();
     if (options.fill) {
@@ -372,6 +377,7 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     result.cells.emplace(result.mesh, h);
     result.intersections = untangle(result.mesh, untangle_options, &*result.cells);
     if (result.intersections.after > 0) {
+        result.depends_on_all = true;
         const UntangleCounts merged = mend_tangles(result.mesh, untangle_options.nearby);
         result.intersections.moved += merged.moved;
         result.intersections.after = merged.after;

@@ -46,6 +46,10 @@ struct DualContour {
     std::optional<FacetCells> cells; ///< the mesh's facets by voxel; empty if untangling moved vertices
     std::optional<FacetLinks> links; ///< the mesh's; empty if facets changed after they were found
     ManifoldCounts manifold;         ///< what make_manifold still had to mend at the end
+    /// What was done is perhaps not the same for part of a level as for the whole: much was spent on handles,
+    /// or intersections were left that all count when it is judged whether there are fewer.
+    bool depends_on_all = false;
+    double misfit_placed = 0, misfit_moved = 0; ///< with RelaxOptions::part_of_whole: see there
 };
 
 /// Facets from the normal sets of one level (docs/sheets.md): an oriented 2-manifold, possibly with a border.

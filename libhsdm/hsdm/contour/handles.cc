@@ -417,13 +417,15 @@ private:
 } // namespace
 
 std::size_t cut_handles(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
-                        std::span<const Index> voxel, PolygonMesh& mesh, std::optional<FacetLinks>& links) {
+                        std::span<const Index> voxel, PolygonMesh& mesh, std::optional<FacetLinks>& links,
+                        bool* gave_up) {
     std::size_t cut = 0, work = 0;
     for (int round = 0; round < enough_rounds; ++round) {
         const std::size_t rings = Round(octree, level, sets, voxel, work, mesh, links).cut();
         cut += rings;
         if (rings == 0) break;
     }
+    if (gave_up) *gave_up = 2 * work > handles::most_work * mesh.facet_count();
     return cut;
 }
 

@@ -15,9 +15,11 @@ namespace hsdm {
 /// that, and a tunnel filled. Each cut raises the Euler characteristic by two, so it comes to an end. A
 /// 2-manifold remains one; vertices are copied with their origins, `voxel` is per origin. Returns how many
 /// rings were cut. O(facets): rings are looked for near facets that no set of their vertices' voxels agrees
-/// with, and no more once that has taken so much work. Serial but for the first look at all facets. `links`
+/// with, and no more once that has taken so much work; `gave_up`, unless it is null, becomes true if half of
+/// that was done. Serial but for the first look at all facets. `links`
 /// are the mesh's if they are known; they are found if needed, and none are left once the mesh has changed.
 std::size_t cut_handles(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
-                        std::span<const Index> voxel, PolygonMesh& mesh, std::optional<FacetLinks>& links);
+                        std::span<const Index> voxel, PolygonMesh& mesh, std::optional<FacetLinks>& links,
+                        bool* gave_up = nullptr);
 
 } // namespace hsdm

@@ -7,17 +7,6 @@
 namespace hsdm {
 namespace {
 
-/// Points in a set, the mean over points rather than sets, so that full voxels count more than clipped ones.
-double typical_count(const NormalSets& sets) {
-    double points = 0, squares = 0; // integers: in any order the same
-    for (const NormalSet& set : sets.sets) {
-        const double count = set.count;
-        points += count;
-        squares += count * count;
-    }
-    return points > 0 ? squares / points : 0;
-}
-
 /// Is set s an outlier? `group` is scratch.
 bool reaches_few(const OctreeLevel& level, const RelationTest& related, const NormalSets& sets, double most,
                  std::size_t most_sets, Index s, std::vector<Index>& group) {
@@ -64,9 +53,21 @@ void remove(const std::vector<std::uint8_t>& is_outlier, NormalSets& sets) {
 
 } // namespace
 
+SetSizes sizes_of(const NormalSets& sets) {
+    SetSizes sizes;
+    for (const NormalSet& set : sets.sets) {
+        const double count = set.count;
+        sizes.points += count;
+        sizes.squares += count * count;
+    }
+    return sizes;
+}
+
 Occurrences drop_outlier_sets(const OctreeLevel& level, const RelationTest& related, NormalSets& sets,
                               const OutlierSetOptions& options) {
-    const double most = std::max(1.0, options.most_share * typical_count(sets));
+    const SetSizes sizes = options.typical > 0 ? SetSizes{1, options.typical} : sizes_of(sets);
+    const double typical = sizes.points > 0 ? sizes.squares / sizes.points : 0;
+    const double most = std::max(1.0, options.most_share * typical);
     std::vector<std::uint8_t> is_outlier(sets.sets.size(), 0);
     for_chunks(sets.sets.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
         std::vector<Index> group;

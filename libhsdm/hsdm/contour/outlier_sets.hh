@@ -13,7 +13,16 @@ struct OutlierSetOptions {
     /// At most so many outlier sets are connected by smooth relations from voxel to voxel; more are a
     /// surface.
     std::size_t most_sets = stray_sets::most_sets;
+    /// Points in a set, the mean over points, of the whole cloud that these sets are a part of; 0: of these.
+    double typical = 0;
 };
+
+/// Points in a set, the mean over points rather than sets, so that full voxels count more than clipped ones:
+/// `squares` over `points`, which of parts of a cloud can be added up.
+struct SetSizes {
+    double points = 0, squares = 0; ///< whole numbers: in any order the same
+};
+SetSizes sizes_of(const NormalSets& sets);
 
 /// Removes the outlier sets; their points belong to no set afterwards. A set of few points is an outlier if
 /// smooth relations to sets of the 26 voxels around, and on from there, reach neither a set of more points

@@ -16,6 +16,7 @@ struct PlacedVertices {
     std::vector<std::uint8_t>
         is_clamped;          ///< per dual vertex: was it kept in its voxel although its planes meet outside?
     std::size_t clamped = 0; ///< how many are
+    double misfit_placed = 0, misfit_moved = 0; ///< see relax_vertices(), of part of a whole
     /// A corner of three sheets that lies in the next voxel; the vertex itself was kept in its own.
     struct Beyond {
         Index dual;

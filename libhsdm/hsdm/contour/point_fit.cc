@@ -55,6 +55,16 @@ Foot find_foot(const Vec3& p, const std::vector<Around>& around, const std::vect
     return best;
 }
 
+/// Where blocks of 16 x 16 x 16 voxels begin, and the number of voxels.
+std::vector<Index> blocks_of(const OctreeLevel& level) {
+    constexpr int per_block = 3 * 4; // bits of a code
+    std::vector<Index> first = indices_where(level.size(), chunks::light, [&](Index v) {
+        return v == 0 || level.codes[v] >> per_block != level.codes[v - 1] >> per_block;
+    });
+    first.push_back(static_cast<Index>(level.size()));
+    return first;
+}
+
 } // namespace
 
 double PointFit::Heights::variance() const {
@@ -90,9 +100,12 @@ void PointFit::gather_beside(Index voxel, std::vector<Index>& duals) const {
 
 PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
     Measure result{large_vector<double>(level_.size(), 0), large_vector<Heights>(duals_.size())};
-    // Contributions to vertices in other chunks' voxels are added afterwards, in the order of the chunks.
-    std::vector<std::vector<Foreign>> foreign(chunk_count(level_.size(), 2 * chunks::heavy));
-    for_chunks(level_.size(), 2 * chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+    // Contributions to vertices in other blocks' voxels are added afterwards, in the order of the blocks:
+    // places in space, so that sums come out the same where only part of the level is known.
+    const std::vector<Index> blocks = blocks_of(level_);
+    std::vector<std::vector<Foreign>> foreign(blocks.size() - 1);
+    for_each_task(foreign.size(), [&](std::size_t chunk) {
+        const std::size_t begin = blocks[chunk], end = blocks[chunk + 1];
         std::vector<Index> beside;
         std::vector<Around> around;
         for (std::size_t x = begin; x < end; ++x) {

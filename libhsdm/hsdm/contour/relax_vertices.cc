@@ -29,9 +29,12 @@ Vec3 within_voxel(const DualMesh& mesh, Index dual, const Vec3& from, const Vec3
     return from + way * std::max(share, 0.0);
 }
 
-double sum_of(const std::vector<double>& all) {
+/// Of all, or of the marked ones.
+double sum_of(const std::vector<double>& all, std::span<const std::uint8_t> marked) {
     double sum = 0;
-    for_each_in_order(all.size(), [&](std::size_t i) { sum += all[i]; });
+    for_each_in_order(all.size(), [&](std::size_t i) {
+        if (marked.empty() || marked[i]) sum += all[i];
+    });
     return sum;
 }
 
@@ -58,11 +61,14 @@ public:
     /// Moves smooth vertices up or down until the facets, not the vertices alone, lie amid the points. Where
     /// a voxel's points are then farther off than from the facets as placed, its vertices go back to where
     /// they were placed; all do if the sum over all points grew.
-    void fit(const PointFit& fit) {
+    void fit(const PointFit& fit, std::span<const std::uint8_t> part) {
         const PointFit::Measure before = fit.measure(placed_);
         rise(fit.rises(before.heights));
         const PointFit::Measure after = fit.measure(vertices_.positions);
-        if (sum_of(after.misfit) > sum_of(before.misfit)) {
+        const double placed = sum_of(before.misfit, part), moved = sum_of(after.misfit, part);
+        if (!part.empty()) {
+            vertices_.misfit_placed = placed, vertices_.misfit_moved = moved;
+        } else if (moved > placed) {
             vertices_.positions = copy_of_large(placed_);
             return;
         }
@@ -227,7 +233,7 @@ void relax_vertices(const Octree& octree, const OctreeLevel& level, const DualMe
     if (options.rounds == 0 && !options.fit) return;
     Relaxation relaxation(mesh, vertices);
     for (int round = 0; round < options.rounds; ++round) relaxation.round(options.step);
-    if (options.fit) relaxation.fit(PointFit(octree, level, mesh.duals, vertices));
+    if (options.fit) relaxation.fit(PointFit(octree, level, mesh.duals, vertices), options.part_of_whole);
 }
 
 } // namespace hsdm

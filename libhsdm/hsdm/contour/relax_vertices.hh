@@ -11,6 +11,9 @@ struct RelaxOptions {
     /// (0, 1]: share of the way to the mean of the neighbours in a round
     double step = relaxation::step;
     bool fit = true; ///< after that, move the sheet towards the points
+    /// Marks the voxels that are added up to judge the fit of a whole of which this is part, or empty: then
+    /// it is judged here. Per voxel.
+    std::span<const std::uint8_t> part_of_whole{};
 };
 
 /// Moves smooth vertices within their sheet towards the mean of their neighbours and vertices of a crease
@@ -19,8 +22,9 @@ struct RelaxOptions {
 /// mean height of the vertices around as they were placed. Then smooth vertices rise or sink, twice, until
 /// the facets, not the vertices alone, lie amid the points (PointFit::rises). Where after the first of the
 /// two steps a voxel's points are a tenth farther from the facets than as placed, its vertices go back; all
-/// do if the sum over all points grew. O(rounds * crossings), parallel; the same for any number of threads.
-/// Throws OptionError.
+/// do if the sum over all points grew. Of a part of a whole none do for that; the sums of its voxels are left
+/// in `vertices` (misfit_placed, misfit_moved). O(rounds * crossings), parallel; the same for any number of
+/// threads. Throws OptionError.
 void relax_vertices(const Octree& octree, const OctreeLevel& level, const DualMesh& mesh,
                     const RelaxOptions& options, PlacedVertices& vertices);
 

@@ -203,9 +203,9 @@ private:
 
 } // namespace
 
-SheetFeatures sheet_features(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
-                             const PolygonMesh& mesh, const FacetLinks& links, std::span<const Index> voxel,
-                             double crease_angle, bool turned) {
+SheetFeatures judge_edges(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
+                          const PolygonMesh& mesh, const FacetLinks& links, std::span<const Index> voxel,
+                          double crease_angle, bool turned, std::span<const std::uint8_t> counted) {
     SheetFeatures result;
     auto& sides = result.hints.sides;
     assign_large(sides, mesh.corners.size(), EdgeHint::none);
@@ -213,27 +213,39 @@ SheetFeatures sheet_features(const Octree& octree, const OctreeLevel& level, con
     std::vector<Tally> tallies(chunk_count(sides.size(), 4 * chunks::slow));
     for_chunks(sides.size(), 4 * chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         EdgeJudge judge(octree, level, facets, crease_angle);
+        Tally others;
         for (std::size_t c = begin; c < end; ++c) {
-            const Index twin = links.twin[c];
+            const Index twin = links.twin[c], facet = links.facet[c];
             if (twin == no_index || twin < c) continue;
+            const bool counts = counted.empty() || counted[facet] != 0;
             sides[c] = sides[twin] =
-                judge.judge(links.facet[c], links.facet[twin], mesh.positions[mesh.corners[c]],
-                            mesh.positions[mesh.corners[twin]], tallies[chunk]);
+                judge.judge(facet, links.facet[twin], mesh.positions[mesh.corners[c]],
+                            mesh.positions[mesh.corners[twin]], counts ? tallies[chunk] : others);
         }
     });
-    std::size_t middle = 0, tilted = 0;
     for (const Tally& t : tallies) {
         result.sharp += t.sharp;
         result.smooth += t.smooth;
-        middle += t.middle;
-        tilted += t.tilted;
+        result.middle += t.middle;
+        result.tilted += t.tilted;
     }
-    if (static_cast<double>(tilted)
-        > edge_hints::most_tilted
-              * static_cast<double>(middle)) { // smeared or noisy normals may be all that bends
-        std::replace(sides.begin(), sides.end(), EdgeHint::smooth, EdgeHint::none);
-        result.doubtful = std::exchange(result.smooth, 0);
-    }
+    return result;
+}
+
+void judge_normals(SheetFeatures& features) {
+    if (static_cast<double>(features.tilted)
+        <= edge_hints::most_tilted * static_cast<double>(features.middle))
+        return;
+    auto& sides = features.hints.sides;
+    std::replace(sides.begin(), sides.end(), EdgeHint::smooth, EdgeHint::none);
+    features.doubtful = std::exchange(features.smooth, 0);
+}
+
+SheetFeatures sheet_features(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
+                             const PolygonMesh& mesh, const FacetLinks& links, std::span<const Index> voxel,
+                             double crease_angle, bool turned) {
+    SheetFeatures result = judge_edges(octree, level, sets, mesh, links, voxel, crease_angle, turned);
+    judge_normals(result);
     return result;
 }
 

@@ -14,7 +14,19 @@ struct SheetFeatures {
     std::size_t sharp = 0;    ///< edges between two sheets that meet at an angle
     std::size_t smooth = 0;   ///< edges that fold the mesh where the surface bends smoothly
     std::size_t doubtful = 0; ///< would be smooth, but the cloud's normals contradict its positions
+    /// Points of bends with normals in between, and those of them whose normals contradict positions nearby.
+    std::size_t middle = 0, tilted = 0;
 };
+
+/// Hints as sheet_features() gives them before judge_normals(). Of part of a mesh, whose counts are added up
+/// with others' first: edges count whose first facet is marked in `counted`, or all if that is empty.
+SheetFeatures judge_edges(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
+                          const PolygonMesh& mesh, const FacetLinks& links, std::span<const Index> voxel,
+                          double crease_angle, bool turned, std::span<const std::uint8_t> counted = {});
+
+/// Takes smooth hints back where too many normals contradict the positions: smeared or noisy ones may be all
+/// that bends.
+void judge_normals(SheetFeatures& features);
 
 /// Judges those edges of a 2-manifold that fold it by at least 0.7 of `crease_angle` (radians), by the points
 /// around them: at a crease their normals are those of the two sheets, on a bend also directions in between.

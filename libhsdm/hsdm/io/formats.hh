@@ -4,6 +4,8 @@
 #include "hsdm/io/read_points.hh"
 #include "hsdm/io/text.hh"
 
+#include <functional>
+
 namespace hsdm::io {
 
 /// What the file's name or the caller says of a table: decides only what its values leave open.
@@ -12,6 +14,10 @@ enum class TableKind { plain, pts, pwn, xyzrgb };
 /// XYZ, XYZN, XYZRGB, TXT, ASC, CSV, PTS, PWN: rows of numbers, with or without a header, a count, comments.
 PointFile read_table(const SourceBytes& bytes, TableKind kind, const std::string& columns);
 PointFile read_ply(const SourceBytes& bytes);
+/// Calls visit() with the vertices of a binary file whose vertices are of one size, so many at once; false,
+/// and nothing done, for other files.
+bool read_ply_in_parts(const SourceBytes& bytes, std::size_t points,
+                       const std::function<void(const PointCloud&)>& visit);
 /// The points of a PCD file, as text, binary or compressed; those whose coordinates are not finite, pixels
 /// without a measurement, are left out. The sensor is the viewpoint, if that is not zero.
 PointFile read_pcd(const SourceBytes& bytes);

@@ -40,19 +40,51 @@ std::optional<double> color_factor_by_type(const PlyElement& vertex, const std::
     return 1;
 }
 
-PointFile read_ply(const SourceBytes& bytes) {
+namespace {
+
+/// A file's header, as far as its vertices go.
+struct PlyVertices {
+    Text text; // the header's
+    PlyHeader header;
+    std::size_t vertex = 0; // among the elements
+
+    const PlyElement& element() const { return header.elements[vertex]; }
+};
+
+PlyVertices find_vertices(const SourceBytes& bytes) {
     const bool head_suffices = bytes.head().find("end_header") != std::string_view::npos;
     const Text text = with_line_end_of_header(head_suffices ? Text::head_of(bytes) : Text(bytes));
-    const PlyHeader header = read_ply_header(text);
-    std::size_t vertex = 0;
-    while (vertex < header.elements.size() && header.elements[vertex].name != "vertex") ++vertex;
-    if (vertex == header.elements.size())
+    PlyVertices found{text, read_ply_header(text)};
+    const std::vector<PlyElement>& elements = found.header.elements;
+    while (found.vertex < elements.size() && elements[found.vertex].name != "vertex") ++found.vertex;
+    if (found.vertex == elements.size())
         throw Error(bytes.name(), "the header names no element vertex; a point cloud is needed");
-    const PlyElement& element = header.elements[vertex];
+    const PlyElement& element = found.element();
     if (element.count == 0) throw Error(bytes.name(), "holds no points: the header says element vertex 0");
     if (element.count >= no_index && element.count / 3 <= bytes.size())
         throw Error(bytes.name(), "holds more points than can be numbered; split the file");
+    return found;
+}
 
+} // namespace
+
+bool read_ply_in_parts(const SourceBytes& bytes, std::size_t points,
+                       const std::function<void(const PointCloud&)>& visit) {
+    if (!bytes.head().starts_with("ply")) return false;
+    const PlyVertices found = find_vertices(bytes);
+    if (found.header.encoding == PlyEncoding::ascii || found.element().has_list()) return false;
+    const auto columns = columns_of(found.text, found.element());
+    for (std::size_t first = 0; first < found.element().count; first += points)
+        visit(read_ply_binary(bytes, found.header, found.vertex, columns, {first, points}));
+    return true;
+}
+
+PointFile read_ply(const SourceBytes& bytes) {
+    const PlyVertices found = find_vertices(bytes);
+    const Text& text = found.text;
+    const PlyHeader& header = found.header;
+    const std::size_t vertex = found.vertex;
+    const PlyElement& element = found.element();
     const auto columns = columns_of(text, element);
     PointFile file;
     file.format = "ply";

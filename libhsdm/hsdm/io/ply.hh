@@ -5,6 +5,7 @@
 #include "hsdm/io/ply_header.hh"
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -15,8 +16,13 @@ namespace hsdm::io {
 /// Error.
 PointCloud read_ply_ascii(const Text& text, const PlyHeader& header, std::size_t vertex,
                           const std::vector<Column>& columns);
+/// Some of a file's vertices; all where nothing is said.
+struct PlyRows {
+    std::size_t first = 0, count = std::numeric_limits<std::size_t>::max();
+};
+/// Of vertices that hold lists, all are read.
 PointCloud read_ply_binary(const SourceBytes& bytes, const PlyHeader& header, std::size_t vertex,
-                           const std::vector<Column>& columns);
+                           const std::vector<Column>& columns, const PlyRows& rows = {});
 
 /// An element `camera` of which the position is known: where it stands among the header's elements, and the
 /// properties view_px, view_py, view_pz among its own.

@@ -114,14 +114,16 @@ double largest(std::span<const double> values) {
 
 /// Vertices of one size.
 PointCloud read_fixed(const SourceBytes& bytes, const PlyHeader& header, std::size_t offset,
-                      const PlyElement& element, const std::vector<Column>& columns) {
+                      const PlyElement& element, const std::vector<Column>& columns, const PlyRows& rows) {
+    const std::size_t all = static_cast<std::size_t>(element.count), first = std::min(all, rows.first);
+    offset += first * element.least_size();
     std::vector<BinaryColumn> values;
     for (const PlyProperty& property : element.properties) {
         values.push_back({&bytes, offset, element.least_size(), property.type,
                           header.encoding == PlyEncoding::big_endian});
         offset += size_of(property.type);
     }
-    return read_columns(values, columns, static_cast<std::size_t>(element.count),
+    return read_columns(values, columns, std::min(all - first, rows.count),
                         color_factor_by_type(element, columns));
 }
 
@@ -158,7 +160,7 @@ bool is_all_zero(std::string_view bytes) {
 } // namespace
 
 PointCloud read_ply_binary(const SourceBytes& bytes, const PlyHeader& header, std::size_t vertex,
-                           const std::vector<Column>& columns) {
+                           const std::vector<Column>& columns, const PlyRows& rows) {
     const PlyElement& element = header.elements[vertex];
     BinaryBody body(bytes, header);
     for (std::size_t i = 0; i < vertex; ++i) body.skip(header.elements[i]);
@@ -171,7 +173,7 @@ PointCloud read_ply_binary(const SourceBytes& bytes, const PlyHeader& header, st
         throw Error(bytes.name(), std::to_string(rest) + " bytes behind the last of "
                                       + std::to_string(element.count)
                                       + " vertices; the header's count is wrong, correct it");
-    return read_fixed(bytes, header, body.at(), element, columns);
+    return read_fixed(bytes, header, body.at(), element, columns, rows);
 }
 
 std::optional<Vec3> read_ply_sensor_binary(const SourceBytes& bytes, const PlyHeader& header,

@@ -120,9 +120,14 @@ Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options) {
     const SmallComponentFacets small = components_where(mesh, components, [&](std::size_t c) {
         const std::size_t most_closed = flat[c] ? options.most_flat : options.most_facets;
         return sizes[c] <= (open[c] ? options.most_open : most_closed)
-               && static_cast<double>(sizes[c]) * options.least_ratio <= largest;
+               && (options.of_larger || static_cast<double>(sizes[c]) * options.least_ratio <= largest);
     });
     return remove_components(mesh, none, small).facets;
+}
+
+std::size_t largest_component(const PolygonMesh& mesh) {
+    if (mesh.facet_count() == 0) return 0;
+    return std::ranges::max(Components(mesh).facets());
 }
 
 SmallComponentFacets find_small_components(const PolygonMesh& mesh, const SmallComponentOptions& options) {

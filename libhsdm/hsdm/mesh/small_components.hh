@@ -20,12 +20,17 @@ struct SplinterOptions {
     double flat = 0;
     /// least ratio of the facets of the largest component to those of a splinter
     double least_ratio = splinters::least_ratio;
+    /// the mesh is part of one of which some component is larger than any splinter times that ratio
+    bool of_larger = false;
 };
 
 /// Removes the components (facets joined by shared vertices) that are splinters beside the largest one: a few
 /// facets on their own beside a surface of many. Vertices stay. Returns the number of facets removed, and
 /// where. O(facets), parallel.
 Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options = {});
+
+/// Facets of the component that has most of them; 0 for none. O(facets), parallel.
+std::size_t largest_component(const PolygonMesh& mesh);
 
 struct SmallComponentOptions {
     double least_facets = 0; ///< smaller components go

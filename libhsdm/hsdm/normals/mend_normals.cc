@@ -20,9 +20,9 @@ struct Pair {
 };
 
 /// Points far from each other, planes apart and unclear angles say nothing.
-Pair compare(const Octree& octree, std::size_t i, std::size_t j, double farthest) {
-    const Vec3 &n = octree.normals[i], &m = octree.normals[j];
-    const Vec3 d = octree.positions[j] - octree.positions[i];
+Pair compare(const NormalSample::Point& one, const NormalSample::Point& other, double farthest) {
+    const Vec3 &n = one.normal, &m = other.normal;
+    const Vec3 d = other.position - one.position;
     const double length = d.norm(), cosine = n | m;
     if (n.sqrnorm() == 0 || m.sqrnorm() == 0 || length == 0 || length > farthest) return {};
     const double rise_n = (n | d) / length, rise_m = (m | d) / length;
@@ -37,15 +37,15 @@ Pair compare(const Octree& octree, std::size_t i, std::size_t j, double farthest
 }
 
 /// Sums over pairs of each point with its two successors, in a fixed order; for large clouds over a sample.
-template <class Sum, class F>
-Sum sum_pairs(const Octree& octree, double farthest, const F& add) {
-    std::vector<Sum> parts(chunk_count(octree.size(), chunks::light));
-    constexpr std::size_t samples = 1 << 17;
-    const std::size_t stride = octree.size() / samples + 1;
-    for_chunks(octree.size(), chunks::light, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+/// point(i): of the cloud.
+template <class Sum, class GetPoint, class F>
+Sum sum_pairs(std::size_t size, const GetPoint& point, double farthest, const F& add) {
+    std::vector<Sum> parts(chunk_count(size, chunks::light));
+    const std::size_t stride = NormalSample::stride(size);
+    for_chunks(size, chunks::light, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         for (std::size_t i = begin; i < end; i += stride)
-            for (std::size_t j = i + 1; j < std::min(octree.size(), i + 3); ++j)
-                add(compare(octree, i, j, farthest), static_cast<Index>(i), parts[chunk]);
+            for (std::size_t j = i + 1; j < std::min(size, i + 3); ++j)
+                add(compare(point(i), point(j), farthest), static_cast<Index>(i), parts[chunk]);
     });
     Sum sum;
     for (const Sum& part : parts) sum += part;
@@ -58,11 +58,29 @@ struct Rise {
 };
 
 /// Mean rise of the flat pairs that agree: what curvature and noise make of points on one plane.
-double mean_rise(const Octree& octree, double farthest) {
-    const Rise rise = sum_pairs<Rise>(octree, farthest, [](const Pair& pair, Index, Rise& sum) {
+template <class GetPoint>
+double mean_rise(std::size_t size, const GetPoint& point, double farthest) {
+    const Rise rise = sum_pairs<Rise>(size, point, farthest, [](const Pair& pair, Index, Rise& sum) {
         if (pair.kind == Pair::flat && !pair.opposed) sum.sum += pair.rise, sum.pairs += 1;
     });
     return rise.pairs > 0 ? rise.sum / rise.pairs : 0;
+}
+
+template <class GetPoint>
+NormalConsistency check_pairs(std::size_t size, const GetPoint& point, double spacing) {
+    // The sides of the thinnest plate are opposed, too, but lie off each other's planes.
+    const double farthest = contradictions::farthest * spacing;
+    const double highest =
+        contradictions::most_rises * mean_rise(size, point, farthest) + contradictions::added_rise;
+    const auto add = [&](const Pair& pair, Index at, NormalConsistency& sum) {
+        if (pair.kind == Pair::flat && pair.rise < highest) {
+            ++sum.flat, sum.flat_opposed += pair.opposed;
+            if (pair.opposed) sum.first_opposed = std::min(sum.first_opposed, at);
+        }
+        if (pair.kind == Pair::steep) ++sum.steep;
+        if (pair.kind == Pair::creased) ++sum.creased, sum.creased_opposed += pair.opposed;
+    };
+    return sum_pairs<NormalConsistency>(size, point, farthest, add);
 }
 
 } // namespace
@@ -94,21 +112,31 @@ Occurrences doubtful_sides(const Octree& octree, const NormalConsistency& consis
     return {consistency.flat_opposed, octree.positions[consistency.first_opposed]};
 }
 
+std::size_t NormalSample::stride(std::size_t size) {
+    constexpr std::size_t samples = 1 << 17;
+    return size / samples + 1;
+}
+
+bool NormalSample::holds(std::size_t i, std::size_t size) {
+    const std::size_t in_chunk = i % chunks::light, step = stride(size); // a chunk's first points may follow
+    if (in_chunk % step < 3) return true;                                // one of the chunk before
+    return in_chunk < 2;
+}
+
 NormalConsistency check_normals(const Octree& octree) {
     if (!octree.has_normals()) return {};
-    // The sides of the thinnest plate are opposed, too, but lie off each other's planes.
-    const double farthest = contradictions::farthest * estimate_spacing(octree);
-    const double highest =
-        contradictions::most_rises * mean_rise(octree, farthest) + contradictions::added_rise;
-    const auto add = [&](const Pair& pair, Index at, NormalConsistency& sum) {
-        if (pair.kind == Pair::flat && pair.rise < highest) {
-            ++sum.flat, sum.flat_opposed += pair.opposed;
-            if (pair.opposed) sum.first_opposed = std::min(sum.first_opposed, at);
-        }
-        if (pair.kind == Pair::steep) ++sum.steep;
-        if (pair.kind == Pair::creased) ++sum.creased, sum.creased_opposed += pair.opposed;
+    const auto point = [&](std::size_t i) {
+        return NormalSample::Point{octree.positions[i], octree.normals[i]};
     };
-    return sum_pairs<NormalConsistency>(octree, farthest, add);
+    return check_pairs(octree.size(), point, estimate_spacing(octree));
+}
+
+NormalConsistency check_normals(const NormalSample& sample, std::size_t size, double spacing) {
+    const auto point = [&](std::size_t i) {
+        const auto found = std::lower_bound(sample.number.begin(), sample.number.end(), i);
+        return sample.points[static_cast<std::size_t>(found - sample.number.begin())];
+    };
+    return check_pairs(size, point, spacing);
 }
 
 std::size_t mend_normals(Octree& octree, OrientOptions options) {

@@ -34,6 +34,21 @@ Occurrences doubtful_sides(const Octree& octree, const NormalConsistency& consis
 /// Compares points, or 131,072 of them, with their two successors in octree order. O(n), parallel.
 NormalConsistency check_normals(const Octree& octree);
 
+/// The points that check_normals() looks at, of a cloud that is not in memory.
+struct NormalSample {
+    struct Point {
+        Vec3 position, normal; ///< as the octree has them
+    };
+    std::vector<std::size_t> number; ///< in octree order, ascending
+    std::vector<Point> points;
+
+    /// Is point `i` of a cloud of so many looked at?
+    static bool holds(std::size_t i, std::size_t size);
+    static std::size_t stride(std::size_t size); ///< from one to the next
+};
+/// The same of a sample of a cloud of `size` points of this spacing.
+NormalConsistency check_normals(const NormalSample& sample, std::size_t size, double spacing);
+
 /// Turns the octree's normals to one side, in place; their axes stay. The evidence is that of orient_normals
 /// with these options; where the shape leaves the side open (a sheet, a thin part), the side that most
 /// normals have is taken. If that leaves more than half of the contradictions, these come from noise, and

@@ -75,33 +75,6 @@ std::vector<std::uint8_t> find_outliers(const Octree& octree, const Neighbors& n
     return found;
 }
 
-/// A level's voxels by their first points, and how many points share a typical point's voxel.
-struct Density {
-    int depth = 0;
-    std::vector<Index> first_point;
-    double typical = 0;
-};
-
-/// The finest level on which a typical point shares its voxel with so many points.
-Density level_of_density(const Octree& octree, double points_per_voxel) {
-    const auto counts = count_voxels(octree);
-    int depth = morton_levels; // the typical count is above the mean, but not much
-    while (depth > 0
-           && static_cast<double>(octree.size())
-                  < 0.25 * points_per_voxel * static_cast<double>(counts[static_cast<std::size_t>(depth)]))
-        --depth;
-    for (;; --depth) {
-        std::vector<Index> first = first_points(octree, depth);
-        double squares = 0;
-        for_each_in_order(first.size() - 1, [&](std::size_t v) {
-            const auto count = static_cast<double>(first[v + 1] - first[v]);
-            squares += count * count;
-        });
-        const double typical = squares / static_cast<double>(octree.size());
-        if (typical >= points_per_voxel || depth == 0) return {depth, std::move(first), typical};
-    }
-}
-
 /// How many neighbours continue the point's plane with a normal like its own. A dense surface far away does
 /// not.
 int support(const Octree& octree, Index i, std::span<const Index> neighbors,
@@ -133,10 +106,23 @@ Occurrences drop_outliers_by_distance(Octree& octree, Neighbors& neighbors, cons
     return total;
 }
 
-Occurrences drop_outliers_by_normals(Octree& octree, const NormalOutlierOptions& options) {
-    const Density density = level_of_density(octree, options.points_per_voxel);
-    const std::vector<Index>& first = density.first_point;
-    const auto most = static_cast<Index>(std::max(1.0, options.most_share * density.typical));
+SparseLevel sparse_level(std::size_t points, const std::array<std::size_t, morton_levels + 1>& voxels,
+                         const std::function<double(int)>& squares_at, double points_per_voxel) {
+    int depth = morton_levels; // the typical count is above the mean, but not much
+    while (depth > 0
+           && static_cast<double>(points)
+                  < 0.25 * points_per_voxel * static_cast<double>(voxels[static_cast<std::size_t>(depth)]))
+        --depth;
+    for (;; --depth) {
+        const double typical = squares_at(depth) / static_cast<double>(points);
+        if (typical >= points_per_voxel || depth == 0) return {depth, typical};
+    }
+}
+
+std::vector<std::uint8_t> strays_by_normals(const Octree& octree, const SparseLevel& level,
+                                            const NormalOutlierOptions& options, std::vector<double>* reach) {
+    const std::vector<Index> first = first_points(octree, level.depth);
+    const auto most = static_cast<Index>(std::max(1.0, options.most_share * level.typical));
     std::vector<Index> sparse;
     std::vector<std::uint8_t> is_sparse = large_vector<std::uint8_t>(octree.size(), 0);
     for_each_in_order(first.size() - 1, [&](std::size_t v) {
@@ -144,13 +130,30 @@ Occurrences drop_outliers_by_normals(Octree& octree, const NormalOutlierOptions&
             for (Index i = first[v]; i < first[v + 1]; ++i) sparse.push_back(i), is_sparse[i] = 1;
     });
     const Neighbors neighbors = find_neighbors_of(octree, sparse, {.count = options.neighbors});
-    const double farthest = options.most_distance * octree.voxel_size(density.depth);
+    const double farthest = options.most_distance * octree.voxel_size(level.depth);
     std::vector<std::uint8_t> stray = large_vector<std::uint8_t>(octree.size(), 0);
+    if (reach) assign_large(*reach, octree.size(), 0);
     for_each_index(sparse.size(), chunks::quick, [&](Index k) {
         stray[sparse[k]] =
             support(octree, sparse[k], neighbors.of(k), is_sparse, farthest, options) < options.least_support;
+        if (reach) (*reach)[sparse[k]] = neighbors.reach[k];
     });
-    return remove_points(octree, stray);
+    return stray;
+}
+
+Occurrences drop_outliers_by_normals(Octree& octree, const NormalOutlierOptions& options) {
+    const auto squares_at = [&](int depth) {
+        const std::vector<Index> first = first_points(octree, depth);
+        double squares = 0;
+        for_each_in_order(first.size() - 1, [&](std::size_t v) {
+            const auto count = static_cast<double>(first[v + 1] - first[v]);
+            squares += count * count;
+        });
+        return squares;
+    };
+    const SparseLevel level =
+        sparse_level(octree.size(), count_voxels(octree), squares_at, options.points_per_voxel);
+    return remove_points(octree, strays_by_normals(octree, level, options));
 }
 
 } // namespace hsdm

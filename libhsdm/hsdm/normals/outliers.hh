@@ -7,6 +7,11 @@
 #include "hsdm/normals/neighbors.hh"
 #include "hsdm/octree/constants.hh"
 
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
 namespace hsdm {
 
 struct OutlierOptions {
@@ -51,6 +56,22 @@ struct NormalOutlierOptions {
     /// largest height of a neighbour over the point's plane, in distances between the two
     double most_rise = normal_outliers::most_rise;
 };
+
+/// The level on which sparse voxels are looked for.
+struct SparseLevel {
+    int depth = 0;
+    double typical = 0; ///< how many points share a typical point's voxel
+};
+/// The finest level on which a typical point of `points` shares its voxel with `points_per_voxel`. `voxels`:
+/// how many there are of each level; squares_at(depth): the sum of the squares of their numbers of points.
+SparseLevel sparse_level(std::size_t points, const std::array<std::size_t, morton_levels + 1>& voxels,
+                         const std::function<double(int)>& squares_at, double points_per_voxel);
+
+/// Per point, 1 if it is one of those that the next function removes; `reach`, unless it is null, becomes per
+/// such point or one that was asked about the distance of the farthest neighbour, else 0.
+std::vector<std::uint8_t> strays_by_normals(const Octree& octree, const SparseLevel& level,
+                                            const NormalOutlierOptions& options = {},
+                                            std::vector<double>* reach = nullptr);
 
 /// The same if normals are known: removes those points in sparse voxels that too few neighbours agree with.
 /// O(n), parallel; little more than one pass over the points if hardly any voxel is sparse. Throws

@@ -77,6 +77,14 @@ MortonCode code_of(const Vec3& relative, double scale) {
     return morton_encode(c[0], c[1], c[2]);
 }
 
+} // namespace
+
+MortonCode code_at(const Vec3& relative, double extent) {
+    return code_of(relative, cells / extent);
+}
+
+namespace {
+
 /// Points in the octree's order: their codes, and their indices in the cloud.
 struct Order {
     std::vector<MortonCode> codes;
@@ -222,7 +230,7 @@ void keep_unmarked(std::vector<T>& values, std::span<const std::uint8_t> marked)
 void place_cube(const PointView& cloud, const OctreeOptions& options, Octree& octree) {
     if (!options.skip_nonfinite && find_nonfinite(cloud.positions).count > 0)
         throw Error("the cloud holds coordinates that are not finite; call drop_nonfinite first");
-    const Box bounds = finite_bounds(cloud.positions);
+    const Box bounds = options.whole ? *options.whole : finite_bounds(cloud.positions);
     octree.bounds = {bounds.lo * (1 / options.unit) + zero, bounds.hi * (1 / options.unit) + zero};
     octree.origin = octree.bounds.lo;
     octree.extent = octree.bounds.extent();

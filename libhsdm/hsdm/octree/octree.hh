@@ -30,6 +30,8 @@ struct OctreeOptions {
     CubePlacement placement = CubePlacement::least_corner;
     /// Least corner of the cube, in place of `placement`; the cube of `cube_extent` must hold the cloud.
     std::optional<Vec3> origin{};
+    /// Box of a larger cloud that this one is part of: `bounds` and the cube are those of the whole.
+    std::optional<Box> whole{};
 };
 
 /// In place of the number of a point in the cloud: a point made between sparse ones. (no_index: a completed
@@ -61,6 +63,10 @@ struct Octree {
     bool has_normals() const { return !normals.empty(); }
     double voxel_size(int depth) const { return extent / static_cast<double>(1u << depth); }
 };
+
+/// Level-21 code of a position relative to a cube of this edge; what lies outside goes to its outermost
+/// voxels.
+MortonCode code_at(const Vec3& relative, double extent);
 
 /// Least corner of the cube of this edge about the middle of a box whose longest side is no longer.
 Vec3 centred_origin(const Box& bounds, double extent);

@@ -48,12 +48,22 @@ std::array<std::size_t, morton_levels + 1> count_voxels(const Octree& octree) {
     return counts;
 }
 
+VoxelCounts count_places(const Octree& octree) {
+    VoxelCounts counts{count_voxels(octree)};
+    counts.places = count_places(octree, counts.voxels.back());
+    return counts;
+}
+
 double estimate_spacing(const Octree& octree) {
-    const Counts counts = count_voxels(octree);
-    const auto n = static_cast<double>(count_places(octree, counts.back()));
+    return estimate_spacing(count_places(octree), octree.extent);
+}
+
+double estimate_spacing(const VoxelCounts& places, double cube_extent) {
+    const Counts& counts = places.voxels;
+    const auto n = static_cast<double>(places.places);
     unsigned level = morton_levels;
     while (level > 0 && n < spacings::points_per_voxel * static_cast<double>(counts[level])) --level;
-    const double h = octree.voxel_size(static_cast<int>(level));
+    const double h = cube_extent / static_cast<double>(1u << level);
     const auto voxels = static_cast<double>(counts[level]);
     const double seen = 1 - std::min(0.5, spacings::empty_share * std::sqrt(voxels / n));
     return h * std::sqrt(voxels / (voxels_per_area * seen * n));

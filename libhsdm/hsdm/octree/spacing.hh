@@ -18,6 +18,16 @@ std::array<std::size_t, morton_levels + 1> count_voxels(const Octree& octree);
 /// points that fill a volume.
 double estimate_spacing(const Octree& octree);
 
+/// What the spacing follows from, which of parts of a cloud can be added up: of a part whose voxels of some
+/// level are all of the part, from that level on.
+struct VoxelCounts {
+    std::array<std::size_t, morton_levels + 1> voxels{}; ///< of each level
+    std::size_t places = 0; ///< points, those at one place once: they may have different normals
+};
+VoxelCounts count_places(const Octree& octree);
+/// The same of a cube of this edge.
+double estimate_spacing(const VoxelCounts& counts, double cube_extent);
+
 /// An edge of the voxels and why.
 struct VoxelChoice {
     double size = 0;    ///< in the cloud's units

@@ -7,6 +7,8 @@
 #include "hsdm/contour/patches.hh"
 #include "hsdm/contour/sheet_features.hh"
 #include "hsdm/contour/sheet_widths.hh"
+#include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/turn_outward.hh"
 #include "hsdm/pipeline/attributes.hh"
 #include "hsdm/pipeline/completed_cloud.hh"
@@ -16,6 +18,7 @@
 #include "hsdm/pipeline/options.hh"
 #include "hsdm/pipeline/phase_geometry.hh"
 #include "hsdm/pipeline/sparse_areas.hh"
+#include "hsdm/pipeline/voxel_order.hh"
 #include "hsdm/pipeline/warnings.hh"
 #include "hsdm/quality/topology.hh"
 
@@ -29,8 +32,8 @@ namespace {
 const FillHolesOptions every_hole{.max_edges = FillHolesOptions::no_limit, .insist = true};
 
 /// keep closes nothing, close all loops, auto and complete those that are small against the sampling.
-DualContourOptions options_for(const MethodInput& in, const Report& report) {
-    const double spacing_in_voxels = report.input.spacing / in.level.voxel_size;
+DualContourOptions options_for(const MethodInput& in, double spacing) {
+    const double spacing_in_voxels = spacing / in.level.voxel_size;
     DualContourOptions result;
     result.fill = in.options.holes != Holes::keep;
     if (in.options.holes == Holes::close) {
@@ -100,13 +103,14 @@ std::size_t measured_points(const Octree& octree) {
 /// Facets face where the points' normals point. If these point into a closed solid, the whole surface is
 /// turned.
 bool turn_solid_outward(PolygonMesh& mesh) {
-    if (signed_volume(mesh) >= 0 || !measure_connectivity(mesh).closed()) return false;
+    if (!faces_inward(mesh)) return false;
     turn_over(mesh);
     return true;
 }
 
-/// What is known of facets once they are made, and what their vertices inherit from the points.
-PolygonMesh finished(const MethodInput& in, const NormalSets& sets, DualContour facets, Report& report,
+/// What is known of facets once they are made, and what their vertices inherit from the points; takes the
+/// mesh. (The adaptive grid, which makes another one of it, has an order of its own.)
+PolygonMesh finished(const MethodInput& in, const NormalSets& sets, DualContour& facets, Report& report,
                      FacetKnowledge& known) {
     note_counts(facets, report);
     note_dropped("facets of splinters", facets.splinters, in, report);
@@ -126,6 +130,7 @@ PolygonMesh finished(const MethodInput& in, const NormalSets& sets, DualContour 
     }
     known.cells = std::move(facets.cells);
     known.intersections = {facets.intersections.after, facets.intersections.first};
+    if (!wants_adaptive(in.options)) order_by_voxels(in.level.size(), facets.voxel, facets.mesh, known);
     facets.mesh.properties = average_attributes(in.cloud, in.octree, in.level, facets.voxel);
     if (wants_confidence(in.options))
         facets.mesh.properties.push_back(
@@ -189,7 +194,8 @@ Completion completion_of(const MethodInput& in, Missing missing, const Draft& dr
         result.points = complete_surface(facets.mesh, result.loops, h);
         return result;
     }
-    Slits slits = find_slits(facets.mesh, result.loops, h * options_for(in, draft.report).holes.max_diameter);
+    Slits slits = find_slits(facets.mesh, result.loops,
+                             h * options_for(in, draft.report.input.spacing).holes.max_diameter);
     // Where more than slits is open all is completed at once: what closes one loop may meet another's.
     if (in.options.holes == Holes::complete && slits.loops.size() < result.loops.size()) return {};
     result.points = points_across(slits, h);
@@ -223,7 +229,7 @@ void complete(const MethodInput& measured, const Report& base, Missing missing, 
         if (all_round) draft.facets = DualContour();
         next.cloud =
             complete_cloud(in.octree, in.level, completion.points, all_round ? completing::shift : 0);
-        DualContourOptions options = options_for(measured, base);
+        DualContourOptions options = options_for(measured, base.input.spacing);
         if (all_round && round == completing::most_rounds) options.holes = every_hole;
         options.all_round = all_round;
         make_facets(measured, done + 0.005, options, next);
@@ -288,7 +294,7 @@ Draft helped_draft(const MethodInput& in, const Report& report, int levels) {
                 return complete_cloud(in.octree, wide.level, points, 0, between_points);
             });
         }
-        make_facets(wide, done, options_for(wide, report), next);
+        make_facets(wide, done, options_for(wide, report.input.spacing), next);
         draft = std::move(next);
     }
     return draft;
@@ -301,7 +307,7 @@ Draft first_draft(const MethodInput& in, Report& report) {
         return helped_draft(in, report, levels);
     }
     Draft draft{{}, report};
-    make_facets(in, 0.2, options_for(in, report), draft);
+    make_facets(in, 0.2, options_for(in, report.input.spacing), draft);
     return draft;
 }
 
@@ -316,10 +322,66 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
     report = std::move(draft.report);
     report.grid.sets = measured_sets;
     const bool marked = draft.cloud || in.options.holes == Holes::complete;
-    const std::vector<Index> voxel = marked ? draft.facets.voxel : std::vector<Index>();
-    PolygonMesh mesh = finished(draft.input(in), draft.sets, std::move(draft.facets), report, known);
-    if (marked) return_to(in, draft, voxel, mesh, known);
+    PolygonMesh mesh = finished(draft.input(in), draft.sets, draft.facets, report, known);
+    if (marked) return_to(in, draft, draft.facets.voxel, mesh, known);
     return mesh;
+}
+
+bool faces_inward(const PolygonMesh& facets) {
+    return signed_volume(facets) < 0 && measure_connectivity(facets).closed();
+}
+
+void FacetCounts::operator+=(const FacetCounts& other) {
+    sets += other.sets;
+    middle += other.middle, tilted += other.tilted;
+    misfit_placed += other.misfit_placed, misfit_moved += other.misfit_moved;
+    depends_on_all |= other.depends_on_all;
+}
+
+PartFacets facets_of_part(const MethodInput& in, const PartOfLevel& part) {
+    NormalSets sets = sets_of(in);
+    const RelationTest related({}, in.level.voxel_size);
+    drop_outlier_sets(in.level, related, sets, {.typical = part.typical_set});
+    separate_patches(in.octree, in.level, related, sets);
+    DualContourOptions options = options_for(in, part.spacing);
+    options.splinters.of_larger = true;
+    const auto is_own = [&](Index voxel) { return part.owns(in.level.codes[voxel]); };
+    std::vector<std::uint8_t> own_voxels = large_vector<std::uint8_t>(in.level.size());
+    for_each_index(own_voxels.size(), chunks::light, [&](Index v) { own_voxels[v] = is_own(v); });
+    options.relax.part_of_whole = own_voxels;
+    DualContour facets = dual_contour(in.octree, in.level, sets, options);
+    if (part.turned) {
+        turn_over(facets.mesh);
+        facets.links.reset();
+    }
+    PartFacets result;
+    if (in.options.classify) {
+        std::vector<std::uint8_t> own = large_vector<std::uint8_t>(facets.mesh.facet_count());
+        for_each_index(own.size(), chunks::quick, [&](Index f) {
+            Index least = no_index; // voxel
+            for (const Index v : facets.mesh.facet(f)) least = std::min(least, facets.voxel[v]);
+            own[f] = is_own(least);
+        });
+        result.known.links = facets.links ? std::move(*facets.links) : link_facets(facets.mesh);
+        SheetFeatures features = judge_edges(in.octree, in.level, sets, facets.mesh, *result.known.links,
+                                             facets.voxel, in.options.crease_angle, part.turned, own);
+        result.counts.middle = features.middle, result.counts.tilted = features.tilted;
+        result.known.hints = std::move(features.hints);
+    }
+    order_by_voxels(in.level.size(), facets.voxel, facets.mesh, result.known);
+    for (const NormalSet& set : sets.sets) result.counts.sets += is_own(set.voxel);
+    result.counts.misfit_placed = facets.misfit_placed, result.counts.misfit_moved = facets.misfit_moved;
+    result.counts.depends_on_all = facets.depends_on_all;
+    result.mesh = std::move(facets.mesh);
+    result.voxel = std::move(facets.voxel);
+    return result;
+}
+
+bool has_slits(const MethodInput& in, double spacing, const PolygonMesh& facets) {
+    const double h = in.level.voxel_size;
+    const BoundaryLoops loops = boundary_loops(facets);
+    return loops.size() > 0
+           && find_slits(facets, loops, h * options_for(in, spacing).holes.max_diameter).loops.size() > 0;
 }
 
 } // namespace hsdm

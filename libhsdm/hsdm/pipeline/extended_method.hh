@@ -4,6 +4,8 @@
 #include "hsdm/pipeline/method.hh"
 #include "hsdm/polygon_mesh.hh"
 
+#include <functional>
+
 namespace hsdm {
 
 inline constexpr const char* completed_property = "hsdm_completed"; ///< std::uint8_t, 1 where no point was
@@ -12,5 +14,43 @@ inline constexpr const char* completed_property = "hsdm_completed"; ///< std::ui
 /// must have normals. Adds its seconds (graph, facets) and what each stage counted to the report. Fills in
 /// those parts of `known` that it finds out. Throws Cancelled.
 PolygonMesh extended_method(const MethodInput& input, Report& report, FacetKnowledge& known);
+
+/// What is to be known of the whole level to make part of it.
+struct PartOfLevel {
+    double spacing = 0;     ///< of the points
+    double typical_set = 0; ///< points in a normal set, the mean over points
+    bool turned = false;    ///< do the points' normals point into a closed solid?
+    /// Does the part own this voxel?
+    std::function<bool(MortonCode)> owns;
+};
+
+/// What must be added up over parts.
+struct FacetCounts {
+    std::size_t sets = 0;                       ///< of own voxels
+    std::size_t middle = 0, tilted = 0;         ///< as in SheetFeatures, of edges of own facets
+    double misfit_placed = 0, misfit_moved = 0; ///< as in DualContour, of own voxels
+    bool depends_on_all = false;                ///< as in DualContour
+
+    void operator+=(const FacetCounts& other);
+};
+
+/// Facets of part of a level and of what is around it, in the order of voxels.
+struct PartFacets {
+    PolygonMesh mesh; ///< as extended_method() makes it of the whole, but near the rim of what is known
+    std::vector<Index> voxel; ///< per vertex
+    FacetKnowledge known;     ///< hints: smooth ones for judge_normals()
+    FacetCounts counts;
+};
+
+/// The local part of extended_method(): all but slits and what is missing, which are of the whole. `input`:
+/// the points of the part and of what is around it. Throws Cancelled.
+PartFacets facets_of_part(const MethodInput& input, const PartOfLevel& part);
+
+/// Is some loop of facets that facets_of_part() made a slit, which extended_method() would close by points
+/// across?
+bool has_slits(const MethodInput& input, double spacing, const PolygonMesh& facets);
+
+/// Do these facets of a closed solid face inward?
+bool faces_inward(const PolygonMesh& facets);
 
 } // namespace hsdm

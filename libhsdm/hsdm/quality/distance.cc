@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hsdm {
 namespace {
@@ -133,9 +134,9 @@ Distance points_to_mesh(std::span<const Vec3> points, const PolygonMesh& mesh,
 }
 
 /// Points with no facet in the cells around theirs are searched in the tree, which is rarely built.
-Distance points_to_mesh_by_cells(std::span<const Vec3> points, const PolygonMesh& mesh,
-                                 const FacetCells& cells, double beyond) {
-    if (!cells.usable()) return points_to_mesh(points, MeshDistance(mesh), beyond);
+std::vector<double> squared_distances_by_cells(std::span<const Vec3> points, const PolygonMesh& mesh,
+                                               const FacetCells& cells) {
+    if (!cells.usable()) return squared_distances(points, MeshDistance(mesh));
     const Triangulation cut = triangulate(mesh);
     std::vector<double> squared = large_vector<double>(points.size());
     for_chunks(points.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -154,7 +155,42 @@ Distance points_to_mesh_by_cells(std::span<const Vec3> points, const PolygonMesh
             }
         });
     }
-    return summary_of(squared, beyond);
+    return squared;
+}
+
+Distance points_to_mesh_by_cells(std::span<const Vec3> points, const PolygonMesh& mesh,
+                                 const FacetCells& cells, double beyond) {
+    if (!cells.usable()) return points_to_mesh(points, MeshDistance(mesh), beyond);
+    return summary_of(squared_distances_by_cells(points, mesh, cells), beyond);
+}
+
+void DistanceSums::join(const Sums& sums, Sums& total) {
+    total.sum += sums.sum;
+    total.squares += sums.squares;
+    total.max = std::max(total.max, sums.max);
+}
+
+void DistanceSums::add(std::span<const double> squared) {
+    for_each_in_order(squared.size(), [&](std::size_t k) {
+        const std::size_t i = count_++;
+        if (i > 0 && i % chunks::usual == 0) join(std::exchange(chunk_, {}), total_);
+        const double s = squared[k], d = std::sqrt(s);
+        chunk_.sum += d;
+        chunk_.squares += s;
+        if (d > std::max(total_.max, chunk_.max)) found_.farthest = i;
+        chunk_.max = std::max(chunk_.max, d);
+        if (d > beyond_ && found_.beyond++ == 0) found_.first_beyond = i;
+    });
+}
+
+Distance DistanceSums::result() const {
+    if (count_ == 0) return {};
+    Sums total = total_;
+    join(chunk_, total);
+    const auto n = static_cast<double>(count_);
+    Distance result = found_;
+    result.max = total.max, result.mean = total.sum / n, result.rms = std::sqrt(total.squares / n);
+    return result;
 }
 
 std::vector<double> squared_distances(std::span<const Vec3> points, const MeshDistance& mesh) {

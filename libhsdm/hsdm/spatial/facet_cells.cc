@@ -80,6 +80,15 @@ void FacetCells::group(const std::vector<CodeIndex>& entries) {
     first_.push_back(static_cast<Index>(entries.size()));
 }
 
+void FacetCells::renumber(std::span<const Index> now) {
+    for_each_index(size(), chunks::light, [&](Index cell) {
+        const auto begin = facet_.begin() + static_cast<std::ptrdiff_t>(first_[cell]);
+        const auto end = facet_.begin() + static_cast<std::ptrdiff_t>(first_[cell + 1]);
+        std::transform(begin, end, begin, [&](Index f) { return now[f]; });
+        std::sort(begin, end);
+    });
+}
+
 Index FacetCells::find(const VoxelCoord& c) const {
     return index_.find(morton_encode(c));
 }

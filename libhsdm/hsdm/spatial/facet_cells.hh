@@ -63,6 +63,9 @@ public:
     }
     double cell_size() const { return size_; }
 
+    /// To be called when facets got other numbers: what was facet f is now now[f].
+    void renumber(std::span<const Index> now);
+
 private:
     bool fit(const Box& box);
     std::vector<std::size_t> count(const PolygonMesh& mesh) const;

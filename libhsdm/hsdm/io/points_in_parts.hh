@@ -1,0 +1,32 @@
+#pragma once
+// The points of a file, some of them at a time.
+
+#include "hsdm/io/read_points.hh"
+
+#include <functional>
+
+namespace hsdm {
+
+/// A file that is read anew each time it is visited, where its format allows to read some of its points
+/// (binary PLY with vertices of one size); of other files, and of standard input, the cloud stays in memory.
+class PointsInParts {
+public:
+    /// Opens a file as read_points() does. Throws as that does, though not for what only reading all of it
+    /// tells.
+    PointsInParts(const std::string& path, const ReadOptions& options);
+
+    /// Calls visit(part) for all points in their order. Throws Error.
+    void visit(const std::function<void(const PointCloud&)>& visit) const;
+
+    bool in_memory() const { return !in_parts_; }
+    const PointFile& file() const {
+        return file_;
+    } ///< what was read beside the cloud; if in_memory() this too
+
+private:
+    std::string path_;
+    bool in_parts_ = false;
+    PointFile file_;
+};
+
+} // namespace hsdm

@@ -1,0 +1,65 @@
+#pragma once
+// Points on disk, sorted by cells of space: more of them than fit the memory.
+
+#include "hsdm/core/morton.hh"
+#include "hsdm/types.hh"
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace hsdm {
+
+/// A point and its normal, as they came.
+using PointRow = std::array<double, 6>;
+
+/// Points by the cell that each lies in. They are kept in a file without a name, so that nothing is left of
+/// it however the process ends. Not for several threads.
+class ScratchPoints {
+public:
+    /// `folder`: where the file is made; empty: that for temporary files (TMPDIR, else /tmp). `expected`: so
+    /// many points are to come. `buffered`: bytes of memory that may be used, at least one point's a cell.
+    /// Throws Error if the file cannot be made or the disk has no room for so many.
+    ScratchPoints(const std::string& folder, std::size_t expected, std::size_t buffered);
+    ~ScratchPoints();
+    ScratchPoints(const ScratchPoints&) = delete;
+    ScratchPoints& operator=(const ScratchPoints&) = delete;
+
+    /// Throws Error if the disk is full.
+    void add(MortonCode cell, const PointRow& point);
+    /// To be called after the last point and before the first read().
+    void finish();
+
+    /// A cell and how many points it has.
+    struct Cell {
+        MortonCode code;
+        std::size_t points;
+    };
+    /// Those that have some, ascending.
+    std::vector<Cell> cells() const;
+    /// Appends the points of a cell in the order that they came in. Throws Error if the file cannot be read.
+    void read(MortonCode cell, std::vector<PointRow>& points) const;
+
+    std::size_t bytes() const { return written_; } ///< of the file
+
+private:
+    struct Block {
+        std::size_t offset, points;
+    };
+    struct Bucket {
+        std::vector<PointRow> waiting;
+        std::vector<Block> blocks;
+        std::size_t points = 0;
+    };
+    void flush();
+
+    std::string folder_;
+    int file_ = -1;
+    std::map<MortonCode, Bucket> buckets_;
+    std::size_t waiting_ = 0, most_waiting_, written_ = 0;
+    Bucket* last_ = nullptr; // of the point before: the next one is often in the same
+    MortonCode last_cell_ = 0;
+};
+
+} // namespace hsdm

@@ -1,0 +1,40 @@
+#pragma once
+// A reconstruction in bounded memory: the points lie sorted on disk and are worked through tile by tile. The
+// mesh is that of the run in one piece, bit for bit (docs/tiles.md).
+
+#include "hsdm/point_view.hh"
+#include "hsdm/reconstruct.hh"
+
+namespace hsdm {
+
+struct TileOptions {
+    /// Bytes that the process is to use at most, those it uses already included.
+    std::size_t memory = 0;
+    std::string scratch{};       ///< folder for the points on disk; empty: that for temporary files
+    int ghost_voxels = 16;       ///< voxels round a tile that its points are known of, >= 4
+    std::size_t most_points = 0; ///< of a tile and what is round it; 0: as the memory allows
+};
+
+/// Calls visit(part) for parts of a cloud, in the order of its points; the same each time it is called.
+using PointParts = std::function<void(const std::function<void(const PointView&)>& visit)>;
+
+/// How it was done.
+struct TileReport {
+    std::size_t tiles = 0, widened = 0; ///< and those made again with more around them
+    std::size_t points_read = 0;        ///< by all tiles, what is round them too
+    std::size_t scratch_bytes = 0;
+};
+
+/// Throws OptionError for options that no cloud can be reconstructed with in tiles.
+void check_options(const ReconstructOptions& options, const TileOptions& tiles);
+
+/// As reconstruct() of the whole cloud, but that the report's `rejected` tells of the whole mesh alone.
+/// Throws Error also for a cloud of which not all that is needed is local, such as one with outliers, and if
+/// the memory does not suffice; OptionError, Cancelled.
+Reconstruction reconstruct_in_tiles(const PointParts& parts, const ReconstructOptions& options,
+                                    const TileOptions& tiles, TileReport* how = nullptr);
+/// The same of a cloud in memory.
+Reconstruction reconstruct_in_tiles(const PointView& cloud, const ReconstructOptions& options,
+                                    const TileOptions& tiles, TileReport* how = nullptr);
+
+} // namespace hsdm

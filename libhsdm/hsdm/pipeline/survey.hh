@@ -1,0 +1,49 @@
+#pragma once
+// What is known of a whole cloud that is not in memory, by passes over its parts; the same numbers as by
+// PreparedCloud.
+
+#include "hsdm/contour/outlier_sets.hh"
+#include "hsdm/normals/mend_normals.hh"
+#include "hsdm/normals/outliers.hh"
+#include "hsdm/octree/spacing.hh"
+
+namespace hsdm {
+
+/// Adds up parts in Morton order, each all points of some cells of level `cell_depth`; sorted and without
+/// duplicates, in the octree of the whole.
+class Survey {
+public:
+    /// `expected`: points that there are in all, if none is a duplicate.
+    Survey(int depth, int cell_depth, std::size_t expected);
+
+    void add(const Octree& part);
+
+    /// The points that are not duplicates; unless these are as many as expected, the samples are wrong, and
+    /// all has to be done again.
+    std::size_t points() const { return points_; }
+    std::size_t voxels() const { return counts().voxels[static_cast<std::size_t>(depth_)]; }
+    VoxelCounts counts() const;
+    SparseLevel sparse() const;
+    SetSizes set_sizes() const { return sets_; }
+    const NormalSample& normals() const { return normals_; }
+    /// Every so-manieth point's position in the cloud, less that of the cube.
+    const std::vector<Vec3>& places() const { return places_; }
+    static std::size_t place_stride(std::size_t points); ///< as drop_far_outliers() has it
+
+private:
+    void count_squares(const Octree& part);
+    void sample(const Octree& part);
+
+    int depth_, cell_depth_;
+    std::size_t expected_, points_ = 0;
+    VoxelCounts deep_; // from the cells' level on
+    std::array<std::size_t, morton_levels + 1> shallow_{};
+    std::array<double, morton_levels + 1> squares_{};
+    std::array<double, morton_levels + 1> open_{}; // points in the last voxel of each level above the cells'
+    MortonCode last_ = 0;                          // code of the last point
+    SetSizes sets_;
+    NormalSample normals_;
+    std::vector<Vec3> places_;
+};
+
+} // namespace hsdm

@@ -1,0 +1,219 @@
+#include "hsdm/pipeline/tile_piece.hh"
+
+#include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
+#include "hsdm/errors.hh"
+
+#include <algorithm>
+#include <bit>
+#include <tuple>
+
+namespace hsdm {
+namespace {
+
+/// A tile's mesh, in the order of voxels, and its level.
+class TileMesh {
+public:
+    TileMesh(const MethodInput& in, const PartFacets& part, const VoxelRange& range)
+        : level_(in.level), part_(part), mesh_(part.mesh), range_(range) {
+        first_of_ = large_vector<Index>(level_.size() + 1, 0);
+        for (const Index v : part.voxel) ++first_of_[v + 1];
+        for (std::size_t v = 0; v < level_.size(); ++v) first_of_[v + 1] += first_of_[v];
+        own_ = own_vertices();
+        facets_ = own_facets();
+    }
+
+    Piece piece() const {
+        Piece piece;
+        piece.range = range_;
+        const auto vertex = [&](Index v) { return mesh_.positions.begin() + static_cast<std::ptrdiff_t>(v); };
+        piece.positions.assign(vertex(own_[0]), vertex(own_[1]));
+        resize_large(piece.codes, piece.positions.size());
+        for_each_index(piece.codes.size(), chunks::light,
+                       [&](Index v) { piece.codes[v] = code_of(own_[0] + v); });
+        add_facets(piece);
+        add_digests(piece);
+        return piece;
+    }
+
+private:
+    using Range = std::array<Index, 2>;
+
+    MortonCode code_of(Index vertex) const { return level_.codes[part_.voxel[vertex]]; }
+    Index rank_of(Index vertex) const { return vertex - first_of_[part_.voxel[vertex]]; }
+    Index least_of(std::size_t facet) const { return std::ranges::min(mesh_.facet(facet)); }
+    bool is_own(Index vertex) const { return vertex >= own_[0] && vertex < own_[1]; }
+
+    /// Vertices are in the order of their voxels' codes, and so are those of a range of codes.
+    Range own_vertices() const {
+        const auto first = [&](MortonCode code) {
+            const auto voxel = std::ranges::lower_bound(level_.codes, code) - level_.codes.begin();
+            return first_of_[static_cast<std::size_t>(voxel)];
+        };
+        return {first(range_.begin), first(range_.end)};
+    }
+
+    /// Facets are in the order of their least vertices.
+    Range own_facets() const {
+        const auto first = [&](Index vertex) {
+            std::size_t lo = 0, hi = mesh_.facet_count();
+            while (lo < hi) {
+                const std::size_t middle = (lo + hi) / 2;
+                if (least_of(middle) < vertex)
+                    lo = middle + 1;
+                else
+                    hi = middle;
+            }
+            return static_cast<Index>(lo);
+        };
+        return {first(own_[0]), first(own_[1])};
+    }
+
+    void add_facets(Piece& piece) const {
+        std::vector<Index> others;
+        const Index begin = mesh_.first[facets_[0]], end = mesh_.first[facets_[1]];
+        for (Index c = begin; c < end; ++c)
+            if (!is_own(mesh_.corners[c])) others.push_back(mesh_.corners[c]);
+        sort_unique(others);
+        for (const Index v : others) piece.foreign.push_back({code_of(v), rank_of(v), mesh_.positions[v]});
+        const auto own = static_cast<Index>(piece.positions.size());
+        resize_large(piece.corners, end - begin);
+        for_each_index(piece.corners.size(), chunks::light, [&](Index c) {
+            const Index v = mesh_.corners[begin + c];
+            piece.corners[c] =
+                is_own(v) ? v - own_[0]
+                          : own + static_cast<Index>(std::ranges::lower_bound(others, v) - others.begin());
+        });
+        for (Index f = facets_[0]; f < facets_[1]; ++f) piece.first.push_back(mesh_.first[f + 1] - begin);
+        const auto& sides = part_.known.hints.sides;
+        if (!sides.empty())
+            piece.sides.assign(sides.begin() + static_cast<std::ptrdiff_t>(begin),
+                               sides.begin() + static_cast<std::ptrdiff_t>(end));
+    }
+
+    static std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {
+        hash = (hash ^ value) * 0x9e3779b97f4a7c15u;
+        return hash ^ (hash >> 32);
+    }
+
+    /// Of the vertices of a voxel and the facets that these are the least ones of.
+    std::uint64_t hash_of(Index voxel, std::size_t& facet) const {
+        std::uint64_t hash = 1;
+        const auto& sides = part_.known.hints.sides;
+        for (Index v = first_of_[voxel]; v < first_of_[voxel + 1]; ++v)
+            for (std::size_t k = 0; k < 3; ++k)
+                hash = mixed(hash, std::bit_cast<std::uint64_t>(mesh_.positions[v][k]));
+        for (; facet < mesh_.facet_count() && least_of(facet) < first_of_[voxel + 1]; ++facet) {
+            hash = mixed(hash, mesh_.facet(facet).size());
+            for (Index c = mesh_.first[facet]; c < mesh_.first[facet + 1]; ++c) {
+                hash = mixed(mixed(hash, code_of(mesh_.corners[c])), rank_of(mesh_.corners[c]));
+                if (!sides.empty()) hash = mixed(hash, static_cast<std::uint64_t>(sides[c]));
+            }
+        }
+        return hash;
+    }
+
+    void add_digests(Piece& piece) const {
+        std::size_t facet = 0;
+        for_each_in_order(level_.size(), [&](std::size_t i) {
+            const auto voxel = static_cast<Index>(i);
+            const std::uint64_t hash = hash_of(voxel, facet);
+            const MortonCode code = level_.codes[voxel];
+            const VoxelCoord at = level_.coord(voxel);
+            if (!range_.holds(code)) {
+                if (range_.is_near(at, compared_voxels)) piece.beyond.push_back({code, hash});
+            } else if (!range_.holds_around(at, compared_voxels)) {
+                piece.border.push_back({code, hash});
+            }
+        });
+    }
+
+    const OctreeLevel& level_;
+    const PartFacets& part_;
+    const PolygonMesh& mesh_;
+    const VoxelRange& range_;
+    std::vector<Index> first_of_; // per voxel, its first vertex
+    Range own_{}, facets_{};
+};
+
+/// The digests of a piece that are in a range.
+std::span<const Piece::Digest> within(const std::vector<Piece::Digest>& digests, const VoxelRange& range) {
+    const auto at = [&](MortonCode code) {
+        return std::ranges::lower_bound(digests, code, {}, &Piece::Digest::code);
+    };
+    return {at(range.begin), at(range.end)};
+}
+
+/// Did `one` find the same in voxels of `other` as that one itself?
+bool sees_same(const Piece& one, const Piece& other) {
+    auto seen = within(one.beyond, other.range).begin();
+    const auto end = within(one.beyond, other.range).end();
+    for (const Piece::Digest& digest : other.border) {
+        if (!one.range.is_near(morton_decode(digest.code), compared_voxels)) continue;
+        if (seen == end || !(*seen == digest)) return false;
+        ++seen;
+    }
+    return seen == end;
+}
+
+/// The number of a foreign vertex in the joined mesh.
+Index number_of(const Piece::Foreign& foreign, const std::vector<Piece>& pieces,
+                const std::vector<Index>& first) {
+    const auto owner =
+        std::ranges::upper_bound(pieces, foreign.code, {}, [](const Piece& p) { return p.range.begin; });
+    const std::size_t k = static_cast<std::size_t>(owner - pieces.begin()) - 1;
+    const auto& codes = pieces[k].codes;
+    const auto place = std::ranges::lower_bound(codes, foreign.code) - codes.begin();
+    const std::size_t v = static_cast<std::size_t>(place) + foreign.rank;
+    if (v >= codes.size() || codes[v] != foreign.code || pieces[k].positions[v] != foreign.position)
+        throw Error("two tiles disagree about a vertex that both have; this is an error of the program");
+    return first[k] + static_cast<Index>(v);
+}
+
+} // namespace
+
+Piece make_piece(const MethodInput& in, const PartOfLevel& part, const VoxelRange& range) {
+    const PartFacets facets = facets_of_part(in, part);
+    Piece piece = TileMesh(in, facets, range).piece();
+    piece.counts = facets.counts;
+    return piece;
+}
+
+bool agree(const Piece& one, const Piece& other) {
+    return sees_same(one, other) && sees_same(other, one);
+}
+
+PolygonMesh joined_pieces(std::vector<Piece>&& pieces, std::vector<EdgeHint>& sides) {
+    PolygonMesh mesh;
+    std::vector<Index> first{0};
+    std::size_t corners = 0, facets = 0, hints = 0;
+    for (const Piece& piece : pieces) {
+        first.push_back(first.back() + static_cast<Index>(piece.positions.size()));
+        corners += piece.corners.size(), facets += piece.first.size() - 1, hints += piece.sides.size();
+    }
+    std::vector<std::vector<Index>> foreign;
+    for (const Piece& piece : pieces) {
+        std::vector<Index>& numbers = foreign.emplace_back();
+        for (const Piece::Foreign& f : piece.foreign) numbers.push_back(number_of(f, pieces, first));
+    }
+    reserve_large(mesh.positions, first.back());
+    reserve_large(mesh.corners, corners);
+    reserve_large(mesh.first, facets + 1);
+    reserve_large(sides, hints);
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+        Piece& piece = pieces[k];
+        const auto own = static_cast<Index>(piece.positions.size()),
+                   before = static_cast<Index>(mesh.corners.size());
+        append_large(mesh.positions, piece.positions);
+        append_large(sides, piece.sides);
+        for_each_in_order(piece.corners.size(), [&](std::size_t c) {
+            const Index v = piece.corners[c];
+            mesh.corners.push_back(v < own ? first[k] + v : foreign[k][v - own]);
+        });
+        for (std::size_t f = 1; f < piece.first.size(); ++f) mesh.first.push_back(before + piece.first[f]);
+        piece = Piece();
+    }
+    return mesh;
+}
+
+} // namespace hsdm

@@ -1,0 +1,39 @@
+#pragma once
+// Which tiles a cloud is worked through in, and what memory they take.
+
+#include "hsdm/io/scratch_points.hh"
+#include "hsdm/pipeline/voxel_range.hh"
+#include "hsdm/types.hh"
+
+#include <span>
+
+namespace hsdm {
+
+/// Bytes, measured (docs/tiles.md): of a tile's point with all that is made of it; of a voxel's facets while
+/// there are pieces, and in the end, joined and as a half-edge mesh with all properties; and of what is there
+/// before.
+inline constexpr std::size_t bytes_per_point = 260, bytes_per_voxel_of_pieces = 90,
+                             bytes_per_voxel_of_mesh = 660, bytes_of_program = std::size_t{64} << 20;
+
+/// The level of the cells that points are sorted by: of 8 voxels of a small level along an edge, else of 32
+/// and no more than 2^18 over the cube.
+int cell_depth_of(int depth);
+
+struct TilePlanOptions {
+    int depth = 0, cell_depth = 0;
+    int ghost_voxels = 0;
+    std::size_t most_points = 0; ///< of a tile and what is round it, about
+};
+
+/// Ranges that cover the level, as few as there may be. A cell that is too large alone becomes a tile all the
+/// same.
+std::vector<VoxelRange> plan_tiles(std::span<const ScratchPoints::Cell> cells,
+                                   const TilePlanOptions& options);
+
+/// By a sample of positions in a cube of this edge: may it be that they are of no surface, but a line or
+/// less?
+bool spans_no_surface(std::span<const Vec3> places, double cube_extent);
+/// May some points be so far from most that drop_far_outliers() or cut_empty_space() would do something?
+bool has_far_points(std::span<const Vec3> places, double cube_extent, double spacing);
+
+} // namespace hsdm

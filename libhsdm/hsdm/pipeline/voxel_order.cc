@@ -1,0 +1,133 @@
+#include "hsdm/pipeline/voxel_order.hh"
+
+#include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
+
+#include <cassert>
+#include <numeric>
+
+namespace hsdm {
+namespace {
+
+/// The things 0 .. n by ascending key below `keys`, ties as they are; those with no_index left out.
+template <class Key>
+std::vector<Index> order_by(std::size_t n, std::size_t keys, const Key& key) {
+    std::vector<Index> first = large_vector<Index>(keys + 1, 0);
+    for_each_in_order(n, [&](std::size_t i) {
+        if (const Index k = key(static_cast<Index>(i)); k != no_index) ++first[k + 1];
+    });
+    for (std::size_t k = 0; k < keys; ++k) first[k + 1] += first[k];
+    std::vector<Index> order = large_vector<Index>(first.back());
+    for_each_in_order(n, [&](std::size_t i) {
+        if (const Index k = key(static_cast<Index>(i)); k != no_index)
+            order[first[k]++] = static_cast<Index>(i);
+    });
+    return order;
+}
+
+/// Which of the vertices have facets.
+std::vector<std::uint8_t> used_vertices(const PolygonMesh& mesh) {
+    std::vector<std::uint8_t> used = large_vector<std::uint8_t>(mesh.vertex_count(), 0);
+    for_each_in_order(mesh.corners.size(), [&](std::size_t c) { used[mesh.corners[c]] = 1; });
+    return used;
+}
+
+template <class T>
+std::vector<T> taken(const std::vector<T>& values, const std::vector<Index>& order) {
+    std::vector<T> result = large_vector<T>(order.size());
+    for_each_index(order.size(), chunks::light, [&](Index i) { result[i] = values[order[i]]; });
+    return result;
+}
+
+/// The facets in this order, of renumbered vertices.
+PolygonMesh rearranged(const PolygonMesh& mesh, const std::vector<Index>& vertices,
+                       const std::vector<Index>& facets, const std::vector<Index>& number) {
+    PolygonMesh result;
+    result.positions = taken(mesh.positions, vertices);
+    resize_large(result.first, facets.size() + 1);
+    for_each_in_order(facets.size(), [&](std::size_t f) {
+        result.first[f + 1] = result.first[f] + mesh.first[facets[f] + 1] - mesh.first[facets[f]];
+    });
+    resize_large(result.corners, mesh.corners.size());
+    for_each_index(facets.size(), chunks::quick, [&](Index f) {
+        Index c = result.first[f];
+        for (const Index v : mesh.facet(facets[f])) result.corners[c++] = number[v];
+    });
+    return result;
+}
+
+/// What was known of the sides of facets.
+std::vector<EdgeHint> rearranged(const std::vector<EdgeHint>& sides, const PolygonMesh& before,
+                                 const std::vector<Index>& facets, const PolygonMesh& mesh) {
+    std::vector<EdgeHint> result = large_vector<EdgeHint>(sides.size(), EdgeHint::none);
+    if (!sides.empty())
+        for_each_index(facets.size(), chunks::quick, [&](Index f) {
+            Index side = before.first[facets[f]];
+            for (Index c = mesh.first[f]; c < mesh.first[f + 1]; ++c) result[c] = sides[side++];
+        });
+    return result;
+}
+
+/// Links of rearranged facets, as link_facets() would find them: of the sides out of a vertex the one without
+/// a twin comes first, or else the one to the least vertex.
+FacetLinks rearranged(const FacetLinks& before, const PolygonMesh& old_mesh, const std::vector<Index>& facets,
+                      const PolygonMesh& mesh) {
+    FacetLinks links;
+    links.accepted = std::vector<char>(mesh.facet_count(), 1);
+    resize_large(links.source, mesh.vertex_count());
+    std::iota(links.source.begin(), links.source.end(), Index{0});
+    links.vertex = copy_of_large(mesh.corners);
+    const std::size_t sides = mesh.corners.size();
+    std::vector<Index> now = large_vector<Index>(sides); // per side before
+    resize_large(links.facet, sides);
+    for_each_index(facets.size(), chunks::quick, [&](Index f) {
+        Index side = old_mesh.first[facets[f]];
+        for (Index c = mesh.first[f]; c < mesh.first[f + 1]; ++c) now[side++] = c, links.facet[c] = f;
+    });
+    resize_large(links.twin, sides);
+    for_each_index(sides, chunks::light, [&](Index side) {
+        const Index twin = before.twin[side];
+        links.twin[now[side]] = twin == no_index ? no_index : now[twin];
+    });
+    assign_large(links.side_out, mesh.vertex_count(), no_index);
+    assign_large(links.open_in, mesh.vertex_count(), no_index);
+    const auto end = [&](Index c) { return mesh.corners[next_side(mesh, links.facet[c], c)]; };
+    for_each_in_order(sides, [&](std::size_t side) {
+        const auto c = static_cast<Index>(side);
+        Index& out = links.side_out[mesh.corners[c]];
+        const bool open = links.twin[c] == no_index;
+        if (open) links.open_in[end(c)] = c;
+        if (open || out == no_index || (links.twin[out] != no_index && end(c) < end(out))) out = c;
+    });
+    return links;
+}
+
+} // namespace
+
+void order_by_voxels(std::size_t voxels, std::vector<Index>& voxel, PolygonMesh& mesh,
+                     FacetKnowledge& known) {
+    assert(mesh.properties.empty() && mesh.normals.empty() && mesh.origin.empty());
+    const std::vector<std::uint8_t> used = used_vertices(mesh);
+    const std::vector<Index> vertices =
+        order_by(mesh.vertex_count(), voxels, [&](Index v) { return used[v] ? voxel[v] : no_index; });
+    std::vector<Index> number = large_vector<Index>(mesh.vertex_count(), no_index);
+    for_each_index(vertices.size(), chunks::light, [&](Index v) { number[vertices[v]] = v; });
+    const std::vector<Index> facets = order_by(mesh.facet_count(), vertices.size(), [&](Index f) {
+        Index least = no_index;
+        for (const Index v : mesh.facet(f)) least = std::min(least, number[v]);
+        return least;
+    });
+    PolygonMesh result = rearranged(mesh, vertices, facets, number);
+    voxel = taken(voxel, vertices);
+    known.hints.sides = rearranged(known.hints.sides, mesh, facets, result);
+    if (known.links && (known.links->rejected > 0 || known.links->split_vertices > 0)) known.links.reset();
+    if (known.links) known.links = rearranged(*known.links, mesh, facets, result);
+    if (known.cells) {
+        assign_large(number, facets.size(), no_index);
+        for_each_index(facets.size(), chunks::light, [&](Index f) { number[facets[f]] = f; });
+        known.cells->renumber(number);
+    }
+    mesh = std::move(result);
+}
+
+} // namespace hsdm
