@@ -1,0 +1,164 @@
+#include "hsdm/errors.hh"
+#include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/pipeline/reconstruct_in_tiles.hh"
+#include "support/sample.hh"
+
+#include <catch2/catch.hpp>
+
+#include <cstring>
+#include <filesystem>
+
+using namespace hsdm;
+
+namespace {
+
+/// A part with flat and round faces, edges, a hole through it; with a border where a face is cut off.
+PointCloud scan_for_tiles(bool open) {
+    PointCloud cloud =
+        support::sample(support::box({1, 0.7, 0.4}) - support::cylinder(0.15, 2), {.points = 40000});
+    if (!open) return cloud;
+    PointCloud rest;
+    for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
+        if (cloud.positions[i][0] > 0.3) continue;
+        rest.positions.push_back(cloud.positions[i]);
+        rest.normals.push_back(cloud.normals[i]);
+    }
+    return rest;
+}
+
+template <class T>
+bool are_same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+void check_same_as_whole(const Reconstruction& whole, const Reconstruction& tiles) {
+    const PolygonMesh a = to_polygons(whole.mesh), b = to_polygons(tiles.mesh);
+    CHECK(are_same_bits(a.positions, b.positions));
+    CHECK(a.corners == b.corners);
+    CHECK(a.first == b.first);
+    CHECK(a.sharp_edges == b.sharp_edges);
+    REQUIRE(a.properties.size() == b.properties.size());
+    for (std::size_t i = 0; i < a.properties.size(); ++i)
+        CHECK(are_same_bits(a.properties[i].values, b.properties[i].values));
+    const Report &one = whole.report, &other = tiles.report;
+    CHECK(one.error.points_to_mesh_max == other.error.points_to_mesh_max);
+    CHECK(one.error.points_to_mesh_mean == other.error.points_to_mesh_mean);
+    CHECK(one.input.spacing == other.input.spacing);
+    CHECK(one.input.merged_duplicates == other.input.merged_duplicates);
+    CHECK(one.grid.voxels == other.grid.voxels);
+    CHECK(one.grid.sets == other.grid.sets);
+}
+
+TileOptions tiles_of(std::size_t points) {
+    TileOptions tiles;
+    tiles.memory = std::size_t{1} << 30;
+    tiles.most_points = points;
+    return tiles;
+}
+
+/// What refuses a cloud.
+std::string refusal(const PointCloud& cloud, const TileOptions& tiles) {
+    try {
+        reconstruct_in_tiles(view_of(cloud), {.depth = 6}, tiles);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+} // namespace
+
+TEST_CASE("tiles of any size give the mesh of the run in one piece, bit for bit", "[pipeline]") {
+    PointCloud cloud = scan_for_tiles(GENERATE(false, true));
+    SECTION("as it is") {}
+    SECTION("with duplicates and points that are not finite") {
+        for (std::size_t i = 0; i < 100; ++i) {
+            cloud.positions.push_back(cloud.positions[37 * i]);
+            cloud.normals.push_back(cloud.normals[37 * i]);
+        }
+        cloud.positions[5][1] = std::numeric_limits<double>::quiet_NaN();
+    }
+    SECTION("with normals that point into the part") {
+        for (Vec3& n : cloud.normals) n = -n;
+    }
+    const ReconstructOptions options{.depth = 6};
+    const Reconstruction whole = reconstruct(cloud, options);
+    std::size_t before = 0;
+    for (const std::size_t points : {60000u, 25000u, 12000u}) {
+        INFO(points << " points a tile");
+        TileReport how;
+        check_same_as_whole(whole, reconstruct_in_tiles(view_of(cloud), options, tiles_of(points), &how));
+        CHECK(how.tiles > before);
+        before = how.tiles;
+    }
+}
+
+TEST_CASE("points that come in many parts are the same cloud", "[pipeline]") {
+    const PointCloud cloud = scan_for_tiles(false);
+    const PointParts parts = [&](const auto& visit) {
+        for (std::size_t first = 0; first < cloud.size(); first += 7000) {
+            PointCloud part;
+            for (std::size_t i = first; i < std::min(cloud.size(), first + 7000); ++i) {
+                part.positions.push_back(cloud.positions[i]);
+                part.normals.push_back(cloud.normals[i]);
+            }
+            visit(view_of(part));
+        }
+    };
+    const ReconstructOptions options{.depth = 6};
+    check_same_as_whole(reconstruct(cloud, options), reconstruct_in_tiles(parts, options, tiles_of(25000)));
+}
+
+TEST_CASE("neighbours that know too little around them to agree are made again with more", "[pipeline]") {
+    const PointCloud cloud = scan_for_tiles(true);
+    const ReconstructOptions options{.depth = 6};
+    TileOptions tiles = tiles_of(12000);
+    tiles.ghost_voxels = 4;
+    TileReport how;
+    check_same_as_whole(reconstruct(cloud, options),
+                        reconstruct_in_tiles(view_of(cloud), options, tiles, &how));
+    CHECK(how.widened > 0);
+}
+
+TEST_CASE("what tiles cannot tell is refused, with the reason", "[pipeline]") {
+    PointCloud cloud = scan_for_tiles(false);
+    const TileOptions tiles = tiles_of(25000);
+    SECTION("an outlier") {
+        cloud.positions.push_back({0.9, 0.9, 0.9});
+        cloud.normals.push_back({0, 0, 1});
+        CHECK(refusal(cloud, tiles).find("in one piece") != std::string::npos);
+    }
+    SECTION("normals that contradict each other") {
+        for (std::size_t i = 0; i < cloud.normals.size(); i += 3) cloud.normals[i] = -cloud.normals[i];
+        CHECK(refusal(cloud, tiles).find("contradict") != std::string::npos);
+    }
+    SECTION("no normals") {
+        cloud.normals.clear();
+        CHECK(refusal(cloud, tiles).find("no normals") != std::string::npos);
+    }
+    SECTION("too little memory for the mesh") {
+        TileOptions small;
+        small.memory = 1000000;
+        CHECK(refusal(cloud, small).find("held in memory") != std::string::npos);
+    }
+    SECTION("no place for scratch") {
+        TileOptions lost = tiles;
+        lost.scratch = "/no/such/folder";
+        CHECK(refusal(cloud, lost).find("/no/such/folder") == 0);
+    }
+    SECTION("options") {
+        CHECK_THROWS_AS(reconstruct_in_tiles(view_of(cloud), {}, tiles), OptionError);
+        CHECK_THROWS_AS(reconstruct_in_tiles(view_of(cloud), {.depth = 6, .holes = Holes::close}, tiles),
+                        OptionError);
+    }
+}
+
+TEST_CASE("points that change between two passes are an error", "[pipeline]") {
+    const PointCloud cloud = scan_for_tiles(false);
+    PointCloud fewer = cloud;
+    fewer.positions.resize(30000);
+    fewer.normals.resize(30000);
+    int pass = 0;
+    const PointParts parts = [&](const auto& visit) { visit(view_of(pass++ == 0 ? cloud : fewer)); };
+    CHECK_THROWS_AS(reconstruct_in_tiles(parts, {.depth = 6}, tiles_of(25000)), Error);
+}
