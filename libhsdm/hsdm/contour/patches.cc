@@ -2,6 +2,7 @@
 
 #include "hsdm/contour/components.hh"
 #include "hsdm/contour/constants.hh"
+#include "hsdm/contour/middle_discs.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/core/parallel_sort.hh"
@@ -11,19 +12,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tuple>
 
 namespace hsdm {
 namespace {
-
-/// A disc of the middle surface of a wall or gap, seen from a point of one of its two sheets.
-struct Disc {
-    Vec3 middle;
-    Vec3 normal; ///< of that sheet
-    Vec3 point;  ///< of that sheet
-    double squared_radius;
-    bool is_gap; ///< the sheets face each other
-};
 
 /// Working space of one thread.
 struct PatchScratch {
@@ -38,16 +29,32 @@ struct PatchScratch {
         double cosine;
     };
     std::vector<Facing> facing; // a set
-    std::vector<Disc> discs;
-    std::vector<const Disc*> standing; // on each set that was asked for, one after the other
-    std::vector<std::array<std::size_t, 2>>
-        on; // per set, where in there; the end is 0 if it was not asked for
+    MiddleDiscs discs; // its places are the samples, then the centroids of the sets, which are its surfaces
     std::vector<std::pair<double, double>> places; // along a crease, and off its plane
+};
+
+/// The shortest of the ways that are offered; of equally long ones those that came first.
+class ShortestWays {
+public:
     struct Way {
         double squared_length;
-        std::size_t i, j;
+        std::size_t p, q;
     };
-    std::vector<Way> ways;
+
+    void offer(const Way& way) {
+        if (count_ == patches::ways) {
+            if (!(way.squared_length < ways_[count_ - 1].squared_length)) return;
+            --count_;
+        }
+        std::size_t at = count_++;
+        for (; at > 0 && way.squared_length < ways_[at - 1].squared_length; --at) ways_[at] = ways_[at - 1];
+        ways_[at] = way;
+    }
+    std::span<const Way> found() const { return {ways_.data(), count_}; }
+
+private:
+    std::array<Way, patches::ways> ways_;
+    std::size_t count_ = 0;
 };
 
 /// What lies round one voxel: the sets of the 27 voxels, samples of their points, and the discs of walls and
@@ -64,12 +71,10 @@ public:
         add_sets(voxel);
         own_ = at_.sets.size();
         for_neighbors(level_, voxel, [&](Index v) { add_sets(v); });
-        at_.discs.clear();
-        at_.standing.assign(1, nullptr); // so that no list ends at 0
-        at_.on.assign(size(), {0, 0});
         const bool opposed = any_opposed();
         if (!opposed && !beside) return false;
         take_samples();
+        at_.discs.reset(at_.samples.size() + size(), size());
         at_.spacings.assign(size(), -1);
         at_.has_row.assign(size(), 0);
         at_.one_sheet.resize(size() * size());
@@ -86,60 +91,26 @@ public:
         return {at_.samples.data() + at_.first_sample[i], at_.samples.data() + at_.first_sample[i + 1]};
     }
 
-    /// The walls and gaps that stand on a set. The span holds until another set is asked for the first time.
-    std::span<const Disc* const> standing_on(std::size_t i) const {
-        auto& [begin, end] = at_.on[i];
-        if (end == 0) {
-            begin = at_.standing.size();
-            for (const Disc& disc : at_.discs)
-                if (std::abs(set(i).normal | disc.normal) <= angles::halfway) at_.standing.push_back(&disc);
-            end = at_.standing.size();
-        }
-        return {at_.standing.data() + begin, at_.standing.data() + end};
+    /// Does a wall or gap stand on a set?
+    bool has_standing(std::size_t i) const { return at_.discs.stand_on(surface(i)); }
+    /// Does one of them part two samples, by their numbers, of a surface with the normal of a set?
+    bool parted(std::size_t p, std::size_t q, std::size_t i) const {
+        return at_.discs.part({p, at_.samples[p]}, {q, at_.samples[q]}, surface(i));
     }
-
-    /// Does one of them part two points of a surface with this normal?
-    static bool parted(const Vec3& p, const Vec3& q, const Vec3& normal, std::span<const Disc* const> discs) {
-        std::array<unsigned, 2> seen{0, 0}; // sheets of walls, of gaps
-        const Vec3 way = q - p;
-        for (const Disc* one : discs) {
-            const Disc& disc = *one;
-            const double dp = disc.normal | (p - disc.middle), dq = disc.normal | (q - disc.middle);
-            if ((dp < 0) == (dq < 0)) continue;
-            const Vec3 x = p + way * (dp / (dp - dq));
-            if ((x - disc.middle).sqrnorm() > disc.squared_radius) continue;
-            // At the mouth of a gap its sheets lie below the surface, on the ground of a wall above it; the
-            // rim of a wall and the bottom of a gap, which join the two sheets, see them on the other side.
-            if (((normal | (disc.point - x)) < 0) != disc.is_gap) continue;
-            unsigned& sheets = seen[disc.is_gap];
-            sheets |= dp < 0 ? 1u : 2u;
-            if (sheets == 3) return true;
-        }
-        return false;
-    }
+    std::size_t first_sample(std::size_t i) const { return at_.first_sample[i]; }
 
     /// Of the shortest ways between two sets, are most parted?
     bool apart(std::size_t i, std::size_t j) {
-        const Vec3 &n = set(i).normal, &m = set(j).normal;
-        standing_on(j);
-        const auto on_i = standing_on(i), on_j = standing_on(j);
-        if (on_i.empty() && on_j.empty()) return false;
-        const auto p = samples(i), q = samples(j);
-        auto& ways = at_.ways;
-        ways.clear();
-        for (std::size_t a = 0; a < p.size(); ++a)
-            for (std::size_t b = 0; b < q.size(); ++b) ways.push_back({(q[b] - p[a]).sqrnorm(), a, b});
-        const std::size_t most = std::min(ways.size(), patches::ways);
-        std::partial_sort(ways.begin(), ways.begin() + static_cast<std::ptrdiff_t>(most), ways.end(),
-                          [](const auto& v, const auto& w) {
-                              return std::tuple(v.squared_length, v.i, v.j)
-                                     < std::tuple(w.squared_length, w.i, w.j);
-                          });
+        const bool on_i = has_standing(i), on_j = has_standing(j);
+        if (!on_i && !on_j) return false;
+        ShortestWays ways;
+        for (std::size_t p = first_sample(i); p < first_sample(i + 1); ++p)
+            for (std::size_t q = first_sample(j); q < first_sample(j + 1); ++q)
+                ways.offer({(at_.samples[q] - at_.samples[p]).sqrnorm(), p, q});
         std::size_t parted_ways = 0;
-        for (std::size_t k = 0; k < most; ++k)
-            parted_ways +=
-                parted(p[ways[k].i], q[ways[k].j], n, on_i) || parted(p[ways[k].i], q[ways[k].j], m, on_j);
-        return 2 * parted_ways > most;
+        for (const auto& [squared_length, p, q] : ways.found())
+            parted_ways += (on_i && parted(p, q, i)) || (on_j && parted(p, q, j));
+        return 2 * parted_ways > ways.found().size();
     }
 
     /// Does the sheet of a set go on beyond the plane of another that it would meet in a crease, beside that
@@ -165,11 +136,12 @@ public:
         std::sort(places.begin(), places.end());
         const double here = along | b.centroid, far = patches::beside * level_.voxel_size;
         const double least = patches::goes_on_from * step, most = patches::goes_on_within * step;
-        const auto discs = standing_on(i);
+        const MiddleDiscs::Place middle{at_.samples.size() + i, a.centroid};
         unsigned beyond = 0, before = 0;
         for (std::size_t k = 0; k < size(); ++k) {
             if (!one_sheet(i, k)) continue;
-            for (const Vec3& p : samples(k)) {
+            for (std::size_t sample = first_sample(k); sample < first_sample(k + 1); ++sample) {
+                const Vec3& p = at_.samples[sample];
                 const double s = along | p, t = outward * (b.normal | (p - b.centroid));
                 if (std::abs(s - here) > far || std::abs(t) > most) continue;
                 if (std::abs(a.normal | (p - a.centroid)) > relations::smooth_gap * level_.voxel_size)
@@ -183,13 +155,15 @@ public:
                 }
                 if (lowest > highest) continue; // the other sheet is not there
                 before += t < lowest - least;
-                beyond += t > highest + least && !parted(a.centroid, p, a.normal, discs);
+                beyond += t > highest + least && !at_.discs.part(middle, {sample, p}, surface(i));
             }
         }
         return beyond >= points_of_plane && 2 * beyond >= before;
     }
 
 private:
+    MiddleDiscs::Surface surface(std::size_t i) const { return {i, set(i).normal}; }
+
     void add_sets(Index v) {
         for (Index s = sets_.first[v]; s < sets_.first[v + 1]; ++s) at_.sets.push_back(s);
     }
@@ -253,12 +227,13 @@ private:
     void add_discs(std::size_t i) {
         const NormalSet& a = set(i);
         const double h = level_.voxel_size;
-        const double radius = patches::reach * spacing(i);
-        if (radius == 0) return;
         at_.facing.clear();
         for (std::size_t j = 0; j < size(); ++j)
             if (const double cosine = a.normal | set(j).normal; j != i && cosine < angles::opposed)
                 at_.facing.push_back({set(j).normal, set(j).centroid, cosine});
+        if (at_.facing.empty()) return;
+        const double radius = patches::reach * spacing(i);
+        if (radius == 0) return;
         for (const Vec3& p : samples(i)) {
             double nearest[2] = {patches::widest * h, patches::widest * h}; // behind, before
             for (const auto& [normal, centroid, cosine] : at_.facing) {
@@ -270,8 +245,8 @@ private:
             }
             for (unsigned before : {0u, 1u})
                 if (nearest[before] < patches::widest * h)
-                    at_.discs.push_back({p + a.normal * ((before ? 0.5 : -0.5) * nearest[before]), a.normal,
-                                         p, radius * radius, before == 1});
+                    at_.discs.add({p + a.normal * ((before ? 0.5 : -0.5) * nearest[before]), a.normal, p,
+                                   radius * radius, before == 1});
         }
     }
 
@@ -287,14 +262,11 @@ private:
 /// nearest sample. Returns the number of patches.
 std::size_t connect_samples(const Neighborhood& around, std::size_t i, std::vector<std::uint8_t>& patch) {
     const auto samples = around.samples(i);
-    const Vec3& normal = around.set(i).normal;
-    const auto discs = around.standing_on(i);
+    const std::size_t first = around.first_sample(i);
     patch.resize(samples.size());
     return label_components(
         samples.size(), [&](std::size_t k) -> std::uint8_t& { return patch[k]; },
-        [&](std::size_t k, std::size_t j) {
-            return !Neighborhood::parted(samples[k], samples[j], normal, discs);
-        });
+        [&](std::size_t k, std::size_t j) { return !around.parted(first + k, first + j, i); });
 }
 
 /// Voxels whose points lie on several sheets, by which alone anything ends.

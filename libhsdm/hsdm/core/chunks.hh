@@ -43,10 +43,15 @@ void for_chunks(std::size_t n, std::size_t chunk_size, F&& f) {
     });
 }
 
-/// Calls f(i) for each index i below n, in parallel by chunks.
+/// Of few items smaller chunks, so that there is work for all threads: where nothing depends on the chunks.
+inline std::size_t chunk_of_few(std::size_t n, std::size_t chunk_size) {
+    return std::clamp(n / 16, std::max<std::size_t>(1, chunk_size / 16), chunk_size);
+}
+
+/// Calls f(i) for each index i below n, in parallel by chunks of that size, or less where they would be few.
 template <class F>
 void for_each_index(std::size_t n, std::size_t chunk_size, F&& f) {
-    for_chunks(n, chunk_size, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for_chunks(n, chunk_of_few(n, chunk_size), [&](std::size_t begin, std::size_t end, std::size_t) {
         for (auto i = static_cast<Index>(begin); i < end; ++i) f(i);
     });
 }
@@ -64,9 +69,10 @@ std::vector<T> joined(const std::vector<std::vector<T>>& parts) {
 }
 
 /// What f(begin, end, part) appends to `part` for consecutive ranges of [0, n), one after the other; in
-/// parallel.
+/// parallel, by chunks of that size, or less where they would be few.
 template <class T, class F>
 std::vector<T> collected(std::size_t n, std::size_t chunk_size, F&& f) {
+    chunk_size = chunk_of_few(n, chunk_size);
     std::vector<std::vector<T>> parts(chunk_count(n, chunk_size));
     for_chunks(n, chunk_size,
                [&](std::size_t begin, std::size_t end, std::size_t chunk) { f(begin, end, parts[chunk]); });

@@ -1,0 +1,117 @@
+#include "hsdm/contour/middle_discs.hh"
+
+#include "hsdm/core/constants.hh"
+#include "hsdm/core/lanes.hh"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+namespace hsdm {
+namespace {
+
+constexpr std::size_t bits = 64;
+
+Double2 pair_at(const double* values) {
+    Double2 pair;
+    std::memcpy(&pair, values, sizeof pair);
+    return pair;
+}
+
+/// Whether a place is behind each of 64 discs: the sign of normal | (place - middle), by its terms in this
+/// order.
+std::uint64_t behind(const double* flat, const Vec3& place) {
+    const Double2 x = Double2{} + place[0], y = Double2{} + place[1], z = Double2{} + place[2];
+    std::uint64_t result = 0;
+    for (std::size_t k = 0; k < bits; k += 2) {
+        const auto row = [&](std::size_t axis) { return pair_at(flat + axis * bits + k); };
+        const Double2 height = row(0) * (x - row(3)) + row(1) * (y - row(4)) + row(2) * (z - row(5));
+        result |= std::uint64_t{lanes_of_two(height < Double2{})} << k;
+    }
+    return result;
+}
+
+} // namespace
+
+void MiddleDiscs::reset(std::size_t places, std::size_t surfaces) {
+    discs_.clear();
+    words_ = 0;
+    place_count_ = places;
+    surface_count_ = surfaces;
+}
+
+/// Discs that fill up the last word are all zeros: no place is behind one.
+void MiddleDiscs::lay_out() {
+    words_ = (discs_.size() + bits - 1) / bits;
+    flat_.assign(words_ * 6 * bits, 0);
+    for (std::size_t d = 0; d < discs_.size(); ++d) {
+        double* const at = flat_.data() + d / bits * 6 * bits + d % bits;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            at[axis * bits] = discs_[d].normal[axis];
+            at[(axis + 3) * bits] = discs_[d].middle[axis];
+        }
+    }
+    sides_.resize(place_count_ * words_);
+    standing_.resize(surface_count_ * words_);
+    has_sides_.assign(place_count_, Known::no);
+    has_standing_.assign(surface_count_, Known::no);
+}
+
+const MiddleDiscs::Word* MiddleDiscs::sides(const Place& place) {
+    Word* const row = sides_.data() + place.number * words_;
+    Known& known = has_sides_[place.number];
+    if (known == Known::no)
+        for (std::size_t w = 0; w < words_; ++w) row[w] = behind(flat_.data() + w * 6 * bits, place.position);
+    known = Known::yes;
+    return row;
+}
+
+/// Null if none stands on the surface.
+const MiddleDiscs::Word* MiddleDiscs::standing(const Surface& surface) {
+    if (discs_.empty()) return nullptr;
+    if (words_ == 0) lay_out();
+    Word* const row = standing_.data() + surface.number * words_;
+    Known& known = has_standing_[surface.number];
+    if (known == Known::no) {
+        std::fill_n(row, words_, 0);
+        known = Known::none;
+        for (std::size_t d = 0; d < discs_.size(); ++d) {
+            if (!(std::abs(surface.normal | discs_[d].normal) <= angles::halfway)) continue;
+            row[d / bits] |= Word{1} << d % bits;
+            known = Known::yes;
+        }
+    }
+    return known == Known::yes ? row : nullptr;
+}
+
+bool MiddleDiscs::stand_on(const Surface& surface) {
+    return standing(surface) != nullptr;
+}
+
+bool MiddleDiscs::part(const Place& p, const Place& q, const Surface& surface) {
+    const Word* const here = standing(surface);
+    if (here == nullptr) return false;
+    const Word *const behind_p = sides(p), *const behind_q = sides(q);
+    std::array<unsigned, 2> seen{0, 0}; // sheets of walls, of gaps
+    const Vec3 way = q.position - p.position;
+    for (std::size_t w = 0; w < words_; ++w) {
+        for (Word crossed = (behind_p[w] ^ behind_q[w]) & here[w]; crossed != 0; crossed &= crossed - 1) {
+            const MiddleDisc& disc = discs_[w * bits + static_cast<std::size_t>(std::countr_zero(crossed))];
+            const double dp = disc.normal | (p.position - disc.middle),
+                         dq = disc.normal | (q.position - disc.middle);
+            const Vec3 x = p.position + way * (dp / (dp - dq));
+            if ((x - disc.middle).sqrnorm() > disc.squared_radius) continue;
+            // At the mouth of a gap its sheets lie below the surface, on the ground of a wall above it; the
+            // rim of a wall and the bottom of a gap, which join the two sheets, see them on the other side.
+            if (((surface.normal | (disc.point - x)) < 0) != disc.is_gap) continue;
+            unsigned& sheets = seen[disc.is_gap];
+            sheets |= dp < 0 ? 1u : 2u;
+            if (sheets == 3) return true;
+        }
+    }
+    return false;
+}
+
+} // namespace hsdm

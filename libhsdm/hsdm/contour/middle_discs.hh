@@ -1,0 +1,61 @@
+#pragma once
+// Walls and gaps thinner than a voxel, as discs of the surface midway between their two sheets: what they
+// part.
+
+#include "hsdm/types.hh"
+
+#include <cstdint>
+#include <vector>
+
+namespace hsdm {
+
+/// A disc of the middle surface of a wall or gap, seen from a point of one of its two sheets.
+struct MiddleDisc {
+    Vec3 middle;
+    Vec3 normal; ///< of that sheet
+    Vec3 point;  ///< of that sheet
+    double squared_radius;
+    bool is_gap; ///< the sheets face each other
+};
+
+/// The discs round one voxel. Places and surfaces near them have numbers, as each is asked for with many
+/// others: on which sides of the discs a place lies and which stand on a surface is looked up once.
+class MiddleDiscs {
+public:
+    struct Place {
+        std::size_t number;
+        const Vec3& position;
+    };
+    struct Surface {
+        std::size_t number;
+        const Vec3& normal;
+    };
+
+    /// Without discs, for so many places and surfaces.
+    void reset(std::size_t places, std::size_t surfaces);
+    /// Before the first question.
+    void add(const MiddleDisc& disc) { discs_.push_back(disc); }
+    bool empty() const { return discs_.empty(); }
+
+    /// Does any wall or gap stand on a surface: across it rather than along it?
+    bool stand_on(const Surface& surface);
+    /// Does one that stands on a surface part two places on it?
+    bool part(const Place& p, const Place& q, const Surface& surface);
+
+private:
+    using Word = std::uint64_t; ///< a bit for each of 64 discs
+
+    void lay_out();
+    const Word* sides(const Place& place);
+    const Word* standing(const Surface& surface);
+
+    std::size_t place_count_ = 0, surface_count_ = 0;
+    std::vector<MiddleDisc> discs_;
+    std::size_t words_ = 0;              // of a row; 0: not laid out yet
+    std::vector<double> flat_;           // of 64 discs six rows: of their normals and their middles
+    std::vector<Word> sides_, standing_; // a row for each place, for each surface
+    enum class Known : std::uint8_t { no, yes, none };
+    std::vector<Known> has_sides_, has_standing_; // none: known that it has no bit
+};
+
+} // namespace hsdm
