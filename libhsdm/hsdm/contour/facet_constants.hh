@@ -130,4 +130,8 @@ HSDM_TUNED double most_tilted = 0.4;
 /// Why: half of end_band.
 HSDM_TUNED double most_tilt = 0.125;
 
+/// points: round an edge, whose chords are looked at, evenly taken.
+/// Why: each is compared with each; at eight a voxel an edge has some fifty.
+inline constexpr std::size_t most_compared = 256;
+
 } // namespace hsdm::edge_hints

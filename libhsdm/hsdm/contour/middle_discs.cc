@@ -14,10 +14,11 @@ namespace {
 
 constexpr std::size_t bits = 64;
 
-Double2 pair_at(const double* values) {
-    Double2 pair;
-    std::memcpy(&pair, values, sizeof pair);
-    return pair;
+template <class Lanes, class Value>
+Lanes lanes_at(const Value* values) {
+    Lanes lanes;
+    std::memcpy(&lanes, values, sizeof lanes);
+    return lanes;
 }
 
 /// Whether a place is behind each of 64 discs: the sign of normal | (place - middle), by its terms in this
@@ -26,32 +27,56 @@ std::uint64_t behind(const double* flat, const Vec3& place) {
     const Double2 x = Double2{} + place[0], y = Double2{} + place[1], z = Double2{} + place[2];
     std::uint64_t result = 0;
     for (std::size_t k = 0; k < bits; k += 2) {
-        const auto row = [&](std::size_t axis) { return pair_at(flat + axis * bits + k); };
+        const auto row = [&](std::size_t axis) { return lanes_at<Double2>(flat + axis * bits + k); };
         const Double2 height = row(0) * (x - row(3)) + row(1) * (y - row(4)) + row(2) * (z - row(5));
         result |= std::uint64_t{lanes_of_two(height < Double2{})} << k;
     }
     return result;
 }
 
+/// Of the marked ones of 64 discs those that a way may meet: no farther from its middle than half of its
+/// length and their radius, in single precision and so generously.
+std::uint64_t near_way(const float* flat, std::uint64_t marked, const std::array<float, 3>& middle,
+                       float half) {
+    constexpr float generous = 1.001f; // coordinates of a few voxels are off by a ten thousandth of that
+    const Float4 x = Float4{} + middle[0], y = Float4{} + middle[1], z = Float4{} + middle[2];
+    std::uint64_t result = 0;
+    for (std::size_t k = 0; k < bits; k += 4) {
+        if ((marked >> k & 15) == 0) continue;
+        const auto row = [&](std::size_t axis) { return lanes_at<Float4>(flat + axis * bits + k); };
+        const Float4 reach = (row(3) + half) * generous;
+        const Float4 squared = square(row(0) - x) + square(row(1) - y) + square(row(2) - z);
+        result |= std::uint64_t{lanes_of(squared <= square(reach))} << k;
+    }
+    return result & marked;
+}
+
 } // namespace
 
-void MiddleDiscs::reset(std::size_t places, std::size_t surfaces) {
+void MiddleDiscs::reset(std::size_t places, std::size_t surfaces, const Vec3& amid, double voxel_size) {
     discs_.clear();
     words_ = 0;
     place_count_ = places;
     surface_count_ = surfaces;
+    amid_ = amid;
+    per_voxel_ = 1 / voxel_size;
 }
 
 /// Discs that fill up the last word are all zeros: no place is behind one.
 void MiddleDiscs::lay_out() {
     words_ = (discs_.size() + bits - 1) / bits;
     flat_.assign(words_ * 6 * bits, 0);
+    near_.assign(words_ * 4 * bits, 0);
     for (std::size_t d = 0; d < discs_.size(); ++d) {
         double* const at = flat_.data() + d / bits * 6 * bits + d % bits;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             at[axis * bits] = discs_[d].normal[axis];
             at[(axis + 3) * bits] = discs_[d].middle[axis];
         }
+        const Vec3 from = (discs_[d].middle - amid_) * per_voxel_;
+        float* const near = near_.data() + d / bits * 4 * bits + d % bits;
+        for (std::size_t axis = 0; axis < 3; ++axis) near[axis * bits] = static_cast<float>(from[axis]);
+        near[3 * bits] = static_cast<float>(std::sqrt(discs_[d].squared_radius) * per_voxel_);
     }
     sides_.resize(place_count_ * words_);
     standing_.resize(surface_count_ * words_);
@@ -95,9 +120,14 @@ bool MiddleDiscs::part(const Place& p, const Place& q, const Surface& surface) {
     if (here == nullptr) return false;
     const Word *const behind_p = sides(p), *const behind_q = sides(q);
     std::array<unsigned, 2> seen{0, 0}; // sheets of walls, of gaps
-    const Vec3 way = q.position - p.position;
+    const Vec3 way = q.position - p.position, middle = (p.position + way * 0.5 - amid_) * per_voxel_;
+    const std::array<float, 3> of_way{static_cast<float>(middle[0]), static_cast<float>(middle[1]),
+                                      static_cast<float>(middle[2])};
+    const auto half = static_cast<float>(0.5 * way.norm() * per_voxel_);
     for (std::size_t w = 0; w < words_; ++w) {
-        for (Word crossed = (behind_p[w] ^ behind_q[w]) & here[w]; crossed != 0; crossed &= crossed - 1) {
+        Word crossed = (behind_p[w] ^ behind_q[w]) & here[w];
+        if (crossed != 0) crossed = near_way(near_.data() + w * 4 * bits, crossed, of_way, half);
+        for (; crossed != 0; crossed &= crossed - 1) {
             const MiddleDisc& disc = discs_[w * bits + static_cast<std::size_t>(std::countr_zero(crossed))];
             const double dp = disc.normal | (p.position - disc.middle),
                          dq = disc.normal | (q.position - disc.middle);

@@ -31,8 +31,8 @@ public:
         const Vec3& normal;
     };
 
-    /// Without discs, for so many places and surfaces.
-    void reset(std::size_t places, std::size_t surfaces);
+    /// Without discs, for so many places and surfaces, all within a few voxels of one of these places.
+    void reset(std::size_t places, std::size_t surfaces, const Vec3& amid, double voxel_size);
     /// Before the first question.
     void add(const MiddleDisc& disc) { discs_.push_back(disc); }
     bool empty() const { return discs_.empty(); }
@@ -50,9 +50,12 @@ private:
     const Word* standing(const Surface& surface);
 
     std::size_t place_count_ = 0, surface_count_ = 0;
+    Vec3 amid_{0, 0, 0};
+    double per_voxel_ = 0;
     std::vector<MiddleDisc> discs_;
-    std::size_t words_ = 0;              // of a row; 0: not laid out yet
-    std::vector<double> flat_;           // of 64 discs six rows: of their normals and their middles
+    std::size_t words_ = 0;    // of a row; 0: not laid out yet
+    std::vector<double> flat_; // of 64 discs six rows: of their normals and their middles
+    std::vector<float> near_;  // of 64 discs four rows: of their middles, from amid_, and radii, in voxels
     std::vector<Word> sides_, standing_; // a row for each place, for each surface
     enum class Known : std::uint8_t { no, yes, none };
     std::vector<Known> has_sides_, has_standing_; // none: known that it has no bit

@@ -74,7 +74,7 @@ public:
         const bool opposed = any_opposed();
         if (!opposed && !beside) return false;
         take_samples();
-        at_.discs.reset(at_.samples.size() + size(), size());
+        at_.discs.reset(at_.samples.size() + size(), size(), set(0).centroid, level_.voxel_size);
         at_.spacings.assign(size(), -1);
         at_.has_row.assign(size(), 0);
         at_.one_sheet.resize(size() * size());
@@ -217,7 +217,9 @@ private:
     bool one_sheet(std::size_t i, std::size_t j) {
         std::uint8_t* const row = at_.one_sheet.data() + i * size();
         if (!at_.has_row[i]) {
-            for (std::size_t k = 0; k < size(); ++k) row[k] = k == i || related_.smooth(set(i), set(k));
+            for (std::size_t k = 0; k < size(); ++k)
+                row[k] = at_.has_row[k] ? at_.one_sheet[k * size() + i]
+                                        : k == i || related_.smooth(set(i), set(k));
             at_.has_row[i] = 1;
         }
         return row[j];
