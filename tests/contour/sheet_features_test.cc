@@ -171,6 +171,29 @@ TEST_CASE("normals smeared across creases leave the decision to the dihedral tes
     CHECK(sheets.sharp_edges >= dihedral.sharp_edges);
 }
 
+TEST_CASE("edges amid a thousand points a voxel are judged as those amid few", "[contour]") {
+    const Part bent(rough_scan(support::torus(1, 0.2), 600000), 0.12);
+    CHECK(bent.features.smooth > 10);
+    CHECK(bent.features.doubtful == 0);
+
+    PointCloud box = rough_scan(support::box({1, 0.8, 0.6}), 300000);
+    const Part creased(box, 0.1);
+    CHECK(creased.features.sharp > 50);
+    CHECK(creased.features.doubtful == 0);
+    constexpr double reach = 0.08; // within it normals are blended with those of the next face
+    const Vec3 half(0.5, 0.4, 0.3);
+    for (std::size_t i = 0; i < box.size(); ++i) {
+        const Vec3& p = box.positions[i];
+        Vec3 blend;
+        for (unsigned k = 0; k < 3; ++k)
+            blend[k] = std::copysign(std::max(0.0, std::abs(p[k]) - half[k] + reach), p[k]);
+        box.normals[i] = blend.normalized();
+    }
+    const Part smeared_box(box, 0.1);
+    CHECK(smeared_box.features.doubtful > 10);
+    CHECK(smeared_box.features.smooth == 0);
+}
+
 TEST_CASE("features are the same whichever way the normals point", "[contour]") {
     const PointCloud outward = rough_scan(pocket_block().placed(support::random_pose(2)), 15000);
     PointCloud inward = outward;

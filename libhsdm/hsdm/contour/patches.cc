@@ -31,6 +31,11 @@ struct PatchScratch {
     std::vector<Facing> facing; // a set
     MiddleDiscs discs; // its places are the samples, then the centroids of the sets, which are its surfaces
     std::vector<std::pair<double, double>> places; // along a crease, and off its plane
+    struct NearCrease {
+        double along, beyond;
+        std::size_t sample;
+    };
+    std::vector<NearCrease> near;
 };
 
 /// The shortest of the ways that are offered; of equally long ones those that came first.
@@ -123,21 +128,11 @@ public:
         const double sine = cross.norm();
         const Vec3 along = cross / sine;
         const double outward = (crease == Relation::convex ? 1 : -1) / sine;
-        // Where the other sheet is near the crease: the place along it, and how far off the plane, for
-        // normals have errors.
-        auto& places = at_.places;
-        places.clear();
-        for (std::size_t k = 0; k < size(); ++k) {
-            if (!one_sheet(j, k)) continue;
-            for (const Vec3& q : samples(k))
-                if (std::abs(a.normal | (q - a.centroid)) < patches::beside * level_.voxel_size)
-                    places.emplace_back(along | q, outward * (b.normal | (q - b.centroid)));
-        }
-        std::sort(places.begin(), places.end());
         const double here = along | b.centroid, far = patches::beside * level_.voxel_size;
         const double least = patches::goes_on_from * step, most = patches::goes_on_within * step;
-        const MiddleDiscs::Place middle{at_.samples.size() + i, a.centroid};
-        unsigned beyond = 0, before = 0;
+        // Points of the sheet near the crease: where along it, and how far beyond the other's plane.
+        auto& near = at_.near;
+        near.clear();
         for (std::size_t k = 0; k < size(); ++k) {
             if (!one_sheet(i, k)) continue;
             for (std::size_t sample = first_sample(k); sample < first_sample(k + 1); ++sample) {
@@ -146,17 +141,37 @@ public:
                 if (std::abs(s - here) > far || std::abs(t) > most) continue;
                 if (std::abs(a.normal | (p - a.centroid)) > relations::smooth_gap * level_.voxel_size)
                     continue;
-                double lowest = most, highest = -most;
-                for (auto place =
-                         std::lower_bound(places.begin(), places.end(), std::pair(s - 0.5 * step, -most));
-                     place != places.end() && place->first <= s + 0.5 * step; ++place) {
-                    lowest = std::min(lowest, place->second);
-                    highest = std::max(highest, place->second);
-                }
-                if (lowest > highest) continue; // the other sheet is not there
-                before += t < lowest - least;
-                beyond += t > highest + least && !at_.discs.part(middle, {sample, p}, surface(i));
+                near.push_back({s, t, sample});
             }
+        }
+        if (near.size() < points_of_plane) return false;
+        // Where the other sheet is near the crease: the place along it, and how far off the plane, for
+        // normals have errors.
+        auto& places = at_.places;
+        places.clear();
+        for (std::size_t k = 0; k < size(); ++k) {
+            if (!one_sheet(j, k)) continue;
+            for (const Vec3& q : samples(k))
+                if (std::abs(a.normal | (q - a.centroid)) < far)
+                    if (const double s = along | q;
+                        std::abs(s - here) < far + step) // what is looked up below
+                        places.emplace_back(s, outward * (b.normal | (q - b.centroid)));
+        }
+        std::sort(places.begin(), places.end());
+        const MiddleDiscs::Place middle{at_.samples.size() + i, a.centroid};
+        unsigned beyond = 0, before = 0;
+        for (const auto& [s, t, sample] : near) {
+            double lowest = most, highest = -most;
+            for (auto place =
+                     std::lower_bound(places.begin(), places.end(), std::pair(s - 0.5 * step, -most));
+                 place != places.end() && place->first <= s + 0.5 * step; ++place) {
+                lowest = std::min(lowest, place->second);
+                highest = std::max(highest, place->second);
+            }
+            if (lowest > highest) continue; // the other sheet is not there
+            before += t < lowest - least;
+            beyond +=
+                t > highest + least && !at_.discs.part(middle, {sample, at_.samples[sample]}, surface(i));
         }
         return beyond >= points_of_plane && 2 * beyond >= before;
     }
@@ -186,10 +201,12 @@ private:
         for (std::size_t i = 0; i < size(); ++i) {
             const NormalSet& s = set(i);
             const Index stride = (s.count + patches::most_samples - 1) / patches::most_samples;
-            Index rank = 0;
-            for (Index k = level_.first_point[s.voxel]; k < level_.first_point[s.voxel + 1]; ++k)
-                if (sets_.of_point[k] == at_.sets[i] && rank++ % stride == 0)
-                    at_.samples.push_back(octree_.positions[k]);
+            Index skipped = 0; // points of the set until the next sample
+            for (Index k = level_.first_point[s.voxel]; k < level_.first_point[s.voxel + 1]; ++k) {
+                if (sets_.of_point[k] != at_.sets[i] || skipped-- > 0) continue;
+                at_.samples.push_back(octree_.positions[k]);
+                skipped = stride - 1;
+            }
             at_.first_sample.push_back(static_cast<Index>(at_.samples.size()));
         }
     }

@@ -65,8 +65,8 @@ public:
 
     /// Counts the points with normals in between, and those of them whose normals contradict the chords to
     /// the points close by. On a smooth arc a chord is perpendicular to the sum of the normals at its ends;
-    /// if normals are smeared across a crease, they turn while the points run straight on. Of many points some
-    /// are looked at, and no others left.
+    /// if normals are smeared across a crease, they turn while the points run straight on. Of many points
+    /// some are looked at, and no others left.
     void count_tilted(std::size_t& middle, std::size_t& tilted) {
         leave_few();
         for (const Point& p : points_) {
