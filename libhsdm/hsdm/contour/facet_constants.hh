@@ -130,8 +130,8 @@ HSDM_TUNED double most_tilted = 0.4;
 /// Why: half of end_band.
 HSDM_TUNED double most_tilt = 0.125;
 
-/// points: round an edge, whose chords are looked at, evenly taken.
-/// Why: each is compared with each; at eight a voxel an edge has some fifty.
-inline constexpr std::size_t most_compared = 256;
+/// points: round an edge, whose chords are looked at, and those that these lead to; both evenly taken.
+/// Why: at eight a voxel an edge has some fifty; the chords of one point say less where they are few.
+inline constexpr std::size_t most_compared = 256, most_chords = 2048;
 
 } // namespace hsdm::edge_hints

@@ -66,13 +66,14 @@ public:
     /// Counts the points with normals in between, and those of them whose normals contradict the chords to
     /// the points close by. On a smooth arc a chord is perpendicular to the sum of the normals at its ends;
     /// if normals are smeared across a crease, they turn while the points run straight on. Of many points
-    /// some are looked at, and no others left.
-    void count_tilted(std::size_t& middle, std::size_t& tilted) {
-        leave_few();
-        for (const Point& p : points_) {
+    /// some are looked at, evenly taken.
+    void count_tilted(std::size_t& middle, std::size_t& tilted) const {
+        const std::size_t stride = stride_for(edge_hints::most_compared);
+        for (std::size_t i = 0; i < points_.size(); i += stride) {
+            const Point& p = points_[i];
             if (!between(p)) continue;
-            ++middle;
-            tilted += std::abs(tilt(p)) > edge_hints::most_tilt * angle_;
+            middle += stride; // speaks for those between it and the next one
+            if (std::abs(tilt(p)) > edge_hints::most_tilt * angle_) tilted += stride;
         }
     }
 
@@ -83,13 +84,8 @@ private:
         bool near;
     };
 
-    void leave_few() {
-        const std::size_t stride =
-            (points_.size() + edge_hints::most_compared - 1) / edge_hints::most_compared;
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < points_.size(); i += stride) points_[kept++] = points_[i];
-        points_.resize(kept);
-    }
+    /// So that at most so many are taken of the points.
+    std::size_t stride_for(std::size_t most) const { return (points_.size() + most - 1) / most; }
 
     bool between(const Point& p) const {
         return p.direction >= edge_hints::end_band * angle_
@@ -98,7 +94,9 @@ private:
 
     double tilt(const Point& p) const {
         double rise = 0, run = 0;
-        for (const Point& q : points_) {
+        const std::size_t stride = stride_for(edge_hints::most_chords);
+        for (std::size_t i = 0; i < points_.size(); i += stride) {
+            const Point& q = points_[i];
             const double dx = q.x - p.x, dy = q.y - p.y, mean = 0.5 * (p.direction + q.direction);
             if (dx * dx + dy * dy
                 > edge_hints::chord * edge_hints::chord * level_.voxel_size * level_.voxel_size)
