@@ -1,10 +1,10 @@
 #include "hsdm/contour/middle_discs.hh"
 #include "hsdm/core/constants.hh"
+#include "support/random.hh"
 
 #include <catch2/catch.hpp>
 
 #include <array>
-#include <random>
 
 using namespace hsdm;
 
@@ -24,32 +24,31 @@ bool part_one_by_one(const std::vector<MiddleDisc>& discs, const Vec3& p, const 
     return (seen[0][0] && seen[0][1]) || (seen[1][0] && seen[1][1]);
 }
 
-struct Random {
-    std::mt19937_64 bits{7};
-    double number(double most) { return std::uniform_real_distribution<double>(-most, most)(bits); }
-    Vec3 vector(double most) { return {number(most), number(most), number(most)}; }
-};
+Vec3 within(support::Random& random, double most) {
+    const double x = random.uniform(-most, most), y = random.uniform(-most, most);
+    return {x, y, random.uniform(-most, most)};
+}
 
 } // namespace
 
 TEST_CASE("discs part the places that they part one by one, in any unit and anywhere", "[contour]") {
     for (const double voxel : {1.0, 0x1p-40, 0x1p60})
         for (const std::size_t count : {0u, 1u, 63u, 64u, 65u, 300u}) {
-            Random random;
-            const Vec3 amid = random.vector(1000 * voxel);
+            support::Random random(7);
+            const Vec3 amid = within(random, 1000 * voxel);
             std::vector<Vec3> places, normals;
-            for (int i = 0; i < 20; ++i) places.push_back(amid + random.vector(1.5 * voxel));
-            for (int i = 0; i < 8; ++i) normals.push_back(random.vector(1).normalized());
+            for (int i = 0; i < 20; ++i) places.push_back(amid + within(random, 1.5 * voxel));
+            for (int i = 0; i < 8; ++i) normals.push_back(random.direction());
             MiddleDiscs discs;
             std::vector<MiddleDisc> all;
             for (int twice = 0; twice < 2; ++twice) { // what is known of the first ones is forgotten
                 discs.reset(places.size(), normals.size(), amid, voxel);
                 all.clear();
                 for (std::size_t d = 0; d < count; ++d) {
-                    const Vec3 middle = amid + random.vector(1.5 * voxel);
-                    const double radius = (0.6 + random.number(0.4)) * voxel;
-                    all.push_back({middle, random.vector(1).normalized(), middle + random.vector(voxel),
-                                   radius * radius, random.number(1) > 0});
+                    const Vec3 middle = amid + within(random, 1.5 * voxel);
+                    const double radius = (0.6 + random.uniform(-0.4, 0.4)) * voxel;
+                    all.push_back({middle, random.direction(), middle + within(random, voxel),
+                                   radius * radius, random.uniform(-1, 1) > 0});
                     discs.add(all.back());
                 }
             }

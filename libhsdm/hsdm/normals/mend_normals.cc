@@ -123,6 +123,11 @@ bool NormalSample::holds(std::size_t i, std::size_t size) {
     return in_chunk < 2;
 }
 
+const NormalSample::Point& NormalSample::at(std::size_t i) const {
+    const auto found = std::lower_bound(number.begin(), number.end(), i);
+    return points[static_cast<std::size_t>(found - number.begin())];
+}
+
 NormalConsistency check_normals(const Octree& octree) {
     if (!octree.has_normals()) return {};
     const auto point = [&](std::size_t i) {
@@ -132,11 +137,8 @@ NormalConsistency check_normals(const Octree& octree) {
 }
 
 NormalConsistency check_normals(const NormalSample& sample, std::size_t size, double spacing) {
-    const auto point = [&](std::size_t i) {
-        const auto found = std::lower_bound(sample.number.begin(), sample.number.end(), i);
-        return sample.points[static_cast<std::size_t>(found - sample.number.begin())];
-    };
-    return check_pairs(size, point, spacing);
+    return check_pairs(
+        size, [&](std::size_t i) -> const NormalSample::Point& { return sample.at(i); }, spacing);
 }
 
 std::size_t mend_normals(Octree& octree, OrientOptions options) {

@@ -45,6 +45,7 @@ struct NormalSample {
     /// Is point `i` of a cloud of so many looked at?
     static bool holds(std::size_t i, std::size_t size);
     static std::size_t stride(std::size_t size); ///< from one to the next
+    const Point& at(std::size_t i) const;        ///< of the cloud, one that is looked at
 };
 /// The same of a sample of a cloud of `size` points of this spacing.
 NormalConsistency check_normals(const NormalSample& sample, std::size_t size, double spacing);

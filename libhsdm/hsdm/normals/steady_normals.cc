@@ -12,27 +12,36 @@
 namespace hsdm {
 namespace {
 
-double median_angle(const std::vector<Vec3>& normals) {
-    constexpr std::size_t samples = 1 << 14;
-    const std::size_t stride = normals.size() / samples + 1;
+/// Of pairs of each sampled point and its successor, those that check_normals() looks at. normal(i): of the
+/// cloud.
+template <class GetNormal>
+double median_angle(std::size_t size, const GetNormal& normal) {
+    const std::size_t stride = NormalSample::stride(size);
     std::vector<double> cosines;
-    for (std::size_t i = 0; i + 1 < normals.size(); i += stride)
-        if (normals[i].sqrnorm() > 0 && normals[i + 1].sqrnorm() > 0)
-            cosines.push_back(std::min(1.0, std::abs(normals[i] | normals[i + 1])));
+    for (std::size_t begin = 0; begin < size; begin += chunks::light)
+        for (std::size_t i = begin; i < std::min(begin + chunks::light, size - 1); i += stride) {
+            const Vec3 &n = normal(i), &m = normal(i + 1);
+            if (n.sqrnorm() > 0 && m.sqrnorm() > 0) cosines.push_back(std::min(1.0, std::abs(n | m)));
+        }
     if (cosines.empty()) return 0;
     const auto middle = cosines.begin() + static_cast<std::ptrdiff_t>(cosines.size() / 2);
     std::nth_element(cosines.begin(), middle, cosines.end());
     return std::acos(*middle);
 }
 
-} // namespace
-
-double scatter_of_normals(const Octree& octree) {
-    return median_angle(octree.normals);
+double median_angle(const std::vector<Vec3>& normals) {
+    return median_angle(normals.size(), [&](std::size_t i) -> const Vec3& { return normals[i]; });
 }
 
+} // namespace
+
 bool are_scattered(const Octree& octree) {
-    return scatter_of_normals(octree) > scattered_normals::least;
+    return median_angle(octree.normals) > scattered_normals::least;
+}
+
+bool are_scattered(const NormalSample& sample, std::size_t size) {
+    const auto normal = [&](std::size_t i) -> const Vec3& { return sample.at(i).normal; };
+    return median_angle(size, normal) > scattered_normals::least;
 }
 
 std::size_t steady_normals(Octree& octree) {
@@ -40,7 +49,7 @@ std::size_t steady_normals(Octree& octree) {
     const Neighbors neighbors = find_neighbors(octree);
     EstimatedNormals told = estimate_normals(octree, neighbors);
     told.normals = refined_normals(octree, neighbors, told);
-    if (median_angle(told.normals) > scattered_normals::share * scatter_of_normals(octree)) return 0;
+    if (median_angle(told.normals) > scattered_normals::share * median_angle(octree.normals)) return 0;
     for_each_index(octree.size(), chunks::light, [&](Index i) {
         if ((told.normals[i] | octree.normals[i]) < 0) told.normals[i] = -told.normals[i];
     });

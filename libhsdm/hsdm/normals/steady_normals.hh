@@ -1,16 +1,16 @@
 #pragma once
 // Given normals that scatter while the positions they belong to do not.
 
-#include "hsdm/octree/octree.hh"
+#include "hsdm/normals/mend_normals.hh"
 
 namespace hsdm {
 
-/// Median angle in radians between the axes of normals of successive points in octree order, from a sample; 0
-/// if there are none. What curvature makes of it is a few degrees.
-double scatter_of_normals(const Octree& octree);
-
-/// Whether normals scatter so much that steady_normals is worth a look.
+/// Whether normals scatter so much that steady_normals is worth a look: the median angle between the axes of
+/// points and their successors in octree order, or of a sample of them. What curvature makes of it is a few
+/// degrees.
 bool are_scattered(const Octree& octree);
+/// The same of a sample of a cloud of `size` points.
+bool are_scattered(const NormalSample& sample, std::size_t size);
 
 /// Gives normals the axes that the positions tell (estimate_normals), each with the side it had, where these
 /// scatter at most half as much: then only the given ones are noisy. A normal far from what positions tell

@@ -7,6 +7,7 @@
 #include "hsdm/errors.hh"
 #include "hsdm/io/scratch_points.hh"
 #include "hsdm/mesh/small_components.hh"
+#include "hsdm/normals/steady_normals.hh"
 #include "hsdm/pipeline/finish_mesh.hh"
 #include "hsdm/pipeline/measure.hh"
 #include "hsdm/pipeline/options.hh"
@@ -181,6 +182,8 @@ private:
         if (spans_no_surface(survey_->places(), cube_extent_)) refuse("too few points, or all on a line");
         if (has_far_points(survey_->places(), cube_extent_, spacing_))
             refuse("some points, or parts, are far from all others");
+        if (are_scattered(survey_->normals(), survey_->points()))
+            refuse("normals are noisy, and may have to be told by the positions");
         const NormalConsistency normals = check_normals(survey_->normals(), survey_->points(), spacing_);
         if (normals.doubtful()) refuse("normals contradict each other and must be turned to one side");
         if (normals.rough()) refuse("normals contradict positions, as those of noisy points do");
