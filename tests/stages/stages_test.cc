@@ -153,7 +153,10 @@ TEST_CASE("decimated, smoothed and divided, a part keeps its creases, its corner
     const Topology before = measure_topology(to_polygons(mesh));
     const std::set<std::array<double, 3>> corners = corner_places(mesh);
     REQUIRE(corners.size() == 8); // those of its block: where shafts meet it is no corner
-    for (const char* call : {"decimate:ratio=0.125", "smooth", "subdivide"}) {
+    // The rule for creases draws curved ones inward where they are divided: ten other scans keep 0.978 to
+    // 0.981.
+    for (const auto& [call, kept] : {std::pair("decimate:ratio=0.125", 0.99), std::pair("smooth", 0.99),
+                                     std::pair("subdivide", 0.975)}) {
         INFO(call << ": " << run(mesh, call));
         CHECK(fault_of(mesh) == "");
         std::ostringstream said;
@@ -162,7 +165,7 @@ TEST_CASE("decimated, smoothed and divided, a part keeps its creases, its corner
         CHECK(said.str() == "");
         CHECK(support::faults(to_polygons(mesh)) == "");
         CHECK(find_self_intersections(to_polygons(mesh)).facet_pairs.empty());
-        CHECK(marked_length(mesh) > 0.98 * length);
+        CHECK(marked_length(mesh) > kept * length);
         CHECK(corner_places(mesh) == corners);
         const Topology after = measure_topology(to_polygons(mesh));
         CHECK(after.euler == before.euler);
