@@ -212,7 +212,8 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
     app.add_option(
            "--memory", a.memory,
            "bytes (or 500M, 4G) of memory that are used at most: points lie sorted on disk and are worked "
-           "through in tiles, with the same result; with --depth and given normals (default: no bound)")
+           "through in tiles, with the same result; clouds that do not fit in one piece need --depth and "
+           "given normals (default: no bound)")
         ->type_name("SIZE")
         ->group(method);
     app.add_option("--scratch", a.scratch,
@@ -365,14 +366,17 @@ std::optional<TileOptions> ReconstructArguments::tiles() const {
     }
     const std::optional<std::size_t> bytes = bytes_of(memory);
     if (!bytes) throw UsageError("--memory " + memory + ": must be a number of bytes, or as 500M or 4G");
-    for (const auto& [given, option] :
-         {std::pair(!levels.empty(), "--levels"), {!stages.empty(), "--stage"}, {!html.empty(), "--html"}})
-        if (given) throw UsageError(std::string("--memory cannot come with ") + option + " yet");
     TileOptions tiles;
     tiles.memory = *bytes;
     tiles.scratch = scratch;
-    check_options(options(), tiles);
     return tiles;
+}
+
+void ReconstructArguments::check_for_tiles(const TileOptions& tiles) const {
+    for (const auto& [given, option] :
+         {std::pair(!levels.empty(), "--levels"), {!stages.empty(), "--stage"}, {!html.empty(), "--html"}})
+        if (given) throw UsageError(std::string("--memory cannot come with ") + option + " yet");
+    check_options(options(), tiles);
 }
 
 std::optional<std::pair<int, int>> ReconstructArguments::level_range() const {

@@ -49,9 +49,10 @@ struct ReconstructArguments {
 
     /// Options of the library; set after parsing. Throws UsageError for options that do not fit each other.
     ReconstructOptions options() const;
-    /// What bounds the memory, if something is to: --memory and --scratch. Throws UsageError, for options too
-    /// that do not go with it.
+    /// What bounds the memory, if something is to: --memory and --scratch. Throws UsageError.
     std::optional<TileOptions> tiles() const;
+    /// Throws UsageError and OptionError for what cannot be done in tiles.
+    void check_for_tiles(const TileOptions& tiles) const;
     /// First and last depth of --levels A:B; nothing if it was not given. Throws UsageError.
     std::optional<std::pair<int, int>> level_range() const;
 };

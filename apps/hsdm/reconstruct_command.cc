@@ -153,8 +153,13 @@ private:
         const auto start = Clock::now();
         ProgressBar bar(arguments_.progress, name);
         bar.show("read", 0);
-        if (tiles_) return make_in_tiles(input, name, bar);
-        PointFile file = read_points(input, arguments_.read);
+        std::optional<PointFile> read;
+        if (tiles_) {
+            PointsInParts points(input, arguments_.read);
+            if (!fits_in_one_piece(points.size())) return make_in_tiles(points, input, name, start, bar);
+            if (points.in_memory()) read = std::move(points).file();
+        }
+        PointFile file = read ? std::move(*read) : read_points(input, arguments_.read);
         const double read_seconds = seconds_since(start);
         PointCloud scan = scan_for_stages(stages_, file.cloud, options_.measure);
         if (!arguments_.html.empty() && scan.positions.empty()) scan.positions = file.cloud.positions;
@@ -184,6 +189,12 @@ private:
         return write_all({&result, 1});
     }
 
+    bool fits_in_one_piece(std::size_t points) const {
+        ReconstructOptions options = options_;
+        if (levels_) options.depth = levels_->second;
+        return hsdm::fits_in_one_piece(points, options, tiles_->memory);
+    }
+
     static std::function<bool(const char*, double)> shown_on(ProgressBar& bar) {
         return [&bar](const char* phase, double share) {
             set_phase(phase);
@@ -193,9 +204,9 @@ private:
     }
 
     /// The same in bounded memory. Reading is part of the other phases.
-    std::vector<Report> make_in_tiles(const std::string& input, const std::string& name, ProgressBar& bar) {
-        const auto start = Clock::now();
-        const PointsInParts points(input, arguments_.read);
+    std::vector<Report> make_in_tiles(const PointsInParts& points, const std::string& input,
+                                      const std::string& name, Clock::time_point start, ProgressBar& bar) {
+        arguments_.check_for_tiles(*tiles_);
         const double read_seconds = seconds_since(start);
         ReconstructOptions options = options_;
         options.progress = shown_on(bar);

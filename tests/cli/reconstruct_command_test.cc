@@ -194,15 +194,32 @@ TEST_CASE("what does not go with bounded memory is refused before any work", "[c
     const Folder folder;
     folder.write("scan.xyz", xyz(sphere_scan(500)));
     for (const char* option :
-         {"--memory 1G", "--memory much --depth 5", "--memory 0 --depth 5", "--scratch .",
-          "--memory 1G --depth 5 --normals estimate", "--memory 1G --depth 5 --holes close",
-          "--memory 1G --levels 4:5", "--memory 1G --max-error 1%", "--memory 1G --depth 5 --html a.html"}) {
+         {"--memory 1M", "--memory much --depth 5", "--memory 0 --depth 5", "--scratch .",
+          "--memory 1M --depth 5 --normals estimate", "--memory 1M --depth 5 --holes close",
+          "--memory 1M --levels 4:5", "--memory 1M --max-error 1%", "--memory 1M --depth 5 --html a.html"}) {
         const CommandResult result = run(folder, std::string("reconstruct scan.xyz -o a.off ") + option);
         INFO(option << ": " << result.err);
         CHECK(result.status == 2);
         CHECK(result.err != "");
     }
     CHECK(list(folder) == "scan.xyz\n");
+}
+
+TEST_CASE("a cloud that fits in the bounded memory is done in one piece, with any option", "[cli]") {
+    const Folder folder;
+    std::filesystem::create_directory(folder / "scratch");
+    folder.write("scan.xyz", xyz(sphere_scan(500)));
+    for (const char* option :
+         {"", "--normals estimate --depth 4", "--max-error 1% --stage quads", "--holes close"}) {
+        const std::string call = std::string("reconstruct scan.xyz --quiet ") + option;
+        INFO(call);
+        REQUIRE(run(folder, call + " -o one.ply").status == 0);
+        const CommandResult bounded = run(folder, call + " -o bounded.ply --memory 1G --scratch scratch");
+        CHECK(bounded.status == 0);
+        CHECK(bounded.err == "");
+        CHECK(read_file(folder / "bounded.ply") == read_file(folder / "one.ply"));
+    }
+    REQUIRE(run(folder, "reconstruct scan.xyz --quiet --levels 3:4 -o a.off --memory 1G").status == 0);
 }
 
 TEST_CASE("an error is kept with fewer facets, as a length or as a share of the diagonal", "[cli]") {

@@ -12,7 +12,7 @@
 namespace hsdm {
 namespace {
 
-constexpr std::size_t bits = 64;
+constexpr std::size_t word_bits = 64;
 
 template <class Lanes, class Value>
 Lanes lanes_at(const Value* values) {
@@ -26,8 +26,8 @@ Lanes lanes_at(const Value* values) {
 std::uint64_t behind(const double* flat, const Vec3& place) {
     const Double2 x = Double2{} + place[0], y = Double2{} + place[1], z = Double2{} + place[2];
     std::uint64_t result = 0;
-    for (std::size_t k = 0; k < bits; k += 2) {
-        const auto row = [&](std::size_t axis) { return lanes_at<Double2>(flat + axis * bits + k); };
+    for (std::size_t k = 0; k < word_bits; k += 2) {
+        const auto row = [&](std::size_t axis) { return lanes_at<Double2>(flat + axis * word_bits + k); };
         const Double2 height = row(0) * (x - row(3)) + row(1) * (y - row(4)) + row(2) * (z - row(5));
         result |= std::uint64_t{lanes_of_two(height < Double2{})} << k;
     }
@@ -41,9 +41,9 @@ std::uint64_t near_way(const float* flat, std::uint64_t marked, const std::array
     constexpr float generous = 1.001f; // coordinates of a few voxels are off by a ten thousandth of that
     const Float4 x = Float4{} + middle[0], y = Float4{} + middle[1], z = Float4{} + middle[2];
     std::uint64_t result = 0;
-    for (std::size_t k = 0; k < bits; k += 4) {
+    for (std::size_t k = 0; k < word_bits; k += 4) {
         if ((marked >> k & 15) == 0) continue;
-        const auto row = [&](std::size_t axis) { return lanes_at<Float4>(flat + axis * bits + k); };
+        const auto row = [&](std::size_t axis) { return lanes_at<Float4>(flat + axis * word_bits + k); };
         const Float4 reach = (row(3) + half) * generous;
         const Float4 squared = square(row(0) - x) + square(row(1) - y) + square(row(2) - z);
         result |= std::uint64_t{lanes_of(squared <= square(reach))} << k;
@@ -64,19 +64,19 @@ void MiddleDiscs::reset(std::size_t places, std::size_t surfaces, const Vec3& am
 
 /// Discs that fill up the last word are all zeros: no place is behind one.
 void MiddleDiscs::lay_out() {
-    words_ = (discs_.size() + bits - 1) / bits;
-    flat_.assign(words_ * 6 * bits, 0);
-    near_.assign(words_ * 4 * bits, 0);
+    words_ = (discs_.size() + word_bits - 1) / word_bits;
+    flat_.assign(words_ * 6 * word_bits, 0);
+    near_.assign(words_ * 4 * word_bits, 0);
     for (std::size_t d = 0; d < discs_.size(); ++d) {
-        double* const at = flat_.data() + d / bits * 6 * bits + d % bits;
+        double* const at = flat_.data() + d / word_bits * 6 * word_bits + d % word_bits;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            at[axis * bits] = discs_[d].normal[axis];
-            at[(axis + 3) * bits] = discs_[d].middle[axis];
+            at[axis * word_bits] = discs_[d].normal[axis];
+            at[(axis + 3) * word_bits] = discs_[d].middle[axis];
         }
         const Vec3 from = (discs_[d].middle - amid_) * per_voxel_;
-        float* const near = near_.data() + d / bits * 4 * bits + d % bits;
-        for (std::size_t axis = 0; axis < 3; ++axis) near[axis * bits] = static_cast<float>(from[axis]);
-        near[3 * bits] = static_cast<float>(std::sqrt(discs_[d].squared_radius) * per_voxel_);
+        float* const near = near_.data() + d / word_bits * 4 * word_bits + d % word_bits;
+        for (std::size_t axis = 0; axis < 3; ++axis) near[axis * word_bits] = static_cast<float>(from[axis]);
+        near[3 * word_bits] = static_cast<float>(std::sqrt(discs_[d].squared_radius) * per_voxel_);
     }
     sides_.resize(place_count_ * words_);
     standing_.resize(surface_count_ * words_);
@@ -88,7 +88,8 @@ const MiddleDiscs::Word* MiddleDiscs::sides(const Place& place) {
     Word* const row = sides_.data() + place.number * words_;
     Known& known = has_sides_[place.number];
     if (known == Known::no)
-        for (std::size_t w = 0; w < words_; ++w) row[w] = behind(flat_.data() + w * 6 * bits, place.position);
+        for (std::size_t w = 0; w < words_; ++w)
+            row[w] = behind(flat_.data() + w * 6 * word_bits, place.position);
     known = Known::yes;
     return row;
 }
@@ -104,7 +105,7 @@ const MiddleDiscs::Word* MiddleDiscs::standing(const Surface& surface) {
         known = Known::none;
         for (std::size_t d = 0; d < discs_.size(); ++d) {
             if (!(std::abs(surface.normal | discs_[d].normal) <= angles::halfway)) continue;
-            row[d / bits] |= Word{1} << d % bits;
+            row[d / word_bits] |= Word{1} << d % word_bits;
             known = Known::yes;
         }
     }
@@ -126,9 +127,10 @@ bool MiddleDiscs::part(const Place& p, const Place& q, const Surface& surface) {
     const auto half = static_cast<float>(0.5 * way.norm() * per_voxel_);
     for (std::size_t w = 0; w < words_; ++w) {
         Word crossed = (behind_p[w] ^ behind_q[w]) & here[w];
-        if (crossed != 0) crossed = near_way(near_.data() + w * 4 * bits, crossed, of_way, half);
+        if (crossed != 0) crossed = near_way(near_.data() + w * 4 * word_bits, crossed, of_way, half);
         for (; crossed != 0; crossed &= crossed - 1) {
-            const MiddleDisc& disc = discs_[w * bits + static_cast<std::size_t>(std::countr_zero(crossed))];
+            const MiddleDisc& disc =
+                discs_[w * word_bits + static_cast<std::size_t>(std::countr_zero(crossed))];
             const double dp = disc.normal | (p.position - disc.middle),
                          dq = disc.normal | (q.position - disc.middle);
             const Vec3 x = p.position + way * (dp / (dp - dq));

@@ -14,6 +14,8 @@ enum class TableKind { plain, pts, pwn, xyzrgb };
 /// XYZ, XYZN, XYZRGB, TXT, ASC, CSV, PTS, PWN: rows of numbers, with or without a header, a count, comments.
 PointFile read_table(const SourceBytes& bytes, TableKind kind, const std::string& columns);
 PointFile read_ply(const SourceBytes& bytes);
+/// The number of a binary file's vertices if these are of one size; nothing for other files.
+std::optional<std::size_t> ply_rows(const SourceBytes& bytes);
 /// Calls visit() with the vertices of a binary file whose vertices are of one size, so many at once; false,
 /// and nothing done, for other files.
 bool read_ply_in_parts(const SourceBytes& bytes, std::size_t points,

@@ -68,11 +68,17 @@ PlyVertices find_vertices(const SourceBytes& bytes) {
 
 } // namespace
 
+std::optional<std::size_t> ply_rows(const SourceBytes& bytes) {
+    if (!bytes.head().starts_with("ply")) return std::nullopt;
+    const PlyVertices found = find_vertices(bytes);
+    if (found.header.encoding == PlyEncoding::ascii || found.element().has_list()) return std::nullopt;
+    return found.element().count;
+}
+
 bool read_ply_in_parts(const SourceBytes& bytes, std::size_t points,
                        const std::function<void(const PointCloud&)>& visit) {
-    if (!bytes.head().starts_with("ply")) return false;
+    if (!ply_rows(bytes)) return false;
     const PlyVertices found = find_vertices(bytes);
-    if (found.header.encoding == PlyEncoding::ascii || found.element().has_list()) return false;
     const auto columns = columns_of(found.text, found.element());
     for (std::size_t first = 0; first < found.element().count; first += points)
         visit(read_ply_binary(bytes, found.header, found.vertex, columns, {first, points}));

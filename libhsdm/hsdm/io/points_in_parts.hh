@@ -4,6 +4,8 @@
 #include "hsdm/io/read_points.hh"
 
 #include <functional>
+#include <optional>
+#include <utility>
 
 namespace hsdm {
 
@@ -18,14 +20,15 @@ public:
     /// Calls visit(part) for all points in their order. Throws Error.
     void visit(const std::function<void(const PointCloud&)>& visit) const;
 
-    bool in_memory() const { return !in_parts_; }
-    const PointFile& file() const {
-        return file_;
-    } ///< what was read beside the cloud; if in_memory() this too
+    std::size_t size() const { return rows_ ? *rows_ : file_.cloud.size(); }
+    bool in_memory() const { return !rows_; }
+    /// What was read beside the cloud; if in_memory() this too.
+    const PointFile& file() const& { return file_; }
+    PointFile file() && { return std::move(file_); }
 
 private:
     std::string path_;
-    bool in_parts_ = false;
+    std::optional<std::size_t> rows_; // none: all is in memory
     PointFile file_;
 };
 

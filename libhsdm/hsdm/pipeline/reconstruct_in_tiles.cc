@@ -428,6 +428,12 @@ void check_options(const ReconstructOptions& options, const TileOptions& tiles) 
     need(tiles.ghost_voxels >= 4, "needs a ghost layer of four voxels or more");
 }
 
+bool fits_in_one_piece(std::size_t points, const ReconstructOptions& options, std::size_t memory) {
+    const bool any_voxels = options.depth || options.voxel_size;
+    const std::size_t each = any_voxels ? bytes_per_point_of_any_voxels : bytes_per_point_of_one_piece;
+    return memory > bytes_of_program && points <= (memory - bytes_of_program) / each;
+}
+
 Reconstruction reconstruct_in_tiles(const PointParts& parts, const ReconstructOptions& options,
                                     const TileOptions& tiles, TileReport* how) {
     check_options(options, tiles);

@@ -28,6 +28,10 @@ struct TileReport {
 /// Throws OptionError for options that no cloud can be reconstructed with in tiles.
 void check_options(const ReconstructOptions& options, const TileOptions& tiles);
 
+/// Is a cloud of so many points certain to be done in one piece within the memory? Then nothing is gained by
+/// tiles.
+bool fits_in_one_piece(std::size_t points, const ReconstructOptions& options, std::size_t memory);
+
 /// As reconstruct() of the whole cloud, but that the report's `rejected` tells of the whole mesh alone.
 /// Throws Error also for a cloud of which not all that is needed is local, such as one with outliers, and if
 /// the memory does not suffice; OptionError, Cancelled.
