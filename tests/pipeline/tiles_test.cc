@@ -44,6 +44,12 @@ void check_same_as_whole(const Reconstruction& whole, const Reconstruction& tile
     CHECK(one.error.points_to_mesh_max == other.error.points_to_mesh_max);
     CHECK(one.error.points_to_mesh_mean == other.error.points_to_mesh_mean);
     CHECK(one.input.spacing == other.input.spacing);
+    CHECK(one.rejected.at("points_outlying") == other.rejected.at("points_outlying"));
+    REQUIRE(one.dropped.size() == other.dropped.size());
+    for (std::size_t i = 0; i < one.dropped.size(); ++i) {
+        CHECK(one.dropped[i].count == other.dropped[i].count);
+        CHECK(one.dropped[i].where == other.dropped[i].where);
+    }
     CHECK(one.input.merged_duplicates == other.input.merged_duplicates);
     CHECK(one.grid.voxels == other.grid.voxels);
     CHECK(one.grid.sets == other.grid.sets);
@@ -77,6 +83,13 @@ TEST_CASE("tiles of any size give the mesh of the run in one piece, bit for bit"
             cloud.normals.push_back(cloud.normals[37 * i]);
         }
         cloud.positions[5][1] = std::numeric_limits<double>::quiet_NaN();
+    }
+    SECTION("with outliers among the points") {
+        for (const double at : {-0.31, -0.17, 0.03, 0.21})
+            for (int twice = 0; twice < 2; ++twice) {
+                cloud.positions.push_back({at, 0.11, 0.05});
+                cloud.normals.push_back({0, 0, 1});
+            }
     }
     SECTION("with normals that point into the part") {
         for (Vec3& n : cloud.normals) n = -n;

@@ -25,7 +25,8 @@
 namespace hsdm {
 namespace {
 
-constexpr int most_ghost_voxels = 256; // of a tile that is made again and again
+constexpr int most_ghost_voxels = 256;                    // of a tile that is made again and again
+constexpr std::size_t most_strays = std::size_t{1} << 20; // that are kept in memory
 
 [[noreturn]] void refuse(const std::string& what) {
     throw Error(what + "; this is not done in tiles, reconstruct it in one piece (without --memory)");
@@ -55,7 +56,6 @@ public:
             sort_to_scratch();
         });
         phases_.run("survey", 0.1, report.seconds.normals, [&] { survey(); });
-        note_cloud(report);
         PolygonMesh mesh;
         FacetKnowledge known;
         phases_.run("tiles", 0.2, report.seconds.facets, [&] { mesh = make_facets(report, known); });
@@ -135,7 +135,20 @@ private:
         PointView view;
         view.positions = StridedSpan(rows.front().data(), rows.size(), sizeof(PointRow));
         view.normals = StridedSpan(rows.front().data() + 3, rows.size(), sizeof(PointRow));
-        return build_octree(view, octree_options_);
+        Octree octree = build_octree(view, octree_options_);
+        if (strays_known_ && !strays_.empty()) {
+            std::vector<std::uint8_t> marks = large_vector<std::uint8_t>(octree.size(), 0);
+            for_each_index(octree.size(), chunks::usual, [&](Index i) {
+                marks[i] = std::ranges::binary_search(strays_, row_at(octree, i));
+            });
+            remove_points(octree, marks);
+        }
+        return octree;
+    }
+
+    static PointRow row_at(const Octree& octree, std::size_t i) {
+        const Vec3 &p = octree.positions[i], &n = octree.normals[i];
+        return {p[0], p[1], p[2], n[0], n[1], n[2]};
     }
 
     Octree empty_octree() const {
@@ -170,14 +183,8 @@ private:
 
     /// What PreparedCloud finds out, and that nothing has to be done that it does then.
     void survey() {
-        survey_.emplace(depth(), cell_depth_, finite_points());
-        for_groups([&](const Octree& part) { survey_->add(part); });
-        if (survey_->points() != finite_points()) { // duplicates: other points are sampled
-            const std::size_t points = survey_->points();
-            survey_.emplace(depth(), cell_depth_, points);
-            for_groups([&](const Octree& part) { survey_->add(part); });
-        }
-        spacing_ = estimate_spacing(survey_->counts(), cube_extent_);
+        take_survey(finite_points());
+        duplicates_ = finite_points() - survey_->points();
         sparse_ = survey_->sparse();
         if (spans_no_surface(survey_->places(), cube_extent_)) refuse("too few points, or all on a line");
         if (has_far_points(survey_->places(), cube_extent_, spacing_))
@@ -189,11 +196,19 @@ private:
         if (normals.rough()) refuse("normals contradict positions, as those of noisy points do");
     }
 
+    void take_survey(std::size_t expected) {
+        survey_.emplace(depth(), cell_depth_, expected);
+        for_groups([&](const Octree& part) { survey_->add(part); });
+        if (const std::size_t points = survey_->points(); points != expected) // other ones are sampled
+            return take_survey(points);
+        spacing_ = estimate_spacing(survey_->counts(), cube_extent_);
+    }
+
     void note_cloud(Report& report) const {
         report.input.points = finite_points();
         report.input.dropped_nonfinite = extent_.nonfinite.count;
         if (extent_.nonfinite.count > 0) report.input.first_nonfinite = extent_.nonfinite.first;
-        report.input.merged_duplicates = finite_points() - survey_->points();
+        report.input.merged_duplicates = duplicates_;
         report.input.has_normals = true;
         report.input.bbox = extent_.box;
         report.input.spacing = spacing_;
@@ -203,7 +218,8 @@ private:
         report.grid.leaves_per_level.assign(static_cast<std::size_t>(depth()) + 1, 0);
         report.grid.leaves_per_level.back() = survey_->voxels();
         report.rejected["normals_mended"] = 0;
-        report.rejected["points_outlying"] = 0;
+        report.rejected["points_outlying"] = strays_.size();
+        note_dropped("points off every surface", {strays_.size(), first_stray_ + origin_}, frame_, report);
     }
 
     /// The points of a tile and of what is around it.
@@ -237,7 +253,8 @@ private:
         if (rows.empty()) return piece;
         const Octree octree = octree_of(rows);
         rows = std::vector<PointRow>();
-        check_outliers(octree, range, ghost);
+        if (!strays_known_) find_strays(octree, range, ghost);
+        if (!strays_known_ && !strays_.empty()) return piece; // all are made again without them
         const OctreeLevel level = extract_level(octree, depth());
         const MethodInput in{frame_, {}, octree, level, options_, phases_};
         const SetSizes sizes = survey_->set_sizes();
@@ -246,17 +263,38 @@ private:
         return make_piece(in, part, range);
     }
 
-    /// Refuses points that would be dropped as outliers: the whole might then have another cube.
-    void check_outliers(const Octree& octree, const VoxelRange& range, int ghost) const {
+    /// Adds a tile's points that are dropped as outliers. Refuses those without which the whole would have
+    /// another cube.
+    void find_strays(const Octree& octree, const VoxelRange& range, int ghost) {
         std::vector<double> reach;
         const std::vector<std::uint8_t> strays = strays_by_normals(octree, sparse_, {}, &reach);
         const double known = ghost * octree.voxel_size(depth());
         const int shift = 3 * (morton_levels - depth());
         for_each_in_order(octree.size(), [&](std::size_t i) {
             if (!range.holds(octree.codes[i] >> shift)) return;
-            if (strays[i]) refuse("some points are off every surface");
             if (reach[i] > known) refuse("some points are far from all others");
+            if (!strays[i]) return;
+            if (is_at_border(octree.positions[i] + origin_))
+                refuse("some points are off every surface, outside all others");
+            if (strays_.empty()) first_stray_ = octree.positions[i];
+            if (strays_.size() == most_strays) refuse("many points are off every surface");
+            strays_.push_back(row_at(octree, i));
         });
+    }
+
+    bool is_at_border(const Vec3& place) const {
+        const double near = 1e-9 * cube_extent_;
+        return std::min((place - extent_.box.lo).min(), (extent_.box.hi - place).min()) <= near;
+    }
+
+    /// Once all tiles have looked for strays: are there some, so that all is different without them?
+    bool has_new_strays() {
+        const bool some = !strays_known_ && !strays_.empty();
+        strays_known_ = true;
+        if (!some) return false;
+        std::ranges::sort(strays_);
+        take_survey(survey_->points() - strays_.size());
+        return true;
     }
 
     /// All tiles, each with as much around it as it takes for neighbours to agree.
@@ -272,6 +310,10 @@ private:
                 if (pieces[k].counts.depends_on_all)
                     refuse(
                         "facets pass through each other that could not be parted, or normals are at random");
+            }
+            if (has_new_strays()) {
+                std::ranges::fill(due, std::uint8_t{1});
+                continue;
             }
             due = disagreeing(pieces);
             for (std::size_t k = 0; k < ranges.size(); ++k)
@@ -305,6 +347,7 @@ private:
             report.rejected["normals_turned"] = turned ? survey_->points() : 0;
             if (turned || !faces_inward(mesh)) break; // or once more: what is judged depends on the side
         }
+        note_cloud(report);
         check_facets(mesh, {}, report);
         check_whole(mesh);
         bytes_of_mesh_ = survey_->voxels() * bytes_per_voxel_of_mesh / 2; // the rest comes later
@@ -403,6 +446,10 @@ private:
     std::optional<Survey> survey_;
     double spacing_ = 0;
     SparseLevel sparse_;
+    std::size_t duplicates_ = 0;
+    std::vector<PointRow> strays_; // as the octrees have them; ascending once they are known
+    bool strays_known_ = false;
+    Vec3 first_stray_{0, 0, 0};
     std::size_t bytes_of_mesh_ = 0;
     TileReport how_;
 };
