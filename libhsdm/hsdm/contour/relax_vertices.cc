@@ -61,14 +61,13 @@ public:
     /// Moves smooth vertices up or down until the facets, not the vertices alone, lie amid the points. Where
     /// a voxel's points are then farther off than from the facets as placed, its vertices go back to where
     /// they were placed; all do if the sum over all points grew.
-    void fit(const PointFit& fit, std::span<const std::uint8_t> part) {
+    void fit(const PointFit& fit, std::span<const std::uint8_t> part, bool go_back) {
         const PointFit::Measure before = fit.measure(placed_);
         rise(fit.rises(before.heights));
         const PointFit::Measure after = fit.measure(vertices_.positions);
         const double placed = sum_of(before.misfit, part), moved = sum_of(after.misfit, part);
-        if (!part.empty()) {
-            vertices_.misfit_placed = placed, vertices_.misfit_moved = moved;
-        } else if (moved > placed) {
+        if (!part.empty()) vertices_.misfit_placed = placed, vertices_.misfit_moved = moved;
+        if (part.empty() ? moved > placed : go_back) {
             vertices_.positions = copy_of_large(placed_);
             return;
         }
@@ -233,7 +232,8 @@ void relax_vertices(const Octree& octree, const OctreeLevel& level, const DualMe
     if (options.rounds == 0 && !options.fit) return;
     Relaxation relaxation(mesh, vertices);
     for (int round = 0; round < options.rounds; ++round) relaxation.round(options.step);
-    if (options.fit) relaxation.fit(PointFit(octree, level, mesh.duals, vertices), options.part_of_whole);
+    if (options.fit)
+        relaxation.fit(PointFit(octree, level, mesh.duals, vertices), options.part_of_whole, options.go_back);
 }
 
 } // namespace hsdm

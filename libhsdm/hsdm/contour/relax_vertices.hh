@@ -14,6 +14,7 @@ struct RelaxOptions {
     /// Marks the voxels that are added up to judge the fit of a whole of which this is part, or empty: then
     /// it is judged here. Per voxel.
     std::span<const std::uint8_t> part_of_whole{};
+    bool go_back = false; ///< of part of a whole: it was judged, and all vertices go back
 };
 
 /// Moves smooth vertices within their sheet towards the mean of their neighbours and vertices of a crease
@@ -22,9 +23,9 @@ struct RelaxOptions {
 /// mean height of the vertices around as they were placed. Then smooth vertices rise or sink, twice, until
 /// the facets, not the vertices alone, lie amid the points (PointFit::rises). Where after the first of the
 /// two steps a voxel's points are a tenth farther from the facets than as placed, its vertices go back; all
-/// do if the sum over all points grew. Of a part of a whole none do for that; the sums of its voxels are left
-/// in `vertices` (misfit_placed, misfit_moved). O(rounds * crossings), parallel; the same for any number of
-/// threads. Throws OptionError.
+/// do if the sum over all points grew. Of a part of a whole they do if go_back says so; the sums of its
+/// voxels are left in `vertices` (misfit_placed, misfit_moved). O(rounds * crossings), parallel; the same for
+/// any number of threads. Throws OptionError.
 void relax_vertices(const Octree& octree, const OctreeLevel& level, const DualMesh& mesh,
                     const RelaxOptions& options, PlacedVertices& vertices);
 

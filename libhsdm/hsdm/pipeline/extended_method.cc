@@ -349,6 +349,7 @@ PartFacets facets_of_part(const MethodInput& in, const PartOfLevel& part) {
     std::vector<std::uint8_t> own_voxels = large_vector<std::uint8_t>(in.level.size());
     for_each_index(own_voxels.size(), chunks::light, [&](Index v) { own_voxels[v] = is_own(v); });
     options.relax.part_of_whole = own_voxels;
+    options.relax.go_back = part.go_back;
     DualContour facets = dual_contour(in.octree, in.level, sets, options);
     if (part.turned) {
         turn_over(facets.mesh);

@@ -20,6 +20,7 @@ struct PartOfLevel {
     double spacing = 0;     ///< of the points
     double typical_set = 0; ///< points in a normal set, the mean over points
     bool turned = false;    ///< do the points' normals point into a closed solid?
+    bool go_back = false;   ///< as in RelaxOptions
     /// Does the part own this voxel?
     std::function<bool(MortonCode)> owns;
 };

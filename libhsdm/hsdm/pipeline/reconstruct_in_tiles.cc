@@ -259,7 +259,7 @@ private:
         const MethodInput in{frame_, {}, octree, level, options_, phases_};
         const SetSizes sizes = survey_->set_sizes();
         const PartOfLevel part{spacing_, sizes.points > 0 ? sizes.squares / sizes.points : 0, turned,
-                               [&](MortonCode code) { return range.holds(code); }};
+                               go_back_, [&](MortonCode code) { return range.holds(code); }};
         return make_piece(in, part, range);
     }
 
@@ -318,6 +318,8 @@ private:
             due = disagreeing(pieces);
             for (std::size_t k = 0; k < ranges.size(); ++k)
                 if (due[k]) ghost[k] *= 2, ++how_.widened;
+            if (std::ranges::count(due, 1) == 0 && must_go_back(pieces))
+                std::ranges::fill(due, std::uint8_t{1});
         }
         return pieces;
     }
@@ -339,7 +341,6 @@ private:
             FacetCounts counts;
             std::vector<Piece> pieces = make_pieces(ranges, turned);
             for (const Piece& piece : pieces) counts += piece.counts;
-            check_fit(counts);
             known = FacetKnowledge();
             mesh = joined_pieces(std::move(pieces), known.hints.sides);
             judge(counts, known);
@@ -369,11 +370,16 @@ private:
         return (tiles_.memory - std::min(tiles_.memory, mesh + bytes_of_program)) / bytes_per_point;
     }
 
-    /// Vertices as moved towards the points stay only where that brings all together nearer.
-    static void check_fit(const FacetCounts& counts) {
-        constexpr double nearly_all = 1 - 1e-9; // sums of parts are rounded otherwise than that of the whole
-        if (counts.misfit_moved > nearly_all * counts.misfit_placed && counts.misfit_placed > 0)
-            refuse("facets are not nearer to the points where they have been moved to them");
+    /// Vertices as moved towards the points stay only where that brings all together nearer. Are they to go
+    /// back, and have not yet?
+    bool must_go_back(const std::vector<Piece>& pieces) {
+        FacetCounts all;
+        for (const Piece& piece : pieces) all += piece.counts;
+        const double gain = all.misfit_placed - all.misfit_moved;
+        constexpr double rounding = 1e-9; // sums of parts are rounded otherwise than that of the whole
+        if (std::abs(gain) <= rounding * all.misfit_placed && all.misfit_placed > 0)
+            refuse("facets moved to the points are neither nearer to them nor farther off");
+        return !std::exchange(go_back_, gain < 0) && go_back_;
     }
 
     static void judge(const FacetCounts& counts, FacetKnowledge& known) {
@@ -449,6 +455,7 @@ private:
     std::size_t duplicates_ = 0;
     std::vector<PointRow> strays_; // as the octrees have them; ascending once they are known
     bool strays_known_ = false;
+    bool go_back_ = false;
     Vec3 first_stray_{0, 0, 0};
     std::size_t bytes_of_mesh_ = 0;
     TileReport how_;
