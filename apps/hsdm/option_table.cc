@@ -126,7 +126,7 @@ const std::vector<Meaning>& environment_variables() {
         {"HSDM_PLUGIN_PATH", "folders that modules are looked for in before that of the installation, with "
                              "colons between them; not read where the command has rights of another user"},
         {"TMPDIR", "the folder for the file that a case of regress with an `output` is written to and read "
-                   "back from; default: /tmp"}};
+                   "back from, and for the points of --memory without --scratch; default: /tmp"}};
     return variables;
 }
 

@@ -65,8 +65,7 @@ SetSizes sizes_of(const NormalSets& sets) {
 
 Occurrences drop_outlier_sets(const OctreeLevel& level, const RelationTest& related, NormalSets& sets,
                               const OutlierSetOptions& options) {
-    const SetSizes sizes = options.typical > 0 ? SetSizes{1, options.typical} : sizes_of(sets);
-    const double typical = sizes.points > 0 ? sizes.squares / sizes.points : 0;
+    const double typical = options.typical > 0 ? options.typical : sizes_of(sets).typical();
     const double most = std::max(1.0, options.most_share * typical);
     std::vector<std::uint8_t> is_outlier(sets.sets.size(), 0);
     for_chunks(sets.sets.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {

@@ -21,6 +21,7 @@ struct OutlierSetOptions {
 /// `squares` over `points`, which of parts of a cloud can be added up.
 struct SetSizes {
     double points = 0, squares = 0; ///< whole numbers: in any order the same
+    double typical() const { return points > 0 ? squares / points : 0; }
 };
 SetSizes sizes_of(const NormalSets& sets);
 

@@ -26,6 +26,9 @@ public:
         return {members_.data() + first_[group], members_.data() + first_[group + 1]};
     }
 
+    /// All groups' members, group after group.
+    const std::vector<Index>& members() const { return members_; }
+
 private:
     std::vector<Index> first_, members_; // those of group g are members_[first_[g]] .. [first_[g + 1]]
 };

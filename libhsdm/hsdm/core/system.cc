@@ -246,6 +246,36 @@ std::ptrdiff_t read_at(int descriptor, char* bytes, std::size_t count, std::uint
     return ::pread(descriptor, bytes, count, static_cast<off_t>(offset));
 }
 
+namespace {
+
+/// read(bytes, count, done) until `count` bytes are there or it gives none.
+template <class Read>
+std::ptrdiff_t read_in_turns(char* bytes, std::size_t count, const Read& read) noexcept {
+    std::size_t done = 0;
+    while (done < count) {
+        const std::ptrdiff_t n = read(bytes + done, count - done, done);
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) return -1;
+        if (n == 0) break;
+        done += static_cast<std::size_t>(n);
+    }
+    return static_cast<std::ptrdiff_t>(done);
+}
+
+} // namespace
+
+std::ptrdiff_t read_all(int descriptor, char* bytes, std::size_t count) noexcept {
+    return read_in_turns(bytes, count, [&](char* to, std::size_t size, std::size_t) {
+        return os::read(descriptor, to, size);
+    });
+}
+
+std::ptrdiff_t read_all_at(int descriptor, char* bytes, std::size_t count, std::uint64_t offset) noexcept {
+    return read_in_turns(bytes, count, [&](char* to, std::size_t size, std::size_t done) {
+        return os::read_at(descriptor, to, size, offset + done);
+    });
+}
+
 std::ptrdiff_t write(int descriptor, const char* bytes, std::size_t count) noexcept {
     return ::write(descriptor, bytes, count);
 }

@@ -56,6 +56,9 @@ bool is_folder_of_descriptors(const std::string& folder);
 /// At most so many bytes; 0 at the end. EINTR: again.
 std::ptrdiff_t read(int descriptor, char* bytes, std::size_t count) noexcept;
 std::ptrdiff_t read_at(int descriptor, char* bytes, std::size_t count, std::uint64_t offset) noexcept;
+/// All that is asked for, in as many turns as that takes; less only at the end.
+std::ptrdiff_t read_all(int descriptor, char* bytes, std::size_t count) noexcept;
+std::ptrdiff_t read_all_at(int descriptor, char* bytes, std::size_t count, std::uint64_t offset) noexcept;
 std::ptrdiff_t write(int descriptor, const char* bytes, std::size_t count) noexcept;
 /// All of the bytes, in as many turns as that takes.
 bool write_all(int descriptor, std::string_view bytes) noexcept;

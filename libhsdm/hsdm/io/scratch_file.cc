@@ -10,10 +10,14 @@
 
 namespace hsdm {
 
-ScratchFile::ScratchFile(const std::string& extension) {
+std::string temporary_folder() {
     std::error_code none;
     const std::filesystem::path folder = std::filesystem::temp_directory_path(none);
-    path_ = ((none ? "/tmp" : folder) / "hsdm-XXXXXX").string() + extension;
+    return none ? "/tmp" : folder.string();
+}
+
+ScratchFile::ScratchFile(const std::string& extension) {
+    path_ = (std::filesystem::path(temporary_folder()) / "hsdm-XXXXXX").string() + extension;
     FileRegistry& registry = FileRegistry::of_process();
     const auto lock = registry.lock(); // a signal finds the file registered, or not made
     const int descriptor = os::create_with_new_name(path_, extension.size());

@@ -5,6 +5,9 @@
 
 namespace hsdm {
 
+/// The folder for temporary files: TMPDIR, else /tmp.
+std::string temporary_folder();
+
 /// A file of this process alone (mode 600) in the folder for temporary files (TMPDIR, else /tmp). It is
 /// removed with the object, and by what ends the process by a signal too (abandon_files()), which does not
 /// name it among the files that stand.

@@ -4,6 +4,7 @@
 #include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/file_registry.hh"
+#include "hsdm/io/scratch_file.hh"
 
 #include <cerrno>
 #include <cstring>
@@ -23,10 +24,8 @@ std::string megabytes(std::size_t bytes) {
 } // namespace
 
 ScratchPoints::ScratchPoints(const std::string& folder, std::size_t expected, std::size_t buffered)
-    : folder_(folder), most_waiting_(buffered / sizeof(PointRow)) {
+    : folder_(folder.empty() ? temporary_folder() : folder), most_waiting_(buffered / sizeof(PointRow)) {
     std::error_code failed;
-    if (folder_.empty()) folder_ = std::filesystem::temp_directory_path(failed).string();
-    if (failed) folder_ = "/tmp";
     const std::size_t needed = expected * sizeof(PointRow);
     const std::filesystem::space_info space = std::filesystem::space(folder_, failed);
     if (!failed && space.available < needed)
@@ -87,15 +86,10 @@ void ScratchPoints::read(MortonCode cell, std::vector<PointRow>& points) const {
         points.resize(at + block.points);
         char* bytes = reinterpret_cast<char*>(points.data() + at);
         const std::size_t count = block.points * sizeof(PointRow);
-        for (std::size_t done = 0; done < count;) {
-            const std::ptrdiff_t some = os::read_at(file_, bytes + done, count - done, block.offset + done);
-            if (some < 0 && errno == EINTR) continue;
-            if (some <= 0)
-                throw Error(folder_,
-                            "scratch cannot be read: "
-                                + (some < 0 ? reason() : std::string("the file has become shorter")));
-            done += static_cast<std::size_t>(some);
-        }
+        const std::ptrdiff_t some = os::read_all_at(file_, bytes, count, block.offset);
+        if (some < 0) throw Error(folder_, "scratch cannot be read: " + reason());
+        if (static_cast<std::size_t>(some) < count)
+            throw Error(folder_, "scratch cannot be read: the file has become shorter");
     }
 }
 

@@ -28,21 +28,6 @@ constexpr std::size_t block_size = std::size_t(1) << 22;
     }
 }
 
-/// Calls `read(bytes, count)` until `count` bytes are there or it gives none. Returns -1 with errno on
-/// failure.
-template <class Read>
-std::ptrdiff_t read_fully(char* bytes, std::size_t count, const Read& read) {
-    std::size_t done = 0;
-    while (done < count) {
-        const std::ptrdiff_t n = read(bytes + done, count - done, done);
-        if (n < 0 && errno == EINTR) continue;
-        if (n < 0) return -1;
-        if (n == 0) break;
-        done += static_cast<std::size_t>(n);
-    }
-    return static_cast<std::ptrdiff_t>(done);
-}
-
 std::unique_ptr<char[]> uninitialised(std::size_t size) {
     std::unique_ptr<char[]> bytes(new char[size]);
     advise_huge_pages(bytes.get(), size);
@@ -84,9 +69,7 @@ SourceBytes SourceBytes::open(const std::string& path) {
 }
 
 void SourceBytes::read_at(char* bytes, std::size_t count, std::size_t offset) const {
-    const std::ptrdiff_t n = read_fully(bytes, count, [&](char* to, std::size_t size, std::size_t done) {
-        return os::read_at(descriptor_, to, size, offset + done);
-    });
+    const std::ptrdiff_t n = os::read_all_at(descriptor_, bytes, count, offset);
     if (n < 0) fail(name_, errno);
     if (static_cast<std::size_t>(n) != count)
         throw Error(name_, "became shorter while it was read; read it again when it is complete");
@@ -115,10 +98,7 @@ const char* SourceBytes::piece(std::size_t offset, std::size_t count, char* scra
 SourceBytes SourceBytes::read_stream(int descriptor, const std::string& name) {
     auto bytes = uninitialised(block_size);
     for (std::size_t capacity = block_size, filled = 0;;) {
-        const std::ptrdiff_t n =
-            read_fully(bytes.get() + filled, capacity - filled, [&](char* to, std::size_t size, std::size_t) {
-                return os::read(descriptor, to, size);
-            });
+        const std::ptrdiff_t n = os::read_all(descriptor, bytes.get() + filled, capacity - filled);
         if (n < 0) fail(name, errno);
         filled += static_cast<std::size_t>(n);
         if (filled < capacity) {

@@ -27,7 +27,7 @@ Vec3 centred_origin(const Box& bounds, double extent) {
 namespace {
 
 constexpr double cells = 1 << morton_levels; // along an edge of the cube
-constexpr std::size_t ahead = 16;            // points prefetched ahead: their order is not the cloud's
+constexpr std::size_t ahead = gathered_ahead;
 
 const Vec3 zero(0, 0, 0); // adding it turns -0 into 0: which of two equal points comes first must not show
 
@@ -42,17 +42,6 @@ Vec3 unit_with_one_zero(const Vec3& n) {
     const Vec3 directed = directed_or_zero(n);
     const double length = directed.norm();
     return length > 0 ? directed / length + zero : zero;
-}
-
-/// The values at these places.
-template <class T>
-std::vector<T> gathered(const std::vector<T>& values, const std::vector<Index>& places) {
-    std::vector<T> result = large_vector<T>(places.size());
-    for_each_index(places.size(), chunks::light, [&](Index i) {
-        if (i + ahead < places.size()) __builtin_prefetch(&values[places[i + ahead]]);
-        result[i] = values[places[i]];
-    });
-    return result;
 }
 
 /// change(vector) of the vectors at these places.

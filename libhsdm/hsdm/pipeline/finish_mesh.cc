@@ -79,10 +79,10 @@ void tell_in_cloud_units(const CloudFrame& frame, PolyMesh& mesh, Report& report
     for (Report::Loop& loop : report.loops) loop.length *= frame.unit();
 }
 
-void check_facets(const PolygonMesh& facets, const OctreeLevel& level, const Report& report) {
+void check_facets(const PolygonMesh& facets, const Report& report) {
     if (facets.facet_count() == 0)
         throw Error("no facet came out of " + std::to_string(report.grid.voxels) + " voxels at depth "
-                    + std::to_string(level.depth)
+                    + std::to_string(report.grid.depth)
                     + "; try another depth, or check that the points sample a surface");
 }
 
@@ -92,7 +92,7 @@ void finish_mesh(const MethodInput& in, PolygonMesh&& facets, FacetKnowledge&& k
     Report::Seconds& seconds = report.seconds;
     warn_of(warning_of::intersections, known.intersections, in, report);
     leave_out_unsound(in, facets, known, report);
-    check_facets(facets, in.level, report);
+    check_facets(facets, report);
     in.phases.run("error", 0.6, seconds.error, [&] { measure(facets, known, report); });
     note_open_loops(in, facets, report);
     in.phases.run("mesh", 0.85, seconds.mesh, [&] {

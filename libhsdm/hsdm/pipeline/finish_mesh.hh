@@ -8,7 +8,7 @@
 namespace hsdm {
 
 /// Throws Error if there are none.
-void check_facets(const PolygonMesh& facets, const OctreeLevel& level, const Report& report);
+void check_facets(const PolygonMesh& facets, const Report& report);
 
 /// Converts mesh and report from the stages' coordinates and units back to the cloud's.
 void tell_in_cloud_units(const CloudFrame& frame, PolyMesh& mesh, Report& report);

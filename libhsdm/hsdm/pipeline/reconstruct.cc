@@ -46,7 +46,7 @@ void reconstruct_level(InputCloud& cloud, PreparedCloud& prepared, int depth, bo
         prepared.release_normals();
         cloud.release_attributes();
     }
-    check_facets(facets, level, report);
+    check_facets(facets, report);
     std::vector<Vec3> as_read;
     if (prepared.has_moved() && (options.measure || wants_adaptive(options)))
         as_read = points_as_read(*cloud, prepared.frame, octree);

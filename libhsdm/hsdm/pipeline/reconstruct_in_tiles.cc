@@ -257,9 +257,8 @@ private:
         if (!strays_known_ && !strays_.empty()) return piece; // all are made again without them
         const OctreeLevel level = extract_level(octree, depth());
         const MethodInput in{frame_, {}, octree, level, options_, phases_};
-        const SetSizes sizes = survey_->set_sizes();
-        const PartOfLevel part{spacing_, sizes.points > 0 ? sizes.squares / sizes.points : 0, turned,
-                               go_back_, [&](MortonCode code) { return range.holds(code); }};
+        const PartOfLevel part{spacing_, survey_->set_sizes().typical(), turned, go_back_,
+                               [&](MortonCode code) { return range.holds(code); }};
         return make_piece(in, part, range);
     }
 
@@ -349,7 +348,7 @@ private:
             if (turned || !faces_inward(mesh)) break; // or once more: what is judged depends on the side
         }
         note_cloud(report);
-        check_facets(mesh, {}, report);
+        check_facets(mesh, report);
         check_whole(mesh);
         bytes_of_mesh_ = survey_->voxels() * bytes_per_voxel_of_mesh / 2; // the rest comes later
         const auto count = mesh.vertex_count();

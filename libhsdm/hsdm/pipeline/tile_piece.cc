@@ -1,11 +1,11 @@
 #include "hsdm/pipeline/tile_piece.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/hash.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/errors.hh"
 
 #include <algorithm>
-#include <bit>
 #include <tuple>
 
 namespace hsdm {
@@ -18,7 +18,7 @@ public:
         : level_(in.level), part_(part), mesh_(part.mesh), range_(range) {
         first_of_ = large_vector<Index>(level_.size() + 1, 0);
         for (const Index v : part.voxel) ++first_of_[v + 1];
-        for (std::size_t v = 0; v < level_.size(); ++v) first_of_[v + 1] += first_of_[v];
+        counts_to_first(first_of_);
         own_ = own_vertices();
         facets_ = own_facets();
     }
@@ -91,26 +91,21 @@ private:
                                sides.begin() + static_cast<std::ptrdiff_t>(end));
     }
 
-    static std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {
-        hash = (hash ^ value) * 0x9e3779b97f4a7c15u;
-        return hash ^ (hash >> 32);
-    }
-
     /// Of the vertices of a voxel and the facets that these are the least ones of.
     std::uint64_t hash_of(Index voxel, std::size_t& facet) const {
-        std::uint64_t hash = 1;
+        OrderedHash hash;
         const auto& sides = part_.known.hints.sides;
         for (Index v = first_of_[voxel]; v < first_of_[voxel + 1]; ++v)
-            for (std::size_t k = 0; k < 3; ++k)
-                hash = mixed(hash, std::bit_cast<std::uint64_t>(mesh_.positions[v][k]));
+            for (std::size_t k = 0; k < 3; ++k) hash.add(mesh_.positions[v][k]);
         for (; facet < mesh_.facet_count() && least_of(facet) < first_of_[voxel + 1]; ++facet) {
-            hash = mixed(hash, mesh_.facet(facet).size());
+            hash.add(std::uint64_t{mesh_.facet(facet).size()});
             for (Index c = mesh_.first[facet]; c < mesh_.first[facet + 1]; ++c) {
-                hash = mixed(mixed(hash, code_of(mesh_.corners[c])), rank_of(mesh_.corners[c]));
-                if (!sides.empty()) hash = mixed(hash, static_cast<std::uint64_t>(sides[c]));
+                hash.add(std::uint64_t{code_of(mesh_.corners[c])});
+                hash.add(std::uint64_t{rank_of(mesh_.corners[c])});
+                if (!sides.empty()) hash.add(static_cast<std::uint64_t>(sides[c]));
             }
         }
-        return hash;
+        return hash.value();
     }
 
     void add_digests(Piece& piece) const {

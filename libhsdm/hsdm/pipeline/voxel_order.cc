@@ -1,6 +1,7 @@
 #include "hsdm/pipeline/voxel_order.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/groups.hh"
 #include "hsdm/core/large_vector.hh"
 
 #include <cassert>
@@ -9,22 +10,6 @@
 namespace hsdm {
 namespace {
 
-/// The things 0 .. n by ascending key below `keys`, ties as they are; those with no_index left out.
-template <class Key>
-std::vector<Index> order_by(std::size_t n, std::size_t keys, const Key& key) {
-    std::vector<Index> first = large_vector<Index>(keys + 1, 0);
-    for_each_in_order(n, [&](std::size_t i) {
-        if (const Index k = key(static_cast<Index>(i)); k != no_index) ++first[k + 1];
-    });
-    for (std::size_t k = 0; k < keys; ++k) first[k + 1] += first[k];
-    std::vector<Index> order = large_vector<Index>(first.back());
-    for_each_in_order(n, [&](std::size_t i) {
-        if (const Index k = key(static_cast<Index>(i)); k != no_index)
-            order[first[k]++] = static_cast<Index>(i);
-    });
-    return order;
-}
-
 /// Which of the vertices have facets.
 std::vector<std::uint8_t> used_vertices(const PolygonMesh& mesh) {
     std::vector<std::uint8_t> used = large_vector<std::uint8_t>(mesh.vertex_count(), 0);
@@ -32,18 +17,11 @@ std::vector<std::uint8_t> used_vertices(const PolygonMesh& mesh) {
     return used;
 }
 
-template <class T>
-std::vector<T> taken(const std::vector<T>& values, const std::vector<Index>& order) {
-    std::vector<T> result = large_vector<T>(order.size());
-    for_each_index(order.size(), chunks::light, [&](Index i) { result[i] = values[order[i]]; });
-    return result;
-}
-
 /// The facets in this order, of renumbered vertices.
 PolygonMesh rearranged(const PolygonMesh& mesh, const std::vector<Index>& vertices,
                        const std::vector<Index>& facets, const std::vector<Index>& number) {
     PolygonMesh result;
-    result.positions = taken(mesh.positions, vertices);
+    result.positions = gathered(mesh.positions, vertices);
     resize_large(result.first, facets.size() + 1);
     for_each_in_order(facets.size(), [&](std::size_t f) {
         result.first[f + 1] = result.first[f] + mesh.first[facets[f] + 1] - mesh.first[facets[f]];
@@ -108,17 +86,22 @@ void order_by_voxels(std::size_t voxels, std::vector<Index>& voxel, PolygonMesh&
                      FacetKnowledge& known) {
     assert(mesh.properties.empty() && mesh.normals.empty() && mesh.origin.empty());
     const std::vector<std::uint8_t> used = used_vertices(mesh);
-    const std::vector<Index> vertices =
-        order_by(mesh.vertex_count(), voxels, [&](Index v) { return used[v] ? voxel[v] : no_index; });
+    std::vector<Index> key =
+        large_vector<Index>(mesh.vertex_count()); // things are ordered by, ties as they are
+    for_each_index(key.size(), chunks::light, [&](Index v) { key[v] = used[v] ? voxel[v] : no_index; });
+    const Groups by_voxel(key, voxels);
+    const std::vector<Index>& vertices = by_voxel.members();
     std::vector<Index> number = large_vector<Index>(mesh.vertex_count(), no_index);
     for_each_index(vertices.size(), chunks::light, [&](Index v) { number[vertices[v]] = v; });
-    const std::vector<Index> facets = order_by(mesh.facet_count(), vertices.size(), [&](Index f) {
-        Index least = no_index;
-        for (const Index v : mesh.facet(f)) least = std::min(least, number[v]);
-        return least;
+    resize_large(key, mesh.facet_count());
+    for_each_index(key.size(), chunks::quick, [&](Index f) {
+        key[f] = no_index;
+        for (const Index v : mesh.facet(f)) key[f] = std::min(key[f], number[v]);
     });
+    const Groups by_least_vertex(key, vertices.size());
+    const std::vector<Index>& facets = by_least_vertex.members();
     PolygonMesh result = rearranged(mesh, vertices, facets, number);
-    voxel = taken(voxel, vertices);
+    voxel = gathered(voxel, vertices);
     known.hints.sides = rearranged(known.hints.sides, mesh, facets, result);
     if (known.links && (known.links->rejected > 0 || known.links->split_vertices > 0)) known.links.reset();
     if (known.links) known.links = rearranged(*known.links, mesh, facets, result);

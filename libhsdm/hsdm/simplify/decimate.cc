@@ -83,7 +83,7 @@ private:
         for_each_in_order(stands_for.size(), mark);
         const std::vector<Index> source = drop_replaced(result_.mesh, stands_for);
         result_.vertex = std::move(stands_for);
-        has_merged_ = picked(merged, source);
+        has_merged_ = gathered(merged, source);
         // Facets that no merger has changed stay as they are.
         std::vector<std::uint8_t> fixed(source.size(), 1);
         for (Index v : with_neighbours(result_.mesh, has_merged_)) fixed[v] = 0;

@@ -49,7 +49,7 @@ std::vector<Index> drop_replaced(PolygonMesh& mesh, std::vector<Index>& stands_f
         push_large(kept, static_cast<Index>(v));
     });
     mesh.positions.resize(kept.size());
-    if (!mesh.origin.empty()) mesh.origin = picked(mesh.origin, kept);
+    if (!mesh.origin.empty()) mesh.origin = gathered(mesh.origin, kept);
     const auto renumber = [&number](std::vector<Index>& vertices) {
         for_each_index(vertices.size(), chunks::light, [&](Index i) { vertices[i] = number[vertices[i]]; });
     };

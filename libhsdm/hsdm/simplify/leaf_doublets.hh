@@ -13,15 +13,6 @@ namespace hsdm {
 /// O(facets) in each of a few rounds.
 std::vector<Index> dissolve_doublets(PolygonMesh& mesh);
 
-/// The values at the indices `kept`.
-template <class T>
-std::vector<T> picked(const std::vector<T>& values, const std::vector<Index>& kept) {
-    std::vector<T> result;
-    result.reserve(kept.size());
-    for (Index v : kept) result.push_back(values[v]);
-    return result;
-}
-
 /// Removes vertices that others stand for and renumbers the rest; `stands_for` has the new numbers
 /// afterwards. Returns per vertex that is left its old number.
 std::vector<Index> drop_replaced(PolygonMesh& mesh, std::vector<Index>& stands_for);

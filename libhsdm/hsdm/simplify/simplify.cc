@@ -110,7 +110,7 @@ private:
         const std::vector<Index> nearest = nearest_leaves(leaves.mesh, merged.vertex);
         for (Index v = 0; v < nearest.size(); ++v) number[nearest[v]] = v;
         for_each_index(vertex_.size(), chunks::light, [&](Index v) { vertex_[v] = number[vertex_[v]]; });
-        coarse_ = picked(coarse_, nearest);
+        coarse_ = gathered(coarse_, nearest);
     }
 
     /// Per vertex of the result, the nearest of the leaves' vertices that were merged there.
@@ -200,7 +200,7 @@ private:
     /// Removes doublets; neighbours stand for their fine vertices from then on.
     void drop_doublets() {
         std::vector<Index> stands_for = dissolve_doublets(result_.mesh);
-        coarse_ = picked(coarse_, drop_replaced(result_.mesh, stands_for));
+        coarse_ = gathered(coarse_, drop_replaced(result_.mesh, stands_for));
         for_each_index(vertex_.size(), chunks::light, [&](Index v) { vertex_[v] = stands_for[vertex_[v]]; });
     }
 
