@@ -415,6 +415,7 @@ std::int64_t start_this_program(const ProcessStart& start) {
     for (const int stream : {standard_output, standard_error}) spawn.copy(start.printed, stream);
     std::vector<std::string> words = start.words;
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     return spawn.start(this_program(), arguments.data());
