@@ -72,6 +72,47 @@ TEST_CASE("many weak witnesses along a border outweigh one strong one", "[normal
     for (Index i = 0; i < 10; ++i) CHECK(signs.sign[i] * signs.sign[10 + i] == -1);
 }
 
+TEST_CASE("a region that some wrong views hold turns as a whole where its border says so", "[normals]") {
+    const Index side = 40, pole = side * side;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        support::Random random(seed);
+        std::vector<SignedEdge> edges = grid_edges(side, std::vector<int>(side * side, 1), 0, random);
+        const auto within = [](Index x) { return x >= 10 && x < 18; };
+        for (Index i = 0; i < pole; ++i) // 32 steps cross the border, of 24 on the whole; five views say 10
+            if (const bool region = within(i % side) && within(i / side); !region || i % 13 == 0)
+                edges.push_back(edge(i, pole, region ? -2.0f : 2.0f));
+        const Signs signs = agglomerate(pole + 1, edges, pole);
+        const auto wrong = std::count_if(signs.sign.begin(), signs.sign.end(),
+                                         [&](std::int8_t sign) { return sign != signs.sign[pole]; });
+        CHECK(wrong == 0);
+    }
+}
+
+TEST_CASE("of all signs those found agree with the evidence best, in four of five small graphs", "[normals]") {
+    constexpr Index nodes = 12;
+    int best_found = 0;
+    for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+        support::Random random(seed);
+        std::vector<SignedEdge> edges;
+        for (Index a = 0; a < nodes; ++a)
+            for (Index b = a + 1; b < nodes; ++b)
+                if (random.uniform() < 0.35)
+                    edges.push_back(edge(a, b, static_cast<float>(random.uniform(-0.5, 1))));
+        const auto agreement = [&](const auto& sign) {
+            double sum = 0;
+            for (const SignedEdge& e : edges) sum += sign(e.a) == sign(e.b) ? e.weight : -e.weight;
+            return sum;
+        };
+        double best = 0;
+        for (unsigned signs = 0; signs < 1u << (nodes - 1); ++signs)
+            best = std::max(best, agreement([&](Index v) { return signs >> v & 1; }));
+        const Signs found = agglomerate(nodes, edges);
+        best_found += agreement([&](Index v) { return found.sign[v] > 0; }) > best - 1e-4;
+    }
+    INFO(best_found);
+    CHECK(best_found >= 80);
+}
+
 TEST_CASE("what no evidence joins stays apart, and the order of the edges does not matter", "[normals]") {
     std::vector<SignedEdge> edges{edge(0, 1, 1), edge(1, 2, -1), edge(4, 5, -2), edge(2, 3, 0)};
     const Signs signs = agglomerate(6, edges);

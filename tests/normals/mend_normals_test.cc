@@ -101,6 +101,35 @@ TEST_CASE("one half of a plate turned inside out is found and turned back", "[no
     CHECK(share_inward(octree, plate) < 0.005);
 }
 
+TEST_CASE("flipped normals that lie askew, as those smoothed over a fan of triangles, are turned back",
+          "[normals]") {
+    support::Random random(3);
+    PointCloud cloud;
+    std::vector<Vec3> right; // normals of the cone's side and foot
+    const auto add = [&](const Vec3& position, const Vec3& normal, const Vec3& given) {
+        cloud.positions.push_back(position);
+        right.push_back(normal);
+        cloud.normals.push_back(given.normalized() * (random.uniform() < 0.03 ? -1 : 1));
+    };
+    for (int i = 0; i < 8000; ++i) {
+        const double angle = random.uniform(0, 6.28318), share = std::sqrt(random.uniform());
+        const Vec3 out(std::cos(angle), std::sin(angle), 0), axis(0, 0, 1);
+        const Vec3 side = (out * 2 + axis).normalized();
+        if (i % 3 == 0)
+            add(out * (0.5 * share), -axis, -axis);
+        else // the corner of all triangles at the apex has the axis for its normal
+            add(out * (0.5 * share) + axis * (1 - share), side, side * share + axis * (1 - share));
+    }
+    Octree octree = build_octree(cloud);
+    CHECK(check_normals(octree).askew());
+    mend_normals(octree);
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < octree.size(); ++i)
+        wrong += (octree.normals[i] | right[octree.source[i]]) < 0;
+    INFO(wrong);
+    CHECK(wrong < 20);
+}
+
 TEST_CASE("right normals of points that are all noise stay as they are", "[normals]") {
     PointCloud cloud =
         support::sample(support::sphere(1), {.points = 8000, .position_noise = 0.1, .normal_noise = 0.3});

@@ -94,11 +94,14 @@ std::uint64_t rank_of(const SignedEdge& e, std::size_t place) {
     return std::uint64_t{~std::bit_cast<std::uint32_t>(strength)} << 32 | place;
 }
 
-/// Per node, the edge with its strongest evidence; the strongest edges first.
-std::vector<Index> picked_edges(const std::vector<SignedEdge>& edges, std::size_t nodes) {
+/// Per node, the edge with its strongest evidence, of those that may_join(); the strongest edges first.
+template <class MayJoin>
+std::vector<Index> picked_edges(const std::vector<SignedEdge>& edges, std::size_t nodes,
+                                const MayJoin& may_join) {
     const std::uint64_t none = rank_of({}, 0);
     std::vector<std::uint64_t> best = large_vector<std::uint64_t>(nodes, none);
     for_each_in_order(edges.size(), [&](std::size_t e) {
+        if (!may_join(edges[e])) return;
         const std::uint64_t rank = rank_of(edges[e], e);
         for (Index v : {edges[e].a, edges[e].b}) best[v] = std::min(best[v], rank);
     });
@@ -125,18 +128,24 @@ std::vector<SignedEdge> contracted(const std::vector<SignedEdge>& edges, SignedF
     return result;
 }
 
-std::vector<Round> join_all(SignedForest& forest, std::vector<SignedEdge> edges, std::size_t nodes) {
+/// Joins nodes in rounds until no edge that may_join() is left between two trees.
+template <class MayJoin>
+std::vector<Round> join_all(SignedForest& forest, std::vector<SignedEdge> edges, std::size_t nodes,
+                            const MayJoin& may_join) {
     std::vector<Round> rounds;
     while (!edges.empty()) {
         sort_and_merge(edges, nodes);
         std::vector<Joint> joints;
-        const std::vector<Index> picked = picked_edges(edges, nodes);
+        const std::vector<Index> picked = picked_edges(edges, nodes, may_join);
         for_each_in_order(picked.size(), [&](std::size_t i) {
             const SignedEdge& e = edges[picked[i]];
             const Joint joint = forest.join(e.a, e.b, e.weight < 0 ? -1 : 1);
             if (joint.root != joint.joined) push_large(joints, joint);
         });
-        if (joints.empty()) break;
+        if (joints.empty()) {
+            rounds.push_back({std::move(edges), {}});
+            break;
+        }
         std::vector<SignedEdge> rest = contracted(edges, forest);
         rounds.push_back({std::move(edges), std::move(joints)});
         edges = std::move(rest);
@@ -216,22 +225,52 @@ private:
     std::vector<SignedEdge> contradicted_;
 };
 
-} // namespace
-
-Signs agglomerate(std::size_t nodes, std::vector<SignedEdge> edges) {
-    SignedForest forest(nodes);
-    std::vector<Round> rounds = join_all(forest, std::move(edges), nodes);
-    Signs result;
-    assign_large(result.sign, nodes, 1);
-    Improvement improvement(result.sign);
+/// Undoes the rounds, last one first: joined nodes take the signs of their roots, then those that the sum of
+/// their evidence contradicts are turned.
+void undo(std::vector<Round> rounds, std::vector<std::int8_t>& sign) {
+    Improvement improvement(sign);
     for (; !rounds.empty(); rounds.pop_back()) {
         const std::vector<Joint>& joints = rounds.back().joints;
         for_each_in_order(joints.size(), [&](std::size_t i) {
             const Joint& joint = joints[joints.size() - 1 - i];
-            result.sign[joint.joined] = static_cast<std::int8_t>(result.sign[joint.root] * joint.sign);
+            sign[joint.joined] = static_cast<std::int8_t>(sign[joint.root] * joint.sign);
         });
         improvement.run(rounds.back().edges);
     }
+}
+
+/// Multiplies the evidence by the signs of its ends: positive where they agree with it.
+void turn_evidence(std::vector<SignedEdge>& edges, const std::vector<std::int8_t>& sign) {
+    for_each_index(edges.size(), chunks::light, [&](std::size_t i) {
+        edges[i].weight *= static_cast<float>(sign[edges[i].a] * sign[edges[i].b]);
+    });
+}
+
+/// Turns whole regions that the sum of their evidence contradicts, though it bears out each of their nodes:
+/// nodes are joined anew, by agreeing evidence alone, so that a region whose border contradicts it grows up
+/// to that border. `edges`: the evidence times the signs; so it is after, too. Returns whether any turned.
+bool turn_regions(std::vector<SignedEdge>& edges, std::vector<std::int8_t>& sign, Index pole) {
+    SignedForest forest(sign.size());
+    std::vector<std::int8_t> turned = large_vector<std::int8_t>(sign.size(), 1);
+    undo(join_all(forest, edges, sign.size(),
+                  [&](const SignedEdge& e) { return e.weight > 0 && e.a != pole && e.b != pole; }),
+         turned);
+    if (std::ranges::none_of(turned, [](std::int8_t t) { return t < 0; })) return false;
+    turn_evidence(edges, turned);
+    for_each_index(sign.size(), chunks::light,
+                   [&](Index v) { sign[v] = static_cast<std::int8_t>(sign[v] * turned[v]); });
+    return true;
+}
+
+} // namespace
+
+Signs agglomerate(std::size_t nodes, std::vector<SignedEdge> edges, Index pole) {
+    SignedForest forest(nodes);
+    Signs result;
+    assign_large(result.sign, nodes, 1);
+    undo(join_all(forest, edges, nodes, [](const SignedEdge&) { return true; }), result.sign);
+    turn_evidence(edges, result.sign);
+    for (int cycle = 0; cycle < enough_rounds && turn_regions(edges, result.sign, pole);) ++cycle;
     resize_large(result.component, nodes);
     std::vector<Index> number = large_vector<Index>(nodes, no_index);
     for_each_in_order(nodes, [&](std::size_t v) {

@@ -22,8 +22,11 @@ struct Signs {
 /// Boruvka's algorithm with sums: in each round every component joins the one with which it has the strongest
 /// evidence, summed along their whole border; the strongest first. Then the rounds are undone, last one
 /// first, and in each of them components that the sum of their evidence contradicts are turned, so that early
-/// errors do not stay. O(e log n) at worst, in at most log2 n rounds. The result does not depend on the order
+/// errors do not stay. That is done again from the signs found, joining only nodes that agree, until nothing
+/// turns: a region with few, strong errors inside it is right as a whole or wrong as a whole, and turns as
+/// one. `pole`: a node with evidence on many others (the surroundings), which joins none of them again:
+/// regions tied together by it alone are not one. O(e log n) a time. The result does not depend on the order
 /// of the edges beyond the last bit of their sums.
-Signs agglomerate(std::size_t nodes, std::vector<SignedEdge> edges);
+Signs agglomerate(std::size_t nodes, std::vector<SignedEdge> edges, Index pole = no_index);
 
 } // namespace hsdm

@@ -355,6 +355,11 @@ inline constexpr double most_rises = 3;
 /// Why: half a degree, for clouds without noise.
 inline constexpr double added_rise = 0.01;
 
+/// flat pairs: to a steep one, with fewer of which the given axes lie askew to the surface.
+/// Why: exact normals have next to no steep pairs, those of scanners and of smoothed coarse meshes one of
+/// three; between them both ways of turning do equally well.
+inline constexpr std::size_t flat_per_steep = 10;
+
 /// pairs: that contradict each other at least.
 /// Why: by trial; outliers cause some.
 inline constexpr std::size_t fewest = 10;

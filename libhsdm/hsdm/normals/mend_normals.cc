@@ -3,6 +3,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/normals/constants.hh"
+#include "hsdm/normals/estimate_normals.hh"
 #include "hsdm/normals/orient_normals.hh"
 #include "hsdm/octree/spacing.hh"
 
@@ -83,19 +84,54 @@ NormalConsistency check_pairs(std::size_t size, const GetPoint& point, double sp
     return sum_pairs<NormalConsistency>(size, point, farthest, add);
 }
 
+/// The given normals, turned to the sides found for patches of points whose own normals agree.
+std::vector<Vec3> turned_by_normals(const Octree& octree, const Neighbors& neighbors,
+                                    const OrientOptions& options) {
+    EstimatedNormals given = estimate_normals(octree, neighbors, {.rounds = 0}); // for its tolerances
+    given.normals = octree.normals;
+    turn_normals(orient_normals(octree, neighbors, given, options), given.normals);
+    return std::move(given.normals);
+}
+
+/// The given normals, each turned to the side that the normals of its neighbours' positions have, those most
+/// along it most. A patch of given normals that lie askew to the surface would take the wrong side as a
+/// whole.
+std::vector<Vec3> turned_by_positions(const Octree& octree, const Neighbors& neighbors,
+                                      const OrientOptions& options) {
+    EstimatedNormals told = estimate_normals(octree, neighbors);
+    for_each_index(octree.size(), chunks::light, [&](Index i) {
+        if ((told.normals[i] | octree.normals[i]) < 0) told.normals[i] = -told.normals[i];
+    });
+    turn_normals(orient_normals(octree, neighbors, told, options), told.normals);
+    std::vector<Vec3> turned = octree.normals;
+    for_each_index(octree.size(), chunks::light, [&](Index i) {
+        double side = 0;
+        for (const Index j : neighbors.of(i)) {
+            const double cosine = told.normals[j] | turned[i];
+            side += cosine * cosine * cosine;
+        }
+        if (side < 0) turned[i] = -turned[i];
+    });
+    return turned;
+}
+
 } // namespace
 
 bool NormalConsistency::doubtful() const {
     return (flat_opposed >= contradictions::fewest && contradictions::flat_per_opposed * flat_opposed > flat)
-           || (creased_opposed >= contradictions::fewest
+           || (!askew() && creased_opposed >= contradictions::fewest
                && 100 * creased_opposed > contradictions::creased_percent * creased);
+}
+
+bool NormalConsistency::askew() const {
+    return contradictions::flat_per_steep * steep > flat;
 }
 
 double NormalConsistency::contradiction() const {
     const auto share = [](std::size_t part, std::size_t whole) {
         return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
     };
-    return share(flat_opposed, flat) + share(creased_opposed, creased);
+    return share(flat_opposed, flat) + (askew() ? 0 : share(creased_opposed, creased));
 }
 
 void NormalConsistency::operator+=(const NormalConsistency& other) {
@@ -144,18 +180,17 @@ NormalConsistency check_normals(const NormalSample& sample, std::size_t size, do
 std::size_t mend_normals(Octree& octree, OrientOptions options) {
     if (!octree.has_normals() || octree.size() < 2) return 0;
     const Neighbors neighbors = find_neighbors(octree);
-    EstimatedNormals mended = estimate_normals(octree, neighbors, {.rounds = 0}); // for its tolerances
-    mended.normals = octree.normals;
     options.signs_count = true;
-    turn_normals(orient_normals(octree, neighbors, mended, options), mended.normals);
-    const double before = check_normals(octree).contradiction();
-    octree.normals.swap(mended.normals);
-    if (2 * check_normals(octree).contradiction() > before) { // noise, no flips
-        octree.normals.swap(mended.normals);
+    const NormalConsistency before = check_normals(octree);
+    std::vector<Vec3> mended = before.askew() ? turned_by_positions(octree, neighbors, options)
+                                              : turned_by_normals(octree, neighbors, options);
+    octree.normals.swap(mended);
+    if (2 * check_normals(octree).contradiction() > before.contradiction()) { // noise, no flips
+        octree.normals.swap(mended);
         return 0;
     }
     std::size_t turned = 0;
-    for (std::size_t i = 0; i < octree.size(); ++i) turned += (mended.normals[i] | octree.normals[i]) < 0;
+    for (std::size_t i = 0; i < octree.size(); ++i) turned += (mended[i] | octree.normals[i]) < 0;
     return turned;
 }
 

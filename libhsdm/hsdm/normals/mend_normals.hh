@@ -18,10 +18,13 @@ struct NormalConsistency {
     /// More steep pairs than flat ones: the noise is perhaps not small against the spacing.
     bool rough() const { return steep > flat; }
 
+    /// So many steep pairs that the given axes are no evidence of where the surface goes.
+    bool askew() const;
+
     /// More contradictions than thin parts and outliers cause: ten pairs, and over 0.05 % of the flat or 15 %
-    /// of the creased.
+    /// of the creased; these say nothing where axes are askew.
     bool doubtful() const;
-    /// Sum of the two shares.
+    /// Sum of the two shares, or of flat ones alone where axes are askew.
     double contradiction() const;
     void operator+=(const NormalConsistency& other);
 };
@@ -51,9 +54,10 @@ struct NormalSample {
 NormalConsistency check_normals(const NormalSample& sample, std::size_t size, double spacing);
 
 /// Turns the octree's normals to one side, in place; their axes stay. The evidence is that of orient_normals
-/// with these options; where the shape leaves the side open (a sheet, a thin part), the side that most
-/// normals have is taken. If that leaves more than half of the contradictions, these come from noise, and
-/// nothing is turned. Returns how many normals were turned.
+/// with these options, for the given axes, or for those of the positions where the given ones lie askew;
+/// where the shape leaves the side open (a sheet, a thin part), the side that most normals have is taken. If
+/// that leaves more than half of the contradictions, these come from noise, and nothing is turned. Returns
+/// how many normals were turned.
 std::size_t mend_normals(Octree& octree, OrientOptions options = {});
 
 } // namespace hsdm

@@ -101,7 +101,7 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
         const float vote = turning::sensor_weight * seen_by[p];
         if (vote != 0) edges.push_back({static_cast<Index>(p), outside, vote, std::abs(vote)});
     });
-    const Signs signs = agglomerate(patches.size() + 1, std::move(edges));
+    const Signs signs = agglomerate(patches.size() + 1, std::move(edges), outside);
     std::vector<std::int8_t> turn = free_signs(patches, signs, options);
     const bool seen = std::ranges::any_of(seen_by, [](float vote) { return vote != 0; })
                       || views_agree(patches, view, signs);
