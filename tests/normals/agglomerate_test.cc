@@ -88,7 +88,8 @@ TEST_CASE("a region that some wrong views hold turns as a whole where its border
     }
 }
 
-TEST_CASE("of all signs those found agree with the evidence best, in four of five small graphs", "[normals]") {
+TEST_CASE("of all signs those found agree with the evidence best, in four of five small graphs",
+          "[normals]") {
     constexpr Index nodes = 12;
     int best_found = 0;
     for (std::uint64_t seed = 1; seed <= 100; ++seed) {
