@@ -127,11 +127,11 @@ bool NormalConsistency::askew() const {
     return contradictions::flat_per_steep * steep > flat;
 }
 
-double NormalConsistency::contradiction() const {
+double NormalConsistency::contradiction(bool creases_count) const {
     const auto share = [](std::size_t part, std::size_t whole) {
         return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
     };
-    return share(flat_opposed, flat) + (askew() ? 0 : share(creased_opposed, creased));
+    return share(flat_opposed, flat) + (creases_count ? share(creased_opposed, creased) : 0);
 }
 
 void NormalConsistency::operator+=(const NormalConsistency& other) {
@@ -185,7 +185,9 @@ std::size_t mend_normals(Octree& octree, OrientOptions options) {
     std::vector<Vec3> mended = before.askew() ? turned_by_positions(octree, neighbors, options)
                                               : turned_by_normals(octree, neighbors, options);
     octree.normals.swap(mended);
-    if (2 * check_normals(octree).contradiction() > before.contradiction()) { // noise, no flips
+    const bool creases_count = !before.askew();
+    if (2 * check_normals(octree).contradiction(creases_count)
+        > before.contradiction(creases_count)) { // noise, no flips
         octree.normals.swap(mended);
         return 0;
     }

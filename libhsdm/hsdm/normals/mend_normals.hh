@@ -24,8 +24,8 @@ struct NormalConsistency {
     /// More contradictions than thin parts and outliers cause: ten pairs, and over 0.05 % of the flat or 15 %
     /// of the creased; these say nothing where axes are askew.
     bool doubtful() const;
-    /// Sum of the two shares, or of flat ones alone where axes are askew.
-    double contradiction() const;
+    /// Sum of the two shares, or that of the flat pairs alone.
+    double contradiction(bool creases_count) const;
     void operator+=(const NormalConsistency& other);
 };
 
