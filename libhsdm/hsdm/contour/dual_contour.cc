@@ -16,7 +16,6 @@
 #include "hsdm/spatial/self_intersections.hh"
 
 #include <algorithm>
-#include <numeric>
 
 namespace hsdm {
 namespace {
@@ -208,7 +207,7 @@ PolygonMesh joined_facets(const std::vector<PolygonMesh>& parts) {
         corner[i + 1] = corner[i] + parts[i].corners.size();
         facet[i + 1] = facet[i] + parts[i].facet_count();
     }
-    resize_large(mesh.corners, corner.back());
+    resize_unwritten(mesh.corners, corner.back());
     resize_large(mesh.first, facet.back() + 1);
     for_each_task(parts.size(), [&](std::size_t i) {
         std::ranges::copy(parts[i].corners, mesh.corners.begin() + static_cast<std::ptrdiff_t>(corner[i]));
@@ -239,7 +238,7 @@ PolygonMesh facets_of(const DualMesh& dual, const Midpoints& midpoints, const Pl
 /// Per vertex, the value of the vertex that it originated from.
 template <class T>
 std::vector<T> of_origins(const std::vector<T>& values, const std::vector<Index>& origin) {
-    std::vector<T> result = large_vector<T>(origin.size());
+    std::vector<T> result = unwritten_vector<T>(origin.size());
     for_each_index(result.size(), chunks::light, [&](Index i) { result[i] = values[origin[i]]; });
     return result;
 }
@@ -314,8 +313,7 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
         result.mesh = facets_of(dual, midpoints, vertices);
         result.mesh.positions = std::move(vertices.positions);
     }
-    resize_large(result.mesh.origin, result.mesh.vertex_count());
-    std::iota(result.mesh.origin.begin(), result.mesh.origin.end(), Index(0));
+    result.mesh.origin = indices_below(result.mesh.vertex_count());
     result.classes = std::move(vertices.classes);
     result.voxel = std::move(vertices.voxel);
     result.midpoints = midpoints.count();

@@ -139,7 +139,7 @@ GridPoints build_grid_points(const OctreeLevel& level) {
     grid.codes = grid_point_codes(level);
     grid.add_part(0);
     connect_voxels(level, grid);
-    resize_large(grid.next, grid.size());
+    resize_unwritten(grid.next, grid.size());
     for_each_index(grid.size(), chunks::usual, [&](Index i) { connect_grid_point(grid, i); });
     return grid;
 }
@@ -150,7 +150,7 @@ void add_grid_points(GridPoints& grid, std::span<const MortonCode> codes) {
     grid.codes.insert(grid.codes.end(), codes.begin(), codes.end());
     grid.add_part(static_cast<Index>(n));
     resize_large(grid.voxels, grid.size(), no_voxels);
-    resize_large(grid.next, grid.size());
+    resize_unwritten(grid.next, grid.size());
     for_chunks(codes.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
         for (std::size_t i = n + begin; i < n + end; ++i) {
             connect_grid_point(grid, i);

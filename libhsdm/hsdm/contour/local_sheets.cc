@@ -143,7 +143,7 @@ LocalSheets connect_members(const GridPoints& grid, const NormalSets& sets, cons
             if (voxel != no_index) result.first_member[i + 1] += sets.first[voxel + 1] - sets.first[voxel];
     });
     counts_to_first(result.first_member);
-    resize_large(result.members, result.first_member.back());
+    resize_unwritten(result.members, result.first_member.back());
     for_chunks(n, chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
         SheetsAtPoint grid_point;
         for (std::size_t i = begin; i < end; ++i) {
@@ -295,7 +295,7 @@ LocalSheets group_local_sheets(const GridPoints& grid, const NormalSets& sets, c
         result.first_sheet[i + 1] = SheetsAtPoint::count_sheets(result.members_at(i));
     });
     counts_to_first(result.first_sheet);
-    resize_large(result.sheets, result.first_sheet.back());
+    resize_unwritten(result.sheets, result.first_sheet.back());
     for_chunks(n, chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
         SheetsAtPoint grid_point;
         for (std::size_t i = begin; i < end; ++i) {

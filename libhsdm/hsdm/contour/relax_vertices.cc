@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hsdm {
 namespace {
@@ -46,7 +47,7 @@ public:
     }
 
     void round(double step) {
-        resize_large(next_, duals_.size());
+        resize_unwritten(next_, duals_.size());
         for_each_index(duals_.size(), chunks::slow, [&](Index v) {
             next_[v] = vertices_.positions[v];
             if (duals_.open[v]) return;
@@ -62,8 +63,11 @@ public:
     /// a voxel's points are then farther off than from the facets as placed, its vertices go back to where
     /// they were placed; all do if the sum over all points grew.
     void fit(const PointFit& fit, std::span<const std::uint8_t> part, bool go_back) {
-        const PointFit::Measure before = fit.measure(placed_);
-        rise(fit.rises(before.heights));
+        // Heights are freed before others are measured, as are neighbours, which rounds alone look at.
+        next_ = std::vector<Vec3>();
+        neighbours_ = std::vector<Neighbour>();
+        PointFit::Measure before = fit.measure(placed_);
+        rise(fit.rises(std::exchange(before.heights, {})));
         const PointFit::Measure after = fit.measure(vertices_.positions);
         const double placed = sum_of(before.misfit, part), moved = sum_of(after.misfit, part);
         if (!part.empty()) vertices_.misfit_placed = placed, vertices_.misfit_moved = moved;
@@ -91,8 +95,8 @@ private:
     }
 
     void list_neighbours() {
-        resize_large(neighbours_, 2 * duals_.corners.size());
-        resize_large(neighbour_count_, duals_.size());
+        resize_unwritten(neighbours_, 2 * duals_.corners.size()); // more than there are
+        resize_unwritten(neighbour_count_, duals_.size());
         for_each_index(duals_.size(), chunks::slow, [&](Index v) {
             Neighbour* const first = neighbours_.data() + 2 * std::size_t{duals_.first[v]};
             Neighbour* last = first;

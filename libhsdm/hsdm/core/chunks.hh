@@ -61,7 +61,7 @@ template <class T>
 std::vector<T> joined(const std::vector<std::vector<T>>& parts) {
     std::vector<std::size_t> offset(parts.size() + 1, 0);
     for (std::size_t i = 0; i < parts.size(); ++i) offset[i + 1] = offset[i] + parts[i].size();
-    std::vector<T> whole = large_vector<T>(offset.back());
+    std::vector<T> whole = unwritten_vector<T>(offset.back());
     for_each_task(parts.size(), [&](std::size_t i) {
         std::copy(parts[i].begin(), parts[i].end(), whole.begin() + static_cast<std::ptrdiff_t>(offset[i]));
     });
@@ -81,7 +81,7 @@ std::vector<T> collected(std::size_t n, std::size_t chunk_size, F&& f) {
 
 /// 0, 1, ... n - 1.
 inline std::vector<Index> indices_below(std::size_t n) {
-    std::vector<Index> indices = large_vector<Index>(n);
+    std::vector<Index> indices = unwritten_vector<Index>(n);
     for_each_index(n, chunks::light, [&](Index i) { indices[i] = i; });
     return indices;
 }
@@ -106,7 +106,7 @@ inline constexpr std::size_t gathered_ahead = 16; // prefetched: places need not
 /// The values at these places, in parallel.
 template <class T>
 std::vector<T> gathered(const std::vector<T>& values, const std::vector<Index>& places) {
-    std::vector<T> result = large_vector<T>(places.size());
+    std::vector<T> result = unwritten_vector<T>(places.size());
     for_each_index(places.size(), chunks::light, [&](Index i) {
         if (i + gathered_ahead < places.size()) __builtin_prefetch(&values[places[i + gathered_ahead]]);
         result[i] = values[places[i]];

@@ -16,7 +16,7 @@ public:
             if (group[i] != no_index) ++first_[group[i] + 1];
         });
         counts_to_first(first_);
-        resize_large(members_, first_.back());
+        resize_unwritten(members_, first_.back());
         std::vector<Index> next = copy_of_large(first_);
         for_each_in_order(group.size(), [&](std::size_t i) {
             if (group[i] != no_index) members_[next[group[i]]++] = static_cast<Index>(i);

@@ -21,4 +21,12 @@ void touch_pages(void* memory, std::size_t bytes) {
     tbb::this_task_arena::isolate([&] { for_each_task(chunk_count(bytes, block), touch); });
 }
 
+void fill_blocks(std::size_t n, std::size_t per_block,
+                 void (*fill)(void* context, std::size_t begin, std::size_t end), void* context) {
+    tbb::this_task_arena::isolate([&] {
+        for_each_task(chunk_count(n, per_block),
+                      [&](std::size_t k) { fill(context, k * per_block, std::min(n, (k + 1) * per_block)); });
+    });
+}
+
 } // namespace hsdm

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace hsdm {
 namespace {
@@ -31,19 +32,24 @@ private:
     std::size_t mask_;
 };
 
-/// Turns counts per chunk and bucket into the position of each chunk's first key of each bucket.
-/// Returns false if all keys share one bucket.
+/// Turns counts per chunk and bucket into the position of each chunk's first key of each bucket, chunk by
+/// chunk as they lie in memory. Returns false if all keys share one bucket; then the counts are of no use any
+/// more.
 bool counts_to_offsets(std::vector<Histogram>& histograms, std::size_t n) {
-    std::size_t offset = 0;
-    for (std::size_t bucket = 0; bucket < buckets; ++bucket) {
-        const std::size_t begin = offset;
-        for (Histogram& histogram : histograms) {
-            const std::size_t count = histogram[bucket];
-            histogram[bucket] = offset;
-            offset += count;
+    Histogram first{}; // of each bucket how many there are, then where it begins
+    for (Histogram& histogram : histograms)
+        for (std::size_t bucket = 0; bucket < buckets; ++bucket) {
+            const std::size_t before = first[bucket];
+            first[bucket] += histogram[bucket];
+            histogram[bucket] = before;
         }
-        if (offset - begin == n) return false;
+    std::size_t offset = 0;
+    for (std::size_t& begin : first) {
+        if (begin == n) return false;
+        offset += std::exchange(begin, offset);
     }
+    for (Histogram& histogram : histograms)
+        for (std::size_t bucket = 0; bucket < buckets; ++bucket) histogram[bucket] += first[bucket];
     return true;
 }
 
@@ -51,7 +57,7 @@ template <class Key>
 void sort_by_digits(std::vector<Key>& keys, int high, int low) {
     const std::size_t n = keys.size();
     const std::size_t chunks = (n + chunk_size - 1) / chunk_size;
-    std::vector<Key> buffer = large_vector<Key>(n);
+    std::vector<Key> buffer = unwritten_vector<Key>(n);
     std::vector<Histogram> histograms(chunks);
     for (int shift = low; shift < high; shift += digit_bits) {
         const Digit digit(shift, high);

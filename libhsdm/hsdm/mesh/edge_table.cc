@@ -14,7 +14,7 @@ EdgeTable::EdgeTable(const PolygonMesh& mesh)
       }) {}
 
 std::vector<Index> next_sides(const PolygonMesh& mesh) {
-    std::vector<Index> next = large_vector<Index>(mesh.corners.size());
+    std::vector<Index> next = unwritten_vector<Index>(mesh.corners.size());
     for_each_index(mesh.facet_count(), chunks::quick, [&](Index f) {
         for (Index side = mesh.first[f]; side < mesh.first[f + 1]; ++side)
             next[side] = side + 1 < mesh.first[f + 1] ? side + 1 : mesh.first[f];

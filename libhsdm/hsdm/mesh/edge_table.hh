@@ -51,7 +51,7 @@ EdgeTable::EdgeTable(std::size_t vertex_count, const ForEachSide& for_each_side)
         std::atomic_ref(first_[std::min(from, to) + 1]).fetch_add(1, std::memory_order_relaxed);
     });
     counts_to_first(first_);
-    resize_large(sides_, first_.back());
+    resize_unwritten(sides_, first_.back());
     std::vector<Index> next(first_.begin(), first_.end() - 1);
     for_each_side([&](Index from, Index to, Index side) {
         sides_[std::atomic_ref(next[std::min(from, to)]).fetch_add(1, std::memory_order_relaxed)] = {

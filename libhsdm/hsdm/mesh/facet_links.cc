@@ -57,8 +57,8 @@ private:
     }
 
     void find_proper_facets() {
-        resize_large(links_.accepted, facets_.facet_count());
-        resize_large(links_.facet, facets_.corners.size());
+        resize_unwritten(links_.accepted, facets_.facet_count());
+        resize_unwritten(links_.facet, facets_.corners.size());
         for_each_index(facets_.facet_count(), chunks::quick, [&](Index f) {
             links_.accepted[f] = is_proper(facets_.facet(f), facets_.vertex_count());
             for (Index c = facets_.first[f]; c < facets_.first[f + 1]; ++c) links_.facet[c] = f;
@@ -73,12 +73,16 @@ private:
 
     void list_sides_out() {
         assign_large(first_out_, facets_.vertex_count() + 1, 0);
-        for_each_accepted_side([&](Index c) { ++first_out_[start(c) + 1]; });
-        for (std::size_t v = 0; v < facets_.vertex_count(); ++v) first_out_[v + 1] += first_out_[v];
-        resize_large(out_, first_out_.back());
+        for_each_accepted_side([&](Index c) {
+            std::atomic_ref(first_out_[start(c) + 1]).fetch_add(1, std::memory_order_relaxed);
+        });
+        counts_to_first(first_out_);
+        resize_unwritten(out_, first_out_.back());
         std::vector<Index> fill(first_out_.begin(), first_out_.end() - 1);
-        for_each_accepted_side(
-            [&](Index c) { out_[fill[start(c)]++] = static_cast<std::uint64_t>(end(c)) << 32 | c; });
+        for_each_accepted_side([&](Index c) { // in any order: sorted below
+            const Index place = std::atomic_ref(fill[start(c)]).fetch_add(1, std::memory_order_relaxed);
+            out_[place] = static_cast<std::uint64_t>(end(c)) << 32 | c;
+        });
         for_each_index(facets_.vertex_count(), chunks::quick, [&](Index v) {
             std::sort(out_.begin() + first_out_[v], out_.begin() + first_out_[v + 1]);
         });
@@ -86,7 +90,7 @@ private:
 
     template <class Body>
     void for_each_accepted_side(const Body& body) const {
-        for_each_in_order(facets_.facet_count(), [&](std::size_t f) {
+        for_each_index(facets_.facet_count(), chunks::quick, [&](Index f) {
             if (!links_.accepted[f]) return;
             for (Index c = facets_.first[f]; c < facets_.first[f + 1]; ++c) body(c);
         });
@@ -160,14 +164,12 @@ private:
     }
 
     void find_fans() {
-        for_each_in_order(facets_.vertex_count(), [&](std::size_t place) {
-            const auto v = static_cast<Index>(place);
-            if (!sides_out(v).empty()) links_.source.push_back(v);
-        });
+        links_.source = indices_where(facets_.vertex_count(), chunks::light,
+                                      [&](Index v) { return !sides_out(v).empty(); });
         const std::size_t count = links_.source.size();
         assign_large(links_.vertex, facets_.corners.size(), no_index);
-        resize_large(links_.side_out, count);
-        resize_large(links_.open_in, count);
+        resize_unwritten(links_.side_out, count);
+        resize_unwritten(links_.open_in, count);
         std::vector<char> several(count, 0);
         for_each_index(count, chunks::quick, [&](Index i) {
             const Index v = links_.source[i];

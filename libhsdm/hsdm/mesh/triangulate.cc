@@ -95,7 +95,7 @@ Triangulation triangulate(const PolygonMesh& mesh) {
         const Index corners = mesh.first[f + 1] - mesh.first[f];
         result.first[f + 1] = result.first[f] + (corners < 3 ? 0 : corners - 2);
     });
-    resize_large(result.triangles, result.first.back());
+    resize_unwritten(result.triangles, result.first.back());
     for_each_index(facets, chunks::quick, [&](Index f) {
         cut(mesh.positions, mesh.facet(f), result.triangles.data() + result.first[f]);
     });

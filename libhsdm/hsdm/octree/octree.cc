@@ -47,7 +47,7 @@ Vec3 unit_with_one_zero(const Vec3& n) {
 /// change(vector) of the vectors at these places.
 template <class Change>
 std::vector<Vec3> gathered(const StridedSpan& rows, const std::vector<Index>& places, const Change& change) {
-    std::vector<Vec3> result = large_vector<Vec3>(places.size());
+    std::vector<Vec3> result = unwritten_vector<Vec3>(places.size());
     for_each_index(places.size(), chunks::light, [&](Index i) {
         if (i + ahead < places.size()) __builtin_prefetch(row_of(rows, places[i + ahead]));
         result[i] = change(vec3_at(rows, places[i]));
@@ -91,7 +91,7 @@ std::uint64_t key_of(MortonCode code, Index i) {
 
 /// The order of sorted keys.
 Order order_of(const std::vector<MortonCode>& codes, const std::vector<std::uint64_t>& keys) {
-    Order order{large_vector<MortonCode>(keys.size()), large_vector<Index>(keys.size())};
+    Order order{unwritten_vector<MortonCode>(keys.size()), unwritten_vector<Index>(keys.size())};
     for_each_index(keys.size(), chunks::light, [&](Index i) {
         if (i + ahead < keys.size()) __builtin_prefetch(&codes[static_cast<Index>(keys[i + ahead])]);
         order.source[i] = static_cast<Index>(keys[i]);
@@ -102,7 +102,7 @@ Order order_of(const std::vector<MortonCode>& codes, const std::vector<std::uint
 
 /// Sorts by all of the codes.
 void sort_by_codes(Order& order) {
-    std::vector<CodeIndex> points = large_vector<CodeIndex>(order.codes.size());
+    std::vector<CodeIndex> points = unwritten_vector<CodeIndex>(order.codes.size());
     for_each_index(points.size(), chunks::light, [&](Index i) {
         points[i] = {order.codes[i], order.source[i]};
     });
@@ -245,8 +245,8 @@ void place_cube(const PointView& cloud, const OctreeOptions& options, Octree& oc
 Order order_of_cloud(const PointView& cloud, const StridedSpan& normals, const OctreeOptions& options,
                      const Octree& octree) {
     const double scale = cells / octree.extent, per_unit = 1 / options.unit;
-    std::vector<MortonCode> codes = large_vector<MortonCode>(cloud.size());
-    std::vector<std::uint64_t> keys = large_vector<std::uint64_t>(cloud.size());
+    std::vector<MortonCode> codes = unwritten_vector<MortonCode>(cloud.size());
+    std::vector<std::uint64_t> keys = unwritten_vector<std::uint64_t>(cloud.size());
     for_each_index(codes.size(), chunks::light, [&](Index i) {
         codes[i] = code_of(vec3_at(cloud.positions, i) * per_unit - octree.origin, scale);
         keys[i] = key_of(codes[i], i);
@@ -301,8 +301,8 @@ void rearrange(Octree& octree, std::vector<Vec3> positions, double extent) {
     const Vec3 shift = before - octree.origin;
     const double scale = cells / extent;
     std::vector<MortonCode> codes = std::move(octree.codes);
-    resize_large(codes, positions.size());
-    std::vector<std::uint64_t> keys = large_vector<std::uint64_t>(positions.size());
+    resize_unwritten(codes, positions.size());
+    std::vector<std::uint64_t> keys = unwritten_vector<std::uint64_t>(positions.size());
     for_each_index(keys.size(), chunks::light, [&](Index i) {
         positions[i] += shift;
         codes[i] = code_of(positions[i], scale);
@@ -359,7 +359,7 @@ std::vector<Index> find_runs(const std::vector<MortonCode>& codes, int shift) {
 /// The voxels of a level from its runs of points or of finer voxels.
 void fill_level(const std::vector<MortonCode>& codes, int shift, const std::vector<Index>& runs,
                 OctreeLevel& level) {
-    resize_large(level.codes, runs.size() - 1);
+    resize_unwritten(level.codes, runs.size() - 1);
     for_each_index(level.codes.size(), chunks::light,
                    [&](Index v) { level.codes[v] = codes[runs[v]] >> shift; });
     level.build_index();

@@ -4,8 +4,8 @@
 #include "hsdm/core/groups.hh"
 #include "hsdm/core/large_vector.hh"
 
+#include <atomic>
 #include <cassert>
-#include <numeric>
 
 namespace hsdm {
 namespace {
@@ -13,7 +13,9 @@ namespace {
 /// Which of the vertices have facets.
 std::vector<std::uint8_t> used_vertices(const PolygonMesh& mesh) {
     std::vector<std::uint8_t> used = large_vector<std::uint8_t>(mesh.vertex_count(), 0);
-    for_each_in_order(mesh.corners.size(), [&](std::size_t c) { used[mesh.corners[c]] = 1; });
+    for_each_index(mesh.corners.size(), chunks::light, [&](Index c) {
+        std::atomic_ref(used[mesh.corners[c]]).store(1, std::memory_order_relaxed);
+    });
     return used;
 }
 
@@ -26,7 +28,7 @@ PolygonMesh rearranged(const PolygonMesh& mesh, const std::vector<Index>& vertic
     for_each_in_order(facets.size(), [&](std::size_t f) {
         result.first[f + 1] = result.first[f] + mesh.first[facets[f] + 1] - mesh.first[facets[f]];
     });
-    resize_large(result.corners, mesh.corners.size());
+    resize_unwritten(result.corners, mesh.corners.size());
     for_each_index(facets.size(), chunks::quick, [&](Index f) {
         Index c = result.first[f];
         for (const Index v : mesh.facet(facets[f])) result.corners[c++] = number[v];
@@ -52,17 +54,16 @@ FacetLinks rearranged(const FacetLinks& before, const PolygonMesh& old_mesh, con
                       const PolygonMesh& mesh) {
     FacetLinks links;
     links.accepted = std::vector<char>(mesh.facet_count(), 1);
-    resize_large(links.source, mesh.vertex_count());
-    std::iota(links.source.begin(), links.source.end(), Index{0});
+    links.source = indices_below(mesh.vertex_count());
     links.vertex = copy_of_large(mesh.corners);
     const std::size_t sides = mesh.corners.size();
-    std::vector<Index> now = large_vector<Index>(sides); // per side before
-    resize_large(links.facet, sides);
+    std::vector<Index> now = unwritten_vector<Index>(sides); // per side before
+    resize_unwritten(links.facet, sides);
     for_each_index(facets.size(), chunks::quick, [&](Index f) {
         Index side = old_mesh.first[facets[f]];
         for (Index c = mesh.first[f]; c < mesh.first[f + 1]; ++c) now[side++] = c, links.facet[c] = f;
     });
-    resize_large(links.twin, sides);
+    resize_unwritten(links.twin, sides);
     for_each_index(sides, chunks::light, [&](Index side) {
         const Index twin = before.twin[side];
         links.twin[now[side]] = twin == no_index ? no_index : now[twin];
@@ -87,7 +88,7 @@ void order_by_voxels(std::size_t voxels, std::vector<Index>& voxel, PolygonMesh&
     assert(mesh.properties.empty() && mesh.normals.empty() && mesh.origin.empty());
     const std::vector<std::uint8_t> used = used_vertices(mesh);
     std::vector<Index> key =
-        large_vector<Index>(mesh.vertex_count()); // things are ordered by, ties as they are
+        unwritten_vector<Index>(mesh.vertex_count()); // things are ordered by, ties as they are
     for_each_index(key.size(), chunks::light, [&](Index v) { key[v] = used[v] ? voxel[v] : no_index; });
     const Groups by_voxel(key, voxels);
     const std::vector<Index>& vertices = by_voxel.members();

@@ -138,7 +138,7 @@ std::vector<double> squared_distances_by_cells(std::span<const Vec3> points, con
                                                const FacetCells& cells) {
     if (!cells.usable()) return squared_distances(points, MeshDistance(mesh));
     const Triangulation cut = triangulate(mesh);
-    std::vector<double> squared = large_vector<double>(points.size());
+    std::vector<double> squared = unwritten_vector<double>(points.size());
     for_chunks(points.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
         CellSearch search(mesh, cut, cells);
         for (std::size_t i = begin; i < end; ++i) squared[i] = search.squared_distance(points[i]);
@@ -194,7 +194,7 @@ Distance DistanceSums::result() const {
 }
 
 std::vector<double> squared_distances(std::span<const Vec3> points, const MeshDistance& mesh) {
-    std::vector<double> squared = large_vector<double>(points.size());
+    std::vector<double> squared = unwritten_vector<double>(points.size());
     for_chunks(points.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
         Packets packets(mesh.tree(), points);
         for (std::size_t i = begin; i < end; ++i) squared[i] = packets(i).squared;

@@ -27,7 +27,7 @@ FacetCells::FacetCells(const PolygonMesh& mesh, double size) : size_(size), per_
     if (mesh.facet_count() == 0 || !fit(bounds_of(mesh.positions))) return;
     const std::vector<std::size_t> offset = count(mesh);
     if (offset.empty()) return;
-    std::vector<CodeIndex> entries = large_vector<CodeIndex>(offset.back());
+    std::vector<CodeIndex> entries = unwritten_vector<CodeIndex>(offset.back());
     for_chunks(mesh.facet_count(), chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         std::size_t at = offset[chunk];
         for (std::size_t f = begin; f < end; ++f)
@@ -69,13 +69,13 @@ std::vector<std::size_t> FacetCells::count(const PolygonMesh& mesh) const {
 }
 
 void FacetCells::group(const std::vector<CodeIndex>& entries) {
-    resize_large(facet_, entries.size());
+    resize_unwritten(facet_, entries.size());
     first_ = indices_where(entries.size(), chunks::light, [&](Index i) {
         facet_[i] = entries[i].index;
         return i == 0 || entries[i].code != entries[i - 1].code;
     });
-    std::vector<MortonCode> codes(first_.size());
-    for (std::size_t c = 0; c < codes.size(); ++c) codes[c] = entries[first_[c]].code;
+    std::vector<MortonCode> codes = unwritten_vector<MortonCode>(first_.size());
+    for_each_index(codes.size(), chunks::light, [&](Index c) { codes[c] = entries[first_[c]].code; });
     index_.build(codes);
     first_.push_back(static_cast<Index>(entries.size()));
 }

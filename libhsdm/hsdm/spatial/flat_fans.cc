@@ -106,8 +106,9 @@ std::vector<std::uint8_t> flat_fans(const PolygonMesh& mesh, const std::vector<I
             if (turns > 0) std::atomic_ref(fans[v].turns).fetch_add(turns, std::memory_order_relaxed);
         }
     });
-    std::vector<std::uint8_t> flat = large_vector<std::uint8_t>(fans.size());
-    for_each_in_order(flat.size(), [&](std::size_t v) { flat[v] = fans[v].turns == 1 && fans[v].ends == 0; });
+    std::vector<std::uint8_t> flat = unwritten_vector<std::uint8_t>(fans.size());
+    for_each_index(flat.size(), chunks::light,
+                   [&](Index v) { flat[v] = fans[v].turns == 1 && fans[v].ends == 0; });
     return flat;
 }
 
