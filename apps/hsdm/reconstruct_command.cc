@@ -244,11 +244,11 @@ private:
                             levels_ ? std::optional<int>(report.grid.depth) : std::nullopt);
     }
 
-    /// Adds what is told of a mesh only if it is asked for.
-    void measure_more(Reconstruction& result) const {
+    /// Adds what is told of a mesh, of these polygons, only if it is asked for.
+    void measure_more(const PolygonMesh& polygons, Reconstruction& result) const {
         const auto start = Clock::now();
         if (!arguments_.report.empty() || !arguments_.html.empty())
-            measure_details(result.mesh, result.report.mesh);
+            measure_details(polygons, result.report.mesh);
         if (arguments_.intersections || arguments_.strict) {
             set_phase("intersections");
             count_intersections(result.mesh, result.report);
@@ -263,11 +263,12 @@ private:
         auto start = Clock::now();
         try {
             run_stages(name, stages_, scan, options_.measure, arguments_.quiet, result);
-            measure_more(result);
+            PolygonMesh polygons = to_polygons(result.mesh);
+            measure_more(polygons, result);
             set_phase("write");
             start = Clock::now();
             const MeshTarget to = target(report);
-            report.written = report_of(to, write_outputs(to, result.mesh));
+            report.written = report_of(to, write_outputs(to, result.mesh, std::move(polygons)));
         } catch (const std::exception& error) {
             if (!levels_) throw;
             report.failure = message_of(error);

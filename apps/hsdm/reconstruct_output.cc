@@ -171,14 +171,21 @@ bool OutputPlan::uses_standard_output() const {
            || is_standard_output(arguments_.features) || is_standard_output(arguments_.html);
 }
 
-PolygonMesh polygons_to_write(const PolyMesh& mesh, bool plain) {
-    PolygonMesh polygons = to_polygons(mesh);
+namespace {
+
+PolygonMesh plain_if_asked(PolygonMesh polygons, bool plain) {
     if (plain) {
         polygons.normals.clear();
         polygons.properties.clear();
         polygons.sharp_edges.clear();
     }
     return polygons;
+}
+
+} // namespace
+
+PolygonMesh polygons_to_write(const PolyMesh& mesh, bool plain) {
+    return plain_if_asked(to_polygons(mesh), plain);
 }
 
 Report::Written report_of(const MeshTarget& target, const WrittenMesh& written) {
@@ -192,7 +199,11 @@ Report::Written report_of(const MeshTarget& target, const WrittenMesh& written) 
 }
 
 WrittenMesh write_outputs(const MeshTarget& target, const PolyMesh& mesh) {
-    const PolygonMesh polygons = polygons_to_write(mesh, target.plain);
+    return write_outputs(target, mesh, to_polygons(mesh));
+}
+
+WrittenMesh write_outputs(const MeshTarget& target, const PolyMesh& mesh, PolygonMesh polygons) {
+    polygons = plain_if_asked(std::move(polygons), target.plain);
     const WriteOptions options{target.ascii, target.unit, target.recentre};
     WrittenMesh written;
     if (target.format == MeshFormat::om && !target.plain) {

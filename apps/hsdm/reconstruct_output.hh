@@ -64,5 +64,7 @@ Report::Written report_of(const MeshTarget& target, const WrittenMesh& written);
 
 /// Writes mesh and features. Throws Error.
 WrittenMesh write_outputs(const MeshTarget& target, const PolyMesh& mesh);
+/// The same if the mesh's polygons are at hand.
+WrittenMesh write_outputs(const MeshTarget& target, const PolyMesh& mesh, PolygonMesh polygons);
 
 } // namespace hsdm::command

@@ -167,10 +167,23 @@ Occurrences facets_that_meet(const PolygonMesh& facets) {
 }
 
 void measure_details(const PolyMesh& mesh, Report::Mesh& report) {
-    PolygonMesh facets = to_polygons(mesh);
-    const std::string digest = mesh_digest(facets);
-    const double unit = into_own_unit(facets.positions);
-    const FacetShape shape = measure_shape(facets);
+    measure_details(to_polygons(mesh), report);
+}
+
+void measure_details(const PolygonMesh& facets, Report::Mesh& report) {
+    const double unit = CloudFrame(bounds_of(facets.positions)).unit();
+    std::string digest;
+    FacetShape shape;
+    run_both([&] { digest = mesh_digest(facets); },
+             [&] {
+                 if (unit == 1) {
+                     shape = measure_shape(facets);
+                 } else {
+                     PolygonMesh scaled = facets;
+                     into_own_unit(scaled.positions);
+                     shape = measure_shape(scaled);
+                 }
+             });
     report.details = {digest, shape.quad_share, shape.scaled_jacobian_median, shape.scaled_jacobian_min,
                       shape.edge_length_mean * unit};
 }

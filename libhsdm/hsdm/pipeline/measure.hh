@@ -25,6 +25,7 @@ Occurrences facets_that_meet(const PolygonMesh& facets);
 
 /// Digest and shape of a finished mesh. O(corners).
 void measure_details(const PolyMesh& mesh, Report::Mesh& report);
+void measure_details(const PolygonMesh& facets, Report::Mesh& report);
 /// Its self-intersections, exactly: as long as a few phases of the reconstruction take. They are the report's
 /// warning of them then.
 void count_intersections(const PolyMesh& mesh, Report& report);

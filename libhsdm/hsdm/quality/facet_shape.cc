@@ -1,3 +1,4 @@
+#include "hsdm/core/chunks.hh"
 #include "hsdm/quality/topology.hh"
 
 #include <algorithm>
@@ -24,17 +25,22 @@ double scaled_jacobian(const std::vector<Vec3>& p, std::span<const Index> quad) 
 
 FacetShape measure_shape(const PolygonMesh& mesh) {
     FacetShape shape;
-    std::vector<double> jacobians;
-    double length = 0, edge_uses = 0;
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-        const auto facet = mesh.facet(f);
-        if (facet.size() == 4) jacobians.push_back(scaled_jacobian(mesh.positions, facet));
-        for (std::size_t i = 0; i < facet.size(); ++i)
-            length +=
-                (mesh.positions[facet[i + 1 == facet.size() ? 0 : i + 1]] - mesh.positions[facet[i]]).norm();
-        edge_uses += static_cast<double>(facet.size());
-    }
-    if (edge_uses > 0) shape.edge_length_mean = length / edge_uses;
+    std::vector<double> lengths = unwritten_vector<double>(mesh.corners.size());
+    std::vector<double> jacobians = collected<double>(
+        mesh.facet_count(), chunks::usual,
+        [&](std::size_t begin, std::size_t end, std::vector<double>& of_quads) {
+            for (std::size_t f = begin; f < end; ++f) {
+                const auto facet = mesh.facet(f);
+                if (facet.size() == 4) of_quads.push_back(scaled_jacobian(mesh.positions, facet));
+                for (std::size_t i = 0; i < facet.size(); ++i)
+                    lengths[mesh.first[f] + i] =
+                        (mesh.positions[facet[i + 1 == facet.size() ? 0 : i + 1]] - mesh.positions[facet[i]])
+                            .norm();
+            }
+        });
+    double length = 0; // in the order of the sides, so that it is the same however many threads there are
+    for_each_in_order(lengths.size(), [&](std::size_t side) { length += lengths[side]; });
+    if (!lengths.empty()) shape.edge_length_mean = length / static_cast<double>(lengths.size());
     if (jacobians.empty()) return shape;
     shape.quad_share = static_cast<double>(jacobians.size()) / static_cast<double>(mesh.facet_count());
     const auto median = jacobians.begin() + static_cast<std::ptrdiff_t>((jacobians.size() - 1) / 2);
