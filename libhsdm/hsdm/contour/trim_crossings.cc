@@ -1,6 +1,6 @@
 #include "hsdm/contour/trim_crossings.hh"
 
-#include "hsdm/core/large_vector.hh"
+#include "hsdm/core/chunks.hh"
 
 #include <algorithm>
 #include <utility>
@@ -14,7 +14,8 @@ struct OpenLoops {
     std::vector<std::ptrdiff_t> sides; ///< per loop, how many sides it has
 };
 
-OpenLoops find_open_loops(const Crossings& crossings, const Links& links) {
+/// `open`: the crossings with sides that have no twin.
+OpenLoops find_open_loops(const Crossings& crossings, const Links& links, const std::vector<Index>& open) {
     // The next open side of the loop: rotates round the vertex at this side's end, face by face.
     const auto next = [&](FacetSide side) {
         FacetCorner end = crossings.of(side).leaving ? side.next() : side;
@@ -28,7 +29,7 @@ OpenLoops find_open_loops(const Crossings& crossings, const Links& links) {
     };
     OpenLoops loops;
     assign_large(loops.of_side, 4 * links.of_crossing.size(), no_index);
-    for (Index x = 0; x < links.of_crossing.size(); ++x)
+    for (const Index x : open)
         for (const FacetSide start : corners_of_facet(x)) {
             if (!links.of(start).open() || loops.of_side[start.number()] != no_index) continue;
             const auto number = static_cast<Index>(loops.sides.size());
@@ -49,13 +50,13 @@ struct Patch {
 };
 
 /// The patches that touch a boundary loop.
-std::vector<Patch> find_patches(const Crossings& crossings, const Links& links, const OpenLoops& loops) {
+std::vector<Patch> find_patches(const Crossings& crossings, const Links& links,
+                                const std::vector<Index>& open, const OpenLoops& loops) {
     const auto& list = crossings.crossings;
     std::vector<Patch> patches;
     std::vector<std::uint8_t> seen(list.size(), 0);
-    for (Index start = 0; start < list.size(); ++start) {
-        const auto& around = links.of_crossing[start];
-        if (list[start].supported || seen[start] || std::ranges::none_of(around, &Link::open)) continue;
+    for (const Index start : open) {
+        if (list[start].supported || seen[start]) continue;
         Patch patch{{start}, {}};
         seen[start] = 1;
         for (std::size_t i = 0; i < patch.crossings.size(); ++i)
@@ -100,6 +101,7 @@ bool ends_beyond(const Patch& patch, std::span<const std::uint8_t> is_border) {
 
 /// Removes marked crossings; returns how many.
 std::size_t remove_crossings(std::span<const std::uint8_t> removed, Crossings& crossings) {
+    if (std::ranges::find(removed, 1) == removed.end()) return 0; // mostly
     auto& list = crossings.crossings;
     std::size_t kept = 0;
     for (std::size_t e = 0, x = 0; e + 1 < crossings.first.size(); ++e) {
@@ -118,12 +120,15 @@ std::size_t remove_crossings(std::span<const std::uint8_t> removed, Crossings& c
 
 std::size_t trim_unsupported(Crossings& crossings, const Links& links, bool all_round) {
     auto& list = crossings.crossings;
-    for (Index x = 0; x < list.size(); ++x) {
+    const std::vector<Index> open = indices_where(list.size(), chunks::quick, [&](Index x) {
+        return std::ranges::any_of(links.of_crossing[x], &Link::open);
+    });
+    for (const Index x : open) {
         // Such a crossing is attached by one side at most.
         if (std::ranges::count_if(links.of_crossing[x], &Link::open) >= 3) list[x].supported = false;
     }
-    const OpenLoops loops = find_open_loops(crossings, links);
-    const std::vector<Patch> patches = find_patches(crossings, links, loops);
+    const OpenLoops loops = find_open_loops(crossings, links, open);
+    const std::vector<Patch> patches = find_patches(crossings, links, open, loops);
     const std::vector<std::uint8_t> is_border =
         all_round ? std::vector<std::uint8_t>(loops.sides.size(), 0) : find_borders(loops, patches);
     std::vector<std::uint8_t> removed(list.size(), 0);
@@ -141,13 +146,14 @@ std::size_t drop_tips(const NormalSets& sets, const RelationTest& related, const
     const auto are_sides = [&](const Crossing& x, const Crossing& y) {
         return opposed(x, y) && related(sets.sets[x.set], sets.sets[y.set]) == Relation::none;
     };
-    std::vector<std::uint8_t> removed(list.size(), 0);
-    for (Index x = 0; x + 1 < list.size(); ++x) {
-        if (list[x].edge != list[x + 1].edge) continue;
+    const std::vector<Index> tips = indices_where(list.size(), chunks::quick, [&](Index x) {
+        if (x + 1 == list.size() || list[x].edge != list[x + 1].edge) return false;
         const auto joined = std::ranges::count_if(
             links.of_crossing[x], [&](const Link& link) { return link.twin.crossing() == x + 1; });
-        if (joined >= 3 && !are_sides(list[x], list[x + 1])) removed[x] = removed[x + 1] = 1;
-    }
+        return joined >= 3 && !are_sides(list[x], list[x + 1]);
+    });
+    std::vector<std::uint8_t> removed(list.size(), 0);
+    for (const Index x : tips) removed[x] = removed[x + 1] = 1;
     const std::size_t count = remove_crossings(removed, crossings);
     crossings.tips += count / 2;
     return count / 2;
