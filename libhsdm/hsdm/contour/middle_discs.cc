@@ -1,55 +1,17 @@
 #include "hsdm/contour/middle_discs.hh"
 
+#include "hsdm/contour/disc_lanes.hh"
 #include "hsdm/core/constants.hh"
-#include "hsdm/core/lanes.hh"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstring>
 
 namespace hsdm {
 namespace {
 
-constexpr std::size_t word_bits = 64;
-
-template <class Lanes, class Value>
-Lanes lanes_at(const Value* values) {
-    Lanes lanes;
-    std::memcpy(&lanes, values, sizeof lanes);
-    return lanes;
-}
-
-/// Whether a place is behind each of 64 discs: the sign of normal | (place - middle), by its terms in this
-/// order.
-std::uint64_t behind(const double* flat, const Vec3& place) {
-    const Double2 x = Double2{} + place[0], y = Double2{} + place[1], z = Double2{} + place[2];
-    std::uint64_t result = 0;
-    for (std::size_t k = 0; k < word_bits; k += 2) {
-        const auto row = [&](std::size_t axis) { return lanes_at<Double2>(flat + axis * word_bits + k); };
-        const Double2 height = row(0) * (x - row(3)) + row(1) * (y - row(4)) + row(2) * (z - row(5));
-        result |= std::uint64_t{lanes_of_two(height < Double2{})} << k;
-    }
-    return result;
-}
-
-/// Of the marked ones of 64 discs those that a way may meet: no farther from its middle than half of its
-/// length and their radius, in single precision and so generously.
-std::uint64_t near_way(const float* flat, std::uint64_t marked, const std::array<float, 3>& middle,
-                       float half) {
-    constexpr float generous = 1.001f; // coordinates of a few voxels are off by a ten thousandth of that
-    const Float4 x = Float4{} + middle[0], y = Float4{} + middle[1], z = Float4{} + middle[2];
-    std::uint64_t result = 0;
-    for (std::size_t k = 0; k < word_bits; k += 4) {
-        if ((marked >> k & 15) == 0) continue;
-        const auto row = [&](std::size_t axis) { return lanes_at<Float4>(flat + axis * word_bits + k); };
-        const Float4 reach = (row(3) + half) * generous;
-        const Float4 squared = square(row(0) - x) + square(row(1) - y) + square(row(2) - z);
-        result |= std::uint64_t{lanes_of(squared <= square(reach))} << k;
-    }
-    return result & marked;
-}
+constexpr std::size_t word_bits = discs_of_word;
 
 } // namespace
 
@@ -89,7 +51,7 @@ const MiddleDiscs::Word* MiddleDiscs::sides(const Place& place) {
     Known& known = has_sides_[place.number];
     if (known == Known::no)
         for (std::size_t w = 0; w < words_; ++w)
-            row[w] = behind(flat_.data() + w * 6 * word_bits, place.position);
+            row[w] = lanes_.behind(flat_.data() + w * 6 * word_bits, place.position.data());
     known = Known::yes;
     return row;
 }
@@ -122,12 +84,12 @@ bool MiddleDiscs::part(const Place& p, const Place& q, const Surface& surface) {
     const Word *const behind_p = sides(p), *const behind_q = sides(q);
     std::array<unsigned, 2> seen{0, 0}; // sheets of walls, of gaps
     const Vec3 way = q.position - p.position, middle = (p.position + way * 0.5 - amid_) * per_voxel_;
-    const std::array<float, 3> of_way{static_cast<float>(middle[0]), static_cast<float>(middle[1]),
-                                      static_cast<float>(middle[2])};
-    const auto half = static_cast<float>(0.5 * way.norm() * per_voxel_);
+    const std::array<float, 4> of_way{static_cast<float>(middle[0]), static_cast<float>(middle[1]),
+                                      static_cast<float>(middle[2]),
+                                      static_cast<float>(0.5 * way.norm() * per_voxel_)};
     for (std::size_t w = 0; w < words_; ++w) {
         Word crossed = (behind_p[w] ^ behind_q[w]) & here[w];
-        if (crossed != 0) crossed = near_way(near_.data() + w * 4 * word_bits, crossed, of_way, half);
+        if (crossed != 0) crossed = lanes_.near_way(near_.data() + w * 4 * word_bits, crossed, of_way.data());
         for (; crossed != 0; crossed &= crossed - 1) {
             const MiddleDisc& disc =
                 discs_[w * word_bits + static_cast<std::size_t>(std::countr_zero(crossed))];

@@ -2,6 +2,7 @@
 // Walls and gaps thinner than a voxel, as discs of the surface midway between their two sheets: what they
 // part.
 
+#include "hsdm/contour/disc_lanes.hh"
 #include "hsdm/types.hh"
 
 #include <cstdint>
@@ -49,6 +50,7 @@ private:
     const Word* sides(const Place& place);
     const Word* standing(const Surface& surface);
 
+    const DiscLanes& lanes_ = disc_lanes().front();
     std::size_t place_count_ = 0, surface_count_ = 0;
     Vec3 amid_{0, 0, 0};
     double per_voxel_ = 0;
