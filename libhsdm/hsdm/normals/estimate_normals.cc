@@ -9,6 +9,7 @@
 #include "hsdm/normals/neighborhood.hh"
 #include "hsdm/normals/noise.hh"
 #include "hsdm/normals/plane_fit.hh"
+#include "hsdm/normals/plane_support.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -236,14 +237,15 @@ private:
         double most = estimation::clear_gain
                       * std::max(support(around, VectorPair(own, own), inverse)[0],
                                  centred_support(around, own, inverse));
+        Planes planes;
+        planes.inverse_tolerance = inverse;
+        for (std::size_t k = 0; k < around.size(); ++k)
+            planes.add(result_.normals[around.point(k)], around.offset(k));
+        Support found;
+        near_planes(planes, found);
         const Vec3* best = &own;
-        for (std::size_t k = 0; k < around.size(); k += 2) {
-            const std::array<const Vec3*, 2> candidates{&result_.normals[around.point(k)],
-                                                        &result_.normals[around.point(around.after(k))]};
-            const Double2 found = support(around, VectorPair(*candidates[0], *candidates[1]), inverse);
-            for (std::size_t lane = 0; lane < 2; ++lane)
-                if (found[lane] > most) most = found[lane], best = candidates[lane];
-        }
+        for (std::size_t k = 0; k < around.size(); ++k)
+            if (found[k] > most) most = found[k], best = &result_.normals[around.point(k)];
         return best == &own ? own : refitted(around, *best, inverse);
     }
 

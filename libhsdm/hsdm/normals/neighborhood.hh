@@ -58,8 +58,6 @@ public:
     }
     std::size_t size() const { return around_.size(); }
     Index point(std::size_t k) const { return around_[k]; }
-    /// The next one, or the last.
-    std::size_t after(std::size_t k) const { return std::min(k + 1, size() - 1); }
     const Vec3& offset(std::size_t k) const { return offsets_[k]; }
 
 private:

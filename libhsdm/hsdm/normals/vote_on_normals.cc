@@ -4,6 +4,7 @@
 #include "hsdm/core/constants.hh"
 #include "hsdm/normals/constants.hh"
 #include "hsdm/normals/neighborhood.hh"
+#include "hsdm/normals/plane_support.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -23,12 +24,13 @@ public:
         Vec3 best = own;
         double most =
             normal_votes::clear_gain * support(VectorPair(own, own))[0] + normal_votes::least_support;
-        for (std::size_t k = 0; k < around_.size(); k += 2) {
-            const std::array<std::size_t, 2> places{k, around_.after(k)};
-            const Double2 found = support(VectorPair(normal(places[0]), normal(places[1])));
-            for (std::size_t lane = 0; lane < 2; ++lane)
-                if (found[lane] > most) most = found[lane], best = normal(places[lane]);
-        }
+        Planes planes;
+        planes.inverse_tolerance = inverse_;
+        for (std::size_t k = 0; k < around_.size(); ++k) planes.add(normal(k), around_.offset(k));
+        Support found;
+        agreeing_with_planes(planes, found);
+        for (std::size_t k = 0; k < around_.size(); ++k)
+            if (found[k] > most) most = found[k], best = normal(k);
         Vec3 sum = best * estimation::own_weight;
         for (std::size_t k = 0; k < around_.size(); ++k)
             sum += normal(k) * weight(VectorPair(best, best), k)[0];
