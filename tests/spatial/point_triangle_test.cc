@@ -1,5 +1,4 @@
 #include "hsdm/spatial/point_triangle.hh"
-#include "hsdm/spatial/prepared_quad.hh"
 #include "support/random.hh"
 
 #include <catch2/catch.hpp>
@@ -32,30 +31,4 @@ TEST_CASE("no point of a triangle is nearer than the nearest", "[quality]") {
         CHECK(w[0] + w[1] + w[2] == Approx(1));
         CHECK((a * w[0] + b * w[1] + c * w[2] - nearest.point).norm() < 1e-12);
     }
-}
-
-TEST_CASE("the two triangles of a quad have the feet that each has alone, to the last bit", "[quality]") {
-    support::Random random(4);
-    const auto point = [&] {
-        return Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-    };
-    std::size_t feet = 0;
-    for (int trial = 0; trial < 5000; ++trial) {
-        const Vec3 a = point(), b = point(), d = point(), p = trial % 7 == 0 ? a : point();
-        const Vec3 c = trial % 5 == 0 ? a + (b - a) * random.uniform(-1, 2) : point(); // some without area
-        std::array<bool, 2> found{false, false};
-        PreparedQuad(a, b, c, d).for_feet(p, [&](unsigned t, const NearestOfTriangle& foot) {
-            found[t] = true;
-            NearestOfTriangle alone;
-            REQUIRE((t == 0 ? PreparedTriangle(a, b, c) : PreparedTriangle(a, c, d)).foot_inside(p, alone));
-            CHECK(foot.point == alone.point);
-            CHECK(foot.squared_distance == alone.squared_distance);
-            CHECK(foot.weights == alone.weights);
-            ++feet;
-        });
-        NearestOfTriangle foot;
-        CHECK(PreparedTriangle(a, b, c).foot_inside(p, foot) == found[0]);
-        CHECK(PreparedTriangle(a, c, d).foot_inside(p, foot) == found[1]);
-    }
-    CHECK(feet > 100);
 }

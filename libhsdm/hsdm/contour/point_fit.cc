@@ -4,21 +4,34 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
-#include "hsdm/spatial/prepared_quad.hh"
+#include "hsdm/spatial/eight_triangles.hh"
 
+#include <bit>
 #include <cmath>
 
 namespace hsdm {
 namespace {
 
-/// A facet round a vertex: two triangles with its first corner, the vertex.
+/// The facets round vertices, each cut into two triangles at its first corner, the vertex.
 struct Around {
-    Around(const std::vector<Vec3>& at, const std::array<Index, 4>& corners)
-        : quad(at[corners[0]], at[corners[1]], at[corners[2]], at[corners[3]]), ring(corners) {}
-    PreparedQuad quad;
-    std::array<Index, 4> ring;
+    std::vector<std::array<Index, 3>> corners; ///< of the triangles
+    std::vector<EightTriangles> eights;
 
-    std::array<Index, 3> triangle(unsigned t) const { return {ring[0], ring[t + 1], ring[t + 2]}; }
+    void clear() {
+        corners.clear();
+        eights.clear();
+    }
+    void add(const std::vector<Vec3>& at, const std::array<Index, 3>& triangle) {
+        const std::size_t lane = corners.size() % EightTriangles::size;
+        if (lane == 0) eights.emplace_back();
+        eights.back().put(lane, at[triangle[0]], at[triangle[1]], at[triangle[2]]);
+        corners.push_back(triangle);
+    }
+    void prepare() {
+        if (const std::size_t lane = corners.size() % EightTriangles::size; lane > 0)
+            eights.back().fill_up(lane);
+        for (EightTriangles& eight : eights) eight.prepare();
+    }
 };
 
 /// The point of the facets nearest to a given one, and the vertices of its triangle.
@@ -28,30 +41,31 @@ struct Foot {
 };
 
 /// Appends the facets round a vertex.
-void list_facets(Index dual, const DualVertices& duals, const std::vector<Vec3>& at,
-                 std::vector<Around>& around) {
+void list_facets(Index dual, const DualVertices& duals, const std::vector<Vec3>& at, Around& around) {
     duals.for_each_corner(dual, [&](FacetCorner corner) {
-        around.emplace_back(at, std::array{dual, duals.to(corner), duals.from(corner.opposite()),
-                                           duals.from(corner.previous())});
+        const Index across = duals.from(corner.opposite());
+        around.add(at, {dual, duals.to(corner), across});
+        around.add(at, {dual, across, duals.from(corner.previous())});
     });
 }
 
 /// The foot of p: the nearest perpendicular foot inside a triangle, or, if there is none, the nearest point
 /// of any triangle.
-Foot find_foot(const Vec3& p, const std::vector<Around>& around, const std::vector<Vec3>& at) {
+Foot find_foot(const Vec3& p, const Around& around, const std::vector<Vec3>& at) {
     Foot best;
-    for (const Around& a : around)
-        a.quad.for_feet(p, [&](unsigned t, const NearestOfTriangle& foot) {
-            if (foot.squared_distance < best.nearest.squared_distance) best = {a.triangle(t), foot};
-        });
-    if (best.nearest.squared_distance < std::numeric_limits<double>::infinity()) return best;
-    for (const Around& a : around)
-        for (const unsigned t : {0u, 1u}) {
-            const std::array<Index, 3> corners = a.triangle(t);
-            const PreparedTriangle triangle(at[corners[0]], at[corners[1]], at[corners[2]]);
-            const NearestOfTriangle nearest = triangle.nearest(p);
-            if (nearest.squared_distance < best.nearest.squared_distance) best = {corners, nearest};
+    for (std::size_t e = 0; e < around.eights.size(); ++e)
+        for (unsigned inside = around.eights[e].feet_inside(p); inside != 0; inside &= inside - 1) {
+            const auto lane = static_cast<std::size_t>(std::countr_zero(inside));
+            const NearestOfTriangle foot = around.eights[e].foot(lane, p);
+            if (foot.squared_distance < best.nearest.squared_distance)
+                best = {around.corners[e * EightTriangles::size + lane], foot};
         }
+    if (best.nearest.squared_distance < std::numeric_limits<double>::infinity()) return best;
+    for (const std::array<Index, 3>& corners : around.corners) {
+        const PreparedTriangle triangle(at[corners[0]], at[corners[1]], at[corners[2]]);
+        const NearestOfTriangle nearest = triangle.nearest(p);
+        if (nearest.squared_distance < best.nearest.squared_distance) best = {corners, nearest};
+    }
     return best;
 }
 
@@ -107,13 +121,14 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
     for_each_task(foreign.size(), [&](std::size_t chunk) {
         const std::size_t begin = blocks[chunk], end = blocks[chunk + 1];
         std::vector<Index> beside;
-        std::vector<Around> around;
+        Around around;
         for (std::size_t x = begin; x < end; ++x) {
             if (of_voxel_.of(x).empty()) gather_beside(static_cast<Index>(x), beside);
             const std::span<const Index> near = of_voxel_.of(x).empty() ? beside : of_voxel_.of(x);
             around.clear();
             for (Index dual : near) list_facets(dual, duals_, positions, around);
-            if (around.empty()) continue;
+            if (around.corners.empty()) continue;
+            around.prepare();
             const std::size_t first = level_.first_point[x], last = level_.first_point[x + 1];
             const std::size_t stride =
                 (last - first + relaxation::points_per_voxel - 1) / relaxation::points_per_voxel;
@@ -148,7 +163,7 @@ std::vector<double> PointFit::rises(const std::vector<Heights>& heights) const {
     struct Moments {
         double square, variance; // of the mean
     };
-    std::vector<Moments> of_mean = large_vector<Moments>(duals_.size());
+    std::vector<Moments> of_mean = unwritten_vector<Moments>(duals_.size());
     for_each_index(duals_.size(), 2 * chunks::heavy, [&](Index v) {
         of_mean[v] = {heights[v].mean() * heights[v].mean(), heights[v].variance()};
     });

@@ -1,0 +1,220 @@
+// Compiled without contraction of products and sums: processors with wide lanes could do both at once, and
+// would round once.
+
+#include "hsdm/spatial/eight_triangles.hh"
+
+#include "hsdm/core/vector_pair.hh"
+
+#include <cstring>
+
+#if defined(__x86_64__) && defined(__GNUC__)
+#define HSDM_WIDE_LANES
+#include <immintrin.h>
+#endif
+
+namespace hsdm {
+namespace {
+
+using Rows = EightTriangles::Rows;
+
+constexpr double least_area = std::numeric_limits<double>::min(); // as in PreparedTriangle
+
+VectorPair two_at(const Rows& rows, std::size_t k) {
+    std::array<Double2, 3> lanes;
+    for (unsigned axis = 0; axis < 3; ++axis)
+        std::memcpy(&lanes[axis], rows[axis].data() + k, sizeof(Double2));
+    return {lanes[0], lanes[1], lanes[2]};
+}
+
+void store(const VectorPair& vectors, Rows& rows, std::size_t k) {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        const Double2 lanes = vectors[axis];
+        std::memcpy(rows[axis].data() + k, &lanes, sizeof lanes);
+    }
+}
+
+void prepare_by_two(EightTriangles& t) {
+    for (std::size_t k = 0; k < EightTriangles::size; k += 2) {
+        const VectorPair a = two_at(t.a, k), ab = two_at(t.b, k) - a, ac = two_at(t.c, k) - a;
+        const VectorPair normal = ab % ac;
+        const Double2 area = normal | normal;
+        const Double2 per_area = area >= least_area ? 1 / area : Double2{};
+        store(normal, t.normal, k);
+        store((ac % normal) * per_area, t.towards_b, k);
+        store((normal % ab) * per_area, t.towards_c, k);
+        std::memcpy(t.per_area.data() + k, &per_area, sizeof per_area);
+    }
+}
+
+unsigned feet_inside_by_two(const EightTriangles& t, const Vec3& p) {
+    const VectorPair place(p, p);
+    unsigned inside = 0;
+    for (std::size_t k = 0; k < EightTriangles::size; k += 2) {
+        const VectorPair ap = place - two_at(t.a, k);
+        const Double2 v = ap | two_at(t.towards_b, k), w = ap | two_at(t.towards_c, k);
+        Double2 per_area;
+        std::memcpy(&per_area, t.per_area.data() + k, sizeof per_area);
+        inside |= (lanes_of_two(v >= 0) & lanes_of_two(w >= 0) & lanes_of_two(v + w <= 1)
+                   & lanes_of_two(per_area > 0))
+                  << k;
+    }
+    return inside;
+}
+
+#ifdef HSDM_WIDE_LANES
+
+struct FourVectors {
+    __m256d x, y, z;
+};
+
+[[gnu::target("avx"), gnu::always_inline]] inline FourVectors four_at(const Rows& rows, std::size_t k) {
+    return {_mm256_load_pd(rows[0].data() + k), _mm256_load_pd(rows[1].data() + k),
+            _mm256_load_pd(rows[2].data() + k)};
+}
+[[gnu::target("avx"), gnu::always_inline]] inline void store(const FourVectors& v, Rows& rows,
+                                                             std::size_t k) {
+    _mm256_store_pd(rows[0].data() + k, v.x);
+    _mm256_store_pd(rows[1].data() + k, v.y);
+    _mm256_store_pd(rows[2].data() + k, v.z);
+}
+[[gnu::target("avx"), gnu::always_inline]] inline FourVectors minus(const FourVectors& v,
+                                                                    const FourVectors& w) {
+    return {v.x - w.x, v.y - w.y, v.z - w.z};
+}
+[[gnu::target("avx"), gnu::always_inline]] inline __m256d dot(const FourVectors& v, const FourVectors& w) {
+    return v.x * w.x + v.y * w.y + v.z * w.z;
+}
+[[gnu::target("avx"), gnu::always_inline]] inline FourVectors cross(const FourVectors& v,
+                                                                    const FourVectors& w) {
+    return {v.y * w.z - v.z * w.y, v.z * w.x - v.x * w.z, v.x * w.y - v.y * w.x};
+}
+[[gnu::target("avx"), gnu::always_inline]] inline FourVectors scaled(const FourVectors& v, __m256d by) {
+    return {v.x * by, v.y * by, v.z * by};
+}
+
+[[gnu::target("avx")]] void prepare_by_avx(EightTriangles& t) {
+    for (std::size_t k = 0; k < EightTriangles::size; k += 4) {
+        const FourVectors a = four_at(t.a, k);
+        const FourVectors ab = minus(four_at(t.b, k), a), ac = minus(four_at(t.c, k), a);
+        const FourVectors normal = cross(ab, ac);
+        const __m256d area = dot(normal, normal);
+        const __m256d has_area = _mm256_cmp_pd(area, _mm256_set1_pd(least_area), _CMP_GE_OQ);
+        const __m256d per_area = _mm256_and_pd(_mm256_set1_pd(1) / area, has_area);
+        store(normal, t.normal, k);
+        store(scaled(cross(ac, normal), per_area), t.towards_b, k);
+        store(scaled(cross(normal, ab), per_area), t.towards_c, k);
+        _mm256_store_pd(t.per_area.data() + k, per_area);
+    }
+}
+
+[[gnu::target("avx")]] unsigned feet_inside_by_avx(const EightTriangles& t, const Vec3& p) {
+    const FourVectors place{_mm256_set1_pd(p[0]), _mm256_set1_pd(p[1]), _mm256_set1_pd(p[2])};
+    unsigned inside = 0;
+    for (std::size_t k = 0; k < EightTriangles::size; k += 4) {
+        const FourVectors ap = minus(place, four_at(t.a, k));
+        const __m256d v = dot(ap, four_at(t.towards_b, k)), w = dot(ap, four_at(t.towards_c, k));
+        const __m256d zero = _mm256_setzero_pd();
+        const __m256d in_b = _mm256_cmp_pd(v, zero, _CMP_GE_OQ), in_c = _mm256_cmp_pd(w, zero, _CMP_GE_OQ);
+        const __m256d in_a = _mm256_cmp_pd(v + w, _mm256_set1_pd(1), _CMP_LE_OQ);
+        const __m256d has_area = _mm256_cmp_pd(_mm256_load_pd(t.per_area.data() + k), zero, _CMP_GT_OQ);
+        const __m256d all = _mm256_and_pd(_mm256_and_pd(in_b, in_c), _mm256_and_pd(in_a, has_area));
+        inside |= static_cast<unsigned>(_mm256_movemask_pd(all)) << k;
+    }
+    return inside;
+}
+
+struct EightVectors {
+    __m512d x, y, z;
+};
+
+[[gnu::target("avx512f"), gnu::always_inline]] inline EightVectors eight_at(const Rows& rows, std::size_t k) {
+    return {_mm512_load_pd(rows[0].data() + k), _mm512_load_pd(rows[1].data() + k),
+            _mm512_load_pd(rows[2].data() + k)};
+}
+[[gnu::target("avx512f"), gnu::always_inline]] inline void store(const EightVectors& v, Rows& rows,
+                                                                 std::size_t k) {
+    _mm512_store_pd(rows[0].data() + k, v.x);
+    _mm512_store_pd(rows[1].data() + k, v.y);
+    _mm512_store_pd(rows[2].data() + k, v.z);
+}
+[[gnu::target("avx512f"), gnu::always_inline]] inline EightVectors minus(const EightVectors& v,
+                                                                         const EightVectors& w) {
+    return {v.x - w.x, v.y - w.y, v.z - w.z};
+}
+[[gnu::target("avx512f"), gnu::always_inline]] inline __m512d dot(const EightVectors& v,
+                                                                  const EightVectors& w) {
+    return v.x * w.x + v.y * w.y + v.z * w.z;
+}
+[[gnu::target("avx512f"), gnu::always_inline]] inline EightVectors cross(const EightVectors& v,
+                                                                         const EightVectors& w) {
+    return {v.y * w.z - v.z * w.y, v.z * w.x - v.x * w.z, v.x * w.y - v.y * w.x};
+}
+[[gnu::target("avx512f"), gnu::always_inline]] inline EightVectors scaled(const EightVectors& v, __m512d by) {
+    return {v.x * by, v.y * by, v.z * by};
+}
+
+[[gnu::target("avx512f")]] void prepare_by_avx512(EightTriangles& t) {
+    for (std::size_t k = 0; k < EightTriangles::size; k += 8) {
+        const EightVectors a = eight_at(t.a, k);
+        const EightVectors ab = minus(eight_at(t.b, k), a), ac = minus(eight_at(t.c, k), a);
+        const EightVectors normal = cross(ab, ac);
+        const __m512d area = dot(normal, normal);
+        const __mmask8 has_area = _mm512_cmp_pd_mask(area, _mm512_set1_pd(least_area), _CMP_GE_OQ);
+        const __m512d per_area = _mm512_maskz_mov_pd(has_area, _mm512_set1_pd(1) / area);
+        store(normal, t.normal, k);
+        store(scaled(cross(ac, normal), per_area), t.towards_b, k);
+        store(scaled(cross(normal, ab), per_area), t.towards_c, k);
+        _mm512_store_pd(t.per_area.data() + k, per_area);
+    }
+}
+
+[[gnu::target("avx512f")]] unsigned feet_inside_by_avx512(const EightTriangles& t, const Vec3& p) {
+    const EightVectors place{_mm512_set1_pd(p[0]), _mm512_set1_pd(p[1]), _mm512_set1_pd(p[2])};
+    unsigned inside = 0;
+    for (std::size_t k = 0; k < EightTriangles::size; k += 8) {
+        const EightVectors ap = minus(place, eight_at(t.a, k));
+        const __m512d v = dot(ap, eight_at(t.towards_b, k)), w = dot(ap, eight_at(t.towards_c, k));
+        const __m512d zero = _mm512_setzero_pd();
+        __mmask8 all = _mm512_cmp_pd_mask(v, zero, _CMP_GE_OQ);
+        all = _mm512_mask_cmp_pd_mask(all, w, zero, _CMP_GE_OQ);
+        all = _mm512_mask_cmp_pd_mask(all, v + w, _mm512_set1_pd(1), _CMP_LE_OQ);
+        all = _mm512_mask_cmp_pd_mask(all, _mm512_load_pd(t.per_area.data() + k), zero, _CMP_GT_OQ);
+        inside |= unsigned{all} << k;
+    }
+    return inside;
+}
+
+#endif
+
+constexpr TriangleLanes by_width[] = {
+#ifdef HSDM_WIDE_LANES
+    {prepare_by_avx512, feet_inside_by_avx512},
+    {prepare_by_avx, feet_inside_by_avx},
+#endif
+    {prepare_by_two, feet_inside_by_two}};
+
+std::size_t first_that_works() {
+#ifdef HSDM_WIDE_LANES
+    if (__builtin_cpu_supports("avx512f")) return 0;
+    return __builtin_cpu_supports("avx") ? 1 : 2;
+#else
+    return 0;
+#endif
+}
+
+} // namespace
+
+std::span<const TriangleLanes> triangle_lanes() {
+    static const std::size_t first = first_that_works();
+    return std::span(by_width).subspan(first);
+}
+
+void EightTriangles::prepare() {
+    triangle_lanes().front().prepare(*this);
+}
+
+unsigned EightTriangles::feet_inside(const Vec3& p) const {
+    return triangle_lanes().front().feet_inside(*this, p);
+}
+
+} // namespace hsdm
