@@ -184,6 +184,8 @@ SurfaceWalk::Walked SurfaceWalk::walk(const Vec3& place, double bound, Index fro
         const float c = x * step.to_c[0] + y * step.to_c[1] + z * step.to_c[2];
         const float a = 1 - b - c;
         if (std::min(a, std::min(b, c)) >= 0) {
+            for (const Index side : step.twin) // where the next place is likely to be
+                if (side != no_index) __builtin_prefetch(&steps_[side / 3]);
             const float height = x * step.normal[0] + y * step.normal[1] + z * step.normal[2];
             if (std::abs(height) <= surely) return {from, End::near};
             return {from, at_end(place, bound, from)};
