@@ -49,7 +49,7 @@ public:
 
     /// For points away from creases that are not too flat, the results of curved().
     std::vector<Vec3> all_curved() const {
-        std::vector<Vec3> renewed = large_vector<Vec3>(octree_.size());
+        std::vector<Vec3> renewed = unwritten_vector<Vec3>(octree_.size());
         for_chunks(octree_.size(), chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t) {
             std::array<Index, chunks::slow + 1> bent;
             std::size_t count = 0;
@@ -69,7 +69,7 @@ public:
     /// normal_of(point) of all points.
     template <class NormalOf>
     std::vector<Vec3> all(const NormalOf& normal_of) const {
-        std::vector<Vec3> renewed = large_vector<Vec3>(octree_.size());
+        std::vector<Vec3> renewed = unwritten_vector<Vec3>(octree_.size());
         for_each_index(octree_.size(), chunks::slow, [&](Index i) { renewed[i] = normal_of(i); });
         return renewed;
     }
@@ -132,9 +132,9 @@ public:
           renewal_(octree, neighbors, result, result.normals) {}
 
     void run(const EstimateOptions& options) {
-        resize_large(result_.normals, octree_.size());
-        resize_large(result_.tolerance, octree_.size());
-        resize_large(result_.spread, octree_.size());
+        resize_unwritten(result_.normals, octree_.size());
+        resize_unwritten(result_.tolerance, octree_.size());
+        resize_unwritten(result_.spread, octree_.size());
         fit_all();
         result_.noise = estimate_noise(octree_, neighbors_);
         choose_tolerance(options);
@@ -206,7 +206,7 @@ private:
     template <class NormalOf>
     void renew(const NormalOf& normal_of) {
         const std::vector<Index>& bent = result_.bent;
-        std::vector<Vec3> renewed = large_vector<Vec3>(bent.size());
+        std::vector<Vec3> renewed = unwritten_vector<Vec3>(bent.size());
         for_each_index(bent.size(), chunks::heavy, [&](Index b) { renewed[b] = normal_of(bent[b]); });
         for (std::size_t b = 0; b < bent.size(); ++b) result_.normals[bent[b]] = renewed[b];
     }

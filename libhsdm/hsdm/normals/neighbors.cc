@@ -6,11 +6,11 @@
 #include "hsdm/core/lanes.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/normals/constants.hh"
+#include "hsdm/normals/near_lanes.hh"
 
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -83,7 +83,7 @@ struct Candidates {
         const std::size_t old = id.size(), size = old + (end - begin);
         id.resize(size);
         for (std::vector<float>* axis : {&x, &y, &z})
-            if (axis->size() < size + lanes) axis->resize(2 * size + lanes);
+            if (axis->size() < size + NearLanes::most) axis->resize(2 * size + NearLanes::most);
         for (std::size_t c = old; c < size; ++c) {
             const Index i = id[c] = begin + static_cast<Index>(c - old);
             const Vec3 p = octree.positions[i] - base;
@@ -118,35 +118,13 @@ private:
     static constexpr float beyond_all = std::numeric_limits<float>::max();
 
     void find_near(const Candidates& candidates, const std::array<float, 3>& point, float limit) {
-        constexpr std::size_t bits = 64;
         const std::size_t size = candidates.id.size();
-        distance_.resize(padded(size));
-        near_.resize(size + lanes);
-        near_distance_.resize(size + 2 * lanes);
-        const std::array<Float4, 3> p{Float4{} + point[0], Float4{} + point[1], Float4{} + point[2]};
-        count_ = 0;
-        for (std::size_t begin = 0; begin < size; begin += bits) {
-            std::uint64_t within = 0;
-            for (std::size_t c = begin; c < std::min(begin + bits, size); c += lanes) {
-                const Float4 squared = square(lanes_at(candidates.x, c) - p[0])
-                                       + square(lanes_at(candidates.y, c) - p[1])
-                                       + square(lanes_at(candidates.z, c) - p[2]);
-                std::memcpy(distance_.data() + c, &squared, sizeof(squared));
-                within |= std::uint64_t{lanes_of(squared <= limit)} << (c - begin);
-            }
-            if (size < begin + bits) within &= (std::uint64_t{1} << (size - begin)) - 1;
-            append(begin, within);
-        }
+        distance_.resize(size + NearLanes::most);
+        near_.resize(size + NearLanes::most);
+        near_distance_.resize(size + 2 * NearLanes::most);
+        count_ = lanes_.find({{candidates.x.data(), candidates.y.data(), candidates.z.data()}, size}, point,
+                             limit, {distance_.data(), near_.data(), near_distance_.data()});
         fill_up();
-    }
-    void append(std::size_t begin, std::uint64_t within) {
-        std::size_t count = count_;
-        for (; within != 0; within &= within - 1) {
-            const std::size_t c = begin + static_cast<std::size_t>(std::countr_zero(within));
-            near_[count] = static_cast<Index>(c);
-            near_distance_[count++] = distance_[c];
-        }
-        count_ = count;
     }
     void all_are_near(std::size_t size) {
         count_ = size;
@@ -161,7 +139,9 @@ private:
         for (std::size_t k = count_; k < padded(count_); ++k)
             near_distance_[k] = std::numeric_limits<float>::infinity();
     }
-    static std::size_t padded(std::size_t size) { return (size + lanes - 1) / lanes * lanes; }
+    static std::size_t padded(std::size_t size) {
+        return (size + NearLanes::most - 1) / NearLanes::most * NearLanes::most;
+    }
 
     /// Narrows the interval of squared distances: of those near, `below` lie within `low` (too few), more
     /// than wanted within `high`. On a surface sampled evenly their number grows with the squared distance.
@@ -197,21 +177,9 @@ private:
                 ranked_.emplace_back(near_distance_[k], near_[k]);
         std::sort(ranked_.begin(), ranked_.end());
     }
-    void keep(float limit) {
-        std::size_t kept = 0;
-        for (std::size_t k = 0; k < count_; ++k) {
-            near_[kept] = near_[k];
-            kept += near_distance_[k] <= limit;
-        }
-        count_ = kept;
-    }
+    void keep(float limit) { count_ = lanes_.keep(near_distance_.data(), count_, limit, near_.data()); }
 
-    std::size_t count_within(float limit) const {
-        Int4 sum{};
-        for (std::size_t k = 0; k < count_; k += lanes) sum -= lanes_at(near_distance_, k) <= limit;
-        const int count = sum[0] + sum[1] + sum[2] + sum[3];
-        return static_cast<std::size_t>(count);
-    }
+    std::size_t count_within(float limit) const { return lanes_.count(near_distance_.data(), count_, limit); }
     float farthest_within(float limit) const {
         Float4 most{};
         for (std::size_t k = 0; k < count_; k += lanes) {
@@ -221,6 +189,7 @@ private:
         return std::max(std::max(most[0], most[1]), std::max(most[2], most[3]));
     }
 
+    const NearLanes& lanes_ = near_lanes().front();
     std::vector<float> distance_;      // squared, of all candidates
     std::vector<Index> near_;          // places of those within the limit, then of those taken
     std::size_t count_ = 0;            // of these
