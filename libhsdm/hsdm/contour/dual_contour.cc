@@ -270,6 +270,13 @@ void count_intersections(DualContour& result) {
         result.intersections.first = result.mesh.positions[result.mesh.facet(found.facet_pairs[0][0])[0]];
 }
 
+/// What places of crossings are known by once dual vertices are placed. Frees what links grid points.
+GridPoints codes_alone(GridPoints grid) {
+    GridPoints result;
+    result.codes = std::move(grid.codes);
+    return result;
+}
+
 /// Builds the facets; returns the edges to collapse to corners. Grid points, crossings and dual vertices, the
 /// largest part of the memory, are freed at the end.
 std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
@@ -299,6 +306,7 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     result.webs_opened = open_all_webs(dual);
     PlacedVertices vertices = place_vertices(dual, sets, related);
     extend_borders(dual, sets, vertices);
+    dual.grid = codes_alone(std::move(dual.grid));
     relax_vertices(octree, level, dual, options.relax, vertices);
     draw_in_rims(octree, level, sets, dual, vertices);
     separate_sides(dual, vertices.positions);

@@ -42,30 +42,22 @@ double sum_of(const std::vector<double>& all, std::span<const std::uint8_t> mark
 class Relaxation {
 public:
     Relaxation(const DualMesh& mesh, PlacedVertices& vertices)
-        : mesh_(mesh), duals_(mesh.duals), vertices_(vertices), placed_(copy_of_large(vertices.positions)) {
-        list_neighbours();
-    }
+        : mesh_(mesh), duals_(mesh.duals), vertices_(vertices), placed_(copy_of_large(vertices.positions)) {}
 
-    void round(double step) {
-        resize_unwritten(next_, duals_.size());
-        for_each_index(duals_.size(), chunks::slow, [&](Index v) {
-            next_[v] = vertices_.positions[v];
-            if (duals_.open[v]) return;
-            if (vertices_.classes[v] == VertexClass::smooth)
-                next_[v] = kept_in(v, on_sheet(v, moved_on_sheet(v, step)));
-            else if (vertices_.classes[v] == VertexClass::edge)
-                next_[v] = kept_in(v, moved_along_crease(v, step));
-        });
-        vertices_.positions.swap(next_);
+    /// Moves vertices within their sheet. Frees what that alone needs.
+    void move(int rounds, double step) {
+        list_neighbours();
+        for (int k = 0; k < rounds; ++k) round(step);
+        next_ = std::vector<Vec3>();
+        neighbours_ = std::vector<Neighbour>();
+        neighbour_count_ = std::vector<Index>();
     }
 
     /// Moves smooth vertices up or down until the facets, not the vertices alone, lie amid the points. Where
     /// a voxel's points are then farther off than from the facets as placed, its vertices go back to where
     /// they were placed; all do if the sum over all points grew.
     void fit(const PointFit& fit, std::span<const std::uint8_t> part, bool go_back) {
-        // Heights are freed before others are measured, as are neighbours, which rounds alone look at.
-        next_ = std::vector<Vec3>();
-        neighbours_ = std::vector<Neighbour>();
+        // Heights are freed before others are measured.
         PointFit::Measure before = fit.measure(placed_);
         rise(fit.rises(std::exchange(before.heights, {})));
         const PointFit::Measure after = fit.measure(vertices_.positions);
@@ -92,6 +84,19 @@ private:
     };
     std::span<const Neighbour> neighbours(Index dual) const {
         return {neighbours_.data() + 2 * std::size_t{duals_.first[dual]}, neighbour_count_[dual]};
+    }
+
+    void round(double step) {
+        resize_unwritten(next_, duals_.size());
+        for_each_index(duals_.size(), chunks::slow, [&](Index v) {
+            next_[v] = vertices_.positions[v];
+            if (duals_.open[v]) return;
+            if (vertices_.classes[v] == VertexClass::smooth)
+                next_[v] = kept_in(v, on_sheet(v, moved_on_sheet(v, step)));
+            else if (vertices_.classes[v] == VertexClass::edge)
+                next_[v] = kept_in(v, moved_along_crease(v, step));
+        });
+        vertices_.positions.swap(next_);
     }
 
     void list_neighbours() {
@@ -235,7 +240,7 @@ void relax_vertices(const Octree& octree, const OctreeLevel& level, const DualMe
     check_option(options.step > 0 && options.step <= 1, "relaxation step", options.step, "lie in (0, 1]");
     if (options.rounds == 0 && !options.fit) return;
     Relaxation relaxation(mesh, vertices);
-    for (int round = 0; round < options.rounds; ++round) relaxation.round(options.step);
+    relaxation.move(options.rounds, options.step);
     if (options.fit)
         relaxation.fit(PointFit(octree, level, mesh.duals, vertices), options.part_of_whole, options.go_back);
 }
