@@ -1,0 +1,48 @@
+#include "hsdm/core/large_vector.hh"
+#include "hsdm/types.hh"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <string>
+
+using namespace hsdm;
+
+namespace {
+
+constexpr std::size_t many = 300000; // more than a megabyte of anything below: filled by all threads
+
+} // namespace
+
+TEST_CASE("large vectors grow as others do, also by one of their own values", "[core]") {
+    std::vector<Vec3> values = large_vector<Vec3>(3, Vec3(1, 2, 3));
+    values[1] = Vec3(4, 5, 6);
+    resize_large(values, many, values[1]);
+    REQUIRE(values.size() == many);
+    CHECK(values[0] == Vec3(1, 2, 3));
+    CHECK(values[2] == Vec3(1, 2, 3));
+    CHECK(std::all_of(values.begin() + 3, values.end(), [](const Vec3& v) { return v == Vec3(4, 5, 6); }));
+    resize_large(values, 2);
+    CHECK(values == std::vector<Vec3>{Vec3(1, 2, 3), Vec3(4, 5, 6)});
+    assign_large(values, many, Vec3(7, 8, 9));
+    CHECK(values == std::vector<Vec3>(many, Vec3(7, 8, 9)));
+    CHECK(large_vector<Index>(many) == std::vector<Index>(many));
+    CHECK(large_vector<std::string>(3, "abc") == std::vector<std::string>(3, "abc"));
+}
+
+TEST_CASE("unwritten vectors keep what they had and hold what is written", "[core]") {
+    std::vector<Index> values{1, 2, 3};
+    for (const std::size_t size : {std::size_t{5}, many, std::size_t{4}}) {
+        const std::size_t before = values.size();
+        resize_unwritten(values, size);
+        REQUIRE(values.size() == size);
+        for (std::size_t i = before; i < size; ++i) values[i] = static_cast<Index>(i + 1);
+        bool all = true;
+        for (std::size_t i = 0; i < size; ++i) all &= values[i] == i + 1;
+        CHECK(all);
+    }
+    values.push_back(5);
+    CHECK(values == std::vector<Index>{1, 2, 3, 4, 5});
+    CHECK(unwritten_vector<std::string>(2) == std::vector<std::string>(2)); // what has a constructor is made
+    CHECK(unwritten_vector<double>(0).empty());
+}
