@@ -4,13 +4,9 @@
 #include "hsdm/contour/disc_lanes.hh"
 
 #include "hsdm/core/lanes.hh"
+#include "hsdm/core/wide_lanes.hh"
 
 #include <cstring>
-
-#if defined(__x86_64__) && defined(__GNUC__)
-#define HSDM_WIDE_LANES
-#include <immintrin.h>
-#endif
 
 namespace hsdm {
 namespace {
@@ -116,27 +112,17 @@ std::uint64_t near_way_by_four(const float* discs, std::uint64_t marked, const f
 
 #endif
 
-constexpr DiscLanes by_width[] = {
+constexpr DiscLanes discs_by_width[] = {
 #ifdef HSDM_WIDE_LANES
     {behind_by_avx512, near_way_by_avx512},
     {behind_by_avx, near_way_by_avx},
 #endif
     {behind_by_two, near_way_by_four}};
 
-std::size_t first_that_works() {
-#ifdef HSDM_WIDE_LANES
-    if (__builtin_cpu_supports("avx512f")) return 0;
-    return __builtin_cpu_supports("avx") ? 1 : 2;
-#else
-    return 0;
-#endif
-}
-
 } // namespace
 
 std::span<const DiscLanes> disc_lanes() {
-    static const std::size_t first = first_that_works();
-    return std::span(by_width).subspan(first);
+    return std::span(discs_by_width).subspan(widest_lanes());
 }
 
 } // namespace hsdm

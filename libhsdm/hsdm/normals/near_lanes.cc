@@ -4,16 +4,12 @@
 #include "hsdm/normals/near_lanes.hh"
 
 #include "hsdm/core/lanes.hh"
+#include "hsdm/core/wide_lanes.hh"
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
-
-#if defined(__x86_64__) && defined(__GNUC__)
-#define HSDM_WIDE_LANES
-#include <immintrin.h>
-#endif
 
 namespace hsdm {
 namespace {
@@ -121,25 +117,16 @@ std::size_t keep_one_by_one(const float* distance, std::size_t count, float limi
 
 #endif
 
-constexpr NearLanes by_width[] = {
+constexpr NearLanes near_by_width[] = {
 #ifdef HSDM_WIDE_LANES
     {find_by_sixteen, count_by_sixteen, keep_by_sixteen},
 #endif
     {find_by_four, count_by_four, keep_one_by_one}};
 
-std::size_t first_that_works() {
-#ifdef HSDM_WIDE_LANES
-    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("popcnt") ? 0 : 1;
-#else
-    return 0;
-#endif
-}
-
 } // namespace
 
 std::span<const NearLanes> near_lanes() {
-    static const std::size_t first = first_that_works();
-    return std::span(by_width).subspan(first);
+    return std::span(near_by_width).subspan(std::min(widest_lanes(), std::size(near_by_width) - 1));
 }
 
 } // namespace hsdm

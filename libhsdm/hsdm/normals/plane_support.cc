@@ -3,15 +3,11 @@
 
 #include "hsdm/normals/plane_support.hh"
 
+#include "hsdm/core/wide_lanes.hh"
 #include "hsdm/normals/neighborhood.hh"
 
 #include <algorithm>
 #include <cstring>
-
-#if defined(__x86_64__) && defined(__GNUC__)
-#define HSDM_WIDE_LANES
-#include <immintrin.h>
-#endif
 
 namespace hsdm {
 namespace {
@@ -160,21 +156,12 @@ struct EightVectors {
 
 #endif
 
-constexpr SupportLanes by_width[] = {
+constexpr SupportLanes support_by_width[] = {
 #ifdef HSDM_WIDE_LANES
     {near_by_avx512, agreeing_by_avx512},
     {near_by_avx, agreeing_by_avx},
 #endif
     {near_by_two, agreeing_by_two}};
-
-std::size_t first_that_works() {
-#ifdef HSDM_WIDE_LANES
-    if (__builtin_cpu_supports("avx512f")) return 0;
-    return __builtin_cpu_supports("avx") ? 1 : 2;
-#else
-    return 0;
-#endif
-}
 
 void fill_up(Planes& planes) {
     const std::size_t end = (planes.count + widest - 1) / widest * widest;
@@ -184,8 +171,7 @@ void fill_up(Planes& planes) {
 } // namespace
 
 std::span<const SupportLanes> support_lanes() {
-    static const std::size_t first = first_that_works();
-    return std::span(by_width).subspan(first);
+    return std::span(support_by_width).subspan(widest_lanes());
 }
 
 void near_planes(Planes& planes, Support& support) {

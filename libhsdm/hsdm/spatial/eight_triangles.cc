@@ -4,13 +4,9 @@
 #include "hsdm/spatial/eight_triangles.hh"
 
 #include "hsdm/core/vector_pair.hh"
+#include "hsdm/core/wide_lanes.hh"
 
 #include <cstring>
-
-#if defined(__x86_64__) && defined(__GNUC__)
-#define HSDM_WIDE_LANES
-#include <immintrin.h>
-#endif
 
 namespace hsdm {
 namespace {
@@ -186,27 +182,17 @@ struct EightVectors {
 
 #endif
 
-constexpr TriangleLanes by_width[] = {
+constexpr TriangleLanes triangles_by_width[] = {
 #ifdef HSDM_WIDE_LANES
     {prepare_by_avx512, feet_inside_by_avx512},
     {prepare_by_avx, feet_inside_by_avx},
 #endif
     {prepare_by_two, feet_inside_by_two}};
 
-std::size_t first_that_works() {
-#ifdef HSDM_WIDE_LANES
-    if (__builtin_cpu_supports("avx512f")) return 0;
-    return __builtin_cpu_supports("avx") ? 1 : 2;
-#else
-    return 0;
-#endif
-}
-
 } // namespace
 
 std::span<const TriangleLanes> triangle_lanes() {
-    static const std::size_t first = first_that_works();
-    return std::span(by_width).subspan(first);
+    return std::span(triangles_by_width).subspan(widest_lanes());
 }
 
 void EightTriangles::prepare() {
