@@ -103,3 +103,25 @@ TEST_CASE("two loops that face each other closely are joined, far ones closed ea
     for (const Vec3& p : near.positions)
         if (std::abs(p[2] - 3) < 1) CHECK(std::abs(std::hypot(p[0], p[1]) - 1) < 0.05);
 }
+
+TEST_CASE("a completion that is stopped does not pass through the mesh", "[completion]") {
+    // Two balls, one in the other, the inner one turned: a shell. Over the outer one's border a smooth cap
+    // that ends in a crease is flat, and passes through the inner one.
+    PolygonMesh mesh = without(support::divided_sphere(40), [](const Vec3& p) { return p[2] < -0.2; });
+    PolygonMesh inner = support::divided_sphere(40);
+    turn(inner);
+    const auto shift = static_cast<Index>(mesh.vertex_count());
+    for (const Vec3& p : inner.positions) mesh.positions.push_back(p * 0.9);
+    for (std::size_t f = 0; f < inner.facet_count(); ++f) {
+        std::vector<Index> corners;
+        for (const Index v : inner.facet(f)) corners.push_back(v + shift);
+        mesh.add_facet(corners);
+    }
+    const auto inside = [&](Passing passing) {
+        const CompletedPoints points = complete_surface(mesh, boundary_loops(mesh), 0.05, passing);
+        CHECK(points.positions.size() > 9 * 500);
+        return std::ranges::count_if(points.positions, [](const Vec3& p) { return p.norm() < 0.89; });
+    };
+    CHECK(inside(Passing::ignored) > 1000);
+    CHECK(inside(Passing::stopped) == 0);
+}

@@ -10,6 +10,7 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <utility>
 
 using namespace hsdm;
 using namespace hsdm::support;
@@ -39,8 +40,10 @@ struct Completed {
     Report report;
 };
 
-Completed complete(const PointCloud& cloud, double voxel) {
+Completed complete(const PointCloud& cloud, double voxel,
+                   decltype(ReconstructOptions::progress) progress = {}) {
     ReconstructOptions options;
+    options.progress = std::move(progress);
     options.voxel_size = voxel;
     options.holes = Holes::complete;
     const Reconstruction result = reconstruct(cloud, options);
@@ -233,4 +236,19 @@ TEST_CASE("completed vertices take colours and labels from those around", "[comp
             if (property.name == "height" && marks->values[v] == 1) CHECK((value > 0.4 && value < 0.71));
         }
     CHECK(seen == completed.mesh.vertex_count());
+}
+
+TEST_CASE("a bowl whose outer bottom nobody saw is closed below its inner one", "[completion]") {
+    // A flat surface over the outer border passes through the inner bottom.
+    const Solid bowl = (sphere(1) - sphere(0.92)) - box({3, 3, 3}).placed(turned({1, 0, 0}, 0, {0, 0, 1.7}));
+    const PointCloud cloud = partial_scan(bowl, {.points = 40000, .normals = true},
+                                          [](const Vec3& p) { return p.norm() > 0.96 && p[2] < -0.3; });
+    double done = 0;
+    const Completed completed = complete(cloud, 0.06, [&](const char*, double share) {
+        CHECK(share >= done);
+        done = share;
+        return true;
+    });
+    CHECK(completed.report.mesh.components == 1);
+    CHECK(completed.report.mesh.euler == 2);
 }

@@ -51,7 +51,8 @@ CompletedPoints complete_surface(const PolygonMesh& mesh, double voxel_size) {
     return complete_surface(mesh, boundary_loops(mesh), voxel_size);
 }
 
-CompletedPoints complete_surface(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size) {
+CompletedPoints complete_surface(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size,
+                                 Passing passing) {
     check_option(voxel_size > 0 && std::isfinite(voxel_size), "voxel_size", voxel_size, "be positive");
     Box box;
     for (const Vec3& p : mesh.positions) box.add(p);
@@ -64,7 +65,10 @@ CompletedPoints complete_surface(const PolygonMesh& mesh, const BoundaryLoops& l
     if (inward) turn_over(turned = mesh);
     const PolygonMesh& outward = inward ? turned : mesh;
     CompletionPatch patch = completion_patch(completion_field(outward, loops, voxel_size), outward, loops);
-    fair(patch);
+    if (passing == Passing::stopped)
+        fair_beside(outward, patch);
+    else
+        fair(patch);
     const std::vector<Vec3> normals = vertex_area_vectors(patch.net);
     for (std::size_t q = 0; q < patch.net.facet_count(); ++q)
         if (patch.missing[q] != 0) add_samples(patch.net.facet(q), patch, normals, points);

@@ -15,7 +15,13 @@ struct CompletedPoints {
 /// or meets it in a crease. Three points to a voxel each way. None for a closed mesh. O(facets + missing
 /// area). Throws OptionError for a voxel size that is not positive, or less than the mesh's extent over 2^17.
 CompletedPoints complete_surface(const PolygonMesh& mesh, double voxel_size);
+/// What becomes of a completion that would pass through the mesh or through itself.
+enum class Passing {
+    ignored, ///< it passes: where that is little, what makes facets of the points mends it
+    stopped, ///< there it stays beside the mesh, less smooth and farther from what is missing
+};
 /// The same where the mesh's boundary loops are known.
-CompletedPoints complete_surface(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size);
+CompletedPoints complete_surface(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size,
+                                 Passing passing = Passing::ignored);
 
 } // namespace hsdm

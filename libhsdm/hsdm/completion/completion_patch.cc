@@ -2,6 +2,7 @@
 
 #include "hsdm/completion/conjugate_gradients.hh"
 #include "hsdm/completion/constants.hh"
+#include "hsdm/completion/crossed_moves.hh"
 #include "hsdm/mesh/vertex_neighbors.hh"
 
 #include <Eigen/SparseCholesky>
@@ -71,15 +72,38 @@ std::vector<MortonCode> cells_of(const CompletionField& field) {
 class Fairing {
 public:
     explicit Fairing(CompletionPatch& patch)
-        : patch_(patch), neighbors_(patch.net), number_(patch.net.vertex_count(), no_index) {
+        : patch_(patch),
+          neighbors_(patch.net),
+          number_(patch.net.vertex_count()),
+          stays_(patch.net.vertex_count()) {
         const std::vector<std::uint8_t> attached = attached_vertices();
-        for (Index v = 0; v < number_.size(); ++v)
-            if (patch.held[v] == 0 && attached[v] != 0)
-                number_[v] = static_cast<Index>(free_.size()), free_.push_back(v);
+        for (Index v = 0; v < number_.size(); ++v) stays_[v] = patch.held[v] != 0 || attached[v] == 0;
         for (std::size_t q = 0; q < patch.net.facet_count(); ++q)
             if (attached[patch.net.facet(q)[0]] == 0) patch.missing[q] = 0;
     }
 
+    /// Vertices that are to stay where they are, and so many rings around them.
+    void stop(std::span<const Index> vertices, int rings) {
+        std::vector<Index> reached(vertices.begin(), vertices.end());
+        std::size_t from = 0;
+        for (const Index v : reached) stays_[v] = 1;
+        for (int ring = 0; ring < rings; ++ring)
+            for (const std::size_t end = reached.size(); from < end; ++from)
+                for (const Index k : around(reached[from]))
+                    if (!std::exchange(stays_[k], std::uint8_t{1})) reached.push_back(k);
+    }
+
+    void move() {
+        free_.clear();
+        for (Index v = 0; v < number_.size(); ++v) {
+            number_[v] = stays_[v] != 0 ? no_index : static_cast<Index>(free_.size());
+            if (stays_[v] == 0) free_.push_back(v);
+        }
+        to_membrane();
+        to_plate();
+    }
+
+private:
     void to_membrane() {
         HarmonicEquations equations;
         std::array<std::vector<double>, 3> known, values;
@@ -122,7 +146,6 @@ public:
         solve(transposed * rows.of_free, transposed * target);
     }
 
-private:
     using Matrix = Eigen::SparseMatrix<double>;
 
     /// Vertices less the means of those around them, as a matrix of the free ones and what held ones add.
@@ -249,7 +272,8 @@ private:
 
     CompletionPatch& patch_;
     VertexNeighbors neighbors_;
-    std::vector<Index> number_; // per vertex, which of the free ones it is, or no_index
+    std::vector<Index> number_;       // per vertex, which of the free ones it is, or no_index
+    std::vector<std::uint8_t> stays_; // per vertex
     std::vector<Index> free_;
 };
 
@@ -334,9 +358,19 @@ CompletionPatch completion_patch(const CompletionField& field, const PolygonMesh
 }
 
 void fair(CompletionPatch& patch) {
+    Fairing(patch).move();
+}
+
+void fair_beside(const PolygonMesh& mesh, CompletionPatch& patch) {
+    const std::vector<Vec3> net = patch.net.positions;
     Fairing fairing(patch);
-    fairing.to_membrane();
-    fairing.to_plate();
+    for (int round = 0, rings = 1;; ++round, rings *= 2) {
+        fairing.move();
+        const std::vector<Index> crossed = crossed_moves(mesh, patch, net);
+        if (crossed.empty() || round == completing::most_stops) return;
+        fairing.stop(crossed, rings);
+        patch.net.positions = net;
+    }
 }
 
 } // namespace hsdm

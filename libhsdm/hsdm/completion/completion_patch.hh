@@ -23,4 +23,9 @@ CompletionPatch completion_patch(const CompletionField& field, const PolygonMesh
 /// crease elsewhere (after Kobbelt, Campagna, Vorsatz, Seidel, Interactive multi-resolution modeling, 1998).
 void fair(CompletionPatch& patch);
 
+/// The same for a patch that fairing would take through the mesh or through itself: vertices that would pass
+/// there, and some around them, stay where the field put them, which is beside the mesh. No nearer to what is
+/// missing than fair() where that crosses little, as the field keeps far from the mesh.
+void fair_beside(const PolygonMesh& mesh, CompletionPatch& patch);
+
 } // namespace hsdm

@@ -55,6 +55,11 @@ inline constexpr double hold = 1e-12;
 /// matrix take some 2 KB a vertex: 100 MB.
 inline constexpr std::size_t most_bending = 50000;
 
+/// rounds: of stopping vertices that fairing would take through the mesh or another part of the patch, each
+/// with twice as many rings around them.
+/// Why: bounds the work; of the scans of docs/completion.md none takes more than two.
+inline constexpr int most_stops = 5;
+
 /// points along each side of a cell of a patch: nine to a voxel, as three spacings to a voxel have.
 inline constexpr int samples = 3;
 

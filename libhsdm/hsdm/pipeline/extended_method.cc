@@ -159,86 +159,130 @@ struct Draft {
     }
 };
 
-/// Sets and facets of the draft's cloud; `done` is the share of the whole run before it.
-void make_facets(const MethodInput& measured, double done, const DualContourOptions& options, Draft& draft) {
+/// Sets and facets of the draft's cloud; `done` is the share of the whole run before it, `sets` that of the
+/// sets.
+void make_facets(const MethodInput& measured, double done, const DualContourOptions& options, Draft& draft,
+                 double sets = 0.02) {
     const MethodInput in = draft.input(measured);
     Report& report = draft.report;
     draft.sets =
         in.phases.run("sets", done, report.seconds.graph, [&] { return separated_sets(in, report); });
-    draft.facets = in.phases.run("facets", done + 0.02, report.seconds.facets,
+    draft.facets = in.phases.run("facets", done + sets, report.seconds.facets,
                                  [&] { return dual_contour(in.octree, in.level, draft.sets, options); });
 }
 
-/// What is completed: slits, so that borders stay, or all loops.
-enum class Missing { slits, all };
-
-/// What completes a draft, and where.
-struct Completion {
+/// What closes slits of a draft.
+struct SlitCompletion {
     BoundaryLoops loops;
     CompletedPoints points;
     std::size_t border = 0; ///< edges of all of the draft's loops
 };
 
-/// May there be something to complete?
-bool has_loops(Missing missing, const Draft& draft) {
-    return missing == Missing::all || draft.facets.holes.loops > draft.facets.holes.closed;
-}
-
-Completion completion_of(const MethodInput& in, Missing missing, const Draft& draft) {
-    const DualContour& facets = draft.facets;
+SlitCompletion slit_completion(const MethodInput& in, const Draft& draft) {
     const double h = in.level.voxel_size;
-    Completion result;
-    result.loops = boundary_loops(facets.mesh);
-    result.border = result.loops.vertices.size();
-    if (missing == Missing::all) {
-        result.points = complete_surface(facets.mesh, result.loops, h);
-        return result;
-    }
-    Slits slits = find_slits(facets.mesh, result.loops,
+    const BoundaryLoops loops = boundary_loops(draft.facets.mesh);
+    Slits slits = find_slits(draft.facets.mesh, loops,
                              h * options_for(in, draft.report.input.spacing).holes.max_diameter);
     // Where more than slits is open all is completed at once: what closes one loop may meet another's.
-    if (in.options.holes == Holes::complete && slits.loops.size() < result.loops.size()) return {};
-    result.points = points_across(slits, h);
+    if (in.options.holes == Holes::complete && slits.loops.size() < loops.size()) return {};
+    SlitCompletion result{{}, points_across(slits, h), loops.vertices.size()};
     result.loops = std::move(slits.loops);
     return result;
 }
 
 /// Is a guess no worse than the draft that it completes: fewer edges without a second facet, no more facets
 /// that meet?
-bool is_better(const DualContour& guess, const DualContour& draft, const Completion& completion) {
+bool is_better(const DualContour& guess, const DualContour& draft, const SlitCompletion& completion) {
     return guess.intersections.after <= draft.intersections.after
            && boundary_loops(guess.mesh).vertices.size() < completion.border;
 }
 
-/// Completes what is missing of the facets' surface, and once more where loops are left. Where borders are to
-/// stay a guess that is no better is not taken. `base` is the report before there were facets, `done` the
-/// share of the whole run before it.
-void complete(const MethodInput& measured, const Report& base, Missing missing, double done, Draft& draft) {
-    const bool all_round = missing == Missing::all;
-    for (int round = 1; round <= completing::most_rounds && has_loops(missing, draft);
-         ++round, done += 0.03) {
-        const MethodInput in = draft.input(measured);
-        const Completion completion = in.phases.run("completion", done, draft.report.seconds.facets,
-                                                    [&] { return completion_of(in, missing, draft); });
-        if (completion.loops.size() == 0) return;
+/// From what all is completed, and how.
+struct Completing {
+    const MethodInput& measured;
+    const Report& base; ///< before there were facets
+    double done = 0;    ///< share of the whole run before it
+    double share = 0;   ///< of the whole run, that a round is
+
+    CompletedPoints points(const MethodInput& in, const PolygonMesh& mesh, const BoundaryLoops& loops,
+                           Passing passing, Report& report) const {
+        return in.phases.run("completion", done, report.seconds.facets,
+                             [&] { return complete_surface(mesh, loops, in.level.voxel_size, passing); });
+    }
+
+    /// Sets and facets of a draft's points, which `in` has, and of those that complete them.
+    Draft draft(const MethodInput& in, const CompletedPoints& points, const Report& before, double shift,
+                const DualContourOptions& options) const {
         Draft next{{}, base};
-        next.report.seconds = draft.report.seconds;
-        next.report.loops = draft.report.loops;
-        note_loops(draft.facets.mesh, completion.loops, true, in.octree.origin, in.frame, next.report);
+        next.report.seconds = before.seconds;
+        next.report.loops = before.loops;
+        next.cloud = complete_cloud(in.octree, in.level, points, shift);
+        make_facets(measured, done + share / 6, options, next, share * 2 / 3);
+        return next;
+    }
+};
+
+/// Completes the slits of a draft, and once more where some are left, as long as that makes it better.
+void complete_slits(Completing how, Draft& draft) {
+    const DualContourOptions options = options_for(how.measured, how.base.input.spacing);
+    for (int round = 1;
+         round <= completing::most_rounds && draft.facets.holes.loops > draft.facets.holes.closed;
+         ++round, how.done += how.share) {
+        const MethodInput in = draft.input(how.measured);
+        const SlitCompletion completion = in.phases.run("completion", how.done, draft.report.seconds.facets,
+                                                        [&] { return slit_completion(in, draft); });
+        if (completion.loops.size() == 0) return;
         draft.facets.cells.reset(); // frees what is not needed any more
-        if (all_round) draft.facets = DualContour();
-        next.cloud =
-            complete_cloud(in.octree, in.level, completion.points, all_round ? completing::shift : 0);
-        DualContourOptions options = options_for(measured, base.input.spacing);
-        if (all_round && round == completing::most_rounds) options.holes = every_hole;
-        options.all_round = all_round;
-        make_facets(measured, done + 0.005, options, next);
-        if (!all_round && !is_better(next.facets, draft.facets, completion)) {
+        Draft next = how.draft(in, completion.points, draft.report, 0, options);
+        if (!is_better(next.facets, draft.facets, completion)) {
             draft.report.seconds = next.report.seconds;
             return;
         }
+        note_loops(draft.facets.mesh, completion.loops, true, in.octree.origin, in.frame, next.report);
         draft = std::move(next);
     }
+}
+
+/// A draft with all loops of its mesh completed, and once more where some are left.
+Draft completed_all(Completing how, Passing passing, const PolygonMesh& mesh, const BoundaryLoops& loops,
+                    const Draft& draft, Report& report) {
+    DualContourOptions options = options_for(how.measured, how.base.input.spacing);
+    options.all_round = true;
+    const MethodInput in = draft.input(how.measured);
+    Draft result =
+        how.draft(in, how.points(in, mesh, loops, passing, report), report, completing::shift, options);
+    const BoundaryLoops left = boundary_loops(result.facets.mesh);
+    if (left.size() == 0) return result;
+    how.done += how.share;
+    const MethodInput again = result.input(how.measured);
+    note_loops(result.facets.mesh, left, true, again.octree.origin, again.frame, result.report);
+    const CompletedPoints points = how.points(again, result.facets.mesh, left, passing, result.report);
+    result.facets = DualContour(); // frees what is not needed any more
+    options.holes = every_hole;
+    return how.draft(again, points, result.report, completing::shift, options);
+}
+
+/// Completes all loops of a draft. Where more facets meet then than before it is done again with a surface
+/// that keeps beside the mesh, and the one of which fewer meet is taken.
+void complete_all(Completing how, Draft& draft) {
+    const std::size_t meeting = draft.facets.intersections.after;
+    const BoundaryLoops loops = boundary_loops(draft.facets.mesh);
+    if (loops.size() == 0) return;
+    const PolygonMesh mesh = std::move(draft.facets.mesh);
+    draft.facets = DualContour(); // frees what is not needed any more
+    draft.sets = NormalSets();
+    const MethodInput in = draft.input(how.measured);
+    note_loops(mesh, loops, true, in.octree.origin, in.frame, draft.report);
+    Draft result = completed_all(how, Passing::ignored, mesh, loops, draft, draft.report);
+    if (result.facets.intersections.after > meeting) {
+        Report report = draft.report;
+        report.seconds = result.report.seconds;
+        how.done += 2 * how.share;
+        Draft beside = completed_all(how, Passing::stopped, mesh, loops, draft, report);
+        result.report.seconds = beside.report.seconds;
+        if (beside.facets.intersections.after < result.facets.intersections.after) result = std::move(beside);
+    }
+    draft = std::move(result);
 }
 
 /// The vertices of a completed cloud's mesh as if it were the measured one's: where these lie, with colours
@@ -317,8 +361,8 @@ PolygonMesh extended_method(const MethodInput& in, Report& report, FacetKnowledg
     Draft draft = first_draft(in, report);
     const std::size_t measured_sets = draft.sets.sets.size();
     if (in.options.holes == Holes::automatic || in.options.holes == Holes::complete)
-        complete(in, report, Missing::slits, 0.38, draft);
-    if (in.options.holes == Holes::complete) complete(in, report, Missing::all, 0.44, draft);
+        complete_slits({in, report, 0.38, 0.03}, draft);
+    if (in.options.holes == Holes::complete) complete_all({in, report, 0.44, 0.015}, draft);
     report = std::move(draft.report);
     report.grid.sets = measured_sets;
     const bool marked = draft.cloud || in.options.holes == Holes::complete;
