@@ -1,0 +1,30 @@
+#include "hsdm/pipeline/cloud_survey.hh"
+
+#include "hsdm/normals/steady_normals.hh"
+#include "hsdm/pipeline/tile_plan.hh"
+
+namespace hsdm {
+
+CloudSurvey survey_cloud(const ScratchCloud& cloud, std::size_t expected, std::size_t most_points) {
+    Survey sums(cloud.depth(), cloud.cell_depth(), expected);
+    cloud.for_groups(most_points, [&](const Octree& part) { sums.add(part); });
+    if (const std::size_t points = sums.points(); points != expected) // other ones are sampled
+        return survey_cloud(cloud, points, most_points);
+    const double spacing = estimate_spacing(sums.counts(), cloud.cube_extent());
+    return {std::move(sums), spacing};
+}
+
+void check_survey(const CloudSurvey& survey, const ScratchCloud& cloud) {
+    const Survey& sums = survey.sums;
+    if (spans_no_surface(sums.places(), cloud.cube_extent()))
+        refuse_in_tiles("too few points, or all on a line");
+    if (has_far_points(sums.places(), cloud.cube_extent(), survey.spacing))
+        refuse_in_tiles("some points, or parts, are far from all others");
+    if (are_scattered(sums.normals(), sums.points()))
+        refuse_in_tiles("normals are noisy, and may have to be told by the positions");
+    const NormalConsistency normals = check_normals(sums.normals(), sums.points(), survey.spacing);
+    if (normals.doubtful()) refuse_in_tiles("normals contradict each other and must be turned to one side");
+    if (normals.rough()) refuse_in_tiles("normals contradict positions, as those of noisy points do");
+}
+
+} // namespace hsdm

@@ -1,0 +1,21 @@
+#pragma once
+// The survey of a whole cloud on disk: what its tiles must know of all of it, and what tiles cannot do.
+
+#include "hsdm/pipeline/scratch_cloud.hh"
+#include "hsdm/pipeline/survey.hh"
+
+namespace hsdm {
+
+struct CloudSurvey {
+    Survey sums;
+    double spacing; ///< of the points
+};
+
+/// Adds up all groups of at most so many points, twice if `expected` is not how many remain without
+/// duplicates.
+CloudSurvey survey_cloud(const ScratchCloud& cloud, std::size_t expected, std::size_t most_points);
+
+/// Throws Error for a cloud of which PreparedCloud would move, turn or drop points by what all of them are.
+void check_survey(const CloudSurvey& survey, const ScratchCloud& cloud);
+
+} // namespace hsdm

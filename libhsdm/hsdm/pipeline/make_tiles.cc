@@ -1,0 +1,145 @@
+#include "hsdm/pipeline/make_tiles.hh"
+
+#include "hsdm/core/chunks.hh"
+
+#include <algorithm>
+#include <utility>
+
+namespace hsdm {
+namespace {
+
+constexpr int most_ghost_voxels = 256;                    // of a tile that is made again and again
+constexpr std::size_t most_strays = std::size_t{1} << 20; // that are kept in memory
+
+std::vector<std::uint8_t> disagreeing(const std::vector<Piece>& pieces) {
+    std::vector<std::uint8_t> found(pieces.size(), 0);
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        for (std::size_t j = i + 1; j < pieces.size(); ++j)
+            if (!agree(pieces[i], pieces[j])) found[i] = found[j] = 1;
+    return found;
+}
+
+class TileMaker {
+public:
+    TileMaker(const TilesInput& in, const std::vector<VoxelRange>& ranges, bool turned, TilesKnown& known,
+              TileReport& how)
+        : in_(in),
+          cloud_(in.cloud),
+          ranges_(ranges),
+          turned_(turned),
+          known_(known),
+          how_(how),
+          sparse_(in.survey.sums.sparse()) {}
+
+    std::vector<Piece> pieces() {
+        std::vector<Piece> pieces(ranges_.size());
+        std::vector<int> ghost(ranges_.size(), in_.ghost_voxels);
+        std::vector<std::uint8_t> due(ranges_.size(), 1);
+        while (std::ranges::count(due, 1) > 0) {
+            for (std::size_t k = 0; k < ranges_.size(); ++k)
+                if (due[k]) pieces[k] = checked_piece(ranges_[k], ghost[k]);
+            if (has_new_strays()) {
+                std::ranges::fill(due, std::uint8_t{1});
+                continue;
+            }
+            due = disagreeing(pieces);
+            for (std::size_t k = 0; k < ranges_.size(); ++k)
+                if (due[k]) ghost[k] *= 2, ++how_.widened;
+            if (std::ranges::count(due, 1) == 0 && must_go_back(pieces))
+                std::ranges::fill(due, std::uint8_t{1});
+        }
+        return pieces;
+    }
+
+private:
+    Piece checked_piece(const VoxelRange& range, int ghost) {
+        if (ghost > most_ghost_voxels) refuse_in_tiles("neighbouring parts do not agree");
+        Piece piece = make_tile(range, ghost);
+        if (piece.counts.depends_on_all)
+            refuse_in_tiles(
+                "facets pass through each other that could not be parted, or normals are at random");
+        return piece;
+    }
+
+    Piece make_tile(const VoxelRange& range, int ghost) {
+        Piece piece;
+        piece.range = range;
+        std::vector<PointRow> rows = cloud_.rows_of(range, ghost);
+        how_.points_read += rows.size();
+        if (rows.empty()) return piece;
+        const Octree octree = cloud_.octree_of(rows);
+        rows = std::vector<PointRow>();
+        if (!known_.outliers) find_strays(octree, range, ghost);
+        if (!strays_.empty()) return piece; // all are made again without them
+        const OctreeLevel level = extract_level(octree, cloud_.depth());
+        const MethodInput in{cloud_.frame(), {}, octree, level, in_.options, in_.phases};
+        const PartOfLevel part{in_.survey.spacing, in_.survey.sums.set_sizes().typical(), turned_,
+                               known_.go_back, [&](MortonCode code) { return range.holds(code); }};
+        return make_piece(in, part, range);
+    }
+
+    /// Adds a tile's points that are dropped as outliers. Refuses those without which the whole would have
+    /// another cube.
+    void find_strays(const Octree& octree, const VoxelRange& range, int ghost) {
+        std::vector<double> reach;
+        const std::vector<std::uint8_t> strays = strays_by_normals(octree, sparse_, {}, &reach);
+        const double seen = ghost * cloud_.voxel_size();
+        const int shift = 3 * (morton_levels - cloud_.depth());
+        for_each_in_order(octree.size(), [&](std::size_t i) {
+            if (!range.holds(octree.codes[i] >> shift)) return;
+            if (reach[i] > seen) refuse_in_tiles("some points are far from all others");
+            if (!strays[i]) return;
+            if (is_at_border(octree.positions[i] + cloud_.origin()))
+                refuse_in_tiles("some points are off every surface, outside all others");
+            if (strays_.empty()) known_.first_outlier = octree.positions[i];
+            if (strays_.size() == most_strays) refuse_in_tiles("many points are off every surface");
+            strays_.push_back(ScratchCloud::row_at(octree, i));
+        });
+    }
+
+    bool is_at_border(const Vec3& place) const {
+        const double near = 1e-9 * cloud_.cube_extent();
+        const Box& box = cloud_.extent().box;
+        return std::min((place - box.lo).min(), (box.hi - place).min()) <= near;
+    }
+
+    /// Once all tiles have looked for strays: are there some, so that all is different without them?
+    bool has_new_strays() {
+        known_.outliers = true;
+        if (strays_.empty()) return false;
+        const std::size_t points = in_.survey.sums.points() - strays_.size();
+        cloud_.leave_out(std::exchange(strays_, {}));
+        in_.survey = survey_cloud(cloud_, points, in_.group_points);
+        return true;
+    }
+
+    /// Vertices as moved towards the points stay only where that brings all together nearer. Are they to go
+    /// back, and have not yet?
+    bool must_go_back(const std::vector<Piece>& pieces) {
+        FacetCounts all;
+        for (const Piece& piece : pieces) all += piece.counts;
+        const double gain = all.misfit_placed - all.misfit_moved;
+        constexpr double rounding = 1e-9; // sums of parts are rounded otherwise than that of the whole
+        if (std::abs(gain) <= rounding * all.misfit_placed && all.misfit_placed > 0)
+            refuse_in_tiles("facets moved to the points are neither nearer to them nor farther off");
+        return !std::exchange(known_.go_back, gain < 0) && known_.go_back;
+    }
+
+    const TilesInput& in_;
+    ScratchCloud& cloud_;
+    const std::vector<VoxelRange>& ranges_;
+    bool turned_;
+    TilesKnown& known_;
+    TileReport& how_;
+    SparseLevel sparse_;
+    std::vector<PointRow> strays_; // found, and not left out yet
+};
+
+} // namespace
+
+std::vector<Piece> make_tiles(const TilesInput& in, const std::vector<VoxelRange>& ranges, bool turned,
+                              TilesKnown& known, TileReport& how) {
+    return TileMaker(in, ranges, turned, known, how).pieces();
+}
+
+} // namespace hsdm

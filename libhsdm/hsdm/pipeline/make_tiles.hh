@@ -1,0 +1,32 @@
+#pragma once
+// All tiles of a cloud on disk, each with as much around it as it takes for neighbours to agree.
+
+#include "hsdm/pipeline/cloud_survey.hh"
+#include "hsdm/pipeline/tile_piece.hh"
+
+namespace hsdm {
+
+/// What tiles are made of.
+struct TilesInput {
+    ScratchCloud& cloud; ///< points are left out of it if some are found to be outliers
+    CloudSurvey& survey; ///< is taken again then
+    const ReconstructOptions& options;
+    const Phases& phases;
+    std::size_t group_points = 0; ///< at once, for a survey
+    int ghost_voxels = 0;         ///< round a tile at first
+};
+
+/// What making tiles finds out of the whole, so that tiles must be made again; it holds for those made
+/// later, too.
+struct TilesKnown {
+    bool outliers = false; ///< have they been looked for?
+    bool go_back = false;  ///< as in PartOfLevel
+    Vec3 first_outlier{0, 0, 0};
+};
+
+/// The piece of every range, all in agreement. `turned`: as in PartOfLevel. Throws Error if they cannot
+/// agree, or if what they leave to the whole would change them; Cancelled.
+std::vector<Piece> make_tiles(const TilesInput& in, const std::vector<VoxelRange>& ranges, bool turned,
+                              TilesKnown& known, TileReport& how);
+
+} // namespace hsdm

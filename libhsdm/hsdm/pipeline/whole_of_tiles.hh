@@ -1,0 +1,32 @@
+#pragma once
+// The pieces of all tiles -> the mesh of the whole.
+
+#include "hsdm/pipeline/cloud_survey.hh"
+#include "hsdm/pipeline/tile_piece.hh"
+
+namespace hsdm {
+
+/// The facets of the whole, relative to the cube, and what pieces tell of them.
+struct WholeFacets {
+    PolygonMesh mesh;
+    FacetKnowledge known;
+    FacetCounts counts;
+};
+
+/// Takes the memory of the pieces, which must cover the level and agree.
+WholeFacets join_tiles(std::vector<Piece>&& pieces);
+
+/// What the whole is made of, beside its facets.
+struct WholeInput {
+    const ScratchCloud& cloud;
+    const CloudSurvey& survey;
+    const ReconstructOptions& options;
+    const Phases& phases;
+    std::size_t group_points = 0; ///< at once, for the error
+};
+
+/// What is left once there are facets: slits, what is unsound, the error, features. Throws Error if something
+/// was taken for granted of the whole that is not so; Cancelled.
+Reconstruction finish_whole(const WholeInput& in, WholeFacets&& facets, Report&& report);
+
+} // namespace hsdm
