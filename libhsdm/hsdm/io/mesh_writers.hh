@@ -8,8 +8,11 @@ namespace hsdm {
 
 void write_off(AtomicFile& file, const PolygonMesh& mesh);
 void write_obj(AtomicFile& file, const PolygonMesh& mesh);
-void write_ply(AtomicFile& file, const PolygonMesh& mesh, bool ascii);
+void write_ply(AtomicFile& file, const PolygonMesh& mesh, const VertexRows& rows, bool ascii);
 void write_stl(AtomicFile& file, const PolygonMesh& mesh, bool ascii);
+
+/// The normals and properties that a mesh has, which must outlive them.
+VertexRows rows_of(const PolygonMesh& mesh);
 
 /// In metres, if the unit is known; relative to a translation where floats are too coarse. Vertices on
 /// creases are there once for each side, so that renderers, which know one normal a vertex, draw the crease

@@ -2,6 +2,7 @@
 // Points on disk, sorted by cells of space: more of them than fit the memory.
 
 #include "hsdm/core/morton.hh"
+#include "hsdm/io/scratch_bytes.hh"
 #include "hsdm/types.hh"
 
 #include <array>
@@ -22,9 +23,6 @@ public:
     /// many points are to come. `buffered`: bytes of memory that may be used, at least one point's a cell.
     /// Throws Error if the file cannot be made or the disk has no room for so many.
     ScratchPoints(const std::string& folder, std::size_t expected, std::size_t buffered);
-    ~ScratchPoints();
-    ScratchPoints(const ScratchPoints&) = delete;
-    ScratchPoints& operator=(const ScratchPoints&) = delete;
 
     /// Throws Error if the disk is full.
     void add(MortonCode cell, const PointRow& point);
@@ -41,7 +39,7 @@ public:
     /// Appends the points of a cell in the order that they came in. Throws Error if the file cannot be read.
     void read(MortonCode cell, std::vector<PointRow>& points) const;
 
-    std::size_t bytes() const { return written_; } ///< of the file
+    std::size_t bytes() const { return file_.size(); } ///< of the file
 
 private:
     struct Block {
@@ -54,10 +52,9 @@ private:
     };
     void flush();
 
-    std::string folder_;
-    int file_ = -1;
+    ScratchBytes file_;
     std::map<MortonCode, Bucket> buckets_;
-    std::size_t waiting_ = 0, most_waiting_, written_ = 0;
+    std::size_t waiting_ = 0, most_waiting_;
     Bucket* last_ = nullptr; // of the point before: the next one is often in the same
     MortonCode last_cell_ = 0;
 };

@@ -80,8 +80,8 @@ MeshFormat mesh_format(const std::string& path) {
 
 namespace {
 
-WrittenMesh write_as_it_is(const std::string& path, const PolygonMesh& mesh, MeshFormat format,
-                           const WriteOptions& options) {
+WrittenMesh write_as_it_is(const std::string& path, const PolygonMesh& mesh, const VertexRows& rows,
+                           MeshFormat format, const WriteOptions& options) {
     WrittenMesh written;
     if (format == MeshFormat::om) {
         write_polygons_om(path, mesh);
@@ -98,7 +98,7 @@ WrittenMesh write_as_it_is(const std::string& path, const PolygonMesh& mesh, Mes
         write_stl(file, mesh, options.ascii || written.text_for_precision);
         break;
     case MeshFormat::ply:
-        write_ply(file, mesh, options.ascii);
+        write_ply(file, mesh, rows, options.ascii);
         break;
     case MeshFormat::obj:
         write_obj(file, mesh);
@@ -116,19 +116,32 @@ WrittenMesh write_as_it_is(const std::string& path, const PolygonMesh& mesh, Mes
     return written;
 }
 
+WrittenMesh write_checked(const std::string& path, const PolygonMesh& mesh, const VertexRows& rows,
+                          MeshFormat format, const WriteOptions& options) {
+    check(path, mesh);
+    check_facets(path, mesh, info_of(format));
+    if (!options.recentre) return write_as_it_is(path, mesh, rows, format, options);
+    PolygonMesh near = mesh;
+    const Vec3 shift = recentring_shift(mesh.positions);
+    for (Vec3& p : near.positions) p -= shift;
+    WrittenMesh written = write_as_it_is(path, near, rows, format, options);
+    written.shift = shift;
+    return written;
+}
+
 } // namespace
 
 WrittenMesh write_mesh(const std::string& path, const PolygonMesh& mesh, MeshFormat format,
                        const WriteOptions& options) {
-    check(path, mesh);
-    check_facets(path, mesh, info_of(format));
-    if (!options.recentre) return write_as_it_is(path, mesh, format, options);
-    PolygonMesh near = mesh;
-    const Vec3 shift = recentring_shift(mesh.positions);
-    for (Vec3& p : near.positions) p -= shift;
-    WrittenMesh written = write_as_it_is(path, near, format, options);
-    written.shift = shift;
-    return written;
+    return write_checked(path, mesh, rows_of(mesh), format, options);
+}
+
+WrittenMesh write_mesh(const std::string& path, const PolygonMesh& mesh, const VertexRows& rows,
+                       MeshFormat format, const WriteOptions& options) {
+    if (format != MeshFormat::ply && format != MeshFormat::off && format != MeshFormat::stl)
+        throw Error(path, std::string(info_of(format).title)
+                              + " cannot be written as it comes; PLY, OFF and STL can");
+    return write_checked(path, mesh, rows, format, options);
 }
 
 void write_text(const std::string& path, const std::string& text) {

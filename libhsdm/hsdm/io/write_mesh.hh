@@ -4,9 +4,12 @@
 
 #include "hsdm/polygon_mesh.hh"
 
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace hsdm {
 
@@ -74,6 +77,20 @@ MeshFormat mesh_format(const std::string& path);
 /// mesh without facets, and GLB of lengths outside a float's range in metres.
 WrittenMesh write_mesh(const std::string& path, const PolygonMesh& mesh, MeshFormat format,
                        const WriteOptions& options = {});
+
+/// Normals and properties of vertices that are made while they are written.
+struct VertexRows {
+    bool normals = false;
+    std::vector<std::pair<std::string, VertexProperty::Type>> columns{}; ///< names of the properties
+    /// fill(begin, end, normals, values) for vertices begin .. end - 1: their normals, if there are some, and
+    /// their values, one vertex after the other. Called from several threads, more than once.
+    std::function<void(std::size_t, std::size_t, std::vector<Vec3>&, std::vector<double>&)> fill{};
+};
+
+/// The same of a mesh without normals and properties, with those of `rows` where the format is PLY: OFF and
+/// STL have none. Throws Error for other formats.
+WrittenMesh write_mesh(const std::string& path, const PolygonMesh& mesh, const VertexRows& rows,
+                       MeshFormat format, const WriteOptions& options = {});
 
 /// Writes `text` to a file under the same promise; "-" is standard output. Throws Error.
 void write_text(const std::string& path, const std::string& text);

@@ -28,23 +28,22 @@ std::size_t largest_facet(const PolygonMesh& mesh) {
     return largest;
 }
 
-std::string header(const PolygonMesh& mesh, bool ascii) {
+std::string header(const PolygonMesh& mesh, const VertexRows& rows, bool ascii) {
     std::string h = std::string("ply\nformat ") + (ascii ? "ascii" : "binary_little_endian") + " 1.0\n";
     h += "comment hsdm\nelement vertex " + std::to_string(mesh.vertex_count()) + "\n";
     for (const char* name : {"x", "y", "z"}) h += std::string("property double ") + name + "\n";
-    if (!mesh.normals.empty())
+    if (rows.normals)
         for (const char* name : {"nx", "ny", "nz"}) h += std::string("property double ") + name + "\n";
-    for (const VertexProperty& p : mesh.properties)
-        h += std::string("property ") + type_name(p.type) + " " + p.name + "\n";
+    for (const auto& [name, type] : rows.columns)
+        h += std::string("property ") + type_name(type) + " " + name + "\n";
     h += "element face " + std::to_string(mesh.facet_count()) + "\nproperty list ";
     return h + (largest_facet(mesh) < 256 ? "uchar" : "uint") + " uint vertex_indices\nend_header\n";
 }
 
 /// Calls put(value) with the value in the property's own type.
 template <class Put>
-void with_type(const VertexProperty& property, std::size_t v, Put put) {
-    const double value = property.values[v];
-    switch (property.type) {
+void with_type(Type type, double value, const Put& put) {
+    switch (type) {
     case Type::uint8:
         return put(static_cast<std::uint8_t>(value));
     case Type::int32:
@@ -56,19 +55,30 @@ void with_type(const VertexProperty& property, std::size_t v, Put put) {
     }
 }
 
-void write_ascii(AtomicFile& file, const PolygonMesh& mesh) {
+/// Calls put(number) for all numbers of vertices begin .. end - 1, and end_row() after each vertex.
+template <class Put, class EndRow>
+void put_vertices(const PolygonMesh& mesh, const VertexRows& rows, std::size_t begin, std::size_t end,
+                  const Put& put, const EndRow& end_row) {
+    std::vector<Vec3> normals;
+    std::vector<double> values;
+    if (rows.fill) rows.fill(begin, end, normals, values);
+    for (std::size_t v = begin; v < end; ++v) {
+        for (double x : mesh.positions[v]) put(x);
+        if (rows.normals)
+            for (double x : normals[v - begin]) put(x);
+        for (std::size_t k = 0; k < rows.columns.size(); ++k)
+            with_type(rows.columns[k].second, values[(v - begin) * rows.columns.size() + k], put);
+        end_row();
+    }
+}
+
+void write_ascii(AtomicFile& file, const PolygonMesh& mesh, const VertexRows& rows) {
     write_chunks(file, mesh.vertex_count(), [&](std::string& out, std::size_t begin, std::size_t end) {
-        auto put = [&](auto value) {
+        const auto put = [&](auto value) {
             append_number(out, value);
             out += ' ';
         };
-        for (std::size_t v = begin; v < end; ++v) {
-            for (double x : mesh.positions[v]) put(x);
-            if (!mesh.normals.empty())
-                for (double x : mesh.normals[v]) put(x);
-            for (const VertexProperty& p : mesh.properties) with_type(p, v, put);
-            out.back() = '\n';
-        }
+        put_vertices(mesh, rows, begin, end, put, [&] { out.back() = '\n'; });
     });
     write_chunks(file, mesh.facet_count(), [&](std::string& out, std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) {
@@ -79,15 +89,10 @@ void write_ascii(AtomicFile& file, const PolygonMesh& mesh) {
     });
 }
 
-void write_binary(AtomicFile& file, const PolygonMesh& mesh) {
+void write_binary(AtomicFile& file, const PolygonMesh& mesh, const VertexRows& rows) {
     write_chunks(file, mesh.vertex_count(), [&](std::string& out, std::size_t begin, std::size_t end) {
-        auto put = [&](auto value) { append_bytes(out, value); };
-        for (std::size_t v = begin; v < end; ++v) {
-            for (double x : mesh.positions[v]) put(x);
-            if (!mesh.normals.empty())
-                for (double x : mesh.normals[v]) put(x);
-            for (const VertexProperty& p : mesh.properties) with_type(p, v, put);
-        }
+        put_vertices(
+            mesh, rows, begin, end, [&](auto value) { append_bytes(out, value); }, [] {});
     });
     const bool short_count = largest_facet(mesh) < 256;
     write_chunks(file, mesh.facet_count(), [&](std::string& out, std::size_t begin, std::size_t end) {
@@ -104,12 +109,27 @@ void write_binary(AtomicFile& file, const PolygonMesh& mesh) {
 
 } // namespace
 
-void write_ply(AtomicFile& file, const PolygonMesh& mesh, bool ascii) {
-    file.write(header(mesh, ascii));
+VertexRows rows_of(const PolygonMesh& mesh) {
+    VertexRows rows;
+    rows.normals = !mesh.normals.empty();
+    for (const VertexProperty& property : mesh.properties)
+        rows.columns.emplace_back(property.name, property.type);
+    rows.fill = [&mesh](std::size_t begin, std::size_t end, std::vector<Vec3>& normals,
+                        std::vector<double>& values) {
+        const auto at = [&](std::size_t v) { return mesh.normals.begin() + static_cast<std::ptrdiff_t>(v); };
+        if (!mesh.normals.empty()) normals.assign(at(begin), at(end));
+        for (std::size_t v = begin; v < end; ++v)
+            for (const VertexProperty& property : mesh.properties) values.push_back(property.values[v]);
+    };
+    return rows;
+}
+
+void write_ply(AtomicFile& file, const PolygonMesh& mesh, const VertexRows& rows, bool ascii) {
+    file.write(header(mesh, rows, ascii));
     if (ascii)
-        write_ascii(file, mesh);
+        write_ascii(file, mesh, rows);
     else
-        write_binary(file, mesh);
+        write_binary(file, mesh, rows);
 }
 
 } // namespace hsdm

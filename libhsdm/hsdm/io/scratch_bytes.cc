@@ -1,0 +1,65 @@
+#include "hsdm/io/scratch_bytes.hh"
+
+#include "hsdm/core/system.hh"
+#include "hsdm/errors.hh"
+#include "hsdm/io/file_registry.hh"
+#include "hsdm/io/scratch_file.hh"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+namespace hsdm {
+namespace {
+
+std::string failure() {
+    return std::strerror(errno);
+}
+
+std::string in_megabytes(std::size_t bytes) {
+    return std::to_string((bytes + 999999) / 1000000) + " MB";
+}
+
+} // namespace
+
+ScratchBytes::ScratchBytes(const std::string& folder)
+    : folder_(folder.empty() ? temporary_folder() : folder) {
+    std::string name = (std::filesystem::path(folder_) / "hsdm-XXXXXX").string();
+    // Whoever ends the process by a signal waits for the lock, and there is no name before or after.
+    const auto lock = FileRegistry::of_process().lock();
+    file_ = os::create_with_new_name(name, 0);
+    if (file_ < 0)
+        throw Error(folder_,
+                    "no file for scratch can be made: " + failure() + "; --scratch names another folder");
+    os::remove(name);
+}
+
+ScratchBytes::~ScratchBytes() {
+    os::close(file_);
+}
+
+void ScratchBytes::check_room(const char* what, std::size_t needed) const {
+    std::error_code failed;
+    const std::filesystem::space_info space = std::filesystem::space(folder_, failed);
+    if (!failed && space.available < needed)
+        throw Error(folder_, std::string(what) + " take " + in_megabytes(needed)
+                                 + " of scratch and there are " + in_megabytes(space.available)
+                                 + "; --scratch names another folder");
+}
+
+std::size_t ScratchBytes::append(const char* what, const void* bytes, std::size_t count) {
+    if (!os::write_all(file_, {static_cast<const char*>(bytes), count}))
+        throw Error(folder_, std::string(what) + " cannot be written to scratch after " + in_megabytes(size_)
+                                 + ": " + failure() + "; --scratch names another folder");
+    size_ += count;
+    return size_ - count;
+}
+
+void ScratchBytes::read(std::size_t offset, void* bytes, std::size_t count) const {
+    const std::ptrdiff_t some = os::read_all_at(file_, static_cast<char*>(bytes), count, offset);
+    if (some < 0) throw Error(folder_, "scratch cannot be read: " + failure());
+    if (static_cast<std::size_t>(some) < count)
+        throw Error(folder_, "scratch cannot be read: the file has become shorter");
+}
+
+} // namespace hsdm
