@@ -26,20 +26,7 @@ void note_small_components(const SmallComponents& small, Report& report) {
 }
 
 void measure_mesh(const PolygonMesh& facets, Report& report) {
-    const Topology t = measure_connectivity(facets);
-    Report::Mesh& m = report.mesh;
-    m.vertices = t.vertices;
-    m.edges = t.edges;
-    m.faces = t.faces;
-    m.triangles = t.triangles;
-    m.quads = t.quads;
-    m.larger = t.larger;
-    m.components = t.components;
-    m.boundary_loops = t.boundary_loops;
-    m.boundary_edges = t.boundary_edges;
-    m.euler = t.euler;
-    m.genus = t.genus();
-    m.closed = t.closed();
+    note_topology(measure_connectivity(facets), report);
 }
 
 /// On a uniform grid facets are about as large as voxels.
@@ -94,6 +81,22 @@ double into_own_unit(std::vector<Vec3>& positions) {
 }
 
 } // namespace
+
+void note_topology(const Topology& t, Report& report) {
+    Report::Mesh& m = report.mesh;
+    m.vertices = t.vertices;
+    m.edges = t.edges;
+    m.faces = t.faces;
+    m.triangles = t.triangles;
+    m.quads = t.quads;
+    m.larger = t.larger;
+    m.components = t.components;
+    m.boundary_loops = t.boundary_loops;
+    m.boundary_edges = t.boundary_edges;
+    m.euler = t.euler;
+    m.genus = t.genus();
+    m.closed = t.closed();
+}
 
 std::vector<Vec3> points_as_read(const PointView& cloud, const CloudFrame& frame, const Octree& octree) {
     std::vector<Vec3> points(octree.size());

@@ -4,6 +4,7 @@
 #include "hsdm/core/occurrences.hh"
 #include "hsdm/mesh_types.hh"
 #include "hsdm/pipeline/method.hh"
+#include "hsdm/quality/topology.hh"
 
 namespace hsdm {
 
@@ -19,6 +20,9 @@ void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, Polyg
 /// there are points, in the cloud's units, their distances from it. What the report said of the mesh before
 /// goes.
 void measure_again(const PolyMesh& mesh, std::span<const Vec3> points, Report& report);
+
+/// What the report says of a mesh's connectivity.
+void note_topology(const Topology& topology, Report& report);
 
 /// Pairs of facets that pass through each other, and a corner of the first.
 Occurrences facets_that_meet(const PolygonMesh& facets);

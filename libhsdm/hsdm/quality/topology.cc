@@ -256,6 +256,50 @@ Topology measure_connectivity(const PolygonMesh& mesh) {
     return topology;
 }
 
+namespace {
+
+/// Rows of sides without a twin that follow each other.
+std::size_t count_boundary_loops(const PolygonMesh& mesh, const FacetLinks& links) {
+    std::vector<bool> seen(mesh.corners.size());
+    std::size_t count = 0;
+    for_each_in_order(mesh.corners.size(), [&](std::size_t begin) {
+        if (links.twin[begin] != no_index || seen[begin]) return;
+        ++count;
+        for (auto c = static_cast<Index>(begin); !seen[c]; c = links.open_in[links.vertex[c]]) seen[c] = true;
+    });
+    return count;
+}
+
+} // namespace
+
+Topology measure_connectivity(const PolygonMesh& mesh, const FacetLinks& links) {
+    Topology topology;
+    topology.faces = mesh.facet_count();
+    topology.vertices = links.source.size() - links.split_vertices;
+    topology.isolated_vertices = mesh.vertex_count() - topology.vertices;
+    topology.nonmanifold_vertices = links.split_vertices;
+    DisjointSets components(topology.faces);
+    topology.components = topology.faces;
+    for_each_in_order(topology.faces, [&](std::size_t f) {
+        const std::size_t corners = mesh.facet(f).size();
+        topology.triangles += corners == 3;
+        topology.quads += corners == 4;
+        topology.larger += corners > 4;
+        for (Index c = mesh.first[f]; c < mesh.first[f + 1]; ++c) {
+            const Index twin = links.twin[c];
+            topology.boundary_edges += twin == no_index;
+            if (twin != no_index && twin < c) continue;
+            ++topology.edges;
+            if (twin != no_index)
+                topology.components -= components.join(static_cast<Index>(f), links.facet[twin]);
+        }
+    });
+    topology.boundary_loops = count_boundary_loops(mesh, links);
+    topology.euler = static_cast<long>(links.source.size()) - static_cast<long>(topology.edges)
+                     + static_cast<long>(topology.faces);
+    return topology;
+}
+
 Topology measure_topology(const PolygonMesh& mesh) {
     Topology topology = measure_connectivity(mesh);
     topology.degenerate_facets = count_degenerate(mesh);

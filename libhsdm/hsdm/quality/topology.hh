@@ -1,7 +1,7 @@
 #pragma once
 // What kind of surface a polygon mesh is, found from its facets alone.
 
-#include "hsdm/polygon_mesh.hh"
+#include "hsdm/mesh/facet_links.hh"
 
 #include <span>
 
@@ -42,6 +42,8 @@ struct Topology {
 Topology measure_topology(const PolygonMesh& mesh);
 /// All of it but degenerate_facets, duplicate_facets and signed_volume, which are left 0.
 Topology measure_connectivity(const PolygonMesh& mesh);
+/// The same of facets of which none was rejected, by their links: 5 bytes a corner instead of 30.
+Topology measure_connectivity(const PolygonMesh& mesh, const FacetLinks& links);
 
 /// Volume enclosed by a closed mesh, negative if its facets face inwards; of an open one that of the cone
 /// over it from the centre of its box. O(facets), parallel; the same bits for any number of threads.
