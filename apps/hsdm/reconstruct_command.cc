@@ -220,19 +220,50 @@ private:
             points.visit([&](const PointCloud& part) { visit(view_of(part)); });
         };
         TileReport how;
-        Reconstruction result =
-            named(name, [&] { return reconstruct_in_tiles(parts, options, tiles, &how); });
-        note_reading(points.file(), result.report);
-        result.report.options["memory"] = arguments_.memory;
-        result.report.options["tiles"] = std::to_string(how.tiles);
-        result.report.input.file = input;
-        result.report.seconds.read = read_seconds;
-        bar.show("write", 0.97);
-        write_one(name, {}, result);
-        result.report.seconds.total = seconds_since(start);
+        const auto note = [&](Report& report) {
+            note_reading(points.file(), report);
+            report.options["memory"] = arguments_.memory;
+            report.options["tiles"] = std::to_string(how.tiles);
+            report.input.file = input;
+            report.seconds.read = read_seconds;
+            bar.show("write", 0.97);
+        };
         std::vector<Report> made;
-        made.push_back(std::move(result.report));
+        if (is_written_as_it_comes()) {
+            FlatReconstruction flat =
+                named(name, [&] { return reconstruct_flat_in_tiles(parts, options, tiles, &how); });
+            note(flat.report);
+            write_as_it_comes(flat);
+            made.push_back(std::move(flat.report));
+        } else {
+            Reconstruction result =
+                named(name, [&] { return reconstruct_in_tiles(parts, options, tiles, &how); });
+            note(result.report);
+            write_one(name, {}, result);
+            made.push_back(std::move(result.report));
+        }
+        made.back().seconds.total = seconds_since(start);
         return made;
+    }
+
+    /// Is nothing wanted of the mesh that takes a half-edge mesh?
+    bool is_written_as_it_comes() const {
+        const MeshFormat format = target({}).format;
+        return (format == MeshFormat::ply || format == MeshFormat::off || format == MeshFormat::stl)
+               && arguments_.features.empty() && !arguments_.intersections && !arguments_.strict;
+    }
+
+    void write_as_it_comes(FlatReconstruction& flat) const {
+        Report& report = flat.report;
+        auto start = Clock::now();
+        if (!arguments_.report.empty()) measure_details(flat.mesh, report.mesh);
+        report.seconds.error += seconds_since(start);
+        set_phase("write");
+        start = Clock::now();
+        const MeshTarget to = target(report);
+        report.written =
+            report_of(to, write_flat(to.mesh, flat, to.format, to.plain, {to.ascii, to.unit, to.recentre}));
+        report.seconds.write = seconds_since(start);
     }
 
     static std::size_t bytes_of_cloud(const PointCloud& cloud) {

@@ -58,6 +58,7 @@ private:
         if (piece.counts.depends_on_all)
             refuse_in_tiles(
                 "facets pass through each other that could not be parted, or normals are at random");
+        if (in_.store) in_.store->put(piece);
         return piece;
     }
 

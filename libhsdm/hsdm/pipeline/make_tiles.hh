@@ -2,6 +2,7 @@
 // All tiles of a cloud on disk, each with as much around it as it takes for neighbours to agree.
 
 #include "hsdm/pipeline/cloud_survey.hh"
+#include "hsdm/pipeline/piece_store.hh"
 #include "hsdm/pipeline/tile_piece.hh"
 
 namespace hsdm {
@@ -14,6 +15,7 @@ struct TilesInput {
     const Phases& phases;
     std::size_t group_points = 0; ///< at once, for a survey
     int ghost_voxels = 0;         ///< round a tile at first
+    PieceStore* store = nullptr;  ///< finished pieces are put there; null: they stay in memory
 };
 
 /// What making tiles finds out of the whole, so that tiles must be made again; it holds for those made

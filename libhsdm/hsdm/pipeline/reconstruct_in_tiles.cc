@@ -24,11 +24,11 @@ std::size_t points_at_once(const TileOptions& tiles, std::size_t bytes_of_mesh) 
     return std::max(fewest, used < tiles.memory ? (tiles.memory - used) / bytes_per_point : 0);
 }
 
-/// A tile may have what its own facets and those of all tiles will leave.
-std::size_t points_of_tile(const TileOptions& tiles, std::size_t voxels) {
+/// A tile may have what is left; in the end a voxel of the mesh takes so many bytes.
+std::size_t points_of_tile(const TileOptions& tiles, std::size_t voxels, std::size_t bytes_per_voxel) {
     if (tiles.most_points > 0) return tiles.most_points;
     const std::size_t mesh = voxels * bytes_per_voxel_of_pieces;
-    const std::size_t finished = voxels * bytes_per_voxel_of_mesh + bytes_of_program;
+    const std::size_t finished = voxels * bytes_per_voxel + bytes_of_program;
     if (finished > tiles.memory)
         throw Error("the mesh of " + std::to_string(voxels) + " voxels takes about "
                     + std::to_string(finished / 1000000)
@@ -59,56 +59,86 @@ void note_cloud(const ScratchCloud& cloud, const CloudSurvey& survey, std::size_
                  report);
 }
 
-/// The facets of all tiles; once more if normals point into the solid, as what is judged depends on the side.
-WholeFacets facets_of_tiles(const TilesInput& in, const TileOptions& tiles, std::size_t duplicates,
-                            Report& report, TileReport& how) {
-    const std::vector<VoxelRange> ranges =
-        plan_tiles(in.cloud.cells(), {in.cloud.depth(), in.cloud.cell_depth(), tiles.ghost_voxels,
-                                      points_of_tile(tiles, in.survey.sums.voxels())});
-    how.tiles = ranges.size();
-    TilesKnown known;
-    WholeFacets whole = join_tiles(make_tiles(in, ranges, false, known, how));
-    const bool turned = faces_inward(whole.mesh);
-    if (turned) {
-        whole = WholeFacets();
-        whole = join_tiles(make_tiles(in, ranges, true, known, how));
+/// A run up to the facets of the whole, and what finishing them needs.
+class TiledRun {
+public:
+    /// `bytes_per_voxel`: of the mesh in the end.
+    TiledRun(const PointParts& parts, const ReconstructOptions& options, const TileOptions& tiles,
+             std::size_t bytes_per_voxel)
+        : options_(options), tiles_(tiles), phases_(options), bytes_per_voxel_(bytes_per_voxel) {
+        report_.threads = tbb::this_task_arena::max_concurrency();
+        note_options(false, options, report_);
+        report_.options["depth"] = std::to_string(*options.depth);
+        report_.options["resolution"] = "as asked by depth";
+        phases_.run("octree", 0, report_.seconds.octree,
+                    [&] { cloud_.emplace(parts, measure_extent(parts), *options.depth, tiles); });
+        const std::size_t group = points_at_once(tiles, 0);
+        phases_.run("survey", 0.1, report_.seconds.normals, [&] {
+            survey_.emplace(survey_cloud(*cloud_, cloud_->extent().finite(), group));
+            check_survey(*survey_, *cloud_);
+        });
+        phases_.run("tiles", 0.2, report_.seconds.facets, [&] { make_facets(group); });
     }
-    report.grid.sets = whole.counts.sets;
-    report.rejected["normals_turned"] = turned ? in.survey.sums.points() : 0;
-    note_cloud(in.cloud, in.survey, duplicates, known, report);
-    return whole;
-}
 
-Reconstruction run_tiles(const PointParts& parts, const ReconstructOptions& options, const TileOptions& tiles,
-                         TileReport& how) {
-    const auto start = std::chrono::steady_clock::now();
-    const Phases phases(options);
-    Report report;
-    report.threads = tbb::this_task_arena::max_concurrency();
-    note_options(false, options, report);
-    report.options["depth"] = std::to_string(*options.depth);
-    report.options["resolution"] = "as asked by depth";
-    std::optional<ScratchCloud> cloud;
-    phases.run("octree", 0, report.seconds.octree,
-               [&] { cloud.emplace(parts, measure_extent(parts), *options.depth, tiles); });
-    const std::size_t group = points_at_once(tiles, 0);
-    CloudSurvey survey = phases.run("survey", 0.1, report.seconds.normals, [&] {
-        CloudSurvey found = survey_cloud(*cloud, cloud->extent().finite(), group);
-        check_survey(found, *cloud);
-        return found;
-    });
-    const std::size_t duplicates = cloud->extent().finite() - survey.sums.points();
-    WholeFacets facets = phases.run("tiles", 0.2, report.seconds.facets, [&] {
-        return facets_of_tiles({*cloud, survey, options, phases, group, tiles.ghost_voxels}, tiles,
-                               duplicates, report, how);
-    });
-    const std::size_t half = survey.sums.voxels() * bytes_per_voxel_of_mesh / 2; // the rest comes later
-    Reconstruction result = finish_whole({*cloud, survey, options, phases, points_at_once(tiles, half)},
-                                         std::move(facets), std::move(report));
-    how.scratch_bytes = cloud->bytes();
-    result.report.seconds.total =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return result;
+    /// What finish(input, facets, report) makes of the facets.
+    template <class Finish>
+    auto finish(TileReport& how, const Finish& finish) {
+        const std::size_t mesh = survey_->sums.voxels() * bytes_per_voxel_in_error;
+        const WholeInput in{*cloud_, *survey_, options_, phases_, points_at_once(tiles_, mesh)};
+        auto result = finish(in, std::move(facets_), std::move(report_));
+        how_.scratch_bytes = cloud_->bytes() + store_->bytes();
+        how = how_;
+        result.report.seconds.total =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        return result;
+    }
+
+private:
+    /// All tiles; once more if normals point into the solid, as what is judged depends on the side.
+    void make_facets(std::size_t group) {
+        const std::size_t duplicates = cloud_->extent().finite() - survey_->sums.points();
+        const std::size_t most = points_of_tile(tiles_, survey_->sums.voxels(), bytes_per_voxel_);
+        const std::vector<VoxelRange> ranges =
+            plan_tiles(cloud_->cells(), {cloud_->depth(), cloud_->cell_depth(), tiles_.ghost_voxels, most});
+        how_.tiles = ranges.size();
+        TilesKnown known;
+        bool turned = false;
+        const auto make = [&] {
+            store_.emplace(tiles_.scratch);
+            const TilesInput in{*cloud_, *survey_, options_, phases_, group, tiles_.ghost_voxels, &*store_};
+            facets_ = WholeFacets();
+            facets_ = join_tiles(make_tiles(in, ranges, turned, known, how_), &*store_);
+        };
+        make();
+        turned = faces_inward(facets_.mesh);
+        if (turned) make();
+        report_.grid.sets = facets_.counts.sets;
+        report_.rejected["normals_turned"] = turned ? survey_->sums.points() : 0;
+        note_cloud(*cloud_, *survey_, duplicates, known, report_);
+    }
+
+    const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    const ReconstructOptions& options_;
+    const TileOptions& tiles_;
+    const Phases phases_;
+    const std::size_t bytes_per_voxel_;
+    Report report_;
+    std::optional<ScratchCloud> cloud_;
+    std::optional<CloudSurvey> survey_;
+    std::optional<PieceStore> store_;
+    WholeFacets facets_;
+    TileReport how_;
+};
+
+/// Calls run() with as many threads as asked for.
+template <class Run>
+auto with_threads(int threads, const Run& run) {
+    if (threads == 0) return run();
+    const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    tbb::task_arena arena(static_cast<int>(std::min(static_cast<std::size_t>(threads), allowed)));
+    std::optional<decltype(run())> result;
+    arena.execute([&] { result.emplace(run()); });
+    return std::move(*result);
 }
 
 } // namespace
@@ -142,13 +172,24 @@ Reconstruction reconstruct_in_tiles(const PointParts& parts, const ReconstructOp
                                     const TileOptions& tiles, TileReport* how) {
     check_options(options, tiles);
     TileReport unasked;
-    const auto run = [&] { return run_tiles(parts, options, tiles, how ? *how : unasked); };
-    if (options.threads == 0) return run();
-    const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-    tbb::task_arena arena(static_cast<int>(std::min(static_cast<std::size_t>(options.threads), allowed)));
-    std::optional<Reconstruction> result;
-    arena.execute([&] { result.emplace(run()); });
-    return std::move(*result);
+    return with_threads(options.threads, [&] {
+        return TiledRun(parts, options, tiles, bytes_per_voxel_of_mesh)
+            .finish(how ? *how : unasked, [](const WholeInput& in, WholeFacets&& facets, Report&& report) {
+                return finish_whole(in, std::move(facets), std::move(report));
+            });
+    });
+}
+
+FlatReconstruction reconstruct_flat_in_tiles(const PointParts& parts, const ReconstructOptions& options,
+                                             const TileOptions& tiles, TileReport* how) {
+    check_options(options, tiles);
+    TileReport unasked;
+    return with_threads(options.threads, [&] {
+        return TiledRun(parts, options, tiles, bytes_per_voxel_of_flat_mesh)
+            .finish(how ? *how : unasked, [](const WholeInput& in, WholeFacets&& facets, Report&& report) {
+                return finish_whole_flat(in, std::move(facets), std::move(report));
+            });
+    });
 }
 
 Reconstruction reconstruct_in_tiles(const PointView& cloud, const ReconstructOptions& options,

@@ -2,6 +2,8 @@
 // A reconstruction in bounded memory: the points lie sorted on disk and are worked through tile by tile. The
 // mesh is that of the run in one piece, bit for bit (docs/tiles.md).
 
+#include "hsdm/features/facet_features.hh"
+#include "hsdm/io/write_mesh.hh"
 #include "hsdm/point_view.hh"
 #include "hsdm/reconstruct.hh"
 
@@ -40,5 +42,24 @@ Reconstruction reconstruct_in_tiles(const PointParts& parts, const ReconstructOp
 /// The same of a cloud in memory.
 Reconstruction reconstruct_in_tiles(const PointView& cloud, const ReconstructOptions& options,
                                     const TileOptions& tiles, TileReport* how = nullptr);
+
+/// A reconstruction in flat arrays, much smaller than a half-edge mesh with its properties: classes and
+/// normals of vertices are made from it when they are written.
+struct FlatReconstruction {
+    PolygonMesh mesh; ///< one fan round each vertex
+    FacetLinks links; ///< as find_facet_features() reads them
+    FacetFeatures features;
+    int depth = 0;
+    Report report;
+};
+
+/// The same of a mesh that is to be written as PLY, OFF or STL, in a quarter of the memory a voxel.
+FlatReconstruction reconstruct_flat_in_tiles(const PointParts& parts, const ReconstructOptions& options,
+                                             const TileOptions& tiles, TileReport* how = nullptr);
+
+/// Writes what write_mesh() writes of the Reconstruction. `plain`: positions and facets only. Throws Error,
+/// also for formats that cannot be written as they come.
+WrittenMesh write_flat(const std::string& path, const FlatReconstruction& flat, MeshFormat format, bool plain,
+                       const WriteOptions& options = {});
 
 } // namespace hsdm

@@ -151,20 +151,6 @@ bool sees_same(const Piece& one, const Piece& other) {
     return seen == end;
 }
 
-/// The number of a foreign vertex in the joined mesh.
-Index number_of(const Piece::Foreign& foreign, const std::vector<Piece>& pieces,
-                const std::vector<Index>& first) {
-    const auto owner =
-        std::ranges::upper_bound(pieces, foreign.code, {}, [](const Piece& p) { return p.range.begin; });
-    const std::size_t k = static_cast<std::size_t>(owner - pieces.begin()) - 1;
-    const auto& codes = pieces[k].codes;
-    const auto place = std::ranges::lower_bound(codes, foreign.code) - codes.begin();
-    const std::size_t v = static_cast<std::size_t>(place) + foreign.rank;
-    if (v >= codes.size() || codes[v] != foreign.code || pieces[k].positions[v] != foreign.position)
-        throw Error("two tiles disagree about a vertex that both have; this is an error of the program");
-    return first[k] + static_cast<Index>(v);
-}
-
 } // namespace
 
 Piece make_piece(const MethodInput& in, const PartOfLevel& part, const VoxelRange& range) {
@@ -176,39 +162,6 @@ Piece make_piece(const MethodInput& in, const PartOfLevel& part, const VoxelRang
 
 bool agree(const Piece& one, const Piece& other) {
     return sees_same(one, other) && sees_same(other, one);
-}
-
-PolygonMesh joined_pieces(std::vector<Piece>&& pieces, std::vector<EdgeHint>& sides) {
-    PolygonMesh mesh;
-    std::vector<Index> first{0};
-    std::size_t corners = 0, facets = 0, hints = 0;
-    for (const Piece& piece : pieces) {
-        first.push_back(first.back() + static_cast<Index>(piece.positions.size()));
-        corners += piece.corners.size(), facets += piece.first.size() - 1, hints += piece.sides.size();
-    }
-    std::vector<std::vector<Index>> foreign;
-    for (const Piece& piece : pieces) {
-        std::vector<Index>& numbers = foreign.emplace_back();
-        for (const Piece::Foreign& f : piece.foreign) numbers.push_back(number_of(f, pieces, first));
-    }
-    reserve_large(mesh.positions, first.back());
-    reserve_large(mesh.corners, corners);
-    reserve_large(mesh.first, facets + 1);
-    reserve_large(sides, hints);
-    for (std::size_t k = 0; k < pieces.size(); ++k) {
-        Piece& piece = pieces[k];
-        const auto own = static_cast<Index>(piece.positions.size()),
-                   before = static_cast<Index>(mesh.corners.size());
-        append_large(mesh.positions, piece.positions);
-        append_large(sides, piece.sides);
-        for_each_in_order(piece.corners.size(), [&](std::size_t c) {
-            const Index v = piece.corners[c];
-            mesh.corners.push_back(v < own ? first[k] + v : foreign[k][v - own]);
-        });
-        for (std::size_t f = 1; f < piece.first.size(); ++f) mesh.first.push_back(before + piece.first[f]);
-        piece = Piece();
-    }
-    return mesh;
 }
 
 } // namespace hsdm

@@ -48,8 +48,4 @@ Piece make_piece(const MethodInput& in, const PartOfLevel& part, const VoxelRang
 /// Did both tiles find the same in voxels that both have seen?
 bool agree(const Piece& one, const Piece& other);
 
-/// Pieces that cover a level, in Morton order, as one mesh with the hints of its sides. All must agree. Takes
-/// their memory. Throws Error if a foreign vertex is not where its own tile has it.
-PolygonMesh joined_pieces(std::vector<Piece>&& pieces, std::vector<EdgeHint>& sides);
-
 } // namespace hsdm

@@ -9,11 +9,12 @@
 
 namespace hsdm {
 
-/// Bytes, measured (docs/tiles.md): of a tile's point with all that is made of it; of a voxel's facets while
-/// there are pieces, and in the end, joined and as a half-edge mesh with all properties; and of what is there
-/// before.
-inline constexpr std::size_t bytes_per_point = 260, bytes_per_voxel_of_pieces = 90,
-                             bytes_per_voxel_of_mesh = 660, bytes_of_program = std::size_t{64} << 20;
+/// Bytes, measured (docs/tiles.md): of a tile's point with all that is made of it; of a voxel while there are
+/// pieces, which lie on disk; in the end, as a half-edge mesh with all properties or in flat arrays, and
+/// while the error is measured; and of what is there before.
+inline constexpr std::size_t bytes_per_point = 260, bytes_per_voxel_of_pieces = 10,
+                             bytes_per_voxel_of_mesh = 660, bytes_per_voxel_of_flat_mesh = 170,
+                             bytes_per_voxel_in_error = 100, bytes_of_program = std::size_t{64} << 20;
 
 /// Bytes a point at most in one piece: 205 to 280 were measured where the voxel follows from the spacing,
 /// 4,400 where a depth was asked for at which nearly every point has a voxel of its own.

@@ -1,15 +1,17 @@
 #include "hsdm/pipeline/whole_of_tiles.hh"
 
 #include "hsdm/contour/sheet_features.hh"
-#include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
+#include "hsdm/core/system.hh"
 #include "hsdm/mesh/small_components.hh"
+#include "hsdm/mesh/turn_outward.hh"
+#include "hsdm/pipeline/cloud_distance.hh"
 #include "hsdm/pipeline/finish_mesh.hh"
+#include "hsdm/pipeline/join_pieces.hh"
 #include "hsdm/pipeline/measure.hh"
-#include "hsdm/quality/distance_to_surface.hh"
+#include "hsdm/quality/degenerate_facets.hh"
 
 #include <algorithm>
-#include <numbers>
 
 namespace hsdm {
 namespace {
@@ -33,36 +35,10 @@ void check_whole(const WholeInput& in, const MethodInput& method, const PolygonM
         refuse_in_tiles("a slit has to be closed (--holes keep would leave it)");
 }
 
-/// Distances of the points of a cloud on disk from facets, relative to the cube.
-Distance distance_of(const WholeInput& in, const PolygonMesh& facets, const FacetCells& cells,
-                     Occurrences& off) {
-    DistanceSums sums(std::numbers::sqrt3 * in.cloud.voxel_size());
-    std::vector<Vec3> points; // as many at once as in one piece: what one search finds speeds up the next
-    const auto add = [&](std::size_t count) {
-        const std::size_t before = sums.count();
-        sums.add(squared_distances_by_cells(std::span(points).first(count), facets, cells));
-        const Distance so_far = sums.result();
-        if (off.count == 0 && so_far.beyond > 0)
-            off.first = points[so_far.first_beyond - before] + in.cloud.origin();
-        off.count = so_far.beyond;
-        points.erase(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count));
-    };
-    in.cloud.for_groups(in.group_points, [&](const Octree& part) {
-        append_large(points, part.positions);
-        add(points.size() / chunks::usual * chunks::usual);
-    });
-    add(points.size());
-    return sums.result();
-}
-
-/// Error and topology; distances of points group by group.
-void measure(const WholeInput& in, const MethodInput& method, PolygonMesh& facets, FacetKnowledge& known,
-             Report& report) {
-    drop_and_measure({}, method, facets, known, report);
-    if (!in.options.measure) return;
-    if (!known.cells) known.cells.emplace(facets, report.grid.voxel_size);
+/// Distances of points, group by group.
+void measure_error(const WholeInput& in, const PolygonMesh& facets, Report& report) {
     Occurrences off;
-    const Distance distance = distance_of(in, facets, *known.cells, off);
+    const Distance distance = cloud_distance(in.cloud, facets, in.group_points, off);
     report.error.points_to_mesh_max = distance.max;
     report.error.points_to_mesh_mean = distance.mean;
     report.error.points_to_mesh_rms = distance.rms;
@@ -70,12 +46,106 @@ void measure(const WholeInput& in, const MethodInput& method, PolygonMesh& facet
     note_dropped("points more than a voxel's diagonal off the mesh", off, in.cloud.frame(), report);
 }
 
+/// Finishes facets in little memory: each step frees what the next ones do not need.
+class FlatFinish {
+public:
+    FlatFinish(const WholeInput& in, WholeFacets&& facets, Report&& report)
+        : in_(in),
+          level_(in.cloud.no_voxels()),
+          method_{in.cloud.frame(), no_cloud_, in.cloud.no_points(), level_, in.options, in.phases},
+          hints_(std::move(facets.known.hints)),
+          report_(std::move(report)) {
+        result_.mesh = std::move(facets.mesh);
+    }
+
+    FlatReconstruction finish() {
+        Report::Seconds& seconds = report_.seconds;
+        in_.phases.run("whole", 0.55, seconds.facets, [&] {
+            check_facets(mesh(), report_);
+            check_whole(in_, method_, mesh());
+            leave_out_unsound();
+            check_facets(mesh(), report_);
+        });
+        in_.phases.run("error", 0.6, seconds.error, [&] {
+            if (in_.options.measure) note_connectivity();
+            keep_to_manifold();
+            if (in_.options.measure) measure_error(in_, mesh(), report_);
+        });
+        in_.phases.run("mesh", 0.85, seconds.mesh, [&] { face_outward(); });
+        if (in_.options.classify) in_.phases.run("features", 0.9, seconds.features, [&] { find_features(); });
+        report_.peak_memory_bytes = os::peak_memory();
+        result_.depth = in_.cloud.depth();
+        result_.report = std::move(report_);
+        return std::move(result_);
+    }
+
+private:
+    PolygonMesh& mesh() { return result_.mesh; }
+    FacetLinks& links() { return result_.links; }
+
+    void leave_out_unsound() {
+        links() = link_facets(mesh());
+        Occurrences unsound =
+            drop_degenerate_facets(mesh(), in_.cloud.origin(), in_.cloud.frame(), links(), hints_);
+        report_.rejected["facets_unsound"] = unsound.count;
+        unsound.first += in_.cloud.origin();
+        note_dropped("facets that enclose nothing or have no area", unsound, in_.cloud.frame(), report_);
+        if (links().rejected > 0) refuse_in_tiles("some facets meet others that face another way");
+        report_.rejected["to_mesh"] = 0;
+    }
+
+    void note_connectivity() {
+        note_topology(measure_connectivity(mesh(), links()), report_);
+        if (report_.mesh.boundary_loops > 0)
+            note_loops(mesh(), boundary_loops(mesh(), links()), false, in_.cloud.origin(), in_.cloud.frame(),
+                       report_);
+    }
+
+    /// The mesh as its links have it: a vertex for each fan, and none without facets.
+    void keep_to_manifold() {
+        if (links().split_vertices > 0 || links().source.size() < mesh().vertex_count()) {
+            mesh().positions = gathered(mesh().positions, links().source);
+            mesh().corners = std::move(links().vertex);
+        }
+        forget_vertices();
+    }
+    void forget_vertices() { links().vertex = {}, links().source = {}, links().accepted = {}; }
+
+    void face_outward() {
+        // this rounds positions; only then can be told how facets face
+        for (Vec3& p : mesh().positions) p += in_.cloud.origin();
+        report_.rejected["facets_turned"] = turn_outward(mesh(), links(), hints_);
+        forget_vertices();
+    }
+
+    void find_features() {
+        FeatureOptions options;
+        options.crease_angle = in_.options.crease_angle;
+        const NormalSmoothingOptions smoothing{.rounds = in_.options.normal_smoothing};
+        result_.features = find_facet_features(mesh(), links(), std::move(hints_), options,
+                                               in_.options.vertex_normals ? &smoothing : nullptr);
+        const FeatureCounts& counts = result_.features.counts;
+        report_.features.sharp_edges = counts.sharp_edges;
+        report_.features.smooth_vertices = counts.smooth_vertices;
+        report_.features.edge_vertices = counts.edge_vertices;
+        report_.features.corner_vertices = counts.corner_vertices;
+    }
+
+    const WholeInput& in_;
+    const PointView no_cloud_{};
+    const OctreeLevel level_;
+    const MethodInput method_;
+    FeatureHints hints_;
+    Report report_;
+    FlatReconstruction result_;
+};
+
 } // namespace
 
-WholeFacets join_tiles(std::vector<Piece>&& pieces) {
+WholeFacets join_tiles(std::vector<Piece>&& pieces, const PieceStore* store) {
     WholeFacets whole;
     for (const Piece& piece : pieces) whole.counts += piece.counts;
-    whole.mesh = joined_pieces(std::move(pieces), whole.known.hints.sides);
+    whole.mesh = joined_pieces(std::move(pieces), whole.known.hints.sides, store);
     judge(whole.counts, whole.known);
     return whole;
 }
@@ -91,10 +161,17 @@ Reconstruction finish_whole(const WholeInput& in, WholeFacets&& facets, Report&&
                                           std::vector<double>(count, static_cast<double>(level.depth))});
     });
     Reconstruction result;
-    finish_mesh(
-        method, std::move(facets.mesh), std::move(facets.known), std::move(report), result,
-        [&](PolygonMesh& mesh, FacetKnowledge& what, Report& of) { measure(in, method, mesh, what, of); });
+    finish_mesh(method, std::move(facets.mesh), std::move(facets.known), std::move(report), result,
+                [&](PolygonMesh& mesh, FacetKnowledge&, Report& of) {
+                    if (!in.options.measure) return;
+                    note_topology(measure_connectivity(mesh), of);
+                    measure_error(in, mesh, of);
+                });
     return result;
+}
+
+FlatReconstruction finish_whole_flat(const WholeInput& in, WholeFacets&& facets, Report&& report) {
+    return FlatFinish(in, std::move(facets), std::move(report)).finish();
 }
 
 } // namespace hsdm

@@ -2,6 +2,7 @@
 // The pieces of all tiles -> the mesh of the whole.
 
 #include "hsdm/pipeline/cloud_survey.hh"
+#include "hsdm/pipeline/piece_store.hh"
 #include "hsdm/pipeline/tile_piece.hh"
 
 namespace hsdm {
@@ -13,8 +14,9 @@ struct WholeFacets {
     FacetCounts counts;
 };
 
-/// Takes the memory of the pieces, which must cover the level and agree.
-WholeFacets join_tiles(std::vector<Piece>&& pieces);
+/// Takes the memory of the pieces, or reads them from the store that they are in. They must cover the level
+/// and agree.
+WholeFacets join_tiles(std::vector<Piece>&& pieces, const PieceStore* store = nullptr);
 
 /// What the whole is made of, beside its facets.
 struct WholeInput {
@@ -28,5 +30,7 @@ struct WholeInput {
 /// What is left once there are facets: slits, what is unsound, the error, features. Throws Error if something
 /// was taken for granted of the whole that is not so; Cancelled.
 Reconstruction finish_whole(const WholeInput& in, WholeFacets&& facets, Report&& report);
+/// The same in flat arrays, of which at most 170 bytes a vertex are there at once.
+FlatReconstruction finish_whole_flat(const WholeInput& in, WholeFacets&& facets, Report&& report);
 
 } // namespace hsdm

@@ -1,0 +1,46 @@
+#include "hsdm/pipeline/piece_store.hh"
+
+namespace hsdm {
+namespace {
+
+constexpr const char* the_pieces = "the pieces of the mesh";
+
+} // namespace
+
+void PieceStore::put(Piece& piece) {
+    Place place;
+    const auto keep = [&](auto& values, std::size_t& count, std::size_t& at) {
+        count = values.size();
+        at = file_.append(the_pieces, values);
+        values = {};
+    };
+    std::size_t firsts = 0, codes = 0;
+    keep(piece.positions, place.vertices, place.positions_at);
+    keep(piece.codes, codes, place.codes_at);
+    keep(piece.first, firsts, place.first_at);
+    keep(piece.corners, place.corners, place.corners_at);
+    keep(piece.sides, place.sides, place.sides_at);
+    keep(piece.foreign, place.foreign, place.foreign_at);
+    place.facets = firsts - 1;
+    places_[piece.range.begin] = place;
+}
+
+void PieceStore::take_vertices(Piece& piece) const {
+    const Place& place = place_of(piece);
+    file_.read(place.positions_at, place.vertices, piece.positions);
+    file_.read(place.codes_at, place.vertices, piece.codes);
+}
+
+void PieceStore::take_foreign(Piece& piece) const {
+    const Place& place = place_of(piece);
+    file_.read(place.foreign_at, place.foreign, piece.foreign);
+}
+
+void PieceStore::take_facets(Piece& piece) const {
+    const Place& place = place_of(piece);
+    file_.read(place.first_at, place.facets + 1, piece.first);
+    file_.read(place.corners_at, place.corners, piece.corners);
+    file_.read(place.sides_at, place.sides, piece.sides);
+}
+
+} // namespace hsdm

@@ -1,0 +1,44 @@
+#include "hsdm/mesh/vertex_normals.hh"
+#include "hsdm/pipeline/reconstruct_in_tiles.hh"
+
+namespace hsdm {
+namespace {
+
+/// Level, class, normals and their count, in the order in which a Reconstruction's mesh has them.
+VertexRows rows_of(const FlatReconstruction& flat) {
+    using Type = VertexProperty::Type;
+    const bool classes = !flat.features.sharp.empty(), normals = !flat.features.normals.empty();
+    VertexRows rows;
+    rows.normals = true;
+    rows.columns.emplace_back(level_property, Type::uint8);
+    if (classes) rows.columns.emplace_back(vertex_class_property, Type::uint8);
+    for (std::size_t i = 0; normals && i < 9; ++i)
+        rows.columns.emplace_back(vertex_normal_component(i), Type::float32);
+    if (normals) rows.columns.emplace_back(normal_count_property, Type::uint8);
+    rows.fill = [&flat, classes, normals](std::size_t begin, std::size_t end, std::vector<Vec3>& means,
+                                          std::vector<double>& values) {
+        FacetFan fan(flat.mesh, flat.links, flat.features);
+        for (std::size_t v = begin; v < end; ++v) {
+            Vec3& mean = means.emplace_back(0, 0, 0);
+            values.push_back(flat.depth);
+            if (!classes) continue;
+            fan.gather(static_cast<Index>(v));
+            values.push_back(static_cast<double>(fan.kind()));
+            if (!normals) continue;
+            const SectorNormals sectors = fan.normals(mean);
+            for (const Vec3& normal : sectors.normals)
+                for (const double x : normal) values.push_back(x);
+            values.push_back(sectors.count);
+        }
+    };
+    return rows;
+}
+
+} // namespace
+
+WrittenMesh write_flat(const std::string& path, const FlatReconstruction& flat, MeshFormat format, bool plain,
+                       const WriteOptions& options) {
+    return write_mesh(path, flat.mesh, plain ? VertexRows() : rows_of(flat), format, options);
+}
+
+} // namespace hsdm
