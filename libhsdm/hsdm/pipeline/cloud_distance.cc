@@ -32,6 +32,12 @@ public:
 
     int all_cells() const { return 1 << cloud_.cell_depth(); }
 
+    /// Far enough for points that are within a few voxels of the facets.
+    int first_reach() const {
+        const double far = longest_ + 2 * cloud_.voxel_size();
+        return static_cast<int>(std::min(std::ceil(far / cell_size_), 1.0 * all_cells()));
+    }
+
     /// The nearest facet of a point in one of some cells is among those whose first vertex is at most `reach`
     /// cells from them, if it is no farther than this.
     double known(int reach) const {
@@ -77,7 +83,7 @@ std::vector<double> squared_distances(std::span<const Vec3> points, std::span<co
     const int shift = 3 * (morton_levels - cloud.cell_depth());
     std::vector<double> squared = large_vector<double>(points.size(), Box::inf);
     std::vector<Index> due = indices_where(points.size(), chunks::light, [](Index) { return true; });
-    for (int reach = 1; !due.empty(); reach *= 2) {
+    for (int reach = near.first_reach(); !due.empty(); reach *= 2) {
         std::vector<Vec3> places = large_vector<Vec3>(due.size());
         std::vector<MortonCode> at = large_vector<MortonCode>(due.size());
         for_each_index(due.size(), chunks::light,

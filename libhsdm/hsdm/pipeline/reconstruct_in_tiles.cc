@@ -32,7 +32,10 @@ std::size_t points_of_tile(const TileOptions& tiles, std::size_t voxels, std::si
     if (finished > tiles.memory)
         throw Error("the mesh of " + std::to_string(voxels) + " voxels takes about "
                     + std::to_string(finished / 1000000)
-                    + " MB, which is held in memory; give --memory that much, or a smaller --depth");
+                    + " MB, which is held in memory; give --memory that much, or a smaller --depth"
+                    + (bytes_per_voxel > bytes_per_voxel_of_flat_mesh
+                           ? "; PLY, OFF and STL without --features, --intersections and --strict take less"
+                           : ""));
     return (tiles.memory - std::min(tiles.memory, mesh + bytes_of_program)) / bytes_per_point;
 }
 

@@ -11,8 +11,9 @@
 namespace hsdm {
 namespace {
 
+/// Not more than this, for what waits in many small vectors is not of use to large ones once it is freed.
 std::size_t bytes_buffered(const TileOptions& options) {
-    return std::max<std::size_t>(options.memory / 8, std::size_t{1} << 20);
+    return std::clamp(options.memory / 16, std::size_t{1} << 20, std::size_t{1} << 26);
 }
 
 } // namespace

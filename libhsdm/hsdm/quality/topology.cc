@@ -295,7 +295,7 @@ Topology measure_connectivity(const PolygonMesh& mesh, const FacetLinks& links) 
         }
     });
     topology.boundary_loops = count_boundary_loops(mesh, links);
-    topology.euler = static_cast<long>(links.source.size()) - static_cast<long>(topology.edges)
+    topology.euler = static_cast<long>(topology.vertices) - static_cast<long>(topology.edges)
                      + static_cast<long>(topology.faces);
     return topology;
 }
