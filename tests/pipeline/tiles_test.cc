@@ -1,6 +1,8 @@
 #include "hsdm/errors.hh"
+#include "hsdm/io/points_in_parts.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/pipeline/reconstruct_in_tiles.hh"
+#include "support/folder.hh"
 #include "support/sample.hh"
 
 #include <catch2/catch.hpp>
@@ -83,6 +85,70 @@ TEST_CASE("tiles give the mesh of the run in one piece, bit for bit", "[pipeline
     check_same_as_whole(reconstruct(cloud, options),
                         reconstruct_in_tiles(view_of(cloud), options, tiles_of(25000), &how));
     CHECK(how.tiles > 1);
+}
+
+TEST_CASE("tiles in flat arrays give the same files, whatever the cloud", "[pipeline]") {
+    PointCloud cloud = scan_for_tiles(GENERATE(false, true));
+    const bool turned = GENERATE(false, true);
+    if (turned)
+        for (Vec3& n : cloud.normals) n = -n;
+    const support::Folder folder;
+    const ReconstructOptions options{.depth = 6};
+    const Reconstruction whole = reconstruct(cloud, options);
+    TileReport how;
+    const PointParts parts = [&](const auto& visit) { visit(view_of(cloud)); };
+    const FlatReconstruction flat = reconstruct_flat_in_tiles(parts, options, tiles_of(25000), &how);
+    CHECK(how.tiles > 1);
+    const PolygonMesh polygons = to_polygons(whole.mesh);
+    for (const bool ascii : {false, true})
+        for (const MeshFormat format : {MeshFormat::ply, MeshFormat::off, MeshFormat::stl}) {
+            INFO(info_of(format).name);
+            const WriteOptions write{.ascii = ascii, .recentre = ascii};
+            write_mesh(folder / "a", polygons, format, write);
+            write_flat(folder / "b", flat, format, false, write);
+            CHECK(support::read_file(folder / "a") == support::read_file(folder / "b"));
+        }
+    CHECK_THROWS_AS(write_flat(folder / "c", flat, MeshFormat::obj, false), Error);
+    CHECK(folder.names() == std::set<std::string>{"a", "b"});
+    const Report &one = whole.report, &other = flat.report;
+    CHECK(one.mesh.euler == other.mesh.euler);
+    CHECK(one.mesh.boundary_loops == other.mesh.boundary_loops);
+    CHECK(one.loops.size() == other.loops.size());
+    CHECK(one.features.sharp_edges == other.features.sharp_edges);
+    CHECK(one.features.corner_vertices == other.features.corner_vertices);
+    CHECK(one.error.points_to_mesh_max == other.error.points_to_mesh_max);
+    CHECK(one.error.points_to_mesh_rms == other.error.points_to_mesh_rms);
+}
+
+TEST_CASE("tiles that are cancelled in any phase leave no scratch", "[pipeline]") {
+    const PointCloud cloud = scan_for_tiles(false);
+    const support::Folder folder;
+    TileOptions tiles = tiles_of(25000);
+    tiles.scratch = folder.path();
+    const PointParts parts = [&](const auto& visit) { visit(view_of(cloud)); };
+    for (const std::string phase : {"octree", "survey", "tiles", "whole", "error", "mesh", "features"}) {
+        INFO(phase);
+        bool reached = false;
+        ReconstructOptions options{.depth = 6};
+        options.progress = [&](const char* now, double) { return !(reached |= now == phase); };
+        CHECK_THROWS_AS(reconstruct_flat_in_tiles(parts, options, tiles), Cancelled);
+        CHECK(reached);
+        CHECK(folder.names().empty());
+    }
+}
+
+TEST_CASE("a file that is cut off between the passes over it is no cloud", "[pipeline]") {
+    const support::Folder folder;
+    const std::string path = folder / "scan.ply";
+    support::write_ply(path, scan_for_tiles(false));
+    const PointsInParts points(path, {});
+    int passes = 0;
+    const PointParts parts = [&](const auto& visit) {
+        if (++passes == 2) std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
+        points.visit([&](const PointCloud& part) { visit(view_of(part)); });
+    };
+    CHECK_THROWS_AS(reconstruct_flat_in_tiles(parts, {.depth = 6}, tiles_of(25000)), Error);
+    CHECK(passes == 2);
 }
 
 TEST_CASE("so do tiles of any size, whatever the cloud", "[pipeline][slow]") {

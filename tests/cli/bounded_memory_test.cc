@@ -1,0 +1,86 @@
+// Reconstructing in bounded memory when things go wrong: nothing is lost, and nothing is left behind.
+#include "cli/run.hh"
+#include "support/sample.hh"
+
+#include <catch2/catch.hpp>
+
+#include <cstdio>
+#include <filesystem>
+
+using namespace hsdm;
+using namespace hsdm::test;
+
+namespace {
+
+/// A folder with a scan that does not fit the bound, its mesh in one piece, an old file and a scratch folder.
+class Job {
+public:
+    explicit Job(std::size_t points = 60000) {
+        std::filesystem::create_directory(folder / "scratch");
+        support::write_ply(folder / "scan.ply", support::sample(support::torus(1, 0.3), {.points = points}));
+        folder.write("old.ply", "old");
+    }
+
+    /// What is to come out.
+    std::string in_one_piece() const {
+        REQUIRE(run(folder, "reconstruct scan.ply --depth 7 --quiet -o one.ply").status == 0);
+        return read_file(folder / "one.ply");
+    }
+    bool left_nothing() const {
+        return std::filesystem::is_empty(folder / "scratch") && read_file(folder / "old.ply") == "old";
+    }
+
+    Folder folder;
+    std::string call = "reconstruct scan.ply --depth 7 --memory 100M --scratch scratch --quiet ";
+};
+
+} // namespace
+
+TEST_CASE("a disk that is full ends bounded memory with a message, and old files stand", "[cli][tiles]") {
+    const Job job;
+    const auto [blocks, what] = GENERATE(std::pair(1000, "scratch"), std::pair(6000, "old.ply"));
+    INFO(what); // the points take 2.9 MB of scratch, the mesh 3.6 MB
+    const CommandResult result =
+        run(job.folder, job.call + "-o old.ply", "trap '' XFSZ; ulimit -f " + std::to_string(blocks) + ";");
+    INFO(result.err);
+    CHECK(result.status == 1);
+    CHECK(result.err.find(what) != std::string::npos);
+    CHECK(result.err.find("too large") != std::string::npos);
+    CHECK(job.left_nothing());
+    CHECK(list(job.folder) == "old.ply\nscan.ply\nscratch\n");
+}
+
+TEST_CASE("two jobs share a folder for scratch", "[cli][tiles]") {
+    const Job job;
+    const CommandResult both =
+        run(job.folder, job.call + "-o a.ply & first=$!; '" HSDM_COMMAND "' " + job.call
+                            + "-o b.ply; second=$?; wait $first && exit $second");
+    INFO(both.err);
+    CHECK(both.status == 0);
+    CHECK(job.left_nothing());
+    const std::string one = job.in_one_piece();
+    CHECK(read_file(job.folder / "a.ply") == one);
+    CHECK(read_file(job.folder / "b.ply") == one);
+}
+
+TEST_CASE("a signal in any phase of bounded memory leaves nothing", "[cli][tiles]") {
+    const Job job(300000);
+    int cancelled = 0;
+    for (const char* phase : {"octree", "survey", "tiles", "whole", "error", "write"}) {
+        INFO(phase);
+        const CommandResult result =
+            run(job.folder,
+                "reconstruct scan.ply --depth 8 --memory 200M --scratch scratch --progress always -o new.ply "
+                ">out 2>err & command=$!; until grep -q "
+                    + std::string(phase)
+                    + " err; do kill -0 $command 2>/dev/null || break; sleep 0.01; done; "
+                      "kill -INT $command 2>/dev/null; wait $command");
+        CHECK((result.status == 130 || result.status == 0)); // it may have ended before
+        cancelled += result.status == 130;
+        CHECK(exists(job.folder / "new.ply") == (result.status == 0));
+        CHECK(job.left_nothing());
+        std::filesystem::remove(job.folder / "new.ply");
+        CHECK(list(job.folder) == "err\nold.ply\nout\nscan.ply\nscratch\n");
+    }
+    CHECK(cancelled > 0);
+}
