@@ -363,6 +363,12 @@ void keep_freed_memory() noexcept {
 #endif
 }
 
+void give_back_freed_memory() noexcept {
+#ifdef __GLIBC__
+    ::malloc_trim(0);
+#endif
+}
+
 void advise_huge_pages(void* memory, std::size_t bytes) noexcept {
     ::madvise(memory, bytes, MADV_HUGEPAGE);
 }

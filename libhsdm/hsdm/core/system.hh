@@ -88,6 +88,8 @@ const char* trusted_variable(const char* name) noexcept;
 /// that went back to the system would be cleared when they come again. Not so for the largest blocks, which
 /// could not share what is kept. To be called by programs, before there are threads.
 void keep_freed_memory() noexcept;
+/// The opposite, once: all pages that hold nothing go back to the system, for work that has to keep a bound.
+void give_back_freed_memory() noexcept;
 /// Only advice, on whole pages in the block.
 void advise_huge_pages(void* memory, std::size_t bytes) noexcept;
 

@@ -2,6 +2,7 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
+#include "hsdm/core/system.hh"
 #include "hsdm/mesh/part_of.hh"
 #include "hsdm/quality/distance_to_surface.hh"
 #include "hsdm/spatial/facet_cells.hh"
@@ -114,6 +115,7 @@ Distance cloud_distance(const ScratchCloud& cloud, const PolygonMesh& facets, st
         if (off.count == 0 && so_far.beyond > 0)
             off.first = part.positions[so_far.first_beyond - before] + cloud.origin();
         off.count = so_far.beyond;
+        os::give_back_freed_memory();
     });
     return sums.result();
 }

@@ -1,5 +1,6 @@
 #include "hsdm/pipeline/reconstruct_in_tiles.hh"
 
+#include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/pipeline/make_tiles.hh"
 #include "hsdm/pipeline/options.hh"
@@ -76,6 +77,8 @@ public:
         phases_.run("octree", 0, report_.seconds.octree,
                     [&] { cloud_.emplace(parts, measure_extent(parts), *options.depth, tiles); });
         const std::size_t group = points_at_once(tiles, 0);
+        os::give_back_freed_memory(); // here and later, or what one phase had is held beside what the next
+                                      // has
         phases_.run("survey", 0.1, report_.seconds.normals, [&] {
             survey_.emplace(survey_cloud(*cloud_, cloud_->extent().finite(), group));
             check_survey(*survey_, *cloud_);
@@ -110,7 +113,10 @@ private:
             store_.emplace(tiles_.scratch);
             const TilesInput in{*cloud_, *survey_, options_, phases_, group, tiles_.ghost_voxels, &*store_};
             facets_ = WholeFacets();
-            facets_ = join_tiles(make_tiles(in, ranges, turned, known, how_), &*store_);
+            os::give_back_freed_memory();
+            std::vector<Piece> pieces = make_tiles(in, ranges, turned, known, how_);
+            os::give_back_freed_memory();
+            facets_ = join_tiles(std::move(pieces), &*store_);
         };
         make();
         turned = faces_inward(facets_.mesh);

@@ -66,12 +66,16 @@ public:
             leave_out_unsound();
             check_facets(mesh(), report_);
         });
+        os::give_back_freed_memory();
         in_.phases.run("error", 0.6, seconds.error, [&] {
             if (in_.options.measure) note_connectivity();
             keep_to_manifold();
+            os::give_back_freed_memory();
             if (in_.options.measure) measure_error(in_, mesh(), report_);
         });
+        os::give_back_freed_memory();
         in_.phases.run("mesh", 0.85, seconds.mesh, [&] { face_outward(); });
+        os::give_back_freed_memory();
         if (in_.options.classify) in_.phases.run("features", 0.9, seconds.features, [&] { find_features(); });
         report_.peak_memory_bytes = os::peak_memory();
         result_.depth = in_.cloud.depth();
