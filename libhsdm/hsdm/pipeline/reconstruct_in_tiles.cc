@@ -17,17 +17,23 @@
 namespace hsdm {
 namespace {
 
-/// So many points, with what is made of them, fit what is left of the memory.
-std::size_t points_at_once(const TileOptions& tiles, std::size_t bytes_of_mesh) {
+/// So many points of so many bytes fit what is left of the memory.
+std::size_t points_at_once(const TileOptions& tiles, std::size_t bytes_of_mesh, double bytes_each) {
     if (tiles.most_points > 0) return tiles.most_points;
     constexpr std::size_t fewest = std::size_t{1} << 18; // some tens of megabytes
     const std::size_t used = bytes_of_program + bytes_of_mesh;
-    return std::max(fewest, used < tiles.memory ? (tiles.memory - used) / bytes_per_point : 0);
+    const auto left = static_cast<double>(tiles.memory - std::min(tiles.memory, used));
+    return std::max(fewest, static_cast<std::size_t>(left / bytes_each));
+}
+
+double voxels_per_point(const Survey& sums) {
+    return static_cast<double>(sums.voxels()) / static_cast<double>(sums.points());
 }
 
 /// A tile may have what is left; in the end a voxel of the mesh takes so many bytes.
-std::size_t points_of_tile(const TileOptions& tiles, std::size_t voxels, std::size_t bytes_per_voxel) {
+std::size_t points_of_tile(const TileOptions& tiles, const Survey& sums, std::size_t bytes_per_voxel) {
     if (tiles.most_points > 0) return tiles.most_points;
+    const std::size_t voxels = sums.voxels();
     const std::size_t mesh = voxels * bytes_per_voxel_of_pieces;
     const std::size_t finished = voxels * bytes_per_voxel + bytes_of_program;
     if (finished > tiles.memory)
@@ -37,7 +43,8 @@ std::size_t points_of_tile(const TileOptions& tiles, std::size_t voxels, std::si
                     + (bytes_per_voxel > bytes_per_voxel_of_flat_mesh
                            ? "; PLY, OFF and STL without --features, --intersections and --strict take less"
                            : ""));
-    return (tiles.memory - std::min(tiles.memory, mesh + bytes_of_program)) / bytes_per_point;
+    const auto left = static_cast<double>(tiles.memory - std::min(tiles.memory, mesh + bytes_of_program));
+    return static_cast<std::size_t>(left / bytes_per_tile_point(voxels_per_point(sums)));
 }
 
 /// What is known of the cloud, once tiles have been made.
@@ -76,7 +83,7 @@ public:
         report_.options["resolution"] = "as asked by depth";
         phases_.run("octree", 0, report_.seconds.octree,
                     [&] { cloud_.emplace(parts, measure_extent(parts), *options.depth, tiles); });
-        const std::size_t group = points_at_once(tiles, 0);
+        const std::size_t group = points_at_once(tiles, 0, bytes_per_point);
         os::give_back_freed_memory(); // here and later, or what one phase had is held beside what the next
                                       // has
         phases_.run("survey", 0.1, report_.seconds.normals, [&] {
@@ -90,7 +97,8 @@ public:
     template <class Finish>
     auto finish(TileReport& how, const Finish& finish) {
         const std::size_t mesh = survey_->sums.voxels() * bytes_per_voxel_in_error;
-        const WholeInput in{*cloud_, *survey_, options_, phases_, points_at_once(tiles_, mesh)};
+        const double each = bytes_per_error_point(voxels_per_point(survey_->sums));
+        const WholeInput in{*cloud_, *survey_, options_, phases_, points_at_once(tiles_, mesh, each)};
         auto result = finish(in, std::move(facets_), std::move(report_));
         how_.scratch_bytes = cloud_->bytes() + store_->bytes();
         how = how_;
@@ -103,7 +111,7 @@ private:
     /// All tiles; once more if normals point into the solid, as what is judged depends on the side.
     void make_facets(std::size_t group) {
         const std::size_t duplicates = cloud_->extent().finite() - survey_->sums.points();
-        const std::size_t most = points_of_tile(tiles_, survey_->sums.voxels(), bytes_per_voxel_);
+        const std::size_t most = points_of_tile(tiles_, survey_->sums, bytes_per_voxel_);
         const std::vector<VoxelRange> ranges =
             plan_tiles(cloud_->cells(), {cloud_->depth(), cloud_->cell_depth(), tiles_.ghost_voxels, most});
         how_.tiles = ranges.size();

@@ -9,12 +9,20 @@
 
 namespace hsdm {
 
-/// Bytes, measured (docs/tiles.md): of a tile's point with all that is made of it; of a voxel while there are
-/// pieces, which lie on disk; in the end, as a half-edge mesh with all properties or in flat arrays, and
-/// while the error is measured; and of what is there before.
+/// Bytes, measured (docs/tiles.md): of a point of the survey; of a voxel while there are pieces, which lie on
+/// disk; in the end, as a half-edge mesh with all properties or in flat arrays, and while the error is
+/// measured; and of what is there before.
 inline constexpr std::size_t bytes_per_point = 260, bytes_per_voxel_of_pieces = 10,
                              bytes_per_voxel_of_mesh = 660, bytes_per_voxel_of_flat_mesh = 170,
                              bytes_per_voxel_in_error = 100, bytes_of_program = std::size_t{64} << 20;
+
+/// The same of a tile's point, and of one whose distance is measured, with what is made of its voxel.
+inline double bytes_per_tile_point(double voxels_per_point) {
+    return 110 + 750 * voxels_per_point;
+}
+inline double bytes_per_error_point(double voxels_per_point) {
+    return 250 + 260 * voxels_per_point;
+}
 
 /// Bytes a point at most in one piece: 205 to 280 were measured where the voxel follows from the spacing,
 /// 4,400 where a depth was asked for at which nearly every point has a voxel of its own.
