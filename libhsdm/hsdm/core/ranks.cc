@@ -1,0 +1,122 @@
+#include "hsdm/core/ranks.hh"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <new>
+#include <numeric>
+
+namespace hsdm {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+class Stopwatch {
+public:
+    explicit Stopwatch(double& seconds) : seconds_(seconds) {}
+    ~Stopwatch() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+
+private:
+    double& seconds_;
+    Clock::time_point start_ = Clock::now();
+};
+
+} // namespace
+
+void Ranks::together(const std::function<void()>& work) {
+    try {
+        work();
+    } catch (const OtherRankFailed&) { // they know
+        throw;
+    } catch (const std::bad_alloc&) {
+        fail("out of memory");
+        throw;
+    } catch (const std::exception& error) {
+        fail(error.what());
+        throw;
+    }
+    gather(Bytes());
+}
+
+void Ranks::fail(const std::string& why) noexcept {
+    try {
+        gather_with(true, Bytes(why.begin(), why.end()));
+    } catch (const OtherRankFailed&) { // what is told is why this one has
+    } catch (...) {
+        abort(why);
+    }
+}
+
+/// Every gather tells of failures before what it is for.
+std::vector<Ranks::Bytes> Ranks::gather_with(bool failed, const Bytes& own) {
+    Bytes sent(own.size() + 1, failed ? '\1' : '\0');
+    std::ranges::copy(own, sent.begin() + 1);
+    std::vector<Bytes> got;
+    {
+        const Stopwatch watch(seconds_waited_);
+        got = gather_bytes(sent);
+    }
+    const auto has_failed = [](const Bytes& bytes) { return bytes.front() == '\1'; };
+    const auto first = std::ranges::find_if(got, has_failed);
+    if (first != got.end()) {
+        std::string why(first->begin() + 1, first->end());
+        if (!std::ranges::all_of(got, has_failed))
+            why += " (rank " + std::to_string(first - got.begin()) + " of " + std::to_string(size()) + ")";
+        throw OtherRankFailed(why);
+    }
+    for (Bytes& bytes : got) bytes.erase(bytes.begin());
+    return got;
+}
+
+std::vector<Ranks::Bytes> Ranks::gather(const Bytes& own) {
+    return gather_with(false, own);
+}
+
+std::vector<std::uint64_t> Ranks::gather(std::uint64_t own) {
+    Bytes bytes;
+    put(own, bytes);
+    std::vector<std::uint64_t> all;
+    for (const Bytes& got : gather(bytes)) all.push_back(ByteReader(got).take<std::uint64_t>());
+    return all;
+}
+
+std::uint64_t Ranks::sum(std::uint64_t own) {
+    const std::vector<std::uint64_t> all = gather(own);
+    return std::accumulate(all.begin(), all.end(), std::uint64_t{0});
+}
+
+bool Ranks::of_first(bool own) {
+    return gather(std::uint64_t{own}).front() != 0;
+}
+
+std::vector<Ranks::Bytes> Ranks::exchange(std::vector<Bytes>&& out) {
+    std::vector<std::uint64_t> own;
+    for (const Bytes& bytes : out) own.push_back(bytes.size());
+    std::vector<std::vector<std::uint64_t>> sizes;
+    for (const Bytes& got : gather(bytes_of(own)))
+        sizes.push_back(ByteReader(got).take_rest<std::uint64_t>());
+    const auto self = static_cast<std::size_t>(rank());
+    bytes_sent_ += std::accumulate(own.begin(), own.end(), std::uint64_t{0}) - own[self];
+    const Stopwatch watch(seconds_waited_);
+    try {
+        return exchange_bytes(std::move(out), sizes);
+    } catch (const std::exception& error) { // the others are at it and cannot be told
+        abort(std::string("what other ranks send cannot be received: ") + error.what());
+        throw; // which abort() does not return to
+    }
+}
+
+void append_bytes(const void* first, std::size_t count, Ranks::Bytes& bytes) {
+    const auto from = static_cast<const char*>(first);
+    bytes.insert(bytes.end(), from, from + count);
+}
+
+void ByteReader::copy(void* to, std::size_t count) {
+    if (count > bytes_.size() - at_) throw Error("another rank sent less than it should have");
+    if (count > 0) std::memcpy(to, bytes_.data() + at_, count);
+    at_ += count;
+}
+
+} // namespace hsdm

@@ -1,0 +1,146 @@
+#pragma once
+// Processes that work on one thing together, each at a part of it, and what they tell each other.
+
+#include "hsdm/errors.hh"
+
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace hsdm {
+
+/// Thrown by every rank that has not failed itself once another one has. what(): why that one did.
+class OtherRankFailed : public Error {
+public:
+    using Error::Error;
+};
+
+/// The ranks of one piece of work, this process being one. All call the same functions in the same order;
+/// each call waits for all. A rank that throws out of together() takes the others along: their next call
+/// throws OtherRankFailed, so that none waits for what does not come.
+class Ranks {
+public:
+    using Bytes = std::vector<char>;
+
+    Ranks() = default;
+    virtual ~Ranks() = default;
+    Ranks(const Ranks&) = delete;
+    Ranks& operator=(const Ranks&) = delete;
+
+    virtual int rank() const = 0; ///< [0, size())
+    virtual int size() const = 0;
+    bool is_first() const { return rank() == 0; }
+
+    /// Runs work(), which may throw, and waits for all to have done theirs.
+    void together(const std::function<void()>& work);
+
+    /// What every rank gives, by rank.
+    std::vector<Bytes> gather(const Bytes& own);
+    /// Sends `out[r]` to rank r; returns what each rank sent here. `out` has an entry for each.
+    std::vector<Bytes> exchange(std::vector<Bytes>&& out);
+
+    std::vector<std::uint64_t> gather(std::uint64_t own); ///< a number of each rank
+    std::uint64_t sum(std::uint64_t own);
+    bool any(bool own) { return sum(own ? 1 : 0) > 0; }
+    /// What the first rank gives.
+    bool of_first(bool own);
+
+    std::size_t bytes_sent() const { return bytes_sent_; }    ///< to other ranks so far, by exchange()
+    double seconds_waited() const { return seconds_waited_; } ///< for others and for what they sent
+
+private:
+    /// As gather() and exchange(). `sizes[s][r]`: how many bytes rank s sends to rank r.
+    virtual std::vector<Bytes> gather_bytes(const Bytes& own) = 0;
+    virtual std::vector<Bytes> exchange_bytes(std::vector<Bytes>&& out,
+                                              const std::vector<std::vector<std::uint64_t>>& sizes) = 0;
+    /// Ends all ranks at once, where one cannot go on that others wait for.
+    [[noreturn]] virtual void abort(const std::string& why) noexcept = 0;
+
+    std::vector<Bytes> gather_with(bool failed, const Bytes& own);
+    void fail(const std::string& why) noexcept;
+
+    std::size_t bytes_sent_ = 0;
+    double seconds_waited_ = 0;
+};
+
+/// One process alone.
+class OneRank final : public Ranks {
+public:
+    int rank() const override { return 0; }
+    int size() const override { return 1; }
+
+private:
+    std::vector<Bytes> gather_bytes(const Bytes& own) override { return {own}; }
+    std::vector<Bytes> exchange_bytes(std::vector<Bytes>&& out,
+                                      const std::vector<std::vector<std::uint64_t>>&) override {
+        return std::move(out);
+    }
+    [[noreturn]] void abort(const std::string&) noexcept override { std::terminate(); }
+};
+
+void append_bytes(const void* first, std::size_t count, Ranks::Bytes& bytes);
+
+/// Values as bytes, for processes of one machine type.
+template <class T>
+void append_bytes(std::span<const T> values, Ranks::Bytes& bytes) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    append_bytes(values.data(), values.size_bytes(), bytes);
+}
+
+template <class T>
+Ranks::Bytes bytes_of(const std::vector<T>& values) {
+    Ranks::Bytes bytes;
+    append_bytes(std::span<const T>(values), bytes);
+    return bytes;
+}
+
+/// Takes back what append_bytes() wrote, in that order.
+class ByteReader {
+public:
+    explicit ByteReader(const Ranks::Bytes& bytes) : bytes_(bytes) {}
+    bool at_end() const { return at_ == bytes_.size(); }
+
+    template <class T>
+    T take() {
+        T value;
+        copy(&value, sizeof value);
+        return value;
+    }
+    /// A vector that put_vector() wrote.
+    template <class T>
+    std::vector<T> take_vector() {
+        std::vector<T> values(take<std::uint64_t>());
+        copy(values.data(), values.size() * sizeof(T));
+        return values;
+    }
+    /// All that is left.
+    template <class T>
+    std::vector<T> take_rest() {
+        std::vector<T> values((bytes_.size() - at_) / sizeof(T));
+        copy(values.data(), values.size() * sizeof(T));
+        return values;
+    }
+
+private:
+    void copy(void* to, std::size_t count);
+
+    const Ranks::Bytes& bytes_;
+    std::size_t at_ = 0;
+};
+
+template <class T>
+void put(const T& value, Ranks::Bytes& bytes) {
+    append_bytes(std::span<const T>(&value, 1), bytes);
+}
+template <class T>
+void put_vector(const std::vector<T>& values, Ranks::Bytes& bytes) {
+    put(std::uint64_t{values.size()}, bytes);
+    append_bytes(std::span<const T>(values), bytes);
+}
+
+} // namespace hsdm

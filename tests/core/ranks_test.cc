@@ -1,0 +1,71 @@
+#include "support/rank_threads.hh"
+
+#include <catch2/catch.hpp>
+
+#include <atomic>
+
+using namespace hsdm;
+
+TEST_CASE("every rank gets what each rank sends it", "[core]") {
+    for (const int count : {1, 2, 5}) {
+        std::atomic<int> right = 0;
+        const auto failures = support::run_ranks(count, [&](Ranks& ranks) {
+            std::vector<Ranks::Bytes> out;
+            for (int to = 0; to < count; ++to)
+                out.emplace_back(static_cast<std::size_t>(to), static_cast<char>('a' + ranks.rank()));
+            const auto got = ranks.exchange(std::move(out));
+            for (int from = 0; from < count; ++from)
+                right +=
+                    got[static_cast<std::size_t>(from)]
+                    == Ranks::Bytes(static_cast<std::size_t>(ranks.rank()), static_cast<char>('a' + from));
+            right += ranks.sum(static_cast<std::uint64_t>(ranks.rank()))
+                     == static_cast<std::uint64_t>(count * (count - 1) / 2);
+            right += ranks.bytes_sent() == static_cast<std::size_t>(count * (count - 1) / 2 - ranks.rank());
+            right += ranks.of_first(ranks.is_first());
+        });
+        CHECK(right == count * count + 3 * count);
+        for (const std::string& failure : failures) CHECK(failure.empty());
+    }
+}
+
+TEST_CASE("a rank that fails takes the others along, wherever they are", "[core]") {
+    std::string expected = "the disk is full (rank 1 of 3)";
+    bool late = GENERATE(false, true);
+    std::atomic<bool> went_on = false;
+    const auto failures = support::run_ranks(3, [&](Ranks& ranks) {
+        if (late) ranks.sum(1);
+        if (ranks.rank() == 1) throw Error("the disk is full");
+        ranks.exchange(std::vector<Ranks::Bytes>(3));
+        went_on = true;
+    });
+    CHECK_FALSE(went_on);
+    CHECK(failures[0] == expected);
+    CHECK(failures[1] == "the disk is full");
+    CHECK(failures[2] == expected);
+}
+
+TEST_CASE("a rank that fails after the last exchange is known to all", "[core]") {
+    const auto failures = support::run_ranks(2, [](Ranks& ranks) {
+        if (ranks.rank() == 0) throw Error("the mesh cannot be written");
+    });
+    CHECK(failures[0] == "the mesh cannot be written");
+    CHECK(failures[1] == "the mesh cannot be written (rank 0 of 2)");
+}
+
+TEST_CASE("what all ranks find wrong no rank is blamed for", "[core]") {
+    const auto failures = support::run_ranks(3, [](Ranks&) { throw Error("the cloud has no normals"); });
+    for (const std::string& failure : failures) CHECK(failure == "the cloud has no normals");
+}
+
+TEST_CASE("values go through bytes as they are", "[core]") {
+    Ranks::Bytes bytes;
+    put(1.5, bytes);
+    put_vector(std::vector<int>{1, 2, 3}, bytes);
+    put(std::uint8_t{7}, bytes);
+    ByteReader reader(bytes);
+    CHECK(reader.take<double>() == 1.5);
+    CHECK(reader.take_vector<int>() == std::vector<int>{1, 2, 3});
+    CHECK(reader.take<std::uint8_t>() == 7);
+    CHECK(reader.at_end());
+    CHECK_THROWS_AS(reader.take<int>(), Error);
+}

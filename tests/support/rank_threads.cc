@@ -1,0 +1,63 @@
+#include "support/rank_threads.hh"
+
+#include <barrier>
+#include <cstdlib>
+#include <mutex>
+#include <thread>
+
+namespace hsdm::support {
+namespace {
+
+/// What the threads share: a place for what each gives, which all take between two barriers.
+struct Table {
+    explicit Table(int count) : given(static_cast<std::size_t>(count)), barrier(count) {}
+    std::vector<std::vector<Ranks::Bytes>> given; // by the rank that gives, then by the one that takes
+    std::barrier<> barrier;
+};
+
+class RankThread final : public Ranks {
+public:
+    RankThread(Table& table, int rank) : table_(table), rank_(rank) {}
+    int rank() const override { return rank_; }
+    int size() const override { return static_cast<int>(table_.given.size()); }
+
+private:
+    std::vector<Bytes> gather_bytes(const Bytes& own) override {
+        return exchange_bytes(std::vector<Bytes>(table_.given.size(), own), {});
+    }
+    std::vector<Bytes> exchange_bytes(std::vector<Bytes>&& out,
+                                      const std::vector<std::vector<std::uint64_t>>&) override {
+        const auto self = static_cast<std::size_t>(rank_);
+        table_.given[self] = std::move(out);
+        table_.barrier.arrive_and_wait();
+        std::vector<Bytes> got;
+        for (const auto& of_rank : table_.given) got.push_back(of_rank[self]);
+        table_.barrier.arrive_and_wait();
+        return got;
+    }
+    [[noreturn]] void abort(const std::string&) noexcept override { std::abort(); }
+
+    Table& table_;
+    int rank_;
+};
+
+} // namespace
+
+std::vector<std::string> run_ranks(int count, const std::function<void(Ranks&)>& work) {
+    Table table(count);
+    std::vector<std::string> failures(static_cast<std::size_t>(count));
+    std::vector<std::thread> threads;
+    for (int r = 0; r < count; ++r)
+        threads.emplace_back([&, r] {
+            RankThread ranks(table, r);
+            try {
+                ranks.together([&] { work(ranks); });
+            } catch (const std::exception& error) {
+                failures[static_cast<std::size_t>(r)] = error.what();
+            }
+        });
+    for (std::thread& thread : threads) thread.join();
+    return failures;
+}
+
+} // namespace hsdm::support

@@ -1,0 +1,12 @@
+#pragma once
+// Ranks as threads of one process, for tests.
+
+#include "hsdm/core/ranks.hh"
+
+namespace hsdm::support {
+
+/// Runs work(ranks) for so many ranks, each on a thread of its own, all within together(). Returns by rank
+/// what() of the exception that came out of it, or "".
+std::vector<std::string> run_ranks(int count, const std::function<void(Ranks&)>& work);
+
+} // namespace hsdm::support
