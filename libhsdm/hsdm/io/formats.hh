@@ -16,9 +16,9 @@ PointFile read_table(const SourceBytes& bytes, TableKind kind, const std::string
 PointFile read_ply(const SourceBytes& bytes);
 /// The number of a binary file's vertices if these are of one size; nothing for other files.
 std::optional<std::size_t> ply_rows(const SourceBytes& bytes);
-/// Calls visit() with the vertices of a binary file whose vertices are of one size, so many at once; false,
-/// and nothing done, for other files.
-bool read_ply_in_parts(const SourceBytes& bytes, std::size_t points,
+/// Calls visit() with the vertices [begin, end) of a binary file whose vertices are of one size, or those
+/// of them that there are, so many at once; false, and nothing done, for other files.
+bool read_ply_in_parts(const SourceBytes& bytes, std::size_t begin, std::size_t end, std::size_t points,
                        const std::function<void(const PointCloud&)>& visit);
 /// The points of a PCD file, as text, binary or compressed; those whose coordinates are not finite, pixels
 /// without a measurement, are left out. The sensor is the viewpoint, if that is not zero.

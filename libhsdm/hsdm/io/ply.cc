@@ -3,6 +3,8 @@
 #include "hsdm/errors.hh"
 #include "hsdm/io/formats.hh"
 
+#include <algorithm>
+
 namespace hsdm::io {
 namespace {
 
@@ -75,13 +77,15 @@ std::optional<std::size_t> ply_rows(const SourceBytes& bytes) {
     return found.element().count;
 }
 
-bool read_ply_in_parts(const SourceBytes& bytes, std::size_t points,
+bool read_ply_in_parts(const SourceBytes& bytes, std::size_t begin, std::size_t end, std::size_t points,
                        const std::function<void(const PointCloud&)>& visit) {
     if (!ply_rows(bytes)) return false;
     const PlyVertices found = find_vertices(bytes);
     const auto columns = columns_of(found.text, found.element());
-    for (std::size_t first = 0; first < found.element().count; first += points)
-        visit(read_ply_binary(bytes, found.header, found.vertex, columns, {first, points}));
+    end = std::min<std::size_t>(end, found.element().count);
+    for (std::size_t first = begin; first < end; first += points)
+        visit(read_ply_binary(bytes, found.header, found.vertex, columns,
+                              {first, std::min(points, end - first)}));
     return true;
 }
 

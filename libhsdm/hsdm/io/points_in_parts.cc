@@ -5,7 +5,28 @@
 #include "hsdm/io/formats.hh"
 #include "hsdm/io/source_bytes.hh"
 
+#include <limits>
+
 namespace hsdm {
+namespace {
+
+template <class T>
+std::vector<T> slice(const std::vector<T>& all, std::size_t begin, std::size_t end) {
+    if (all.empty()) return {};
+    return {all.begin() + static_cast<std::ptrdiff_t>(begin), all.begin() + static_cast<std::ptrdiff_t>(end)};
+}
+
+PointCloud slice(const PointCloud& cloud, std::size_t begin, std::size_t end) {
+    PointCloud part;
+    part.positions = slice(cloud.positions, begin, end);
+    part.normals = slice(cloud.normals, begin, end);
+    part.colors = slice(cloud.colors, begin, end);
+    for (const Scalar& scalar : cloud.scalars)
+        part.scalars.push_back({scalar.name, slice(scalar.values, begin, end), scalar.is_label});
+    return part;
+}
+
+} // namespace
 
 PointsInParts::PointsInParts(const std::string& path, const ReadOptions& options) : path_(path) {
     const bool may_be_parted = path != "-" && (options.format.empty() || options.format == "ply")
@@ -19,12 +40,18 @@ PointsInParts::PointsInParts(const std::string& path, const ReadOptions& options
 
 void PointsInParts::visit(const std::function<void(const PointCloud&)>& visit) const {
     if (!rows_) return visit(file_.cloud);
+    this->visit(0, std::numeric_limits<std::size_t>::max(), visit);
+}
+
+void PointsInParts::visit(std::size_t begin, std::size_t end,
+                          const std::function<void(const PointCloud&)>& visit) const {
+    if (!rows_) return visit(slice(file_.cloud, begin, std::min(end, file_.cloud.size())));
     constexpr std::size_t points_at_once = std::size_t{1} << 18; // some megabytes
     const auto one = [&](const PointCloud& part) {
         Interruption::poll();
         visit(part);
     };
-    if (!io::read_ply_in_parts(io::SourceBytes::open(path_), points_at_once, one))
+    if (!io::read_ply_in_parts(io::SourceBytes::open(path_), begin, end, points_at_once, one))
         throw Error(path_, "is not the file any more that it was before; leave it until all is done");
 }
 
