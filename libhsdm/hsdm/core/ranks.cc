@@ -91,6 +91,22 @@ bool Ranks::of_first(bool own) {
     return gather(std::uint64_t{own}).front() != 0;
 }
 
+Ranks::Bytes Ranks::of_first(Bytes&& own) {
+    if (size() == 1) return std::move(own);
+    constexpr std::size_t at_once = std::size_t{1} << 28; // a gather has a bound
+    const std::size_t all = gather(std::uint64_t{own.size()}).front();
+    Bytes got;
+    got.reserve(is_first() ? 0 : all);
+    for (std::size_t begin = 0; begin < all; begin += at_once) {
+        Bytes some;
+        if (is_first()) append_bytes(own.data() + begin, std::min(at_once, all - begin), some);
+        const std::vector<Bytes> part = gather(some);
+        if (!is_first()) append_bytes(part.front().data(), part.front().size(), got);
+    }
+    if (is_first()) bytes_sent_ += all * static_cast<std::size_t>(size() - 1);
+    return is_first() ? std::move(own) : got;
+}
+
 std::vector<Ranks::Bytes> Ranks::exchange(std::vector<Bytes>&& out) {
     std::vector<std::uint64_t> own;
     for (const Bytes& bytes : out) own.push_back(bytes.size());

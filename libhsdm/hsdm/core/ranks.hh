@@ -49,6 +49,7 @@ public:
     bool any(bool own) { return sum(own ? 1 : 0) > 0; }
     /// What the first rank gives.
     bool of_first(bool own);
+    Bytes of_first(Bytes&& own);
 
     std::size_t bytes_sent() const { return bytes_sent_; }    ///< to other ranks so far, by exchange()
     double seconds_waited() const { return seconds_waited_; } ///< for others and for what they sent

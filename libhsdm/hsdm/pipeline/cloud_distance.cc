@@ -101,23 +101,107 @@ std::vector<double> squared_distances(std::span<const Vec3> points, std::span<co
     return squared;
 }
 
+void send_facets(const PolygonMesh& facets, Ranks& ranks) {
+    Ranks::Bytes bytes;
+    put_vector(facets.positions, bytes);
+    put_vector(facets.first, bytes);
+    put_vector(facets.corners, bytes);
+    ranks.of_first(std::move(bytes));
+}
+
+PolygonMesh receive_facets(Ranks& ranks) {
+    const Ranks::Bytes got = ranks.of_first(Ranks::Bytes());
+    ByteReader reader(got);
+    PolygonMesh mesh;
+    mesh.positions = reader.take_vector<Vec3>();
+    mesh.first = reader.take_vector<Index>();
+    mesh.corners = reader.take_vector<Index>();
+    return mesh;
+}
+
+/// Distances that come in the order of the points, and what they add up to.
+class Measured {
+public:
+    explicit Measured(const ScratchCloud& cloud) : sums_(std::numbers::sqrt3 * cloud.voxel_size()) {}
+
+    void add(const std::vector<double>& squared, const auto& position_of) {
+        const std::size_t before = sums_.count();
+        sums_.add(squared);
+        const Distance so_far = sums_.result();
+        if (off_.count == 0 && so_far.beyond > 0) off_.first = position_of(so_far.first_beyond - before);
+        off_.count = so_far.beyond;
+    }
+
+    const Occurrences& off() const { return off_; } ///< relative to the cube
+    Distance result() const { return sums_.result(); }
+
+private:
+    DistanceSums sums_;
+    Occurrences off_;
+};
+
+/// What a rank has to tell the first: distances of all its points, and the first place that is far off.
+struct OwnDistances {
+    std::vector<double> squared;
+    Vec3 first_off{0, 0, 0};
+};
+
+/// act(squared, octree) for this rank's points.
+template <class Act>
+void measure_own(const ScratchCloud& cloud, const PolygonMesh& facets, std::size_t most_points,
+                 const Act& act) {
+    const NearFacets near(cloud, facets);
+    cloud.for_groups(most_points, [&](const Octree& part) {
+        if (part.size() == 0) return;
+        act(squared_distances(part.positions, part.codes, near, cloud), part);
+        os::give_back_freed_memory();
+    });
+}
+
+/// Of one rank after the other, so that the first has room for one of them.
+void pass_to_first(const OwnDistances& own, Ranks& ranks, const std::function<void(ByteReader&)>& receive) {
+    for (int sender = 1; sender < ranks.size(); ++sender) {
+        std::vector<Ranks::Bytes> out(static_cast<std::size_t>(ranks.size()));
+        if (sender == ranks.rank()) {
+            put(own.first_off, out.front());
+            put_vector(own.squared, out.front());
+        }
+        const std::vector<Ranks::Bytes> got = ranks.exchange(std::move(out));
+        if (!ranks.is_first()) continue;
+        ByteReader reader(got[static_cast<std::size_t>(sender)]);
+        receive(reader);
+    }
+}
+
 } // namespace
 
 Distance cloud_distance(const ScratchCloud& cloud, const PolygonMesh& facets, std::size_t most_points,
                         Occurrences& off) {
-    const NearFacets near(cloud, facets);
-    DistanceSums sums(std::numbers::sqrt3 * cloud.voxel_size());
-    cloud.for_groups(most_points, [&](const Octree& part) {
-        if (part.size() == 0) return;
-        const std::size_t before = sums.count();
-        sums.add(squared_distances(part.positions, part.codes, near, cloud));
-        const Distance so_far = sums.result();
-        if (off.count == 0 && so_far.beyond > 0)
-            off.first = part.positions[so_far.first_beyond - before] + cloud.origin();
-        off.count = so_far.beyond;
-        os::give_back_freed_memory();
+    Ranks& ranks = cloud.ranks();
+    if (ranks.size() > 1) send_facets(facets, ranks);
+    Measured all(cloud);
+    measure_own(cloud, facets, most_points, [&](const std::vector<double>& squared, const Octree& part) {
+        all.add(squared, [&](std::size_t i) { return part.positions[i]; });
     });
-    return sums.result();
+    pass_to_first({}, ranks, [&](ByteReader& reader) {
+        const Vec3 first_off = reader.take<Vec3>();
+        all.add(reader.take_vector<double>(), [&](std::size_t) { return first_off; });
+    });
+    off = all.off();
+    if (off.count > 0) off.first += cloud.origin();
+    return all.result();
+}
+
+void assist_cloud_distance(const ScratchCloud& cloud, std::size_t most_points) {
+    const PolygonMesh facets = receive_facets(cloud.ranks());
+    OwnDistances own;
+    Measured here(cloud);
+    measure_own(cloud, facets, most_points, [&](const std::vector<double>& squared, const Octree& part) {
+        here.add(squared, [&](std::size_t i) { return part.positions[i]; });
+        append_large(own.squared, squared);
+    });
+    own.first_off = here.off().first;
+    pass_to_first(own, cloud.ranks(), {});
 }
 
 } // namespace hsdm

@@ -3,13 +3,30 @@
 #include "hsdm/normals/steady_normals.hh"
 #include "hsdm/pipeline/tile_plan.hh"
 
+#include <numeric>
+
 namespace hsdm {
 
-CloudSurvey survey_cloud(const ScratchCloud& cloud, std::size_t expected, std::size_t most_points) {
-    Survey sums(cloud.depth(), cloud.cell_depth(), expected);
+namespace {
+
+Survey survey_of(const ScratchCloud& cloud, std::size_t expected, std::size_t before,
+                 std::size_t most_points) {
+    Survey sums(cloud.depth(), cloud.cell_depth(), expected, before);
     cloud.for_groups(most_points, [&](const Octree& part) { sums.add(part); });
-    if (const std::size_t points = sums.points(); points != expected) // other ones are sampled
-        return survey_cloud(cloud, points, most_points);
+    const std::vector<std::uint64_t> points = cloud.ranks().gather(std::uint64_t{sums.points()});
+    const auto here = points.begin() + cloud.ranks().rank();
+    const std::size_t all = std::accumulate(points.begin(), points.end(), std::size_t{0}),
+                      really_before = std::accumulate(points.begin(), here, std::size_t{0});
+    if (cloud.ranks().any(all != expected || really_before != before)) // other ones are sampled
+        return survey_of(cloud, all, really_before, most_points);
+    sums.join(cloud.ranks());
+    return sums;
+}
+
+} // namespace
+
+CloudSurvey survey_cloud(const ScratchCloud& cloud, std::size_t expected, std::size_t most_points) {
+    Survey sums = survey_of(cloud, expected, cloud.points_before(), most_points);
     const double spacing = estimate_spacing(sums.counts(), cloud.cube_extent());
     return {std::move(sums), spacing};
 }

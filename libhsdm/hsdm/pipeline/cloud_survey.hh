@@ -11,8 +11,8 @@ struct CloudSurvey {
     double spacing; ///< of the points
 };
 
-/// Adds up all groups of at most so many points, twice if `expected` is not how many remain without
-/// duplicates.
+/// Adds up all groups of at most so many points, of all ranks; twice if `expected` is not how many remain
+/// without duplicates, or other ranks have others than points_before() tells.
 CloudSurvey survey_cloud(const ScratchCloud& cloud, std::size_t expected, std::size_t most_points);
 
 /// Throws Error for a cloud of which PreparedCloud would move, turn or drop points by what all of them are.

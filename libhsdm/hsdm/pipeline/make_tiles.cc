@@ -1,6 +1,7 @@
 #include "hsdm/pipeline/make_tiles.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 
 #include <algorithm>
 #include <utility>
@@ -11,20 +12,13 @@ namespace {
 constexpr int most_ghost_voxels = 256;                    // of a tile that is made again and again
 constexpr std::size_t most_strays = std::size_t{1} << 20; // that are kept in memory
 
-std::vector<std::uint8_t> disagreeing(const std::vector<Piece>& pieces) {
-    std::vector<std::uint8_t> found(pieces.size(), 0);
-    for (std::size_t i = 0; i < pieces.size(); ++i)
-        for (std::size_t j = i + 1; j < pieces.size(); ++j)
-            if (!agree(pieces[i], pieces[j])) found[i] = found[j] = 1;
-    return found;
-}
-
 class TileMaker {
 public:
     TileMaker(const TilesInput& in, const std::vector<VoxelRange>& ranges, bool turned, TilesKnown& known,
               TileReport& how)
         : in_(in),
           cloud_(in.cloud),
+          ranks_(in.cloud.ranks()),
           ranges_(ranges),
           turned_(turned),
           known_(known),
@@ -36,8 +30,7 @@ public:
         std::vector<int> ghost(ranges_.size(), in_.ghost_voxels);
         std::vector<std::uint8_t> due(ranges_.size(), 1);
         while (std::ranges::count(due, 1) > 0) {
-            for (std::size_t k = 0; k < ranges_.size(); ++k)
-                if (due[k]) pieces[k] = checked_piece(ranges_[k], ghost[k]);
+            make_due(due, ghost, pieces);
             if (has_new_strays()) {
                 std::ranges::fill(due, std::uint8_t{1});
                 continue;
@@ -52,14 +45,57 @@ public:
     }
 
 private:
+    int owner(std::size_t tile) const { return cloud_.owner_of(ranges_[tile]); }
+    bool is_own(std::size_t tile) const { return owner(tile) == ranks_.rank(); }
+
+    /// Those of this rank. All ranks know of all how wide they are.
+    void make_due(const std::vector<std::uint8_t>& due, const std::vector<int>& ghost,
+                  std::vector<Piece>& pieces) {
+        std::vector<ScratchCloud::Surroundings> wanted;
+        for (std::size_t k = 0; k < ranges_.size(); ++k) {
+            if (due[k] && ghost[k] > most_ghost_voxels) refuse_in_tiles("neighbouring parts do not agree");
+            if (due[k] && is_own(k)) wanted.push_back({ranges_[k], ghost[k]});
+        }
+        cloud_.fetch(wanted);
+        for (std::size_t k = 0; k < ranges_.size(); ++k)
+            if (due[k] && is_own(k)) pieces[k] = checked_piece(ranges_[k], ghost[k]);
+    }
+
     Piece checked_piece(const VoxelRange& range, int ghost) {
-        if (ghost > most_ghost_voxels) refuse_in_tiles("neighbouring parts do not agree");
         Piece piece = make_tile(range, ghost);
         if (piece.counts.depends_on_all)
             refuse_in_tiles(
                 "facets pass through each other that could not be parted, or normals are at random");
         if (in_.store) in_.store->put(piece);
         return piece;
+    }
+
+    /// Per tile, 1 if it and another one see different things where both look. Who owns a tile compares what
+    /// others have seen there.
+    std::vector<std::uint8_t> disagreeing(const std::vector<Piece>& pieces) {
+        const auto ranks = static_cast<std::size_t>(ranks_.size());
+        std::vector<Ranks::Bytes> out(ranks);
+        for (std::size_t i = 0; i < pieces.size(); ++i)
+            if (is_own(i))
+                for (std::size_t j = 0; j < pieces.size(); ++j) {
+                    if (i == j) continue;
+                    const auto seen = within(pieces[i].beyond, ranges_[j]);
+                    Ranks::Bytes& to = out[static_cast<std::size_t>(owner(j))];
+                    put(i, to), put(j, to);
+                    put_vector(std::vector<Piece::Digest>(seen.begin(), seen.end()), to);
+                }
+        std::vector<std::uint8_t> found(pieces.size(), 0);
+        for (const Ranks::Bytes& got : ranks_.exchange(std::move(out)))
+            for (ByteReader reader(got); !reader.at_end();) {
+                const auto i = reader.take<std::size_t>(), j = reader.take<std::size_t>();
+                const auto seen = reader.take_vector<Piece::Digest>();
+                if (!sees_same(ranges_[i], seen, pieces[j])) found[i] = found[j] = 1;
+            }
+        std::vector<std::uint8_t> of_any(pieces.size(), 0);
+        for (const Ranks::Bytes& got : ranks_.gather(bytes_of(found)))
+            std::ranges::transform(of_any, got, of_any.begin(),
+                                   [](std::uint8_t a, char b) { return static_cast<std::uint8_t>(a | b); });
+        return of_any;
     }
 
     Piece make_tile(const VoxelRange& range, int ghost) {
@@ -92,7 +128,6 @@ private:
             if (!strays[i]) return;
             if (is_at_border(octree.positions[i] + cloud_.origin()))
                 refuse_in_tiles("some points are off every surface, outside all others");
-            if (strays_.empty()) known_.first_outlier = octree.positions[i];
             if (strays_.size() == most_strays) refuse_in_tiles("many points are off every surface");
             strays_.push_back(ScratchCloud::row_at(octree, i));
         });
@@ -106,19 +141,35 @@ private:
 
     /// Once all tiles have looked for strays: are there some, so that all is different without them?
     bool has_new_strays() {
-        known_.outliers = true;
-        if (strays_.empty()) return false;
-        const std::size_t points = in_.survey.sums.points() - strays_.size();
-        cloud_.leave_out(std::exchange(strays_, {}));
+        if (std::exchange(known_.outliers, true)) return false;
+        std::vector<PointRow> all;
+        for (const Ranks::Bytes& got : ranks_.gather(bytes_of(strays_)))
+            append_large(all, ByteReader(got).take_rest<PointRow>());
+        strays_.clear();
+        if (all.empty()) return false;
+        if (all.size() > most_strays) refuse_in_tiles("many points are off every surface");
+        known_.first_outlier = Vec3(all[0][0], all[0][1], all[0][2]);
+        const std::size_t points = in_.survey.sums.points() - all.size();
+        cloud_.leave_out(std::move(all));
         in_.survey = survey_cloud(cloud_, points, in_.group_points);
         return true;
+    }
+
+    /// Of all ranks' tiles, added up in one order.
+    FacetCounts counts_of_all(const std::vector<Piece>& pieces) {
+        Ranks::Bytes own;
+        for (std::size_t k = 0; k < pieces.size(); ++k)
+            if (is_own(k)) put(pieces[k].counts, own);
+        FacetCounts all;
+        for (const Ranks::Bytes& got : ranks_.gather(own))
+            for (const FacetCounts& counts : ByteReader(got).take_rest<FacetCounts>()) all += counts;
+        return all;
     }
 
     /// Vertices as moved towards the points stay only where that brings all together nearer. Are they to go
     /// back, and have not yet?
     bool must_go_back(const std::vector<Piece>& pieces) {
-        FacetCounts all;
-        for (const Piece& piece : pieces) all += piece.counts;
+        const FacetCounts all = counts_of_all(pieces);
         const double gain = all.misfit_placed - all.misfit_moved;
         constexpr double rounding = 1e-9; // sums of parts are rounded otherwise than that of the whole
         if (std::abs(gain) <= rounding * all.misfit_placed && all.misfit_placed > 0)
@@ -128,6 +179,7 @@ private:
 
     const TilesInput& in_;
     ScratchCloud& cloud_;
+    Ranks& ranks_;
     const std::vector<VoxelRange>& ranges_;
     bool turned_;
     TilesKnown& known_;

@@ -26,8 +26,9 @@ struct TilesKnown {
     Vec3 first_outlier{0, 0, 0};
 };
 
-/// The piece of every range, all in agreement. `turned`: as in PartOfLevel. Throws Error if they cannot
-/// agree, or if what they leave to the whole would change them; Cancelled.
+/// The piece of every range that is this rank's, all of all ranks in agreement; none of the others. No range
+/// may be of two ranks. `turned`: as in PartOfLevel. Throws Error if they cannot agree, or if what they leave
+/// to the whole would change them; Cancelled.
 std::vector<Piece> make_tiles(const TilesInput& in, const std::vector<VoxelRange>& ranges, bool turned,
                               TilesKnown& known, TileReport& how);
 

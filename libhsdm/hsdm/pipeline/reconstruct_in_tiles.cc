@@ -1,7 +1,10 @@
 #include "hsdm/pipeline/reconstruct_in_tiles.hh"
 
+#include "hsdm/core/ranks.hh"
 #include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/pipeline/cloud_distance.hh"
+#include "hsdm/pipeline/gather_pieces.hh"
 #include "hsdm/pipeline/make_tiles.hh"
 #include "hsdm/pipeline/options.hh"
 #include "hsdm/pipeline/tile_plan.hh"
@@ -16,6 +19,8 @@
 
 namespace hsdm {
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 /// So many points of so many bytes fit what is left of the memory.
 std::size_t points_at_once(const TileOptions& tiles, std::size_t bytes_of_mesh, double bytes_each) {
@@ -70,19 +75,42 @@ void note_cloud(const ScratchCloud& cloud, const CloudSurvey& survey, std::size_
                  report);
 }
 
-/// A run up to the facets of the whole, and what finishing them needs.
+/// What each rank has done since it began.
+std::vector<TileReport::Rank> work_of_ranks(const ScratchCloud& cloud, std::size_t own_tiles,
+                                            Clock::time_point start) {
+    Ranks& ranks = cloud.ranks();
+    TileReport::Rank own;
+    own.points = cloud.points_here();
+    own.tiles = own_tiles;
+    own.seconds_waited = ranks.seconds_waited();
+    own.seconds = std::chrono::duration<double>(Clock::now() - start).count() - own.seconds_waited;
+    own.bytes_sent = ranks.bytes_sent();
+    Ranks::Bytes bytes;
+    put(own, bytes);
+    std::vector<TileReport::Rank> all;
+    for (const Ranks::Bytes& got : ranks.gather(bytes))
+        all.push_back(ByteReader(got).take<TileReport::Rank>());
+    return all;
+}
+
+/// A run up to the facets of the whole, which the first rank gets, and what finishing them needs.
 class TiledRun {
 public:
     /// `bytes_per_voxel`: of the mesh in the end.
     TiledRun(const PointParts& parts, const ReconstructOptions& options, const TileOptions& tiles,
-             std::size_t bytes_per_voxel)
-        : options_(options), tiles_(tiles), phases_(options), bytes_per_voxel_(bytes_per_voxel) {
+             Ranks& ranks, std::size_t bytes_per_voxel)
+        : options_(options),
+          tiles_(tiles),
+          ranks_(ranks),
+          phases_(options),
+          bytes_per_voxel_(bytes_per_voxel) {
         report_.threads = tbb::this_task_arena::max_concurrency();
         note_options(false, options, report_);
         report_.options["depth"] = std::to_string(*options.depth);
         report_.options["resolution"] = "as asked by depth";
-        phases_.run("octree", 0, report_.seconds.octree,
-                    [&] { cloud_.emplace(parts, measure_extent(parts), *options.depth, tiles); });
+        phases_.run("octree", 0, report_.seconds.octree, [&] {
+            cloud_.emplace(parts, measure_extent(parts, ranks), *options.depth, tiles, ranks);
+        });
         const std::size_t group = points_at_once(tiles, 0, bytes_per_point);
         os::give_back_freed_memory(); // here and later, or what one phase had is held beside what the next
                                       // has
@@ -93,17 +121,21 @@ public:
         phases_.run("tiles", 0.2, report_.seconds.facets, [&] { make_facets(group); });
     }
 
-    /// What finish(input, facets, report) makes of the facets.
+    /// What finish(input, facets, report) makes of the facets; nothing on other ranks than the first.
     template <class Finish>
     auto finish(TileReport& how, const Finish& finish) {
+        how_.scratch_bytes = cloud_->bytes() + store_->bytes();
+        how_.ranks = work_of_ranks(*cloud_, how_.own_tiles, start_);
         const std::size_t mesh = survey_->sums.voxels() * bytes_per_voxel_in_error;
         const double each = bytes_per_error_point(voxels_per_point(survey_->sums));
         const WholeInput in{*cloud_, *survey_, options_, phases_, points_at_once(tiles_, mesh, each)};
-        auto result = finish(in, std::move(facets_), std::move(report_));
-        how_.scratch_bytes = cloud_->bytes() + store_->bytes();
         how = how_;
-        result.report.seconds.total =
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        if (!ranks_.is_first()) {
+            if (options_.measure) assist_cloud_distance(*cloud_, in.group_points);
+            return decltype(finish(in, std::move(facets_), std::move(report_)))();
+        }
+        auto result = finish(in, std::move(facets_), std::move(report_));
+        result.report.seconds.total = std::chrono::duration<double>(Clock::now() - start_).count();
         return result;
     }
 
@@ -113,8 +145,11 @@ private:
         const std::size_t duplicates = cloud_->extent().finite() - survey_->sums.points();
         const std::size_t most = points_of_tile(tiles_, survey_->sums, bytes_per_voxel_);
         const std::vector<VoxelRange> ranges =
-            plan_tiles(cloud_->cells(), {cloud_->depth(), cloud_->cell_depth(), tiles_.ghost_voxels, most});
+            plan_tiles(cloud_->cells(),
+                       {cloud_->depth(), cloud_->cell_depth(), tiles_.ghost_voxels, most, cloud_->borders()});
         how_.tiles = ranges.size();
+        const auto owner = [&](std::size_t k) { return cloud_->owner_of(ranges[k]); };
+        for (std::size_t k = 0; k < ranges.size(); ++k) how_.own_tiles += owner(k) == ranks_.rank();
         TilesKnown known;
         bool turned = false;
         const auto make = [&] {
@@ -123,20 +158,22 @@ private:
             facets_ = WholeFacets();
             os::give_back_freed_memory();
             std::vector<Piece> pieces = make_tiles(in, ranges, turned, known, how_);
+            gather_pieces(pieces, *store_, owner, ranks_);
             os::give_back_freed_memory();
             facets_ = join_tiles(std::move(pieces), &*store_);
         };
         make();
-        turned = faces_inward(facets_.mesh);
+        turned = ranks_.of_first(ranks_.is_first() && faces_inward(facets_.mesh));
         if (turned) make();
         report_.grid.sets = facets_.counts.sets;
         report_.rejected["normals_turned"] = turned ? survey_->sums.points() : 0;
         note_cloud(*cloud_, *survey_, duplicates, known, report_);
     }
 
-    const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    const Clock::time_point start_ = Clock::now();
     const ReconstructOptions& options_;
     const TileOptions& tiles_;
+    Ranks& ranks_;
     const Phases phases_;
     const std::size_t bytes_per_voxel_;
     Report report_;
@@ -187,10 +224,16 @@ bool fits_in_one_piece(std::size_t points, const ReconstructOptions& options, st
 
 Reconstruction reconstruct_in_tiles(const PointParts& parts, const ReconstructOptions& options,
                                     const TileOptions& tiles, TileReport* how) {
+    OneRank alone;
+    return reconstruct_in_tiles(parts, options, tiles, alone, how);
+}
+
+Reconstruction reconstruct_in_tiles(const PointParts& parts, const ReconstructOptions& options,
+                                    const TileOptions& tiles, Ranks& ranks, TileReport* how) {
     check_options(options, tiles);
     TileReport unasked;
     return with_threads(options.threads, [&] {
-        return TiledRun(parts, options, tiles, bytes_per_voxel_of_mesh)
+        return TiledRun(parts, options, tiles, ranks, bytes_per_voxel_of_mesh)
             .finish(how ? *how : unasked, [](const WholeInput& in, WholeFacets&& facets, Report&& report) {
                 return finish_whole(in, std::move(facets), std::move(report));
             });
@@ -199,10 +242,16 @@ Reconstruction reconstruct_in_tiles(const PointParts& parts, const ReconstructOp
 
 FlatReconstruction reconstruct_flat_in_tiles(const PointParts& parts, const ReconstructOptions& options,
                                              const TileOptions& tiles, TileReport* how) {
+    OneRank alone;
+    return reconstruct_flat_in_tiles(parts, options, tiles, alone, how);
+}
+
+FlatReconstruction reconstruct_flat_in_tiles(const PointParts& parts, const ReconstructOptions& options,
+                                             const TileOptions& tiles, Ranks& ranks, TileReport* how) {
     check_options(options, tiles);
     TileReport unasked;
     return with_threads(options.threads, [&] {
-        return TiledRun(parts, options, tiles, bytes_per_voxel_of_flat_mesh)
+        return TiledRun(parts, options, tiles, ranks, bytes_per_voxel_of_flat_mesh)
             .finish(how ? *how : unasked, [](const WholeInput& in, WholeFacets&& facets, Report&& report) {
                 return finish_whole_flat(in, std::move(facets), std::move(report));
             });

@@ -9,7 +9,10 @@
 
 namespace hsdm {
 
+class Ranks;
+
 struct TileOptions {
+    static constexpr std::size_t no_bound = std::size_t{1} << 60;
     /// Bytes that the process is to use at most, those it uses already included.
     std::size_t memory = 0;
     std::string scratch{};       ///< folder for the points on disk; empty: that for temporary files
@@ -23,8 +26,19 @@ using PointParts = std::function<void(const std::function<void(const PointView&)
 /// How it was done.
 struct TileReport {
     std::size_t tiles = 0, widened = 0; ///< and those made again with more around them
-    std::size_t points_read = 0;        ///< by all tiles, what is round them too
-    std::size_t scratch_bytes = 0;
+    std::size_t own_tiles = 0;          ///< of all, this rank's
+    std::size_t points_read = 0;        ///< by this rank's tiles, what is round them too
+    std::size_t scratch_bytes = 0;      ///< of this rank
+
+    /// What each rank did up to the pieces of its tiles.
+    struct Rank {
+        std::size_t points = 0;     ///< of its cells
+        std::size_t tiles = 0;      ///< of its own
+        double seconds = 0;         ///< of work; the first rank's has joining in it
+        double seconds_waited = 0;  ///< for others and for what they sent, beside these
+        std::size_t bytes_sent = 0; ///< to others, pieces included
+    };
+    std::vector<Rank> ranks{};
 };
 
 /// Throws OptionError for options that no cloud can be reconstructed with in tiles.
@@ -39,6 +53,10 @@ bool fits_in_one_piece(std::size_t points, const ReconstructOptions& options, st
 /// the memory does not suffice; OptionError, Cancelled.
 Reconstruction reconstruct_in_tiles(const PointParts& parts, const ReconstructOptions& options,
                                     const TileOptions& tiles, TileReport* how = nullptr);
+/// The same by several ranks, all at the same time; `parts` are those of this rank's part of the points, in
+/// any division. The first rank gets what one alone would, the others a mesh without facets.
+Reconstruction reconstruct_in_tiles(const PointParts& parts, const ReconstructOptions& options,
+                                    const TileOptions& tiles, Ranks& ranks, TileReport* how = nullptr);
 /// The same of a cloud in memory.
 Reconstruction reconstruct_in_tiles(const PointView& cloud, const ReconstructOptions& options,
                                     const TileOptions& tiles, TileReport* how = nullptr);
@@ -56,6 +74,10 @@ struct FlatReconstruction {
 /// The same of a mesh that is to be written as PLY, OFF or STL, in a quarter of the memory a voxel.
 FlatReconstruction reconstruct_flat_in_tiles(const PointParts& parts, const ReconstructOptions& options,
                                              const TileOptions& tiles, TileReport* how = nullptr);
+/// The same by several ranks, as reconstruct_in_tiles().
+FlatReconstruction reconstruct_flat_in_tiles(const PointParts& parts, const ReconstructOptions& options,
+                                             const TileOptions& tiles, Ranks& ranks,
+                                             TileReport* how = nullptr);
 
 /// Writes what write_mesh() writes of the Reconstruction. `plain`: positions and facets only. Throws Error,
 /// also for formats that cannot be written as they come.

@@ -4,28 +4,49 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/pipeline/point_exchange.hh"
 #include "hsdm/pipeline/tile_plan.hh"
 
 #include <algorithm>
+#include <map>
 
 namespace hsdm {
 namespace {
+
+constexpr std::size_t most_sampled = std::size_t{1} << 16; // points of a rank, to divide space by
 
 /// Not more than this, for what waits in many small vectors is not of use to large ones once it is freed.
 std::size_t bytes_buffered(const TileOptions& options) {
     return std::clamp(options.memory / 16, std::size_t{1} << 20, std::size_t{1} << 26);
 }
 
-} // namespace
-
-void refuse_in_tiles(const std::string& what) {
-    throw Error(what + "; this is not done in tiles, reconstruct it in one piece (without --memory)");
+/// Points that wait to be sent, at most; what comes takes as much again.
+std::size_t points_waiting(const TileOptions& options) {
+    constexpr std::size_t most = std::size_t{1} << 20;
+    return std::min(most, bytes_buffered(options) / sizeof(PointRow));
 }
 
-CloudExtent measure_extent(const PointParts& parts) {
+/// Every so-manieth of points that come one after the other, as few as are wanted.
+void add_to_sample(const PointView& part, std::size_t before, CloudExtent& extent) {
+    for (std::size_t i = (extent.sample_stride - before % extent.sample_stride) % extent.sample_stride;
+         i < part.size(); i += extent.sample_stride) {
+        const Vec3 p = vec3_at(part.positions, i);
+        if (is_finite(p)) extent.sample.push_back(p);
+    }
+    while (extent.sample.size() > most_sampled) {
+        std::vector<Vec3> fewer;
+        for (std::size_t i = 0; i < extent.sample.size(); i += 2) fewer.push_back(extent.sample[i]);
+        extent.sample = std::move(fewer);
+        extent.sample_stride *= 2;
+    }
+}
+
+/// What this rank finds in its part.
+CloudExtent extent_of_part(const PointParts& parts) {
     CloudExtent extent;
     parts([&](const PointView& part) {
         check_view(part);
+        if (part.size() == 0) return;
         if (!part.has_normals())
             refuse_in_tiles("the cloud has no normals, which would have to be estimated");
         if (part.colors.count > 0 || !part.scalars.empty())
@@ -34,9 +55,42 @@ CloudExtent measure_extent(const PointParts& parts) {
         if (nonfinite.count > 0 && extent.nonfinite == 0)
             extent.first_nonfinite = extent.points + nonfinite.first;
         extent.nonfinite += nonfinite.count;
+        add_to_sample(part, extent.points, extent);
         extent.points += part.size();
         extent.box.add(finite_bounds(part.positions));
     });
+    return extent;
+}
+
+/// Adds what the next rank finds.
+void join(const CloudExtent& next, CloudExtent& extent) {
+    if (extent.nonfinite == 0) extent.first_nonfinite = extent.points + next.first_nonfinite;
+    extent.nonfinite += next.nonfinite;
+    extent.points += next.points;
+    extent.box.add(next.box);
+}
+
+} // namespace
+
+void refuse_in_tiles(const std::string& what) {
+    throw Error(what + "; this is not done in tiles, reconstruct it in one piece (hsdm without --memory)");
+}
+
+CloudExtent measure_extent(const PointParts& parts, Ranks& ranks) {
+    CloudExtent own = extent_of_part(parts), extent;
+    Ranks::Bytes bytes;
+    for (const std::size_t count : {own.points, own.nonfinite, own.first_nonfinite}) put(count, bytes);
+    put(own.box, bytes);
+    for (const Ranks::Bytes& got : ranks.gather(bytes)) {
+        ByteReader reader(got);
+        CloudExtent next;
+        for (std::size_t* count : {&next.points, &next.nonfinite, &next.first_nonfinite})
+            *count = reader.take<std::size_t>();
+        next.box = reader.take<Box>();
+        join(next, extent);
+    }
+    extent.sample = std::move(own.sample);
+    extent.sample_stride = own.sample_stride;
     if (extent.points == 0) throw Error("the cloud holds no point; nothing can be reconstructed");
     if (extent.points >= no_index) refuse_in_tiles("the cloud holds 2^32 points or more");
     if (2 * extent.nonfinite > extent.points)
@@ -50,31 +104,111 @@ CloudExtent measure_extent(const PointParts& parts) {
 }
 
 ScratchCloud::ScratchCloud(const PointParts& parts, const CloudExtent& extent, int depth,
-                           const TileOptions& options)
+                           const TileOptions& options, Ranks& ranks)
     : extent_(extent),
       frame_(extent.box),
       depth_(depth),
       cell_depth_(cell_depth_of(depth)),
-      scratch_(options.scratch, extent.finite(), bytes_buffered(options)) {
+      most_waiting_(points_waiting(options)),
+      ranks_(ranks),
+      scratch_(options.scratch, extent.finite() / static_cast<std::size_t>(ranks.size()),
+               bytes_buffered(options)) {
     options_.placement = CubePlacement::centred;
     options_.whole = extent.box;
     none_.extent = extent.box.extent();
     none_.origin = centred_origin(extent.box, none_.extent);
     none_.bounds = extent.box;
+    divide(extent);
+    extent_.sample = {};
+    sort_points(parts);
+    gather_cells();
+}
+
+MortonCode ScratchCloud::cell_of(const Vec3& place) const {
+    return code_at(place - origin(), cube_extent()) >> 3 * (morton_levels - cell_depth_);
+}
+
+/// Each rank gets cells that about as many points of the samples lie in.
+void ScratchCloud::divide(const CloudExtent& extent) {
+    std::map<MortonCode, double> weights;
+    for (const Vec3& place : extent.sample) weights[cell_of(place)] += 1;
+    Ranks::Bytes bytes;
+    for (const auto& [cell, count] : weights) {
+        put(cell, bytes);
+        put(count * static_cast<double>(extent.sample_stride), bytes);
+    }
+    weights.clear();
+    double total = 0;
+    for (const Ranks::Bytes& got : ranks_.gather(bytes))
+        for (ByteReader reader(got); !reader.at_end();) {
+            const auto cell = reader.take<MortonCode>();
+            const auto weight = reader.take<double>();
+            weights[cell] += weight, total += weight;
+        }
+    begins_.assign(1, 0);
+    double before = 0;
+    for (const auto& [cell, weight] : weights) {
+        while (begins_.size() < static_cast<std::size_t>(ranks_.size())
+               && before >= total * static_cast<double>(begins_.size()) / ranks_.size())
+            begins_.push_back(cell);
+        before += weight;
+    }
+    begins_.resize(static_cast<std::size_t>(ranks_.size()), MortonCode{1} << 3 * cell_depth_);
+}
+
+int ScratchCloud::owner(MortonCode cell) const {
+    return static_cast<int>(std::ranges::upper_bound(begins_, cell) - begins_.begin()) - 1;
+}
+
+std::vector<MortonCode> ScratchCloud::borders() const {
+    std::vector<MortonCode> borders;
+    for (const ScratchPoints::Cell& cell : cells_)
+        if (&cell != &cells_.front() && owner(cell.code) != owner((&cell - 1)->code))
+            borders.push_back(cell.code);
+    return borders;
+}
+
+/// This rank's part of the points goes to those that have their cells.
+void ScratchCloud::sort_points(const PointParts& parts) {
+    const auto keep = [&](const PointRow& row) { scratch_.add(cell_of(Vec3(row[0], row[1], row[2])), row); };
+    PointExchange exchange(ranks_, most_waiting_, keep);
     std::size_t added = 0;
     parts([&](const PointView& part) {
         for_each_in_order(part.size(), [&](std::size_t i) {
             const Vec3 p = vec3_at(part.positions, i), n = vec3_at(part.normals, i);
             if (!is_finite(p)) return;
-            const MortonCode code = code_at(p - origin(), cube_extent());
-            scratch_.add(code >> 3 * (morton_levels - cell_depth_), {p[0], p[1], p[2], n[0], n[1], n[2]});
+            const PointRow row{p[0], p[1], p[2], n[0], n[1], n[2]};
+            const MortonCode cell = cell_of(p);
+            if (const int to = owner(cell); to != ranks_.rank())
+                exchange.add(to, row);
+            else
+                scratch_.add(cell, row);
             ++added;
         });
     });
+    exchange.finish();
     scratch_.finish();
-    if (added != extent.finite())
+    if (ranks_.sum(added) != extent_.finite())
         throw Error("the points have changed while they were read; read them again");
-    cells_ = scratch_.cells();
+}
+
+void ScratchCloud::gather_cells() {
+    for (const Ranks::Bytes& got : ranks_.gather(bytes_of(scratch_.cells())))
+        for (const auto& cell : ByteReader(got).take_rest<ScratchPoints::Cell>()) cells_.push_back(cell);
+}
+
+std::size_t ScratchCloud::points_before() const {
+    std::size_t points = 0;
+    for (const ScratchPoints::Cell& cell : cells_)
+        if (owner(cell.code) < ranks_.rank()) points += cell.points;
+    return points;
+}
+
+std::size_t ScratchCloud::points_here() const {
+    std::size_t points = 0;
+    for (const ScratchPoints::Cell& cell : cells_)
+        if (owner(cell.code) == ranks_.rank()) points += cell.points;
+    return points;
 }
 
 OctreeLevel ScratchCloud::no_voxels() const {
@@ -98,11 +232,57 @@ Octree ScratchCloud::octree_of(const std::vector<PointRow>& rows) const {
     return octree;
 }
 
+/// Of cells along an edge, so many that no voxel beyond them is within `ghost` voxels.
+int ScratchCloud::cells_within(int ghost) const {
+    const int side = 1 << (depth_ - cell_depth_);
+    return (ghost + side - 1) / side;
+}
+
+std::vector<MortonCode> ScratchCloud::missing_cells(const std::vector<Surroundings>& wanted) const {
+    std::vector<MortonCode> missing;
+    for (const ScratchPoints::Cell& cell : cells_) {
+        if (owner(cell.code) == ranks_.rank() || std::ranges::binary_search(fetched_, cell.code)) continue;
+        const VoxelCoord at = morton_decode(cell.code);
+        if (std::ranges::any_of(wanted, [&](const Surroundings& w) {
+                return cells_of(w.range).is_near(at, cells_within(w.ghost));
+            }))
+            missing.push_back(cell.code);
+    }
+    return missing;
+}
+
+void ScratchCloud::fetch(const std::vector<Surroundings>& wanted) {
+    if (ranks_.size() == 1) return;
+    const std::vector<MortonCode> missing = missing_cells(wanted);
+    std::vector<Ranks::Bytes> out(static_cast<std::size_t>(ranks_.size()));
+    for (const MortonCode cell : missing) put(cell, out[static_cast<std::size_t>(owner(cell))]);
+    const std::vector<Ranks::Bytes> requests = ranks_.exchange(std::move(out));
+    PointExchange exchange(ranks_, most_waiting_, [&](const PointRow& row) {
+        scratch_.add(cell_of(Vec3(row[0], row[1], row[2])), row);
+    });
+    std::vector<PointRow> rows;
+    for (std::size_t to = 0; to < requests.size(); ++to)
+        for (const auto cell : ByteReader(requests[to]).take_rest<MortonCode>()) {
+            rows.clear();
+            scratch_.read(cell, rows);
+            for (const PointRow& row : rows) exchange.add(static_cast<int>(to), row);
+        }
+    exchange.finish();
+    scratch_.finish();
+    fetched_.insert(fetched_.end(), missing.begin(), missing.end());
+    std::ranges::sort(fetched_);
+}
+
+/// The range of cells of a range of voxels, as voxels of the cells' level.
+VoxelRange ScratchCloud::cells_of(const VoxelRange& range) const {
+    const int shift = 3 * (depth_ - cell_depth_);
+    return {range.begin >> shift, range.end >> shift, cell_depth_, 0};
+}
+
 std::vector<PointRow> ScratchCloud::rows_of(const VoxelRange& range, int ghost) const {
     std::vector<PointRow> rows, cell;
-    const int shift = 3 * (depth_ - cell_depth_), to_level = 3 * (morton_levels - depth_);
-    const int cells_around = (ghost >> (depth_ - cell_depth_)) + 1;
-    VoxelRange of_cells{range.begin >> shift, range.end >> shift, cell_depth_, 0};
+    const int to_level = 3 * (morton_levels - depth_), cells_around = cells_within(ghost);
+    const VoxelRange of_cells = cells_of(range);
     for (const ScratchPoints::Cell& c : cells_) {
         if (of_cells.holds(c.code)) {
             scratch_.read(c.code, rows);
@@ -122,9 +302,12 @@ std::vector<PointRow> ScratchCloud::rows_of(const VoxelRange& range, int ghost) 
 
 void ScratchCloud::for_groups(std::size_t most, const std::function<void(const Octree&)>& visit) const {
     std::vector<PointRow> rows;
-    for (std::size_t c = 0; c < cells_.size(); ++c) {
-        scratch_.read(cells_[c].code, rows);
-        if (c + 1 < cells_.size() && rows.size() + cells_[c + 1].points <= most) continue;
+    const auto is_own = [&](const ScratchPoints::Cell& cell) { return owner(cell.code) == ranks_.rank(); };
+    const auto first = std::ranges::find_if(cells_, is_own);
+    for (auto c = first; c != cells_.end() && is_own(*c); ++c) {
+        scratch_.read(c->code, rows);
+        const auto next = c + 1;
+        if (next != cells_.end() && is_own(*next) && rows.size() + next->points <= most) continue;
         const Octree octree = octree_of(rows);
         rows = std::vector<PointRow>();
         visit(octree);

@@ -2,6 +2,7 @@
 // A whole cloud on disk, sorted by cells of its octree, and the parts of it that are looked at one at a time.
 
 #include "hsdm/cloud/cloud_frame.hh"
+#include "hsdm/core/ranks.hh"
 #include "hsdm/io/scratch_points.hh"
 #include "hsdm/octree/octree.hh"
 #include "hsdm/pipeline/reconstruct_in_tiles.hh"
@@ -19,21 +20,35 @@ struct CloudExtent {
     Box box;                         ///< of those that are finite
 
     std::size_t finite() const { return points - nonfinite; }
+
+    /// Some points of this rank's part, each standing for so many.
+    std::vector<Vec3> sample{};
+    std::size_t sample_stride = 1;
 };
 
-/// One pass over the points. Throws Error for what is no cloud, or none that is done in tiles.
-CloudExtent measure_extent(const PointParts& parts);
+/// One pass over the points, each rank over its part: what all of them find. Throws Error for what is no
+/// cloud, or none that is done in tiles.
+CloudExtent measure_extent(const PointParts& parts, Ranks& ranks);
 
-/// The finite points of a cloud, on disk but for those left out.
+/// The finite points of a cloud, on disk but for those left out. Each rank has those of a range of cells, in
+/// Morton order, and about as many as each other; what it is asked for of other cells it fetches from theirs.
 class ScratchCloud {
 public:
     /// One more pass over the points. `memory` and `scratch` of the options. Throws Error as ScratchPoints,
     /// and if there are other points than were measured.
-    ScratchCloud(const PointParts& parts, const CloudExtent& extent, int depth, const TileOptions& options);
+    ScratchCloud(const PointParts& parts, const CloudExtent& extent, int depth, const TileOptions& options,
+                 Ranks& ranks);
 
     const CloudExtent& extent() const { return extent_; }
     const CloudFrame& frame() const { return frame_; }
-    const std::vector<ScratchPoints::Cell>& cells() const { return cells_; }
+    Ranks& ranks() const { return ranks_; }
+    const std::vector<ScratchPoints::Cell>& cells() const { return cells_; } ///< of all ranks
+    int owner(MortonCode cell) const;                                        ///< its rank
+    int owner_of(const VoxelRange& range) const { return owner(cells_of(range).begin); }
+    /// Where ranks begin that have cells, but for the first of them; ascending.
+    std::vector<MortonCode> borders() const;
+    std::size_t points_before() const; ///< of ranks before this one, duplicates and those left out too
+    std::size_t points_here() const;   ///< the same of this rank
     int depth() const { return depth_; }
     int cell_depth() const { return cell_depth_; }
     double cube_extent() const { return none_.extent; }
@@ -46,24 +61,42 @@ public:
     OctreeLevel no_voxels() const;
 
     Octree octree_of(const std::vector<PointRow>& rows) const;
-    /// The points of a range and of `ghost` voxels around it.
+    /// A range and so many voxels around it.
+    struct Surroundings {
+        VoxelRange range;
+        int ghost;
+    };
+    /// Fetches what other ranks have of these, so that rows_of() knows it. For all ranks at the same time.
+    void fetch(const std::vector<Surroundings>& wanted);
+    /// The points of a range of this rank and of what was fetched around it.
     std::vector<PointRow> rows_of(const VoxelRange& range, int ghost) const;
-    /// visit(octree) of all points, `most` or a cell's at a time, in Morton order.
+    /// visit(octree) of this rank's points, `most` or a cell's at a time, in Morton order.
     void for_groups(std::size_t most, const std::function<void(const Octree&)>& visit) const;
-
     /// Leaves points out from now on, as the octrees have them.
     void leave_out(std::vector<PointRow> rows);
     const std::vector<PointRow>& left_out() const { return left_out_; } ///< ascending
     static PointRow row_at(const Octree& octree, std::size_t point);
 
 private:
+    MortonCode cell_of(const Vec3& place) const;
+    void divide(const CloudExtent& extent);
+    void sort_points(const PointParts& parts);
+    void gather_cells();
+    int cells_within(int ghost) const;
+    VoxelRange cells_of(const VoxelRange& range) const;
+    std::vector<MortonCode> missing_cells(const std::vector<Surroundings>& wanted) const;
+
     CloudExtent extent_;
     CloudFrame frame_;
     OctreeOptions options_;
     Octree none_;
     int depth_, cell_depth_;
+    std::size_t most_waiting_; // points
+    Ranks& ranks_;
     ScratchPoints scratch_;
+    std::vector<MortonCode> begins_; // of the ranks' cells
     std::vector<ScratchPoints::Cell> cells_;
+    std::vector<MortonCode> fetched_; // cells of others, ascending
     std::vector<PointRow> left_out_;
 };
 

@@ -1,11 +1,14 @@
 #include "hsdm/pipeline/survey.hh"
 
 #include "hsdm/core/interruption.hh"
+#include "hsdm/core/large_vector.hh"
+
+#include <algorithm>
 
 namespace hsdm {
 
-Survey::Survey(int depth, int cell_depth, std::size_t expected)
-    : depth_(depth), cell_depth_(cell_depth), expected_(expected) {}
+Survey::Survey(int depth, int cell_depth, std::size_t expected, std::size_t before)
+    : depth_(depth), cell_depth_(cell_depth), expected_(expected), before_(before) {}
 
 std::size_t Survey::place_stride(std::size_t points) {
     constexpr std::size_t samples = 1 << 12;
@@ -23,33 +26,31 @@ void Survey::add(const Octree& part) {
     const SetSizes sizes = sizes_of(build_normal_sets(part, level));
     sets_.points += sizes.points, sets_.squares += sizes.squares;
     points_ += part.size();
-    last_ = part.codes.back();
 }
 
 /// The runs of points of each level: a run ends where the next point is in another voxel of it.
 void Survey::count_squares(const Octree& part) {
-    const auto end_runs = [&](unsigned from) {
-        for (unsigned level = from; level <= morton_levels; ++level) {
-            squares_[level] += open_[level] * open_[level];
-            open_[level] = 0;
+    std::array<double, morton_levels + 1> runs{};
+    const auto end_runs = [&](int from, MortonCode code) {
+        for (auto level = static_cast<unsigned>(std::max(from, cell_depth_)); level <= morton_levels;
+             ++level) {
+            squares_[level] += runs[level] * runs[level];
+            if (level == static_cast<unsigned>(cell_depth_))
+                cells_.push_back({code >> 3 * (morton_levels - cell_depth_), runs[level]});
+            runs[level] = 0;
         }
     };
-    MortonCode before = last_;
     for_each_in_order(part.size(), [&](std::size_t i) {
-        const MortonCode code = part.codes[i];
-        const bool first = points_ == 0 && i == 0;
-        const auto from = first ? 0u : static_cast<unsigned>(split_level(before, code));
-        if (!first && from <= morton_levels) end_runs(from);
-        for (unsigned level = from; level < static_cast<unsigned>(cell_depth_); ++level) ++shallow_[level];
-        for (double& run : open_) ++run;
-        before = code;
+        if (i > 0) end_runs(split_level(part.codes[i - 1], part.codes[i]), part.codes[i - 1]);
+        for (double& run : runs) ++run;
     });
+    end_runs(0, part.codes.back());
 }
 
 void Survey::sample(const Octree& part) {
     const std::size_t stride = place_stride(expected_);
     for_each_in_order(part.size(), [&](std::size_t i) {
-        const std::size_t number = points_ + i;
+        const std::size_t number = before_ + points_ + i;
         if (NormalSample::holds(number, expected_)) {
             normals_.number.push_back(number);
             normals_.points.push_back({part.positions[i], part.normals[i]});
@@ -60,17 +61,72 @@ void Survey::sample(const Octree& part) {
 
 VoxelCounts Survey::counts() const {
     VoxelCounts counts = deep_;
-    for (std::size_t level = 0; level < static_cast<std::size_t>(cell_depth_); ++level)
-        counts.voxels[level] = shallow_[level];
+    for (int level = 0; level < cell_depth_; ++level) {
+        std::size_t& voxels = counts.voxels[static_cast<std::size_t>(level)];
+        voxels = 0;
+        for (std::size_t c = 0; c < cells_.size(); ++c)
+            voxels += c == 0 || is_split(cells_[c - 1].code, cells_[c].code, level);
+    }
     return counts;
 }
 
+/// Are two cells in different voxels of a level above theirs?
+bool Survey::is_split(MortonCode cell, MortonCode next, int level) const {
+    const int shift = 3 * (cell_depth_ - level);
+    return cell >> shift != next >> shift;
+}
+
+double Survey::squares_at(int level) const {
+    if (level >= cell_depth_) return squares_[static_cast<std::size_t>(level)];
+    double squares = 0, run = 0;
+    for (std::size_t c = 0; c < cells_.size(); ++c) {
+        if (c > 0 && is_split(cells_[c - 1].code, cells_[c].code, level)) squares += run * run, run = 0;
+        run += cells_[c].points;
+    }
+    return squares + run * run;
+}
+
 SparseLevel Survey::sparse() const {
-    const auto squares_at = [&](int level) {
-        const auto l = static_cast<std::size_t>(level);
-        return squares_[l] + open_[l] * open_[l];
-    };
-    return sparse_level(points_, counts().voxels, squares_at, NormalOutlierOptions().points_per_voxel);
+    return sparse_level(
+        points_, counts().voxels, [&](int level) { return squares_at(level); },
+        NormalOutlierOptions().points_per_voxel);
+}
+
+void Survey::join(Ranks& ranks) {
+    if (ranks.size() == 1) return;
+    Ranks::Bytes own;
+    put(points_, own);
+    put(deep_, own);
+    put(squares_, own);
+    put(sets_, own);
+    put_vector(cells_, own);
+    put_vector(normals_.number, own);
+    put_vector(normals_.points, own);
+    put_vector(places_, own);
+    Survey all(depth_, cell_depth_, expected_);
+    for (const Ranks::Bytes& got : ranks.gather(own)) {
+        ByteReader reader(got);
+        all.add_next(reader);
+    }
+    *this = std::move(all);
+}
+
+/// Sums of whole numbers, which are the same however they are divided.
+void Survey::add_next(ByteReader& rank) {
+    points_ += rank.take<std::size_t>();
+    const auto deep = rank.take<VoxelCounts>();
+    const auto squares = rank.take<std::array<double, morton_levels + 1>>();
+    const auto sets = rank.take<SetSizes>();
+    for (std::size_t level = 0; level <= morton_levels; ++level) {
+        deep_.voxels[level] += deep.voxels[level];
+        squares_[level] += squares[level];
+    }
+    deep_.places += deep.places;
+    sets_.points += sets.points, sets_.squares += sets.squares;
+    append_large(cells_, rank.take_vector<Cell>());
+    append_large(normals_.number, rank.take_vector<std::size_t>());
+    append_large(normals_.points, rank.take_vector<NormalSample::Point>());
+    append_large(places_, rank.take_vector<Vec3>());
 }
 
 } // namespace hsdm

@@ -3,6 +3,7 @@
 // PreparedCloud.
 
 #include "hsdm/contour/outlier_sets.hh"
+#include "hsdm/core/ranks.hh"
 #include "hsdm/normals/mend_normals.hh"
 #include "hsdm/normals/outliers.hh"
 #include "hsdm/octree/spacing.hh"
@@ -13,10 +14,13 @@ namespace hsdm {
 /// duplicates, in the octree of the whole.
 class Survey {
 public:
-    /// `expected`: points that there are in all, if none is a duplicate.
-    Survey(int depth, int cell_depth, std::size_t expected);
+    /// `expected`: points that there are in all, if none is a duplicate; `before`: of these, how many come
+    /// before the first part.
+    Survey(int depth, int cell_depth, std::size_t expected, std::size_t before = 0);
 
     void add(const Octree& part);
+    /// Becomes that of all ranks, each of which has added parts that come before those of the next one.
+    void join(Ranks& ranks);
 
     /// The points that are not duplicates; unless these are as many as expected, the samples are wrong, and
     /// all has to be done again.
@@ -31,16 +35,22 @@ public:
     static std::size_t place_stride(std::size_t points); ///< as drop_far_outliers() has it
 
 private:
+    /// A cell, which is of one part alone.
+    struct Cell {
+        MortonCode code;
+        double points;
+    };
     void count_squares(const Octree& part);
     void sample(const Octree& part);
+    bool is_split(MortonCode cell, MortonCode next, int level) const;
+    double squares_at(int level) const;
+    void add_next(ByteReader& rank);
 
     int depth_, cell_depth_;
-    std::size_t expected_, points_ = 0;
-    VoxelCounts deep_; // from the cells' level on
-    std::array<std::size_t, morton_levels + 1> shallow_{};
-    std::array<double, morton_levels + 1> squares_{};
-    std::array<double, morton_levels + 1> open_{}; // points in the last voxel of each level above the cells'
-    MortonCode last_ = 0;                          // code of the last point
+    std::size_t expected_, before_, points_ = 0;
+    VoxelCounts deep_;                                // from the cells' level on
+    std::array<double, morton_levels + 1> squares_{}; // the same: whole numbers
+    std::vector<Cell> cells_;                         // what is above follows from
     SetSizes sets_;
     NormalSample normals_;
     std::vector<Vec3> places_;

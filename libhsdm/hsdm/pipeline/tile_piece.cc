@@ -131,26 +131,6 @@ private:
     Range own_{}, facets_{};
 };
 
-/// The digests of a piece that are in a range.
-std::span<const Piece::Digest> within(const std::vector<Piece::Digest>& digests, const VoxelRange& range) {
-    const auto at = [&](MortonCode code) {
-        return std::ranges::lower_bound(digests, code, {}, &Piece::Digest::code);
-    };
-    return {at(range.begin), at(range.end)};
-}
-
-/// Did `one` find the same in voxels of `other` as that one itself?
-bool sees_same(const Piece& one, const Piece& other) {
-    auto seen = within(one.beyond, other.range).begin();
-    const auto end = within(one.beyond, other.range).end();
-    for (const Piece::Digest& digest : other.border) {
-        if (!one.range.is_near(morton_decode(digest.code), compared_voxels)) continue;
-        if (seen == end || !(*seen == digest)) return false;
-        ++seen;
-    }
-    return seen == end;
-}
-
 } // namespace
 
 Piece make_piece(const MethodInput& in, const PartOfLevel& part, const VoxelRange& range) {
@@ -160,8 +140,21 @@ Piece make_piece(const MethodInput& in, const PartOfLevel& part, const VoxelRang
     return piece;
 }
 
-bool agree(const Piece& one, const Piece& other) {
-    return sees_same(one, other) && sees_same(other, one);
+std::span<const Piece::Digest> within(std::span<const Piece::Digest> beyond, const VoxelRange& range) {
+    const auto at = [&](MortonCode code) {
+        return std::ranges::lower_bound(beyond, code, {}, &Piece::Digest::code);
+    };
+    return {at(range.begin), at(range.end)};
+}
+
+bool sees_same(const VoxelRange& range, std::span<const Piece::Digest> beyond, const Piece& other) {
+    auto seen = beyond.begin();
+    for (const Piece::Digest& digest : other.border) {
+        if (!range.is_near(morton_decode(digest.code), compared_voxels)) continue;
+        if (seen == beyond.end() || !(*seen == digest)) return false;
+        ++seen;
+    }
+    return seen == beyond.end();
 }
 
 } // namespace hsdm

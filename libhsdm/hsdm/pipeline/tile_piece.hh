@@ -45,7 +45,11 @@ inline constexpr int compared_voxels = 2;
 /// Reconstructs a tile. `in`: the points of the range and of all voxels within the ghost layer of it.
 Piece make_piece(const MethodInput& in, const PartOfLevel& part, const VoxelRange& range);
 
-/// Did both tiles find the same in voxels that both have seen?
-bool agree(const Piece& one, const Piece& other);
+/// What a tile found beyond itself, in ascending order, that is in a range.
+std::span<const Piece::Digest> within(std::span<const Piece::Digest> beyond, const VoxelRange& range);
+
+/// Did the tile of a range find the same in voxels of `other` as that one itself? `beyond`: what the former
+/// found there.
+bool sees_same(const VoxelRange& range, std::span<const Piece::Digest> beyond, const Piece& other);
 
 } // namespace hsdm

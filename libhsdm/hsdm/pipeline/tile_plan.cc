@@ -78,7 +78,8 @@ std::vector<VoxelRange> plan_tiles(std::span<const ScratchPoints::Cell> cells,
     bool empty = true;
     for (const ScratchPoints::Cell& cell : cells) {
         Interruption::poll();
-        if (!empty && size->with(cell.code) > static_cast<double>(options.most_points)) {
+        const bool is_border = std::ranges::binary_search(options.borders, cell.code);
+        if (!empty && (is_border || size->with(cell.code) > static_cast<double>(options.most_points))) {
             begins.push_back(cell.code << 3 * shift);
             size.emplace(points, options);
         }

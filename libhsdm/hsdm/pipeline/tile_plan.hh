@@ -35,7 +35,8 @@ int cell_depth_of(int depth);
 struct TilePlanOptions {
     int depth = 0, cell_depth = 0;
     int ghost_voxels = 0;
-    std::size_t most_points = 0; ///< of a tile and what is round it, about
+    std::size_t most_points = 0;       ///< of a tile and what is round it, about
+    std::vector<MortonCode> borders{}; ///< cells that a tile must begin with, ascending
 };
 
 /// Ranges that cover the level, as few as there may be. A cell that is too large alone becomes a tile all the
