@@ -26,7 +26,7 @@ packages="g++ cmake ninja-build libopenmesh-dev libeigen3-dev libflann-dev libtb
 python="pybind11-dev python3-dev python3-numpy"
 case $goal in
 python) packages="$packages $python python3-skbuild python3-venv" ;;
-test) packages="$packages $python python3-pytest python3-meshio mypy" ;;
+test) packages="$packages $python python3-pytest python3-meshio mypy libopenmpi-dev openmpi-bin" ;;
 demo) packages="$packages f3d xvfb xauth" ;;
 tools) packages="$packages clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 llvm-14 doxygen git
     python3 libbenchmark-dev lintian zsh fish man-db libxml2-utils

@@ -60,7 +60,7 @@ int guarded(const Run& run) {
 
 /// The subcommands in the groups that --help shows them in.
 void add_subcommands(CLI::App& app, Run& run) {
-    add_reconstruct(app, run);
+    add_reconstruct(app, run, nullptr);
     app.get_subcommand("reconstruct")->group("From points to a mesh");
     add_info(app, run);
     add_compare(app, run);
@@ -72,6 +72,14 @@ void add_subcommands(CLI::App& app, Run& run) {
     add_regress(app, run);
     app.get_subcommand("regress")->group("Suites");
     add_manual(app, run);
+}
+
+/// What `hsdm-mpi` has.
+void add_reconstruct_by_ranks(CLI::App& app, Run& run, Ranks& ranks) {
+    app.footer("Run by mpirun or srun: the processes share the work, and write the file that one would.\n"
+               "Example:\n"
+               "  mpirun -n 4 hsdm-mpi reconstruct scan.ply --depth 11 -o part.ply");
+    add_reconstruct(app, run, &ranks);
 }
 
 /// A standard descriptor that is closed becomes one that cannot be used either: else the next file or pipe
@@ -88,11 +96,12 @@ void take_standard_descriptors() {
 }
 
 /// The subcommand's status, or the one that the arguments deserve.
-int parse_and_run(int argc, char** argv) {
-    CLI::App app("scanned points in, CAD-ready meshes out", "hsdm");
+int parse_and_run(int argc, char** argv, Ranks* ranks) {
+    const std::string name = ranks ? "hsdm-mpi" : "hsdm";
+    CLI::App app("scanned points in, CAD-ready meshes out", name);
     app.formatter(help_formatter());
     app.set_help_flag("-h,--help", "print this and end");
-    app.set_version_flag("--version", std::string("hsdm ") + version, "print the version and end");
+    app.set_version_flag("--version", name + " " + version, "print the version and end");
     app.require_subcommand(1);
     app.footer("Points come as PLY, PCD, text and more, meshes go out as OFF, STL, PLY, OBJ or .om;\n"
                "`hsdm SUBCOMMAND --help` tells what a subcommand takes.\n"
@@ -102,10 +111,13 @@ int parse_and_run(int argc, char** argv) {
                "  hsdm info part.stl\n"
                "  hsdm compare part.off scan.ply");
     Run run;
-    add_subcommands(app, run);
+    if (ranks)
+        add_reconstruct_by_ranks(app, run, *ranks);
+    else
+        add_subcommands(app, run);
     return guarded([&] {
         if (const auto status = parse_command_line(app, argc, argv)) return *status;
-        handle_signals();
+        if (!ranks) handle_signals(); // it has been done there
         start_threads();
         return run();
     });
@@ -117,11 +129,11 @@ void complain(const std::string& message) {
     std::cerr << "hsdm: " << printable(message) << std::endl;
 }
 
-int run_command(int argc, char** argv) {
+int run_command(int argc, char** argv, Ranks* ranks) {
     os::keep_freed_memory();
     take_standard_descriptors();
     try {
-        return parse_and_run(argc, argv);
+        return parse_and_run(argc, argv, ranks);
     } catch (const std::bad_alloc&) { // while the options are set up
         complain_of_memory();
         return failed;

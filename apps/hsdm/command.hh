@@ -8,6 +8,10 @@
 #include <stdexcept>
 #include <string>
 
+namespace hsdm {
+class Ranks;
+}
+
 namespace hsdm::command {
 
 enum Exit : int { done = 0, failed = 1, wrong_usage = 2 }; // and 128 + a signal
@@ -21,7 +25,8 @@ public:
 /// A subcommand's work, set by the one that was given; returns the exit status.
 using Run = std::function<int()>;
 
-void add_reconstruct(CLI::App& app, Run& run);
+/// `ranks`: those that do it together, if there are some.
+void add_reconstruct(CLI::App& app, Run& run, Ranks* ranks);
 void add_info(CLI::App& app, Run& run);
 void add_compare(CLI::App& app, Run& run);
 void add_process(CLI::App& app, Run& run);
@@ -29,8 +34,9 @@ void add_stages(CLI::App& app, Run& run);
 void add_regress(CLI::App& app, Run& run);
 void add_manual(CLI::App& app, Run& run);
 
-/// Parses and runs; every exception becomes a message on standard error and an exit status.
-int run_command(int argc, char** argv);
+/// Parses and runs; every exception becomes a message on standard error and an exit status. With ranks it is
+/// `hsdm-mpi`, which has the subcommand `reconstruct` alone.
+int run_command(int argc, char** argv, Ranks* ranks = nullptr);
 
 /// `hsdm: MESSAGE` on standard error, one line: control characters are written out.
 void complain(const std::string& message);

@@ -372,6 +372,17 @@ std::optional<TileOptions> ReconstructArguments::tiles() const {
     return tiles;
 }
 
+TileOptions ReconstructArguments::tiles_of_rank() const {
+    if (inputs.size() > 1) throw UsageError("several ranks do one input at a time; give one");
+    if (inputs.front() == "-" || output == "-")
+        throw UsageError("several ranks have no standard input and output in common; give names of files");
+    if (!memory.empty()) return *tiles();
+    TileOptions unbounded;
+    unbounded.scratch = scratch;
+    unbounded.memory = TileOptions::no_bound;
+    return unbounded;
+}
+
 void ReconstructArguments::check_for_tiles(const TileOptions& tiles) const {
     for (const auto& [given, option] :
          {std::pair(!levels.empty(), "--levels"), {!stages.empty(), "--stage"}, {!html.empty(), "--html"}})

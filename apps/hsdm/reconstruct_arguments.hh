@@ -51,6 +51,8 @@ struct ReconstructArguments {
     ReconstructOptions options() const;
     /// What bounds the memory, if something is to: --memory and --scratch. Throws UsageError.
     std::optional<TileOptions> tiles() const;
+    /// The same of each of several processes that do it together, which need no bound.
+    TileOptions tiles_of_rank() const;
     /// Throws UsageError and OptionError for what cannot be done in tiles.
     void check_for_tiles(const TileOptions& tiles) const;
     /// First and last depth of --levels A:B; nothing if it was not given. Throws UsageError.

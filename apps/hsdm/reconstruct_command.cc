@@ -5,11 +5,13 @@
 #include "mesh_stages.hh"
 #include "messages.hh"
 #include "page.hh"
+#include "rank_work.hh"
 #include "reconstruct_arguments.hh"
 #include "reconstruct_output.hh"
 #include "summary.hh"
 #include "threads.hh"
 
+#include "hsdm/core/ranks.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/json_text.hh"
 #include "hsdm/io/output_target.hh"
@@ -58,11 +60,13 @@ auto named(const std::string& name, const Make& make) {
 
 class ReconstructRun {
 public:
-    explicit ReconstructRun(const ReconstructArguments& arguments)
+    /// `ranks`: those that do it together; null: this process alone.
+    ReconstructRun(const ReconstructArguments& arguments, Ranks* ranks)
         : arguments_(arguments),
+          ranks_(ranks),
           levels_(arguments.level_range()),
           stages_(parse_stages(arguments.stages)),
-          tiles_(arguments.tiles()),
+          tiles_(ranks ? arguments.tiles_of_rank() : arguments.tiles()),
           options_(checked_options(arguments, levels_)),
           plan_(arguments, levels_, stages_),
           text_(plan_.uses_standard_output() ? std::cerr : std::cout) {
@@ -156,7 +160,8 @@ private:
         std::optional<PointFile> read;
         if (tiles_) {
             PointsInParts points(input, arguments_.read);
-            if (!fits_in_one_piece(points.size())) return make_in_tiles(points, input, name, start, bar);
+            if (ranks_ || !fits_in_one_piece(points.size()))
+                return make_in_tiles(points, input, name, start, bar);
             if (points.in_memory()) read = std::move(points).file();
         }
         PointFile file = read ? std::move(*read) : read_points(input, arguments_.read);
@@ -216,14 +221,24 @@ private:
             throw Error(name, "its points take " + std::to_string(held / 1000000)
                                   + " MB once they are read; of binary PLY files they need not be in memory");
         tiles.memory -= held;
+        OneRank alone;
+        Ranks& ranks = ranks_ ? *ranks_ : alone;
+        const auto share = [&](int rank) {
+            return points.size() * static_cast<std::size_t>(rank) / static_cast<std::size_t>(ranks.size());
+        };
         const PointParts parts = [&](const auto& visit) {
-            points.visit([&](const PointCloud& part) { visit(view_of(part)); });
+            points.visit(share(ranks.rank()), share(ranks.rank() + 1),
+                         [&](const PointCloud& part) { visit(view_of(part)); });
         };
         TileReport how;
         const auto note = [&](Report& report) {
             note_reading(points.file(), report);
-            report.options["memory"] = arguments_.memory;
+            if (!arguments_.memory.empty()) report.options["memory"] = arguments_.memory;
             report.options["tiles"] = std::to_string(how.tiles);
+            if (ranks_) {
+                report.options["ranks"] = std::to_string(ranks_->size());
+                work_of_ranks_ = std::move(how.ranks);
+            }
             report.input.file = input;
             report.seconds.read = read_seconds;
             bar.show("write", 0.97);
@@ -231,13 +246,15 @@ private:
         std::vector<Report> made;
         if (is_written_as_it_comes()) {
             FlatReconstruction flat =
-                named(name, [&] { return reconstruct_flat_in_tiles(parts, options, tiles, &how); });
+                named(name, [&] { return reconstruct_flat_in_tiles(parts, options, tiles, ranks, &how); });
+            if (!ranks.is_first()) return {}; // which has all of it
             note(flat.report);
             write_as_it_comes(flat);
             made.push_back(std::move(flat.report));
         } else {
             Reconstruction result =
-                named(name, [&] { return reconstruct_in_tiles(parts, options, tiles, &how); });
+                named(name, [&] { return reconstruct_in_tiles(parts, options, tiles, ranks, &how); });
+            if (!ranks.is_first()) return {};
             note(result.report);
             write_one(name, {}, result);
             made.push_back(std::move(result.report));
@@ -355,13 +372,14 @@ private:
             text_ << line_of(report, written);
         }
         if (report.written) text_ << written_words(*report.written);
+        if (ranks_) text_ << work_words(work_of_ranks_, arguments_.verbose);
         if (arguments_.verbose) text_ << details_of(report);
         text_ << warnings_of(report);
     }
 
     /// One mesh: its report; several: a list of them in the order they were made.
     void write_report() const {
-        if (arguments_.report.empty()) return;
+        if (arguments_.report.empty() || (ranks_ && !ranks_->is_first())) return;
         set_activity(arguments_.report.c_str(), "write");
         if (arguments_.inputs.size() == 1 && !levels_) {
             write_text(arguments_.report, reports_.front());
@@ -374,6 +392,7 @@ private:
     }
 
     const ReconstructArguments& arguments_;
+    Ranks* ranks_;
     std::optional<std::pair<int, int>> levels_;
     std::vector<StageCall> stages_;
     std::optional<TileOptions> tiles_;
@@ -383,11 +402,20 @@ private:
     std::vector<std::string> reports_;
     std::size_t failed_inputs_ = 0, points_ = 0, faces_ = 0;
     std::size_t doubtful_ = 0; // meshes with warnings
+    std::vector<TileReport::Rank> work_of_ranks_;
 };
+
+/// All ranks do the same up to the mesh, which the first has and writes.
+int reconstruct_by(Ranks& ranks, ReconstructArguments& arguments) {
+    if (!ranks.is_first()) arguments.progress = Progress::never;
+    int status = done;
+    ranks.together([&] { status = ReconstructRun(arguments, &ranks).run(); });
+    return status;
+}
 
 } // namespace
 
-void add_reconstruct(CLI::App& app, Run& run) {
+void add_reconstruct(CLI::App& app, Run& run, Ranks* ranks) {
     CLI::App* const sub = app.add_subcommand("reconstruct", "point clouds in, meshes out");
     const auto arguments = std::make_shared<ReconstructArguments>();
     add_file_options(*sub, *arguments);
@@ -400,13 +428,13 @@ void add_reconstruct(CLI::App& app, Run& run) {
                 "  hsdm reconstruct scan.ply --levels 4:7 -o part.ply\n"
                 "  hsdm reconstruct *.xyz --out-dir meshes --format stl\n"
                 "  cat scan.xyz | hsdm reconstruct - --input-format xyz -o - --format off > part.off");
-    sub->callback([&run, arguments] {
-        run = [arguments] {
+    sub->callback([&run, arguments, ranks] {
+        run = [arguments, ranks] {
             if (arguments->threads > most_threads)
                 complain("--threads " + std::to_string(arguments->threads) + ": "
                          + std::to_string(most_threads) + " are used, more would find nothing to do");
             if (arguments->threads > 0) bound_threads(std::min(arguments->threads, most_threads));
-            return ReconstructRun(*arguments).run();
+            return ranks ? reconstruct_by(*ranks, *arguments) : ReconstructRun(*arguments, nullptr).run();
         };
     });
 }

@@ -5,8 +5,6 @@
 #include "hsdm/io/formats.hh"
 #include "hsdm/io/source_bytes.hh"
 
-#include <limits>
-
 namespace hsdm {
 namespace {
 
@@ -39,13 +37,13 @@ PointsInParts::PointsInParts(const std::string& path, const ReadOptions& options
 }
 
 void PointsInParts::visit(const std::function<void(const PointCloud&)>& visit) const {
-    if (!rows_) return visit(file_.cloud);
-    this->visit(0, std::numeric_limits<std::size_t>::max(), visit);
+    this->visit(0, size(), visit);
 }
 
 void PointsInParts::visit(std::size_t begin, std::size_t end,
                           const std::function<void(const PointCloud&)>& visit) const {
-    if (!rows_) return visit(slice(file_.cloud, begin, std::min(end, file_.cloud.size())));
+    if (!rows_ && begin == 0 && end == size()) return visit(file_.cloud);
+    if (!rows_) return visit(slice(file_.cloud, begin, end));
     constexpr std::size_t points_at_once = std::size_t{1} << 18; // some megabytes
     const auto one = [&](const PointCloud& part) {
         Interruption::poll();

@@ -19,7 +19,8 @@ public:
 
     /// Calls visit(part) for all points in their order. Throws Error.
     void visit(const std::function<void(const PointCloud&)>& visit) const;
-    /// The same of the points [begin, end) alone; of a cloud in memory a copy of these, without sensors.
+    /// The same of the points [begin, end) alone; of a cloud in memory that is not all of it a copy,
+    /// without sensors.
     void visit(std::size_t begin, std::size_t end, const std::function<void(const PointCloud&)>& visit) const;
 
     std::size_t size() const { return rows_ ? *rows_ : file_.cloud.size(); }

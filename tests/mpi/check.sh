@@ -1,0 +1,88 @@
+#!/bin/sh
+# sh check.sh HSDM HSDM-MPI GENERATE MPIRUN: the file that several processes write is that of one, and whatever
+# goes wrong in one of them ends all, soon, with a message and nothing left behind.
+set -eu
+hsdm=$1 hsdm_mpi=$2 generate=$3 mpirun=$4
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+mkdir scratch
+export OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+export OMP_NUM_THREADS=1 OMPI_MCA_btl_vader_single_copy_mechanism=none
+
+fail() {
+    echo "FAILED: $1"
+    cat out err 2>/dev/null || true
+    exit 1
+}
+
+# by COUNT ARGUMENT...: what that many processes make of the scan; at most a minute
+by() {
+    count=$1
+    shift
+    timeout 60 "$mpirun" -n "$count" "$hsdm_mpi" reconstruct "$@" >out 2>err
+}
+
+"$generate" part --points 30000 -o scan.ply
+"$hsdm" reconstruct scan.ply --depth 6 -o one.ply --features one.txt --quiet
+for count in 1 2 3; do
+    by $count scan.ply --depth 6 -o ranks.ply --features ranks.txt --scratch scratch --threads 1 ||
+        fail "$count processes: status $?"
+    cmp one.ply ranks.ply || fail "$count processes write another mesh"
+    cmp one.txt ranks.txt || fail "$count processes write other features"
+    grep -q "^ranks     $count: " out || fail "the summary does not tell of $count ranks"
+done
+
+# refused WHAT TEXT ARGUMENT...: status, message, told once, and no file
+refused() {
+    what=$1 text=$2
+    shift 2
+    rm -f ranks.ply
+    status=0
+    by 3 "$@" || status=$?
+    [ $status -ne 0 ] && [ $status -ne 124 ] || fail "$what: status $status"
+    [ "$(grep -c "^hsdm: .*$text" err)" -eq 1 ] || fail "$what: not told once"
+    [ ! -e ranks.ply ] || fail "$what: a file was written"
+}
+refused "no such file" "none.ply" none.ply --depth 6 -o ranks.ply
+refused "an option that ranks do not have" "--levels" scan.ply --levels 4:5 -o ranks.ply
+refused "no depth" "depth" scan.ply -o ranks.ply
+refused "several inputs" "one input" scan.ply scan.ply --depth 6 --out-dir .
+refused "standard output" "names of files" scan.ply --depth 6 -o - --format off
+refused "no folder for scratch" "/no/such" scan.ply --depth 6 -o ranks.ply --scratch /no/such
+head -c 400000 scan.ply >short.ply
+refused "a truncated file" "short.ply" short.ply --depth 6 -o ranks.ply
+
+# A rank that is killed, or asked to end, at any time.
+"$generate" part --points 300000 -o long.ply
+cat >rank.sh <<'END'
+echo $$ >pid.tmp.$OMPI_COMM_WORLD_RANK
+mv pid.tmp.$OMPI_COMM_WORLD_RANK pid.$OMPI_COMM_WORLD_RANK
+exec env --default-signal=INT,TERM "$@"
+END
+for signal in KILL TERM INT; do
+    for delay in 0.1 0.4 0.8; do
+        what="a rank was ended by $signal after $delay s"
+        rm -f ranks.ply pid.*
+        "$mpirun" -n 3 sh rank.sh "$hsdm_mpi" reconstruct long.ply --depth 9 -o ranks.ply --scratch scratch \
+            --threads 1 >out 2>err &
+        job=$!
+        while [ ! -e pid.1 ]; do sleep 0.05; done
+        sleep $delay
+        kill -s $signal "$(cat pid.1)" 2>/dev/null || fail "$what: it had ended"
+        (sleep 30 && touch late && kill -s KILL $job) 2>/dev/null &
+        watch=$!
+        status=0
+        wait $job || status=$?
+        kill $watch 2>/dev/null || true
+        [ ! -e late ] || fail "$what: the others did not end within half a minute"
+        [ $status -ne 0 ] || fail "$what: status 0"
+        [ -s err ] || fail "$what: no message"
+        [ ! -e ranks.ply ] || fail "$what: a file was written"
+        [ -z "$(ls -A scratch)" ] || fail "$what: scratch is left"
+    done
+done
+rm -f pid.* rank.sh
+ls | grep -v -e '^scan.ply$' -e '^long.ply$' -e '^short.ply$' -e '^one' -e '^ranks.txt$' -e '^scratch$' -e '^out$' -e '^err$' &&
+    fail "files are left behind"
+echo "several processes: the bits of one"
