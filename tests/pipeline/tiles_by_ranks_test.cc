@@ -41,7 +41,7 @@ bool have_same_bits(const std::vector<T>& a, const std::vector<T>& b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
-void check_same(const Reconstruction& whole, const Reconstruction& by_ranks) {
+void check_same_by_ranks(const Reconstruction& whole, const Reconstruction& by_ranks) {
     const PolygonMesh a = to_polygons(whole.mesh), b = to_polygons(by_ranks.mesh);
     CHECK(a.facet_count() > 0);
     CHECK(have_same_bits(a.positions, b.positions));
@@ -97,7 +97,7 @@ TEST_CASE("several ranks give the mesh of one piece, bit for bit", "[pipeline]")
     for (const std::string& failure : run_on(count, cloud, small_tiles(), result, how))
         CHECK(failure.empty());
     REQUIRE(result);
-    check_same(whole, *result);
+    check_same_by_ranks(whole, *result);
     std::size_t tiles = 0;
     for (const TileReport::Rank& rank : how.ranks) {
         CHECK(rank.tiles > 0);
@@ -116,7 +116,7 @@ TEST_CASE("tiles of two ranks that know too little around them are made again wi
     TileReport how;
     for (const std::string& failure : run_on(2, cloud, tiles, result, how)) CHECK(failure.empty());
     REQUIRE(result);
-    check_same(reconstruct(cloud, {.depth = 6}), *result);
+    check_same_by_ranks(reconstruct(cloud, {.depth = 6}), *result);
     CHECK(how.widened > 0);
 }
 
@@ -130,7 +130,7 @@ TEST_CASE("ranks that no cell is left for have nothing to do", "[pipeline]") {
     TileReport how;
     for (const std::string& failure : run_on(5, cloud, small_tiles(), result, how)) CHECK(failure.empty());
     REQUIRE(result);
-    check_same(reconstruct(cloud, {.depth = 6}), *result);
+    check_same_by_ranks(reconstruct(cloud, {.depth = 6}), *result);
     CHECK(std::ranges::count(how.ranks, std::size_t{0}, &TileReport::Rank::tiles) > 0);
 }
 

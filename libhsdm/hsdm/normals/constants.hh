@@ -54,6 +54,15 @@ HSDM_TUNED double doubtful_sparseness = 1.5;
 /// Why: points spread over a ball deviate by 0.45, over a crease of a right angle by 0.19.
 HSDM_TUNED double least_volume = 0.2;
 
+/// reaches: from a plane that is a face.
+/// Why: of 16 points in a ball a plane through three of them holds seven within that with odds of one in a
+/// hundred.
+inline constexpr double face_thickness = 0.02;
+
+/// percent: of the neighbours that lie on a face.
+/// Why: at the rim of a wedge half of them, less what chance takes.
+inline constexpr std::size_t face_percent = 44;
+
 /// reaches: a point's distance from its neighbours' plane.
 /// Why: by trial; a point beyond a crease is less far off.
 HSDM_TUNED double least_height = 0.45;

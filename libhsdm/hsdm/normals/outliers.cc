@@ -40,12 +40,30 @@ bool is_volume(const Octree& octree, const Neighbors& neighbors, double least_vo
     return 2 * volumes > looked_at;
 }
 
+/// Does a plane through the point and two of its neighbours hold many of the others? One does at the rims of
+/// thin wedges, on each of their faces; hardly ever one of points that fill a volume.
+bool lies_on_face(const Octree& octree, const Neighbors& neighbors, std::size_t i) {
+    const auto around = neighbors.of(i);
+    const double thickness = distance_outliers::face_thickness * neighbors.reach[i];
+    const std::size_t enough = around.size() * distance_outliers::face_percent / 100;
+    const auto offset = [&](std::size_t k) { return octree.positions[around[k]] - octree.positions[i]; };
+    for (std::size_t a = 0; a < around.size(); ++a)
+        for (std::size_t b = a + 1; b < around.size(); ++b) {
+            const Vec3 normal = offset(a) % offset(b);
+            std::size_t held = 0;
+            for (std::size_t k = 0; k < around.size(); ++k)
+                held += std::abs(normal | offset(k)) <= thickness * normal.norm();
+            if (held >= enough) return true;
+        }
+    return false;
+}
+
 /// Do the neighbours, without the point, fill a volume, or lie on a plane that the point is off?
 bool is_off_surface(const Octree& octree, const Neighbors& neighbors, std::size_t i,
                     const OutlierOptions& options) {
     const PlaneFit plane = plane_around(octree, neighbors, i);
     const double deviation = deviation_from(plane), reach = neighbors.reach[i];
-    if (deviation > options.least_volume * reach) return true;
+    if (deviation > options.least_volume * reach) return !lies_on_face(octree, neighbors, i);
     const double height = std::abs(plane.normal | plane.centroid);
     return height > options.least_height * reach && height > distance_outliers::least_deviations * deviation;
 }
