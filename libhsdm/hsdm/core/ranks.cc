@@ -108,9 +108,10 @@ Ranks::Bytes Ranks::of_first(Bytes&& own) {
 }
 
 std::vector<Ranks::Bytes> Ranks::exchange(std::vector<Bytes>&& out) {
-    std::vector<std::uint64_t> own;
-    for (const Bytes& bytes : out) own.push_back(bytes.size());
+    std::vector<std::uint64_t> own(out.size());
+    std::ranges::transform(out, own.begin(), [](const Bytes& bytes) { return bytes.size(); });
     std::vector<std::vector<std::uint64_t>> sizes;
+    sizes.reserve(out.size());
     for (const Bytes& got : gather(bytes_of(own)))
         sizes.push_back(ByteReader(got).take_rest<std::uint64_t>());
     const auto self = static_cast<std::size_t>(rank());

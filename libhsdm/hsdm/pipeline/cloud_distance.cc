@@ -42,7 +42,8 @@ public:
     /// The nearest facet of a point in one of some cells is among those whose first vertex is at most `reach`
     /// cells from them, if it is no farther than this.
     double known(int reach) const {
-        return reach >= all_cells() ? Box::inf : std::max(0.0, reach * cell_size_ - longest_);
+        if (reach >= all_cells()) return Box::inf;
+        return std::max(0.0, reach * cell_size_ - longest_);
     }
 
     /// Those facets, in their order.
