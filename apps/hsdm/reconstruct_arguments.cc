@@ -377,10 +377,10 @@ TileOptions ReconstructArguments::tiles_of_rank() const {
     if (inputs.front() == "-" || output == "-")
         throw UsageError("several ranks have no standard input and output in common; give names of files");
     if (!memory.empty()) return *tiles();
-    TileOptions unbounded;
-    unbounded.scratch = scratch;
-    unbounded.memory = TileOptions::no_bound;
-    return unbounded;
+    TileOptions without_bound;
+    without_bound.scratch = scratch;
+    without_bound.memory = TileOptions::no_bound;
+    return without_bound;
 }
 
 void ReconstructArguments::check_for_tiles(const TileOptions& tiles) const {
