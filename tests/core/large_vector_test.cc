@@ -10,29 +10,29 @@ using namespace hsdm;
 
 namespace {
 
-constexpr std::size_t many = 300000; // more than a megabyte of anything below: filled by all threads
+constexpr std::size_t above_a_megabyte = 300000; // of anything below: filled by all threads
 
 } // namespace
 
 TEST_CASE("large vectors grow as others do, also by one of their own values", "[core]") {
     std::vector<Vec3> values = large_vector<Vec3>(3, Vec3(1, 2, 3));
     values[1] = Vec3(4, 5, 6);
-    resize_large(values, many, values[1]);
-    REQUIRE(values.size() == many);
+    resize_large(values, above_a_megabyte, values[1]);
+    REQUIRE(values.size() == above_a_megabyte);
     CHECK(values[0] == Vec3(1, 2, 3));
     CHECK(values[2] == Vec3(1, 2, 3));
     CHECK(std::all_of(values.begin() + 3, values.end(), [](const Vec3& v) { return v == Vec3(4, 5, 6); }));
     resize_large(values, 2);
     CHECK(values == std::vector<Vec3>{Vec3(1, 2, 3), Vec3(4, 5, 6)});
-    assign_large(values, many, Vec3(7, 8, 9));
-    CHECK(values == std::vector<Vec3>(many, Vec3(7, 8, 9)));
-    CHECK(large_vector<Index>(many) == std::vector<Index>(many));
+    assign_large(values, above_a_megabyte, Vec3(7, 8, 9));
+    CHECK(values == std::vector<Vec3>(above_a_megabyte, Vec3(7, 8, 9)));
+    CHECK(large_vector<Index>(above_a_megabyte) == std::vector<Index>(above_a_megabyte));
     CHECK(large_vector<std::string>(3, "abc") == std::vector<std::string>(3, "abc"));
 }
 
 TEST_CASE("unwritten vectors keep what they had and hold what is written", "[core]") {
     std::vector<Index> values{1, 2, 3};
-    for (const std::size_t size : {std::size_t{5}, many, std::size_t{4}}) {
+    for (const std::size_t size : {std::size_t{5}, above_a_megabyte, std::size_t{4}}) {
         const std::size_t before = values.size();
         resize_unwritten(values, size);
         REQUIRE(values.size() == size);
