@@ -8,8 +8,8 @@ function(hsdm_install target folder component)
   if(NOT HSDM_INSTALL)
     return()
   endif()
-  install(TARGETS ${target} RUNTIME DESTINATION ${folder} COMPONENT ${component}
-                            LIBRARY DESTINATION ${folder} COMPONENT ${component})
+  install(TARGETS ${target} RUNTIME DESTINATION ${folder} COMPONENT ${component} ${ARGN}
+                            LIBRARY DESTINATION ${folder} COMPONENT ${component} ${ARGN})
   get_target_property(type hsdm TYPE)
   if(type STREQUAL "SHARED_LIBRARY")
     cmake_path(ABSOLUTE_PATH folder BASE_DIRECTORY ${CMAKE_INSTALL_PREFIX})

@@ -18,8 +18,8 @@ class Nothing : public std::streambuf {
 
 int main(int argc, char** argv) {
     using namespace hsdm::command;
-    static Nothing nothing;
-    handle_signals(); // before MPI starts threads, which must not take them
+    static auto& nothing = *new Nothing; // streams are flushed after what is static is gone
+    handle_signals();                    // before MPI starts threads, which must not take them
     try {
         MpiRanks ranks(argc, argv);
         if (ranks.is_first()) return run_command(argc, argv, &ranks);

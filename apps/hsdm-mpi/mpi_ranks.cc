@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <new>
 #include <thread>
 
 namespace hsdm::command {
@@ -51,8 +52,9 @@ MpiRanks::MpiRanks(int& argc, char**& argv) {
     MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
-    if (provided < MPI_THREAD_SERIALIZED)
-        throw Error("this MPI cannot be used by programs with threads; use another one");
+    if (provided >= MPI_THREAD_SERIALIZED) return;
+    MPI_Finalize();
+    throw Error("this MPI cannot be used by programs with threads; use another one");
 }
 
 MpiRanks::~MpiRanks() {
@@ -60,6 +62,8 @@ MpiRanks::~MpiRanks() {
 }
 
 std::vector<Ranks::Bytes> MpiRanks::gather_bytes(const Bytes& own) {
+    const char* too_much = "the ranks have more to tell all others than a message holds";
+    if (own.size() > most_bytes) abort(too_much);
     const auto ranks = static_cast<std::size_t>(size_);
     std::vector<int> counts(ranks), places(ranks);
     const int count = static_cast<int>(own.size());
@@ -71,12 +75,18 @@ std::vector<Ranks::Bytes> MpiRanks::gather_bytes(const Bytes& own) {
         places[r] = static_cast<int>(total);
         total += static_cast<std::size_t>(counts[r]);
     }
-    if (total > most_bytes) abort("the ranks have more to tell all others than a message holds");
-    std::vector<char> all(total);
+    if (total > most_bytes) abort(too_much);
+    std::vector<char> all;
+    try {
+        all.resize(total);
+    } catch (const std::bad_alloc&) { // the others are in the next step already
+        abort("out of memory");
+    }
     MPI_Iallgatherv(own.data(), count, MPI_CHAR, all.data(), counts.data(), places.data(), MPI_CHAR,
                     MPI_COMM_WORLD, &request);
     wait(request);
     std::vector<Bytes> got;
+    got.reserve(ranks);
     for (std::size_t r = 0; r < ranks; ++r)
         got.emplace_back(all.begin() + places[r], all.begin() + places[r] + counts[r]);
     return got;

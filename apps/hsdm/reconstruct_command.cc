@@ -50,6 +50,8 @@ template <class Make>
 auto named(const std::string& name, const Make& make) {
     try {
         return make();
+    } catch (const OtherRankFailed&) { // all ranks say the same, and know it
+        throw;
     } catch (const Error& error) {
         if (std::string_view(error.what()).starts_with(name + ":")) throw; // of reading: it has the name
         throw Error(name, error.what());

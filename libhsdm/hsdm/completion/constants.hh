@@ -68,8 +68,9 @@ inline constexpr int samples = 3;
 /// facets come up again: of nine real scans three came out sound, and seven with the grid moved.
 inline constexpr double shift = 0.5;
 
-/// rounds: of completing, while loops are left that are not small. Where the completed points and the
-/// measured ones contradict each other some are left; the second round closes all but a few.
+/// rounds: of completing slits, while loops are left that are not small; all else is completed twice. Where
+/// the completed points and the measured ones contradict each other some are left; the second round closes
+/// all but a few.
 inline constexpr int most_rounds = 2;
 
 } // namespace hsdm::completing

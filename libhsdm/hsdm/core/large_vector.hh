@@ -9,6 +9,7 @@
 #include <cstring>
 #include <memory>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace hsdm {
@@ -53,10 +54,10 @@ void reserve_large(std::vector<T>& values, std::size_t n) {
 
 /// Appends one value, as push_back does, to a vector that becomes large.
 template <class T>
-void push_large(std::vector<T>& values, const T& value) {
+void push_large(std::vector<T>& values, T value) { // not by reference: it may be of the vector itself
     if (values.size() == values.capacity())
         reserve_large(values, std::max<std::size_t>(16, values.size() + values.size() / 2)); // all touched
-    values.push_back(value);
+    values.push_back(std::move(value));
 }
 
 /// The same values again.

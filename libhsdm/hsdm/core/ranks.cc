@@ -41,6 +41,7 @@ void Ranks::together(const std::function<void()>& work) {
 }
 
 void Ranks::fail(const std::string& why) noexcept {
+    if (failed_) return; // all know that one has, and none comes to another gather
     try {
         gather_with(true, Bytes(why.begin(), why.end()));
     } catch (const OtherRankFailed&) { // what is told is why this one has
@@ -61,6 +62,7 @@ std::vector<Ranks::Bytes> Ranks::gather_with(bool failed, const Bytes& own) {
     const auto has_failed = [](const Bytes& bytes) { return bytes.front() == '\1'; };
     const auto first = std::ranges::find_if(got, has_failed);
     if (first != got.end()) {
+        failed_ = true;
         std::string why(first->begin() + 1, first->end());
         if (!std::ranges::all_of(got, has_failed))
             why += " (rank " + std::to_string(first - got.begin()) + " of " + std::to_string(size()) + ")";

@@ -67,6 +67,7 @@ private:
 
     std::size_t bytes_sent_ = 0;
     double seconds_waited_ = 0;
+    bool failed_ = false; ///< one of them, as all know
 };
 
 /// One process alone.

@@ -80,7 +80,7 @@ WrittenMesh write_mesh(const std::string& path, const PolygonMesh& mesh, MeshFor
 
 /// Normals and properties of vertices that are made while they are written.
 struct VertexRows {
-    bool normals = false;
+    bool normals = false;                                                ///< are there normals
     std::vector<std::pair<std::string, VertexProperty::Type>> columns{}; ///< names of the properties
     /// fill(begin, end, normals, values) for vertices begin .. end - 1: their normals, if there are some, and
     /// their values, one vertex after the other. Called from several threads, more than once.

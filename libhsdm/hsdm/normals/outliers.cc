@@ -45,11 +45,14 @@ bool is_volume(const Octree& octree, const Neighbors& neighbors, double least_vo
 bool lies_on_face(const Octree& octree, const Neighbors& neighbors, std::size_t i) {
     const auto around = neighbors.of(i);
     const double thickness = distance_outliers::face_thickness * neighbors.reach[i];
-    const std::size_t enough = around.size() * distance_outliers::face_percent / 100;
+    const std::size_t enough =
+        std::max<std::size_t>(3, around.size() * distance_outliers::face_percent / 100); // two make the plane
     const auto offset = [&](std::size_t k) { return octree.positions[around[k]] - octree.positions[i]; };
     for (std::size_t a = 0; a < around.size(); ++a)
         for (std::size_t b = a + 1; b < around.size(); ++b) {
             const Vec3 normal = offset(a) % offset(b);
+            if (normal.norm() <= distance_outliers::face_thickness * offset(a).norm() * offset(b).norm())
+                continue; // on a line: many planes
             std::size_t held = 0;
             for (std::size_t k = 0; k < around.size(); ++k)
                 held += std::abs(normal | offset(k)) <= thickness * normal.norm();

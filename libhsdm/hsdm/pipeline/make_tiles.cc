@@ -142,12 +142,12 @@ private:
     /// Once all tiles have looked for strays: are there some, so that all is different without them?
     bool has_new_strays() {
         if (std::exchange(known_.outliers, true)) return false;
+        if (ranks_.sum(strays_.size()) > most_strays) refuse_in_tiles("many points are off every surface");
         std::vector<PointRow> all;
         for (const Ranks::Bytes& got : ranks_.gather(bytes_of(strays_)))
             append_large(all, ByteReader(got).take_rest<PointRow>());
         strays_.clear();
         if (all.empty()) return false;
-        if (all.size() > most_strays) refuse_in_tiles("many points are off every surface");
         known_.first_outlier = Vec3(all[0][0], all[0][1], all[0][2]);
         const std::size_t points = in_.survey.sums.points() - all.size();
         cloud_.leave_out(std::move(all));

@@ -73,7 +73,8 @@ void join(const CloudExtent& next, CloudExtent& extent) {
 } // namespace
 
 void refuse_in_tiles(const std::string& what) {
-    throw Error(what + "; this is not done in tiles, reconstruct it in one piece (hsdm without --memory)");
+    throw Error(what
+                + "; this is not done in tiles, reconstruct it in one piece (by hsdm, without --memory)");
 }
 
 CloudExtent measure_extent(const PointParts& parts, Ranks& ranks) {
