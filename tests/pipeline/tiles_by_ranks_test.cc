@@ -75,7 +75,7 @@ std::vector<std::string> run_on(int count, const PointCloud& cloud, const TileOp
 
 } // namespace
 
-TEST_CASE("several ranks give the mesh of one piece, bit for bit", "[pipeline]") {
+TEST_CASE("several ranks give the mesh of one piece, bit for bit", "[pipeline][slow]") {
     const int count = GENERATE(2, 3);
     PointCloud cloud = bored_box();
     SECTION("as it is") {}
@@ -120,7 +120,7 @@ TEST_CASE("tiles of two ranks that know too little around them are made again wi
     CHECK(how.widened > 0);
 }
 
-TEST_CASE("ranks that no cell is left for have nothing to do", "[pipeline]") {
+TEST_CASE("ranks that no cell is left for have nothing to do", "[pipeline][slow]") {
     PointCloud cloud = bored_box();
     for (std::size_t i = 0; i < 60000; ++i) { // most points in one cell
         cloud.positions.push_back(cloud.positions[0]);

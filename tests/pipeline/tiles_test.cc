@@ -87,7 +87,7 @@ TEST_CASE("tiles give the mesh of the run in one piece, bit for bit", "[pipeline
     CHECK(how.tiles > 1);
 }
 
-TEST_CASE("tiles in flat arrays give the same files, whatever the cloud", "[pipeline]") {
+TEST_CASE("tiles in flat arrays give the same files, whatever the cloud", "[pipeline][slow]") {
     PointCloud cloud = scan_for_tiles(GENERATE(false, true));
     const bool turned = GENERATE(false, true);
     if (turned)
@@ -120,7 +120,7 @@ TEST_CASE("tiles in flat arrays give the same files, whatever the cloud", "[pipe
     CHECK(one.error.points_to_mesh_rms == other.error.points_to_mesh_rms);
 }
 
-TEST_CASE("tiles that are cancelled in any phase leave no scratch", "[pipeline]") {
+TEST_CASE("tiles that are cancelled in any phase leave no scratch", "[pipeline][slow]") {
     const PointCloud cloud = scan_for_tiles(false);
     const support::Folder folder;
     TileOptions tiles = tiles_of(25000);
