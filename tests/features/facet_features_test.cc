@@ -82,6 +82,13 @@ TEST_CASE("connectivity by links is that by edges", "[topology]") {
         mesh.add_facet(std::array<Index, 3>{0, 1, 2});
         mesh.add_facet(std::array<Index, 3>{0, 3, 4});
     }
+    SECTION("of three triangles that share a corner") {
+        mesh = PolygonMesh();
+        mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 1, 1}};
+        mesh.add_facet(std::array<Index, 3>{0, 1, 2});
+        mesh.add_facet(std::array<Index, 3>{0, 3, 4});
+        mesh.add_facet(std::array<Index, 3>{0, 5, 6});
+    }
     const Topology a = measure_connectivity(mesh), b = measure_connectivity(mesh, link_facets(mesh));
     CHECK(a.vertices == b.vertices);
     CHECK(a.isolated_vertices == b.isolated_vertices);

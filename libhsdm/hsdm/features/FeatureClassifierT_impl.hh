@@ -60,11 +60,6 @@ bool exceeds(const Mesh& mesh, OpenMesh::EdgeHandle e, const std::vector<Vec3>& 
     return a.sqrnorm() > 0 && b.sqrnorm() > 0 && (a | b) < cosine;
 }
 
-/// Measured on folds of 36 to 90 degrees, noise up to a fifth of the edge length: so smoothed, noise loses
-/// nearly all of its angle, and a crease just above the limit keeps more than this share of it.
-inline constexpr double confirming_similarity = 0.57; ///< similarity angle over crease angle
-inline constexpr double confirmed_share = 0.6;        ///< of the crease angle
-
 } // namespace detail
 
 template <class Mesh>

@@ -127,8 +127,9 @@ private:
             push_large(neighbours.first, static_cast<Index>(neighbours.neighbour.size()));
         });
         for (int round = 0; round < options_.confirmation_rounds; ++round)
-            filter_normals(neighbours, weights, confirming_similarity * options_.crease_angle, 0, normals);
-        const double cosine = std::cos(confirmed_share * options_.crease_angle);
+            filter_normals(neighbours, weights, detail::confirming_similarity * options_.crease_angle, 0,
+                           normals);
+        const double cosine = std::cos(detail::confirmed_share * options_.crease_angle);
         for_each_index(facets_.corners.size(), chunks::quick, [&](Index c) {
             if (!is_in_question(c)) return;
             const Vec3 &a = normals[number[links_.facet[c]]], &b = normals[number[across(c)]];
@@ -181,9 +182,6 @@ private:
         for (int round = 0; round < options.rounds; ++round)
             filter_normals(neighbours, area, options.similarity_angle, options.settled_angle, normals);
     }
-
-    /// As in FeatureClassifierT.
-    static constexpr double confirming_similarity = 0.57, confirmed_share = 0.6;
 
     const PolygonMesh& facets_;
     const FacetLinks& links_;

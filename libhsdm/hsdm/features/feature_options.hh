@@ -41,4 +41,13 @@ struct NormalSmoothingOptions {
 void validate(const FeatureOptions& options);
 void validate(const NormalSmoothingOptions& options);
 
+namespace detail {
+
+/// Measured on folds of 36 to 90 degrees, noise up to a fifth of the edge length: so smoothed, noise loses
+/// nearly all of its angle, and a crease just above the limit keeps more than this share of it.
+inline constexpr double confirming_similarity = 0.57; ///< similarity angle over crease angle
+inline constexpr double confirmed_share = 0.6;        ///< of the crease angle
+
+} // namespace detail
+
 } // namespace hsdm

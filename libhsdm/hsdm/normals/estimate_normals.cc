@@ -296,4 +296,10 @@ std::vector<Vec3> refined_normals(const Octree& octree, const Neighbors& neighbo
     return from_curved.all([&](Index i) { return from_curved.averaged(i); });
 }
 
+void turn_along(const std::vector<Vec3>& given, std::vector<Vec3>& normals) {
+    for_each_index(normals.size(), chunks::light, [&](Index i) {
+        if ((normals[i] | given[i]) < 0) normals[i] = -normals[i];
+    });
+}
+
 } // namespace hsdm

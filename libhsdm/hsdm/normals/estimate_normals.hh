@@ -40,4 +40,7 @@ EstimatedNormals estimate_normals(const Octree& octree, const Neighbors& neighbo
 std::vector<Vec3> refined_normals(const Octree& octree, const Neighbors& neighbors,
                                   const EstimatedNormals& estimate);
 
+/// Turns each normal to the side of the given one of its point.
+void turn_along(const std::vector<Vec3>& given, std::vector<Vec3>& normals);
+
 } // namespace hsdm

@@ -99,9 +99,7 @@ std::vector<Vec3> turned_by_normals(const Octree& octree, const Neighbors& neigh
 std::vector<Vec3> turned_by_positions(const Octree& octree, const Neighbors& neighbors,
                                       const OrientOptions& options) {
     EstimatedNormals told = estimate_normals(octree, neighbors);
-    for_each_index(octree.size(), chunks::light, [&](Index i) {
-        if ((told.normals[i] | octree.normals[i]) < 0) told.normals[i] = -told.normals[i];
-    });
+    turn_along(octree.normals, told.normals);
     turn_normals(orient_normals(octree, neighbors, told, options), told.normals);
     std::vector<Vec3> turned = octree.normals;
     for_each_index(octree.size(), chunks::light, [&](Index i) {

@@ -3,7 +3,7 @@
 
 #include "hsdm/normals/plane_support.hh"
 
-#include "hsdm/core/wide_lanes.hh"
+#include "hsdm/core/wide_vectors.hh"
 #include "hsdm/normals/neighborhood.hh"
 
 #include <algorithm>
@@ -54,22 +54,15 @@ void agreeing_by_two(const Planes& planes, Support& support) {
 
 #ifdef HSDM_WIDE_LANES
 
-struct FourVectors {
-    __m256d x, y, z;
-};
-
-[[gnu::target("avx"), gnu::always_inline]] inline FourVectors four_at(const Planes::Rows& rows,
-                                                                      std::size_t k) {
-    return {_mm256_load_pd(rows[0].data() + k), _mm256_load_pd(rows[1].data() + k),
-            _mm256_load_pd(rows[2].data() + k)};
+/// The same vector in all lanes.
+HSDM_OF_AVX FourVectors four_of(const Planes::Rows& rows, std::size_t j) {
+    return four_times(rows[0][j], rows[1][j], rows[2][j]);
 }
-[[gnu::target("avx"), gnu::always_inline]] inline __m256d dot(const FourVectors& n, const Planes::Rows& rows,
-                                                              std::size_t j) {
-    return n.x * _mm256_set1_pd(rows[0][j]) + n.y * _mm256_set1_pd(rows[1][j])
-           + n.z * _mm256_set1_pd(rows[2][j]);
+HSDM_OF_AVX512 EightVectors eight_of(const Planes::Rows& rows, std::size_t j) {
+    return eight_times(rows[0][j], rows[1][j], rows[2][j]);
 }
 /// closeness()
-[[gnu::target("avx"), gnu::always_inline]] inline __m256d close_four(__m256d residual, double inverse) {
+HSDM_OF_AVX __m256d close_four(__m256d residual, double inverse) {
     const __m256d t = residual * _mm256_set1_pd(inverse);
     const __m256d u = _mm256_max_pd(_mm256_set1_pd(1) - t * t, _mm256_setzero_pd());
     return u * u;
@@ -80,7 +73,7 @@ struct FourVectors {
         const FourVectors normals = four_at(planes.normals, k);
         __m256d sum = _mm256_setzero_pd();
         for (std::size_t j = 0; j < planes.count; ++j)
-            sum += close_four(dot(normals, planes.offsets, j), planes.inverse_tolerance);
+            sum += close_four(dot(normals, four_of(planes.offsets, j)), planes.inverse_tolerance);
         _mm256_storeu_pd(support.data() + k, sum);
     }
 }
@@ -92,36 +85,22 @@ struct FourVectors {
         const FourVectors normals = four_at(planes.normals, k);
         __m256d sum = zero;
         for (std::size_t j = 0; j < planes.count; ++j) {
-            const __m256d cosine = dot(normals, planes.normals, j);
+            const __m256d cosine = dot(normals, four_of(planes.normals, j));
             const __m256d agreed = _mm256_max_pd(zero, cosine * cosine - least) / range;
             const __m256d all =
-                agreed * close_four(dot(normals, planes.offsets, j), planes.inverse_tolerance);
+                agreed * close_four(dot(normals, four_of(planes.offsets, j)), planes.inverse_tolerance);
             sum += _mm256_and_pd(all, _mm256_cmp_pd(cosine, zero, _CMP_GT_OQ));
         }
         _mm256_storeu_pd(support.data() + k, sum);
     }
 }
 
-struct EightVectors {
-    __m512d x, y, z;
-};
-
-[[gnu::target("avx512f"), gnu::always_inline]] inline EightVectors eight_at(const Planes::Rows& rows,
-                                                                            std::size_t k) {
-    return {_mm512_load_pd(rows[0].data() + k), _mm512_load_pd(rows[1].data() + k),
-            _mm512_load_pd(rows[2].data() + k)};
-}
-[[gnu::target("avx512f"), gnu::always_inline]] inline __m512d dot(const EightVectors& n,
-                                                                  const Planes::Rows& rows, std::size_t j) {
-    return n.x * _mm512_set1_pd(rows[0][j]) + n.y * _mm512_set1_pd(rows[1][j])
-           + n.z * _mm512_set1_pd(rows[2][j]);
-}
 /// As _mm512_max_pd(), of which g++ 12 warns within its own header.
-[[gnu::target("avx512f"), gnu::always_inline]] inline __m512d max_of(__m512d a, __m512d b) {
+HSDM_OF_AVX512 __m512d max_of(__m512d a, __m512d b) {
     return _mm512_maskz_max_pd(0xff, a, b);
 }
 /// closeness()
-[[gnu::target("avx512f"), gnu::always_inline]] inline __m512d close_eight(__m512d residual, double inverse) {
+HSDM_OF_AVX512 __m512d close_eight(__m512d residual, double inverse) {
     const __m512d t = residual * _mm512_set1_pd(inverse);
     const __m512d u = max_of(_mm512_set1_pd(1) - t * t, _mm512_setzero_pd());
     return u * u;
@@ -132,7 +111,7 @@ struct EightVectors {
         const EightVectors normals = eight_at(planes.normals, k);
         __m512d sum = _mm512_setzero_pd();
         for (std::size_t j = 0; j < planes.count; ++j)
-            sum += close_eight(dot(normals, planes.offsets, j), planes.inverse_tolerance);
+            sum += close_eight(dot(normals, eight_of(planes.offsets, j)), planes.inverse_tolerance);
         _mm512_storeu_pd(support.data() + k, sum);
     }
 }
@@ -144,10 +123,10 @@ struct EightVectors {
         const EightVectors normals = eight_at(planes.normals, k);
         __m512d sum = zero;
         for (std::size_t j = 0; j < planes.count; ++j) {
-            const __m512d cosine = dot(normals, planes.normals, j);
+            const __m512d cosine = dot(normals, eight_of(planes.normals, j));
             const __m512d agreed = max_of(zero, cosine * cosine - least) / range;
             const __m512d all =
-                agreed * close_eight(dot(normals, planes.offsets, j), planes.inverse_tolerance);
+                agreed * close_eight(dot(normals, eight_of(planes.offsets, j)), planes.inverse_tolerance);
             sum += _mm512_maskz_mov_pd(_mm512_cmp_pd_mask(cosine, zero, _CMP_GT_OQ), all);
         }
         _mm512_storeu_pd(support.data() + k, sum);

@@ -50,9 +50,7 @@ std::size_t steady_normals(Octree& octree) {
     EstimatedNormals told = estimate_normals(octree, neighbors);
     told.normals = refined_normals(octree, neighbors, told);
     if (median_angle(told.normals) > scattered_normals::share * median_angle(octree.normals)) return 0;
-    for_each_index(octree.size(), chunks::light, [&](Index i) {
-        if ((told.normals[i] | octree.normals[i]) < 0) told.normals[i] = -told.normals[i];
-    });
+    turn_along(octree.normals, told.normals);
     vote_on_normals(octree, neighbors, told); // near creases: with the sides they have now
     std::size_t changed = 0;
     for (std::size_t i = 0; i < octree.size(); ++i) {

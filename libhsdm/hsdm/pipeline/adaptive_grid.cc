@@ -1,6 +1,7 @@
 #include "hsdm/pipeline/adaptive_grid.hh"
 
 #include "hsdm/errors.hh"
+#include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/pipeline/attributes.hh"
 #include "hsdm/pipeline/constants.hh"
 #include "hsdm/pipeline/measure.hh"
@@ -25,7 +26,7 @@ std::vector<VertexProperty> properties_of(const PolygonMesh& fine, const Adaptiv
     std::vector<VertexProperty> result =
         merge_attributes(fine.properties, coarse.vertex, coarse.mesh.vertex_count());
     for (VertexProperty& property : result)
-        if (property.name == "hsdm_level") property.values.assign(coarse.level.begin(), coarse.level.end());
+        if (property.name == level_property) property.values.assign(coarse.level.begin(), coarse.level.end());
     return result;
 }
 

@@ -4,6 +4,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/groups.hh"
 #include "hsdm/mesh/vertex_neighbors.hh"
+#include "hsdm/mesh/vertex_normals.hh"
 
 #include <algorithm>
 
@@ -59,7 +60,7 @@ std::vector<VertexProperty> average_attributes(const PointView& cloud, const Oct
     std::vector<VertexProperty> properties;
     for (const PointAttribute& attribute : attributes_of(cloud)) properties.push_back(averages(attribute));
     properties.push_back(
-        {"hsdm_level", Type::uint8, std::vector<double>(voxel.size(), static_cast<double>(level.depth))});
+        {level_property, Type::uint8, std::vector<double>(voxel.size(), static_cast<double>(level.depth))});
     return properties;
 }
 

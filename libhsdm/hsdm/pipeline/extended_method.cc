@@ -10,6 +10,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/turn_outward.hh"
+#include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/pipeline/attributes.hh"
 #include "hsdm/pipeline/completed_cloud.hh"
 #include "hsdm/pipeline/confidence.hh"
@@ -301,7 +302,7 @@ void return_to(const MethodInput& measured, const Draft& draft, std::span<const 
         }
         spread_attributes(mesh, std::move(has_measured));
         for (VertexProperty& property : mesh.properties) // the larger cube's level is no one's concern
-            if (property.name == "hsdm_level")
+            if (property.name == level_property)
                 std::ranges::fill(property.values, static_cast<double>(measured.level.depth));
         const Vec3 moved = draft.cloud->octree.origin - measured.octree.origin;
         for (Vec3& p : mesh.positions) p += moved;

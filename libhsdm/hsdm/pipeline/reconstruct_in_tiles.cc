@@ -222,6 +222,21 @@ bool fits_in_one_piece(std::size_t points, const ReconstructOptions& options, st
     return memory > bytes_of_program && points <= (memory - bytes_of_program) / each;
 }
 
+namespace {
+
+/// finish(in, facets, report): the whole, of which a voxel takes so many bytes.
+template <class Finish>
+auto run_in_tiles(const PointParts& parts, const ReconstructOptions& options, const TileOptions& tiles,
+                  Ranks& ranks, TileReport* how, std::size_t bytes_per_voxel, const Finish& finish) {
+    check_options(options, tiles);
+    TileReport unasked;
+    return with_threads(options.threads, [&] {
+        return TiledRun(parts, options, tiles, ranks, bytes_per_voxel).finish(how ? *how : unasked, finish);
+    });
+}
+
+} // namespace
+
 Reconstruction reconstruct_in_tiles(const PointParts& parts, const ReconstructOptions& options,
                                     const TileOptions& tiles, TileReport* how) {
     OneRank alone;
@@ -230,14 +245,7 @@ Reconstruction reconstruct_in_tiles(const PointParts& parts, const ReconstructOp
 
 Reconstruction reconstruct_in_tiles(const PointParts& parts, const ReconstructOptions& options,
                                     const TileOptions& tiles, Ranks& ranks, TileReport* how) {
-    check_options(options, tiles);
-    TileReport unasked;
-    return with_threads(options.threads, [&] {
-        return TiledRun(parts, options, tiles, ranks, bytes_per_voxel_of_mesh)
-            .finish(how ? *how : unasked, [](const WholeInput& in, WholeFacets&& facets, Report&& report) {
-                return finish_whole(in, std::move(facets), std::move(report));
-            });
-    });
+    return run_in_tiles(parts, options, tiles, ranks, how, bytes_per_voxel_of_mesh, finish_whole);
 }
 
 FlatReconstruction reconstruct_flat_in_tiles(const PointParts& parts, const ReconstructOptions& options,
@@ -248,14 +256,7 @@ FlatReconstruction reconstruct_flat_in_tiles(const PointParts& parts, const Reco
 
 FlatReconstruction reconstruct_flat_in_tiles(const PointParts& parts, const ReconstructOptions& options,
                                              const TileOptions& tiles, Ranks& ranks, TileReport* how) {
-    check_options(options, tiles);
-    TileReport unasked;
-    return with_threads(options.threads, [&] {
-        return TiledRun(parts, options, tiles, ranks, bytes_per_voxel_of_flat_mesh)
-            .finish(how ? *how : unasked, [](const WholeInput& in, WholeFacets&& facets, Report&& report) {
-                return finish_whole_flat(in, std::move(facets), std::move(report));
-            });
-    });
+    return run_in_tiles(parts, options, tiles, ranks, how, bytes_per_voxel_of_flat_mesh, finish_whole_flat);
 }
 
 Reconstruction reconstruct_in_tiles(const PointView& cloud, const ReconstructOptions& options,

@@ -5,6 +5,7 @@
 #include "hsdm/core/system.hh"
 #include "hsdm/mesh/small_components.hh"
 #include "hsdm/mesh/turn_outward.hh"
+#include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/pipeline/cloud_distance.hh"
 #include "hsdm/pipeline/finish_mesh.hh"
 #include "hsdm/pipeline/join_pieces.hh"
@@ -161,7 +162,7 @@ Reconstruction finish_whole(const WholeInput& in, WholeFacets&& facets, Report&&
         check_facets(facets.mesh, report);
         check_whole(in, method, facets.mesh);
         const auto count = facets.mesh.vertex_count();
-        facets.mesh.properties.push_back({"hsdm_level", VertexProperty::Type::uint8,
+        facets.mesh.properties.push_back({level_property, VertexProperty::Type::uint8,
                                           std::vector<double>(count, static_cast<double>(level.depth))});
     });
     Reconstruction result;

@@ -221,7 +221,9 @@ double signed_volume(const PolygonMesh& mesh) {
     });
 }
 
-Topology measure_connectivity(const PolygonMesh& mesh) {
+namespace {
+
+Topology count_facets(const PolygonMesh& mesh) {
     Topology topology;
     topology.faces = mesh.facet_count();
     for_each_in_order(topology.faces, [&](std::size_t f) {
@@ -230,6 +232,13 @@ Topology measure_connectivity(const PolygonMesh& mesh) {
         topology.quads += corners == 4;
         topology.larger += corners > 4;
     });
+    return topology;
+}
+
+} // namespace
+
+Topology measure_connectivity(const PolygonMesh& mesh) {
+    Topology topology = count_facets(mesh);
     const std::size_t vertices = mesh.vertex_count();
     std::vector<unsigned char> used = large_vector<unsigned char>(vertices, 0);
     for_each_in_order(mesh.corners.size(), [&](std::size_t c) { used[mesh.corners[c]] = 1; });
@@ -273,18 +282,17 @@ std::size_t count_boundary_loops(const PolygonMesh& mesh, const FacetLinks& link
 } // namespace
 
 Topology measure_connectivity(const PolygonMesh& mesh, const FacetLinks& links) {
-    Topology topology;
-    topology.faces = mesh.facet_count();
+    Topology topology = count_facets(mesh);
     topology.vertices = links.source.size() - links.split_vertices;
     topology.isolated_vertices = mesh.vertex_count() - topology.vertices;
-    topology.nonmanifold_vertices = links.split_vertices;
+    std::vector<Index> split(links.source.begin() + static_cast<std::ptrdiff_t>(topology.vertices),
+                             links.source.end());
+    std::ranges::sort(split);
+    topology.nonmanifold_vertices =
+        static_cast<std::size_t>(std::unique(split.begin(), split.end()) - split.begin());
     DisjointSets components(topology.faces);
     topology.components = topology.faces;
     for_each_in_order(topology.faces, [&](std::size_t f) {
-        const std::size_t corners = mesh.facet(f).size();
-        topology.triangles += corners == 3;
-        topology.quads += corners == 4;
-        topology.larger += corners > 4;
         for (Index c = mesh.first[f]; c < mesh.first[f + 1]; ++c) {
             const Index twin = links.twin[c];
             topology.boundary_edges += twin == no_index;

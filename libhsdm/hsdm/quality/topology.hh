@@ -42,8 +42,7 @@ struct Topology {
 Topology measure_topology(const PolygonMesh& mesh);
 /// All of it but degenerate_facets, duplicate_facets and signed_volume, which are left 0.
 Topology measure_connectivity(const PolygonMesh& mesh);
-/// The same of facets of which none was rejected, by their links: 5 bytes a corner instead of 30. A vertex
-/// counts as non-manifold once for each fan beyond its first.
+/// The same of facets of which none was rejected, by their links: 5 bytes a corner instead of 30.
 Topology measure_connectivity(const PolygonMesh& mesh, const FacetLinks& links);
 
 /// Volume enclosed by a closed mesh, negative if its facets face inwards; of an open one that of the cone

@@ -4,7 +4,7 @@
 #include "hsdm/spatial/eight_triangles.hh"
 
 #include "hsdm/core/vector_pair.hh"
-#include "hsdm/core/wide_lanes.hh"
+#include "hsdm/core/wide_vectors.hh"
 
 #include <cstring>
 
@@ -59,35 +59,6 @@ unsigned feet_inside_by_two(const EightTriangles& t, const Vec3& p) {
 
 #ifdef HSDM_WIDE_LANES
 
-struct FourVectors {
-    __m256d x, y, z;
-};
-
-[[gnu::target("avx"), gnu::always_inline]] inline FourVectors four_at(const Rows& rows, std::size_t k) {
-    return {_mm256_load_pd(rows[0].data() + k), _mm256_load_pd(rows[1].data() + k),
-            _mm256_load_pd(rows[2].data() + k)};
-}
-[[gnu::target("avx"), gnu::always_inline]] inline void store(const FourVectors& v, Rows& rows,
-                                                             std::size_t k) {
-    _mm256_store_pd(rows[0].data() + k, v.x);
-    _mm256_store_pd(rows[1].data() + k, v.y);
-    _mm256_store_pd(rows[2].data() + k, v.z);
-}
-[[gnu::target("avx"), gnu::always_inline]] inline FourVectors minus(const FourVectors& v,
-                                                                    const FourVectors& w) {
-    return {v.x - w.x, v.y - w.y, v.z - w.z};
-}
-[[gnu::target("avx"), gnu::always_inline]] inline __m256d dot(const FourVectors& v, const FourVectors& w) {
-    return v.x * w.x + v.y * w.y + v.z * w.z;
-}
-[[gnu::target("avx"), gnu::always_inline]] inline FourVectors cross(const FourVectors& v,
-                                                                    const FourVectors& w) {
-    return {v.y * w.z - v.z * w.y, v.z * w.x - v.x * w.z, v.x * w.y - v.y * w.x};
-}
-[[gnu::target("avx"), gnu::always_inline]] inline FourVectors scaled(const FourVectors& v, __m256d by) {
-    return {v.x * by, v.y * by, v.z * by};
-}
-
 [[gnu::target("avx")]] void prepare_by_avx(EightTriangles& t) {
     for (std::size_t k = 0; k < EightTriangles::size; k += 4) {
         const FourVectors a = four_at(t.a, k);
@@ -104,7 +75,7 @@ struct FourVectors {
 }
 
 [[gnu::target("avx")]] unsigned feet_inside_by_avx(const EightTriangles& t, const Vec3& p) {
-    const FourVectors place{_mm256_set1_pd(p[0]), _mm256_set1_pd(p[1]), _mm256_set1_pd(p[2])};
+    const FourVectors place = four_times(p[0], p[1], p[2]);
     unsigned inside = 0;
     for (std::size_t k = 0; k < EightTriangles::size; k += 4) {
         const FourVectors ap = minus(place, four_at(t.a, k));
@@ -117,36 +88,6 @@ struct FourVectors {
         inside |= static_cast<unsigned>(_mm256_movemask_pd(all)) << k;
     }
     return inside;
-}
-
-struct EightVectors {
-    __m512d x, y, z;
-};
-
-[[gnu::target("avx512f"), gnu::always_inline]] inline EightVectors eight_at(const Rows& rows, std::size_t k) {
-    return {_mm512_load_pd(rows[0].data() + k), _mm512_load_pd(rows[1].data() + k),
-            _mm512_load_pd(rows[2].data() + k)};
-}
-[[gnu::target("avx512f"), gnu::always_inline]] inline void store(const EightVectors& v, Rows& rows,
-                                                                 std::size_t k) {
-    _mm512_store_pd(rows[0].data() + k, v.x);
-    _mm512_store_pd(rows[1].data() + k, v.y);
-    _mm512_store_pd(rows[2].data() + k, v.z);
-}
-[[gnu::target("avx512f"), gnu::always_inline]] inline EightVectors minus(const EightVectors& v,
-                                                                         const EightVectors& w) {
-    return {v.x - w.x, v.y - w.y, v.z - w.z};
-}
-[[gnu::target("avx512f"), gnu::always_inline]] inline __m512d dot(const EightVectors& v,
-                                                                  const EightVectors& w) {
-    return v.x * w.x + v.y * w.y + v.z * w.z;
-}
-[[gnu::target("avx512f"), gnu::always_inline]] inline EightVectors cross(const EightVectors& v,
-                                                                         const EightVectors& w) {
-    return {v.y * w.z - v.z * w.y, v.z * w.x - v.x * w.z, v.x * w.y - v.y * w.x};
-}
-[[gnu::target("avx512f"), gnu::always_inline]] inline EightVectors scaled(const EightVectors& v, __m512d by) {
-    return {v.x * by, v.y * by, v.z * by};
 }
 
 [[gnu::target("avx512f")]] void prepare_by_avx512(EightTriangles& t) {
@@ -165,7 +106,7 @@ struct EightVectors {
 }
 
 [[gnu::target("avx512f")]] unsigned feet_inside_by_avx512(const EightTriangles& t, const Vec3& p) {
-    const EightVectors place{_mm512_set1_pd(p[0]), _mm512_set1_pd(p[1]), _mm512_set1_pd(p[2])};
+    const EightVectors place = eight_times(p[0], p[1], p[2]);
     unsigned inside = 0;
     for (std::size_t k = 0; k < EightTriangles::size; k += 8) {
         const EightVectors ap = minus(place, eight_at(t.a, k));
