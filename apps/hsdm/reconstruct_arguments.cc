@@ -2,7 +2,9 @@
 
 #include "usage.hh"
 
+#include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/io/join_points.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -272,6 +274,10 @@ void add_file_options(CLI::App& app, ReconstructArguments& a) {
         ->required()
         ->type_name("INPUT...");
     const std::string files = "Files";
+    app.add_flag("--join", a.join,
+                 "the inputs are scans of one thing: they become one cloud and one mesh; a folder stands for "
+                 "its files of points")
+        ->group(files);
     app.add_option("-o,--output", a.output, "the mesh; its extension names the format; - is standard output")
         ->type_name("FILE")
         ->group(files);
@@ -373,7 +379,8 @@ std::optional<TileOptions> ReconstructArguments::tiles() const {
 }
 
 TileOptions ReconstructArguments::tiles_of_rank() const {
-    if (inputs.size() > 1) throw UsageError("several ranks do one input at a time; give one");
+    if (inputs.size() > 1 && !join)
+        throw UsageError("several ranks do one input at a time; give one, or --join scans of one thing");
     if (inputs.front() == "-" || output == "-")
         throw UsageError("several ranks have no standard input and output in common; give names of files");
     if (!memory.empty()) return *tiles();
@@ -388,6 +395,27 @@ void ReconstructArguments::check_for_tiles(const TileOptions& tiles) const {
          {std::pair(!levels.empty(), "--levels"), {!stages.empty(), "--stage"}, {!html.empty(), "--html"}})
         if (given) throw UsageError(std::string("--memory cannot come with ") + option + " yet");
     check_options(options(), tiles);
+}
+
+std::string CloudFiles::name() const {
+    if (files.size() > 1) return input + " (" + std::to_string(files.size()) + " files)";
+    return input == "-" ? "standard input" : input;
+}
+
+std::vector<CloudFiles> ReconstructArguments::clouds() const {
+    std::vector<CloudFiles> clouds;
+    for (const std::string& input : inputs) {
+        if (!join || clouds.empty()) clouds.push_back({input, {}});
+        std::vector<std::string>& files = clouds.back().files;
+        if (join && input == "-")
+            throw UsageError("--join: standard input cannot be one of them; give files");
+        os::FileStatus status;
+        if (join && os::status_of(input, status) && status.kind == os::FileStatus::Kind::folder)
+            for (std::string& file : point_files_in(input)) files.push_back(std::move(file));
+        else
+            files.push_back(input);
+    }
+    return clouds;
 }
 
 std::optional<std::pair<int, int>> ReconstructArguments::level_range() const {

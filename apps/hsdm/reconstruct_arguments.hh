@@ -14,8 +14,17 @@
 
 namespace hsdm::command {
 
+/// What one mesh is made of.
+struct CloudFiles {
+    std::string input;              ///< as given; of several the first
+    std::vector<std::string> files; ///< whose points are one cloud
+    /// For messages: the input, or what joined files are called.
+    std::string name() const;
+};
+
 struct ReconstructArguments {
     std::vector<std::string> inputs;
+    bool join = false;
     ReadOptions read;
 
     std::optional<int> depth;
@@ -55,6 +64,9 @@ struct ReconstructArguments {
     TileOptions tiles_of_rank() const;
     /// Throws UsageError and OptionError for what cannot be done in tiles.
     void check_for_tiles(const TileOptions& tiles) const;
+    /// A cloud for each input, or one of all that are joined, of folders those in them. Throws UsageError,
+    /// and Error for a folder without.
+    std::vector<CloudFiles> clouds() const;
     /// First and last depth of --levels A:B; nothing if it was not given. Throws UsageError.
     std::optional<std::pair<int, int>> level_range() const;
 };

@@ -13,6 +13,7 @@
 
 #include "hsdm/core/ranks.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/io/join_points.hh"
 #include "hsdm/io/json_text.hh"
 #include "hsdm/io/output_target.hh"
 #include "hsdm/io/points_in_parts.hh"
@@ -45,19 +46,45 @@ ReconstructOptions checked_options(const ReconstructArguments& arguments,
     return options;
 }
 
-/// Returns make(); puts a name before the messages of its errors.
+/// Returns make(); puts a cloud's name before the messages of its errors.
 template <class Make>
-auto named(const std::string& name, const Make& make) {
+auto named(const CloudFiles& cloud, const Make& make) {
+    const auto is_named = [](const std::string& message) {
+        return [&message](const std::string& name) { return message.starts_with(name + ":"); };
+    };
     try {
         return make();
     } catch (const OtherRankFailed&) { // all ranks say the same, and know it
         throw;
     } catch (const Error& error) {
-        if (std::string_view(error.what()).starts_with(name + ":")) throw; // of reading: it has the name
-        throw Error(name, error.what());
+        if (std::ranges::any_of(cloud.files, is_named(error.what()))) throw; // of reading
+        throw Error(cloud.name(), error.what());
     } catch (const OptionError& error) {
-        throw OptionError(words_of(error) + " (" + name + ")");
+        throw OptionError(words_of(error) + " (" + cloud.name() + ")");
     }
+}
+
+/// What is told beside the points of files, of which each rank has read some.
+PointFile notes_of_all(const PointsInParts& points, Ranks& ranks) {
+    PointFile all;
+    const PointFile& own = points.file();
+    if (points.in_memory()) { // each has read all
+        add_notes(own, all);
+        return all;
+    }
+    Ranks::Bytes bytes;
+    put(own.nonfinite, bytes), put(own.withheld, bytes), put(own.first_withheld, bytes);
+    append_bytes(std::span<const char>(own.columns), bytes);
+    for (const Ranks::Bytes& got : ranks.gather(bytes)) {
+        ByteReader reader(got);
+        PointFile next;
+        next.nonfinite = reader.take<std::size_t>(), next.withheld = reader.take<std::size_t>();
+        next.first_withheld = reader.take<Vec3>();
+        const std::vector<char> columns = reader.take_rest<char>();
+        next.columns.assign(columns.begin(), columns.end());
+        add_notes(next, all);
+    }
+    return all;
 }
 
 class ReconstructRun {
@@ -66,11 +93,12 @@ public:
     ReconstructRun(const ReconstructArguments& arguments, Ranks* ranks)
         : arguments_(arguments),
           ranks_(ranks),
+          clouds_(arguments.clouds()),
           levels_(arguments.level_range()),
           stages_(parse_stages(arguments.stages)),
           tiles_(ranks ? arguments.tiles_of_rank() : arguments.tiles()),
           options_(checked_options(arguments, levels_)),
-          plan_(arguments, levels_, stages_),
+          plan_(arguments, clouds_, levels_, stages_),
           text_(plan_.uses_standard_output() ? std::cerr : std::cout) {
         options_.measure = !arguments.quiet || !arguments.report.empty() || !arguments.html.empty();
         options_.classify = options_.measure || plan_.writes_features() || !stages_.empty();
@@ -78,12 +106,12 @@ public:
     }
 
     int run() {
-        const std::size_t inputs = arguments_.inputs.size();
-        for (const std::string& input : arguments_.inputs) {
+        const std::size_t inputs = clouds_.size();
+        for (const CloudFiles& cloud : clouds_) {
             if (inputs == 1) {
-                reconstruct_alone(input);
+                reconstruct_alone(cloud);
             } else {
-                try_one(input);
+                try_one(cloud);
             }
             text_ << std::flush; // what is done has been told, whatever comes
         }
@@ -98,25 +126,25 @@ public:
 
 private:
     /// A failure is told and noted; the other inputs go on.
-    void try_one(const std::string& input) {
+    void try_one(const CloudFiles& cloud) {
         try {
-            reconstruct_one(input);
+            reconstruct_one(cloud);
         } catch (const std::exception& error) {
             ++failed_inputs_;
             const std::string failure = message_of(error);
             complain(failure);
-            note_failure(input, failure);
+            note_failure(cloud.input, failure);
         }
     }
 
     /// A failure is noted in the report; whoever runs this tells it and knows the status that it deserves.
-    void reconstruct_alone(const std::string& input) {
+    void reconstruct_alone(const CloudFiles& cloud) {
         try {
-            reconstruct_one(input);
+            reconstruct_one(cloud);
         } catch (const std::exception& error) {
             if (arguments_.report.empty()) throw;
             const char *const file = current_file(), *const phase = current_phase();
-            note_failure(input, message_of(error));
+            note_failure(cloud.input, message_of(error));
             try {
                 write_report();
             } catch (const std::exception& second) {
@@ -139,12 +167,12 @@ private:
         reports_.push_back(std::move(json).take());
     }
 
-    void reconstruct_one(const std::string& input) {
-        const std::string name = input == "-" ? "standard input" : input;
-        set_activity(input == "-" ? "standard input" : input.c_str(), "read");
+    void reconstruct_one(const CloudFiles& cloud) {
+        const std::string name = cloud.name();
+        set_activity(cloud.input == "-" ? "standard input" : cloud.input.c_str(), "read");
         bool complete = true;
         std::size_t points = 0; // of an input without a mesh none count
-        for (const Report& report : make(input, name)) {
+        for (const Report& report : make(cloud, name)) {
             if (tell(name, report))
                 points = report.input.points;
             else
@@ -155,29 +183,28 @@ private:
     }
 
     /// Reads, reconstructs and writes one input.
-    std::vector<Report> make(const std::string& input, const std::string& name) {
+    std::vector<Report> make(const CloudFiles& cloud, const std::string& name) {
         const auto start = Clock::now();
         ProgressBar bar(arguments_.progress, name);
         bar.show("read", 0);
         std::optional<PointFile> read;
         if (tiles_) {
-            PointsInParts points(input, arguments_.read);
-            if (ranks_ || !fits_in_one_piece(points.size()))
-                return make_in_tiles(points, input, name, start, bar);
+            PointsInParts points(cloud.files, arguments_.read);
+            if (ranks_ || !fits_in_one_piece(points.size())) return make_in_tiles(points, cloud, start, bar);
             if (points.in_memory()) read = std::move(points).file();
         }
-        PointFile file = read ? std::move(*read) : read_points(input, arguments_.read);
+        PointFile file = read ? std::move(*read) : read_joined(cloud.files, arguments_.read);
         const double read_seconds = seconds_since(start);
         PointCloud scan = scan_for_stages(stages_, file.cloud, options_.measure);
         if (!arguments_.html.empty() && scan.positions.empty()) scan.positions = file.cloud.positions;
         ReconstructOptions options = options_;
-        options.debug_dir = plan_.debug_dir(input);
+        options.debug_dir = plan_.debug_dir(cloud.input);
         options.progress = shown_on(bar);
         const auto write_all = [&](std::span<Reconstruction> results) {
             bar.show(stages_.empty() ? "write" : "stages", 0.97);
             std::vector<Report> made;
             for (Reconstruction& result : results) {
-                result.report.input.file = input;
+                note_input(cloud, result.report);
                 result.report.seconds.read = read_seconds;
                 write_one(name, scan, result);
                 result.report.seconds.total = seconds_since(start);
@@ -187,13 +214,18 @@ private:
             return made;
         };
         if (levels_) {
-            std::vector<Reconstruction> results = named(name, [&] {
+            std::vector<Reconstruction> results = named(cloud, [&] {
                 return reconstruct_levels(std::move(file), levels_->first, levels_->second, options);
             });
             return write_all(results);
         }
-        Reconstruction result = named(name, [&] { return reconstruct(std::move(file), options); });
+        Reconstruction result = named(cloud, [&] { return reconstruct(std::move(file), options); });
         return write_all({&result, 1});
+    }
+
+    void note_input(const CloudFiles& cloud, Report& report) const {
+        report.input.file = cloud.input;
+        if (arguments_.join) report.input.files = cloud.files;
     }
 
     bool fits_in_one_piece(std::size_t points) const {
@@ -211,8 +243,8 @@ private:
     }
 
     /// The same in bounded memory. Reading is part of the other phases.
-    std::vector<Report> make_in_tiles(const PointsInParts& points, const std::string& input,
-                                      const std::string& name, Clock::time_point start, ProgressBar& bar) {
+    std::vector<Report> make_in_tiles(const PointsInParts& points, const CloudFiles& cloud,
+                                      Clock::time_point start, ProgressBar& bar) {
         arguments_.check_for_tiles(*tiles_);
         const double read_seconds = seconds_since(start);
         ReconstructOptions options = options_;
@@ -220,45 +252,49 @@ private:
         TileOptions tiles = *tiles_;
         const std::size_t held = points.in_memory() ? bytes_of_cloud(points.file().cloud) : 0;
         if (held >= tiles.memory)
-            throw Error(name, "its points take " + std::to_string(held / 1000000)
-                                  + " MB once they are read; of binary PLY files they need not be in memory");
+            throw Error(cloud.name(),
+                        "its points take " + std::to_string(held / 1000000)
+                            + " MB once they are read; of binary PLY files they need not be in memory");
         tiles.memory -= held;
         OneRank alone;
         Ranks& ranks = ranks_ ? *ranks_ : alone;
-        const auto share = [&](int rank) {
-            return points.size() * static_cast<std::size_t>(rank) / static_cast<std::size_t>(ranks.size());
-        };
         const PointParts parts = [&](const auto& visit) {
-            points.visit(share(ranks.rank()), share(ranks.rank() + 1),
-                         [&](const PointCloud& part) { visit(view_of(part)); });
+            points.visit_share(ranks.rank(), ranks.size(),
+                               [&](const PointCloud& part) { visit(view_of(part)); });
         };
+        const std::vector<std::uint64_t> seen = ranks.gather(points.bytes());
+        if (std::ranges::count(seen, seen.front()) != ranks.size())
+            throw Error(cloud.name(), "is not the same to all processes; put it where all of them see it");
         TileReport how;
+        PointFile read;
         const auto note = [&](Report& report) {
-            note_reading(points.file(), report);
+            note_reading(read, report);
             if (!arguments_.memory.empty()) report.options["memory"] = arguments_.memory;
             report.options["tiles"] = std::to_string(how.tiles);
             if (ranks_) {
                 report.options["ranks"] = std::to_string(ranks_->size());
                 work_of_ranks_ = std::move(how.ranks);
             }
-            report.input.file = input;
+            note_input(cloud, report);
             report.seconds.read = read_seconds;
             bar.show("write", 0.97);
         };
         std::vector<Report> made;
         if (is_written_as_it_comes()) {
             FlatReconstruction flat =
-                named(name, [&] { return reconstruct_flat_in_tiles(parts, options, tiles, ranks, &how); });
+                named(cloud, [&] { return reconstruct_flat_in_tiles(parts, options, tiles, ranks, &how); });
+            read = notes_of_all(points, ranks);
             if (!ranks.is_first()) return {}; // which has all of it
             note(flat.report);
             write_as_it_comes(flat);
             made.push_back(std::move(flat.report));
         } else {
             Reconstruction result =
-                named(name, [&] { return reconstruct_in_tiles(parts, options, tiles, ranks, &how); });
+                named(cloud, [&] { return reconstruct_in_tiles(parts, options, tiles, ranks, &how); });
+            read = notes_of_all(points, ranks);
             if (!ranks.is_first()) return {};
             note(result.report);
-            write_one(name, {}, result);
+            write_one(cloud.name(), {}, result);
             made.push_back(std::move(result.report));
         }
         made.back().seconds.total = seconds_since(start);
@@ -368,7 +404,7 @@ private:
 
     void print(const Report& report) const {
         const std::string written = spoken_name(target(report).mesh);
-        if (arguments_.inputs.size() == 1 && !levels_) {
+        if (clouds_.size() == 1 && !levels_) {
             text_ << summary_of(report, written);
         } else {
             text_ << line_of(report, written);
@@ -383,7 +419,7 @@ private:
     void write_report() const {
         if (arguments_.report.empty() || (ranks_ && !ranks_->is_first())) return;
         set_activity(arguments_.report.c_str(), "write");
-        if (arguments_.inputs.size() == 1 && !levels_) {
+        if (clouds_.size() == 1 && !levels_) {
             write_text(arguments_.report, reports_.front());
             return;
         }
@@ -395,6 +431,7 @@ private:
 
     const ReconstructArguments& arguments_;
     Ranks* ranks_;
+    std::vector<CloudFiles> clouds_;
     std::optional<std::pair<int, int>> levels_;
     std::vector<StageCall> stages_;
     std::optional<TileOptions> tiles_;

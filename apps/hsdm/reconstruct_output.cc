@@ -73,11 +73,14 @@ MeshFormat format_for(const std::string& output, const std::string& format) {
     }
 }
 
-OutputPlan::OutputPlan(const ReconstructArguments& arguments, std::optional<std::pair<int, int>> levels,
-                       const std::vector<StageCall>& stages)
-    : arguments_(arguments), levels_(levels), format_(format_for(arguments.output, arguments.format)) {
+OutputPlan::OutputPlan(const ReconstructArguments& arguments, const std::vector<CloudFiles>& clouds,
+                       std::optional<std::pair<int, int>> levels, const std::vector<StageCall>& stages)
+    : arguments_(arguments),
+      meshes_(clouds.size()),
+      levels_(levels),
+      format_(format_for(arguments.output, arguments.format)) {
     check_combinations();
-    check_claims(stages);
+    check_claims(clouds, stages);
     make_folders();
     for (const std::string* path :
          {&arguments.output, &arguments.report, &arguments.features, &arguments.html})
@@ -90,23 +93,25 @@ void OutputPlan::check_combinations() const {
         throw UsageError("one of -o FILE and --out-dir DIR says where the mesh goes");
     if (a.intersections && a.quiet && a.report.empty())
         throw UsageError("--intersections: with --quiet only --report FILE tells them; give it too");
-    if (a.inputs.size() > 1 && !a.output.empty())
-        throw UsageError("-o FILE holds one mesh; with several inputs use --out-dir DIR");
-    if (a.inputs.size() > 1 && !a.features.empty())
+    if (meshes_ > 1 && !a.output.empty())
+        throw UsageError("-o FILE holds one mesh; with several inputs use --out-dir DIR, or --join "
+                         "scans of one thing");
+    if (meshes_ > 1 && !a.features.empty())
         throw UsageError("--features FILE holds one mesh's; run the inputs one by one");
-    if (a.inputs.size() > 1 && !a.html.empty())
+    if (meshes_ > 1 && !a.html.empty())
         throw UsageError("--html FILE shows one mesh; run the inputs one by one");
     if (!a.html.empty() && !can_write_pages()) throw UsageError("--html: " + std::string(without_three));
     if (levels_ && (a.output == "-" || a.features == "-" || a.html == "-"))
         throw UsageError("--levels makes several files; standard output holds one");
 }
 
-void OutputPlan::check_claims(const std::vector<StageCall>& stages) const {
+void OutputPlan::check_claims(const std::vector<CloudFiles>& clouds,
+                              const std::vector<StageCall>& stages) const {
     FileClaims claims;
     claim_stage_files(stages, claims);
-    for (const std::string& input : arguments_.inputs) {
-        claims.reads("the input", input);
-        claim_outputs(input, claims);
+    for (const CloudFiles& cloud : clouds) {
+        for (const std::string& file : cloud.files) claims.reads("the input", file);
+        claim_outputs(cloud.input, claims);
     }
     if (!arguments_.report.empty()) claims.writes("--report " + arguments_.report, arguments_.report);
     if (!arguments_.quiet && !uses_standard_output()) claims.writes("the summary", "-");
@@ -138,7 +143,7 @@ void OutputPlan::make_folders() const {
 }
 
 std::string OutputPlan::debug_dir(const std::string& input) const {
-    if (arguments_.debug_dir.empty() || arguments_.inputs.size() == 1) return arguments_.debug_dir;
+    if (arguments_.debug_dir.empty() || meshes_ == 1) return arguments_.debug_dir;
     return (fs::path(arguments_.debug_dir) / stem(input)).string();
 }
 

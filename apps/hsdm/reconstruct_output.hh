@@ -23,9 +23,9 @@ class OutputPlan {
 public:
     /// Makes the folders. Throws UsageError for options that do not fit together and for outputs that would
     /// destroy inputs or each other, Error for what cannot be written. `levels` as of level_range(), checked;
-    /// `stages` are those of the arguments.
-    OutputPlan(const ReconstructArguments& arguments, std::optional<std::pair<int, int>> levels,
-               const std::vector<StageCall>& stages);
+    /// `clouds` and `stages` are those of the arguments.
+    OutputPlan(const ReconstructArguments& arguments, const std::vector<CloudFiles>& clouds,
+               std::optional<std::pair<int, int>> levels, const std::vector<StageCall>& stages);
 
     /// `depth` is set when --levels names several.
     MeshTarget target(const std::string& input, std::optional<int> depth) const;
@@ -43,11 +43,12 @@ public:
 
 private:
     void check_combinations() const;
-    void check_claims(const std::vector<StageCall>& stages) const;
+    void check_claims(const std::vector<CloudFiles>& clouds, const std::vector<StageCall>& stages) const;
     void claim_outputs(const std::string& input, FileClaims& claims) const;
     void make_folders() const;
 
     const ReconstructArguments& arguments_;
+    std::size_t meshes_; // without the levels of each
     std::optional<std::pair<int, int>> levels_;
     MeshFormat format_ = MeshFormat::off;
 };

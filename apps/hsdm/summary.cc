@@ -122,9 +122,10 @@ std::string topology_words(const Report::Mesh& mesh) {
 std::string summary_of(const Report& r, const std::string& written) {
     Text out;
     const Vec3 size = r.input.bbox.size();
-    out << "cloud     " << counted(r.input.points, "point", "points") << ", " << normals_words(r) << ", "
-        << number(size[0]) << " x " << number(size[1]) << " x " << number(size[2]) << ", spacing "
-        << number(r.input.spacing, 3);
+    out << "cloud     " << counted(r.input.points, "point", "points")
+        << (r.input.files.empty() ? "" : " of " + counted(r.input.files.size(), "file", "files")) << ", "
+        << normals_words(r) << ", " << number(size[0]) << " x " << number(size[1]) << " x " << number(size[2])
+        << ", spacing " << number(r.input.spacing, 3);
     if (r.input.dropped_nonfinite > 0)
         out << "; " << grouped(r.input.dropped_nonfinite) << " without finite coordinates"
             << (r.input.first_nonfinite
@@ -133,6 +134,8 @@ std::string summary_of(const Report& r, const std::string& written) {
             << " dropped";
     if (r.input.merged_duplicates > 0)
         out << "; " << grouped(r.input.merged_duplicates) << " duplicates, merged";
+    if (const std::string left_out = option_value(r, "left_out"); !left_out.empty())
+        out << "; not all files have these, which are left out: " << printable(left_out);
     if (rejected_count(r, "points_moved")) out << "; noisy, moved onto their surface";
     if (const std::string columns = option_value(r, "columns"); !columns.empty())
         out << "\ncolumns   " << columns_words(columns, r.input.has_normals);

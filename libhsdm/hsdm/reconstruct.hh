@@ -133,7 +133,7 @@ std::vector<Reconstruction> reconstruct_levels(PointFile&& file, int first_depth
 
 /// For who reconstructs from a file's arrays: points that the file marks as withheld go to the front of
 /// Report::dropped, those without coordinates into Input::dropped_nonfinite, and what columns were taken for
-/// into `options`, as "columns". Once for each report.
+/// into `options`, as "columns", and what not all of several files have, as "left_out". Once for each report.
 void note_reading(const PointFile& file, Report& report);
 
 } // namespace hsdm

@@ -27,6 +27,7 @@ struct Report {
     /// The cloud.
     struct Input {
         std::string file;                           ///< set by the command, else empty
+        std::vector<std::string> files;             ///< those that were joined, set by the command
         std::size_t points = 0,                     ///< with finite coordinates
             dropped_nonfinite = 0,                  ///< left out, as a coordinate was NaN or Inf
             merged_duplicates = 0;                  ///< equal to another in position and normal, counted once

@@ -33,6 +33,22 @@ for count in 1 2 3; do
     grep -q "^ranks     $count: " out || fail "the summary does not tell of $count ranks"
 done
 
+# Several scans of one thing, binary and text: part of the points in each, and in a folder.
+mkdir scans
+"$generate" part --points 20000 --seed 2 -o scans/a.ply
+"$generate" part --points 20000 --seed 3 -o scans/b.ply
+"$generate" part --points 10000 --seed 4 -o c.ply
+tail -c 480000 c.ply | od -An -v -w48 -t f8 >scans/c.xyz
+rm c.ply
+"$hsdm" reconstruct --join scans --depth 6 -o one-of-all.ply --quiet
+"$hsdm" reconstruct scans/c.xyz scans/a.ply scans/b.ply --join --depth 6 -o ranks.ply --quiet
+cmp one-of-all.ply ranks.ply || fail "files in another order give another mesh"
+for count in 1 2 3; do
+    by $count --join scans --depth 6 -o ranks.ply --scratch scratch --threads 1 ||
+        fail "$count processes, several files: status $?"
+    cmp one-of-all.ply ranks.ply || fail "$count processes write another mesh of several files"
+done
+
 # refused WHAT TEXT ARGUMENT...: status, message, told once, and no file
 refused() {
     what=$1 text=$2
@@ -83,6 +99,7 @@ for signal in KILL TERM INT; do
     done
 done
 rm -f pid.* rank.sh
+rm -r scans
 ls | grep -v -e '^scan.ply$' -e '^long.ply$' -e '^short.ply$' -e '^one' -e '^ranks.txt$' -e '^scratch$' -e '^out$' -e '^err$' &&
     fail "files are left behind"
 echo "several processes: the bits of one"

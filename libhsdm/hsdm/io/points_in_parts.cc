@@ -3,6 +3,7 @@
 #include "hsdm/core/interruption.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/formats.hh"
+#include "hsdm/io/join_points.hh"
 #include "hsdm/io/source_bytes.hh"
 
 namespace hsdm {
@@ -24,33 +25,93 @@ PointCloud slice(const PointCloud& cloud, std::size_t begin, std::size_t end) {
     return part;
 }
 
+/// Where a share of so many shares begins in a row of so many.
+std::uint64_t begin_of(int share, int shares, std::uint64_t count) {
+    const auto all = static_cast<std::uint64_t>(shares), own = static_cast<std::uint64_t>(share);
+    return count / all * own + count % all * own / all;
+}
+
+/// The row of a file where so many of its bytes are over: each for all that ask, 0 and all at its ends.
+std::size_t row_at(double byte, std::uint64_t bytes, std::size_t rows) {
+    return static_cast<std::size_t>(static_cast<double>(rows) * (byte / static_cast<double>(bytes)));
+}
+
 } // namespace
 
-PointsInParts::PointsInParts(const std::string& path, const ReadOptions& options) : path_(path) {
-    const bool may_be_parted = path != "-" && (options.format.empty() || options.format == "ply")
-                               && options.columns.empty() && options.sensors.empty();
-    if (may_be_parted) rows_ = io::ply_rows(io::SourceBytes::open(path));
-    if (rows_)
-        file_.format = "ply";
-    else
-        file_ = read_points(path, options);
+PointsInParts::PointsInParts(std::vector<std::string> paths, const ReadOptions& options) : options_(options) {
+    const bool may_be_parted = (options.format.empty() || options.format == "ply") && options.columns.empty()
+                               && options.sensors.empty();
+    notes_.format = "ply";
+    for (std::string& path : paths) {
+        Source source{std::move(path)};
+        if (source.path == "-") {
+            one_.emplace(read_points(source.path, options));
+            return;
+        }
+        const io::SourceBytes bytes = io::SourceBytes::open(source.path);
+        source.bytes = std::max<std::uint64_t>(1, bytes.size());
+        if (may_be_parted) source.rows = io::ply_rows(bytes);
+        sources_.push_back(std::move(source));
+    }
+    if (sources_.size() == 1 && !sources_.front().rows)
+        one_.emplace(read_points(sources_.front().path, options));
 }
 
-void PointsInParts::visit(const std::function<void(const PointCloud&)>& visit) const {
-    this->visit(0, size(), visit);
+void PointsInParts::visit_share(int share, int shares,
+                                const std::function<void(const PointCloud&)>& visit) const {
+    if (one_) {
+        if (shares == 1) return visit(one_->cloud);
+        const std::size_t points = one_->cloud.size();
+        return visit(
+            slice(one_->cloud, begin_of(share, shares, points), begin_of(share + 1, shares, points)));
+    }
+    const std::uint64_t all = bytes();
+    std::uint64_t before = 0;
+    const std::uint64_t begin = begin_of(share, shares, all), end = begin_of(share + 1, shares, all);
+    for (Source& source : sources_) {
+        const std::uint64_t last = before + source.bytes, middle = before + source.bytes / 2;
+        if (source.rows && begin < last && before < end) {
+            const auto row = [&](std::uint64_t at) {
+                const std::uint64_t within = std::clamp(at, before, last) - before;
+                return row_at(static_cast<double>(within), source.bytes, *source.rows);
+            };
+            visit_rows(source, row(begin), row(end), visit);
+        } else if (!source.rows && begin <= middle && middle < end) {
+            visit(read(source).cloud);
+        }
+        before = last;
+    }
 }
 
-void PointsInParts::visit(std::size_t begin, std::size_t end,
-                          const std::function<void(const PointCloud&)>& visit) const {
-    if (!rows_ && begin == 0 && end == size()) return visit(file_.cloud);
-    if (!rows_) return visit(slice(file_.cloud, begin, end));
+void PointsInParts::visit_rows(const Source& source, std::size_t begin, std::size_t end,
+                               const std::function<void(const PointCloud&)>& visit) const {
     constexpr std::size_t points_at_once = std::size_t{1} << 18; // some megabytes
     const auto one = [&](const PointCloud& part) {
         Interruption::poll();
         visit(part);
     };
-    if (!io::read_ply_in_parts(io::SourceBytes::open(path_), begin, end, points_at_once, one))
-        throw Error(path_, "is not the file any more that it was before; leave it until all is done");
+    if (!io::read_ply_in_parts(io::SourceBytes::open(source.path), begin, end, points_at_once, one))
+        throw Error(source.path, "is not the file any more that it was before; leave it until all is done");
+}
+
+PointFile PointsInParts::read(Source& source) const {
+    Interruption::poll();
+    PointFile file = read_points(source.path, options_);
+    if (!std::exchange(source.is_noted, true)) add_notes(file, notes_);
+    return file;
+}
+
+std::size_t PointsInParts::size() const {
+    if (one_) return one_->cloud.size();
+    std::size_t points = 0;
+    for (Source& source : sources_) points += source.rows ? *source.rows : read(source).cloud.size();
+    return points;
+}
+
+std::uint64_t PointsInParts::bytes() const {
+    std::uint64_t all = 0;
+    for (const Source& source : sources_) all += source.bytes;
+    return all;
 }
 
 } // namespace hsdm

@@ -41,6 +41,8 @@ struct PointFile {
     /// Tables and plain arrays whose columns were told from their values alone: what each was taken for, e.g.
     /// "x,y,z,nx,ny,nz", so that whoever knows better can say so in ReadOptions::columns. Else empty.
     std::string columns{};
+    /// Of several files that were joined: what some have and others do not, which is left out.
+    std::vector<std::string> partial{};
 };
 
 /// Throws OptionError for options that do not fit it. read_points() does so too.

@@ -16,6 +16,7 @@ void fill(JsonText& json, const std::map<std::string, Value>& values) {
 void fill(JsonText& json, const Report::Input& input) {
     json.begin_object();
     json.member("file", input.file);
+    if (!input.files.empty()) json.member("files", input.files);
     json.member("points", input.points);
     json.member("dropped_nonfinite", input.dropped_nonfinite);
     if (input.first_nonfinite) json.member("first_nonfinite", *input.first_nonfinite);
