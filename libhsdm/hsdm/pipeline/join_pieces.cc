@@ -20,6 +20,7 @@ public:
             if (store_) store_->take_foreign(piece);
             foreign_.emplace_back(piece.foreign.size());
         }
+        find_runs();
         reserve_large(mesh.positions, first_.back());
         for (std::size_t k = 0; k < pieces_.size(); ++k) add_vertices(k, mesh);
         reserve_large(mesh.corners, corners_);
@@ -30,33 +31,54 @@ public:
     }
 
 private:
+    /// Vertices of a piece among the foreign ones of another.
+    struct Run {
+        std::size_t owner, of;  ///< pieces
+        std::size_t begin, end; ///< of the foreign ones
+    };
+
     void count() {
+        std::size_t vertices = 0;
         for (const Piece& piece : pieces_) {
-            const std::size_t own = store_ ? store_->vertices(piece) : piece.positions.size();
-            first_.push_back(first_.back() + static_cast<Index>(own));
+            vertices += store_ ? store_->vertices(piece) : piece.positions.size();
+            first_.push_back(static_cast<Index>(vertices));
             corners_ += store_ ? store_->corners(piece) : piece.corners.size();
             facets_ += store_ ? store_->facets(piece) : piece.first.size() - 1;
             has_sides_ |= store_ ? store_->has_sides(piece) : !piece.sides.empty();
         }
+        check_mesh_size(vertices, corners_);
+    }
+
+    /// By the pieces whose vertices they are.
+    void find_runs() {
+        for (std::size_t of = 0; of < pieces_.size(); ++of) {
+            const std::vector<Piece::Foreign>& foreign = pieces_[of].foreign;
+            for (std::size_t begin = 0; begin < foreign.size();) {
+                const auto begins = [](const Piece& piece) { return piece.range.begin; };
+                const auto next = std::ranges::upper_bound(pieces_, foreign[begin].code, {}, begins);
+                const auto owner = static_cast<std::size_t>(next - pieces_.begin()) - 1;
+                std::size_t end = begin;
+                while (end < foreign.size() && foreign[end].code < pieces_[owner].range.end) ++end;
+                runs_.push_back({owner, of, begin, end});
+                begin = end;
+            }
+        }
+        std::ranges::stable_sort(runs_, {}, &Run::owner);
     }
 
     void add_vertices(std::size_t k, PolygonMesh& mesh) {
         Piece& piece = pieces_[k];
         if (store_) store_->take_vertices(piece);
-        for (std::size_t i = 0; i < pieces_.size(); ++i) number_foreign(i, k);
+        for (; next_run_ < runs_.size() && runs_[next_run_].owner == k; ++next_run_)
+            number_foreign(runs_[next_run_]);
         append_large(mesh.positions, piece.positions);
         piece.positions = {}, piece.codes = {};
     }
 
-    /// Numbers the vertices of piece k among the foreign ones of piece i.
-    void number_foreign(std::size_t i, std::size_t k) {
-        const std::vector<Piece::Foreign>& foreign = pieces_[i].foreign;
-        const auto from = [&](MortonCode code) {
-            return std::ranges::lower_bound(foreign, code, {}, &Piece::Foreign::code) - foreign.begin();
-        };
-        const auto end = static_cast<std::size_t>(from(pieces_[k].range.end));
-        for (auto f = static_cast<std::size_t>(from(pieces_[k].range.begin)); f < end; ++f)
-            foreign_[i][f] = first_[k] + place_in(pieces_[k], foreign[f]);
+    void number_foreign(const Run& run) {
+        const std::vector<Piece::Foreign>& foreign = pieces_[run.of].foreign;
+        for (std::size_t f = run.begin; f < run.end; ++f)
+            foreign_[run.of][f] = first_[run.owner] + place_in(pieces_[run.owner], foreign[f]);
     }
 
     static Index place_in(const Piece& owner, const Piece::Foreign& foreign) {
@@ -86,10 +108,19 @@ private:
     std::vector<Index> first_{0}; // vertex of each piece
     std::size_t corners_ = 0, facets_ = 0;
     bool has_sides_ = false;
+    std::vector<Run> runs_;
+    std::size_t next_run_ = 0;
     std::vector<std::vector<Index>> foreign_; // per piece, numbers of its foreign vertices
 };
 
 } // namespace
+
+void check_mesh_size(std::size_t vertices, std::size_t corners) {
+    if (std::max(vertices, corners) < no_index) return;
+    throw Error(
+        "the mesh would have " + std::to_string(vertices) + " vertices and " + std::to_string(corners)
+        + " corners of facets; fewer than 2^32 - 1 of each can be told apart, give a smaller --depth");
+}
 
 PolygonMesh joined_pieces(std::vector<Piece>&& pieces, std::vector<EdgeHint>& sides,
                           const PieceStore* store) {

@@ -12,4 +12,7 @@ namespace hsdm {
 PolygonMesh joined_pieces(std::vector<Piece>&& pieces, std::vector<EdgeHint>& sides,
                           const PieceStore* store = nullptr);
 
+/// Throws Error for a mesh of more vertices, or corners of facets, than indices tell apart.
+void check_mesh_size(std::size_t vertices, std::size_t corners);
+
 } // namespace hsdm

@@ -2,6 +2,7 @@
 
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
+#include "hsdm/pipeline/compare_pieces.hh"
 
 #include <algorithm>
 #include <utility>
@@ -35,7 +36,8 @@ public:
                 std::ranges::fill(due, std::uint8_t{1});
                 continue;
             }
-            due = disagreeing(pieces);
+            due = disagreeing_tiles(
+                pieces, ranges_, [&](std::size_t k) { return owner(k); }, ranks_);
             for (std::size_t k = 0; k < ranges_.size(); ++k)
                 if (due[k]) ghost[k] *= 2, ++how_.widened;
             if (std::ranges::count(due, 1) == 0 && must_go_back(pieces))
@@ -68,34 +70,6 @@ private:
                 "facets pass through each other that could not be parted, or normals are at random");
         if (in_.store) in_.store->put(piece);
         return piece;
-    }
-
-    /// Per tile, 1 if it and another one see different things where both look. Who owns a tile compares what
-    /// others have seen there.
-    std::vector<std::uint8_t> disagreeing(const std::vector<Piece>& pieces) {
-        const auto ranks = static_cast<std::size_t>(ranks_.size());
-        std::vector<Ranks::Bytes> out(ranks);
-        for (std::size_t i = 0; i < pieces.size(); ++i)
-            if (is_own(i))
-                for (std::size_t j = 0; j < pieces.size(); ++j) {
-                    if (i == j) continue;
-                    const auto seen = within(pieces[i].beyond, ranges_[j]);
-                    Ranks::Bytes& to = out[static_cast<std::size_t>(owner(j))];
-                    put(i, to), put(j, to);
-                    put_vector(std::vector<Piece::Digest>(seen.begin(), seen.end()), to);
-                }
-        std::vector<std::uint8_t> found(pieces.size(), 0);
-        for (const Ranks::Bytes& got : ranks_.exchange(std::move(out)))
-            for (ByteReader reader(got); !reader.at_end();) {
-                const auto i = reader.take<std::size_t>(), j = reader.take<std::size_t>();
-                const auto seen = reader.take_vector<Piece::Digest>();
-                if (!sees_same(ranges_[i], seen, pieces[j])) found[i] = found[j] = 1;
-            }
-        std::vector<std::uint8_t> of_any(pieces.size(), 0);
-        for (const Ranks::Bytes& got : ranks_.gather(bytes_of(found)))
-            std::ranges::transform(of_any, got, of_any.begin(),
-                                   [](std::uint8_t a, char b) { return static_cast<std::uint8_t>(a | b); });
-        return of_any;
     }
 
     Piece make_tile(const VoxelRange& range, int ghost) {

@@ -4,6 +4,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/pipeline/near_cells.hh"
 #include "hsdm/pipeline/point_exchange.hh"
 #include "hsdm/pipeline/tile_plan.hh"
 
@@ -241,14 +242,11 @@ int ScratchCloud::cells_within(int ghost) const {
 
 std::vector<MortonCode> ScratchCloud::missing_cells(const std::vector<Surroundings>& wanted) const {
     std::vector<MortonCode> missing;
-    for (const ScratchPoints::Cell& cell : cells_) {
-        if (owner(cell.code) == ranks_.rank() || std::ranges::binary_search(fetched_, cell.code)) continue;
-        const VoxelCoord at = morton_decode(cell.code);
-        if (std::ranges::any_of(wanted, [&](const Surroundings& w) {
-                return cells_of(w.range).is_near(at, cells_within(w.ghost));
-            }))
-            missing.push_back(cell.code);
-    }
+    for (const Surroundings& w : wanted)
+        for (const MortonCode cell : cells_near(cells_of(w.range), cells_within(w.ghost), cells_))
+            if (owner(cell) != ranks_.rank() && !std::ranges::binary_search(fetched_, cell))
+                missing.push_back(cell);
+    sort_unique(missing);
     return missing;
 }
 
@@ -282,17 +280,16 @@ VoxelRange ScratchCloud::cells_of(const VoxelRange& range) const {
 
 std::vector<PointRow> ScratchCloud::rows_of(const VoxelRange& range, int ghost) const {
     std::vector<PointRow> rows, cell;
-    const int to_level = 3 * (morton_levels - depth_), cells_around = cells_within(ghost);
+    const int to_level = 3 * (morton_levels - depth_);
     const VoxelRange of_cells = cells_of(range);
-    for (const ScratchPoints::Cell& c : cells_) {
-        if (of_cells.holds(c.code)) {
-            scratch_.read(c.code, rows);
+    for (const MortonCode c : cells_near(of_cells, cells_within(ghost), cells_)) {
+        if (of_cells.holds(c)) {
+            scratch_.read(c, rows);
             continue;
         }
-        if (!of_cells.is_near(morton_decode(c.code), cells_around)) continue;
         Interruption::poll();
         cell.clear();
-        scratch_.read(c.code, cell);
+        scratch_.read(c, cell);
         for (const PointRow& row : cell) {
             const MortonCode code = code_at(Vec3(row[0], row[1], row[2]) - origin(), cube_extent());
             if (range.is_near(morton_decode(code >> to_level), ghost)) rows.push_back(row);

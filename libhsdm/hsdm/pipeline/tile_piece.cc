@@ -140,21 +140,4 @@ Piece make_piece(const MethodInput& in, const PartOfLevel& part, const VoxelRang
     return piece;
 }
 
-std::span<const Piece::Digest> within(std::span<const Piece::Digest> beyond, const VoxelRange& range) {
-    const auto at = [&](MortonCode code) {
-        return std::ranges::lower_bound(beyond, code, {}, &Piece::Digest::code);
-    };
-    return {at(range.begin), at(range.end)};
-}
-
-bool sees_same(const VoxelRange& range, std::span<const Piece::Digest> beyond, const Piece& other) {
-    auto seen = beyond.begin();
-    for (const Piece::Digest& digest : other.border) {
-        if (!range.is_near(morton_decode(digest.code), compared_voxels)) continue;
-        if (seen == beyond.end() || !(*seen == digest)) return false;
-        ++seen;
-    }
-    return seen == beyond.end();
-}
-
 } // namespace hsdm

@@ -33,8 +33,8 @@ struct Piece {
         std::uint64_t hash;
         friend bool operator==(const Digest&, const Digest&) = default;
     };
-    std::vector<Digest> border; ///< its voxels that others see
-    std::vector<Digest> beyond; ///< voxels of others that it sees
+    std::vector<Digest> border; ///< its voxels that others see, ascending
+    std::vector<Digest> beyond; ///< voxels of others that it sees, ascending
 
     FacetCounts counts; ///< of its facets
 };
@@ -44,12 +44,5 @@ inline constexpr int compared_voxels = 2;
 
 /// Reconstructs a tile. `in`: the points of the range and of all voxels within the ghost layer of it.
 Piece make_piece(const MethodInput& in, const PartOfLevel& part, const VoxelRange& range);
-
-/// What a tile found beyond itself, in ascending order, that is in a range.
-std::span<const Piece::Digest> within(std::span<const Piece::Digest> beyond, const VoxelRange& range);
-
-/// Did the tile of a range find the same in voxels of `other` as that one itself? `beyond`: what the former
-/// found there.
-bool sees_same(const VoxelRange& range, std::span<const Piece::Digest> beyond, const Piece& other);
 
 } // namespace hsdm

@@ -18,16 +18,17 @@ struct VoxelRange {
     /// Is some voxel of the range at most `reach` voxels from this one along every axis? O((reach / cell +
     /// 2)^3).
     bool is_near(const VoxelCoord& voxel, int reach) const {
-        return any_cell(voxel, reach, [&](MortonCode first) { return holds(first); });
+        return any_cell_near(voxel, reach, [&](MortonCode first) { return holds(first); });
     }
     /// Are all voxels at most so far from it in the range?
     bool holds_around(const VoxelCoord& voxel, int reach) const {
-        return !any_cell(voxel, reach, [&](MortonCode first) { return !holds(first); });
+        return !any_cell_near(voxel, reach, [&](MortonCode first) { return !holds(first); });
     }
 
-private:
+    /// Does is(its first code) hold for some cell with a voxel that is at most so far? Cells as of this
+    /// range.
     template <class Is>
-    bool any_cell(const VoxelCoord& voxel, int reach, const Is& is) const {
+    bool any_cell_near(const VoxelCoord& voxel, int reach, const Is& is) const {
         const std::int32_t last = (std::int32_t{1} << depth) - 1;
         VoxelCoord lo, hi;
         for (std::size_t k = 0; k < 3; ++k) {
