@@ -19,7 +19,8 @@ class Nothing : public std::streambuf {
 int main(int argc, char** argv) {
     using namespace hsdm::command;
     static auto& nothing = *new Nothing; // streams are flushed after what is static is gone
-    handle_signals();                    // before MPI starts threads, which must not take them
+    prepare_process();                   // before MPI has memory, descriptors and threads
+    handle_signals();                    // which those threads must not take
     try {
         MpiRanks ranks(argc, argv);
         if (ranks.is_first()) return run_command(argc, argv, &ranks);

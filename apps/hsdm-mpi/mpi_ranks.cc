@@ -58,6 +58,7 @@ MpiRanks::MpiRanks(int& argc, char**& argv) {
 }
 
 MpiRanks::~MpiRanks() {
+    leave();
     MPI_Finalize();
 }
 

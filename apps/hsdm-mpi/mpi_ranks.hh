@@ -11,6 +11,7 @@ class MpiRanks final : public Ranks {
 public:
     /// Throws Error if MPI cannot be used.
     MpiRanks(int& argc, char**& argv);
+    /// Others that wait for this rank hear that it is gone.
     ~MpiRanks() override;
 
     int rank() const override { return rank_; }

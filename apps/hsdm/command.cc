@@ -8,12 +8,15 @@
 #include "threads.hh"
 #include "usage.hh"
 
+#include "hsdm/core/ranks.hh"
 #include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/file_registry.hh"
 #include "hsdm/version.hh"
 
+#include <algorithm>
 #include <cerrno>
+#include <cstring>
 #include <iostream>
 #include <new>
 
@@ -95,6 +98,15 @@ void take_standard_descriptors() {
         }
 }
 
+/// Ranks that do different things would wait for what does not come.
+void check_arguments(int argc, char** argv, Ranks& ranks) {
+    Ranks::Bytes own;
+    for (int k = 1; k < argc; ++k) append_bytes(argv[k], std::strlen(argv[k]) + 1, own);
+    const std::vector<Ranks::Bytes> all = ranks.gather(own);
+    if (std::ranges::count(all, own) != ranks.size())
+        throw UsageError("the processes have different arguments; give all of them the same");
+}
+
 /// The subcommand's status, or the one that the arguments deserve.
 int parse_and_run(int argc, char** argv, Ranks* ranks) {
     const std::string name = ranks ? "hsdm-mpi" : "hsdm";
@@ -115,11 +127,20 @@ int parse_and_run(int argc, char** argv, Ranks* ranks) {
         add_reconstruct_by_ranks(app, run, *ranks);
     else
         add_subcommands(app, run);
-    return guarded([&] {
+    const auto work = [&] {
         if (const auto status = parse_command_line(app, argc, argv)) return *status;
         if (!ranks) handle_signals(); // it has been done there
         start_threads();
         return run();
+    };
+    return guarded([&] {
+        if (!ranks) return work();
+        int status = done;
+        ranks->together([&] {
+            check_arguments(argc, argv, *ranks);
+            status = work();
+        });
+        return status;
     });
 }
 
@@ -129,9 +150,12 @@ void complain(const std::string& message) {
     std::cerr << "hsdm: " << printable(message) << std::endl;
 }
 
-int run_command(int argc, char** argv, Ranks* ranks) {
+void prepare_process() {
     os::keep_freed_memory();
     take_standard_descriptors();
+}
+
+int run_command(int argc, char** argv, Ranks* ranks) {
     try {
         return parse_and_run(argc, argv, ranks);
     } catch (const std::bad_alloc&) { // while the options are set up

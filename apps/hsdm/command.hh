@@ -34,8 +34,12 @@ void add_stages(CLI::App& app, Run& run);
 void add_regress(CLI::App& app, Run& run);
 void add_manual(CLI::App& app, Run& run);
 
-/// Parses and runs; every exception becomes a message on standard error and an exit status. With ranks it is
-/// `hsdm-mpi`, which has the subcommand `reconstruct` alone.
+/// What a process does first of all, before there are threads: how its memory is kept, and that what is meant
+/// for a standard stream that is closed goes nowhere else.
+void prepare_process();
+
+/// Parses and runs, after prepare_process(); every exception becomes a message on standard error and an exit
+/// status. With ranks it is `hsdm-mpi`, which has the subcommand `reconstruct` alone.
 int run_command(int argc, char** argv, Ranks* ranks = nullptr);
 
 /// `hsdm: MESSAGE` on standard error, one line: control characters are written out.

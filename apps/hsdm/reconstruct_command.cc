@@ -273,7 +273,7 @@ private:
             report.options["tiles"] = std::to_string(how.tiles);
             if (ranks_) {
                 report.options["ranks"] = std::to_string(ranks_->size());
-                work_of_ranks_ = std::move(how.ranks);
+                report.ranks = std::move(how.ranks);
             }
             note_input(cloud, report);
             report.seconds.read = read_seconds;
@@ -410,7 +410,7 @@ private:
             text_ << line_of(report, written);
         }
         if (report.written) text_ << written_words(*report.written);
-        if (ranks_) text_ << work_words(work_of_ranks_, arguments_.verbose);
+        if (ranks_) text_ << work_words(report.ranks, arguments_.verbose);
         if (arguments_.verbose) text_ << details_of(report);
         text_ << warnings_of(report);
     }
@@ -441,15 +441,12 @@ private:
     std::vector<std::string> reports_;
     std::size_t failed_inputs_ = 0, points_ = 0, faces_ = 0;
     std::size_t doubtful_ = 0; // meshes with warnings
-    std::vector<TileReport::Rank> work_of_ranks_;
 };
 
 /// All ranks do the same up to the mesh, which the first has and writes.
 int reconstruct_by(Ranks& ranks, ReconstructArguments& arguments) {
     if (!ranks.is_first()) arguments.progress = Progress::never;
-    int status = done;
-    ranks.together([&] { status = ReconstructRun(arguments, &ranks).run(); });
-    return status;
+    return ReconstructRun(arguments, &ranks).run();
 }
 
 } // namespace

@@ -155,10 +155,24 @@ struct Report {
             total = 0;    ///< all of it; of reconstruct_levels() by level, phase 1 with the first
     } seconds;            ///< how long it took
 
+    /// One of several processes that made the mesh together, up to its being written.
+    struct Rank {
+        std::size_t points = 0,     ///< of the part of space that it worked on
+            tiles = 0;              ///< that it made
+        double seconds = 0,         ///< of its work
+            seconds_waited = 0;     ///< for others and for what they sent, beside these
+        std::size_t bytes_sent = 0, ///< to others
+            peak_memory_bytes = 0;  ///< of the whole process so far
+    };
+    std::vector<Rank> ranks; ///< set by the command if there are several processes; by their numbers
+
     std::size_t peak_memory_bytes = 0; ///< of the whole process so far
     int threads = 0;                   ///< at most so many threads worked
     std::string failure;               ///< why there is no mesh (see reconstruct_levels); empty: there is one
 };
+
+/// How uneven the work of ranks is: the most seconds over their mean, from 1 on; 1 if there are none.
+double imbalance_of(const std::vector<Report::Rank>& ranks);
 
 /// The report as JSON text, keys as in the command's contract; what is not finite is left out.
 std::string to_json(const Report& report);

@@ -20,7 +20,10 @@ TEST_CASE("every rank gets what each rank sends it", "[core]") {
                     == Ranks::Bytes(static_cast<std::size_t>(ranks.rank()), static_cast<char>('a' + from));
             right += ranks.sum(static_cast<std::uint64_t>(ranks.rank()))
                      == static_cast<std::uint64_t>(count * (count - 1) / 2);
-            right += ranks.bytes_sent() == static_cast<std::size_t>(count * (count - 1) / 2 - ranks.rank());
+            const int sizes = 8 * count, number = 8; // that all are told of
+            right += ranks.bytes_sent()
+                     == static_cast<std::size_t>(count * (count - 1) / 2 - ranks.rank()
+                                                 + (sizes + number) * (count - 1));
             right += ranks.of_first(ranks.is_first());
         });
         CHECK(right == count * count + 3 * count);
@@ -55,6 +58,36 @@ TEST_CASE("a rank that fails after the last exchange is known to all", "[core]")
 TEST_CASE("what all ranks find wrong no rank is blamed for", "[core]") {
     const auto failures = support::run_ranks(3, [](Ranks&) { throw Error("the cloud has no normals"); });
     for (const std::string& failure : failures) CHECK(failure == "the cloud has no normals");
+}
+
+TEST_CASE("no rank waits for one that ends without a word", "[core]") {
+    const bool early = GENERATE(true, false);
+    const auto failures = support::run_ranks_apart(3, [&](Ranks& ranks) {
+        if (early && ranks.rank() == 2) return ranks.leave();
+        ranks.together([&] { ranks.sum(1); });
+        ranks.leave(); // all have been told already
+    });
+    const std::string expected =
+        early ? "a process has ended before the work of all was done (rank 2 of 3)" : "";
+    CHECK(failures[0] == expected);
+    CHECK(failures[1] == expected);
+    CHECK(failures[2].empty());
+}
+
+TEST_CASE("a rank that leaves after a failure is not waited for", "[core]") {
+    const auto failures = support::run_ranks_apart(2, [&](Ranks& ranks) {
+        try {
+            ranks.together([&] {
+                if (ranks.rank() == 1) throw Error("the disk is full");
+                ranks.sum(1);
+            });
+        } catch (const Error&) {
+            ranks.leave();
+            throw;
+        }
+    });
+    CHECK(failures[0] == "the disk is full (rank 1 of 2)");
+    CHECK(failures[1] == "the disk is full");
 }
 
 TEST_CASE("values go through bytes as they are", "[core]") {

@@ -26,10 +26,12 @@ by() {
 "$generate" part --points 30000 -o scan.ply
 "$hsdm" reconstruct scan.ply --depth 6 -o one.ply --features one.txt --quiet
 for count in 1 2 3; do
-    by $count scan.ply --depth 6 -o ranks.ply --features ranks.txt --scratch scratch --threads 1 ||
+    by $count scan.ply --depth 6 -o ranks.ply --features ranks.txt --scratch scratch --threads 1 --report report.json ||
         fail "$count processes: status $?"
     cmp one.ply ranks.ply || fail "$count processes write another mesh"
     cmp one.txt ranks.txt || fail "$count processes write other features"
+    [ "$(grep -c '"seconds_waited"' report.json)" -eq $count ] && grep -q '"imbalance"' report.json ||
+        fail "the report does not tell of $count ranks"
     grep -q "^ranks     $count: " out || fail "the summary does not tell of $count ranks"
 done
 
@@ -48,6 +50,21 @@ for count in 1 2 3; do
         fail "$count processes, several files: status $?"
     cmp one-of-all.ply ranks.ply || fail "$count processes write another mesh of several files"
 done
+
+# Different arguments, and a standard stream that is closed, which MPI must not take for a connection of its own.
+status=0
+timeout 60 "$mpirun" -n 1 "$hsdm_mpi" reconstruct scan.ply --depth 6 -o ranks.ply : \
+    -n 1 "$hsdm_mpi" reconstruct scan.ply --depth 5 -o ranks.ply >out 2>err || status=$?
+[ $status -ne 0 ] && [ $status -ne 124 ] || fail "different arguments: status $status"
+[ "$(grep -c "^hsdm: the processes have different arguments" err)" -eq 1 ] || fail "different arguments: not told once"
+expected=0
+"$hsdm" reconstruct scan.ply --depth 6 -o ranks.ply >&- 2>out || expected=$?
+status=0
+timeout 60 "$hsdm_mpi" reconstruct scan.ply --depth 6 -o ranks.ply >&- 2>err || status=$?
+[ $status -eq $expected ] || fail "standard output is closed: status $status, not $expected"
+grep "^hsdm:" out >expected.txt || true
+grep "^hsdm:" err | cmp - expected.txt || fail "standard output is closed: another message"
+rm expected.txt
 
 # refused WHAT TEXT ARGUMENT...: status, message, told once, and no file
 refused() {
@@ -99,7 +116,7 @@ for signal in KILL TERM INT; do
     done
 done
 rm -f pid.* rank.sh
-rm -r scans
+rm -r scans report.json
 ls | grep -v -e '^scan.ply$' -e '^long.ply$' -e '^short.ply$' -e '^one' -e '^ranks.txt$' -e '^scratch$' -e '^out$' -e '^err$' &&
     fail "files are left behind"
 echo "several processes: the bits of one"

@@ -11,6 +11,23 @@
 
 using namespace hsdm;
 
+TEST_CASE("the report tells what each of several processes did, and how evenly", "[report]") {
+    Report report;
+    CHECK_FALSE(nlohmann::json::parse(to_json(report)).contains("ranks"));
+    CHECK(imbalance_of(report.ranks) == 1);
+    report.ranks = {{100, 2, 1.5, 0.25, 4096, 1 << 20}, {90, 1, 0.5, 1.25, 64, 1 << 21}};
+    const auto json = nlohmann::json::parse(to_json(report));
+    CHECK(json["ranks"].size() == 2);
+    CHECK(json["ranks"][1]
+          == nlohmann::json({{"points", 90},
+                             {"tiles", 1},
+                             {"seconds", 0.5},
+                             {"seconds_waited", 1.25},
+                             {"bytes_sent", 64},
+                             {"peak_memory_bytes", 1 << 21}}));
+    CHECK(json["imbalance"] == 1.5);
+}
+
 TEST_CASE("the report holds every key that scripts rely on, numbers plain", "[report]") {
     Report report;
     report.options.emplace("depth", "5");

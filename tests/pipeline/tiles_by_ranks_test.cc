@@ -99,12 +99,19 @@ TEST_CASE("several ranks give the mesh of one piece, bit for bit", "[pipeline][s
     REQUIRE(result);
     check_same_by_ranks(whole, *result);
     std::size_t tiles = 0;
-    for (const TileReport::Rank& rank : how.ranks) {
+    REQUIRE(how.ranks.size() == static_cast<std::size_t>(count));
+    for (const Report::Rank& rank : how.ranks) {
         CHECK(rank.tiles > 0);
+        CHECK(rank.points > 0);
+        CHECK(rank.seconds > 0);
+        CHECK(rank.seconds_waited >= 0);
+        CHECK(rank.peak_memory_bytes > 0);
         CHECK(rank.bytes_sent > 0);
         tiles += rank.tiles;
     }
     CHECK(how.tiles == tiles);
+    CHECK(imbalance_of(how.ranks) >= 1);
+    CHECK(imbalance_of(how.ranks) <= count);
 }
 
 TEST_CASE("tiles of two ranks that know too little around them are made again with more", "[pipeline]") {
@@ -131,7 +138,7 @@ TEST_CASE("ranks that no cell is left for have nothing to do", "[pipeline][slow]
     for (const std::string& failure : run_on(5, cloud, small_tiles(), result, how)) CHECK(failure.empty());
     REQUIRE(result);
     check_same_by_ranks(reconstruct(cloud, {.depth = 6}), *result);
-    CHECK(std::ranges::count(how.ranks, std::size_t{0}, &TileReport::Rank::tiles) > 0);
+    CHECK(std::ranges::count(how.ranks, std::size_t{0}, &Report::Rank::tiles) > 0);
 }
 
 TEST_CASE("what one rank cannot read no rank waits for", "[pipeline]") {

@@ -44,6 +44,10 @@ private:
 } // namespace
 
 std::vector<std::string> run_ranks(int count, const std::function<void(Ranks&)>& work) {
+    return run_ranks_apart(count, [&](Ranks& ranks) { ranks.together([&] { work(ranks); }); });
+}
+
+std::vector<std::string> run_ranks_apart(int count, const std::function<void(Ranks&)>& work) {
     Table table(count);
     std::vector<std::string> failures(static_cast<std::size_t>(count));
     std::vector<std::thread> threads;
@@ -51,7 +55,7 @@ std::vector<std::string> run_ranks(int count, const std::function<void(Ranks&)>&
         threads.emplace_back([&, r] {
             RankThread ranks(table, r);
             try {
-                ranks.together([&] { work(ranks); });
+                work(ranks);
             } catch (const std::exception& error) {
                 failures[static_cast<std::size_t>(r)] = error.what();
             }

@@ -9,4 +9,7 @@ namespace hsdm::support {
 /// what() of the exception that came out of it, or "".
 std::vector<std::string> run_ranks(int count, const std::function<void(Ranks&)>& work);
 
+/// The same without together().
+std::vector<std::string> run_ranks_apart(int count, const std::function<void(Ranks&)>& work);
+
 } // namespace hsdm::support

@@ -38,6 +38,11 @@ void Ranks::together(const std::function<void()>& work) {
         throw;
     }
     gather(Bytes());
+    done_ = true;
+}
+
+void Ranks::leave() noexcept {
+    if (!done_) fail("a process has ended before the work of all was done");
 }
 
 void Ranks::fail(const std::string& why) noexcept {
@@ -54,6 +59,7 @@ void Ranks::fail(const std::string& why) noexcept {
 std::vector<Ranks::Bytes> Ranks::gather_with(bool failed, const Bytes& own) {
     Bytes sent(own.size() + 1, failed ? '\1' : '\0');
     std::ranges::copy(own, sent.begin() + 1);
+    bytes_sent_ += own.size() * static_cast<std::size_t>(size() - 1);
     std::vector<Bytes> got;
     {
         const Stopwatch watch(seconds_waited_);
@@ -105,7 +111,6 @@ Ranks::Bytes Ranks::of_first(Bytes&& own) {
         const std::vector<Bytes> part = gather(some);
         if (!is_first()) append_bytes(part.front().data(), part.front().size(), got);
     }
-    if (is_first()) bytes_sent_ += all * static_cast<std::size_t>(size() - 1);
     return is_first() ? std::move(own) : got;
 }
 

@@ -38,6 +38,9 @@ public:
 
     /// Runs work(), which may throw, and waits for all to have done theirs.
     void together(const std::function<void()>& work);
+    /// Tells the others, unless all know already that a rank has failed or have been through together(): to
+    /// be called by one that ends, whatever it ends for.
+    void leave() noexcept;
 
     /// What every rank gives, by rank.
     std::vector<Bytes> gather(const Bytes& own);
@@ -51,7 +54,7 @@ public:
     bool of_first(bool own);
     Bytes of_first(Bytes&& own);
 
-    std::size_t bytes_sent() const { return bytes_sent_; }    ///< to other ranks so far, by exchange()
+    std::size_t bytes_sent() const { return bytes_sent_; }    ///< to other ranks so far
     double seconds_waited() const { return seconds_waited_; } ///< for others and for what they sent
 
 private:
@@ -68,6 +71,7 @@ private:
     std::size_t bytes_sent_ = 0;
     double seconds_waited_ = 0;
     bool failed_ = false; ///< one of them, as all know
+    bool done_ = false;   ///< all have done their work
 };
 
 /// One process alone.

@@ -75,23 +75,33 @@ void note_cloud(const ScratchCloud& cloud, const CloudSurvey& survey, std::size_
                  report);
 }
 
-/// What each rank has done since it began.
-std::vector<TileReport::Rank> work_of_ranks(const ScratchCloud& cloud, std::size_t own_tiles,
-                                            Clock::time_point start) {
-    Ranks& ranks = cloud.ranks();
-    TileReport::Rank own;
-    own.points = cloud.points_here();
-    own.tiles = own_tiles;
-    own.seconds_waited = ranks.seconds_waited();
-    own.seconds = std::chrono::duration<double>(Clock::now() - start).count() - own.seconds_waited;
-    own.bytes_sent = ranks.bytes_sent();
-    Ranks::Bytes bytes;
-    put(own, bytes);
-    std::vector<TileReport::Rank> all;
-    for (const Ranks::Bytes& got : ranks.gather(bytes))
-        all.push_back(ByteReader(got).take<TileReport::Rank>());
-    return all;
-}
+/// What each rank does from now on.
+class RankWork {
+public:
+    explicit RankWork(Ranks& ranks) : ranks_(ranks) {}
+
+    std::vector<Report::Rank> of_all(const ScratchCloud& cloud, std::size_t own_tiles) const {
+        Report::Rank own;
+        own.points = cloud.points_here();
+        own.tiles = own_tiles;
+        own.seconds_waited = ranks_.seconds_waited() - waited_;
+        own.seconds = std::chrono::duration<double>(Clock::now() - start_).count() - own.seconds_waited;
+        own.bytes_sent = ranks_.bytes_sent() - sent_;
+        own.peak_memory_bytes = os::peak_memory();
+        Ranks::Bytes bytes;
+        put(own, bytes);
+        std::vector<Report::Rank> all;
+        for (const Ranks::Bytes& got : ranks_.gather(bytes))
+            all.push_back(ByteReader(got).take<Report::Rank>());
+        return all;
+    }
+
+private:
+    Ranks& ranks_;
+    Clock::time_point start_ = Clock::now();
+    double waited_ = ranks_.seconds_waited();
+    std::size_t sent_ = ranks_.bytes_sent();
+};
 
 /// A run up to the facets of the whole, which the first rank gets, and what finishing them needs.
 class TiledRun {
@@ -102,6 +112,7 @@ public:
         : options_(options),
           tiles_(tiles),
           ranks_(ranks),
+          work_(ranks),
           phases_(options),
           bytes_per_voxel_(bytes_per_voxel) {
         report_.threads = tbb::this_task_arena::max_concurrency();
@@ -125,16 +136,16 @@ public:
     template <class Finish>
     auto finish(TileReport& how, const Finish& finish) {
         how_.scratch_bytes = cloud_->bytes() + store_->bytes();
-        how_.ranks = work_of_ranks(*cloud_, how_.own_tiles, start_);
         const std::size_t mesh = survey_->sums.voxels() * bytes_per_voxel_in_error;
         const double each = bytes_per_error_point(voxels_per_point(survey_->sums));
         const WholeInput in{*cloud_, *survey_, options_, phases_, points_at_once(tiles_, mesh, each)};
+        decltype(finish(in, std::move(facets_), std::move(report_))) result;
+        if (ranks_.is_first())
+            result = finish(in, std::move(facets_), std::move(report_));
+        else if (options_.measure)
+            assist_cloud_distance(*cloud_, in.group_points);
+        how_.ranks = work_.of_all(*cloud_, how_.own_tiles);
         how = how_;
-        if (!ranks_.is_first()) {
-            if (options_.measure) assist_cloud_distance(*cloud_, in.group_points);
-            return decltype(finish(in, std::move(facets_), std::move(report_)))();
-        }
-        auto result = finish(in, std::move(facets_), std::move(report_));
         result.report.seconds.total = std::chrono::duration<double>(Clock::now() - start_).count();
         return result;
     }
@@ -174,6 +185,7 @@ private:
     const ReconstructOptions& options_;
     const TileOptions& tiles_;
     Ranks& ranks_;
+    const RankWork work_;
     const Phases phases_;
     const std::size_t bytes_per_voxel_;
     Report report_;

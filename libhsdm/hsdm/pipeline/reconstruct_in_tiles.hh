@@ -29,16 +29,7 @@ struct TileReport {
     std::size_t own_tiles = 0;          ///< of all, this rank's
     std::size_t points_read = 0;        ///< by this rank's tiles, what is round them too
     std::size_t scratch_bytes = 0;      ///< of this rank
-
-    /// What each rank did up to the pieces of its tiles.
-    struct Rank {
-        std::size_t points = 0;     ///< of its cells
-        std::size_t tiles = 0;      ///< of its own
-        double seconds = 0;         ///< of work; the first rank's has joining in it
-        double seconds_waited = 0;  ///< for others and for what they sent, beside these
-        std::size_t bytes_sent = 0; ///< to others, pieces included
-    };
-    std::vector<Rank> ranks{};
+    std::vector<Report::Rank> ranks{};  ///< what each did
 };
 
 /// Throws OptionError for options that no cloud can be reconstructed with in tiles.

@@ -152,6 +152,21 @@ void fill(JsonText& json, const std::vector<Report::Stage>& stages) {
     json.end();
 }
 
+void fill(JsonText& json, const std::vector<Report::Rank>& ranks) {
+    json.begin_array();
+    for (const Report::Rank& rank : ranks) {
+        json.begin_object();
+        json.member("points", rank.points);
+        json.member("tiles", rank.tiles);
+        json.member("seconds", rank.seconds);
+        json.member("seconds_waited", rank.seconds_waited);
+        json.member("bytes_sent", rank.bytes_sent);
+        json.member("peak_memory_bytes", rank.peak_memory_bytes);
+        json.end();
+    }
+    json.end();
+}
+
 void fill(JsonText& json, const Report::Written& written) {
     json.begin_object();
     json.member("format", written.format);
@@ -163,6 +178,12 @@ void fill(JsonText& json, const Report::Written& written) {
 }
 
 } // namespace
+
+double imbalance_of(const std::vector<Report::Rank>& ranks) {
+    double most = 0, sum = 0;
+    for (const Report::Rank& rank : ranks) most = std::max(most, rank.seconds), sum += rank.seconds;
+    return sum > 0 ? most * static_cast<double>(ranks.size()) / sum : 1.0;
+}
 
 std::string to_json(const Report& report) {
     JsonText json;
@@ -205,6 +226,11 @@ std::string to_json(const Report& report) {
     }
     json.key("seconds");
     fill(json, report.seconds);
+    if (!report.ranks.empty()) {
+        json.key("ranks");
+        fill(json, report.ranks);
+        json.member("imbalance", imbalance_of(report.ranks));
+    }
     json.member("peak_memory_bytes", report.peak_memory_bytes);
     json.member("threads", report.threads);
     json.end();
