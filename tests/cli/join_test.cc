@@ -19,7 +19,7 @@ public:
             support::sample(support::torus(1, 0.3), {.points = points, .normals = normals});
         std::filesystem::create_directory(folder / "scans");
         support::write_ply(folder / "all.ply", all);
-        for (std::size_t first : {0, 1}) {
+        for (const std::size_t first : {std::size_t{0}, std::size_t{1}}) {
             PointCloud part;
             for (std::size_t i = first; i < points; i += 2) {
                 part.positions.push_back(all.positions[i]);

@@ -423,9 +423,9 @@ PartFacets facets_of_part(const MethodInput& in, const PartOfLevel& part) {
     return result;
 }
 
-bool has_slits(const MethodInput& in, double spacing, const PolygonMesh& facets) {
+bool has_slits(const MethodInput& in, double spacing, const PolygonMesh& facets, const FacetLinks& links) {
     const double h = in.level.voxel_size;
-    const BoundaryLoops loops = boundary_loops(facets);
+    const BoundaryLoops loops = boundary_loops(facets, links);
     return loops.size() > 0
            && find_slits(facets, loops, h * options_for(in, spacing).holes.max_diameter).loops.size() > 0;
 }

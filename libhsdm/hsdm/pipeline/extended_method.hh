@@ -48,8 +48,8 @@ struct PartFacets {
 PartFacets facets_of_part(const MethodInput& input, const PartOfLevel& part);
 
 /// Is some loop of facets that facets_of_part() made a slit, which extended_method() would close by points
-/// across?
-bool has_slits(const MethodInput& input, double spacing, const PolygonMesh& facets);
+/// across? `links` are theirs.
+bool has_slits(const MethodInput& input, double spacing, const PolygonMesh& facets, const FacetLinks& links);
 
 /// Do these facets of a closed solid face inward?
 bool faces_inward(const PolygonMesh& facets);

@@ -27,12 +27,13 @@ void judge(const FacetCounts& counts, FacetKnowledge& known) {
 }
 
 /// Refuses what was taken for granted of the whole and is not so.
-void check_whole(const WholeInput& in, const MethodInput& method, const PolygonMesh& mesh) {
+void check_whole(const WholeInput& in, const MethodInput& method, const PolygonMesh& mesh,
+                 const FacetLinks& links) {
     const SplinterOptions splinters;
     const std::size_t most = std::max({splinters.most_facets, splinters.most_open, splinters.most_flat});
     if (static_cast<double>(largest_component(mesh)) < splinters.least_ratio * static_cast<double>(most))
         refuse_in_tiles("no part of the mesh is large");
-    if (in.options.holes == Holes::automatic && has_slits(method, in.survey.spacing, mesh))
+    if (in.options.holes == Holes::automatic && has_slits(method, in.survey.spacing, mesh, links))
         refuse_in_tiles("a slit has to be closed (--holes keep would leave it)");
 }
 
@@ -63,7 +64,8 @@ public:
         Report::Seconds& seconds = report_.seconds;
         in_.phases.run("whole", 0.55, seconds.facets, [&] {
             check_facets(mesh(), report_);
-            check_whole(in_, method_, mesh());
+            links() = link_facets(mesh());
+            check_whole(in_, method_, mesh(), links());
             leave_out_unsound();
             check_facets(mesh(), report_);
         });
@@ -89,7 +91,6 @@ private:
     FacetLinks& links() { return result_.links; }
 
     void leave_out_unsound() {
-        links() = link_facets(mesh());
         Occurrences unsound =
             drop_degenerate_facets(mesh(), in_.cloud.origin(), in_.cloud.frame(), links(), hints_);
         report_.rejected["facets_unsound"] = unsound.count;
@@ -160,7 +161,8 @@ Reconstruction finish_whole(const WholeInput& in, WholeFacets&& facets, Report&&
     const MethodInput method{in.cloud.frame(), {}, in.cloud.no_points(), level, in.options, in.phases};
     in.phases.run("whole", 0.55, report.seconds.facets, [&] {
         check_facets(facets.mesh, report);
-        check_whole(in, method, facets.mesh);
+        facets.known.links = link_facets(facets.mesh);
+        check_whole(in, method, facets.mesh, *facets.known.links);
         const auto count = facets.mesh.vertex_count();
         facets.mesh.properties.push_back({level_property, VertexProperty::Type::uint8,
                                           std::vector<double>(count, static_cast<double>(level.depth))});
