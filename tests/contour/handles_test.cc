@@ -10,6 +10,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
+#include <numbers>
 #include <numeric>
 
 using namespace hsdm;
@@ -147,6 +149,44 @@ TEST_CASE("points across a ring of edges are a sheet where no facet serves them"
             round.normals[i] = away.normalized();
         }
         CHECK_FALSE(is_spanned(round, bridged));
+    }
+}
+
+TEST_CASE("points surround the axis of a ring round a rod or in a bore, not that of a bridge", "[contour]") {
+    for (const bool turned_normals : {false, true}) {
+        const Pose pose = random_pose(7);
+        PointCloud cloud = sample(cylinder(0.6, 10).placed(pose), {.points = 320, .seed = 7});
+        if (turned_normals)
+            for (Vec3& n : cloud.normals) n = -n;
+        const Stages rod(cloud, 4, 16);
+        const DualContour part = dual_contour(rod.octree, rod.level, rod.sets);
+        std::array<Index, 5> ring{};
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            const double angle = 2 * std::numbers::pi * static_cast<double>(i) / ring.size();
+            const Vec3 at =
+                pose.to_world({0.6 * std::cos(angle), 0.6 * std::sin(angle), 0}) - rod.octree.origin;
+            const auto nearest = std::ranges::min_element(part.mesh.positions, {},
+                                                          [&](const Vec3& p) { return (p - at).sqrnorm(); });
+            ring[i] = static_cast<Index>(nearest - part.mesh.positions.begin());
+        }
+        PolygonMesh mesh = part.mesh;
+        mesh.origin.resize(mesh.vertex_count());
+        std::iota(mesh.origin.begin(), mesh.origin.end(), Index{0});
+        CHECK(Witnesses(rod.octree, rod.level, part.voxel, mesh).surround(ring));
+        Octree half = rod.octree; // as if nothing were known of one side
+        for (std::size_t i = 0; i < half.size(); ++i)
+            if (pose.to_local(half.positions[i] + half.origin)[0] < 0) half.source[i] = no_index;
+        CHECK_FALSE(Witnesses(half, rod.level, part.voxel, mesh).surround(ring));
+
+        const Stages stages(facing_boxes(turned_normals, 5), 3);
+        DualContour boxes = dual_contour(stages.octree, stages.level, stages.sets);
+        PolygonMesh& bridged = boxes.mesh;
+        for (Vec3& p : bridged.positions) p += stages.octree.origin;
+        bridged.origin.resize(bridged.vertex_count());
+        std::iota(bridged.origin.begin(), bridged.origin.end(), Index{0});
+        const auto round = bridge_with_ring(bridged, quad_at(bridged, -0.07), quad_at(bridged, 0.07));
+        for (Vec3& p : bridged.positions) p -= stages.octree.origin;
+        CHECK_FALSE(Witnesses(stages.octree, stages.level, boxes.voxel, bridged).surround(round));
     }
 }
 

@@ -3,6 +3,7 @@
 #include "hsdm/contour/flat_facets.hh"
 #include "hsdm/contour/grid_signs.hh"
 #include "hsdm/contour/handles.hh"
+#include "hsdm/contour/inner_tunnels.hh"
 #include "hsdm/contour/move_to_creases.hh"
 #include "hsdm/contour/rims.hh"
 #include "hsdm/contour/shared_corners.hh"
@@ -311,6 +312,7 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     draw_in_rims(octree, level, sets, dual, vertices);
     separate_sides(dual, vertices.positions);
     std::vector<EdgeCollapse> to_corners = shared_corners(dual, vertices);
+    const std::vector<InnerTunnel> tunnels = find_inner_tunnels(dual, sets);
 
     const Midpoints midpoints(dual, sets, vertices);
     result.mesh = facets_of(dual, midpoints, vertices);
@@ -321,6 +323,7 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
         result.mesh = facets_of(dual, midpoints, vertices);
         result.mesh.positions = std::move(vertices.positions);
     }
+    result.tunnels_opened = open_inner_tunnels(tunnels, result.mesh);
     result.mesh.origin = indices_below(result.mesh.vertex_count());
     result.classes = std::move(vertices.classes);
     result.voxel = std::move(vertices.voxel);
@@ -374,7 +377,7 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     const Occurrences more_splinters = drop_splinters(result.mesh, splinters);
     changed(more_splinters.count);
     result.splinters.add(more_splinters);
-    if (result.splinters.count > 0) remove_isolated_vertices(result.mesh);
+    if (result.splinters.count + result.tunnels_opened > 0) remove_isolated_vertices(result.mesh);
     result.drawn_in = draw_in_spikes(octree, level, result.voxel, result.mesh);
     changed(collapse_flat_facets(octree.origin, result.mesh));
     UntangleOptions untangle_options = options.untangle;

@@ -33,9 +33,10 @@ struct DualContour {
     std::size_t trimmed = 0;          ///< crossings dropped beyond the end of the data
     std::size_t tips = 0;             ///< pairs of crossings dropped
     std::size_t webs_opened = 0;      ///< rows of links that changed partners (open_webs)
-    std::size_t handles_cut = 0;      ///< rings of edges that no points speak for (cut_handles)
-    std::size_t clamped = 0;          ///< vertices kept in their voxels
-    std::size_t drawn_in = 0;         ///< vertices that stood far out from all points (draw_in_spikes)
+    std::size_t tunnels_opened = 0; ///< pairs of vertices in one voxel that a tube joins (open_inner_tunnels)
+    std::size_t handles_cut = 0;    ///< rings of edges that no points speak for (cut_handles)
+    std::size_t clamped = 0;        ///< vertices kept in their voxels
+    std::size_t drawn_in = 0;       ///< vertices that stood far out from all points (draw_in_spikes)
     /// vertices merged into the vertex of the next voxel, which holds their corner (shared_corners)
     std::size_t corners_merged = 0;
     std::size_t midpoints = 0; ///< vertices added so that no two mesh edges join the same two vertices

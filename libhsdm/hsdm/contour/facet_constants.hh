@@ -7,6 +7,15 @@
 #include <cstddef>
 
 // handles.hh, witnesses.hh
+namespace hsdm::surrounding {
+
+/// radians: between neighbouring directions of what lies all round an axis.
+/// Why: 150 degrees; what leaves half a turn free lies on one side, and normals may err by 30.
+inline constexpr double widest_gap = 2.6;
+
+} // namespace hsdm::surrounding
+
+// handles.hh
 namespace hsdm::handles {
 
 /// voxels: from a facet's middle to the plane of a set that speaks for it.

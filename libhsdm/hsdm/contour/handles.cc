@@ -226,8 +226,9 @@ public:
             const std::vector<Index> ring = vicinity.ring_at(roots[i]);
             const double share = share_contradicted(vicinity, ring);
             if (share < 0 || bounds()) return;
-            if (witnesses_.span(ring)
-                || (share >= handles::least_contradicted && are_contradicted_beside(vicinity, ring)))
+            if ((witnesses_.span(ring)
+                 || (share >= handles::least_contradicted && are_contradicted_beside(vicinity, ring)))
+                && !witnesses_.surround(ring))
                 keep(vicinity, ring);
         });
         for (const Ring& ring : rings_) open(ring);

@@ -1,6 +1,7 @@
 #include "hsdm/contour/witnesses.hh"
 
 #include "hsdm/contour/constants.hh"
+#include "hsdm/contour/surrounding.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/spatial/point_triangle.hh"
@@ -30,6 +31,14 @@ public:
 
     const Vec3& axis() const { return axis_; }
     double along(const Vec3& p) const { return (p - centre_) | axis_; }
+    /// Across the axis, from it to a point.
+    Vec3 out_to(const Vec3& p) const { return p - centre_ - along(p) * axis_; }
+    /// The largest distance of the ring from the axis.
+    double width() const {
+        double widest = 0;
+        for (const auto& [x, y] : outline_) widest = std::max(widest, std::hypot(x, y));
+        return widest;
+    }
 
     bool holds(const Vec3& p) const {
         if (std::abs(along(p)) > reach_) return false;
@@ -120,6 +129,26 @@ bool Witnesses::span(std::span<const Index> ring) {
     if (most.size() < points_of_plane || handles::across_per_other * others > most.size()) return false;
     const auto unserved = std::ranges::count_if(most, [&](Index p) { return !is_served(p); });
     return 2 * static_cast<std::size_t>(unserved) >= most.size();
+}
+
+bool Witnesses::surround(std::span<const Index> ring) const {
+    const Tube tube(mesh_, ring, handles::reach_along * level_.voxel_size);
+    const double farthest = tube.width() + handles::served_within * level_.voxel_size;
+    const Frame across(tube.axis());
+    std::array<std::vector<double>, 2> directions; // of those that face the axis, that face away from it
+    for (const Index v : voxels_at(ring))
+        for (Index p = level_.first_point[v]; p < level_.first_point[v + 1]; ++p) {
+            const Vec3 out = tube.out_to(octree_.positions[p]);
+            const double length = out.norm();
+            if (octree_.source[p] == no_index || !(length > 0) || length > farthest
+                || std::abs(tube.along(octree_.positions[p])) > handles::reach_along * level_.voxel_size)
+                continue;
+            const double cosine = (octree_.normals[p] | out) / length;
+            if (std::abs(cosine) < angles::halfway) continue;
+            directions[cosine > 0].push_back(across.angle_of(out));
+        }
+    return std::ranges::any_of(
+        directions, [](std::vector<double>& d) { return widest_gap(d) < surrounding::widest_gap; });
 }
 
 bool Witnesses::is_served(Index point) {

@@ -25,6 +25,10 @@ public:
     /// a rod points face away from the axis.
     bool span(std::span<const Index> ring);
 
+    /// Do points on all sides of a ring of vertices face its axis, or all face away from it? So they do in a
+    /// bore and round a rod. A web or tunnel that is none lacks the points of one side at least.
+    bool surround(std::span<const Index> ring) const;
+
 private:
     Index voxel_of(Index vertex) const { return voxel_[mesh_.origin[vertex]]; }
     void gather(Index voxel, const Vec3& centre);

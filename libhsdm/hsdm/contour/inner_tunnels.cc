@@ -1,0 +1,245 @@
+#include "hsdm/contour/inner_tunnels.hh"
+
+#include "hsdm/contour/constants.hh"
+#include "hsdm/contour/surrounding.hh"
+#include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
+#include "hsdm/mesh/remove_facets.hh"
+
+#include <algorithm>
+#include <numeric>
+
+namespace hsdm {
+namespace {
+
+/// A closed chain with its voxel.
+struct ChainOfVoxel {
+    Index voxel;
+    ChainVertices vertices;
+    auto operator<=>(const ChainOfVoxel&) const = default;
+};
+
+/// The closed chains of the voxels that have two and more, by voxel.
+std::vector<ChainOfVoxel> chains_that_share_voxels(const DualVertices& duals, std::size_t voxels) {
+    std::vector<std::uint8_t> count = large_vector<std::uint8_t>(voxels, 0); // 2: or more
+    std::vector<ChainOfVoxel> all, result;
+    auto cut = duals.after_cut.begin();
+    for (Index v = 0, end = 0; v < duals.size(); v = end) {
+        for (end = v + 1; cut != duals.after_cut.end() && *cut == end; ++cut) ++end;
+        const Index voxel = duals.voxels[v].voxel;
+        if (voxel == no_index || duals.open[v]) continue;
+        all.push_back({voxel, {v, end}});
+        if (count[voxel] < 2) ++count[voxel];
+    }
+    std::ranges::copy_if(all, std::back_inserter(result),
+                         [&](const ChainOfVoxel& c) { return count[c.voxel] > 1; });
+    std::ranges::sort(result);
+    return result;
+}
+
+/// What a chain goes round.
+struct Ring {
+    Vec3 middle{0, 0, 0};
+    double within = 0; ///< mean distance of the middle from the facets' planes, positive outside
+};
+
+Ring ring_of(const DualMesh& dual, ChainVertices chain) {
+    std::vector<Index> crossings;
+    for (Index v = chain.first; v < chain.end; ++v)
+        for (const FacetCorner c : dual.duals.corners_of(v)) crossings.push_back(c.crossing());
+    sort_unique(crossings); // a corner where the chain is cut belongs to two vertices
+    Ring ring;
+    const auto n = static_cast<double>(crossings.size());
+    const auto position = [&](Index x) {
+        return crossing_position(dual.grid, dual.crossings.crossings[x], dual.voxel_size);
+    };
+    for (const Index x : crossings) ring.middle += position(x) / n;
+    for (const Index x : crossings)
+        ring.within += (dual.crossings.crossings[x].normal | (ring.middle - position(x))) / n;
+    return ring;
+}
+
+/// Do all sets of a voxel lie round the way between two rings, on the side of it that the rings say?
+bool is_free(const Ring& a, const Ring& b, std::span<const NormalSet> sets, double least) {
+    const double sign = a.within > 0 ? 1 : -1;
+    if (sign * a.within < least || sign * b.within < least) return false;
+    const Frame across(b.middle - a.middle);
+    std::vector<double> directions;
+    for (const NormalSet& s : sets) {
+        if (sign * (s.normal | (a.middle - s.centroid)) < 0
+            || sign * (s.normal | (b.middle - s.centroid)) < 0)
+            return false;
+        directions.push_back(across.angle_of(s.normal));
+    }
+    return widest_gap(directions) < surrounding::widest_gap;
+}
+
+/// A vertex and a facet that has it.
+struct FacetRound {
+    Index vertex, facet;
+    auto operator<=>(const FacetRound&) const = default;
+};
+
+/// The facets round vertices.
+class Stars {
+public:
+    Stars(const PolygonMesh& mesh, std::span<const Index> vertices) : mesh_(mesh) {
+        std::vector<std::uint8_t> marked = large_vector<std::uint8_t>(mesh.vertex_count(), 0);
+        for (const Index v : vertices) marked[v] = 1;
+        for (std::size_t f = 0; f < mesh.facet_count(); ++f)
+            for (const Index v : mesh.facet(f))
+                if (marked[v]) round_.push_back({v, static_cast<Index>(f)});
+        std::ranges::sort(round_);
+    }
+
+    /// Those of some vertices, ascending.
+    std::vector<Index> facets_round(std::span<const Index> vertices) const {
+        std::vector<Index> facets;
+        for (const Index v : vertices)
+            for (auto r = std::ranges::lower_bound(round_, FacetRound{v, 0});
+                 r != round_.end() && r->vertex == v; ++r)
+                facets.push_back(r->facet);
+        sort_unique(facets);
+        return facets;
+    }
+
+    /// The border of some facets, the way they run; empty if it is not one ring that passes no vertex twice.
+    std::vector<Index> ring(std::span<const Index> facets) const {
+        std::vector<std::array<Index, 2>> sides, border;
+        for (const Index f : facets) {
+            const auto corners = mesh_.facet(f);
+            for (std::size_t k = 0; k < corners.size(); ++k)
+                sides.push_back({corners[k], corners[(k + 1) % corners.size()]});
+        }
+        std::ranges::sort(sides);
+        for (const auto& [from, to] : sides)
+            if (!std::ranges::binary_search(sides, std::array{to, from})) border.push_back({from, to});
+        std::vector<Index> result;
+        for (Index at = border.empty() ? no_index : border[0][0]; result.size() < border.size();) {
+            const auto side = std::ranges::lower_bound(border, std::array<Index, 2>{at, 0});
+            if (side == border.end() || (*side)[0] != at || (side + 1 != border.end() && side[1][0] == at))
+                return {};
+            result.push_back(at);
+            at = (*side)[1];
+            if (at == result.front()) break;
+        }
+        return result.size() == border.size() ? result : std::vector<Index>();
+    }
+
+private:
+    const PolygonMesh& mesh_;
+    std::vector<FacetRound> round_; // ascending
+};
+
+/// Joins two rings by facets that go on along both, where the sum of squared lengths between them is least.
+class Tube {
+public:
+    Tube(const PolygonMesh& mesh, std::vector<Index> one, std::vector<Index> other)
+        : longer_(std::move(one)), shorter_(std::move(other)) {
+        if (shorter_.size() > longer_.size()) std::swap(longer_, shorter_);
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t begin = 0; begin < shorter_.size(); ++begin) {
+            double sum = 0;
+            for (std::size_t i = 0; i < longer_.size(); ++i)
+                sum += (mesh.positions[longer_[i]] - mesh.positions[partner(i, begin)]).sqrnorm();
+            if (sum < least) least = sum, begin_ = begin;
+        }
+    }
+
+    void add_to(PolygonMesh& facets) const {
+        std::vector<Index> facet;
+        for (std::size_t i = 0; i < longer_.size(); ++i) {
+            const Index from = partner(i, begin_), to = partner(i + 1, begin_);
+            facet = {longer_[i], longer_[(i + 1) % longer_.size()], to};
+            if (from != to) facet.push_back(from);
+            facets.add_facet(facet);
+        }
+    }
+
+private:
+    /// The vertex of the shorter ring beside the i-th of the longer one; it runs the other way.
+    Index partner(std::size_t i, std::size_t begin) const {
+        const std::size_t n = shorter_.size(), back = i * n / longer_.size();
+        return shorter_[(begin + 2 * n - back) % n];
+    }
+
+    std::vector<Index> longer_, shorter_;
+    std::size_t begin_ = 0;
+};
+
+/// What a tunnel takes away at one of its ends, and the ring of vertices round that.
+struct TunnelEnd {
+    std::vector<Index> facets, ring;
+};
+using TunnelEnds = std::array<TunnelEnd, 2>;
+
+TunnelEnd end_of(const Stars& stars, ChainVertices chain) {
+    std::vector<Index> vertices(chain.end - chain.first);
+    std::iota(vertices.begin(), vertices.end(), chain.first);
+    TunnelEnd end{stars.facets_round(vertices), {}};
+    end.ring = stars.ring(end.facets);
+    return end;
+}
+
+/// Have two rings of vertices a facet in common? Then the surface leads from one to the other as it is.
+bool meet(const Stars& rings, std::span<const Index> one, std::span<const Index> other) {
+    const std::vector<Index> a = rings.facets_round(one), b = rings.facets_round(other);
+    std::vector<Index> both;
+    std::ranges::set_intersection(a, b, std::back_inserter(both));
+    return !both.empty();
+}
+
+} // namespace
+
+std::vector<InnerTunnel> find_inner_tunnels(const DualMesh& dual, const NormalSets& sets) {
+    const std::vector<ChainOfVoxel> chains = chains_that_share_voxels(dual.duals, sets.first.size() - 1);
+    std::vector<InnerTunnel> result;
+    const double least = sheets::surface_error * dual.voxel_size;
+    for (std::size_t i = 0; i + 1 < chains.size(); ++i) {
+        const Index voxel = chains[i].voxel;
+        const bool is_pair = chains[i + 1].voxel == voxel && (i == 0 || chains[i - 1].voxel != voxel)
+                             && (i + 2 == chains.size() || chains[i + 2].voxel != voxel);
+        if (!is_pair || sets.of_voxel(voxel).empty()) continue;
+        const InnerTunnel pair{chains[i].vertices, chains[i + 1].vertices};
+        if (is_free(ring_of(dual, pair[0]), ring_of(dual, pair[1]), sets.of_voxel(voxel), least))
+            result.push_back(pair);
+    }
+    return result;
+}
+
+std::size_t open_inner_tunnels(std::span<const InnerTunnel> tunnels, PolygonMesh& mesh) {
+    if (tunnels.empty()) return 0;
+    std::vector<Index> vertices;
+    for (const InnerTunnel& tunnel : tunnels)
+        for (const ChainVertices& chain : tunnel)
+            for (Index v = chain.first; v < chain.end; ++v) vertices.push_back(v);
+    const Stars stars(mesh, vertices);
+    std::vector<TunnelEnds> ends;
+    std::vector<Index> of_rings;
+    for (const InnerTunnel& tunnel : tunnels) {
+        ends.push_back({end_of(stars, tunnel[0]), end_of(stars, tunnel[1])});
+        for (const TunnelEnd& end : ends.back())
+            of_rings.insert(of_rings.end(), end.ring.begin(), end.ring.end());
+    }
+    const Stars rings(mesh, of_rings);
+    std::size_t opened = 0;
+    PolygonMesh tubes;
+    std::vector<std::uint8_t> taken = large_vector<std::uint8_t>(mesh.facet_count(), 0);
+    for (TunnelEnds& pair : ends) {
+        auto& [one, other] = pair;
+        const auto is_taken = [&](Index f) { return taken[f] != 0; };
+        if (one.ring.size() < 3 || other.ring.size() < 3 || meet(rings, one.ring, other.ring)
+            || std::ranges::any_of(one.facets, is_taken) || std::ranges::any_of(other.facets, is_taken))
+            continue;
+        for (const TunnelEnd& end : pair)
+            for (const Index f : end.facets) taken[f] = 1;
+        Tube(mesh, std::move(one.ring), std::move(other.ring)).add_to(tubes);
+        ++opened;
+    }
+    if (opened == 0) return 0;
+    remove_facets(mesh, [&](std::size_t f) { return taken[f] != 0; });
+    for (std::size_t f = 0; f < tubes.facet_count(); ++f) mesh.add_facet(tubes.facet(f));
+    return opened;
+}
+
+} // namespace hsdm
