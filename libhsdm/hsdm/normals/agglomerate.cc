@@ -271,6 +271,12 @@ Signs agglomerate(std::size_t nodes, std::vector<SignedEdge> edges, Index pole) 
     undo(join_all(forest, edges, nodes, [](const SignedEdge&) { return true; }), result.sign);
     turn_evidence(edges, result.sign);
     for (int cycle = 0; cycle < enough_rounds && turn_regions(edges, result.sign, pole);) ++cycle;
+    double against = 0, all = 0;
+    for_each_in_order(edges.size(), [&](std::size_t e) {
+        all += std::abs(edges[e].weight);
+        against += std::max(-edges[e].weight, 0.0f);
+    });
+    result.contradicted = all > 0 ? against / all : 0;
     resize_large(result.component, nodes);
     std::vector<Index> number = large_vector<Index>(nodes, no_index);
     for_each_in_order(nodes, [&](std::size_t v) {

@@ -17,6 +17,7 @@ struct Signs {
     std::vector<std::int8_t> sign; ///< per node, +1 or -1, relative to its component
     std::vector<Index> component;  ///< per node
     std::size_t components = 0;
+    double contradicted = 0; ///< share of the evidence that these signs contradict
 };
 
 /// Boruvka's algorithm with sums: in each round every component joins the one with which it has the strongest

@@ -312,6 +312,16 @@ inline constexpr float sensor_weight = 16;
 /// Why: three of four agree; of a shell thinner than voxels views are right as often as wrong.
 inline constexpr double clear_views = 0.5;
 
+/// share: of the evidence that the signs contradict, from which on sheets are looked at as layers.
+/// Why: saves time where the evidence is at one; of layers a third of a percent and more is against any
+/// signs.
+inline constexpr double least_contradicted = 0.0025;
+
+/// share: of the points whose sides are in question, that must face the sky, net of those turned away.
+/// Why: by trial; walls that face each other show it their rims alone, a hundredth; of two layers of a
+/// surface each is outermost somewhere, mostly over a quarter of it or more.
+inline constexpr double least_seeing = 0.05;
+
 } // namespace hsdm::turning
 
 // vote_on_normals.hh

@@ -4,6 +4,7 @@
 #include "hsdm/core/interruption.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/normals/constants.hh"
+#include "hsdm/normals/layers.hh"
 #include "hsdm/normals/outside.hh"
 #include "hsdm/octree/spacing.hh"
 
@@ -68,6 +69,17 @@ bool views_agree(const Patches& patches, const OutsideView& view, const Signs& s
     return sum >= turning::clear_views * total;
 }
 
+/// Signs of the patches as of layers of one surface, and what they see of the sky.
+LayerReading read_as_layers(const Octree& octree, const Neighbors& neighbors,
+                            const EstimatedNormals& estimate, const Patches& patches) {
+    LayerReading layers;
+    layers.edges = layer_evidence(octree, neighbors, estimate, patches);
+    layers.signs = agglomerate(patches.size(), layers.edges);
+    const std::vector<std::uint8_t> beside = sheets_beside(octree, neighbors, estimate, patches);
+    layers.sky = view_outside(octree, patches, estimate_spacing(octree), {.beside = beside}).sky;
+    return layers;
+}
+
 } // namespace
 
 const Vec3* Viewpoints::of(Index source) const {
@@ -101,20 +113,29 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
         const float vote = turning::sensor_weight * seen_by[p];
         if (vote != 0) edges.push_back({static_cast<Index>(p), outside, vote, std::abs(vote)});
     });
-    const Signs signs = agglomerate(patches.size() + 1, std::move(edges), outside);
+    Signs signs = agglomerate(patches.size() + 1, std::move(edges), outside);
+    SkyReading sky;
+    if (options.viewpoints.sensors.empty() && signs.contradicted > turning::least_contradicted)
+        sky = take_layers(patches, read_as_layers(octree, neighbors, estimate, patches), signs);
     std::vector<std::int8_t> turn = free_signs(patches, signs, options);
     const bool seen = std::ranges::any_of(seen_by, [](float vote) { return vote != 0; })
                       || views_agree(patches, view, signs);
     if (seen) turn[signs.component[outside]] = signs.sign[outside];
+    if (sky.points > 0)
+        for (std::size_t c = 0; c < turn.size(); ++c)
+            if (sky.outward[c] != 0) turn[c] = sky.outward[c];
     resize_large(result.turns, octree.size());
     for_each_index(octree.size(), chunks::light, [&](Index i) {
         const Index p = patches.of_point[i];
         result.turns[i] = p != no_index && patches.sign[i] * signs.sign[p] * turn[signs.component[p]] < 0;
     });
     report.patches = patches.size();
+    report.of_layers = sky.points;
     report.components = signs.components; // the outside's node is a component too if no patch sees it
     for_each_in_order(patches.size(), [&](std::size_t p) {
-        if (!seen || signs.component[p] != signs.component[outside]) report.by_volume += patches.counts[p];
+        const Index c = signs.component[p];
+        const bool by_views = sky.points > 0 && sky.outward[c] != 0;
+        if (!by_views && (!seen || c != signs.component[outside])) report.by_volume += patches.counts[p];
     });
     return result;
 }

@@ -30,6 +30,7 @@ struct OrientOptions {
 struct OrientReport {
     std::size_t patches = 0, components = 0;
     std::size_t seen_from_outside = 0; ///< points whose patch lies between inside and outside
+    std::size_t of_layers = 0; ///< points that were turned as those of layers of one surface (take_layers)
     std::size_t by_volume = 0; ///< whose component its signed volume had to orient (or the sensor, or the
                                ///< signs that came): none of it sees the outside, or its views contradict
                                ///< each other

@@ -35,11 +35,16 @@ public:
         return label_[cell(c)];
     }
 
-private:
+    /// Voxels along an edge of the cube and its margin.
+    std::size_t side() const { return side_; }
+    /// Place of a voxel of the cube or its margin, x running fastest.
     std::size_t cell(const VoxelCoord& c) const {
         return (static_cast<std::size_t>(c[2] + 1) * side_ + static_cast<std::size_t>(c[1] + 1)) * side_
                + static_cast<std::size_t>(c[0] + 1);
     }
+    bool is_empty(std::size_t cell) const { return label_[cell] != occupied; }
+
+private:
     /// Flood fill by rows: each row's run of empty cells is labelled at once.
     void flood(std::size_t start) {
         const auto region = static_cast<Index>(regions_++);
@@ -73,10 +78,70 @@ private:
     std::size_t regions_ = 0;
 };
 
+/// In which of the 26 directions to neighbours the way from an empty voxel out of the box is empty.
+class Sky {
+public:
+    explicit Sky(const EmptySpace& space) : space_(space), open_(space.side() * space.side() * space.side()) {
+        for (std::size_t k = 0; k < directions; ++k) ways_[k] = way(k).normalized();
+        const auto side = static_cast<std::int32_t>(space.side());
+        for_each_in_order(open_.size(), [&](std::size_t c) { see(c, side, 0, directions / 2); });
+        for_each_in_order(open_.size(), [&](std::size_t c) {
+            see(open_.size() - 1 - c, side, directions / 2, directions);
+        });
+    }
+    /// Whether most of the sky over a plane through a voxel is open, weighed by the cosine.
+    bool mostly_open(const VoxelCoord& c, const Vec3& normal) const {
+        const auto last = static_cast<std::int32_t>(space_.side()) - 2;
+        for (const std::int32_t x : c)
+            if (x < -1 || x > last) return true;
+        const std::uint32_t open = open_[space_.cell(c)];
+        double seen = 0, all = 0;
+        for (std::size_t k = 0; k < directions; ++k) {
+            const double cosine = ways_[k] | normal;
+            if (cosine <= 0) continue;
+            all += cosine;
+            if ((open >> k & 1) != 0) seen += cosine;
+        }
+        return 2 * seen > all;
+    }
+
+private:
+    static constexpr std::size_t directions = 26;
+
+    /// The neighbour's number in a block of 27 without the middle: the first half comes before the middle.
+    static Vec3 way(std::size_t k) {
+        const std::size_t n = k < directions / 2 ? k : k + 1;
+        return {static_cast<double>(n % 3) - 1, static_cast<double>(n / 3 % 3) - 1,
+                static_cast<double>(n / 9) - 1};
+    }
+    /// The directions `from` to `to` of a voxel whose neighbours that way are done.
+    void see(std::size_t cell, std::int32_t side, std::size_t from, std::size_t to) {
+        if (!space_.is_empty(cell)) return;
+        const auto place = static_cast<std::int64_t>(cell);
+        const std::array<std::int64_t, 3> at{place % side, place / side % side, place / side / side};
+        for (std::size_t k = from; k < to; ++k) {
+            const std::size_t n = k < directions / 2 ? k : k + 1;
+            const std::array<std::int64_t, 3> next{at[0] + static_cast<std::int64_t>(n % 3) - 1,
+                                                   at[1] + static_cast<std::int64_t>(n / 3 % 3) - 1,
+                                                   at[2] + static_cast<std::int64_t>(n / 9) - 1};
+            const bool out = std::ranges::any_of(next, [&](std::int64_t x) { return x < 0 || x >= side; });
+            if (out
+                || (open_[static_cast<std::size_t>((next[2] * side + next[1]) * side + next[0])] >> k & 1)
+                       != 0)
+                open_[cell] |= std::uint32_t{1} << k;
+        }
+    }
+
+    const EmptySpace& space_;
+    std::vector<std::uint32_t> open_;
+    std::array<Vec3, directions> ways_;
+};
+
 /// The first thing a patch sees along a direction.
 struct Sight {
-    Index region = no_index; ///< empty space; no_index if there is none near or a sheet comes first
-    Index point = no_index;  ///< a point of that sheet
+    Index region = no_index;   ///< empty space; no_index if there is none near or a sheet comes first
+    Index point = no_index;    ///< a point of that sheet
+    VoxelCoord voxel{0, 0, 0}; ///< of that space
 };
 
 /// Looks from a patch along its normal, both ways.
@@ -94,10 +159,10 @@ public:
             if (region == occupied) {
                 const Index voxel = level_.find(c);
                 const Index point = voxel == searched ? no_index : sheet_ahead(voxel, from, along);
-                if (point != no_index) return {no_index, point};
+                if (point != no_index) return {no_index, point, c};
                 searched = voxel;
             } else if (region == last) {
-                return {region, no_index};
+                return {region, no_index, c};
             }
             last = region;
         }
@@ -208,6 +273,22 @@ std::vector<SignedEdge> facing_patches(const std::vector<Sights>& seen, const Pa
     return edges;
 }
 
+/// On which side patches have most of the sky open, if on one side only.
+std::vector<std::int8_t> sky_of(const EmptySpace& space, const std::vector<Sights>& seen,
+                                const Patches& patches, std::span<const std::uint8_t> beside) {
+    const Sky sky(space);
+    std::vector<std::int8_t> result = large_vector<std::int8_t>(patches.size());
+    for_each_index(patches.size(), chunks::light, [&](Index p) {
+        const auto open = [&](std::size_t side, const Vec3& normal) {
+            const Sight& sight = seen[p][side];
+            return sight.region != no_index && (beside[p] >> side & 1) == 0
+                   && sky.mostly_open(sight.voxel, normal);
+        };
+        result[p] = static_cast<std::int8_t>(open(0, patches.normals[p]) - open(1, -patches.normals[p]));
+    });
+    return result;
+}
+
 } // namespace
 
 OutsideView view_outside(const Octree& octree, const Patches& patches, double spacing,
@@ -231,6 +312,7 @@ OutsideView view_outside(const Octree& octree, const Patches& patches, double sp
         if (front * kind[seen[p][1].region] == -1) result.votes[p] = front;
     });
     result.facing = facing_patches(seen, patches);
+    if (!options.beside.empty()) result.sky = sky_of(space, seen, patches, options.beside);
     return result;
 }
 

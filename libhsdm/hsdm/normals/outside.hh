@@ -4,6 +4,8 @@
 #include "hsdm/normals/constants.hh"
 #include "hsdm/normals/patches.hh"
 
+#include <span>
+
 namespace hsdm {
 
 struct OutsideOptions {
@@ -12,6 +14,9 @@ struct OutsideOptions {
     double voxel_spacings = views::voxel_spacings;
     /// octree depth of these voxels at most, [1, 8]: the space is kept densely
     int deepest = views::deepest;
+    /// not empty: the sky is asked for, and these are the sides of patches that see none of it, as
+    /// sheets_beside; O(8^deepest) more
+    std::span<const std::uint8_t> beside{};
 };
 
 struct OutsideView {
@@ -19,6 +24,9 @@ struct OutsideView {
                                     ///< to the inner, 0 if it does not see two (a thin part, an open surface)
     std::vector<SignedEdge>
         facing; ///< patches that see each other across a wall or a gap, and so are of opposite sides
+    /// Per patch, if asked for: +1 if most of the sky is open in front of it and not behind it, -1 the other
+    /// way round, else 0; weighed by the cosine
+    std::vector<std::int8_t> sky;
 };
 
 /// Finds the connected regions of empty voxels. One that can be reached from outside the box is outside; a

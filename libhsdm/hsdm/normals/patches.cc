@@ -113,6 +113,42 @@ private:
     std::array<std::size_t, places> place_{}; // where the last edge of such patches is
 };
 
+/// One normal against the other's mirror image in the plane halfway between the points; the chord `d` counts
+/// as one whose squared length is `square`.
+double mirrored(const Vec3& n, const Vec3& m, const Vec3& d, double square) {
+    return std::clamp((n | m) - 2 * (n | d) * (m | d) / square, -1.0, 1.0);
+}
+
+/// The squared length from which on chords from a point count as that long.
+double longest_square(const Neighbors& neighbors, const EstimatedNormals& estimate, Index i) {
+    const double span =
+        std::max(patches::near_pair * neighbors.reach[i], patches::near_tolerances * estimate.tolerance[i]);
+    return span * span;
+}
+
+/// Sums up what pair_of(point)(neighbour, chord) says of the signs of neighbouring points' normals.
+template <class PairOf>
+std::vector<SignedEdge> evidence_of_pairs(const Octree& octree, const Neighbors& neighbors,
+                                          const Patches& patches, const PairOf& pair_of) {
+    const auto gather = [&](std::size_t begin, std::size_t end, std::vector<SignedEdge>& found) {
+        EdgeList list;
+        for (Index i = neighbors.leaf_first[begin]; i < neighbors.leaf_first[end]; ++i) {
+            const Index a = patches.of_point[i];
+            if (a == no_index) continue;
+            const auto pair = pair_of(i);
+            const auto around = neighbors.of(i);
+            for (std::size_t k = 0; k < around.size(); k += 2) { // every second pair is enough
+                const Index j = around[k], b = patches.of_point[j];
+                if (b == no_index || a == b) continue;
+                const double said = pair(j, octree.positions[j] - octree.positions[i]);
+                list.add(a, b, said * patches.sign[i] * patches.sign[j]);
+            }
+        }
+        found = std::move(list.edges);
+    };
+    return collected<SignedEdge>(neighbors.leaf_first.size() - 1, chunks::heavy, gather);
+}
+
 } // namespace
 
 Patches build_patches(const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate) {
@@ -121,27 +157,47 @@ Patches build_patches(const Octree& octree, const Neighbors& neighbors, const Es
 
 std::vector<SignedEdge> patch_evidence(const Octree& octree, const Neighbors& neighbors,
                                        const EstimatedNormals& estimate, const Patches& patches) {
-    const auto gather = [&](std::size_t begin, std::size_t end, std::vector<SignedEdge>& found) {
-        EdgeList list;
-        for (Index i = neighbors.leaf_first[begin]; i < neighbors.leaf_first[end]; ++i) {
-            const Index a = patches.of_point[i];
-            if (a == no_index) continue;
+    return evidence_of_pairs(octree, neighbors, patches, [&](Index i) {
+        return [&estimate, n = estimate.normals[i],
+                longest = longest_square(neighbors, estimate, i)](Index j, const Vec3& d) {
+            return mirrored(n, estimate.normals[j], d, std::min(d.sqrnorm(), longest));
+        };
+    });
+}
+
+std::vector<std::uint8_t> sheets_beside(const Octree& octree, const Neighbors& neighbors,
+                                        const EstimatedNormals& estimate, const Patches& patches) {
+    std::vector<std::uint8_t> beside = large_vector<std::uint8_t>(patches.size(), 0);
+    const std::size_t leaves = neighbors.leaf_first.size() - 1; // a patch is of one leaf
+    for_each_index(leaves, chunks::slow, [&](std::size_t leaf) {
+        for (Index i = neighbors.leaf_first[leaf]; i < neighbors.leaf_first[leaf + 1]; ++i) {
+            const Index p = patches.of_point[i];
+            if (p == no_index) continue;
             const Vec3& n = estimate.normals[i];
-            const double span = std::max(patches::near_pair * neighbors.reach[i],
-                                         patches::near_tolerances * estimate.tolerance[i]);
-            const auto around = neighbors.of(i);
-            for (std::size_t k = 0; k < around.size(); k += 2) { // every second pair is enough
-                const Index j = around[k], b = patches.of_point[j];
-                if (b == no_index || a == b) continue;
+            const double longest = longest_square(neighbors, estimate, i);
+            for (const Index j : neighbors.of(i)) {
                 const Vec3 d = octree.positions[j] - octree.positions[i];
                 const Vec3& m = estimate.normals[j];
-                const double mirrored = (n | m) - 2 * (n | d) * (m | d) / std::min(d.sqrnorm(), span * span);
-                list.add(a, b, std::clamp(mirrored, -1.0, 1.0) * patches.sign[i] * patches.sign[j]);
+                const double cosine = n | m;
+                if (std::abs(cosine) < patches::least_cosine
+                    || mirrored(n, m, d, std::min(d.sqrnorm(), longest)) * cosine >= 0)
+                    continue;
+                beside[p] |= (n | d) * patches.sign[i] > 0 ? 1 : 2;
             }
         }
-        found = std::move(list.edges);
-    };
-    return collected<SignedEdge>(neighbors.leaf_first.size() - 1, chunks::heavy, gather);
+    });
+    return beside;
+}
+
+std::vector<SignedEdge> layer_evidence(const Octree& octree, const Neighbors& neighbors,
+                                       const EstimatedNormals& estimate, const Patches& patches) {
+    return evidence_of_pairs(octree, neighbors, patches, [&](Index i) {
+        return [&estimate, n = estimate.normals[i]](Index j, const Vec3& d) {
+            const Vec3& m = estimate.normals[j];
+            const double said = mirrored(n, m, d, d.sqrnorm()), cosine = n | m;
+            return said * cosine < 0 && std::abs(cosine) > patches::least_cosine ? 0 : said;
+        };
+    });
 }
 
 } // namespace hsdm

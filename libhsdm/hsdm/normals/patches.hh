@@ -28,4 +28,15 @@ Patches build_patches(const Octree& octree, const Neighbors& neighbors, const Es
 std::vector<SignedEdge> patch_evidence(const Octree& octree, const Neighbors& neighbors,
                                        const EstimatedNormals& estimate, const Patches& patches);
 
+/// Per patch, whether a sheet lies close in front of it, by the evidence of neighbouring points (1), and
+/// behind it (2). O(n), parallel.
+std::vector<std::uint8_t> sheets_beside(const Octree& octree, const Neighbors& neighbors,
+                                        const EstimatedNormals& estimate, const Patches& patches);
+
+/// The same if no sheet had another behind it: as the angle of the chord says however near the points are,
+/// and of parallel points none says that they are opposite. Two sheets beside each other are then layers of
+/// one surface, as scans that do not register show it. O(n), parallel.
+std::vector<SignedEdge> layer_evidence(const Octree& octree, const Neighbors& neighbors,
+                                       const EstimatedNormals& estimate, const Patches& patches);
+
 } // namespace hsdm

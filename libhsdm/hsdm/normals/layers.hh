@@ -1,0 +1,30 @@
+#pragma once
+// Sheets near each other: sides of a wall, or layers of one surface, as scans show that do not register.
+
+#include "hsdm/normals/patches.hh"
+
+namespace hsdm {
+
+/// Signs as they are if sheets beside each other are layers of one surface.
+struct LayerReading {
+    std::vector<SignedEdge> edges; ///< layer_evidence
+    Signs signs;                   ///< by that evidence, of the patches and maybe more nodes
+    std::vector<std::int8_t> sky;  ///< per patch, as OutsideView::sky
+};
+
+/// Which way out is, by the sky.
+struct SkyReading {
+    std::size_t points = 0; ///< that took the layers' signs
+    std::vector<std::int8_t>
+        outward; ///< per component of the signs, +1 if they point to the sky, -1 if away; 0: it stays unknown
+};
+
+/// Where signs that were read as those of walls differ from those read as layers, the sky decides. A wall has
+/// open space on both sides or on neither: read as layers it has one of them turned away from the sky. Layers
+/// have it in front of the outermost alone, and of two that cross now the one is outermost, now the other: read
+/// as a wall one of them is turned away from the sky. Regions of patches that differ are turned as a whole where
+/// that is clear, if the sum over all regions of their component is for it; without a view they stay. `walls`:
+/// signs of the patches and maybe more nodes, turned in place. O(edges).
+SkyReading take_layers(const Patches& patches, const LayerReading& layers, Signs& walls);
+
+} // namespace hsdm
