@@ -110,7 +110,7 @@ TEST_CASE("the side in question is the layers' even if most of the sheets is tur
 TEST_CASE("layers of scans that do not register have their normals on one side", "[normals]") {
     const support::Solid ball = support::sphere(1);
     double layers = 0;
-    for (const std::uint64_t seed : {31, 32, 33})
+    for (std::uint64_t seed = 31; seed <= 33; ++seed)
         for (const double spacings : {0.7, 1.0, 1.5}) {
             INFO("seed " << seed << ", " << spacings << " spacings");
             const Sides sides = sides_of(ball, misaligned(ball, spacings, seed));
