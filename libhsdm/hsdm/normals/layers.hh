@@ -21,10 +21,10 @@ struct SkyReading {
 
 /// Where signs that were read as those of walls differ from those read as layers, the sky decides. A wall has
 /// open space on both sides or on neither: read as layers it has one of them turned away from the sky. Layers
-/// have it in front of the outermost alone, and of two that cross now the one is outermost, now the other: read
-/// as a wall one of them is turned away from the sky. Regions of patches that differ are turned as a whole where
-/// that is clear, if the sum over all regions of their component is for it; without a view they stay. `walls`:
-/// signs of the patches and maybe more nodes, turned in place. O(edges).
+/// have it in front of the outermost alone, and of two that cross now the one is outermost, now the other:
+/// read as a wall one of them is turned away from the sky. Regions of patches that differ are turned as a
+/// whole where that is clear, if the sum over all regions of their component is for it; without a view they
+/// stay. `walls`: signs of the patches and maybe more nodes, turned in place. O(edges).
 SkyReading take_layers(const Patches& patches, const LayerReading& layers, Signs& walls);
 
 } // namespace hsdm

@@ -33,9 +33,9 @@ std::vector<SignedEdge> patch_evidence(const Octree& octree, const Neighbors& ne
 std::vector<std::uint8_t> sheets_beside(const Octree& octree, const Neighbors& neighbors,
                                         const EstimatedNormals& estimate, const Patches& patches);
 
-/// The same if no sheet had another behind it: as the angle of the chord says however near the points are,
-/// and of parallel points none says that they are opposite. Two sheets beside each other are then layers of
-/// one surface, as scans that do not register show it. O(n), parallel.
+/// Evidence as that of patch_evidence, if no sheet had another behind it: as the angle of the chord says
+/// however near the points are, and of parallel points none says that they are opposite. Two sheets beside
+/// each other are then layers of one surface, as scans that do not register show it. O(n), parallel.
 std::vector<SignedEdge> layer_evidence(const Octree& octree, const Neighbors& neighbors,
                                        const EstimatedNormals& estimate, const Patches& patches);
 
