@@ -8,6 +8,7 @@
 #include "hsdm/reconstruct.hh"
 #include "hsdm/spatial/self_intersections.hh"
 #include "support/scanner.hh"
+#include "support/scenes.hh"
 
 #include <CLI/CLI.hpp>
 
@@ -43,6 +44,17 @@ std::vector<Part> parts() {
          1.05, 2},
         {"part with shafts", mechanical_part(turned({0.1, 1, 0}, 1.45)), 1.7, -4},
     };
+}
+
+/// Scenes are other ones by each seed; parts the same.
+std::vector<Part> objects(bool scenes, std::uint64_t seed) {
+    if (!scenes) return parts();
+    std::vector<Part> result;
+    for (std::uint64_t k = 0; k < 5; ++k) {
+        const Scene made = scene(5 * seed + k);
+        result.push_back({made.name, made.solid, made.radius, made.euler});
+    }
+    return result;
 }
 
 struct ScanFault {
@@ -99,12 +111,17 @@ int bench::scans(int argc, char** argv) {
         "Scans from a few places with growing faults, completed: how many come out right, and how near.");
     std::size_t points = 60000;
     std::uint64_t seeds = 2;
-    bool verbose = false, sensors = false;
+    std::uint64_t first_seed = 1;
+    bool verbose = false, sensors = false, scenes = false;
     std::string only;
     app.add_option("--points", points, "rays of a scan");
     app.add_option("--seeds", seeds, "scans of each part");
+    app.add_option("--first-seed", first_seed, "seed of the first scan");
+    std::string only_part;
+    app.add_option("--part", only_part, "the objects whose names hold this");
     app.add_option("--fault", only, "the faults whose names hold this");
     app.add_flag("--sensors", sensors, "with the scanner's positions");
+    app.add_flag("--scenes", scenes, "of things on a floor in place of parts");
     app.add_flag("--verbose", verbose, "says what fails");
     CLI11_PARSE(app, argc, argv);
     const auto is_asked_for = [&](const ScanFault& fault) {
@@ -120,8 +137,9 @@ int bench::scans(int argc, char** argv) {
         for (const double strength : fault.strengths) {
             int right = 0, all = 0, made_any = 0, intersecting = 0;
             double off = 0;
-            for (const Part& part : parts())
-                for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+            for (std::uint64_t seed = first_seed; seed < first_seed + seeds; ++seed)
+                for (const Part& part : objects(scenes, seed)) {
+                    if (std::string_view(part.name).find(only_part) == std::string_view::npos) continue;
                     ScannerOptions scanner;
                     scanner.points = points;
                     scanner.seed = seed;

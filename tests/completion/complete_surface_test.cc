@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <numbers>
 
 using namespace hsdm;
 
@@ -22,6 +23,28 @@ PolygonMesh without(PolygonMesh mesh, const Gone& gone) {
 void turn(PolygonMesh& mesh) {
     for (std::size_t f = 0; f < mesh.facet_count(); ++f)
         std::reverse(mesh.corners.begin() + mesh.first[f], mesh.corners.begin() + mesh.first[f + 1]);
+}
+
+/// A tube of radius 1 with closed ends far off, cut through in the middle.
+PolygonMesh cut_tube(double gap) {
+    return without(support::round_tube(80, 120, 1, 0.05),
+                   [&](const Vec3& p) { return std::abs(p[2] - 3) < 0.5 * gap + 0.05; });
+}
+
+/// A ring, four times as high as thick, without the wall of its bore.
+PolygonMesh tall_ring() {
+    return support::quad_tube(100, 120, [](Index c, Index r) {
+        const double turn = 2 * std::numbers::pi * c / 100, up = 2.6 * (r / 60.0 - 1);
+        const double radius = 1 + 0.5 * std::cos(up);
+        return Vec3(radius * std::cos(turn), radius * std::sin(turn), 2 * std::sin(up));
+    });
+}
+
+/// Points about the axis of the gap.
+std::ptrdiff_t near_axis(const CompletedPoints& points) {
+    return std::ranges::count_if(points.positions, [](const Vec3& p) {
+        return std::hypot(p[0], p[1]) < 0.2 && std::abs(p[2] - 3) < 2;
+    });
 }
 
 } // namespace
@@ -87,17 +110,8 @@ TEST_CASE("the missing face of a cube is flat and meets the others in creases", 
 
 TEST_CASE("two loops that face each other closely are joined, far ones closed each",
           "[completion][accuracy]") {
-    // A tube of radius 1 with closed ends far off, cut through in the middle.
-    const auto tube = [](double gap) {
-        PolygonMesh mesh = support::round_tube(80, 120, 1, 0.05);
-        return without(std::move(mesh), [&](const Vec3& p) { return std::abs(p[2] - 3) < 0.5 * gap + 0.05; });
-    };
-    const auto near_axis = [](const CompletedPoints& points) {
-        return std::ranges::count_if(points.positions, [](const Vec3& p) {
-            return std::hypot(p[0], p[1]) < 0.2 && std::abs(p[2] - 3) < 2;
-        });
-    };
-    const CompletedPoints near = complete_surface(tube(0.3), 0.06), far = complete_surface(tube(2.2), 0.06);
+    const CompletedPoints near = complete_surface(cut_tube(0.3), 0.06),
+                          far = complete_surface(cut_tube(2.2), 0.06);
     CHECK(near_axis(near) == 0);
     CHECK(near_axis(far) > 2 * 9 * 10);
     for (const Vec3& p : near.positions)
@@ -124,4 +138,24 @@ TEST_CASE("a completion that is stopped does not pass through the mesh", "[compl
     };
     CHECK(inside(Passing::ignored) > 1000);
     CHECK(inside(Passing::stopped) == 0);
+}
+
+TEST_CASE("what was looked through decides whether loops are joined", "[completion]") {
+    const auto completed = [](PolygonMesh mesh, const std::function<bool(const Vec3&)>& empty) {
+        return complete_surface(mesh, boundary_loops(mesh), 0.06, Passing::ignored, empty);
+    };
+    // Between the two ends of a gap that would be bridged.
+    const CompletedPoints parted =
+        completed(cut_tube(0.5), [](const Vec3& p) { return std::abs(p[2] - 3) < 0.07; });
+    CHECK(near_axis(parted) > 2 * 9 * 10);
+    for (const Vec3& p : parted.positions) CHECK(std::abs(p[2] - 3) > 0.04);
+    // Along a bore whose two ends would be closed.
+    const auto along_bore = [](const Vec3& p) { return std::hypot(p[0], p[1]) < 0.3; };
+    const auto closing_bore = [&](const CompletedPoints& points) {
+        CHECK(points.positions.size() > 9 * 200);
+        return std::ranges::count_if(points.positions,
+                                     [](const Vec3& p) { return std::hypot(p[0], p[1]) < 0.15; });
+    };
+    CHECK(closing_bore(completed(tall_ring(), {})) > 2 * 9 * 5);
+    CHECK(closing_bore(completed(tall_ring(), along_bore)) == 0);
 }

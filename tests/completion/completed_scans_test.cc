@@ -5,11 +5,12 @@
 #include "hsdm/reconstruct.hh"
 #include "hsdm/spatial/self_intersections.hh"
 #include "support/check.hh"
-#include "support/sample.hh"
+#include "support/scanner.hh"
 
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 using namespace hsdm;
@@ -251,4 +252,24 @@ TEST_CASE("a bowl whose outer bottom nobody saw is closed below its inner one", 
     });
     CHECK(completed.report.mesh.components == 1);
     CHECK(completed.report.mesh.euler == 2);
+}
+
+TEST_CASE("a bore that a scanner looked through stays open, though nobody saw its wall", "[completion]") {
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+        // A block with a bore along x; behind it a wall, which one of the scanners sees through the bore.
+        Random random(seed);
+        const double radius = random.uniform(0.33, 0.4), half_pi = 0.5 * std::numbers::pi;
+        const Solid block = (box({2.2, 1, 1}) - cylinder(radius, 3).placed(turned({0, 1, 0}, half_pi)))
+                                .placed({.shift = {0.5, 0, 0}});
+        const Solid scene = block | box({0.2, 1.8, 1.8}).placed({.shift = {-1.1, 0, 0}});
+        std::vector<Vec3> places{{30, 0, 0}};
+        for (int k = 0; k < 4; ++k)
+            places.emplace_back(0.5, 6 * std::cos(1.6 * k + 0.3), 6 * std::sin(1.6 * k + 0.3));
+        places.emplace_back(-4, 4, 0);
+        places.emplace_back(-4, -4, 0);
+        PointCloud cloud = scan_from(places, scene, 1.8, {.points = 100000, .seed = seed});
+        const Completed completed = complete(cloud, 0.07);
+        CHECK(completed.report.mesh.components == 2);
+        CHECK(completed.report.mesh.euler == 2); // 0 of the block, 2 of the wall
+    }
 }

@@ -44,9 +44,9 @@ Vec3 ray(const Vec3& from, double radius, Random& random) {
 
 } // namespace
 
-PointCloud scan_from_above(const Solid& solid, double radius, const ScannerOptions& options) {
+PointCloud scan_from(const std::vector<Vec3>& places, const Solid& solid, double radius,
+                     const ScannerOptions& options) {
     Random random(options.seed);
-    const double distance = 4 * radius;
     std::array<Vec3, 2> blind;
     for (Vec3& centre : blind) {
         SurfacePoint point{};
@@ -54,12 +54,12 @@ PointCloud scan_from_above(const Solid& solid, double radius, const ScannerOptio
         centre = point.position;
     }
     PointCloud cloud;
-    for (int position = 0; position < options.positions; ++position) {
-        const double turn = 2 * std::numbers::pi * (position + 0.3) / options.positions;
-        const Vec3 from = Vec3(std::cos(turn), std::sin(turn), 0.6).normalized() * distance;
-        cloud.sensors.push_back(from);
+    cloud.sensors = places;
+    for (std::size_t position = 0; position < places.size(); ++position) {
+        const Vec3& from = places[position];
+        const double distance = from.norm();
         const Vec3 shift = random.gauss3() * options.misalignment;
-        for (std::size_t i = 0; i < options.points / static_cast<std::size_t>(options.positions); ++i) {
+        for (std::size_t i = 0; i < options.points / places.size(); ++i) {
             const Vec3 way = ray(from, radius, random);
             const double depth =
                 depth_along(solid, from, way, distance - 1.5 * radius, distance + 1.5 * radius);
@@ -71,10 +71,19 @@ PointCloud scan_from_above(const Solid& solid, double radius, const ScannerOptio
             const double slant = std::max(0.2, std::abs(normal_at(solid, hit) | way));
             const double off = stray < options.outliers ? anywhere * radius : noise * options.noise / slant;
             cloud.positions.push_back(hit + way * off + shift);
-            cloud.sensor_of.push_back(position);
+            cloud.sensor_of.push_back(static_cast<std::int32_t>(position));
         }
     }
     return cloud;
+}
+
+PointCloud scan_from_above(const Solid& solid, double radius, const ScannerOptions& options) {
+    std::vector<Vec3> places;
+    for (int position = 0; position < options.positions; ++position) {
+        const double turn = 2 * std::numbers::pi * (position + 0.3) / options.positions;
+        places.push_back(Vec3(std::cos(turn), std::sin(turn), 0.6).normalized() * (4 * radius));
+    }
+    return scan_from(places, solid, radius, options);
 }
 
 } // namespace hsdm::support

@@ -15,8 +15,13 @@ struct ScannerOptions {
     std::uint64_t seed = 1;
 };
 
-/// What a scanner sees of a solid within `radius` of the origin; without normals, with where it stood (the
-/// shift of its scan is not known). The same seed gives the same scan on every platform.
+/// What scanners at these places, farther from the origin than 1.5 * `radius`, see of a solid within `radius`
+/// of it; without normals, with where they stood (the shift of a scan is not known). `options.positions` is
+/// of no account. The same seed gives the same scan on every platform.
+PointCloud scan_from(const std::vector<Vec3>& places, const Solid& solid, double radius,
+                     const ScannerOptions& options = {});
+
+/// The same of places on a circle above, four times `radius` from the origin.
 PointCloud scan_from_above(const Solid& solid, double radius, const ScannerOptions& options = {});
 
 } // namespace hsdm::support

@@ -52,7 +52,7 @@ CompletedPoints complete_surface(const PolygonMesh& mesh, double voxel_size) {
 }
 
 CompletedPoints complete_surface(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size,
-                                 Passing passing) {
+                                 Passing passing, const std::function<bool(const Vec3&)>& empty) {
     check_option(voxel_size > 0 && std::isfinite(voxel_size), "voxel_size", voxel_size, "be positive");
     Box box;
     for (const Vec3& p : mesh.positions) box.add(p);
@@ -64,11 +64,13 @@ CompletedPoints complete_surface(const PolygonMesh& mesh, const BoundaryLoops& l
     PolygonMesh turned;
     if (inward) turn_over(turned = mesh);
     const PolygonMesh& outward = inward ? turned : mesh;
-    CompletionPatch patch = completion_patch(completion_field(outward, loops, voxel_size), outward, loops);
+    const KnownSpace space{empty, !inward};
+    CompletionPatch patch =
+        completion_patch(completion_field(outward, loops, voxel_size, space), outward, loops);
     if (passing == Passing::stopped)
-        fair_beside(outward, patch);
+        fair_beside(outward, patch, space);
     else
-        fair(patch);
+        fair(patch, space);
     const std::vector<Vec3> normals = vertex_area_vectors(patch.net);
     for (std::size_t q = 0; q < patch.net.facet_count(); ++q)
         if (patch.missing[q] != 0) add_samples(patch.net.facet(q), patch, normals, points);

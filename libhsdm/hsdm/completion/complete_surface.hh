@@ -1,7 +1,7 @@
 #pragma once
 // Completion: the surface that no scanner saw, as points with normals.
 
-#include "hsdm/mesh/fill_holes.hh"
+#include "hsdm/completion/completion_field.hh"
 
 namespace hsdm {
 
@@ -20,8 +20,10 @@ enum class Passing {
     ignored, ///< it passes: where that is little, what makes facets of the points mends it
     stopped, ///< there it stays beside the mesh, less smooth and farther from what is missing
 };
-/// The same where the mesh's boundary loops are known.
+/// The same where the mesh's boundary loops are known. `empty`: is a place known to hold nothing, as a
+/// scanner looked through it? The surface does not close it off.
 CompletedPoints complete_surface(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size,
-                                 Passing passing = Passing::ignored);
+                                 Passing passing = Passing::ignored,
+                                 const std::function<bool(const Vec3&)>& empty = {});
 
 } // namespace hsdm

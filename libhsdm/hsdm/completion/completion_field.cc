@@ -107,7 +107,27 @@ void solve(CompletionField& field) {
                    [&](Index row) { field.value[unknown[row]] = values[row]; });
 }
 
-CompletionField coarsest_field(const LatticePlace& place, const PolygonMesh& mesh) {
+/// Solves, and once more with grid points of known space held on its side that came out on the other; unless
+/// the mesh is beside them, which says more. Held from the start they would draw the surface off also where
+/// it keeps out of that space. Held ones draw others to their own side only, so once is enough.
+void solve_beside(const KnownSpace& space, CompletionField& field) {
+    solve(field);
+    if (!space.holds) return;
+    const Lattice& lattice = field.lattice;
+    const double value = (space.outside ? 0.5 : -0.5) * lattice.place.spacing;
+    const std::vector<Index> wrong = indices_where(lattice.size(), chunks::usual, [&](Index i) {
+        return (field.value[i] > 0) != space.outside && field.known[i] != Known::beside_mesh
+               && space.holds(lattice.place.position(lattice.coord(i)));
+    });
+    if (wrong.empty()) return;
+    for_each_index(wrong.size(), chunks::light, [&](Index k) {
+        field.known[wrong[k]] = Known::seen;
+        field.value[wrong[k]] = value;
+    });
+    solve(field);
+}
+
+CompletionField coarsest_field(const LatticePlace& place, const PolygonMesh& mesh, const KnownSpace& space) {
     CompletionField field{build_lattice(place, all_points(place), mesh), {}, {}};
     assign_large(field.value, field.lattice.size(), 0.5 * place.spacing);
     assign_large(field.known, field.lattice.size(), Known::solved);
@@ -116,14 +136,36 @@ CompletionField coarsest_field(const LatticePlace& place, const PolygonMesh& mes
             field.known[i] = Known::given;
     });
     hold_beside_mesh(field);
-    solve(field);
+    solve_beside(space, field);
     return field;
+}
+
+/// Finer grid points of known space that lie on its other side on the coarser level: what is too narrow for
+/// that one.
+std::vector<MortonCode> points_overlooked(const CompletionField& coarse, const LatticePlace& place,
+                                          const KnownSpace& space) {
+    if (!space.holds) return {};
+    const auto of_point = [&](Index i, std::vector<MortonCode>& codes) {
+        if ((coarse.value[i] > 0) == space.outside) return;
+        const VoxelCoord c = coarse.lattice.coord(i);
+        for (int corner = 0; corner < 8; ++corner) {
+            const VoxelCoord fine{2 * c[0] + (corner & 1), 2 * c[1] + (corner >> 1 & 1),
+                                  2 * c[2] + (corner >> 2)};
+            if (place.holds(fine) && space.holds(place.position(fine))) codes.push_back(morton_encode(fine));
+        }
+    };
+    return collected<MortonCode>(coarse.lattice.size(), chunks::usual,
+                                 [&](std::size_t begin, std::size_t end, std::vector<MortonCode>& part) {
+                                     for (std::size_t i = begin; i < end; ++i)
+                                         of_point(static_cast<Index>(i), part);
+                                 });
 }
 
 /// The grid points around what is missing: the open edges of the coarser level, and the mesh's border.
 std::vector<MortonCode> points_around(const CompletionField& coarse, const LatticePlace& place,
-                                      const PolygonMesh& mesh, const BoundaryLoops& border) {
-    std::vector<MortonCode> codes;
+                                      const PolygonMesh& mesh, const BoundaryLoops& border,
+                                      const KnownSpace& space) {
+    std::vector<MortonCode> codes = points_overlooked(coarse, place, space);
     const auto add = [&](const VoxelCoord& c) {
         if (place.holds(c)) codes.push_back(morton_encode(c));
     };
@@ -143,8 +185,9 @@ std::vector<MortonCode> points_around(const CompletionField& coarse, const Latti
 }
 
 CompletionField finer_field(const CompletionField& coarse, const LatticePlace& place, const PolygonMesh& mesh,
-                            const BoundaryLoops& border) {
-    CompletionField field{build_lattice(place, points_around(coarse, place, mesh, border), mesh), {}, {}};
+                            const BoundaryLoops& border, const KnownSpace& space) {
+    CompletionField field{
+        build_lattice(place, points_around(coarse, place, mesh, border, space), mesh), {}, {}};
     const std::size_t size = field.lattice.size();
     resize_large(field.value, size);
     resize_large(field.known, size);
@@ -154,18 +197,20 @@ CompletionField finer_field(const CompletionField& coarse, const LatticePlace& p
         field.known[i] = at_end ? Known::given : Known::solved;
     });
     hold_beside_mesh(field);
-    solve(field);
+    solve_beside(space, field);
     return field;
 }
 
 } // namespace
 
-CompletionField completion_field(const PolygonMesh& mesh, const BoundaryLoops& border, double spacing) {
+CompletionField completion_field(const PolygonMesh& mesh, const BoundaryLoops& border, double spacing,
+                                 const KnownSpace& known_space) {
     Box box;
     for (const Vec3& p : mesh.positions) box.add(p);
     const std::vector<LatticePlace> levels = places(box, spacing);
-    CompletionField field = coarsest_field(levels[0], mesh);
-    for (std::size_t l = 1; l < levels.size(); ++l) field = finer_field(field, levels[l], mesh, border);
+    CompletionField field = coarsest_field(levels[0], mesh, known_space);
+    for (std::size_t l = 1; l < levels.size(); ++l)
+        field = finer_field(field, levels[l], mesh, border, known_space);
     return field;
 }
 

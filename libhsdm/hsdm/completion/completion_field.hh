@@ -4,12 +4,21 @@
 #include "hsdm/completion/lattice.hh"
 #include "hsdm/mesh/fill_holes.hh"
 
+#include <functional>
+
 namespace hsdm {
+
+/// Places that are known to lie on one side of the surface.
+struct KnownSpace {
+    std::function<bool(const Vec3&)> holds; ///< is a place of the mesh's coordinates one? None: no place is
+    bool outside = true;                    ///< where the facets face
+};
 
 /// How the value of a grid point is known.
 enum class Known : std::uint8_t {
     solved,      ///< it is the mean of those around
     beside_mesh, ///< the mesh passes an edge of it
+    seen,        ///< it lies in known space, which the solution had on the wrong side
     given,       ///< at the end of the grid: outside, or taken from the coarser level
 };
 
@@ -30,7 +39,10 @@ struct CompletionField {
 /// Diffuses inside and outside from a mesh with a border (oriented, facets outward) into the volume: harmonic
 /// between its two sides and the outside around it, level by level, each in a band around the zero level of
 /// the coarser one (after Davis, Marschner, Garr, Levoy, Filling holes in complex surfaces using volumetric
-/// diffusion, 2002). O(levels * facets + missing area), `spacing` being the finest grid's.
-CompletionField completion_field(const PolygonMesh& mesh, const BoundaryLoops& border, double spacing);
+/// diffusion, 2002). Grid points in known space have its sign, unless
+/// the mesh is beside them. O(levels *
+/// facets + missing area), `spacing` being the finest grid's; with known space, + its border's area.
+CompletionField completion_field(const PolygonMesh& mesh, const BoundaryLoops& border, double spacing,
+                                 const KnownSpace& known_space = {});
 
 } // namespace hsdm

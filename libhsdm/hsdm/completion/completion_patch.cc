@@ -318,6 +318,30 @@ private:
     std::vector<Mean> hits_, missing_, border_;
 };
 
+/// Vertices that lie in known space and did not before.
+std::vector<Index> entered(const KnownSpace& space, const CompletionPatch& patch,
+                           const std::vector<Vec3>& before) {
+    if (!space.holds) return {};
+    return indices_where(before.size(), chunks::usual, [&](Index v) {
+        return patch.held[v] == 0 && space.holds(patch.net.positions[v]) && !space.holds(before[v]);
+    });
+}
+
+/// Fairs a patch; as long as that takes vertices to where they may not be (`wrong`, given their positions
+/// before), they and more and more around them stay.
+template <class Wrong>
+void fair_unless(CompletionPatch& patch, Wrong&& wrong) {
+    const std::vector<Vec3> net = patch.net.positions;
+    Fairing fairing(patch);
+    for (int round = 0, rings = 1;; ++round, rings *= 2) {
+        fairing.move();
+        const std::vector<Index> stopped = wrong(net);
+        if (stopped.empty() || round == completing::most_stops) return;
+        fairing.stop(stopped, rings);
+        patch.net.positions = net;
+    }
+}
+
 } // namespace
 
 CompletionPatch completion_patch(const CompletionField& field, const PolygonMesh& mesh,
@@ -357,20 +381,17 @@ CompletionPatch completion_patch(const CompletionField& field, const PolygonMesh
     return patch;
 }
 
-void fair(CompletionPatch& patch) {
-    Fairing(patch).move();
+void fair(CompletionPatch& patch, const KnownSpace& space) {
+    fair_unless(patch, [&](const std::vector<Vec3>& net) { return entered(space, patch, net); });
 }
 
-void fair_beside(const PolygonMesh& mesh, CompletionPatch& patch) {
-    const std::vector<Vec3> net = patch.net.positions;
-    Fairing fairing(patch);
-    for (int round = 0, rings = 1;; ++round, rings *= 2) {
-        fairing.move();
-        const std::vector<Index> crossed = crossed_moves(mesh, patch, net);
-        if (crossed.empty() || round == completing::most_stops) return;
-        fairing.stop(crossed, rings);
-        patch.net.positions = net;
-    }
+void fair_beside(const PolygonMesh& mesh, CompletionPatch& patch, const KnownSpace& space) {
+    fair_unless(patch, [&](const std::vector<Vec3>& net) {
+        std::vector<Index> wrong = entered(space, patch, net);
+        for (const Index v : crossed_moves(mesh, patch, net)) wrong.push_back(v);
+        sort_unique(wrong);
+        return wrong;
+    });
 }
 
 } // namespace hsdm

@@ -21,11 +21,12 @@ CompletionPatch completion_patch(const CompletionField& field, const PolygonMesh
 /// Moves the vertices that are not held: to a membrane over the border first; then to a thin plate, which
 /// continues the slope of the mesh where the membrane leaves it at less than 58 degrees, and meets it in a
 /// crease elsewhere (after Kobbelt, Campagna, Vorsatz, Seidel, Interactive multi-resolution modeling, 1998).
-void fair(CompletionPatch& patch);
+/// Vertices that would enter known space, and some around them, stay where the field put them.
+void fair(CompletionPatch& patch, const KnownSpace& space = {});
 
 /// The same for a patch that fairing would take through the mesh or through itself: vertices that would pass
 /// there, and some around them, stay where the field put them, which is beside the mesh. No nearer to what is
 /// missing than fair() where that crosses little, as the field keeps far from the mesh.
-void fair_beside(const PolygonMesh& mesh, CompletionPatch& patch);
+void fair_beside(const PolygonMesh& mesh, CompletionPatch& patch, const KnownSpace& space = {});
 
 } // namespace hsdm

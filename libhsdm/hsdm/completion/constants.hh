@@ -75,6 +75,25 @@ inline constexpr int most_rounds = 2;
 
 } // namespace hsdm::completing
 
+// free_space.hh
+namespace hsdm::seeing {
+
+/// points: in the bins of directions that half of a scanner's points lie in, at least.
+/// Why: nine bins around a place then hold 36, of which some hit what stands in front of it, if that is not
+/// thinner than a spacing.
+inline constexpr std::size_t points_per_bin = 4;
+
+/// points: of a bin that is looked through.
+/// Why: a single one may be an outlier.
+inline constexpr Index least_points = 2;
+
+/// voxels: what is less in front of a point is not known to be free.
+/// Why: noise and what scans are apart are less than a voxel where a surface is made of them at all; twice
+/// that.
+inline constexpr double margin = 2;
+
+} // namespace hsdm::seeing
+
 // slits.hh
 namespace hsdm::slits {
 

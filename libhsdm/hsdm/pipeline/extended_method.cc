@@ -1,6 +1,7 @@
 #include "hsdm/pipeline/extended_method.hh"
 
 #include "hsdm/completion/constants.hh"
+#include "hsdm/completion/free_space.hh"
 #include "hsdm/completion/slits.hh"
 #include "hsdm/contour/dual_contour.hh"
 #include "hsdm/contour/outlier_sets.hh"
@@ -199,17 +200,42 @@ bool is_better(const DualContour& guess, const DualContour& draft, const SlitCom
            && boundary_loops(guess.mesh).vertices.size() < completion.border;
 }
 
+/// Do most of the points whose scanner is known face it? If not, their normals point into solids.
+bool face_scanners(const Octree& octree, const Viewpoints& viewpoints) {
+    std::ptrdiff_t facing = 0;
+    for_each_in_order(octree.size(), [&](std::size_t i) {
+        const Vec3* sensor = is_measured(octree.source[i]) ? viewpoints.of(octree.source[i]) : nullptr;
+        if (sensor != nullptr) facing += (octree.normals[i] | (*sensor - octree.positions[i])) > 0 ? 1 : -1;
+    });
+    return facing > 0;
+}
+
+/// What scanners looked through; none where that is not known.
+FreeSpace free_space(const MethodInput& measured) {
+    if (measured.viewpoints.sensors.empty() || measured.frame.has_cuts()
+        || !face_scanners(measured.octree, measured.viewpoints))
+        return {};
+    return {measured.octree, measured.viewpoints, measured.level.voxel_size};
+}
+
 /// From what all is completed, and how.
 struct Completing {
     const MethodInput& measured;
-    const Report& base; ///< before there were facets
-    double done = 0;    ///< share of the whole run before it
-    double share = 0;   ///< of the whole run, that a round is
+    const Report& base;              ///< before there were facets
+    double done = 0;                 ///< share of the whole run before it
+    double share = 0;                ///< of the whole run, that a round is
+    const FreeSpace* free = nullptr; ///< of the measured points, if any
 
     CompletedPoints points(const MethodInput& in, const PolygonMesh& mesh, const BoundaryLoops& loops,
                            Passing passing, Report& report) const {
-        return in.phases.run("completion", done, report.seconds.facets,
-                             [&] { return complete_surface(mesh, loops, in.level.voxel_size, passing); });
+        return in.phases.run("completion", done, report.seconds.facets, [&] {
+            std::function<bool(const Vec3&)> empty;
+            if (free != nullptr && !free->empty())
+                empty = [this, moved = in.octree.origin - measured.octree.origin](const Vec3& place) {
+                    return free->holds(place + moved);
+                };
+            return complete_surface(mesh, loops, in.level.voxel_size, passing, empty);
+        });
     }
 
     /// Sets and facets of a draft's points, which `in` has, and of those that complete them.
@@ -245,27 +271,39 @@ void complete_slits(Completing how, Draft& draft) {
     }
 }
 
-/// A draft with all loops of its mesh completed, and once more where some are left.
-Draft completed_all(Completing how, Passing passing, const PolygonMesh& mesh, const BoundaryLoops& loops,
-                    const Draft& draft, Report& report) {
+/// A draft with all loops of a mesh completed.
+struct Completion {
+    Draft draft;
+    std::size_t left = 0; ///< edges of the loops that the first round left
+
+    std::size_t meeting() const { return draft.facets.intersections.after; }
+    bool operator<(const Completion& other) const {
+        return std::pair(meeting(), left) < std::pair(other.meeting(), other.left);
+    }
+};
+
+/// Completes all loops of a draft's mesh, and once more where some are left.
+Completion completed_all(Completing how, Passing passing, const PolygonMesh& mesh, const BoundaryLoops& loops,
+                         const Draft& draft, Report& report) {
     DualContourOptions options = options_for(how.measured, how.base.input.spacing);
     options.all_round = true;
     const MethodInput in = draft.input(how.measured);
     Draft result =
         how.draft(in, how.points(in, mesh, loops, passing, report), report, completing::shift, options);
     const BoundaryLoops left = boundary_loops(result.facets.mesh);
-    if (left.size() == 0) return result;
+    if (left.size() == 0) return {std::move(result)};
     how.done += how.share;
     const MethodInput again = result.input(how.measured);
     note_loops(result.facets.mesh, left, true, again.octree.origin, again.frame, result.report);
     const CompletedPoints points = how.points(again, result.facets.mesh, left, passing, result.report);
     result.facets = DualContour(); // frees what is not needed any more
     options.holes = every_hole;
-    return how.draft(again, points, result.report, completing::shift, options);
+    return {how.draft(again, points, result.report, completing::shift, options), left.vertices.size()};
 }
 
-/// Completes all loops of a draft. Where more facets meet then than before it is done again with a surface
-/// that keeps beside the mesh, and the one of which fewer meet is taken.
+/// Completes all loops of a draft. Where more facets meet then than before, or half of the border was left,
+/// completed and measured points contradict each other: it is done again with a surface that keeps beside the
+/// mesh, and the one taken of which fewer facets meet, or that left less.
 void complete_all(Completing how, Draft& draft) {
     const std::size_t meeting = draft.facets.intersections.after;
     const BoundaryLoops loops = boundary_loops(draft.facets.mesh);
@@ -274,17 +312,20 @@ void complete_all(Completing how, Draft& draft) {
     draft.facets = DualContour(); // frees what is not needed any more
     draft.sets = NormalSets();
     const MethodInput in = draft.input(how.measured);
+    const FreeSpace free = in.phases.run("completion", how.done, draft.report.seconds.facets,
+                                         [&] { return free_space(how.measured); });
+    how.free = &free;
     note_loops(mesh, loops, true, in.octree.origin, in.frame, draft.report);
-    Draft result = completed_all(how, Passing::ignored, mesh, loops, draft, draft.report);
-    if (result.facets.intersections.after > meeting) {
+    Completion result = completed_all(how, Passing::ignored, mesh, loops, draft, draft.report);
+    if (result.meeting() > meeting || 2 * result.left > loops.vertices.size()) {
         Report report = draft.report;
-        report.seconds = result.report.seconds;
+        report.seconds = result.draft.report.seconds;
         how.done += 2 * how.share;
-        Draft beside = completed_all(how, Passing::stopped, mesh, loops, draft, report);
-        result.report.seconds = beside.report.seconds;
-        if (beside.facets.intersections.after < result.facets.intersections.after) result = std::move(beside);
+        Completion beside = completed_all(how, Passing::stopped, mesh, loops, draft, report);
+        result.draft.report.seconds = beside.draft.report.seconds;
+        if (beside < result) result = std::move(beside);
     }
-    draft = std::move(result);
+    draft = std::move(result.draft);
 }
 
 /// The vertices of a completed cloud's mesh as if it were the measured one's: where these lie, with colours

@@ -7,6 +7,7 @@
 #include "hsdm/mesh/facet_links.hh"
 #include "hsdm/mesh/feature_hints.hh"
 #include "hsdm/mesh/fill_holes.hh"
+#include "hsdm/normals/orient_normals.hh"
 #include "hsdm/octree/octree.hh"
 #include "hsdm/pipeline/phases.hh"
 #include "hsdm/spatial/facet_cells.hh"
@@ -25,6 +26,8 @@ struct MethodInput {
     const Phases& phases;
     /// The level's normal sets where they have been made, to be taken; null or nothing where not.
     std::optional<NormalSets>* sets = nullptr;
+    /// Scanners that are sure, relative to the origin of the measured points' octree.
+    Viewpoints viewpoints{};
 };
 
 /// What is known about facets beyond the mesh, valid as long as they do not change.

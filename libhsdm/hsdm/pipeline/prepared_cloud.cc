@@ -167,11 +167,17 @@ void PreparedCloud::note_outliers(const Occurrences& outliers) {
 
 OrientOptions PreparedCloud::orientation_of(const PointView& cloud) const {
     OrientOptions options;
-    const auto here = [&](const Vec3& sensor) { return frame.to_work(sensor) - octree.origin; };
-    if (cloud.sensor) options.sensor = here(*cloud.sensor);
-    for (const Vec3& sensor : cloud.sensors) options.viewpoints.sensors.push_back(here(sensor));
-    options.viewpoints.sensor_of = cloud.sensor_of;
+    if (cloud.sensor) options.sensor = frame.to_work(*cloud.sensor) - octree.origin;
+    options.viewpoints = viewpoints_of(cloud);
     return options;
+}
+
+Viewpoints PreparedCloud::viewpoints_of(const PointView& cloud) const {
+    Viewpoints viewpoints;
+    for (const Vec3& sensor : cloud.sensors)
+        viewpoints.sensors.push_back(frame.to_work(sensor) - octree.origin);
+    viewpoints.sensor_of = cloud.sensor_of;
+    return viewpoints;
 }
 
 void PreparedCloud::warn_of_sides(const NormalConsistency& consistency, bool estimated) {

@@ -37,6 +37,9 @@ public:
     /// The voxels of a depth, and their normal sets if choose_resolution() has made these. To be called once.
     OctreeLevel take_level(int depth, std::optional<NormalSets>& sets);
 
+    /// The scanners of the cloud that are sure, relative to the octree's origin.
+    Viewpoints viewpoints_of(const PointView& cloud) const;
+
     /// Have points been moved from their positions in the cloud, or might smooth_for_depth() still move them?
     bool has_moved() const { return moved_; }
     bool may_move() const { return noise_ > 0; }

@@ -37,7 +37,8 @@ void reconstruct_level(InputCloud& cloud, PreparedCloud& prepared, int depth, bo
     report.grid.leaves_per_level.assign(static_cast<std::size_t>(depth) + 1, 0);
     report.grid.leaves_per_level.back() = level.size();
 
-    const MethodInput input{prepared.frame, *cloud, octree, level, options, phases, &sets};
+    const MethodInput input{prepared.frame, *cloud, octree, level,
+                            options,        phases, &sets,  prepared.viewpoints_of(*cloud)};
     FacetKnowledge known;
     PolygonMesh facets = method_for(options) == Method::extended ? extended_method(input, report, known)
                                                                  : basic_method(input, report);
