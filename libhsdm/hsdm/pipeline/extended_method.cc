@@ -277,9 +277,6 @@ struct Completion {
     std::size_t left = 0; ///< edges of the loops that the first round left
 
     std::size_t meeting() const { return draft.facets.intersections.after; }
-    bool operator<(const Completion& other) const {
-        return std::pair(meeting(), left) < std::pair(other.meeting(), other.left);
-    }
 };
 
 /// Completes all loops of a draft's mesh, and once more where some are left.
@@ -301,9 +298,10 @@ Completion completed_all(Completing how, Passing passing, const PolygonMesh& mes
     return {how.draft(again, points, result.report, completing::shift, options), left.vertices.size()};
 }
 
-/// Completes all loops of a draft. Where more facets meet then than before, or half of the border was left,
-/// completed and measured points contradict each other: it is done again with a surface that keeps beside the
-/// mesh, and the one taken of which fewer facets meet, or that left less.
+/// Completes all loops of a draft. Where more facets meet then than before it is done again with a surface
+/// that keeps beside the mesh, and the one of which fewer meet is taken. Likewise where the first round left
+/// as much border as there was: a surface through the mesh tears it, and what closes the tears does not meet
+/// it where it keeps out of free space.
 void complete_all(Completing how, Draft& draft) {
     const std::size_t meeting = draft.facets.intersections.after;
     const BoundaryLoops loops = boundary_loops(draft.facets.mesh);
@@ -317,13 +315,16 @@ void complete_all(Completing how, Draft& draft) {
     how.free = &free;
     note_loops(mesh, loops, true, in.octree.origin, in.frame, draft.report);
     Completion result = completed_all(how, Passing::ignored, mesh, loops, draft, draft.report);
-    if (result.meeting() > meeting || 2 * result.left > loops.vertices.size()) {
+    const bool torn = !free.empty() && result.left >= loops.vertices.size();
+    if (torn || result.meeting() > meeting) {
         Report report = draft.report;
         report.seconds = result.draft.report.seconds;
         how.done += 2 * how.share;
         Completion beside = completed_all(how, Passing::stopped, mesh, loops, draft, report);
         result.draft.report.seconds = beside.draft.report.seconds;
-        if (beside < result) result = std::move(beside);
+        if (beside.meeting() < result.meeting()
+            || (torn && beside.meeting() == result.meeting() && beside.left < result.left))
+            result = std::move(beside);
     }
     draft = std::move(result.draft);
 }
