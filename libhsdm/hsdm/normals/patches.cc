@@ -182,7 +182,8 @@ std::vector<std::uint8_t> sheets_beside(const Octree& octree, const Neighbors& n
                 if (std::abs(cosine) < patches::least_cosine
                     || mirrored(n, m, d, std::min(d.sqrnorm(), longest)) * cosine >= 0)
                     continue;
-                beside[p] |= (n | d) * patches.sign[i] > 0 ? 1 : 2;
+                const unsigned side = (n | d) * patches.sign[i] > 0 ? 1 : 2;
+                beside[p] = static_cast<std::uint8_t>(beside[p] | side);
             }
         }
     });
