@@ -49,15 +49,15 @@ ReconstructOptions checked_options(const ReconstructArguments& arguments,
 /// Returns make(); puts a cloud's name before the messages of its errors.
 template <class Make>
 auto named(const CloudFiles& cloud, const Make& make) {
-    const auto is_named = [](const std::string& message) {
-        return [&message](const std::string& name) { return message.starts_with(name + ":"); };
-    };
     try {
         return make();
     } catch (const OtherRankFailed&) { // all ranks say the same, and know it
         throw;
     } catch (const Error& error) {
-        if (std::ranges::any_of(cloud.files, is_named(error.what()))) throw; // of reading
+        const std::string_view what = error.what();
+        if (std::ranges::any_of(cloud.files,
+                                [&](const std::string& file) { return what.starts_with(file + ":"); }))
+            throw; // of reading
         throw Error(cloud.name(), error.what());
     } catch (const OptionError& error) {
         throw OptionError(words_of(error) + " (" + cloud.name() + ")");
@@ -169,7 +169,9 @@ private:
 
     void reconstruct_one(const CloudFiles& cloud) {
         const std::string name = cloud.name();
-        set_activity(cloud.input == "-" ? "standard input" : cloud.input.c_str(), "read");
+        // A message may name it after this object's end.
+        const std::string& input = *std::ranges::find(arguments_.inputs, cloud.input);
+        set_activity(input == "-" ? "standard input" : input.c_str(), "read");
         bool complete = true;
         std::size_t points = 0; // of an input without a mesh none count
         for (const Report& report : make(cloud, name)) {
@@ -262,7 +264,7 @@ private:
             points.visit_share(ranks.rank(), ranks.size(),
                                [&](const PointCloud& part) { visit(view_of(part)); });
         };
-        const std::vector<std::uint64_t> seen = ranks.gather(points.bytes());
+        const std::vector<std::uint64_t> seen = ranks.gather(points.fingerprint());
         if (std::ranges::count(seen, seen.front()) != ranks.size())
             throw Error(cloud.name(), "is not the same to all processes; put it where all of them see it");
         TileReport how;

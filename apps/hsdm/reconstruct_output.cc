@@ -45,7 +45,12 @@ std::string with_depth(const std::string& path, std::optional<int> depth) {
 }
 
 std::string stem(const std::string& input) {
-    return input == "-" ? "stdin" : fs::path(input).stem().string();
+    if (input == "-") return "stdin";
+    std::error_code error;
+    if (!fs::is_directory(input, error)) return fs::path(input).stem().string();
+    fs::path folder = fs::weakly_canonical(input, error); // "scans/" and "." do not end with their names
+    if (!folder.has_filename()) folder = folder.parent_path();
+    return folder.has_filename() ? folder.filename().string() : "scans";
 }
 
 void make_folder(const std::string& folder) {

@@ -164,7 +164,7 @@ struct Report {
         std::size_t bytes_sent = 0, ///< to others
             peak_memory_bytes = 0;  ///< of the whole process so far
     };
-    std::vector<Rank> ranks; ///< set by the command if there are several processes; by their numbers
+    std::vector<Rank> ranks; ///< set by hsdm-mpi; by their numbers
 
     std::size_t peak_memory_bytes = 0; ///< of the whole process so far
     int threads = 0;                   ///< at most so many threads worked

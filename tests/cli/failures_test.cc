@@ -3,6 +3,7 @@
 #include "cli/scan.hh"
 
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 using namespace hsdm;
@@ -111,6 +112,13 @@ TEST_CASE("the end of memory is told with file and phase, and the other inputs g
         const Json reports = Json::parse(read_file(folder / "r.json"));
         CHECK(reports[0]["failure"].get<std::string>().find("out of memory in phase") != std::string::npos);
     }
+    const std::string name = "large-with-a-name-that-no-small-string-holds.xyz";
+    std::filesystem::rename(folder / "large.xyz", folder / name);
+    const CommandResult alone = run(folder, "reconstruct " + name + " --depth 3 --threads 2 --quiet -o m.om",
+                                    "ulimit -v $((1024 * 55));");
+    CHECK(alone.status == 1);
+    CHECK(alone.err.starts_with("hsdm: " + name + ": out of memory in phase "));
+    std::filesystem::rename(folder / name, folder / "large.xyz");
     const CommandResult mesh = run(folder, "compare large.xyz small.xyz", "ulimit -v 38000;");
     CHECK(mesh.status == 1);
     CHECK(mesh.err.starts_with("hsdm: large.xyz: "));

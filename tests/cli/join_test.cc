@@ -51,6 +51,9 @@ TEST_CASE("scans that are joined make the mesh of one file with all their points
     CHECK(told.status == 0);
     CHECK(read_file(scans.folder / "out/scans.ply") == one);
     CHECK(told.out.find("8,000 points of 2 files") != std::string::npos);
+    CHECK(run(scans.folder, "reconstruct --join scans/ --depth 5 --out-dir slash --format ply --quiet").status
+          == 0);
+    CHECK(read_file(scans.folder / "slash/scans.ply") == one);
     const std::string report = read_file(scans.folder / "r.json");
     CHECK(report.find("\"files\"") != std::string::npos);
     CHECK(report.find("scans/b.ply") != std::string::npos);

@@ -3,6 +3,7 @@
 #include "hsdm/contour/dual_contour.hh"
 #include "hsdm/contour/inner_tunnels.hh"
 #include "hsdm/mesh/area_vector.hh"
+#include "hsdm/mesh/turn_outward.hh"
 #include "hsdm/quality/topology.hh"
 #include "support/check.hh"
 
@@ -104,6 +105,7 @@ TEST_CASE("a tube joins two rings of unequal length", "[contour]") {
     const Index lower = pyramid(5, -0.2, -1), upper = pyramid(3, 0.2, 1);
     REQUIRE(measure_topology(mesh).euler == 4);
     const InnerTunnel tunnel{{{lower, lower + 1}, {upper, upper + 1}}};
+    PolygonMesh other = mesh;
     CHECK(open_inner_tunnels(std::vector{tunnel}, mesh) == 1);
     remove_isolated_vertices(mesh);
     const Topology topology = measure_topology(mesh);
@@ -112,6 +114,22 @@ TEST_CASE("a tube joins two rings of unequal length", "[contour]") {
     CHECK(topology.closed());
     CHECK(faults(mesh) == "");
     CHECK(mesh.facet_count() == 5 + 2);
+    // The same of all facets turned.
+    const auto in_order = [](const PolygonMesh& m, bool turned) {
+        std::vector<std::vector<Index>> facets;
+        for (std::size_t f = 0; f < m.facet_count(); ++f) {
+            std::vector<Index> facet(m.facet(f).begin(), m.facet(f).end());
+            if (turned) std::ranges::reverse(facet);
+            std::ranges::rotate(facet, std::ranges::min_element(facet));
+            facets.push_back(facet);
+        }
+        std::ranges::sort(facets);
+        return facets;
+    };
+    turn_over(other);
+    CHECK(open_inner_tunnels(std::vector{tunnel}, other) == 1);
+    remove_isolated_vertices(other);
+    CHECK(in_order(other, true) == in_order(mesh, false));
 }
 
 TEST_CASE("two rings that share a vertex are not joined", "[contour]") {

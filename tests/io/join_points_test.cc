@@ -91,6 +91,21 @@ TEST_CASE("joined scans know which scanner saw each point", "[io]") {
         CHECK(cloud.sensors.empty());
         CHECK(cloud.sensor_of.empty());
     }
+    SECTION("one scanner of a part, that is not sure, is none") {
+        for (const auto& cloud : {joined({scan(10, false), scan(20, false, here)}).cloud,
+                                  joined({scan(20, false, here), scan(10, false)}).cloud}) {
+            CHECK_FALSE(cloud.sensor);
+            CHECK(cloud.sensors.empty());
+            CHECK(cloud.sensor_of.empty());
+        }
+    }
+    SECTION("PTX scans at one place were moved already") {
+        std::vector<PointFile> scans{scan(10, false, here), scan(20, false, here)};
+        for (PointFile& file : scans) file.format = "ptx";
+        const PointCloud cloud = joined(scans).cloud;
+        CHECK_FALSE(cloud.sensor);
+        CHECK(cloud.sensors.empty());
+    }
     SECTION("none") {
         const PointCloud cloud = joined({scan(10, false), scan(20, false)}).cloud;
         CHECK_FALSE(cloud.sensor);

@@ -75,6 +75,26 @@ PointCloud misaligned(const support::Solid& solid, double spacings, std::uint64_
 
 } // namespace
 
+TEST_CASE("components of which nothing is turned keep their outward side, whatever they see", "[normals]") {
+    TwoSheets sheets;
+    const Index other = 2 * of_sheet; // a patch of its own, which sees the sky behind it
+    sheets.patches.counts.push_back(5);
+    sheets.walls.sign.push_back(1);
+    sheets.walls.component.push_back(1);
+    sheets.walls.components = 2;
+    sheets.layers.signs.sign.push_back(1);
+    sheets.layers.signs.component.push_back(1);
+    sheets.layers.signs.components = 2;
+    sheets.layers.sky.push_back(-1);
+    sheets.see(0, of_sheet, 1);
+    sheets.see(of_sheet, of_sheet + 30, 1);
+    const SkyReading sky = take_layers(sheets.patches, sheets.layers, sheets.walls);
+    CHECK(sky.points > 0);
+    CHECK(sky.outward[0] == 1);
+    CHECK(sky.outward[1] == 0);
+    CHECK(sheets.walls.sign[other] == 1);
+}
+
 TEST_CASE("layers are what a wall would have turned away from the sky", "[normals]") {
     TwoSheets sheets;
     sheets.see(0, 70, 1);                       // the one is outermost here,

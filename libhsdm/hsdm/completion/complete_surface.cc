@@ -64,7 +64,13 @@ CompletedPoints complete_surface(const PolygonMesh& mesh, const BoundaryLoops& l
     PolygonMesh turned;
     if (inward) turn_over(turned = mesh);
     const PolygonMesh& outward = inward ? turned : mesh;
-    const KnownSpace space{empty, !inward};
+    // Beyond a mesh that faces inward is what it is in; who looks in from there sees no room.
+    const auto within = [&](const Vec3& p) {
+        for (unsigned k = 0; k < 3; ++k)
+            if (p[k] < box.lo[k] || p[k] > box.hi[k]) return false;
+        return empty(p);
+    };
+    const KnownSpace space{inward && empty ? std::function<bool(const Vec3&)>(within) : empty, !inward};
     CompletionPatch patch =
         completion_patch(completion_field(outward, loops, voxel_size, space), outward, loops);
     if (passing == Passing::stopped)

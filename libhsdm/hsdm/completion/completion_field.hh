@@ -39,9 +39,9 @@ struct CompletionField {
 /// Diffuses inside and outside from a mesh with a border (oriented, facets outward) into the volume: harmonic
 /// between its two sides and the outside around it, level by level, each in a band around the zero level of
 /// the coarser one (after Davis, Marschner, Garr, Levoy, Filling holes in complex surfaces using volumetric
-/// diffusion, 2002). Grid points in known space have its sign, unless
-/// the mesh is beside them. O(levels *
-/// facets + missing area), `spacing` being the finest grid's; with known space, + its border's area.
+/// diffusion, 2002). Grid points in known space that come out on the other side are held on its own in a
+/// second solution, unless the mesh is beside them. O(levels * facets + missing area), `spacing` being the
+/// finest grid's; with known space, + its border's area.
 CompletionField completion_field(const PolygonMesh& mesh, const BoundaryLoops& border, double spacing,
                                  const KnownSpace& known_space = {});
 

@@ -9,10 +9,10 @@ namespace hsdm {
 
 /// The space between scanners and what they measured. Each scanner has depth maps, coarser and coarser: bins
 /// of directions, on the faces of a cube around it, and the least depth in and around each. A place is free
-/// where the scanner measured something in its bin, and nothing there or in the bins around is as near. So
-/// nothing is free that lies within a bin, which is a voxel or two spacings wide, of what the scanner saw in
-/// front of it, and nothing where it saw nothing. (As the occupancy grids of robots have it, but looked up in
-/// place of traversed.)
+/// where the scanner measured two points or more in its bin, and nothing there or in the bins around is as
+/// near. So nothing is free that lies within a bin, which is a voxel or two spacings wide, of what the
+/// scanner saw in front of it, and nothing where it saw nothing. (As the occupancy grids of robots have it,
+/// but looked up in place of traversed.)
 class FreeSpace {
 public:
     /// None.

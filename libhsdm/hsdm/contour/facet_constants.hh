@@ -6,7 +6,7 @@
 
 #include <cstddef>
 
-// handles.hh, witnesses.hh
+// surrounding.hh: inner_tunnels.hh, witnesses.hh
 namespace hsdm::surrounding {
 
 /// radians: between neighbouring directions of what lies all round an axis.
@@ -15,7 +15,7 @@ inline constexpr double widest_gap = 2.6;
 
 } // namespace hsdm::surrounding
 
-// handles.hh
+// handles.hh, witnesses.hh
 namespace hsdm::handles {
 
 /// voxels: from a facet's middle to the plane of a set that speaks for it.

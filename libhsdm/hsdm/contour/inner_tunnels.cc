@@ -3,10 +3,13 @@
 #include "hsdm/contour/constants.hh"
 #include "hsdm/contour/surrounding.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/remove_facets.hh"
 
 #include <algorithm>
+#include <iterator>
+#include <limits>
 #include <numeric>
 
 namespace hsdm {
@@ -63,13 +66,14 @@ Ring ring_of(const DualMesh& dual, ChainVertices chain) {
 bool is_free(const Ring& a, const Ring& b, std::span<const NormalSet> sets, double least) {
     const double sign = a.within > 0 ? 1 : -1;
     if (sign * a.within < least || sign * b.within < least) return false;
-    const Frame across(b.middle - a.middle);
+    const Vec3 way = unit(b.middle - a.middle);
+    const Frame across(way);
     std::vector<double> directions;
     for (const NormalSet& s : sets) {
         if (sign * (s.normal | (a.middle - s.centroid)) < 0
             || sign * (s.normal | (b.middle - s.centroid)) < 0)
             return false;
-        directions.push_back(across.angle_of(s.normal));
+        if (std::abs(s.normal | way) < angles::halfway) directions.push_back(across.angle_of(s.normal));
     }
     return widest_gap(directions) < surrounding::widest_gap;
 }
@@ -132,11 +136,16 @@ private:
 };
 
 /// Joins two rings by facets that go on along both, where the sum of squared lengths between them is least.
-class Tube {
+class Sleeve {
 public:
-    Tube(const PolygonMesh& mesh, std::vector<Index> one, std::vector<Index> other)
+    Sleeve(const PolygonMesh& mesh, std::vector<Index> one, std::vector<Index> other)
         : longer_(std::move(one)), shorter_(std::move(other)) {
         if (shorter_.size() > longer_.size()) std::swap(longer_, shorter_);
+        is_turned_ = longer_[1] > longer_.back(); // so that turned normals get the same facets, turned
+        if (is_turned_) {
+            std::ranges::reverse(longer_.begin() + 1, longer_.end());
+            std::ranges::reverse(shorter_.begin() + 1, shorter_.end());
+        }
         double least = std::numeric_limits<double>::infinity();
         for (std::size_t begin = 0; begin < shorter_.size(); ++begin) {
             double sum = 0;
@@ -152,6 +161,7 @@ public:
             const Index from = partner(i, begin_), to = partner(i + 1, begin_);
             facet = {longer_[i], longer_[(i + 1) % longer_.size()], to};
             if (from != to) facet.push_back(from);
+            if (is_turned_) std::ranges::reverse(facet);
             facets.add_facet(facet);
         }
     }
@@ -165,6 +175,7 @@ private:
 
     std::vector<Index> longer_, shorter_;
     std::size_t begin_ = 0;
+    bool is_turned_ = false;
 };
 
 /// What a tunnel takes away at one of its ends, and the ring of vertices round that.
@@ -233,7 +244,7 @@ std::size_t open_inner_tunnels(std::span<const InnerTunnel> tunnels, PolygonMesh
             continue;
         for (const TunnelEnd& end : pair)
             for (const Index f : end.facets) taken[f] = 1;
-        Tube(mesh, std::move(one.ring), std::move(other.ring)).add_to(tubes);
+        Sleeve(mesh, std::move(one.ring), std::move(other.ring)).add_to(tubes);
         ++opened;
     }
     if (opened == 0) return 0;

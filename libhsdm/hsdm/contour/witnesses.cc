@@ -147,8 +147,8 @@ bool Witnesses::surround(std::span<const Index> ring) const {
             if (std::abs(cosine) < angles::halfway) continue;
             directions[cosine > 0].push_back(across.angle_of(out));
         }
-    return std::ranges::any_of(
-        directions, [](std::vector<double>& d) { return widest_gap(d) < surrounding::widest_gap; });
+    std::vector<double>& most = directions[directions[0].size() < directions[1].size()];
+    return most.size() >= 2 * points_of_plane && widest_gap(most) < surrounding::widest_gap;
 }
 
 bool Witnesses::is_served(Index point) {

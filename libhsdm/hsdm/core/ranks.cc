@@ -117,14 +117,13 @@ Ranks::Bytes Ranks::of_first(Bytes&& own) {
 std::vector<Ranks::Bytes> Ranks::exchange(std::vector<Bytes>&& out) {
     std::vector<std::uint64_t> own(out.size());
     std::ranges::transform(out, own.begin(), [](const Bytes& bytes) { return bytes.size(); });
-    std::vector<std::vector<std::uint64_t>> sizes;
-    sizes.reserve(out.size());
-    for (const Bytes& got : gather(bytes_of(own)))
-        sizes.push_back(ByteReader(got).take_rest<std::uint64_t>());
+    const std::vector<Bytes> gathered = gather(bytes_of(own));
     const auto self = static_cast<std::size_t>(rank());
     bytes_sent_ += std::accumulate(own.begin(), own.end(), std::uint64_t{0}) - own[self];
     const Stopwatch watch(seconds_waited_);
     try {
+        std::vector<std::vector<std::uint64_t>> sizes;
+        for (const Bytes& got : gathered) sizes.push_back(ByteReader(got).take_rest<std::uint64_t>());
         return exchange_bytes(std::move(out), sizes);
     } catch (const std::exception& error) { // the others are at it and cannot be told
         abort(std::string("what other ranks send cannot be received: ") + error.what());

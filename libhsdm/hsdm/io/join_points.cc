@@ -7,6 +7,8 @@
 #include "hsdm/io/text.hh"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 
 namespace hsdm {
@@ -39,6 +41,7 @@ void JoinedPoints::add(PointFile&& scan) {
     all_.format = format;
     PointCloud& next = scan.cloud;
     if (next.size() == 0) return;
+    placed_ptx_ += scan.format == "ptx" && next.sensor;
     add_sensors(next);
     if (all_.cloud.size() == 0) {
         all_.cloud.positions = std::move(next.positions);
@@ -56,18 +59,20 @@ void JoinedPoints::add(PointFile&& scan) {
 /// By their names; of several of one name in their order.
 void JoinedPoints::add_scalars(std::vector<Scalar>& next, std::size_t points) {
     std::vector<std::uint8_t> is_taken(next.size(), 0);
-    std::erase_if(all_.cloud.scalars, [&](Scalar& scalar) {
+    std::vector<Scalar> kept;
+    for (Scalar& scalar : all_.cloud.scalars) {
         std::size_t k = 0;
         while (k < next.size() && (is_taken[k] || next[k].name != scalar.name)) ++k;
         if (k == next.size() || next[k].values.size() != points) {
             leave_out(scalar.name);
-            return true;
+            continue;
         }
         is_taken[k] = 1;
         append_large(scalar.values, next[k].values);
         scalar.is_label &= next[k].is_label;
-        return false;
-    });
+        kept.push_back(std::move(scalar));
+    }
+    all_.cloud.scalars = std::move(kept);
     for (std::size_t k = 0; k < next.size(); ++k)
         if (!is_taken[k]) leave_out(next[k].name);
 }
@@ -97,8 +102,8 @@ void JoinedPoints::leave_out(const std::string& what) {
 PointFile JoinedPoints::take() && {
     PointCloud& cloud = all_.cloud;
     const bool of_all = std::ranges::all_of(cloud.sensor_of, [](std::int32_t s) { return s == 0; });
-    if (cloud.sensors.size() == 1 && of_all && !has_sure_sensors_) {
-        cloud.sensor = cloud.sensors.front();
+    if (cloud.sensors.size() == 1 && !has_sure_sensors_) {
+        if (of_all && placed_ptx_ < 2) cloud.sensor = cloud.sensors.front();
         cloud.sensors.clear();
     }
     if (cloud.sensors.empty() || (cloud.sensors.size() == 1 && of_all))
@@ -137,8 +142,10 @@ std::vector<std::string> point_files_in(const std::string& folder) {
             return;
         const std::string path = (std::filesystem::path(folder) / name).string();
         os::FileStatus status;
-        if (os::status_of(path, status) && status.kind == os::FileStatus::Kind::regular)
-            files.push_back(path);
+        if (!os::status_of(path, status))
+            throw Error(path, std::string("cannot be looked at: ") + std::strerror(errno)
+                                  + "; remove it from the folder, or name the files");
+        if (status.kind == os::FileStatus::Kind::regular) files.push_back(path);
     });
     if (files.empty())
         throw Error(folder, "holds no file with an extension of points (.ply, .pcd, .xyz and others) that "

@@ -8,8 +8,10 @@
 namespace hsdm {
 
 /// Adds up scans, one after the other. What not all of them have (normals, colours, a scalar by its name) is
-/// left out and named in PointFile::partial. Each scan's scanner is one of PointCloud::sensors, unless it is
-/// the same for all points and no file is sure of it; points of a scan that does not tell have none.
+/// left out and named in PointFile::partial. Each scan's scanner is one of PointCloud::sensors, unless there
+/// is but one and no file is sure of it: then it is PointCloud::sensor if all points have it. Several PTX
+/// scans at one place were moved already, and tell of no scanner. Points of a scan that does not tell have
+/// none.
 class JoinedPoints {
 public:
     /// Takes a scan's points.
@@ -24,6 +26,7 @@ private:
 
     PointFile all_;
     bool has_sure_sensors_ = false;
+    std::size_t placed_ptx_ = 0; ///< PTX scans that tell of one place
 };
 
 /// What is told of a file beside its cloud, added to what is told of others.

@@ -6,6 +6,8 @@
 #include "hsdm/io/join_points.hh"
 #include "hsdm/io/source_bytes.hh"
 
+#include <algorithm>
+
 namespace hsdm {
 namespace {
 
@@ -41,20 +43,22 @@ std::size_t row_at(double byte, std::uint64_t bytes, std::size_t rows) {
 PointsInParts::PointsInParts(std::vector<std::string> paths, const ReadOptions& options) : options_(options) {
     const bool may_be_parted = (options.format.empty() || options.format == "ply") && options.columns.empty()
                                && options.sensors.empty();
-    notes_.format = "ply";
     for (std::string& path : paths) {
         Source source{std::move(path)};
+        if (source.path == "-" && paths.size() > 1)
+            throw Error("standard input",
+                        "cannot be one of several that are read in parts; save it to a file");
         if (source.path == "-") {
             one_.emplace(read_points(source.path, options));
             return;
         }
-        const io::SourceBytes bytes = io::SourceBytes::open(source.path);
+        io::SourceBytes bytes = io::SourceBytes::open(source.path);
         source.bytes = std::max<std::uint64_t>(1, bytes.size());
         if (may_be_parted) source.rows = io::ply_rows(bytes);
+        if (paths.size() == 1 && !source.rows) // at once: a pipe cannot be opened again
+            one_.emplace(io::read_points(bytes, options));
         sources_.push_back(std::move(source));
     }
-    if (sources_.size() == 1 && !sources_.front().rows)
-        one_.emplace(read_points(sources_.front().path, options));
 }
 
 void PointsInParts::visit_share(int share, int shares,
@@ -106,6 +110,14 @@ std::size_t PointsInParts::size() const {
     std::size_t points = 0;
     for (Source& source : sources_) points += source.rows ? *source.rows : read(source).cloud.size();
     return points;
+}
+
+std::uint64_t PointsInParts::fingerprint() const {
+    std::uint64_t all = one_ ? one_->cloud.size() : 0;
+    for (const Source& source : sources_)
+        for (const std::uint64_t part : {source.bytes, std::uint64_t{source.rows ? *source.rows + 1 : 0}})
+            all = (all ^ part) * 0x100000001b3; // FNV-1a, by words
+    return all;
 }
 
 std::uint64_t PointsInParts::bytes() const {

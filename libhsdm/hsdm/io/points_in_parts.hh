@@ -31,7 +31,8 @@ public:
 
     /// Counts the points; of several files it reads all those of other formats.
     std::size_t size() const;
-    std::uint64_t bytes() const; ///< of all files
+    /// Differs where the files do, by their sizes and how they are read: whether several see the same.
+    std::uint64_t fingerprint() const;
     bool in_memory() const { return one_.has_value(); }
     /// What is told beside the cloud of the files that were read so far; if in_memory() the cloud too.
     const PointFile& file() const& { return one_ ? *one_ : notes_; }
@@ -48,6 +49,7 @@ private:
     void visit_rows(const Source& source, std::size_t begin, std::size_t end,
                     const std::function<void(const PointCloud&)>& visit) const;
     PointFile read(Source& source) const;
+    std::uint64_t bytes() const; ///< of all files
 
     ReadOptions options_;
     mutable std::vector<Source> sources_;

@@ -1,6 +1,7 @@
 #include "hsdm/normals/layers.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/disjoint_sets.hh"
 #include "hsdm/core/interruption.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/normals/constants.hh"
@@ -42,25 +43,6 @@ std::vector<std::int8_t> outward_signs(const Patches& patches, const std::vector
     return outward;
 }
 
-/// Union-find of patches; the root of a region is its first patch.
-class Regions {
-public:
-    explicit Regions(std::size_t patches) : parent_(large_vector<Index>(patches)) {
-        for_each_index(patches, chunks::light, [&](Index p) { parent_[p] = p; });
-    }
-    Index find(Index p) {
-        while (parent_[p] != p) p = parent_[p] = parent_[parent_[p]];
-        return p;
-    }
-    void join(Index a, Index b) {
-        a = find(a), b = find(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<Index> parent_;
-};
-
 } // namespace
 
 SkyReading take_layers(const Patches& patches, const LayerReading& layers, Signs& walls) {
@@ -72,7 +54,7 @@ SkyReading take_layers(const Patches& patches, const LayerReading& layers, Signs
         differ[p] =
             out[walls.component[p]] * walls.sign[p] * other_out[other.component[p]] * other.sign[p] < 0;
     });
-    Regions regions(patches.size());
+    DisjointSets regions(patches.size());
     for_each_in_order(layers.edges.size(), [&](std::size_t e) {
         const SignedEdge& edge = layers.edges[e];
         if (edge.weight != 0 && differ[edge.a] != 0 && differ[edge.b] != 0) regions.join(edge.a, edge.b);
@@ -89,12 +71,16 @@ SkyReading take_layers(const Patches& patches, const LayerReading& layers, Signs
         of_component[component].add(patches.counts[p], faces);
     });
     SkyReading result;
+    std::vector<std::uint8_t> turned(walls.components, 0);
     for_differing([&](std::size_t p, const Views& region, Index component) {
         if (!region.are_clear() || of_component[component].facing <= 0) return;
         walls.sign[p] = static_cast<std::int8_t>(-walls.sign[p]);
+        turned[component] = 1;
         result.points += patches.counts[p];
     });
     result.outward = outward_signs(patches, layers.sky, walls);
+    for (std::size_t c = 0; c < turned.size(); ++c)
+        if (turned[c] == 0) result.outward[c] = 0;
     return result;
 }
 

@@ -14,9 +14,9 @@ struct LayerReading {
 
 /// Which way out is, by the sky.
 struct SkyReading {
-    std::size_t points = 0; ///< that took the layers' signs
-    std::vector<std::int8_t>
-        outward; ///< per component of the signs, +1 if they point to the sky, -1 if away; 0: it stays unknown
+    std::size_t points = 0;           ///< that took the layers' signs
+    std::vector<std::int8_t> outward; ///< per component of the signs, +1 if they point to the sky, -1 if
+                                      ///< away; 0: that is unknown, or nothing of it was turned
 };
 
 /// Where signs that were read as those of walls differ from those read as layers, the sky decides. A wall has

@@ -114,16 +114,19 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
         if (vote != 0) edges.push_back({static_cast<Index>(p), outside, vote, std::abs(vote)});
     });
     Signs signs = agglomerate(patches.size() + 1, std::move(edges), outside);
+    const bool scanned = std::ranges::any_of(seen_by, [](float vote) { return vote != 0; });
     SkyReading sky;
-    if (options.viewpoints.sensors.empty() && signs.contradicted > turning::least_contradicted)
+    if (!scanned && signs.contradicted > turning::least_contradicted)
         sky = take_layers(patches, read_as_layers(octree, neighbors, estimate, patches), signs);
     std::vector<std::int8_t> turn = free_signs(patches, signs, options);
-    const bool seen = std::ranges::any_of(seen_by, [](float vote) { return vote != 0; })
-                      || views_agree(patches, view, signs);
-    if (seen) turn[signs.component[outside]] = signs.sign[outside];
-    if (sky.points > 0)
-        for (std::size_t c = 0; c < turn.size(); ++c)
-            if (sky.outward[c] != 0) turn[c] = sky.outward[c];
+    std::vector<std::uint8_t> is_known(turn.size(), 0); // by views or by the sky
+    const auto decide = [&](std::size_t component, std::int8_t sign) {
+        turn[component] = sign;
+        is_known[component] = 1;
+    };
+    if (scanned || views_agree(patches, view, signs)) decide(signs.component[outside], signs.sign[outside]);
+    for (std::size_t c = 0; c < sky.outward.size(); ++c)
+        if (sky.outward[c] != 0) decide(c, sky.outward[c]);
     resize_large(result.turns, octree.size());
     for_each_index(octree.size(), chunks::light, [&](Index i) {
         const Index p = patches.of_point[i];
@@ -133,9 +136,7 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
     report.of_layers = sky.points;
     report.components = signs.components; // the outside's node is a component too if no patch sees it
     for_each_in_order(patches.size(), [&](std::size_t p) {
-        const Index c = signs.component[p];
-        const bool by_views = sky.points > 0 && sky.outward[c] != 0;
-        if (!by_views && (!seen || c != signs.component[outside])) report.by_volume += patches.counts[p];
+        if (!is_known[signs.component[p]]) report.by_volume += patches.counts[p];
     });
     return result;
 }

@@ -116,6 +116,7 @@ private:
 /// One normal against the other's mirror image in the plane halfway between the points; the chord `d` counts
 /// as one whose squared length is `square`.
 double mirrored(const Vec3& n, const Vec3& m, const Vec3& d, double square) {
+    if (!(square > 0)) return n | m; // two points at one place
     return std::clamp((n | m) - 2 * (n | d) * (m | d) / square, -1.0, 1.0);
 }
 
