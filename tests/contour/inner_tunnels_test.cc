@@ -120,7 +120,7 @@ TEST_CASE("a tube joins two rings of unequal length", "[contour]") {
         for (std::size_t f = 0; f < m.facet_count(); ++f) {
             std::vector<Index> facet(m.facet(f).begin(), m.facet(f).end());
             if (turned) std::ranges::reverse(facet);
-            std::ranges::rotate(facet, std::ranges::min_element(facet));
+            std::rotate(facet.begin(), std::ranges::min_element(facet), facet.end());
             facets.push_back(facet);
         }
         std::ranges::sort(facets);

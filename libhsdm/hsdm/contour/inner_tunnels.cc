@@ -143,8 +143,8 @@ public:
         if (shorter_.size() > longer_.size()) std::swap(longer_, shorter_);
         is_turned_ = longer_[1] > longer_.back(); // so that turned normals get the same facets, turned
         if (is_turned_) {
-            std::ranges::reverse(longer_.begin() + 1, longer_.end());
-            std::ranges::reverse(shorter_.begin() + 1, shorter_.end());
+            std::reverse(longer_.begin() + 1, longer_.end());
+            std::reverse(shorter_.begin() + 1, shorter_.end());
         }
         double least = std::numeric_limits<double>::infinity();
         for (std::size_t begin = 0; begin < shorter_.size(); ++begin) {

@@ -123,6 +123,7 @@ std::vector<Ranks::Bytes> Ranks::exchange(std::vector<Bytes>&& out) {
     const Stopwatch watch(seconds_waited_);
     try {
         std::vector<std::vector<std::uint64_t>> sizes;
+        sizes.reserve(gathered.size());
         for (const Bytes& got : gathered) sizes.push_back(ByteReader(got).take_rest<std::uint64_t>());
         return exchange_bytes(std::move(out), sizes);
     } catch (const std::exception& error) { // the others are at it and cannot be told
