@@ -105,7 +105,7 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
     for_each_in_order(patches.size(), [&](std::size_t p) {
         if (view.votes[p] == 0) return;
         const auto weight = turning::view_weight * static_cast<float>(patches.counts[p]);
-        edges.push_back({static_cast<Index>(p), outside, view.votes[p] * weight, weight});
+        edges.push_back({static_cast<Index>(p), outside, static_cast<float>(view.votes[p]) * weight, weight});
         report.seen_from_outside += patches.counts[p];
     });
     const std::vector<float> seen_by = seen_by_sensors(octree, patches, options.viewpoints);
