@@ -12,7 +12,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 using namespace hsdm;
 using namespace hsdm::support;
@@ -100,8 +99,7 @@ TEST_CASE("a bridge through the air is taken away, and a tunnel that no points s
         PolygonMesh& mesh = part.mesh;
         for (Vec3& p : mesh.positions) p += stages.octree.origin;
         REQUIRE(measure_topology(mesh).euler == 4);
-        mesh.origin.resize(mesh.vertex_count());
-        std::iota(mesh.origin.begin(), mesh.origin.end(), Index{0});
+        mesh.origin = indices_below(mesh.vertex_count());
         bridge(mesh, quad_at(mesh, -0.07), quad_at(mesh, 0.07));
         for (Vec3& p : mesh.positions) p -= stages.octree.origin;
         REQUIRE(measure_topology(mesh).euler == 2);
@@ -125,8 +123,7 @@ TEST_CASE("points across a ring of edges are a sheet where no facet serves them"
         const PolygonMesh& sound = part.mesh;
         const Vec3 origin = stages.octree.origin;
         PolygonMesh bridged = sound;
-        bridged.origin.resize(bridged.vertex_count());
-        std::iota(bridged.origin.begin(), bridged.origin.end(), Index{0});
+        bridged.origin = indices_below(bridged.vertex_count());
         for (Vec3& p : bridged.positions) p += origin;
         const std::size_t from = quad_at(bridged, -0.07), to = quad_at(bridged, 0.07);
         for (Vec3& p : bridged.positions) p -= origin;
@@ -170,8 +167,7 @@ TEST_CASE("points surround the axis of a ring round a rod or in a bore, not that
             ring[i] = static_cast<Index>(nearest - part.mesh.positions.begin());
         }
         PolygonMesh mesh = part.mesh;
-        mesh.origin.resize(mesh.vertex_count());
-        std::iota(mesh.origin.begin(), mesh.origin.end(), Index{0});
+        mesh.origin = indices_below(mesh.vertex_count());
         CHECK(Witnesses(rod.octree, rod.level, part.voxel, mesh).surround(ring));
         Octree half = rod.octree; // as if nothing were known of one side
         for (std::size_t i = 0; i < half.size(); ++i)
@@ -182,8 +178,7 @@ TEST_CASE("points surround the axis of a ring round a rod or in a bore, not that
         DualContour boxes = dual_contour(stages.octree, stages.level, stages.sets);
         PolygonMesh& bridged = boxes.mesh;
         for (Vec3& p : bridged.positions) p += stages.octree.origin;
-        bridged.origin.resize(bridged.vertex_count());
-        std::iota(bridged.origin.begin(), bridged.origin.end(), Index{0});
+        bridged.origin = indices_below(bridged.vertex_count());
         const auto round = bridge_with_ring(bridged, quad_at(bridged, -0.07), quad_at(bridged, 0.07));
         for (Vec3& p : bridged.positions) p -= stages.octree.origin;
         CHECK_FALSE(Witnesses(stages.octree, stages.level, boxes.voxel, bridged).surround(round));
@@ -195,8 +190,7 @@ TEST_CASE("measured points speak for a bridge, completed ones do not", "[contour
     DualContour part = dual_contour(stages.octree, stages.level, stages.sets);
     PolygonMesh& mesh = part.mesh;
     for (Vec3& p : mesh.positions) p += stages.octree.origin;
-    mesh.origin.resize(mesh.vertex_count());
-    std::iota(mesh.origin.begin(), mesh.origin.end(), Index{0});
+    mesh.origin = indices_below(mesh.vertex_count());
     bridge(mesh, quad_at(mesh, -0.07), quad_at(mesh, 0.07));
     for (Vec3& p : mesh.positions) p -= stages.octree.origin;
     const PolygonMesh bridged = mesh;

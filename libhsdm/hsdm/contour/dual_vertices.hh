@@ -3,6 +3,7 @@
 // docs/sheets.md.
 
 #include "hsdm/contour/crossing_pairs.hh"
+#include "hsdm/core/chunks.hh"
 
 namespace hsdm {
 
@@ -39,6 +40,21 @@ struct DualVertices {
     std::array<Index, 2> ends(FacetSide side) const {
         const std::array<Index, 2> ends{from(side), to(side)};
         return side.ascends() ? ends : std::array{ends[1], ends[0]};
+    }
+
+    /// Calls f(first, end) for the dual vertices of each chain: more than one where it was cut.
+    template <class F>
+    void for_each_chain(F&& f) const {
+        auto cut = after_cut.begin();
+        for_each_in_order(size(), [&](std::size_t v) {
+            if (cut != after_cut.end() && *cut == v) {
+                ++cut; // part of the chain that v - 1 is of
+                return;
+            }
+            auto end = static_cast<Index>(v) + 1;
+            for (auto next = cut; next != after_cut.end() && *next == end; ++next) ++end;
+            f(static_cast<Index>(v), end);
+        });
     }
 
     std::size_t size() const { return first.size() - 1; }

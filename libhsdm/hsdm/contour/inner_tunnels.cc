@@ -24,18 +24,20 @@ struct ChainOfVoxel {
 
 /// The closed chains of the voxels that have two and more, by voxel.
 std::vector<ChainOfVoxel> chains_that_share_voxels(const DualVertices& duals, std::size_t voxels) {
+    const auto for_each_closed = [&](const auto& f) {
+        duals.for_each_chain([&](Index first, Index end) {
+            if (duals.voxels[first].voxel != no_index && !duals.open[first])
+                f(duals.voxels[first].voxel, ChainVertices{first, end});
+        });
+    };
     std::vector<std::uint8_t> count = large_vector<std::uint8_t>(voxels, 0); // 2: or more
-    std::vector<ChainOfVoxel> all, result;
-    auto cut = duals.after_cut.begin();
-    for (Index v = 0, end = 0; v < duals.size(); v = end) {
-        for (end = v + 1; cut != duals.after_cut.end() && *cut == end; ++cut) ++end;
-        const Index voxel = duals.voxels[v].voxel;
-        if (voxel == no_index || duals.open[v]) continue;
-        all.push_back({voxel, {v, end}});
+    for_each_closed([&](Index voxel, ChainVertices) {
         if (count[voxel] < 2) ++count[voxel];
-    }
-    std::ranges::copy_if(all, std::back_inserter(result),
-                         [&](const ChainOfVoxel& c) { return count[c.voxel] > 1; });
+    });
+    std::vector<ChainOfVoxel> result;
+    for_each_closed([&](Index voxel, ChainVertices chain) {
+        if (count[voxel] > 1) result.push_back({voxel, chain});
+    });
     std::ranges::sort(result);
     return result;
 }
@@ -90,9 +92,10 @@ public:
     Stars(const PolygonMesh& mesh, std::span<const Index> vertices) : mesh_(mesh) {
         std::vector<std::uint8_t> marked = large_vector<std::uint8_t>(mesh.vertex_count(), 0);
         for (const Index v : vertices) marked[v] = 1;
-        for (std::size_t f = 0; f < mesh.facet_count(); ++f)
+        for_each_in_order(mesh.facet_count(), [&](std::size_t f) {
             for (const Index v : mesh.facet(f))
                 if (marked[v]) round_.push_back({v, static_cast<Index>(f)});
+        });
         std::ranges::sort(round_);
     }
 

@@ -8,10 +8,10 @@ namespace {
 
 /// Per dual vertex the first one of its chain.
 std::vector<Index> chains_of(const DualVertices& duals) {
-    std::vector<std::uint8_t> cut(duals.size(), 0);
-    for (const Index v : duals.after_cut) cut[v] = 1;
     std::vector<Index> chain(duals.size());
-    for (Index v = 0; v < chain.size(); ++v) chain[v] = cut[v] ? chain[v - 1] : v;
+    duals.for_each_chain([&](Index first, Index end) {
+        for (Index v = first; v < end; ++v) chain[v] = first;
+    });
     return chain;
 }
 

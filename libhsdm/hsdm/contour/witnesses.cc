@@ -31,6 +31,10 @@ public:
 
     const Vec3& axis() const { return axis_; }
     double along(const Vec3& p) const { return (p - centre_) | axis_; }
+    double angle_of(const Vec3& p) const {
+        const auto [x, y] = on_disc(p);
+        return std::atan2(y, x);
+    }
     /// Across the axis, from it to a point.
     Vec3 out_to(const Vec3& p) const { return p - centre_ - along(p) * axis_; }
     /// The largest distance of the ring from the axis.
@@ -134,7 +138,6 @@ bool Witnesses::span(std::span<const Index> ring) {
 bool Witnesses::surround(std::span<const Index> ring) const {
     const Tube tube(mesh_, ring, handles::reach_along * level_.voxel_size);
     const double farthest = tube.width() + handles::served_within * level_.voxel_size;
-    const Frame across(tube.axis());
     std::array<std::vector<double>, 2> directions; // of those that face the axis, that face away from it
     for (const Index v : voxels_at(ring))
         for (Index p = level_.first_point[v]; p < level_.first_point[v + 1]; ++p) {
@@ -145,7 +148,7 @@ bool Witnesses::surround(std::span<const Index> ring) const {
                 continue;
             const double cosine = (octree_.normals[p] | out) / length;
             if (std::abs(cosine) < angles::halfway) continue;
-            directions[cosine > 0].push_back(across.angle_of(out));
+            directions[cosine > 0].push_back(tube.angle_of(octree_.positions[p]));
         }
     std::vector<double>& most = directions[directions[0].size() < directions[1].size()];
     return most.size() >= 2 * points_of_plane && widest_gap(most) < surrounding::widest_gap;
