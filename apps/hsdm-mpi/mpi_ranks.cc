@@ -1,5 +1,7 @@
 #include "mpi_ranks.hh"
 
+#include "interrupt.hh"
+
 #include <mpi.h>
 
 #include <algorithm>
@@ -48,6 +50,8 @@ std::uint64_t part_of(std::uint64_t size, std::uint64_t begin, std::uint64_t mos
 } // namespace
 
 MpiRanks::MpiRanks(int& argc, char**& argv) {
+    // The launcher of Open MPI 4.1 may wait for ever for a rank that has ended while it joined the job.
+    const auto held = hold_end();
     int provided = 0;
     MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);

@@ -69,11 +69,11 @@ void say_what_stands(LastWords& words, const FilesWritten& files) {
     list(words, "; in part: ", files.in_part);
 }
 
-std::mutex last_work_mutex;
+std::mutex end_mutex;
 const std::function<void()>* last_work = nullptr;
 
 [[noreturn]] void end_as_asked(int status) {
-    last_work_mutex.lock(); // and never unlocked
+    end_mutex.lock(); // and never unlocked
     try {
         if (last_work) (*last_work)();
     } catch (...) { // the message will not list what could not be written
@@ -115,6 +115,10 @@ void handle_signals() {
     os::on_request_to_end(end_as_asked);
 }
 
+std::unique_lock<std::mutex> hold_end() {
+    return std::unique_lock(end_mutex);
+}
+
 LastWork::LastWork(std::function<void()> work) : work_(std::move(work)) {
     const auto held = lock();
     last_work = &work_;
@@ -123,10 +127,6 @@ LastWork::LastWork(std::function<void()> work) : work_(std::move(work)) {
 LastWork::~LastWork() {
     const auto held = lock();
     last_work = nullptr;
-}
-
-std::unique_lock<std::mutex> LastWork::lock() {
-    return std::unique_lock(last_work_mutex);
 }
 
 } // namespace hsdm::command

@@ -13,6 +13,9 @@ namespace hsdm::command {
 /// SIGXFSZ are ignored: writing fails with an error instead. std::terminate ends with a message and status 1.
 void handle_signals();
 
+/// A signal that comes while this is held ends the process once it is not.
+std::unique_lock<std::mutex> hold_end();
+
 /// While it lives, a signal has the work done before it ends the process, by the thread that waits for
 /// signals. The work must come to an end soon; its exceptions are dropped. One at a time.
 class LastWork {
@@ -24,7 +27,7 @@ public:
     LastWork& operator=(const LastWork&) = delete;
 
     /// To be held while what the work reads is changed. Once the work has begun, it is waited for for ever.
-    std::unique_lock<std::mutex> lock();
+    std::unique_lock<std::mutex> lock() { return hold_end(); }
 
 private:
     std::function<void()> work_;

@@ -159,7 +159,7 @@ TEST_CASE("corners of a box are found in every pose, and no others", "[contour]"
     CHECK(by_dihedral < 70);
 }
 
-TEST_CASE("normals smeared across creases leave the decision to the dihedral test", "[contour]") {
+TEST_CASE("normals smeared across creases leave the decision to the dihedral test", "[contour][slow]") {
     const PointCloud cloud =
         smeared(rough_scan(support::box({1, 0.8, 0.6}).placed(support::random_pose(4)), 4000), 0.08);
     const Part part(cloud, 0.1);

@@ -71,7 +71,8 @@ TEMPLATE_TEST_CASE("a cube comes down to its twelve triangles and keeps its edge
     CHECK(creases.corners == 8);
 }
 
-TEST_CASE("a cylinder's rims stay marked, closed and nearly as long at a tenth of its triangles") {
+TEST_CASE("a cylinder's rims stay marked, closed and nearly as long at a tenth of its triangles",
+          "[features][slow]") {
     auto mesh = classified<TriMeshD>(capped_cylinder(96, 40));
     const Creases before = creases_of(mesh);
     decimate_to(mesh, mesh.n_faces() / 10);

@@ -111,7 +111,7 @@ TEST_CASE("points between sparse ones lie on a round surface, not on its chords"
     CHECK(off < sagitta / 4);
 }
 
-TEST_CASE("a surface thirty times as dense on one side comes out whole", "[pipeline]") {
+TEST_CASE("a surface thirty times as dense on one side comes out whole", "[pipeline][slow]") {
     struct Part {
         const char* name;
         Solid solid;
