@@ -2,6 +2,7 @@
 // table of docs/completion.md.
 
 #include "benchmarks.hh"
+#include "plot.hh"
 
 #include "hsdm/errors.hh"
 #include "hsdm/mesh/to_mesh.hh"
@@ -104,25 +105,93 @@ Outcome outcome(const Part& part, const ScannerOptions& scanner, bool sensors) {
     return result;
 }
 
+/// Which scans are made.
+struct ScanRows {
+    std::size_t points = 60000; // rays of a scan
+    std::uint64_t first_seed = 1, seeds = 2;
+    bool sensors = false, scenes = false, verbose = false;
+    std::string only_part;
+};
+
+/// What became of all scans with one fault of one strength.
+struct FaultRow {
+    double strength = 0;
+    int right = 0, all = 0, made = 0, intersecting = 0;
+    double off = 0; // summed
+
+    double mean_off() const { return off / std::max(made, 1); }
+    double share_right() const { return 100.0 * right / std::max(all, 1); }
+};
+
+ScannerOptions scanner_of(const ScanFault& fault, double strength, double radius, std::uint64_t seed,
+                          std::size_t points) {
+    ScannerOptions scanner;
+    scanner.points = points;
+    scanner.seed = seed;
+    fault.apply(strength, scanner);
+    scanner.noise *= radius / 100, scanner.misalignment *= radius / 100;
+    scanner.holes *= radius / 100, scanner.outliers /= 100;
+    return scanner;
+}
+
+FaultRow row_of(const ScanFault& fault, double strength, const ScanRows& how) {
+    FaultRow row{.strength = strength};
+    for (std::uint64_t seed = how.first_seed; seed < how.first_seed + how.seeds; ++seed)
+        for (const Part& part : objects(how.scenes, seed)) {
+            if (std::string_view(part.name).find(how.only_part) == std::string_view::npos) continue;
+            const Outcome made =
+                outcome(part, scanner_of(fault, strength, part.radius, seed, how.points), how.sensors);
+            ++row.all, row.made += made.made, row.right += made.right, row.intersecting += made.intersects,
+                row.off += made.off;
+            if (how.verbose && !made.right)
+                std::fprintf(stderr, "%s %g, %s, seed %d: %s%s, %.2f off\n", fault.name, strength, part.name,
+                             static_cast<int>(seed), made.what.c_str(), made.intersects ? ", intersects" : "",
+                             made.off);
+        }
+    return row;
+}
+
+std::vector<FaultRow> print_fault(const ScanFault& fault, const ScanRows& how) {
+    std::vector<FaultRow> rows;
+    for (const double strength : fault.strengths) {
+        const FaultRow& row = rows.emplace_back(row_of(fault, strength, how));
+        std::printf("| %s | %g | %d of %d | %d | %.2f |\n", fault.name, strength, row.right, row.all,
+                    row.intersecting, row.mean_off());
+        std::fflush(stdout);
+    }
+    return rows;
+}
+
+/// Of each fault, how what `value` says of a row goes with the strength; none of strength 0.
+void draw_faults(const std::vector<std::pair<const char*, std::vector<FaultRow>>>& by_fault,
+                 const bench::Axis& y, double (FaultRow::*value)() const, const std::string& path) {
+    bench::Plot plot({"strength", 0.2, 50, bench::round_ticks(0.2, 50)}, y);
+    for (const auto& [name, rows] : by_fault) {
+        std::vector<bench::PlotPoint> line;
+        for (const FaultRow& row : rows)
+            if (row.strength > 0) line.push_back({row.strength, (row.*value)()});
+        plot.line(line, name);
+    }
+    plot.write(path);
+}
+
 } // namespace
 
 int bench::scans(int argc, char** argv) {
     CLI::App app(
         "Scans from a few places with growing faults, completed: how many come out right, and how near.");
-    std::size_t points = 60000;
-    std::uint64_t seeds = 2;
-    std::uint64_t first_seed = 1;
-    bool verbose = false, sensors = false, scenes = false;
-    std::string only;
-    app.add_option("--points", points, "rays of a scan");
-    app.add_option("--seeds", seeds, "scans of each part");
-    app.add_option("--first-seed", first_seed, "seed of the first scan");
-    std::string only_part;
-    app.add_option("--part", only_part, "the objects whose names hold this");
+    ScanRows how;
+    std::string only, plot_of_distance, plot_of_right;
+    app.add_option("--points", how.points, "rays of a scan");
+    app.add_option("--seeds", how.seeds, "scans of each part");
+    app.add_option("--first-seed", how.first_seed, "seed of the first scan");
+    app.add_option("--part", how.only_part, "the objects whose names hold this");
     app.add_option("--fault", only, "the faults whose names hold this");
-    app.add_flag("--sensors", sensors, "with the scanner's positions");
-    app.add_flag("--scenes", scenes, "of things on a floor in place of parts");
-    app.add_flag("--verbose", verbose, "says what fails");
+    app.add_flag("--sensors", how.sensors, "with the scanner's positions");
+    app.add_flag("--scenes", how.scenes, "of things on a floor in place of parts");
+    app.add_flag("--verbose", how.verbose, "says what fails");
+    app.add_option("--plot", plot_of_distance, "an SVG file: mean distance over strength, by fault");
+    app.add_option("--plot-right", plot_of_right, "an SVG file: the percentage that is right, likewise");
     CLI11_PARSE(app, argc, argv);
     const auto is_asked_for = [&](const ScanFault& fault) {
         return std::string_view(fault.name).find(only) != std::string_view::npos;
@@ -132,32 +201,14 @@ int bench::scans(int argc, char** argv) {
         return 2;
     }
     std::printf("| fault | strength | right | intersecting | mean distance |\n|---|---|---|---|---|\n");
-    for (const ScanFault& fault : scan_faults) {
-        if (!is_asked_for(fault)) continue;
-        for (const double strength : fault.strengths) {
-            int right = 0, all = 0, made_any = 0, intersecting = 0;
-            double off = 0;
-            for (std::uint64_t seed = first_seed; seed < first_seed + seeds; ++seed)
-                for (const Part& part : objects(scenes, seed)) {
-                    if (std::string_view(part.name).find(only_part) == std::string_view::npos) continue;
-                    ScannerOptions scanner;
-                    scanner.points = points;
-                    scanner.seed = seed;
-                    fault.apply(strength, scanner);
-                    scanner.noise *= part.radius / 100, scanner.misalignment *= part.radius / 100;
-                    scanner.holes *= part.radius / 100, scanner.outliers /= 100;
-                    const Outcome made = outcome(part, scanner, sensors);
-                    ++all, made_any += made.made, right += made.right, intersecting += made.intersects,
-                        off += made.off;
-                    if (verbose && !made.right)
-                        std::fprintf(stderr, "%s %g, %s, seed %d: %s%s, %.2f off\n", fault.name, strength,
-                                     part.name, static_cast<int>(seed), made.what.c_str(),
-                                     made.intersects ? ", intersects" : "", made.off);
-                }
-            std::printf("| %s | %g | %d of %d | %d | %.2f |\n", fault.name, strength, right, all,
-                        intersecting, off / std::max(made_any, 1));
-            std::fflush(stdout);
-        }
-    }
+    std::vector<std::pair<const char*, std::vector<FaultRow>>> by_fault;
+    for (const ScanFault& fault : scan_faults)
+        if (is_asked_for(fault)) by_fault.emplace_back(fault.name, print_fault(fault, how));
+    if (!plot_of_distance.empty())
+        draw_faults(by_fault, {"mean distance, % of the radius", 0.2, 10, round_ticks(0.2, 10)},
+                    &FaultRow::mean_off, plot_of_distance);
+    if (!plot_of_right.empty())
+        draw_faults(by_fault, {"right, %", 0, 100, {0, 25, 50, 75, 100}, false}, &FaultRow::share_right,
+                    plot_of_right);
     return 0;
 }
