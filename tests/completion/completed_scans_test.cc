@@ -273,3 +273,25 @@ TEST_CASE("a bore that a scanner looked through stays open, though nobody saw it
         CHECK(completed.report.mesh.euler == 2); // 0 of the block, 2 of the wall
     }
 }
+
+TEST_CASE(
+    "a wall no thicker than four deviations of the noise comes out as a wall, not as a sheet that is closed "
+    "behind",
+    "[completion][slow]") {
+    for (const std::uint64_t seed : {1u, 2u}) {
+        const double sigma = 0.011, wall = 4 * sigma;
+        const Solid angle = box({1, 1, 1}) - box({1, 1.2, 1}).placed(turned({0, 0, 1}, 0, {wall, 0, wall}));
+        const PointCloud cloud =
+            sample(angle, {.points = 30000, .seed = seed, .normals = false, .position_noise = sigma});
+        ReconstructOptions options;
+        options.holes = Holes::complete;
+        const Reconstruction result = reconstruct(cloud, options);
+        const PolygonMesh mesh = to_polygons(result.mesh);
+        CHECK(faults(mesh).empty());
+        CHECK(result.report.mesh.closed);
+        CHECK(result.report.mesh.components == 1);
+        double sum = 0;
+        for (const Vec3& p : mesh.positions) sum += std::abs(angle.distance(p));
+        CHECK(sum / static_cast<double>(mesh.positions.size()) < 0.5 * sigma);
+    }
+}

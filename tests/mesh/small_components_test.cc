@@ -1,4 +1,5 @@
 #include "hsdm/mesh/small_components.hh"
+#include "hsdm/mesh/turn_outward.hh"
 #include "hsdm/quality/topology.hh"
 #include "support/meshes.hh"
 
@@ -128,4 +129,31 @@ TEST_CASE("a small bubble that encloses nothing is a splinter, a thicker part an
     CHECK_FALSE(left(3, 0.05)); // three by three facets on each side
     CHECK(left(3, 0.5));
     CHECK(left(5, 0.05));
+}
+
+TEST_CASE(
+    "what is thinner than layers lie apart goes with them: cavities always, else what is small beside them",
+    "[mesh]") {
+    const auto left = [](double thickness, bool inward, double layers) {
+        PolygonMesh mesh = support::divided_cube(6);
+        for (Vec3& p : mesh.positions) p *= 3, p[2] *= thickness / 6;
+        const std::size_t facets = mesh.facet_count(); // area of 72
+        if (inward) turn_over(mesh);
+        PolygonMesh large = support::divided_cube(6);
+        for (const Vec3& p : large.positions) mesh.positions.push_back(20 * p);
+        const auto base = static_cast<Index>(mesh.vertex_count() - large.vertex_count());
+        for (std::size_t f = 0; f < large.facet_count(); ++f) {
+            const auto q = large.facet(f);
+            mesh.add_facet(std::array{base + q[0], base + q[1], base + q[2], base + q[3]});
+        }
+        const std::size_t before = mesh.facet_count();
+        drop_splinters(mesh, {.flat = 0.1, .layers = layers});
+        CHECK((mesh.facet_count() == before || mesh.facet_count() == before - facets));
+        return mesh.facet_count() == before;
+    };
+    CHECK(left(0.5, true, 0)); // no layers
+    CHECK_FALSE(left(0.5, true, 0.6));
+    CHECK(left(0.9, true, 0.6));
+    CHECK_FALSE(left(0.5, false, 0.6));
+    CHECK(left(0.9, false, 0.6));
 }

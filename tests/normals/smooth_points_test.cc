@@ -98,6 +98,40 @@ TEST_CASE("the noisy sides of a plate stay two", "[normals][slow]") {
     }
 }
 
+TEST_CASE("points between the sides of a wall four deviations thick come to lie on either",
+          "[normals][slow]") {
+    constexpr std::size_t many = 3 * points;
+    const double sigma = 1.1 * std::sqrt(2.0 / many), thickness = 4 * sigma;
+    const Solid plate = support::box(Vec3(1, 1, thickness));
+    for (std::uint64_t seed : {1u, 2u}) {
+        const Smoothed s = smoothed(support::sample(
+            plate, {.points = many, .seed = seed, .normals = false, .position_noise = sigma}));
+        CHECK(s.report.noise < 1.4 * sigma);
+        CHECK(mean_distance(plate, s.octree) < 0.5 * sigma);
+        std::size_t above = 0, below = 0, inner = 0;
+        for (const Vec3& p : s.octree.positions) {
+            const Vec3 at = p + s.octree.origin;
+            if (std::abs(at[0]) > 0.4 || std::abs(at[1]) > 0.4) continue;
+            ++inner;
+            above += at[2] > 0.3 * thickness, below += at[2] < -0.3 * thickness;
+        }
+        CHECK(above > 0.4 * static_cast<double>(inner));
+        CHECK(below > 0.4 * static_cast<double>(inner));
+    }
+}
+
+TEST_CASE("layers of a closed surface stay one", "[normals][slow]") {
+    const double sigma = 1.1 * spacing;
+    PointCloud ball;
+    for (const double offset : {-2.0, 2.0})
+        for (const Vec3& p :
+             support::sample(support::sphere(1 + offset * sigma),
+                             {.points = points, .seed = offset < 0 ? 1u : 2u, .position_noise = sigma})
+                 .positions)
+            ball.positions.push_back(p);
+    CHECK(smoothed(ball).report.noise > 1.7 * sigma);
+}
+
 TEST_CASE("what becomes of noisy points does not depend on their order", "[normals]") {
     PointCloud cloud =
         support::sample(support::torus(1, 0.4), {.points = 3000, .normals = false, .position_noise = 0.05});

@@ -347,7 +347,7 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     const std::vector<EdgeCollapse> to_corners = build_facets(octree, level, sets, options, result);
     result.corners_merged = merge_corners(to_corners, result.mesh, result.classes);
     SplinterOptions splinters = options.splinters;
-    splinters.flat *= h;
+    splinters.flat *= h, splinters.layers *= h;
     result.splinters = drop_splinters(result.mesh, splinters);
     // Links are found once, for as long as facets stay as they are.
     const auto changed = [&](std::size_t count) {

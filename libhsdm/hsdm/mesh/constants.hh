@@ -69,6 +69,10 @@ inline constexpr std::size_t most_flat = 64;
 /// that near.
 inline constexpr double flat = 0.33;
 
+/// spacings: mean thickness at most of what is layers of something else, where scans do not register.
+/// Why: nearer sides are not told apart (docs/normals.md promises it from there on).
+inline constexpr double layers_in_spacings = 2;
+
 /// ratio: of the largest component's facets to a splinter's.
 /// Why: by trial; beside a small part a small one is no splinter.
 inline constexpr double least_ratio = 32;

@@ -13,6 +13,13 @@
 namespace hsdm {
 namespace {
 
+/// Of a closed component.
+struct Extent {
+    double area = 0, volume = 0; ///< negative: it faces inward, as the side of a cavity does
+
+    bool is_thinner_than(double thickness) const { return 2 * std::abs(volume) < thickness * area; }
+};
+
 /// The connected components of a mesh, each known by the least of its vertices.
 class Components {
 public:
@@ -39,21 +46,17 @@ public:
             areas[of(f)] += area_vector(mesh_, mesh_.facet(f)).norm();
         return areas;
     }
-    /// Per component of at most `most` facets, is its mean thickness less than `flat`?
-    std::vector<std::uint8_t> are_flat(std::size_t most, double flat) {
-        std::vector<double> areas(facets_.size(), 0), volumes(facets_.size(), 0);
+    /// Per component of at most `most` facets, its area and what it encloses; 0 for others.
+    std::vector<Extent> extents(std::size_t most) {
+        std::vector<Extent> result(facets_.size());
         for_each_in_order(mesh_.facet_count(), [&](std::size_t f) {
             const Index component = of(f);
             if (facets_[component] > most) return;
             const Vec3 area = 0.5 * area_vector(mesh_, mesh_.facet(f));
-            areas[component] += area.norm();
-            volumes[component] +=
+            result[component].area += area.norm();
+            result[component].volume +=
                 (area | (mesh_.positions[mesh_.facet(f)[0]] - mesh_.positions[component])) / 3;
         });
-        std::vector<std::uint8_t> result(facets_.size(), 0);
-        for (std::size_t c = 0; c < result.size(); ++c) {
-            result[c] = 2 * std::abs(volumes[c]) < flat * areas[c];
-        }
         return result;
     }
     /// Per component of at most `most` facets, does it have a border?
@@ -113,12 +116,19 @@ Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options) {
     Components components(mesh);
     const std::vector<std::size_t>& sizes = components.facets();
     const auto largest = static_cast<double>(*std::max_element(sizes.begin(), sizes.end()));
-    const std::vector<std::uint8_t> open =
-        components.are_open(std::max(options.most_open, options.most_flat));
-    const std::vector<std::uint8_t> flat = components.are_flat(options.most_flat, options.flat);
+    const std::size_t looked_at = options.layers > 0 ? mesh.facet_count() : options.most_flat;
+    const std::vector<std::uint8_t> open = components.are_open(std::max(options.most_open, looked_at));
+    const std::vector<Extent> extents = components.extents(looked_at);
+    double most_area = 0;
+    for (const Extent& extent : extents) most_area = std::max(most_area, extent.area);
     std::vector<EdgeHint> none;
     const SmallComponentFacets small = components_where(mesh, components, [&](std::size_t c) {
-        const std::size_t most_closed = flat[c] ? options.most_flat : options.most_facets;
+        const Extent& extent = extents[c];
+        if (open[c] == 0 && extent.is_thinner_than(options.layers)
+            && (extent.volume < 0 ? extent.area < most_area : extent.area * options.least_ratio <= most_area))
+            return true;
+        const bool flat = sizes[c] <= options.most_flat && extent.is_thinner_than(options.flat);
+        const std::size_t most_closed = flat ? options.most_flat : options.most_facets;
         return sizes[c] <= (open[c] ? options.most_open : most_closed)
                && (options.of_larger || static_cast<double>(sizes[c]) * options.least_ratio <= largest);
     });

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace hsdm {
 namespace {
@@ -30,7 +31,8 @@ void add(PlaneSums& sums, const VoxelSums& voxel, const Vec3& base, double weigh
 /// Points in voxels, and what lies round each: all voxels that come within `reach` of its own.
 class Surroundings {
 public:
-    Surroundings(const std::vector<Vec3>& positions, double edge) : points_(in_voxels(positions, edge)) {
+    Surroundings(const std::vector<Vec3>& positions, double edge, std::int32_t reach)
+        : reach_(reach), points_(in_voxels(positions, edge)) {
         level_ = extract_level(points_, depth_);
     }
 
@@ -44,15 +46,23 @@ public:
             work(points_.positions[i], points_.source[i]);
     }
 
-    /// work(position relative to the origin, index among the positions given, voxels around) for all points.
+    /// work(voxel, voxels around) for all voxels.
     template <class Work>
-    void for_each_point(const Work& work) const {
+    void for_each_voxel(const Work& work) const {
         for_chunks(level_.size(), chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t) {
             std::vector<Index> around;
             for (auto v = static_cast<Index>(begin); v < end; ++v) {
                 find_around(v, around);
-                for_points_of(v, [&](const Vec3& p, Index i) { work(p, i, around); });
+                work(v, around);
             }
+        });
+    }
+
+    /// work(position relative to the origin, index among the positions given, voxels around) for all points.
+    template <class Work>
+    void for_each_point(const Work& work) const {
+        for_each_voxel([&](Index v, const std::vector<Index>& around) {
+            for_points_of(v, [&](const Vec3& p, Index i) { work(p, i, around); });
         });
     }
 
@@ -70,13 +80,14 @@ private:
     void find_around(Index voxel, std::vector<Index>& around) const {
         const VoxelCoord c = level_.coord(voxel);
         around.clear();
-        for (std::int32_t z = -smoothing::reach; z <= smoothing::reach; ++z)
-            for (std::int32_t y = -smoothing::reach; y <= smoothing::reach; ++y)
-                for (std::int32_t x = -smoothing::reach; x <= smoothing::reach; ++x)
+        for (std::int32_t z = -reach_; z <= reach_; ++z)
+            for (std::int32_t y = -reach_; y <= reach_; ++y)
+                for (std::int32_t x = -reach_; x <= reach_; ++x)
                     if (const Index v = level_.find(VoxelCoord{c[0] + x, c[1] + y, c[2] + z}); v != no_index)
                         around.push_back(v);
     }
 
+    std::int32_t reach_;
     int depth_ = 0;
     Octree points_;
     OctreeLevel level_;
@@ -95,11 +106,24 @@ public:
           inverse_radius_(1 / radius_),
           inverse_gap_(1 / (smoothing::another_sheet * noise)) {}
 
-    /// Each point on the plane of its surroundings.
-    MovedPoints onto_planes(const std::vector<Vec3>& positions) const {
+    /// For the points of two sheets that mix: half as far off the plane the other one begins, so that each
+    /// keeps a mode of its own; voxels half as wide do not hold both, and modes take more rounds than means.
+    static Smoothing between_sheets(double spacing, double noise) {
+        Smoothing result(spacing, noise);
+        result.inverse_gap_ *= 2;
+        result.reach_ *= 2;
+        result.rounds_ *= 2;
+        return result;
+    }
+
+    double radius() const { return radius_; }
+
+    /// Each point on the plane of its surroundings; `normals` are those of planes to begin with, if known.
+    MovedPoints onto_planes(const std::vector<Vec3>& positions, std::vector<Vec3> normals = {}) const {
         const Surroundings surroundings = around(positions);
         const std::vector<VoxelSums> sums = sums_of(surroundings);
-        MovedPoints moved{std::vector<Vec3>(positions.size()), std::vector<Vec3>(positions.size())};
+        normals.resize(positions.size(), Vec3(0, 0, 0));
+        MovedPoints moved{std::vector<Vec3>(positions.size()), std::move(normals)};
         surroundings.for_each_point([&](const Vec3& p, Index i, const std::vector<Index>& around) {
             moved.positions[i] = project(p, sums, around, moved.normals[i]) + surroundings.origin();
         });
@@ -109,8 +133,8 @@ public:
     /// A plane through a bent sheet lies on its hollow side, so all points came to lie there. What tells how
     /// far is where they came from: they scatter about the true surface, so the mean of their ways back says
     /// where that is. Moves the points by it, along their normals (twicing: Tukey 1977).
-    void undo_shrinking(const std::vector<Vec3>& from, MovedPoints& moved) const {
-        const Surroundings surroundings = around(moved.positions);
+    void undo_shrinking(const std::vector<Vec3>& from, const Surroundings& surroundings,
+                        MovedPoints& moved) const {
         const std::vector<WayBack> ways = ways_back(surroundings, from, moved.positions);
         std::vector<Vec3> centred(moved.positions.size());
         surroundings.for_each_point([&](const Vec3& p, Index i, const std::vector<Index>& around) {
@@ -125,6 +149,10 @@ public:
         moved.positions = std::move(centred);
     }
 
+    Surroundings around(const std::vector<Vec3>& positions) const {
+        return {positions, radius_ / reach_, reach_};
+    }
+
 private:
     /// Points, their mean, and that of their ways back, of one voxel.
     struct WayBack {
@@ -132,9 +160,6 @@ private:
         Vec3 at{0, 0, 0}, way{0, 0, 0};
     };
 
-    Surroundings around(const std::vector<Vec3>& positions) const {
-        return {positions, radius_ / smoothing::reach};
-    }
     double weight_of(const Vec3& away, const Vec3& normal) const {
         return closeness(away.norm(), inverse_radius_) * closeness(away | normal, inverse_gap_);
     }
@@ -168,8 +193,7 @@ private:
     Vec3 project(const Vec3& point, const std::vector<VoxelSums>& voxels, const std::vector<Index>& around,
                  Vec3& normal) const {
         Vec3 p = point;
-        normal = Vec3(0, 0, 0);
-        for (int round = 0; round < smoothing::rounds; ++round) {
+        for (int round = 0; round < rounds_; ++round) {
             PlaneSums sums;
             for (const Index v : around) {
                 const double weight = weight_of(voxels[v].mean - p, normal);
@@ -184,7 +208,90 @@ private:
     }
 
     double radius_, inverse_radius_, inverse_gap_;
+    std::int32_t reach_ = smoothing::reach;
+    int rounds_ = smoothing::rounds;
 };
+
+/// How points scatter about where they were moved to, and where they lie; all summed.
+struct Scatter {
+    double count = 0, squares = 0, fourths = 0; ///< of the distances: to the second and fourth power
+    Vec3 at{0, 0, 0}, normal{0, 0, 0};          ///< normals all on one side
+
+    void add_moments(const Scatter& other) {
+        count += other.count, squares += other.squares, fourths += other.fourths;
+        at += other.at;
+    }
+    double variance() const { return squares / count; }
+    /// The square of half the distance of two normal distributions, alike and as strong, that make this one
+    /// (the method of moments: Pearson 1894); 0 if nothing says that there are two.
+    double squared_half_gap() const {
+        return std::sqrt(std::max(0.0, 1.5 * variance() * variance() - 0.5 * fourths / count));
+    }
+};
+
+std::vector<Scatter> scatter_of(const Surroundings& surroundings, const std::vector<Vec3>& from,
+                                const MovedPoints& moved) {
+    std::vector<Scatter> scatter(surroundings.voxels());
+    for_each_index(scatter.size(), chunks::heavy, [&](Index v) {
+        Scatter& sum = scatter[v];
+        surroundings.for_points_of(v, [&](const Vec3& p, Index i) {
+            const Vec3& normal = moved.normals[i];
+            const double square = (from[i] - moved.positions[i]).sqrnorm();
+            sum.at += p, sum.normal += (sum.normal | normal) < 0 ? -normal : normal;
+            sum.squares += square, sum.fourths += square * square, ++sum.count;
+        });
+    });
+    return scatter;
+}
+
+/// Points of voxels, those of them at the surface's ends, and of these those that scatter as about two
+/// sheets.
+struct SheetCounts {
+    double points = 0, at_ends = 0, ends_of_two = 0;
+    std::vector<double> noises; ///< deviation about each sheet, per voxel of two
+};
+
+SheetCounts count_sheets(const Surroundings& surroundings, const std::vector<Scatter>& scatter,
+                         double far_aside) {
+    std::vector<std::uint8_t> at_end(scatter.size());
+    std::vector<double> variance(scatter.size()); // about each of two; below 0: of one
+    surroundings.for_each_voxel([&](Index v, const std::vector<Index>& around) {
+        Scatter sum;
+        for (const Index k : around) sum.add_moments(scatter[k]);
+        const double square = sum.squared_half_gap(), left = std::max(0.0, sum.variance() - square);
+        variance[v] = square > left ? left : -1; // nearer sheets have no two modes
+        const Vec3 away = sum.at / sum.count - scatter[v].at / scatter[v].count;
+        at_end[v] = (away % scatter[v].normal.normalized()).norm() > far_aside;
+    });
+    SheetCounts counts;
+    for_each_in_order(scatter.size(), [&](std::size_t v) {
+        counts.points += scatter[v].count;
+        counts.at_ends += at_end[v] * scatter[v].count;
+        if (variance[v] < 0) return;
+        counts.ends_of_two += at_end[v] * scatter[v].count;
+        counts.noises.push_back(std::sqrt(variance[v]));
+    });
+    return counts;
+}
+
+/// The deviation of each of two sheets that points were moved between; 0 where they are of one. Layers of
+/// scans that do not register scatter as the sides of a wall do. But a wall's sides end together, and layers
+/// each where its scan ends: so it is a wall if most points at the ends of what they were moved to scatter as
+/// about two. And that is a sheet itself: as long around as a disc of its area at least.
+double noise_of_two_sheets(const Surroundings& surroundings, const std::vector<Vec3>& from,
+                           const MovedPoints& moved, double spacing, double radius) {
+    // What lies around reaches half a voxel farther. At a straight end its mean is half of that off, a third
+    // of the way in from there a third.
+    const double strip = radius * (1 + 0.5 / smoothing::reach) / 3;
+    SheetCounts counts = count_sheets(surroundings, scatter_of(surroundings, from, moved), strip);
+    if (counts.noises.empty() || 2 * counts.ends_of_two < counts.at_ends) return 0;
+    const double area = counts.points * spacing * spacing;
+    const double length = counts.at_ends / counts.points * area / strip;
+    if (length * length < 4 * std::numbers::pi * area) return 0;
+    const auto middle = counts.noises.begin() + static_cast<std::ptrdiff_t>(counts.noises.size() / 2);
+    std::nth_element(counts.noises.begin(), middle, counts.noises.end());
+    return *middle;
+}
 
 /// Most points lie on surfaces that no smoothing moves; creases move theirs farther, so the lower third of
 /// the moves is taken, which is 0.43 standard deviations.
@@ -195,6 +302,25 @@ double noise_of_moves(const std::vector<Vec3>& from, const std::vector<Vec3>& to
     const auto third = moves.begin() + static_cast<std::ptrdiff_t>(moves.size() / 3);
     std::nth_element(moves.begin(), third, moves.end());
     return *third / lower_third;
+}
+
+/// The last step of moving points to one sheet, or all of them to two where these are within the noise of
+/// each other. Normals that come with the points would not follow these. Returns the noise.
+double centred(const Octree& octree, double spacing, double noise, const Smoothing& smoothing,
+               MovedPoints& moved) {
+    const std::vector<Vec3>& from = octree.positions;
+    const Surroundings surroundings = smoothing.around(moved.positions);
+    const double of_each = octree.normals.empty()
+                               ? noise_of_two_sheets(surroundings, from, moved, spacing, smoothing.radius())
+                               : 0;
+    if (of_each > 0) {
+        const Smoothing finer = Smoothing::between_sheets(spacing, of_each);
+        moved = finer.onto_planes(from, std::move(moved.normals));
+        finer.undo_shrinking(from, finer.around(moved.positions), moved);
+        return of_each;
+    }
+    smoothing.undo_shrinking(from, surroundings, moved);
+    return noise;
 }
 
 void validate(const SmoothOptions& options) {
@@ -212,8 +338,10 @@ double smooth_points(Octree& octree, double noise) {
         moved = smoothing.onto_planes(octree.positions);
         const double found = noise_of_moves(octree.positions, moved.positions);
         const bool again = found > 0 && found <= smoothing::clearly_less * noise;
-        if (!again || round + 1 == smoothing::most_rounds) smoothing.undo_shrinking(octree.positions, moved);
-        if (!again) break;
+        if (!again || round + 1 == smoothing::most_rounds) {
+            noise = centred(octree, spacing, again ? found : noise, smoothing, moved);
+            break;
+        }
         noise = found;
     }
     rearrange(octree, std::move(moved.positions), octree.extent);

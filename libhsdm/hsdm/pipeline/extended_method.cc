@@ -10,6 +10,7 @@
 #include "hsdm/contour/sheet_widths.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
+#include "hsdm/mesh/constants.hh"
 #include "hsdm/mesh/turn_outward.hh"
 #include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/pipeline/attributes.hh"
@@ -44,6 +45,7 @@ DualContourOptions options_for(const MethodInput& in, double spacing) {
         result.holes.max_diameter = std::max(holes::widest_in_spacings * spacing_in_voxels, holes::widest);
         result.holes.insist = true;
     }
+    if (in.has_layers) result.splinters.layers = splinters::layers_in_spacings * spacing_in_voxels;
     return result;
 }
 
@@ -156,9 +158,7 @@ struct Draft {
     DualContour facets{};
 
     MethodInput input(const MethodInput& measured) const {
-        if (!cloud) return measured;
-        return {measured.frame, measured.cloud,   cloud->octree,
-                cloud->level,   measured.options, measured.phases};
+        return cloud ? measured.with(cloud->octree, cloud->level) : measured;
     }
 };
 
@@ -367,7 +367,8 @@ Draft helped_draft(const MethodInput& in, const Report& report, int levels) {
     const SparseAreas areas(in.octree, in.level, levels);
     Draft draft{{}, report};
     for (int above = levels; above >= 0; --above) {
-        const MethodInput wide{in.frame, in.cloud, in.octree, areas.level(above), in.options, in.phases};
+        const OctreeLevel& level = areas.level(above);
+        const MethodInput wide = in.with(in.octree, level);
         const double done = 0.2 + 0.16 * (levels - above) / (levels + 1);
         Draft next{{}, report};
         if (above < levels) {

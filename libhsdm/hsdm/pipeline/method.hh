@@ -28,6 +28,12 @@ struct MethodInput {
     std::optional<NormalSets>* sets = nullptr;
     /// Scanners that are sure, relative to the origin of the measured points' octree.
     Viewpoints viewpoints{};
+    bool has_layers = false; ///< some points took the sides of layers of one surface (take_layers)
+
+    /// The same of other points.
+    MethodInput with(const Octree& points, const OctreeLevel& their_level) const {
+        return {frame, cloud, points, their_level, options, phases, nullptr, {}, has_layers};
+    }
 };
 
 /// What is known about facets beyond the mesh, valid as long as they do not change.

@@ -80,6 +80,7 @@ void PreparedCloud::provide_normals(const PointView& cloud, const Phases& phases
     report.rejected["normals_near_creases"] = made.bent;
     report.rejected["normals_missing"] = made.missing;
     report.rejected["normals_by_volume"] = made.orientation.by_volume;
+    has_layers_ = made.orientation.of_layers > 0;
     report.rejected["normals_of_layers"] = made.orientation.of_layers;
     phases.run("normals", 0.1, report.seconds.normals, [&] { warn_of_sides(check_normals(octree), true); });
 }

@@ -43,6 +43,8 @@ public:
     /// Have points been moved from their positions in the cloud, or might smooth_for_depth() still move them?
     bool has_moved() const { return moved_; }
     bool may_move() const { return noise_ > 0; }
+    /// Did points take the sides of layers of one surface?
+    bool has_layers() const { return has_layers_; }
 
     /// Frees the normals; to be called when the last facets are made.
     void release_normals() { octree.normals = std::vector<Vec3>(); }
@@ -80,6 +82,7 @@ private:
     std::size_t far_away_ = 0; // points removed first, by drop_far_outliers
     double noise_ = 0;         // standard deviation of the noise, if it is large
     bool moved_ = false;       // have points been moved because of it?
+    bool has_layers_ = false;
 };
 
 } // namespace hsdm

@@ -37,8 +37,9 @@ void reconstruct_level(InputCloud& cloud, PreparedCloud& prepared, int depth, bo
     report.grid.leaves_per_level.assign(static_cast<std::size_t>(depth) + 1, 0);
     report.grid.leaves_per_level.back() = level.size();
 
-    const MethodInput input{prepared.frame, *cloud, octree, level,
-                            options,        phases, &sets,  prepared.viewpoints_of(*cloud)};
+    MethodInput input{prepared.frame, *cloud, octree, level,
+                      options,        phases, &sets,  prepared.viewpoints_of(*cloud)};
+    input.has_layers = prepared.has_layers();
     FacetKnowledge known;
     PolygonMesh facets = method_for(options) == Method::extended ? extended_method(input, report, known)
                                                                  : basic_method(input, report);
