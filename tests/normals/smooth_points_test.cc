@@ -108,15 +108,15 @@ TEST_CASE("points between the sides of a wall four deviations thick come to lie 
             plate, {.points = many, .seed = seed, .normals = false, .position_noise = sigma}));
         CHECK(s.report.noise < 1.4 * sigma);
         CHECK(mean_distance(plate, s.octree) < 0.5 * sigma);
-        std::size_t above = 0, below = 0, inner = 0;
+        double above = 0, below = 0, inner = 0;
         for (const Vec3& p : s.octree.positions) {
             const Vec3 at = p + s.octree.origin;
             if (std::abs(at[0]) > 0.4 || std::abs(at[1]) > 0.4) continue;
             ++inner;
             above += at[2] > 0.3 * thickness, below += at[2] < -0.3 * thickness;
         }
-        CHECK(above > 0.4 * static_cast<double>(inner));
-        CHECK(below > 0.4 * static_cast<double>(inner));
+        CHECK(above > 0.4 * inner);
+        CHECK(below > 0.4 * inner);
     }
 }
 

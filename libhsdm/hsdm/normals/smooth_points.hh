@@ -37,8 +37,9 @@ SmoothReport smooth_known_noise(Octree& octree, double noise, Neighbors& neighbo
 /// over voxels, whose edge follows that reach, stand for the points, so the cost does not depend on how many
 /// points they hold. The moves tell what the noise was: if clearly less, it is all done again with that. Then
 /// points are moved along the normals until they lie in the middle of where they came from: a plane through a
-/// bent sheet lies on its hollow side. The octree's points are sorted anew. Returns the noise. O(n),
-/// parallel.
+/// bent sheet lies on its hollow side. Of an octree without normals whose points scatter about a sheet as
+/// about the two sides of a wall they are moved onto these (docs/normals.md, Noise). The octree's points are
+/// sorted anew. Returns the noise, of two sheets that of each. O(n), parallel.
 double smooth_points(Octree& octree, double noise);
 
 } // namespace hsdm
