@@ -32,10 +32,6 @@ void CloudFrame::check_reach() const {
                     + " across, out of reach of double precision; scale it");
 }
 
-bool CloudFrame::has_cuts() const {
-    return !stretches_[0].empty() || !stretches_[1].empty() || !stretches_[2].empty();
-}
-
 CloudFrame CloudFrame::without_cuts() const {
     CloudFrame frame;
     frame.unit_ = unit_;
@@ -74,7 +70,7 @@ Vec3 CloudFrame::to_work(const Vec3& cloud) const {
     return p;
 }
 
-Vec3 CloudFrame::to_cloud(const Vec3& work) const {
+Vec3 CloudFrame::stretched_to_cloud(const Vec3& work) const {
     Vec3 p = work;
     for (unsigned k = 0; k < 3; ++k)
         if (const Index stretch = stretch_of(work[k], k); stretch > 0)

@@ -22,13 +22,17 @@ public:
     void check_reach() const;
 
     double unit() const { return unit_; } ///< of the working space's lengths, in the cloud's units
-    bool has_cuts() const;
+    bool has_cuts() const {
+        return !stretches_[0].empty() || !stretches_[1].empty() || !stretches_[2].empty();
+    }
     CloudFrame without_cuts() const;
 
     Vec3 to_work(const Vec3& cloud) const;
     /// The cloud's coordinates of a point; where cuts are, the point must lie within half a kept gap of the
     /// cloud's points.
-    Vec3 to_cloud(const Vec3& work) const;
+    Vec3 to_cloud(const Vec3& work) const {
+        return unit_ == 1 && !has_cuts() ? work : stretched_to_cloud(work);
+    }
     /// Per axis, the stretch between cuts that a point lies in, given in coordinates without cuts; the next
     /// function takes coordinates with cuts. Two points of different stretches are farther apart than their
     /// coordinates say.
@@ -43,6 +47,7 @@ public:
     double cut_gaps(unsigned axis, std::vector<double>& coordinates, double widest);
 
 private:
+    Vec3 stretched_to_cloud(const Vec3& work) const;
     Index stretch_of(double work, unsigned axis) const;
     Index stretch_of_uncut(double uncut, unsigned axis) const;
     /// A stretch: from coordinate `first` on, `shift` has been cut out.

@@ -349,16 +349,19 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     SplinterOptions splinters = options.splinters;
     splinters.flat *= h, splinters.layers *= h;
     result.splinters = drop_splinters(result.mesh, splinters);
-    // Links are found once, for as long as facets stay as they are.
+    // Links and splinters are found once, for as long as facets stay as they are.
+    bool edited = false;
     const auto changed = [&](std::size_t count) {
-        if (count > 0) result.links.reset();
+        if (count > 0) result.links.reset(), edited = true;
         return count;
     };
     const auto cut = [&] {
         bool gave_up = false;
-        result.handles_cut +=
+        const std::size_t handles =
             cut_handles(octree, level, sets, result.voxel, result.mesh, result.links, &gave_up);
+        result.handles_cut += handles;
         result.depends_on_all |= gave_up;
+        edited |= handles > 0;
     };
     cut();
     if (options.fill) {
@@ -372,11 +375,13 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
         result.mesh, [&](Index v) { return result.classes[result.mesh.origin[v]] == VertexClass::smooth; }));
     if (!result.links || !is_manifold(result.mesh, *result.links)) {
         result.manifold = make_manifold(result.mesh);
-        result.links.reset();
+        changed(1);
     }
-    const Occurrences more_splinters = drop_splinters(result.mesh, splinters);
-    changed(more_splinters.count);
-    result.splinters.add(more_splinters);
+    if (edited) {
+        const Occurrences more = drop_splinters(result.mesh, splinters);
+        changed(more.count);
+        result.splinters.add(more);
+    }
     if (result.splinters.count + result.tunnels_opened > 0) remove_isolated_vertices(result.mesh);
     result.drawn_in = draw_in_spikes(octree, level, result.voxel, result.mesh);
     changed(collapse_flat_facets(octree.origin, result.mesh));

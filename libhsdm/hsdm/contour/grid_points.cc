@@ -4,6 +4,7 @@
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/core/parallel_sort.hh"
 
+#include <algorithm>
 #include <bit>
 
 namespace hsdm {
@@ -13,7 +14,7 @@ constexpr std::array<Index, 8> no_voxels{no_index, no_index, no_index, no_index,
                                          no_index, no_index, no_index, no_index};
 
 /// Codes that agree in all but their last six bits: a block of 4 x 4 x 4 voxels or grid points.
-constexpr MortonCode per_block = 64;
+constexpr MortonCode per_block = MortonIndex::cells;
 
 /// Where the corners of a block's voxels lie: a voxel at c has its corners at c + 1 and c + 2, as grid points
 /// count (GridPoints::code), so in the block of grid points with the same number or the next up some axes.
@@ -51,16 +52,16 @@ std::array<MortonCode, 8> blocks_of_corners(MortonCode block) {
     return blocks;
 }
 
-/// Calls each(block, begin, end, chunk) per block with the range of its voxels; a block that straddles two
+/// Calls each(block, begin, end, chunk) per block with the range of its codes; a block that straddles two
 /// chunks comes in two calls.
 template <class Each>
-void for_blocks(const OctreeLevel& level, Each each) {
-    for_chunks(level.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-        for (std::size_t first = begin, v = begin; v < end; ++v) {
-            const MortonCode block = level.codes[v] / per_block;
-            if (v + 1 < end && level.codes[v + 1] / per_block == block) continue;
-            each(block, first, v + 1, chunk);
-            first = v + 1;
+void for_blocks(const std::vector<MortonCode>& codes, Each each) {
+    for_chunks(codes.size(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        for (std::size_t first = begin, i = begin; i < end; ++i) {
+            const MortonCode block = codes[i] / per_block;
+            if (i + 1 < end && codes[i + 1] / per_block == block) continue;
+            each(block, first, i + 1, chunk);
+            first = i + 1;
         }
     });
 }
@@ -74,7 +75,7 @@ struct UsedPoints {
 /// The blocks that have any, ascending; some several times.
 std::vector<UsedPoints> used_points(const OctreeLevel& level) {
     std::vector<std::vector<UsedPoints>> parts(chunk_count(level.size(), chunks::usual));
-    for_blocks(level, [&](MortonCode block, std::size_t begin, std::size_t end, std::size_t chunk) {
+    for_blocks(level.codes, [&](MortonCode block, std::size_t begin, std::size_t end, std::size_t chunk) {
         std::array<std::uint64_t, 8> used{};
         for (std::size_t v = begin; v < end; ++v)
             for (const CornerPlace& place : corner_places[level.codes[v] % per_block])
@@ -107,19 +108,37 @@ std::vector<MortonCode> grid_point_codes(const OctreeLevel& level) {
 /// Enters each voxel at its eight corners.
 void connect_voxels(const OctreeLevel& level, GridPoints& grid) {
     resize_large(grid.voxels, grid.size(), no_voxels);
-    for_blocks(level, [&](MortonCode block, std::size_t begin, std::size_t end, std::size_t) {
-        const std::array<MortonCode, 8> blocks = blocks_of_corners(block);
+    const MortonIndex& index = grid.parts.front().index;
+    for_blocks(level.codes, [&](MortonCode block, std::size_t begin, std::size_t end, std::size_t) {
+        std::array<const MortonIndex::Block*, 8> blocks;
+        std::ranges::transform(blocks_of_corners(block), blocks.begin(),
+                               [&](MortonCode number) { return &index.block_at(number); });
         for (std::size_t v = begin; v < end; ++v)
             for (unsigned k = 0; k < 8; ++k) {
                 const CornerPlace& place = corner_places[level.codes[v] % per_block][k];
-                const Index point = grid.find(blocks[place.block] * per_block + place.point);
-                grid.voxels[point][7 - k] = static_cast<Index>(v);
+                grid.voxels[blocks[place.block]->find(place.point)][7 - k] = static_cast<Index>(v);
             }
     });
 }
 
 void connect_grid_point(GridPoints& grid, std::size_t i) {
     for (unsigned axis = 0; axis < 3; ++axis) grid.next[i][axis] = grid.find(morton_up(grid.codes[i], axis));
+}
+
+/// Enters for each grid point the next ones: all are of one part, in the same block or the next up the axis.
+void connect_grid_points(GridPoints& grid) {
+    resize_unwritten(grid.next, grid.size());
+    const MortonIndex& index = grid.parts.front().index;
+    for_blocks(grid.codes, [&](MortonCode block, std::size_t begin, std::size_t end, std::size_t) {
+        const MortonIndex::Block& own = index.block_at(block);
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            const MortonIndex::Block& above = index.block_at(morton_up(block, axis));
+            for (std::size_t i = begin; i < end; ++i) {
+                const MortonCode up = morton_up(grid.codes[i], axis);
+                grid.next[i][axis] = (up / per_block == block ? own : above).find(up);
+            }
+        }
+    });
 }
 
 } // namespace
@@ -139,8 +158,7 @@ GridPoints build_grid_points(const OctreeLevel& level) {
     grid.codes = grid_point_codes(level);
     grid.add_part(0);
     connect_voxels(level, grid);
-    resize_unwritten(grid.next, grid.size());
-    for_each_index(grid.size(), chunks::usual, [&](Index i) { connect_grid_point(grid, i); });
+    connect_grid_points(grid);
     return grid;
 }
 

@@ -251,15 +251,22 @@ public:
 
     /// For the edge from grid point i up or down an axis.
     void add(Index i, unsigned axis, bool up, std::vector<MortonCode>& missing) const {
+        const Index end = up ? grid_.next[i][axis] : below_[i][axis];
+        if (end != no_index && has_all_beside(i, axis) && has_all_beside(end, axis)) return; // most
         VoxelCoord c = grid_.coord(i);
         add_beside(i, c, axis, missing);
         c[axis] += up ? 1 : -1;
-        const Index end = up ? grid_.next[i][axis] : below_[i][axis];
         if (end == no_index) add(c, missing, false);
         add_beside(end, c, axis, missing);
     }
 
 private:
+    /// Are the four neighbours of grid point i across an axis there?
+    bool has_all_beside(Index i, unsigned axis) const {
+        const unsigned one = (axis + 1) % 3, other = (axis + 2) % 3;
+        return grid_.next[i][one] != no_index && grid_.next[i][other] != no_index
+               && below_[i][one] != no_index && below_[i][other] != no_index;
+    }
     /// The four neighbours of grid point i at c across an axis; i is no_index if the grid point itself is
     /// missing.
     void add_beside(Index i, const VoxelCoord& c, unsigned axis, std::vector<MortonCode>& missing) const {

@@ -24,25 +24,28 @@ struct Scratch {
     std::vector<Index> points;         // of a set
     std::vector<CreaseSample> samples; // of a set
     std::vector<std::uint8_t> face;
+    std::vector<Vec3> modes;
 };
 
 /// Finds the sets of one voxel. Labels are positions in `modes_` until finish() orders the sets by count.
 class VoxelClusters {
 public:
     VoxelClusters(const Octree& octree, Index begin, Index end, double voxel_size,
-                  const NormalSetOptions& options, Scratch& scratch)
+                  const NormalSetOptions& options, double cos_cluster, Scratch& scratch)
         : octree_(octree),
           begin_(begin),
           size_(end - begin),
           voxel_size_(voxel_size),
           options_(options),
-          cos_cluster_(std::cos(options.cluster_angle)),
+          cos_cluster_(cos_cluster),
           label_(scratch.label),
           offsets_(scratch.offsets),
           points_(scratch.points),
           samples_(scratch.samples),
-          face_(scratch.face) {
+          face_(scratch.face),
+          modes_(scratch.modes) {
         label_.assign(size_, unassigned);
+        modes_.clear();
     }
 
     void run() {
@@ -269,7 +272,7 @@ private:
     std::vector<Index>& points_;
     std::vector<CreaseSample>& samples_;
     std::vector<std::uint8_t>& face_;
-    std::vector<Vec3> modes_;
+    std::vector<Vec3>& modes_;
 };
 
 void validate(const NormalSetOptions& options) {
@@ -318,20 +321,23 @@ NormalSets build_normal_sets(const Octree& octree, const OctreeLevel& level,
     if (!octree.has_normals()) return result;
 
     tbb::enumerable_thread_specific<Scratch> scratch;
+    const double cos_cluster = std::cos(options.cluster_angle);
     const auto cluster = [&](std::size_t first, std::size_t last, std::vector<NormalSet>& sets) {
+        Scratch& own = scratch.local();
+        std::array<NormalSet, NormalSets::most_per_voxel> found;
         for (auto v = static_cast<Index>(first); v < last; ++v) {
             const Index begin = level.first_point[v], end = level.first_point[v + 1];
-            VoxelClusters clusters(octree, begin, end, level.voxel_size, options, scratch.local());
+            VoxelClusters clusters(octree, begin, end, level.voxel_size, options, cos_cluster, own);
             clusters.run();
-            std::array<NormalSet, 8> found;
             std::array<std::uint8_t, 8> order{};
             std::size_t n = 0;
             for (std::size_t k = 0; k < clusters.count(); ++k) {
                 found[k] = clusters.set(k, v);
                 if (found[k].count > 0) order[n++] = static_cast<std::uint8_t>(k);
             }
-            std::stable_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n),
-                             [&](auto a, auto b) { return found[a].count > found[b].count; });
+            if (n > 1)
+                std::stable_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n),
+                                 [&](auto a, auto b) { return found[a].count > found[b].count; });
             std::array<Index, 8> rank{};
             for (std::size_t k = 0; k < n; ++k) {
                 sets.push_back(found[order[k]]);

@@ -12,26 +12,41 @@
 namespace hsdm {
 namespace {
 
-/// The facets round vertices, each cut into two triangles at its first corner, the vertex.
-struct Around {
-    std::vector<std::array<Index, 3>> corners; ///< of the triangles
-    std::vector<EightTriangles> eights;
-
-    void clear() {
-        corners.clear();
-        eights.clear();
-    }
+/// The facets round vertices, each cut into two triangles at its first corner, the vertex. Memory is kept
+/// from one use to the next: making eight triangles zero costs as much as filling them.
+class Around {
+public:
+    void clear() { size_ = 0; }
+    bool empty() const { return size_ == 0; }
     void add(const std::vector<Vec3>& at, const std::array<Index, 3>& triangle) {
-        const std::size_t lane = corners.size() % EightTriangles::size;
-        if (lane == 0) eights.emplace_back();
-        eights.back().put(lane, at[triangle[0]], at[triangle[1]], at[triangle[2]]);
-        corners.push_back(triangle);
+        if (size_ == corners_.size()) {
+            corners_.resize(size_ + EightTriangles::size);
+            eights_.emplace_back();
+        }
+        const std::size_t lane = size_ % EightTriangles::size;
+        eights_[size_ / EightTriangles::size].put(lane, at[triangle[0]], at[triangle[1]], at[triangle[2]]);
+        corners_[size_++] = triangle;
     }
     void prepare() {
-        if (const std::size_t lane = corners.size() % EightTriangles::size; lane > 0)
-            eights.back().fill_up(lane);
-        for (EightTriangles& eight : eights) eight.prepare();
+        if (const std::size_t lane = size_ % EightTriangles::size; lane > 0)
+            eights_[size_ / EightTriangles::size].fill_up(lane);
+        for (std::size_t e = 0; e < eights(); ++e) lanes_.prepare(eights_[e]);
     }
+
+    std::span<const std::array<Index, 3>> corners() const { return {corners_.data(), size_}; }
+    std::size_t eights() const { return chunk_count(size_, EightTriangles::size); }
+    unsigned feet_inside(std::size_t eight, const Vec3& p) const {
+        return lanes_.feet_inside(eights_[eight], p);
+    }
+    NearestOfTriangle foot(std::size_t triangle, const Vec3& p) const {
+        return eights_[triangle / EightTriangles::size].foot(triangle % EightTriangles::size, p);
+    }
+
+private:
+    std::vector<std::array<Index, 3>> corners_; // of the triangles
+    std::vector<EightTriangles> eights_;
+    std::size_t size_ = 0;
+    const TriangleLanes& lanes_ = triangle_lanes().front();
 };
 
 /// The point of the facets nearest to a given one, and the vertices of its triangle.
@@ -53,18 +68,22 @@ void list_facets(Index dual, const DualVertices& duals, const std::vector<Vec3>&
 /// of any triangle.
 Foot find_foot(const Vec3& p, const Around& around, const std::vector<Vec3>& at) {
     Foot best;
-    for (std::size_t e = 0; e < around.eights.size(); ++e)
-        for (unsigned inside = around.eights[e].feet_inside(p); inside != 0; inside &= inside - 1) {
-            const auto lane = static_cast<std::size_t>(std::countr_zero(inside));
-            const NearestOfTriangle foot = around.eights[e].foot(lane, p);
-            if (foot.squared_distance < best.nearest.squared_distance)
-                best = {around.corners[e * EightTriangles::size + lane], foot};
+    std::size_t nearest = around.corners().size(); // of the triangles
+    for (std::size_t e = 0; e < around.eights(); ++e)
+        for (unsigned inside = around.feet_inside(e, p); inside != 0; inside &= inside - 1) {
+            const std::size_t t =
+                e * EightTriangles::size + static_cast<std::size_t>(std::countr_zero(inside));
+            const NearestOfTriangle foot = around.foot(t, p);
+            if (foot.squared_distance < best.nearest.squared_distance) best.nearest = foot, nearest = t;
         }
-    if (best.nearest.squared_distance < std::numeric_limits<double>::infinity()) return best;
-    for (const std::array<Index, 3>& corners : around.corners) {
+    if (nearest < around.corners().size()) {
+        best.corners = around.corners()[nearest];
+        return best;
+    }
+    for (const std::array<Index, 3>& corners : around.corners()) {
         const PreparedTriangle triangle(at[corners[0]], at[corners[1]], at[corners[2]]);
-        const NearestOfTriangle nearest = triangle.nearest(p);
-        if (nearest.squared_distance < best.nearest.squared_distance) best = {corners, nearest};
+        const NearestOfTriangle foot = triangle.nearest(p);
+        if (foot.squared_distance < best.nearest.squared_distance) best = {corners, foot};
     }
     return best;
 }
@@ -118,6 +137,9 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
     // places in space, so that sums come out the same where only part of the level is known.
     const std::vector<Index> blocks = blocks_of(level_);
     std::vector<std::vector<Foreign>> foreign(blocks.size() - 1);
+    const Vec3* const upward = upward_.data();
+    const Index* const voxel_of = vertices_.voxel.data();
+    Heights* const heights = result.heights.data();
     for_each_task(foreign.size(), [&](std::size_t chunk) {
         const std::size_t begin = blocks[chunk], end = blocks[chunk + 1];
         std::vector<Index> beside;
@@ -127,29 +149,32 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
             const std::span<const Index> near = of_voxel_.of(x).empty() ? beside : of_voxel_.of(x);
             around.clear();
             for (Index dual : near) list_facets(dual, duals_, positions, around);
-            if (around.corners.empty()) continue;
+            if (around.empty()) continue;
             around.prepare();
             const std::size_t first = level_.first_point[x], last = level_.first_point[x + 1];
             const std::size_t stride =
                 (last - first + relaxation::points_per_voxel - 1) / relaxation::points_per_voxel;
+            double misfit = 0;
             for (std::size_t i = first; i < last; i += stride) {
                 const Foot foot = find_foot(octree_.positions[i], around, positions);
                 const double distance = std::sqrt(foot.nearest.squared_distance);
-                result.misfit[x] += distance;
-                const Vec3 way = octree_.positions[i] - foot.nearest.point;
+                misfit += distance;
+                const Vec3 way = octree_.positions[i] - foot.nearest.point, normal = octree_.normals[i];
+                const double least = angles::one_sheet * distance;
                 for (std::size_t k = 0; k < 3; ++k) {
-                    const Index v = foot.corners[k];
-                    const double height = upward_[v] | way;
-                    if ((octree_.normals[i] | upward_[v]) < angles::one_sheet
-                        // the point lies beside the facets, not above
-                        || std::abs(height) < angles::one_sheet * distance)
+                    const Index v = foot.corners[k], voxel = voxel_of[v];
+                    const Vec3& up = upward[v];
+                    const double height = up | way;
+                    if ((normal | up) < angles::one_sheet
+                        || std::abs(height) < least) // the point lies beside the facets, not above
                         continue;
-                    if (vertices_.voxel[v] >= begin && vertices_.voxel[v] < end)
-                        result.heights[v].add(foot.nearest.weights[k], height);
+                    if (voxel >= begin && voxel < end)
+                        heights[v].add(foot.nearest.weights[k], height);
                     else
                         foreign[chunk].push_back({v, foot.nearest.weights[k], height});
                 }
             }
+            result.misfit[x] = misfit;
         }
     });
     for (const std::vector<Foreign>& share : foreign) {

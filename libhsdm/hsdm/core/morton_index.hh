@@ -32,27 +32,36 @@ public:
             for (std::size_t i = begin; i < end; ++i) block.used |= bit_of(codes[i]);
         });
     }
+    static constexpr std::size_t cells = 64; ///< of a block
+
+    struct Block {
+        MortonCode number = 0;  // the codes without their last six bits
+        std::uint64_t used = 0; // a bit for each code that there is; none in an empty slot
+        Index first = 0;        // one more than the position of the first, 0 in an empty slot
+
+        /// Position of a code that belongs to the block, or no_index.
+        Index find(MortonCode code) const {
+            const std::uint64_t bit = bit_of(code);
+            return used & bit ? first - 1 + count_bits(used & (bit - 1)) : no_index;
+        }
+    };
+
     /// Position of a code, or no_index.
-    Index find(MortonCode code) const {
-        if (blocks_.empty()) return no_index;
-        std::size_t slot = slot_of(code / cells);
-        while (blocks_[slot].first != 0 && blocks_[slot].number != code / cells) slot = after(slot);
-        const Block& block = blocks_[slot];
-        const std::uint64_t bit = bit_of(code);
-        return block.used & bit ? block.first - 1 + count_bits(block.used & (bit - 1)) : no_index;
+    Index find(MortonCode code) const { return block_at(code / cells).find(code); }
+    /// The block of a number, for several codes of it; one without any if there is none.
+    const Block& block_at(MortonCode number) const {
+        static constexpr Block none;
+        if (blocks_.empty()) return none;
+        std::size_t slot = slot_of(number);
+        while (blocks_[slot].first != 0 && blocks_[slot].number != number) slot = after(slot);
+        return blocks_[slot];
     }
     void prefetch(MortonCode code) const {
         if (!blocks_.empty()) __builtin_prefetch(&blocks_[slot_of(code / cells)]);
     }
 
 private:
-    static constexpr std::size_t siblings = 8, cells = 64;
-
-    struct Block {
-        MortonCode number = 0;  // the codes without their last six bits
-        std::uint64_t used = 0; // a bit for each code that there is; none in an empty slot
-        Index first = 0;        // one more than the position of the first, 0 in an empty slot
-    };
+    static constexpr std::size_t siblings = 8;
 
     static std::uint64_t bit_of(MortonCode code) { return std::uint64_t{1} << code % cells; }
 

@@ -5,6 +5,7 @@
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/features/normal_filter.hh"
 #include "hsdm/features/sectors.hh"
+#include "hsdm/mesh/corner_count.hh"
 #include "hsdm/mesh/facet_normal.hh"
 
 #include <OpenMesh/Core/Utils/vector_traits.hh>

@@ -25,7 +25,7 @@ FacetNeighbours facet_neighbours(const Mesh& mesh, StatusBits bits, const std::v
     FacetNeighbours result;
     assign_large(result.first, mesh.n_faces() + 1, 0);
     for_each_handle<OpenMesh::FaceHandle>(mesh.n_faces(), [&](OpenMesh::FaceHandle f) {
-        if (!is_fixed(f)) result.first[index_of(f) + 1] = static_cast<Index>(mesh.valence(f));
+        if (!is_fixed(f)) result.first[index_of(f) + 1] = corner_count(mesh, f);
     });
     for_each_in_order(mesh.n_faces(), [&](std::size_t f) { result.first[f + 1] += result.first[f]; });
     resize_large(result.neighbour, result.first.back());

@@ -23,7 +23,7 @@ std::vector<OpenMesh::EdgeHandle> lock_known_edges(PolyMesh& mesh, const std::ve
     std::vector<OpenMesh::EdgeHandle> locked;
     if (sides.empty()) return locked;
     std::size_t side = 0;
-    for (const auto f : mesh.faces()) side += f.valence();
+    for (const auto f : mesh.faces()) side += corner_count(mesh, f);
     if (side != sides.size())
         throw Error("hints for " + std::to_string(sides.size()) + " sides of facets, but the mesh has "
                     + std::to_string(side) + "; give those of this mesh");

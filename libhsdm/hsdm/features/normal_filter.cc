@@ -1,6 +1,7 @@
 #include "hsdm/features/normal_filter.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/features/constants.hh"
 #include "hsdm/mesh/facet_normal.hh"
 
@@ -13,7 +14,7 @@ std::size_t filter_normals(const FacetNeighbours& neighbours, const std::vector<
                            double similarity_angle, double settled_angle, std::vector<Vec3>& normals) {
     const double steepness = -0.5 / (similarity_angle * similarity_angle);
     const double settled = 2 * std::sin(settled_angle / 2); // as a chord between unit vectors
-    std::vector<Vec3> next(normals.size());
+    std::vector<Vec3> next = unwritten_vector<Vec3>(normals.size());
     std::atomic<std::size_t> turning = 0;
     for_chunks(normals.size(), chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t) {
         std::size_t here = 0;

@@ -116,7 +116,15 @@ Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options) {
     Components components(mesh);
     const std::vector<std::size_t>& sizes = components.facets();
     const auto largest = static_cast<double>(*std::max_element(sizes.begin(), sizes.end()));
-    const std::size_t looked_at = options.layers > 0 ? mesh.facet_count() : options.most_flat;
+    const std::size_t most = std::max({options.most_open, options.most_flat, options.most_facets});
+    const auto may_go = [&](std::size_t size) {
+        return size <= most
+               && (options.of_larger || static_cast<double>(size) * options.least_ratio <= largest);
+    };
+    const bool has_layers = options.layers > 0;
+    if (!has_layers && std::ranges::none_of(sizes, [&](std::size_t size) { return size > 0 && may_go(size); }))
+        return {};
+    const std::size_t looked_at = has_layers ? mesh.facet_count() : options.most_flat;
     const std::vector<std::uint8_t> open = components.are_open(std::max(options.most_open, looked_at));
     const std::vector<Extent> extents = components.extents(looked_at);
     double most_area = 0;
@@ -129,8 +137,7 @@ Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options) {
             return true;
         const bool flat = sizes[c] <= options.most_flat && extent.is_thinner_than(options.flat);
         const std::size_t most_closed = flat ? options.most_flat : options.most_facets;
-        return sizes[c] <= (open[c] ? options.most_open : most_closed)
-               && (options.of_larger || static_cast<double>(sizes[c]) * options.least_ratio <= largest);
+        return may_go(sizes[c]) && sizes[c] <= (open[c] ? options.most_open : most_closed);
     });
     return remove_components(mesh, none, small).facets;
 }

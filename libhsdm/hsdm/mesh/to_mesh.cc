@@ -4,6 +4,7 @@
 #include "hsdm/core/interruption.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/mesh/corner_count.hh"
 #include "hsdm/mesh/facet_normal.hh"
 #include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/mesh/vertex_properties.hh"
@@ -189,7 +190,7 @@ Selection select(const PolyMesh& mesh) {
 void read_facets(const PolyMesh& mesh, const Selection& selection, PolygonMesh& polygons) {
     polygons.first.resize(selection.faces.size() + 1);
     for_each_index(selection.faces.size(), chunks::quick,
-                   [&](Index f) { polygons.first[f + 1] = mesh.valence(selection.faces[f]); });
+                   [&](Index f) { polygons.first[f + 1] = corner_count(mesh, selection.faces[f]); });
     for (std::size_t f = 0; f < selection.faces.size(); ++f) polygons.first[f + 1] += polygons.first[f];
     polygons.corners.resize(polygons.first.back());
     for_each_index(selection.faces.size(), chunks::quick, [&](Index f) {

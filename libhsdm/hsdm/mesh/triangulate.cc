@@ -14,10 +14,11 @@ Vec3 normal(const std::vector<Vec3>& p, Index a, Index b, Index c) {
 }
 
 void cut_quad(const std::vector<Vec3>& p, std::span<const Index> f, Triangle* out) {
-    const bool flat02 = (normal(p, f[0], f[1], f[2]) | normal(p, f[0], f[2], f[3])) > 0;
-    const bool flat13 = (normal(p, f[0], f[1], f[3]) | normal(p, f[1], f[2], f[3])) > 0;
-    const bool along02 =
-        flat02 != flat13 ? flat02 : (p[f[2]] - p[f[0]]).sqrnorm() <= (p[f[3]] - p[f[1]]).sqrnorm();
+    const Vec3 from1 = p[f[1]] - p[f[0]], from2 = p[f[2]] - p[f[0]], from3 = p[f[3]] - p[f[0]];
+    const Vec3 across = p[f[3]] - p[f[1]];
+    const bool flat02 = ((from1 % from2) | (from2 % from3)) > 0;
+    const bool flat13 = ((from1 % from3) | ((p[f[2]] - p[f[1]]) % across)) > 0;
+    const bool along02 = flat02 != flat13 ? flat02 : from2.sqrnorm() <= across.sqrnorm();
     out[0] = along02 ? Triangle{f[0], f[1], f[2]} : Triangle{f[0], f[1], f[3]};
     out[1] = along02 ? Triangle{f[0], f[2], f[3]} : Triangle{f[1], f[2], f[3]};
 }

@@ -163,11 +163,15 @@ const NormalSample::Point& NormalSample::at(std::size_t i) const {
 }
 
 NormalConsistency check_normals(const Octree& octree) {
+    return octree.has_normals() ? check_normals(octree, estimate_spacing(octree)) : NormalConsistency{};
+}
+
+NormalConsistency check_normals(const Octree& octree, double spacing) {
     if (!octree.has_normals()) return {};
     const auto point = [&](std::size_t i) {
         return NormalSample::Point{octree.positions[i], octree.normals[i]};
     };
-    return check_pairs(octree.size(), point, estimate_spacing(octree));
+    return check_pairs(octree.size(), point, spacing);
 }
 
 NormalConsistency check_normals(const NormalSample& sample, std::size_t size, double spacing) {

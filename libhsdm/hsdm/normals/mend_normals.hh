@@ -36,6 +36,8 @@ Occurrences doubtful_sides(const Octree& octree, const NormalConsistency& consis
 
 /// Compares points, or 131,072 of them, with their two successors in octree order. O(n), parallel.
 NormalConsistency check_normals(const Octree& octree);
+/// The same where the spacing of the points is known (estimate_spacing).
+NormalConsistency check_normals(const Octree& octree, double spacing);
 
 /// The points that check_normals() looks at, of a cloud that is not in memory.
 struct NormalSample {

@@ -39,9 +39,8 @@ Vec3 directed_or_zero(const Vec3& n) {
 
 /// The unit vector, or (0, 0, 0); -0 becomes 0.
 Vec3 unit_with_one_zero(const Vec3& n) {
-    const Vec3 directed = directed_or_zero(n);
-    const double length = directed.norm();
-    return length > 0 ? directed / length + zero : zero;
+    const double length = n.norm();
+    return length > 0 && std::isfinite(length) ? n / length + zero : zero;
 }
 
 /// change(vector) of the vectors at these places.
@@ -349,9 +348,15 @@ namespace {
 
 /// The places where shifted codes change, followed by the number of codes.
 std::vector<Index> find_runs(const std::vector<MortonCode>& codes, int shift) {
-    std::vector<Index> runs = indices_where(codes.size(), chunks::light, [&](Index i) {
-        return i == 0 || codes[i] >> shift != codes[i - 1] >> shift;
-    });
+    const auto add = [&](std::size_t begin, std::size_t end, std::vector<Index>& part) {
+        MortonCode last = begin == 0 ? ~MortonCode{0} : codes[begin - 1] >> shift;
+        for (std::size_t i = begin; i < end; ++i) {
+            const MortonCode code = codes[i] >> shift;
+            if (code != last) part.push_back(static_cast<Index>(i));
+            last = code;
+        }
+    };
+    std::vector<Index> runs = collected<Index>(codes.size(), chunks::light, add);
     runs.push_back(static_cast<Index>(codes.size()));
     return runs;
 }

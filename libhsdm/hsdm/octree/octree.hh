@@ -30,7 +30,8 @@ struct OctreeOptions {
     CubePlacement placement = CubePlacement::least_corner;
     /// Least corner of the cube, in place of `placement`; the cube of `cube_extent` must hold the cloud.
     std::optional<Vec3> origin{};
-    /// Box of a larger cloud that this one is part of: `bounds` and the cube are those of the whole.
+    /// Box of the cloud's finite points if it is known, or that of a larger cloud that this one is part of:
+    /// `bounds` and the cube are those of the whole.
     std::optional<Box> whole{};
 };
 

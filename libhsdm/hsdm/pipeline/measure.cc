@@ -25,8 +25,10 @@ void note_small_components(const SmallComponents& small, Report& report) {
     report.rejected["facets_of_small_components"] = small.facets.count;
 }
 
-void measure_mesh(const PolygonMesh& facets, Report& report) {
-    note_topology(measure_connectivity(facets), report);
+/// By links if they are known and say all: those of no rejected facet.
+void measure_mesh(const PolygonMesh& facets, const std::optional<FacetLinks>& links, Report& report) {
+    const bool linked = links && links->rejected == 0;
+    note_topology(linked ? measure_connectivity(facets, *links) : measure_connectivity(facets), report);
 }
 
 /// On a uniform grid facets are about as large as voxels.
@@ -133,7 +135,7 @@ void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, Polyg
         return;
     }
     if (!measured) make_cells(facets, known, report); // here: only this thread asks whether to go on
-    run_both([&] { measure_mesh(facets, report); },
+    run_both([&] { measure_mesh(facets, known.links, report); },
              [&] {
                  if (measured) return;
                  const Occurrences left_out = measure_error(points, in, facets, known, 0, report);
@@ -151,7 +153,7 @@ void measure_again(const PolyMesh& mesh, std::span<const Vec3> points, Report& r
     report.error = {};
     if (points.empty()) return;
     PolygonMesh facets = to_polygons(mesh);
-    measure_mesh(facets, report);
+    measure_mesh(facets, std::nullopt, report);
     const double unit = CloudFrame(bounds_of(points)).unit(); // distances are squared
     std::vector<Vec3> measured(points.begin(), points.end());
     for (std::vector<Vec3>* const places : {&measured, &facets.positions})

@@ -51,7 +51,8 @@ PreparedCloud::PreparedCloud(InputCloud& input, const ReconstructOptions& option
     OctreeOptions octree_options;
     octree_options.placement = CubePlacement::centred;
     octree_options.use_normals = options.normals != NormalSource::estimate;
-    frame = CloudFrame(finite_bounds(cloud.positions));
+    octree_options.whole = finite_bounds(cloud.positions);
+    frame = CloudFrame(*octree_options.whole);
     octree_options.unit = frame.unit();
     octree =
         phases.run("octree", 0, report.seconds.octree, [&] { return input.take_octree(octree_options); });
@@ -90,7 +91,7 @@ void PreparedCloud::check_given_normals(const PointView& cloud, const Phases& ph
         return are_scattered(octree) ? steady_normals(octree) : 0;
     });
     report.rejected["normals_mended"] = phases.run("normals", 0.05, report.seconds.normals, [&] {
-        NormalConsistency consistency = check_normals(octree);
+        NormalConsistency consistency = check_normals(octree, report.input.spacing);
         if (consistency.rough() && octree.size() > 1)
             noise_ = noise_deviation(octree, find_neighbors(octree));
         if (!consistency.doubtful()) return std::size_t{0};

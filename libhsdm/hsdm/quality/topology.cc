@@ -192,9 +192,14 @@ bool has_no_area(std::span<const Vec3> ring) {
     double size = 0;
     for (const Vec3& p : ring) size = std::max(size, (p - ring[0]).max_abs());
     if (!(size > 0) || !std::isfinite(size)) return true;
+    const bool is_usual = size > 1e-50 && size < 1e50;
+    // Nearly always a triangle tells: a side is at most sqrt(12) times `size` long.
+    const double ample = 100 * negligible * size * size;
+    for (std::size_t i = 2; is_usual && i < ring.size(); ++i)
+        if (((ring[i - 1] - ring[0]) % (ring[i] - ring[0])).sqrnorm() > ample * ample) return false;
     // Scaled by a power of two, unless the size is a usual one, so that neither overflow nor rounding depends
     // on it. In two steps: for the smallest sizes the factor itself is no number.
-    const int exponent = size > 1e-50 && size < 1e50 ? 0 : -std::ilogb(size);
+    const int exponent = is_usual ? 0 : -std::ilogb(size);
     const double half = std::ldexp(1.0, exponent / 2), rest = std::ldexp(1.0, exponent - exponent / 2);
     double longest = 0, twice = 0;
     Vec3 p(0, 0, 0); // the corner before, from the first

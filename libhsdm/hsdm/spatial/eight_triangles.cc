@@ -136,12 +136,4 @@ std::span<const TriangleLanes> triangle_lanes() {
     return std::span(triangles_by_width).subspan(widest_lanes());
 }
 
-void EightTriangles::prepare() {
-    triangle_lanes().front().prepare(*this);
-}
-
-unsigned EightTriangles::feet_inside(const Vec3& p) const {
-    return triangle_lanes().front().feet_inside(*this, p);
-}
-
 } // namespace hsdm

@@ -25,10 +25,6 @@ struct EightTriangles {
     void fill_up(std::size_t lane) {
         for (; lane < size; ++lane) put(lane, Vec3(0, 0, 0), Vec3(0, 0, 0), Vec3(0, 0, 0));
     }
-    /// Of all lanes, once their corners are there.
-    void prepare();
-    /// A bit for each triangle that has the foot of a point on its plane inside of it.
-    unsigned feet_inside(const Vec3& p) const;
     /// Of a triangle that has it inside: the foot (PreparedTriangle::foot_inside). O(1).
     NearestOfTriangle foot(std::size_t lane, const Vec3& p) const {
         const auto at = [lane](const Rows& rows) {
@@ -48,7 +44,9 @@ struct EightTriangles {
 /// The same functions for lanes of one width. All widths say the same to the last bit: each lane does what
 /// the others do, in one order, and no product is added without being rounded.
 struct TriangleLanes {
+    /// Of all lanes, once their corners are there.
     void (*prepare)(EightTriangles& triangles);
+    /// A bit for each triangle that has the foot of a point on its plane inside of it.
     unsigned (*feet_inside)(const EightTriangles& triangles, const Vec3& p);
 };
 
