@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <limits>
 
 using namespace hsdm;
@@ -28,21 +29,23 @@ TEST_CASE("bounds of eight triangles are no more than their distances, the same 
             flat += !has_area[k];
         }
         std::vector<EightBounds::Row> rows;
-        std::vector<double> least;
+        std::vector<LeastSquares> least;
         for (const BoundLanes& lanes : bound_lanes()) {
             EightBounds eight;
             for (std::size_t k = 0; k < count; ++k) eight.put(k, corners[k][0], corners[k][1], corners[k][2]);
-            eight.fill_up(count);
+            if (count < EightBounds::size) eight.fill_up(count);
             lanes.prepare(eight);
             least.push_back(lanes.squares(eight, p, rows.emplace_back()));
             REQUIRE(rows.back() == rows.front());
-            REQUIRE(least.back() == least.front());
+            REQUIRE(least.back().above == least.front().above);
+            REQUIRE(least.back().beyond == least.front().beyond);
         }
+        CHECK(least.front().beyond == std::ranges::min(rows.front()));
         double nearest_above = infinity;
         for (std::size_t k = 0; k < EightBounds::size; ++k) {
             const double bound = rows.front()[k];
             if (k >= count) {
-                CHECK(bound < 1e-300); // nothing is known of it
+                CHECK(bound == rows.front()[count - 1]);
                 continue;
             }
             const double squared =
@@ -57,9 +60,9 @@ TEST_CASE("bounds of eight triangles are no more than their distances, the same 
             }
         }
         if (nearest_above < infinity)
-            CHECK(least.front() == Approx(nearest_above).margin(1e-20));
+            CHECK(least.front().above == Approx(nearest_above).margin(1e-20));
         else
-            CHECK(least.front() == infinity);
+            CHECK(least.front().above == infinity);
     }
     CHECK(above > 100);
     CHECK(beside > 100);

@@ -63,9 +63,7 @@ public:
 
 private:
     static std::array<double, 2> at_upper_end(Side high, double invention) {
-        std::array<double, 2> cost{invention, invention};
-        cost[high] = 0;
-        return cost;
+        return {high == inside ? 0 : invention, high == outside ? 0 : invention};
     }
 
     /// Least cost from each side before a crossing to the edge's upper end, given those after it.
@@ -186,7 +184,9 @@ private:
     /// Do the crossings of an edge contradict the sides of its ends?
     bool is_contradicted(Index edge) const {
         const Index c = edge / 3, up = grid_.next[c][edge % 3];
-        return up != no_index && choice_.cost(edge, side_[c], side_[up], signs::cost_of_invention) > 0;
+        if (up == no_index) return false;
+        if (list_.first[edge] == list_.first[edge + 1]) return side_[c] != side_[up]; // most
+        return choice_.cost(edge, side_[c], side_[up], signs::cost_of_invention) > 0;
     }
 
     /// The grid points whose sides are in doubt: those at the ends of a contradicted edge, and those around.

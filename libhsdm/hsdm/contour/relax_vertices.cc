@@ -20,10 +20,17 @@ Vec3 within_voxel(const DualMesh& mesh, Index dual, const Vec3& from, const Vec3
     const VoxelCoord& voxel = mesh.voxel_of(dual);
     const double h = mesh.voxel_size;
     const Vec3 way = to - from;
+    std::array<double, 3> least, most;
+    bool stays = true; // as nearly always, though which bounds it moves towards is hard to guess
+    for (unsigned k = 0; k < 3; ++k) {
+        least[k] = (voxel[k] + placement::margin) * h;
+        most[k] = least[k] + (1 - 2 * placement::margin) * h;
+        stays &= (to[k] >= least[k]) & (to[k] <= most[k]);
+    }
+    if (stays) return from + way;
     double share = 1;
     for (unsigned k = 0; k < 3; ++k) {
-        const double lo = (voxel[k] + placement::margin) * h;
-        const double hi = lo + (1 - 2 * placement::margin) * h;
+        const double lo = least[k], hi = most[k];
         if (way[k] > 0 && to[k] > hi) share = std::min(share, (hi - from[k]) / way[k]);
         if (way[k] < 0 && to[k] < lo) share = std::min(share, (lo - from[k]) / way[k]);
     }

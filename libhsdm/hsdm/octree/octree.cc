@@ -350,10 +350,17 @@ namespace {
 std::vector<Index> find_runs(const std::vector<MortonCode>& codes, int shift) {
     const auto add = [&](std::size_t begin, std::size_t end, std::vector<Index>& part) {
         MortonCode last = begin == 0 ? ~MortonCode{0} : codes[begin - 1] >> shift;
-        for (std::size_t i = begin; i < end; ++i) {
-            const MortonCode code = codes[i] >> shift;
-            if (code != last) part.push_back(static_cast<Index>(i));
-            last = code;
+        std::array<Index, 256> found;
+        while (begin < end) {
+            std::size_t count = 0;
+            const std::size_t stop = std::min(end, begin + found.size());
+            for (; begin < stop; ++begin) { // without branches, of which many would be guessed wrong
+                const MortonCode code = codes[begin] >> shift;
+                found[count] = static_cast<Index>(begin);
+                count += code != last;
+                last = code;
+            }
+            part.insert(part.end(), found.begin(), found.begin() + count);
         }
     };
     std::vector<Index> runs = collected<Index>(codes.size(), chunks::light, add);

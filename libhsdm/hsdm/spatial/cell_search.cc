@@ -53,8 +53,13 @@ double CellSearch::nearest_in(std::size_t slot, const Vec3& point, double square
     const std::size_t eights = chunk_count(slice.triangles, EightBounds::size);
     if (beyond_.size() < eights) beyond_.resize(eights);
     const Eight* const first = eights_.data() + slice.first;
-    for (std::size_t i = 0; i < eights; ++i)
-        squared = std::min(squared, lanes_.squares(first[i].bounds, point, beyond_[i]));
+    double least = Box::inf;
+    for (std::size_t i = 0; i < eights; ++i) {
+        const LeastSquares found = lanes_.squares(first[i].bounds, point, beyond_[i]);
+        squared = std::min(squared, found.above);
+        least = std::min(least, found.beyond);
+    }
+    if (!(least < sure * squared)) return squared;
     for (std::size_t t = 0; t < slice.triangles; t += 2) {
         const std::size_t i = t / EightBounds::size, lane = t % EightBounds::size;
         if (std::min(beyond_[i][lane], beyond_[i][lane + 1]) < sure * squared)

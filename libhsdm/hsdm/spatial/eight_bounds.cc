@@ -62,8 +62,9 @@ void prepare_by_two(EightBounds& t) {
     }
 }
 
-double squares_by_two(const EightBounds& t, const Vec3& p, Row& row) {
-    Double2 least = Double2{} + infinity;
+LeastSquares squares_by_two(const EightBounds& t, const Vec3& p, Row& row) {
+    const Double2 none = Double2{} + infinity;
+    Double2 above = none, beside = none;
     for (std::size_t k = 0; k < EightBounds::size; k += 2) {
         const VectorPair arm = VectorPair(p, p) - two_vectors(t.corner, k);
         const Double2 height = arm | two_vectors(t.normal, k);
@@ -71,10 +72,12 @@ double squares_by_two(const EightBounds& t, const Vec3& p, Row& row) {
             max_lanes(max_lanes(arm | two_vectors(t.out[0], k), arm | two_vectors(t.out[1], k)),
                       (arm | two_vectors(t.out[2], k)) - two_of(t.across, k));
         const Double2 squared = square(height) + square(max_lanes(beyond, Double2{}));
-        keep(beyond > 0 ? squared : Double2{} + infinity, row, k);
-        least = min_lanes(least, beyond > 0 ? Double2{} + infinity : squared);
+        const Double2 bound = beyond > 0 ? squared : none;
+        keep(bound, row, k);
+        beside = min_lanes(beside, bound);
+        above = min_lanes(above, beyond > 0 ? none : squared);
     }
-    return std::min(least[0], least[1]);
+    return {std::min(above[0], above[1]), std::min(beside[0], beside[1])};
 }
 
 #ifdef HSDM_WIDE_LANES
@@ -106,10 +109,10 @@ HSDM_OF_AVX double least_of(__m256d four) {
     return std::min(two[0], two[1]);
 }
 
-[[gnu::target("avx")]] double squares_by_avx(const EightBounds& t, const Vec3& p, Row& row) {
+[[gnu::target("avx")]] LeastSquares squares_by_avx(const EightBounds& t, const Vec3& p, Row& row) {
     const FourVectors place = four_times(p[0], p[1], p[2]);
     const __m256d zero = _mm256_setzero_pd(), none = _mm256_set1_pd(infinity);
-    __m256d least = none;
+    __m256d above = none, beside = none;
     for (std::size_t k = 0; k < EightBounds::size; k += 4) {
         const FourVectors arm = minus(place, four_at(t.corner, k));
         const __m256d height = dot(arm, four_at(t.normal, k));
@@ -118,10 +121,12 @@ HSDM_OF_AVX double least_of(__m256d four) {
         const __m256d beyond = _mm256_max_pd(near, far), out = _mm256_max_pd(beyond, zero);
         const __m256d is_beyond = _mm256_cmp_pd(beyond, zero, _CMP_GT_OQ);
         const __m256d squared = height * height + out * out;
-        _mm256_storeu_pd(row.data() + k, _mm256_blendv_pd(none, squared, is_beyond));
-        least = _mm256_min_pd(least, _mm256_blendv_pd(squared, none, is_beyond));
+        const __m256d bound = _mm256_blendv_pd(none, squared, is_beyond);
+        _mm256_storeu_pd(row.data() + k, bound);
+        beside = _mm256_min_pd(beside, bound);
+        above = _mm256_min_pd(above, _mm256_blendv_pd(squared, none, is_beyond));
     }
-    return least_of(least);
+    return {least_of(above), least_of(beside)};
 }
 
 // with masks: without, g++ 12 warns of its own headers
@@ -150,7 +155,12 @@ HSDM_OF_AVX512 EightVectors unit_by_avx512(const EightVectors& way, __m512d squa
                     _mm512_mask_mov_pd(_mm512_set1_pd(-least_number), regular, dot(far, ab)));
 }
 
-[[gnu::target("avx512f")]] double squares_by_avx512(const EightBounds& t, const Vec3& p, Row& row) {
+HSDM_OF_AVX512 double least_of(__m512d eight) {
+    return least_of(_mm256_min_pd(_mm512_maskz_extractf64x4_pd(0xf, eight, 0),
+                                  _mm512_maskz_extractf64x4_pd(0xf, eight, 1)));
+}
+
+[[gnu::target("avx512f")]] LeastSquares squares_by_avx512(const EightBounds& t, const Vec3& p, Row& row) {
     const __m512d zero = _mm512_setzero_pd(), none = _mm512_set1_pd(infinity);
     const EightVectors arm = minus(eight_times(p[0], p[1], p[2]), eight_at(t.corner, 0));
     const __m512d height = dot(arm, eight_at(t.normal, 0));
@@ -159,10 +169,9 @@ HSDM_OF_AVX512 EightVectors unit_by_avx512(const EightVectors& way, __m512d squa
     const __m512d beyond = greater(near, far), out = greater(beyond, zero);
     const __mmask8 is_beyond = _mm512_cmp_pd_mask(beyond, zero, _CMP_GT_OQ);
     const __m512d squared = height * height + out * out;
-    _mm512_storeu_pd(row.data(), _mm512_mask_mov_pd(none, is_beyond, squared));
-    const __m512d least = _mm512_mask_mov_pd(squared, is_beyond, none);
-    return least_of(_mm256_min_pd(_mm512_maskz_extractf64x4_pd(0xf, least, 0),
-                                  _mm512_maskz_extractf64x4_pd(0xf, least, 1)));
+    const __m512d bound = _mm512_mask_mov_pd(none, is_beyond, squared);
+    _mm512_storeu_pd(row.data(), bound);
+    return {least_of(_mm512_mask_mov_pd(squared, is_beyond, none)), least_of(bound)};
 }
 
 #endif

@@ -25,14 +25,22 @@ struct EightBounds {
             out[1][axis][lane] = c[axis];
         }
     }
-    /// Triangles without area from a lane on.
+    /// The triangle before a lane again, from that on.
     void fill_up(std::size_t lane) {
-        for (; lane < size; ++lane) put(lane, Vec3(0, 0, 0), Vec3(0, 0, 0), Vec3(0, 0, 0));
+        for (Rows* const corners : {&corner, &out[0], &out[1]})
+            for (Row& row : *corners)
+                for (std::size_t k = lane; k < size; ++k) row[k] = row[lane - 1];
     }
 
     alignas(64) Rows corner, normal;
     std::array<Rows, 3> out;
     Row across;
+};
+
+/// Of squares of distances from triangles: exact ones where the point is beyond none of their sides, bounds
+/// where it is beyond one. Infinity where there are none.
+struct LeastSquares {
+    double above, beyond;
 };
 
 /// The same functions for lanes of one width. All widths say the same to the last bit, as those of
@@ -42,8 +50,8 @@ struct BoundLanes {
     /// every point counts as beyond its sides, and at no distance.
     void (*prepare)(EightBounds& triangles);
     /// Sets per triangle the square of a distance that it is no nearer than, infinity if the point is beyond
-    /// none of its sides; returns the least squared distance of the latter, or infinity.
-    double (*squares)(const EightBounds& triangles, const Vec3& p, EightBounds::Row& beyond);
+    /// none of its sides.
+    LeastSquares (*squares)(const EightBounds& triangles, const Vec3& p, EightBounds::Row& beyond);
 };
 
 /// Those that this processor has, the widest first.
