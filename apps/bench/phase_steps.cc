@@ -223,7 +223,7 @@ void measure_error(Work& w) {
     w.checksum += points_to_mesh_by_cells(w.octree.positions, w.contour.mesh, *w.contour.cells).mean;
 }
 void count(Work& w) {
-    w.checksum += static_cast<double>(measure_connectivity(w.contour.mesh).euler);
+    w.checksum += static_cast<double>(measure_connectivity(w.contour.mesh, w.links).euler);
 }
 void make_mesh(Work& w) {
     to_mesh(w.contour.mesh, w.links, *w.mesh);
@@ -348,7 +348,7 @@ std::vector<Step> steps_after_contour() {
         {"error", "points_to_mesh_by_cells", nullptr, measure_error,
          [](const Work& w) { return bytes_of(w.octree.positions) + bytes_of(w.contour.mesh); }},
         {"topology", "measure_connectivity", nullptr, count,
-         [](const Work& w) { return bytes_of(w.contour.mesh.corners, w.contour.mesh.first); }},
+         [](const Work& w) { return bytes_of(w.contour.mesh.first, w.links.twin, w.links.facet); }},
         {"half-edge mesh", "to_mesh", empty_mesh, make_mesh,
          [](const Work& w) { return bytes_of(w.contour.mesh) + bytes_of(w.links) + bytes_of(*w.mesh); }},
         {"features", "classify_features, smooth_normals",

@@ -35,8 +35,9 @@ public:
 
     std::span<const std::array<Index, 3>> corners() const { return {corners_.data(), size_}; }
     std::size_t eights() const { return chunk_count(size_, EightTriangles::size); }
-    unsigned feet_inside(std::size_t eight, const Vec3& p) const {
-        return lanes_.feet_inside(eights_[eight], p);
+    /// Appends for each eight the bits of the triangles that have the foot of p inside.
+    void add_feet_inside(const Vec3& p, std::vector<unsigned>& inside) const {
+        for (std::size_t e = 0; e < eights(); ++e) inside.push_back(lanes_.feet_inside(eights_[e], p));
     }
     NearestOfTriangle foot(std::size_t triangle, const Vec3& p) const {
         return eights_[triangle / EightTriangles::size].foot(triangle % EightTriangles::size, p);
@@ -66,11 +67,12 @@ void list_facets(Index dual, const DualVertices& duals, const std::vector<Vec3>&
 
 /// The foot of p: the nearest perpendicular foot inside a triangle, or, if there is none, the nearest point
 /// of any triangle.
-Foot find_foot(const Vec3& p, const Around& around, const std::vector<Vec3>& at) {
+Foot find_foot(const Vec3& p, const Around& around, const unsigned* feet_inside,
+               const std::vector<Vec3>& at) {
     Foot best;
     std::size_t nearest = around.corners().size(); // of the triangles
     for (std::size_t e = 0; e < around.eights(); ++e)
-        for (unsigned inside = around.feet_inside(e, p); inside != 0; inside &= inside - 1) {
+        for (unsigned inside = feet_inside[e]; inside != 0; inside &= inside - 1) {
             const std::size_t t =
                 e * EightTriangles::size + static_cast<std::size_t>(std::countr_zero(inside));
             const NearestOfTriangle foot = around.foot(t, p);
@@ -144,6 +146,7 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
         const std::size_t begin = blocks[chunk], end = blocks[chunk + 1];
         std::vector<Index> beside;
         Around around;
+        std::vector<unsigned> inside;
         for (std::size_t x = begin; x < end; ++x) {
             if (of_voxel_.of(x).empty()) gather_beside(static_cast<Index>(x), beside);
             const std::span<const Index> near = of_voxel_.of(x).empty() ? beside : of_voxel_.of(x);
@@ -154,9 +157,13 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
             const std::size_t first = level_.first_point[x], last = level_.first_point[x + 1];
             const std::size_t stride =
                 (last - first + relaxation::points_per_voxel - 1) / relaxation::points_per_voxel;
+            inside.clear(); // of all points first: what follows waits for it where branches are guessed wrong
+            for (std::size_t i = first; i < last; i += stride)
+                around.add_feet_inside(octree_.positions[i], inside);
+            const unsigned* of_point = inside.data();
             double misfit = 0;
-            for (std::size_t i = first; i < last; i += stride) {
-                const Foot foot = find_foot(octree_.positions[i], around, positions);
+            for (std::size_t i = first; i < last; i += stride, of_point += around.eights()) {
+                const Foot foot = find_foot(octree_.positions[i], around, of_point, positions);
                 const double distance = std::sqrt(foot.nearest.squared_distance);
                 misfit += distance;
                 const Vec3 way = octree_.positions[i] - foot.nearest.point, normal = octree_.normals[i];

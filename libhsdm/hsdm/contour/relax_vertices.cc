@@ -25,7 +25,8 @@ Vec3 within_voxel(const DualMesh& mesh, Index dual, const Vec3& from, const Vec3
     for (unsigned k = 0; k < 3; ++k) {
         least[k] = (voxel[k] + placement::margin) * h;
         most[k] = least[k] + (1 - 2 * placement::margin) * h;
-        stays &= (to[k] >= least[k]) & (to[k] <= most[k]);
+        stays &= to[k] >= least[k];
+        stays &= to[k] <= most[k];
     }
     if (stays) return from + way;
     double share = 1;
