@@ -169,7 +169,7 @@ void draw_faults(const std::vector<std::pair<const char*, std::vector<FaultRow>>
     for (const auto& [name, rows] : by_fault) {
         std::vector<bench::PlotPoint> line;
         for (const FaultRow& row : rows)
-            if (row.strength > 0) line.push_back({row.strength, (row.*value)()});
+            if (row.strength > 0 && row.made > 0) line.push_back({row.strength, (row.*value)()});
         plot.line(line, name);
     }
     plot.write(path);

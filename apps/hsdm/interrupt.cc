@@ -73,7 +73,9 @@ std::mutex end_mutex;
 const std::function<void()>* last_work = nullptr;
 
 [[noreturn]] void end_as_asked(int status) {
-    end_mutex.lock(); // and never unlocked
+    constexpr int patience = 500; // hundredths of a second: what joins a job may hang itself
+    for (int waited = 0; !end_mutex.try_lock() && waited < patience; ++waited) // and never unlocked
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
     try {
         if (last_work) (*last_work)();
     } catch (...) { // the message will not list what could not be written

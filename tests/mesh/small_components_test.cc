@@ -131,29 +131,43 @@ TEST_CASE("a small bubble that encloses nothing is a splinter, a thicker part an
     CHECK(left(5, 0.05));
 }
 
-TEST_CASE(
-    "what is thinner than layers lie apart goes with them: cavities always, else what is small beside them",
-    "[mesh]") {
-    const auto left = [](double thickness, bool inward, double layers) {
+TEST_CASE("what is thinner than layers lie apart goes with them: cavities, and what is small beside them",
+          "[mesh]") {
+    struct Thin {
+        double thickness = 0.5, width = 5; // in a cube of 20 by 20 by 20, or beside it
+        bool inward = false;
+        Vec3 at{0, 0, 0};
+        bool all_turned = false;
+    };
+    const auto stays = [](const Thin& thin, double layers) {
         PolygonMesh mesh = support::divided_cube(6);
-        for (Vec3& p : mesh.positions) p *= 3, p[2] *= thickness / 6;
-        const std::size_t facets = mesh.facet_count(); // area of 72
-        if (inward) turn_over(mesh);
+        for (Vec3& p : mesh.positions)
+            p = thin.at + Vec3(p[0], p[1], p[2] * thin.thickness / thin.width) * (thin.width / 2);
+        const std::size_t facets = mesh.facet_count();
+        if (thin.inward) turn_over(mesh);
         PolygonMesh large = support::divided_cube(6);
-        for (const Vec3& p : large.positions) mesh.positions.push_back(20 * p);
+        for (const Vec3& p : large.positions) mesh.positions.push_back(10 * p);
         const auto base = static_cast<Index>(mesh.vertex_count() - large.vertex_count());
         for (std::size_t f = 0; f < large.facet_count(); ++f) {
             const auto q = large.facet(f);
             mesh.add_facet(std::array{base + q[0], base + q[1], base + q[2], base + q[3]});
         }
+        if (thin.all_turned) turn_over(mesh);
         const std::size_t before = mesh.facet_count();
         drop_splinters(mesh, {.flat = 0.1, .layers = layers});
         CHECK((mesh.facet_count() == before || mesh.facet_count() == before - facets));
         return mesh.facet_count() == before;
     };
-    CHECK(left(0.5, true, 0)); // no layers
-    CHECK_FALSE(left(0.5, true, 0.6));
-    CHECK(left(0.9, true, 0.6));
-    CHECK_FALSE(left(0.5, false, 0.6));
-    CHECK(left(0.9, false, 0.6));
+    CHECK(stays({.inward = true}, 0)); // no layers
+    for (const bool all_turned : {false, true}) {
+        CHECK_FALSE(stays({.inward = true, .all_turned = all_turned}, 0.6));
+        CHECK(stays({.thickness = 0.9, .inward = true, .all_turned = all_turned}, 0.6));
+        CHECK_FALSE(stays({.all_turned = all_turned}, 0.6));
+        CHECK(stays({.thickness = 0.9, .all_turned = all_turned}, 0.6));
+        // Of more than a thirty-second of the cube's area.
+        CHECK(stays({.width = 12, .all_turned = all_turned}, 0.6));
+        CHECK_FALSE(stays({.width = 12, .inward = true, .all_turned = all_turned}, 0.6));
+        // Beside the cube, not in it.
+        CHECK(stays({.inward = true, .at = Vec3(25, 0, 0), .all_turned = all_turned}, 0.6));
+    }
 }

@@ -6,7 +6,9 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
+#include <random>
 
 using namespace hsdm;
 using support::Solid;
@@ -118,6 +120,28 @@ TEST_CASE("points between the sides of a wall four deviations thick come to lie 
         CHECK(above > 0.4 * inner);
         CHECK(below > 0.4 * inner);
     }
+}
+
+TEST_CASE("an open sheet stays one, whatever its noise", "[normals][slow]") {
+    constexpr std::size_t many = 3000;
+    const double step = std::sqrt(1.0 / many);
+    for (const bool bounded : {false, true})
+        for (std::uint32_t seed : {1u, 2u, 3u}) {
+            std::mt19937 random(seed);
+            const auto unit = [&] { return static_cast<double>(random()) / std::mt19937::max(); };
+            PointCloud sheet;
+            for (std::size_t i = 0; i < many; ++i) {
+                double height = bounded ? 2 * std::sqrt(3.0) * (unit() - 0.5) : -6;
+                for (int k = 0; k < 12 && !bounded; ++k) height += unit(); // nearly normal
+                sheet.positions.emplace_back(unit(), unit(), 0.8 * step * height);
+            }
+            const Smoothed s = smoothed(sheet);
+            double squares = 0;
+            for (const Vec3& p : s.octree.positions) squares += std::pow((p + s.octree.origin)[2], 2);
+            INFO((bounded ? "bounded noise, seed " : "normal noise, seed ") << seed);
+            CHECK(s.report.noise > 0);
+            CHECK(std::sqrt(squares / many) < 0.3 * 0.8 * step);
+        }
 }
 
 TEST_CASE("layers of a closed surface stay one", "[normals][slow]") {

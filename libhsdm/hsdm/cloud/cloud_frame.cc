@@ -70,7 +70,7 @@ Vec3 CloudFrame::to_work(const Vec3& cloud) const {
     return p;
 }
 
-Vec3 CloudFrame::stretched_to_cloud(const Vec3& work) const {
+Vec3 CloudFrame::changed_to_cloud(const Vec3& work) const {
     Vec3 p = work;
     for (unsigned k = 0; k < 3; ++k)
         if (const Index stretch = stretch_of(work[k], k); stretch > 0)

@@ -31,7 +31,7 @@ public:
     /// The cloud's coordinates of a point; where cuts are, the point must lie within half a kept gap of the
     /// cloud's points.
     Vec3 to_cloud(const Vec3& work) const {
-        return unit_ == 1 && !has_cuts() ? work : stretched_to_cloud(work);
+        return unit_ == 1 && !has_cuts() ? work : changed_to_cloud(work);
     }
     /// Per axis, the stretch between cuts that a point lies in, given in coordinates without cuts; the next
     /// function takes coordinates with cuts. Two points of different stretches are farther apart than their
@@ -47,7 +47,7 @@ public:
     double cut_gaps(unsigned axis, std::vector<double>& coordinates, double widest);
 
 private:
-    Vec3 stretched_to_cloud(const Vec3& work) const;
+    Vec3 changed_to_cloud(const Vec3& work) const;
     Index stretch_of(double work, unsigned axis) const;
     Index stretch_of_uncut(double uncut, unsigned axis) const;
     /// A stretch: from coordinate `first` on, `shift` has been cut out.

@@ -16,8 +16,18 @@ namespace {
 /// Of a closed component.
 struct Extent {
     double area = 0, volume = 0; ///< negative: it faces inward, as the side of a cavity does
+    Box box;
 
     bool is_thinner_than(double thickness) const { return 2 * std::abs(volume) < thickness * area; }
+
+    /// May this be layers of the largest component: a cavity in it, or small and beside it?
+    bool may_be_of(const Extent& largest, double margin, double least_ratio) const {
+        for (unsigned k = 0; k < 3; ++k)
+            if (box.lo[k] < largest.box.lo[k] - margin || box.hi[k] > largest.box.hi[k] + margin)
+                return false;
+        const bool is_cavity = (volume < 0) != (largest.volume < 0); // nothing is turned outward yet
+        return is_cavity ? area < largest.area : area * least_ratio <= largest.area;
+    }
 };
 
 /// The connected components of a mesh, each known by the least of its vertices.
@@ -46,16 +56,17 @@ public:
             areas[of(f)] += area_vector(mesh_, mesh_.facet(f)).norm();
         return areas;
     }
-    /// Per component of at most `most` facets, its area and what it encloses; 0 for others.
+    /// Per component of at most `most` facets, its area, what it encloses and its box; nothing for others.
     std::vector<Extent> extents(std::size_t most) {
         std::vector<Extent> result(facets_.size());
         for_each_in_order(mesh_.facet_count(), [&](std::size_t f) {
             const Index component = of(f);
             if (facets_[component] > most) return;
             const Vec3 area = 0.5 * area_vector(mesh_, mesh_.facet(f));
-            result[component].area += area.norm();
-            result[component].volume +=
-                (area | (mesh_.positions[mesh_.facet(f)[0]] - mesh_.positions[component])) / 3;
+            Extent& extent = result[component];
+            extent.area += area.norm();
+            extent.volume += (area | (mesh_.positions[mesh_.facet(f)[0]] - mesh_.positions[component])) / 3;
+            for (const Index v : mesh_.facet(f)) extent.box.add(mesh_.positions[v]);
         });
         return result;
     }
@@ -122,18 +133,20 @@ Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options) {
                && (options.of_larger || static_cast<double>(size) * options.least_ratio <= largest);
     };
     const bool has_layers = options.layers > 0;
-    if (!has_layers && std::ranges::none_of(sizes, [&](std::size_t size) { return size > 0 && may_go(size); }))
+    if (!has_layers
+        && std::ranges::none_of(sizes, [&](std::size_t size) { return size > 0 && may_go(size); }))
         return {};
     const std::size_t looked_at = has_layers ? mesh.facet_count() : options.most_flat;
     const std::vector<std::uint8_t> open = components.are_open(std::max(options.most_open, looked_at));
     const std::vector<Extent> extents = components.extents(looked_at);
-    double most_area = 0;
-    for (const Extent& extent : extents) most_area = std::max(most_area, extent.area);
+    const auto of_most = std::ranges::max_element(extents, {}, &Extent::area) - extents.begin();
+    Extent widest = extents[static_cast<std::size_t>(of_most)];
+    if (open[static_cast<std::size_t>(of_most)] != 0) widest.volume = 0;
     std::vector<EdgeHint> none;
     const SmallComponentFacets small = components_where(mesh, components, [&](std::size_t c) {
         const Extent& extent = extents[c];
         if (open[c] == 0 && extent.is_thinner_than(options.layers)
-            && (extent.volume < 0 ? extent.area < most_area : extent.area * options.least_ratio <= most_area))
+            && extent.may_be_of(widest, options.layers, options.least_ratio))
             return true;
         const bool flat = sizes[c] <= options.most_flat && extent.is_thinner_than(options.flat);
         const std::size_t most_closed = flat ? options.most_flat : options.most_facets;

@@ -18,9 +18,10 @@ struct SplinterOptions {
     /// ones are a plate
     std::size_t most_flat = splinters::most_flat;
     double flat = 0;
-    /// In the mesh's units, where sheets are layers of one surface: what is closed and thinner on average is
-    /// layers of what it lies beside, whatever its number of facets: if it faces inward (no scanner sees into
-    /// a cavity), or if its area times `least_ratio` is at most the largest component's. 0: nothing is.
+    /// In the mesh's units, where sheets are layers of one surface. What is closed, thinner (twice its volume
+    /// over its area) and within the box of the component with the most area, but for that length, is layers
+    /// of it, whatever its number of facets: if it faces the other way (no scanner sees into a cavity), or if
+    /// its area times `least_ratio` is at most that. 0: nothing is.
     double layers = 0;
     /// least ratio of the facets of the largest component to those of a splinter
     double least_ratio = splinters::least_ratio;

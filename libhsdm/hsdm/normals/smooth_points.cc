@@ -244,22 +244,46 @@ std::vector<Scatter> scatter_of(const Surroundings& surroundings, const std::vec
     return scatter;
 }
 
+/// Points in strips as wide as a half gap, of which the second two have the two sheets in their middle.
+struct Strips {
+    double between = 0, at_sheets = 0;
+
+    void add(double distance, double half_gap) {
+        between += distance < 0.5 * half_gap;
+        at_sheets += std::abs(distance - half_gap) < 0.25 * half_gap;
+    }
+};
+
 /// Points of voxels, those of them at the surface's ends, and of these those that scatter as about two
 /// sheets.
 struct SheetCounts {
     double points = 0, at_ends = 0, ends_of_two = 0;
     std::vector<double> noises; ///< deviation about each sheet, per voxel of two
+    Strips strips;              ///< of these voxels
+
+    /// Noise that is bounded, as of depths in steps, has two moments as of two sheets, but no fewer points in
+    /// the middle than beside it. Are there fewer, by more than twice the deviation of chance?
+    bool are_apart() const {
+        const double fewer = strips.at_sheets - strips.between;
+        return fewer > 2 * std::sqrt(strips.at_sheets + strips.between);
+    }
 };
 
-SheetCounts count_sheets(const Surroundings& surroundings, const std::vector<Scatter>& scatter,
-                         double far_aside) {
+SheetCounts count_sheets(const Surroundings& surroundings, const std::vector<Vec3>& from,
+                         const MovedPoints& moved, double far_aside) {
+    const std::vector<Scatter> scatter = scatter_of(surroundings, from, moved);
     std::vector<std::uint8_t> at_end(scatter.size());
+    std::vector<Strips> strips(scatter.size());
     std::vector<double> variance(scatter.size()); // about each of two; below 0: of one
     surroundings.for_each_voxel([&](Index v, const std::vector<Index>& around) {
         Scatter sum;
         for (const Index k : around) sum.add_moments(scatter[k]);
         const double square = sum.squared_half_gap(), left = std::max(0.0, sum.variance() - square);
         variance[v] = square > left ? left : -1; // nearer sheets have no two modes
+        if (square > left)
+            surroundings.for_points_of(v, [&](const Vec3&, Index i) {
+                strips[v].add((from[i] - moved.positions[i]).norm(), std::sqrt(square));
+            });
         const Vec3 away = sum.at / sum.count - scatter[v].at / scatter[v].count;
         at_end[v] = (away % scatter[v].normal.normalized()).norm() > far_aside;
     });
@@ -270,6 +294,7 @@ SheetCounts count_sheets(const Surroundings& surroundings, const std::vector<Sca
         if (variance[v] < 0) return;
         counts.ends_of_two += at_end[v] * scatter[v].count;
         counts.noises.push_back(std::sqrt(variance[v]));
+        counts.strips.between += strips[v].between, counts.strips.at_sheets += strips[v].at_sheets;
     });
     return counts;
 }
@@ -283,8 +308,8 @@ double noise_of_two_sheets(const Surroundings& surroundings, const std::vector<V
     // What lies around reaches half a voxel farther. At a straight end its mean is half of that off, a third
     // of the way in from there a third.
     const double strip = radius * (1 + 0.5 / smoothing::reach) / 3;
-    SheetCounts counts = count_sheets(surroundings, scatter_of(surroundings, from, moved), strip);
-    if (counts.noises.empty() || 2 * counts.ends_of_two < counts.at_ends) return 0;
+    SheetCounts counts = count_sheets(surroundings, from, moved, strip);
+    if (counts.noises.empty() || !counts.are_apart() || 2 * counts.ends_of_two < counts.at_ends) return 0;
     const double area = counts.points * spacing * spacing;
     const double length = counts.at_ends / counts.points * area / strip;
     if (length * length < 4 * std::numbers::pi * area) return 0;

@@ -169,9 +169,11 @@ Reconstruction finish_whole(const WholeInput& in, WholeFacets&& facets, Report&&
     });
     Reconstruction result;
     finish_mesh(method, std::move(facets.mesh), std::move(facets.known), std::move(report), result,
-                [&](PolygonMesh& mesh, FacetKnowledge&, Report& of) {
+                [&](PolygonMesh& mesh, FacetKnowledge& known, Report& of) {
                     if (!in.options.measure) return;
-                    note_topology(measure_connectivity(mesh), of);
+                    const bool linked = known.links && known.links->rejected == 0;
+                    note_topology(
+                        linked ? measure_connectivity(mesh, *known.links) : measure_connectivity(mesh), of);
                     measure_error(in, mesh, of);
                 });
     return result;

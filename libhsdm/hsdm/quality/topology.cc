@@ -190,7 +190,10 @@ bool has_no_area(std::span<const Vec3> ring) {
     constexpr double negligible = 1e-12; // area over the longest side squared
     if (ring.size() < 3) return true;
     double size = 0;
-    for (const Vec3& p : ring) size = std::max(size, (p - ring[0]).max_abs());
+    for (const Vec3& p : ring) {
+        if (!std::isfinite(p[0] + p[1] + p[2])) return true;
+        size = std::max(size, (p - ring[0]).max_abs());
+    }
     if (!(size > 0) || !std::isfinite(size)) return true;
     const bool is_usual = size > 1e-50 && size < 1e50;
     // Nearly always a triangle tells: a side is at most sqrt(12) times `size` long.
