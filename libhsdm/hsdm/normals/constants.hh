@@ -341,6 +341,23 @@ HSDM_TUNED int rounds = 2;
 
 } // namespace hsdm::normal_votes
 
+// arcs.hh
+namespace hsdm::arcs {
+
+/// factor: how many more neighbours arcs must explain than a plane.
+/// Why: by trial; nearer to one, rims of thin walls come out round, from 1.2 on mouths of bores close.
+HSDM_TUNED double clear_gain = 1.15;
+
+/// rounds: of turning.
+/// Why: by trial; each reaches a neighbourhood farther and halves the errors; most points turn in three.
+HSDM_TUNED int rounds = 10;
+
+/// cosine: of a turn that neighbours need not follow.
+/// Why: 0.8 degrees; by trial, below what they differ by.
+HSDM_TUNED double still = 0.9999;
+
+} // namespace hsdm::arcs
+
 // steady_normals.hh
 namespace hsdm::scattered_normals {
 

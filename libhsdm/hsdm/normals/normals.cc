@@ -1,6 +1,7 @@
 #include "hsdm/normals/normals.hh"
 
 #include "hsdm/core/interruption.hh"
+#include "hsdm/normals/arcs.hh"
 #include "hsdm/normals/noise.hh"
 #include "hsdm/normals/vote_on_normals.hh"
 
@@ -41,6 +42,7 @@ NormalsReport make_normals(Octree& octree, const NormalsOptions& options) {
     estimate.normals = std::move(refined);
     report.orientation = orientation.report;
     vote_on_normals(octree, neighbors, estimate);
+    bend_to_arcs(octree, neighbors, estimate);
     report.noise = estimate.noise;
     report.bent = estimate.bent.size();
     report.missing = static_cast<std::size_t>(std::count_if(estimate.normals.begin(), estimate.normals.end(),
