@@ -42,7 +42,8 @@ NormalsReport make_normals(Octree& octree, const NormalsOptions& options) {
     estimate.normals = std::move(refined);
     report.orientation = orientation.report;
     vote_on_normals(octree, neighbors, estimate);
-    bend_to_arcs(octree, neighbors, estimate);
+    // Neighbours in two layers of one surface lie on arcs from the one to the other.
+    if (orientation.report.of_layers == 0) bend_to_arcs(octree, neighbors, estimate);
     report.noise = estimate.noise;
     report.bent = estimate.bent.size();
     report.missing = static_cast<std::size_t>(std::count_if(estimate.normals.begin(), estimate.normals.end(),
