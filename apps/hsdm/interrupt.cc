@@ -19,6 +19,13 @@
 namespace hsdm::command {
 namespace {
 
+/// Until it is true, for about so many milliseconds at most.
+template <class Predicate>
+void wait_until(const Predicate& is_true, int patience) {
+    for (int waited = 0; !is_true() && waited < patience; ++waited)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
 /// One line for standard error, put together without asking for memory: there may be none.
 class LastWords {
 public:
@@ -38,8 +45,7 @@ public:
         constexpr std::string_view wipe = "\r\033[K";
         constexpr int patience = 300; // milliseconds, twice: every core may be busy with other processes
         text_[length_++] = '\n';
-        for (int waited = 0; !os::try_lock(stderr) && waited < patience; ++waited)
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        wait_until([] { return os::try_lock(stderr); }, patience);
         if (!os::is_ready_to_write(os::standard_error, patience)) return;
         if (os::is_terminal(os::standard_error)) write_some(wipe);
         write_some({text_, length_});
@@ -73,9 +79,8 @@ std::mutex end_mutex;
 const std::function<void()>* last_work = nullptr;
 
 [[noreturn]] void end_as_asked(int status) {
-    constexpr int patience = 500; // hundredths of a second: what joins a job may hang itself
-    for (int waited = 0; !end_mutex.try_lock() && waited < patience; ++waited) // and never unlocked
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    constexpr int patience = 5000; // milliseconds: what joins a job may hang itself
+    wait_until([] { return end_mutex.try_lock(); }, patience); // and it is never unlocked
     try {
         if (last_work) (*last_work)();
     } catch (...) { // the message will not list what could not be written

@@ -70,9 +70,8 @@ private:
         Support sum;
         for (std::size_t k = 0; k < around_.size(); ++k) {
             const Double2 cosine = max_lanes(Double2{}, normals | normals_[k]);
-            const Double2 rise = normals | around_.offset(k), t = inverse_ * rise;
-            const Double2 u = inverse_ * (rise + rises_[k]);
-            sum.plane += cosine * square(max_lanes(Double2{}, 1 - t * t));
+            const Double2 rise = normals | around_.offset(k), u = inverse_ * (rise + rises_[k]);
+            sum.plane += cosine * closeness(rise, inverse_);
             sum.arc += cosine * square(max_lanes(Double2{}, 1 - u * u / (2 + 2 * cosine)));
         }
         return sum;

@@ -25,12 +25,6 @@ void note_small_components(const SmallComponents& small, Report& report) {
     report.rejected["facets_of_small_components"] = small.facets.count;
 }
 
-/// By links if they are known and say all: those of no rejected facet.
-void measure_mesh(const PolygonMesh& facets, const std::optional<FacetLinks>& links, Report& report) {
-    const bool linked = links && links->rejected == 0;
-    note_topology(linked ? measure_connectivity(facets, *links) : measure_connectivity(facets), report);
-}
-
 /// On a uniform grid facets are about as large as voxels.
 void make_cells(const PolygonMesh& facets, FacetKnowledge& known, const Report& report) {
     if (report.grid.kind == "uniform" && !known.cells) known.cells.emplace(facets, report.grid.voxel_size);
@@ -84,6 +78,11 @@ double into_own_unit(std::vector<Vec3>& positions) {
 
 } // namespace
 
+void note_topology(const PolygonMesh& facets, const std::optional<FacetLinks>& links, Report& report) {
+    const bool linked = links && links->rejected == 0;
+    note_topology(linked ? measure_connectivity(facets, *links) : measure_connectivity(facets), report);
+}
+
 void note_topology(const Topology& t, Report& report) {
     Report::Mesh& m = report.mesh;
     m.vertices = t.vertices;
@@ -135,7 +134,7 @@ void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, Polyg
         return;
     }
     if (!measured) make_cells(facets, known, report); // here: only this thread asks whether to go on
-    run_both([&] { measure_mesh(facets, known.links, report); },
+    run_both([&] { note_topology(facets, known.links, report); },
              [&] {
                  if (measured) return;
                  const Occurrences left_out = measure_error(points, in, facets, known, 0, report);
@@ -153,7 +152,7 @@ void measure_again(const PolyMesh& mesh, std::span<const Vec3> points, Report& r
     report.error = {};
     if (points.empty()) return;
     PolygonMesh facets = to_polygons(mesh);
-    measure_mesh(facets, std::nullopt, report);
+    note_topology(facets, std::nullopt, report);
     const double unit = CloudFrame(bounds_of(points)).unit(); // distances are squared
     std::vector<Vec3> measured(points.begin(), points.end());
     for (std::vector<Vec3>* const places : {&measured, &facets.positions})

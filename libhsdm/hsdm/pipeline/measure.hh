@@ -23,6 +23,8 @@ void measure_again(const PolyMesh& mesh, std::span<const Vec3> points, Report& r
 
 /// What the report says of a mesh's connectivity.
 void note_topology(const Topology& topology, Report& report);
+/// By the mesh's links if they are known and say all: no facet was rejected.
+void note_topology(const PolygonMesh& facets, const std::optional<FacetLinks>& links, Report& report);
 
 /// Pairs of facets that pass through each other, and a corner of the first.
 Occurrences facets_that_meet(const PolygonMesh& facets);

@@ -171,9 +171,7 @@ Reconstruction finish_whole(const WholeInput& in, WholeFacets&& facets, Report&&
     finish_mesh(method, std::move(facets.mesh), std::move(facets.known), std::move(report), result,
                 [&](PolygonMesh& mesh, FacetKnowledge& known, Report& of) {
                     if (!in.options.measure) return;
-                    const bool linked = known.links && known.links->rejected == 0;
-                    note_topology(
-                        linked ? measure_connectivity(mesh, *known.links) : measure_connectivity(mesh), of);
+                    note_topology(mesh, known.links, of);
                     measure_error(in, mesh, of);
                 });
     return result;
