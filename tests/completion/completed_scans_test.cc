@@ -239,7 +239,7 @@ TEST_CASE("completed vertices take colours and labels from those around", "[comp
     CHECK(seen == completed.mesh.vertex_count());
 }
 
-TEST_CASE("a bowl whose outer bottom nobody saw is closed below its inner one", "[completion]") {
+TEST_CASE("a bowl whose outer bottom nobody saw is closed below its inner one", "[completion][slow]") {
     // A flat surface over the outer border passes through the inner bottom.
     const Solid bowl = (sphere(1) - sphere(0.92)) - box({3, 3, 3}).placed(turned({1, 0, 0}, 0, {0, 0, 1.7}));
     const PointCloud cloud = partial_scan(bowl, {.points = 40000, .normals = true},

@@ -153,7 +153,7 @@ BoxWithSlit box_with_slit(bool window) {
 
 } // namespace
 
-TEST_CASE("a slit that the sampling left is closed and marked, a window stays open", "[completion]") {
+TEST_CASE("a slit that the sampling left is closed and marked, a window stays open", "[completion][slow]") {
     const BoxWithSlit scan = box_with_slit(true);
     const Vec3 &middle = scan.middle, &up = scan.up, &x = scan.x, &y = scan.y;
     PointCloud cloud = scan.cloud;

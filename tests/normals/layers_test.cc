@@ -127,7 +127,7 @@ TEST_CASE("the side in question is the layers' even if most of the sheets is tur
     for (const std::int8_t sign : sheets.walls.sign) REQUIRE(sign * sky.outward[0] == 1);
 }
 
-TEST_CASE("layers of scans that do not register have their normals on one side", "[normals]") {
+TEST_CASE("layers of scans that do not register have their normals on one side", "[normals][slow]") {
     const support::Solid ball = support::sphere(1);
     double layers = 0;
     for (std::uint64_t seed = 31; seed <= 33; ++seed)

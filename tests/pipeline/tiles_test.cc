@@ -76,7 +76,7 @@ std::string refusal(const PointCloud& cloud, const TileOptions& tiles) {
 
 } // namespace
 
-TEST_CASE("tiles give the mesh of the run in one piece, bit for bit", "[pipeline]") {
+TEST_CASE("tiles give the mesh of the run in one piece, bit for bit", "[pipeline][slow]") {
     PointCloud cloud = scan_for_tiles(false);
     cloud.positions.push_back({0.03, 0.11, 0.05}); // an outlier
     cloud.normals.push_back({0, 0, 1});
@@ -199,7 +199,8 @@ TEST_CASE("points that come in many parts are the same cloud", "[pipeline]") {
     check_same_as_whole(reconstruct(cloud, options), reconstruct_in_tiles(parts, options, tiles_of(25000)));
 }
 
-TEST_CASE("neighbours that know too little around them to agree are made again with more", "[pipeline]") {
+TEST_CASE("neighbours that know too little around them to agree are made again with more",
+          "[pipeline][slow]") {
     const PointCloud cloud = scan_for_tiles(true);
     const ReconstructOptions options{.depth = 6};
     TileOptions tiles = tiles_of(12000);
@@ -210,7 +211,7 @@ TEST_CASE("neighbours that know too little around them to agree are made again w
     CHECK(how.widened > 0);
 }
 
-TEST_CASE("what tiles cannot tell is refused, with the reason", "[pipeline]") {
+TEST_CASE("what tiles cannot tell is refused, with the reason", "[pipeline][slow]") {
     PointCloud cloud = scan_for_tiles(false);
     const TileOptions tiles = tiles_of(25000);
     SECTION("an outlier") {

@@ -27,7 +27,6 @@ class Job:
         self.phase, self.share = "reading", 0.0
         self.mesh = None
         self.error = None
-        self.was_cancelled = False
         self.shift = None
 
     def start(self):
@@ -35,6 +34,11 @@ class Job:
 
     def is_done(self):
         return not self._thread.is_alive()
+
+    @property
+    def was_cancelled(self):
+        """Whether nothing is to be made of it, also where it was asked to end when it had just been done."""
+        return self._cancelled.is_set()
 
     def cancel(self):
         """Asks it to end, which takes some tenths of a second."""
@@ -49,7 +53,7 @@ class Job:
                 **cloud.arguments(), **self._options, progress=lambda *told: self._goes_on(progress, *told)
             )
         except self._hsdm.Cancelled:
-            self.was_cancelled = True
+            self._cancelled.set()
         except Exception as error:  # told by the operator, whatever it is: an error in a thread is told by nobody
             self.error = error
 

@@ -36,8 +36,8 @@ public:
     std::span<const std::array<Index, 3>> corners() const { return {corners_.data(), size_}; }
     std::size_t eights() const { return chunk_count(size_, EightTriangles::size); }
     /// Appends for each eight the bits of the triangles that have the foot of p inside.
-    void add_feet_inside(const Vec3& p, std::vector<unsigned>& inside) const {
-        for (std::size_t e = 0; e < eights(); ++e) inside.push_back(lanes_.feet_inside(eights_[e], p));
+    void add_feet_inside(const Vec3& p, std::vector<unsigned>& within) const {
+        for (std::size_t e = 0; e < eights(); ++e) within.push_back(lanes_.feet_inside(eights_[e], p));
     }
     NearestOfTriangle foot(std::size_t triangle, const Vec3& p) const {
         return eights_[triangle / EightTriangles::size].foot(triangle % EightTriangles::size, p);
@@ -72,9 +72,9 @@ Foot find_foot(const Vec3& p, const Around& around, const unsigned* feet_inside,
     Foot best;
     std::size_t nearest = around.corners().size(); // of the triangles
     for (std::size_t e = 0; e < around.eights(); ++e)
-        for (unsigned inside = feet_inside[e]; inside != 0; inside &= inside - 1) {
+        for (unsigned within = feet_inside[e]; within != 0; within &= within - 1) {
             const std::size_t t =
-                e * EightTriangles::size + static_cast<std::size_t>(std::countr_zero(inside));
+                e * EightTriangles::size + static_cast<std::size_t>(std::countr_zero(within));
             const NearestOfTriangle foot = around.foot(t, p);
             if (foot.squared_distance < best.nearest.squared_distance) best.nearest = foot, nearest = t;
         }

@@ -12,7 +12,7 @@
 namespace hsdm {
 namespace {
 
-constexpr int most_rounds = 10;
+constexpr int most_subdivisions = 10;
 
 /// Where the points of a refined mesh come to lie.
 class Masks {
@@ -88,9 +88,9 @@ private:
 };
 
 /// The links of a refined mesh, by arithmetic on the numbers of what there was.
-class Links {
+class RefinedLinks {
 public:
-    Links(const HalfEdges& old, bool triangles)
+    RefinedLinks(const HalfEdges& old, bool triangles)
         : old_(old),
           vertices_(static_cast<Index>(old.vertex_count())),
           edges_(static_cast<Index>(old.edge_count())),
@@ -209,8 +209,8 @@ bool all_triangles(const HalfEdges& mesh, Index& other) {
 } // namespace
 
 void validate(const SubdivisionOptions& options) {
-    check_option(options.rounds >= 0 && options.rounds <= most_rounds, "rounds", options.rounds,
-                 "lie in [0, " + std::to_string(most_rounds) + "]");
+    check_option(options.rounds >= 0 && options.rounds <= most_subdivisions, "rounds", options.rounds,
+                 "lie in [0, " + std::to_string(most_subdivisions) + "]");
     check_option(options.corner_angle > 0 && options.corner_angle < std::numbers::pi, "corner_angle",
                  options.corner_angle, "lie in (0, pi), in radians");
 }
@@ -250,7 +250,7 @@ void check_numbers(const HalfEdges& mesh, int rounds) {
 
 Refinement refined(const HalfEdges& mesh, const std::vector<CurveRole>& roles, SubdivisionScheme scheme) {
     const bool triangles = scheme == SubdivisionScheme::loop;
-    Refinement refinement = Links(mesh, triangles).build();
+    Refinement refinement = RefinedLinks(mesh, triangles).build();
     std::vector<Vec3>& points = refinement.mesh.positions;
     const Masks masks(mesh, roles, triangles);
     std::vector<Vec3> facet_points(triangles ? 0 : mesh.facet_count());
