@@ -312,7 +312,7 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     draw_in_rims(octree, level, sets, dual, vertices);
     separate_sides(dual, vertices.positions);
     std::vector<EdgeCollapse> to_corners = shared_corners(dual, vertices);
-    const std::vector<InnerTunnel> tunnels = find_inner_tunnels(dual, sets);
+    const std::vector<InnerTunnel> tunnels = find_inner_tunnels(dual, level, sets);
 
     const Midpoints midpoints(dual, sets, vertices);
     result.mesh = facets_of(dual, midpoints, vertices);

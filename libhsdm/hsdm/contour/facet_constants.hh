@@ -13,6 +13,11 @@ namespace hsdm::surrounding {
 /// Why: 150 degrees; what leaves half a turn free lies on one side, and normals may err by 30.
 inline constexpr double widest_gap = 2.6;
 
+/// voxels: to either side along the axis.
+/// Why: walls and gaps that decide wrongly, and what passes a voxel from corner to corner, are under a voxel
+/// wide.
+inline constexpr double reach_along = 1;
+
 } // namespace hsdm::surrounding
 
 // handles.hh, witnesses.hh
@@ -30,11 +35,10 @@ inline constexpr std::size_t witnesses = 8, fewest_witnesses = 2;
 /// Why: a web has four sides, above, below and at its ends, and below at least there are no points.
 inline constexpr double least_contradicted = 0.25;
 
-/// share: of a ring's width that points across it are looked for in, and voxels to either side of it.
+/// share: of a ring's width that points across it are looked for in.
 /// Why: by trial; beside a ring that goes round a hole of the part lie the hole's own points, outside of
-/// seven tenths if the ring is no rounder than a square. Walls and gaps that decide wrongly are under a voxel
-/// wide.
-inline constexpr double share_of_ring = 0.7, reach_along = 1;
+/// seven tenths if the ring is no rounder than a square.
+inline constexpr double share_of_ring = 0.7;
 
 /// points: of a sheet across a ring, for each that says otherwise.
 /// Why: where a suite's handles were wrong, one in four at most said otherwise; round true ones they were

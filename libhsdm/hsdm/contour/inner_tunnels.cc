@@ -64,20 +64,53 @@ Ring ring_of(const DualMesh& dual, ChainVertices chain) {
     return ring;
 }
 
-/// Do all sets of a voxel lie round the way between two rings, on the side of it that the rings say?
-bool is_free(const Ring& a, const Ring& b, std::span<const NormalSet> sets, double least) {
-    const double sign = a.within > 0 ? 1 : -1;
-    if (sign * a.within < least || sign * b.within < least) return false;
-    const Vec3 way = unit(b.middle - a.middle);
-    const Frame across(way);
-    std::vector<double> directions;
-    for (const NormalSet& s : sets) {
-        if (sign * (s.normal | (a.middle - s.centroid)) < 0
-            || sign * (s.normal | (b.middle - s.centroid)) < 0)
-            return false;
-        if (std::abs(s.normal | way) < angles::halfway) directions.push_back(across.angle_of(s.normal));
+/// The way between two rings of a voxel, and how sets lie about it.
+class WayBetween {
+public:
+    WayBetween(const Ring& a, const Ring& b)
+        : a_(a), b_(b), middle_(0.5 * (a.middle + b.middle)), way_(unit(b.middle - a.middle)), across_(way_) {
+        sign_ = a.within > 0 ? 1 : -1;
     }
-    return widest_gap(directions) < surrounding::widest_gap;
+
+    /// Do both rings go round their middles, on one side of the surface?
+    bool is_clear(double least) const { return sign_ * a_.within >= least && sign_ * b_.within >= least; }
+
+    /// Does a set's plane lie on the side of both middles that the rings say?
+    bool is_beside(const NormalSet& s) const {
+        return !(sign_ * (s.normal | (a_.middle - s.centroid)) < 0
+                 || sign_ * (s.normal | (b_.middle - s.centroid)) < 0);
+    }
+    bool is_near(const NormalSet& s, double farthest) const {
+        return (s.centroid - middle_).sqrnorm() < farthest * farthest;
+    }
+
+    void add(const NormalSet& s) {
+        if (std::abs(s.normal | way_) < angles::halfway) directions_.push_back(across_.angle_of(s.normal));
+    }
+    bool is_surrounded() { return widest_gap(directions_) < surrounding::widest_gap; }
+
+private:
+    const Ring &a_, &b_;
+    Vec3 middle_, way_;
+    Frame across_;
+    double sign_;
+    std::vector<double> directions_; ///< of the sets added
+};
+
+/// Do all sets of a voxel lie beside the way between two rings, and they and those near it all round?
+bool is_free(const Ring& a, const Ring& b, Index voxel, const OctreeLevel& level, const NormalSets& sets) {
+    const double h = level.voxel_size;
+    WayBetween way(a, b);
+    if (!way.is_clear(sheets::surface_error * h)) return false;
+    for (const NormalSet& s : sets.of_voxel(voxel)) {
+        if (!way.is_beside(s)) return false;
+        way.add(s);
+    }
+    for_neighbors(level, voxel, [&](Index v) {
+        for (const NormalSet& s : sets.of_voxel(v))
+            if (way.is_beside(s) && way.is_near(s, surrounding::reach_along * h)) way.add(s);
+    });
+    return way.is_surrounded();
 }
 
 /// A vertex and a facet that has it.
@@ -205,17 +238,17 @@ bool meet(const Stars& rings, std::span<const Index> one, std::span<const Index>
 
 } // namespace
 
-std::vector<InnerTunnel> find_inner_tunnels(const DualMesh& dual, const NormalSets& sets) {
+std::vector<InnerTunnel> find_inner_tunnels(const DualMesh& dual, const OctreeLevel& level,
+                                            const NormalSets& sets) {
     const std::vector<ChainOfVoxel> chains = chains_that_share_voxels(dual.duals, sets.first.size() - 1);
     std::vector<InnerTunnel> result;
-    const double least = sheets::surface_error * dual.voxel_size;
     for (std::size_t i = 0; i + 1 < chains.size(); ++i) {
         const Index voxel = chains[i].voxel;
         const bool is_pair = chains[i + 1].voxel == voxel && (i == 0 || chains[i - 1].voxel != voxel)
                              && (i + 2 == chains.size() || chains[i + 2].voxel != voxel);
         if (!is_pair || sets.of_voxel(voxel).empty()) continue;
         const InnerTunnel pair{chains[i].vertices, chains[i + 1].vertices};
-        if (is_free(ring_of(dual, pair[0]), ring_of(dual, pair[1]), sets.of_voxel(voxel), least))
+        if (is_free(ring_of(dual, pair[0]), ring_of(dual, pair[1]), voxel, level, sets))
             result.push_back(pair);
     }
     return result;

@@ -3,6 +3,7 @@
 // Chernyaev, Marching Cubes 33, 1995), decided by the voxel's sets. See docs/sheets.md.
 
 #include "hsdm/contour/dual_mesh.hh"
+#include "hsdm/octree/octree.hh"
 #include "hsdm/polygon_mesh.hh"
 
 namespace hsdm {
@@ -18,8 +19,10 @@ using InnerTunnel = std::array<ChainVertices, 2>;
 
 /// Where two closed chains of one voxel go round the two ends of what is free of sets, or full, nothing ends
 /// there: every set of the voxel faces the way from the middle of one chain to that of the other, or every
-/// set faces away from it. Ascending, each chain once. O(dual vertices).
-std::vector<InnerTunnel> find_inner_tunnels(const DualMesh& dual, const NormalSets& sets);
+/// set faces away from it, and with those near by they lie all round it. Ascending, each chain once.
+/// O(dual vertices).
+std::vector<InnerTunnel> find_inner_tunnels(const DualMesh& dual, const OctreeLevel& level,
+                                            const NormalSets& sets);
 
 /// Takes away the facets round the vertices of each tunnel's chains and joins the two rings of vertices
 /// around by a tube of quads (and triangles where one ring has more vertices). The chains' vertices stay,

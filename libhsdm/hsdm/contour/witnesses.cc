@@ -115,7 +115,7 @@ std::vector<Index> Witnesses::voxels_at(std::span<const Index> ring) const {
 }
 
 bool Witnesses::span(std::span<const Index> ring) {
-    const Tube tube(mesh_, ring, handles::reach_along * level_.voxel_size);
+    const Tube tube(mesh_, ring, surrounding::reach_along * level_.voxel_size);
     std::array<std::vector<Index>, 2> facing; // away from the ring's disc, towards it
     std::size_t aside = 0;
     for (const Index v : voxels_at(ring))
@@ -136,7 +136,7 @@ bool Witnesses::span(std::span<const Index> ring) {
 }
 
 bool Witnesses::surround(std::span<const Index> ring) const {
-    const Tube tube(mesh_, ring, handles::reach_along * level_.voxel_size);
+    const Tube tube(mesh_, ring, surrounding::reach_along * level_.voxel_size);
     const double farthest = tube.width() + handles::served_within * level_.voxel_size;
     std::array<std::vector<double>, 2> directions; // of those that face the axis, that face away from it
     for (const Index v : voxels_at(ring))
@@ -144,7 +144,7 @@ bool Witnesses::surround(std::span<const Index> ring) const {
             const Vec3 out = tube.out_to(octree_.positions[p]);
             const double length = out.norm();
             if (octree_.source[p] == no_index || !(length > 0) || length > farthest
-                || std::abs(tube.along(octree_.positions[p])) > handles::reach_along * level_.voxel_size)
+                || std::abs(tube.along(octree_.positions[p])) > surrounding::reach_along * level_.voxel_size)
                 continue;
             const double cosine = (octree_.normals[p] | out) / length;
             if (std::abs(cosine) < angles::halfway) continue;
