@@ -33,6 +33,7 @@ struct EdgeSheet {
 struct Candidate {
     Crossing crossing;
     bool standing;
+    float sureness;
 };
 
 /// What is seen from a grid point: the one sheet that there is, from which side, and the octants that hold
@@ -83,10 +84,12 @@ public:
         for (std::size_t i = 0; i < count_; ++i) {
             if (!sheets_[i].crosses) continue;
             if (count_ > 1 && relations_for_ != i) relate(i);
-            const bool on_solid = visible(i);
+            const double within = margin(i);
+            const bool on_solid = within > 0, carried = supported(i),
+                       standing = on_solid && (carried || sheets_[i].beside());
             dropped_beyond_crease += !on_solid;
-            const bool carried = supported(i);
-            found.push_back({crossing(i, carried), on_solid && (carried || sheets_[i].beside())});
+            const bool by_crease = standing || !on_solid; // or for want of points
+            found.push_back({crossing(i, carried), standing, by_crease ? sureness(within) : 1});
         }
         std::sort(found.begin() + static_cast<std::ptrdiff_t>(begin), found.end(),
                   [](const Candidate& a, const Candidate& b) {
@@ -278,24 +281,40 @@ private:
         return b.distance[before ? 0 : 1] >= 0;
     }
 
+    /// How far a crossing of sheet i lies within what sheet j leaves of it, outside j or inside; below 0 if
+    /// beyond.
+    double margin_to(std::size_t j, std::size_t i, bool wants_outside) const {
+        const EdgeSheet& b = sheets_[j];
+        const double distance = std::abs(b.distance[0] + sheets_[i].t * (b.distance[1] - b.distance[0]));
+        const double least = std::max(distance, std::numeric_limits<double>::min());
+        return outside_at(j, i) == wants_outside ? least : -least;
+    }
+
     /// A crossing counts if it lies on the solid's surface: inside every convex crease partner, outside every
     /// concave one. Two convex partners that meet in a concave crease bound the sheet together, so being
     /// inside one of them is enough (likewise with convex and concave exchanged); the top of an L-shaped
-    /// bracket at its inner corner is an example.
-    bool visible(std::size_t i) const {
+    /// bracket at its inner corner is an example. Returns by how far it does, below 0 if it does not.
+    double margin(std::size_t i) const {
+        double least = std::numeric_limits<double>::infinity();
         for (std::size_t j = 0; j < count_; ++j) {
             if (j == i || relations_for_ != i) continue;
             if (relations_[j] != Relation::convex && relations_[j] != Relation::concave) continue;
             const bool wants_outside = relations_[j] == Relation::concave;
-            if (outside_at(j, i) == wants_outside) continue;
+            double one = margin_to(j, i, wants_outside);
             const Relation opposite = wants_outside ? Relation::convex : Relation::concave;
-            bool excused = false;
-            for (std::size_t k = 0; k < count_ && !excused; ++k)
-                excused = k != i && k != j && relations_[k] == relations_[j]
-                          && outside_at(k, i) == wants_outside && relation_between(j, k) == opposite;
-            if (!excused) return false;
+            for (std::size_t k = 0; k < count_ && one < 0; ++k) {
+                if (k == i || k == j || relations_[k] != relations_[j]) continue;
+                const double other = margin_to(k, i, wants_outside);
+                if (other > one && relation_between(j, k) == opposite) one = other;
+            }
+            least = std::min(least, one);
         }
-        return true;
+        return least;
+    }
+
+    /// Of what a margin says, from 0 to 1: none where it is within the error of a sheet.
+    float sureness(double margin) const {
+        return static_cast<float>(std::min(1.0, std::abs(margin) / (sheets::surface_error * h_)));
     }
 
     Vec3 position(std::size_t i) const {
@@ -403,6 +422,7 @@ CrossingCandidates find_crossings(const GridPoints& grid, const LocalSheets& loc
     const std::size_t chunks = chunk_count(n, chunks::slow);
     std::vector<std::vector<Crossing>> found(chunks);
     std::vector<std::vector<std::uint8_t>> standing(chunks);
+    std::vector<std::vector<float>> sureness(chunks);
     std::vector<std::size_t> dropped(chunks);
     for_chunks(n, chunks::slow, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         EdgeCrossings edge(grid, local, seen, sets, related, voxel_size, options);
@@ -415,12 +435,14 @@ CrossingCandidates find_crossings(const GridPoints& grid, const LocalSheets& loc
                 for (const Candidate& candidate : on_edge) {
                     found[chunk].push_back(candidate.crossing);
                     standing[chunk].push_back(candidate.standing);
+                    sureness[chunk].push_back(candidate.sureness);
                 }
             }
         dropped[chunk] = edge.dropped_beyond_crease;
     });
     result.crossings.crossings = joined(found);
     result.standing = joined(standing);
+    result.sureness = joined(sureness);
     counts_to_first(result.crossings.first);
     for (std::size_t d : dropped) result.crossings.dropped_beyond_crease += d;
     return result;

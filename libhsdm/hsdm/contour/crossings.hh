@@ -48,6 +48,9 @@ struct Crossings {
 struct CrossingCandidates {
     Crossings crossings;
     std::vector<std::uint8_t> standing; ///< per crossing
+    /// Per crossing, from 0 to 1: how far from its creases it stands, or is clipped, in
+    /// sheets::surface_error.
+    std::vector<float> sureness;
 };
 
 CrossingCandidates find_crossings(const GridPoints& grid, const LocalSheets& sheets, const NormalSets& sets,

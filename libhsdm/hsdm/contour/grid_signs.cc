@@ -26,14 +26,14 @@ constexpr Side inside = 0, outside = 1, unknown = 2; // the labels of cheapest_l
 class EdgeChoice {
 public:
     explicit EdgeChoice(const CrossingCandidates& candidates)
-        : list_(candidates.crossings), standing_(candidates.standing) {}
+        : list_(candidates.crossings), standing_(candidates.standing), sureness_(candidates.sureness) {}
 
     static constexpr std::size_t most = 128; // sheets of an edge
 
     /// Cost of dropping a standing crossing.
     double weight(Index x) const { return list_.crossings[x].supported ? 1 : signs::cost_of_weak; }
-    double cost_of_taking(Index x) const { return standing_[x] ? 0 : signs::cost_of_return; }
-    double cost_of_leaving(Index x) const { return standing_[x] ? weight(x) : 0; }
+    double cost_of_taking(Index x) const { return standing_[x] ? 0 : signs::cost_of_return * sureness_[x]; }
+    double cost_of_leaving(Index x) const { return standing_[x] ? weight(x) * sureness_[x] : 0; }
     Side side_before(Index x) const { return list_.crossings[x].leaving ? inside : outside; }
 
     double cost(Index edge, Side low, Side high, double invention) const {
@@ -76,6 +76,7 @@ private:
 
     const Crossings& list_;
     const std::vector<std::uint8_t>& standing_;
+    const std::vector<float>& sureness_;
 };
 
 /// Chooses the sides of the grid points, then the crossings.

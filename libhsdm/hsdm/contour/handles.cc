@@ -208,25 +208,20 @@ public:
     }
 
     std::size_t cut() {
-        if (std::ranges::count(contradicted_, 1) == 0) return 0;
+        const std::vector<Index> roots = doubtful_vertices();
+        if (roots.empty()) return 0;
         links_ = known_links_ ? std::move(*known_links_) : link_facets(mesh_);
         known_links_.reset();
         Vicinity vicinity(mesh_, links_);
         assign_large(touched_, mesh_.vertex_count(), 0);
         assign_large(seen_, mesh_.facet_count(), 0);
-        std::vector<Index> roots;
-        for (std::size_t f = 0; f < contradicted_.size(); ++f)
-            if (contradicted_[f])
-                for (const Index v : mesh_.facet(f)) roots.push_back(v);
-        std::sort(roots.begin(), roots.end());
-        roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
         for_each_in_order(roots.size(), [&](std::size_t i) {
             if (work_ > most_work_) return;
             Interruption::poll();
             const std::vector<Index> ring = vicinity.ring_at(roots[i]);
             const double share = share_contradicted(vicinity, ring);
             if (share < 0 || bounds()) return;
-            if ((witnesses_.span(ring)
+            if ((witnesses_.is_narrow(ring) || witnesses_.span(ring)
                  || (share >= handles::least_contradicted && are_contradicted_beside(vicinity, ring)))
                 && !witnesses_.surround(ring))
                 keep(vicinity, ring);
@@ -246,6 +241,24 @@ private:
     static constexpr std::size_t work_at_vertex = 64;
 
     Index facet_of(Index side) const { return links_.facet[side]; }
+
+    /// Those of facets that no set speaks for, and where two edges meet that a narrow ring may have.
+    std::vector<Index> doubtful_vertices() const {
+        const double most = witnesses_.spacing() * witnesses_.spacing();
+        std::vector<Index> found;
+        for_each_in_order(mesh_.facet_count(), [&](std::size_t f) {
+            const auto facet = mesh_.facet(f);
+            const std::size_t n = facet.size();
+            const auto is_short = [&](std::size_t i) {
+                return (mesh_.positions[facet[i]] - mesh_.positions[facet[(i + 1) % n]]).sqrnorm() < most;
+            };
+            for (std::size_t i = 0; i < n; ++i)
+                if (contradicted_[f] || (is_short(i) && is_short((i + 1) % n)))
+                    found.push_back(facet[(i + 1) % n]);
+        });
+        sort_unique(found);
+        return found;
+    }
 
     /// The ring's sides, on its left; false if one has none on its right, or another ring has come near.
     bool list_sides(const Vicinity& vicinity, const std::vector<Index>& ring) {

@@ -87,7 +87,7 @@ public:
     void add(const NormalSet& s) {
         if (std::abs(s.normal | way_) < angles::halfway) directions_.push_back(across_.angle_of(s.normal));
     }
-    bool is_surrounded() { return widest_gap(directions_) < surrounding::widest_gap; }
+    bool is_surrounded() { return wide_gaps(directions_) == 0; }
 
 private:
     const Ring &a_, &b_;

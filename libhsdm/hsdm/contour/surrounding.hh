@@ -1,6 +1,7 @@
 #pragma once
 // Directions across an axis: what lies all round it.
 
+#include "hsdm/contour/facet_constants.hh"
 #include "hsdm/mesh/area_vector.hh"
 
 #include <algorithm>
@@ -30,14 +31,15 @@ private:
     std::array<Vec3, 2> across_;
 };
 
-/// The widest angle between neighbouring directions, in radians; a full turn if there are less than two.
-/// Sorts them.
-inline double widest_gap(std::vector<double>& angles) {
-    if (angles.empty()) return 2 * std::numbers::pi;
+/// How many angles between neighbouring directions are too wide for what lies all round; one if there are
+/// less than two. Sorts them.
+inline int wide_gaps(std::vector<double>& angles) {
+    if (angles.empty()) return 1;
     std::ranges::sort(angles);
-    double widest = angles.front() + 2 * std::numbers::pi - angles.back();
-    for (std::size_t i = 1; i < angles.size(); ++i) widest = std::max(widest, angles[i] - angles[i - 1]);
-    return widest;
+    int wide = angles.front() + 2 * std::numbers::pi - angles.back() >= surrounding::widest_gap;
+    for (std::size_t i = 1; i < angles.size(); ++i)
+        wide += angles[i] - angles[i - 1] >= surrounding::widest_gap;
+    return wide;
 }
 
 } // namespace hsdm

@@ -31,10 +31,8 @@ public:
 
     const Vec3& axis() const { return axis_; }
     double along(const Vec3& p) const { return (p - centre_) | axis_; }
-    double angle_of(const Vec3& p) const {
-        const auto [x, y] = on_disc(p);
-        return std::atan2(y, x);
-    }
+    double angle_of(const Vec3& p) const { return turn_of(p - centre_); }
+    double turn_of(const Vec3& d) const { return std::atan2(d | across_[1], d | across_[0]); }
     /// Across the axis, from it to a point.
     Vec3 out_to(const Vec3& p) const { return p - centre_ - along(p) * axis_; }
     /// The largest distance of the ring from the axis.
@@ -138,7 +136,7 @@ bool Witnesses::span(std::span<const Index> ring) {
 bool Witnesses::surround(std::span<const Index> ring) const {
     const Tube tube(mesh_, ring, surrounding::reach_along * level_.voxel_size);
     const double farthest = tube.width() + handles::served_within * level_.voxel_size;
-    std::array<std::vector<double>, 2> directions; // of those that face the axis, that face away from it
+    std::array<std::vector<double>, 2> places, normals; // of those that face the axis, that face away from it
     for (const Index v : voxels_at(ring))
         for (Index p = level_.first_point[v]; p < level_.first_point[v + 1]; ++p) {
             const Vec3 out = tube.out_to(octree_.positions[p]);
@@ -148,10 +146,21 @@ bool Witnesses::surround(std::span<const Index> ring) const {
                 continue;
             const double cosine = (octree_.normals[p] | out) / length;
             if (std::abs(cosine) < angles::halfway) continue;
-            directions[cosine > 0].push_back(tube.angle_of(octree_.positions[p]));
+            places[cosine > 0].push_back(tube.angle_of(octree_.positions[p]));
+            normals[cosine > 0].push_back(tube.turn_of(octree_.normals[p]));
         }
-    std::vector<double>& most = directions[directions[0].size() < directions[1].size()];
-    return most.size() >= 2 * points_of_plane && widest_gap(most) < surrounding::widest_gap;
+    const std::size_t most = places[0].size() < places[1].size();
+    return places[most].size() >= 2 * points_of_plane && wide_gaps(places[most]) == 0
+           && wide_gaps(normals[most]) < 2; // else the two sides of a wall or gap
+}
+
+bool Witnesses::is_narrow(std::span<const Index> ring) const {
+    return 2 * Tube(mesh_, ring, 0).width() < spacing();
+}
+
+double Witnesses::spacing() const {
+    return level_.voxel_size
+           * std::sqrt(static_cast<double>(level_.size()) / static_cast<double>(octree_.size()));
 }
 
 bool Witnesses::is_served(Index point) {

@@ -26,8 +26,15 @@ public:
     bool span(std::span<const Index> ring);
 
     /// Do points on all sides of a ring of vertices face its axis, or all face away from it? So they do in a
-    /// bore and round a rod. A web or tunnel that is none lacks the points of one side at least.
+    /// bore and round a rod. A web or tunnel that is none lacks the points of one side at least, or they are
+    /// those of the two sides of one wall or gap, and face two opposite ways.
     bool surround(std::span<const Index> ring) const;
+
+    /// Is a ring of vertices less across than points are apart?
+    bool is_narrow(std::span<const Index> ring) const;
+
+    /// Of points, as if those of each voxel lay on a plane through it.
+    double spacing() const;
 
 private:
     Index voxel_of(Index vertex) const { return voxel_[mesh_.origin[vertex]]; }
