@@ -33,7 +33,7 @@ public:
     /// Cost of dropping a standing crossing.
     double weight(Index x) const { return list_.crossings[x].supported ? 1 : signs::cost_of_weak; }
     double cost_of_taking(Index x) const { return standing_[x] ? 0 : signs::cost_of_return * sureness_[x]; }
-    double cost_of_leaving(Index x) const { return standing_[x] ? weight(x) * sureness_[x] : 0; }
+    double cost_of_leaving(Index x) const { return standing_[x] ? weight(x) : 0; }
     Side side_before(Index x) const { return list_.crossings[x].leaving ? inside : outside; }
 
     double cost(Index edge, Side low, Side high, double invention) const {

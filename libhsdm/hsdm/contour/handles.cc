@@ -242,20 +242,26 @@ private:
 
     Index facet_of(Index side) const { return links_.facet[side]; }
 
-    /// Those of facets that no set speaks for, and where two edges meet that a narrow ring may have.
+    /// Those of facets that no set speaks for, and where two edges of a facet meet that are shorter together
+    /// than a narrow ring is across.
     std::vector<Index> doubtful_vertices() const {
-        const double most = witnesses_.spacing() * witnesses_.spacing();
-        std::vector<Index> found;
-        for_each_in_order(mesh_.facet_count(), [&](std::size_t f) {
-            const auto facet = mesh_.facet(f);
-            const std::size_t n = facet.size();
-            const auto is_short = [&](std::size_t i) {
-                return (mesh_.positions[facet[i]] - mesh_.positions[facet[(i + 1) % n]]).sqrnorm() < most;
-            };
-            for (std::size_t i = 0; i < n; ++i)
-                if (contradicted_[f] || (is_short(i) && is_short((i + 1) % n)))
-                    found.push_back(facet[(i + 1) % n]);
-        });
+        const double most = 2 * witnesses_.spacing();
+        const auto add = [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
+            for (std::size_t f = begin; f < end; ++f) {
+                const auto facet = mesh_.facet(f);
+                const std::size_t n = facet.size();
+                const auto length = [&](std::size_t i) {
+                    return (mesh_.positions[facet[i % n]] - mesh_.positions[facet[(i + 1) % n]]).norm();
+                };
+                double before = length(n - 1);
+                for (std::size_t i = 0; i < n; ++i) {
+                    const double after = length(i);
+                    if (contradicted_[f] || before + after < most) found.push_back(facet[i]);
+                    before = after;
+                }
+            }
+        };
+        std::vector<Index> found = collected<Index>(mesh_.facet_count(), chunks::usual, add);
         sort_unique(found);
         return found;
     }

@@ -155,7 +155,7 @@ bool Witnesses::surround(std::span<const Index> ring) const {
 }
 
 bool Witnesses::is_narrow(std::span<const Index> ring) const {
-    return 2 * Tube(mesh_, ring, 0).width() < spacing();
+    return Tube(mesh_, ring, 0).width() < spacing();
 }
 
 double Witnesses::spacing() const {

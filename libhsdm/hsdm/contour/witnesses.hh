@@ -30,7 +30,7 @@ public:
     /// those of the two sides of one wall or gap, and face two opposite ways.
     bool surround(std::span<const Index> ring) const;
 
-    /// Is a ring of vertices less across than points are apart?
+    /// Do the vertices of a ring lie nearer to its middle than points to each other?
     bool is_narrow(std::span<const Index> ring) const;
 
     /// Of points, as if those of each voxel lay on a plane through it.
