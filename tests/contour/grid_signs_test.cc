@@ -72,6 +72,29 @@ TEST_CASE("crossings lost at random come back and the surface closes", "[contour
     CHECK(found.open_sides(crossings) == 0);
 }
 
+TEST_CASE("what is clipped just beyond a crease is less sure to be clipped", "[contour]") {
+    const Vec3 half(0.5, 0.45, 0.4);
+    const support::Pose pose = support::random_pose(4);
+    const Found found(support::box(2 * half).placed(pose), 20000, 5);
+    const double error = 0.15 * found.level.voxel_size;
+    std::size_t unsure = 0, as_far = 0;
+    for (Index x = 0; x < found.candidates.standing.size(); ++x) {
+        const double sureness = found.candidates.sureness[x];
+        CHECK((sureness >= 0 && sureness <= 1));
+        if (found.candidates.standing[x]) CHECK(sureness == 1);
+        if (sureness == 1) continue;
+        const Crossing& crossing = found.candidates.crossings.crossings[x];
+        const Vec3 at = pose.to_local(crossing_position(found.grid, crossing, found.level.voxel_size)
+                                      + found.octree.origin);
+        double off = 0; // beyond the farthest face
+        for (unsigned k = 0; k < 3; ++k) off = std::max(off, std::abs(at[k]) - half[k]);
+        ++unsure;
+        as_far += std::abs(off - sureness * error) < 0.01 * error;
+    }
+    CHECK(unsure > 50);
+    CHECK(as_far * 10 > unsure * 9);
+}
+
 TEST_CASE("where many creases meet, settling closes most faces that the sheets leave open",
           "[contour][slow]") {
     using support::box;

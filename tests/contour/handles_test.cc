@@ -173,6 +173,12 @@ TEST_CASE("points surround the axis of a ring round a rod or in a bore, not that
         for (std::size_t i = 0; i < half.size(); ++i)
             if (pose.to_local(half.positions[i] + half.origin)[0] < 0) half.source[i] = no_index;
         CHECK_FALSE(Witnesses(half, rod.level, part.voxel, mesh).surround(ring));
+        Octree wall = rod.octree; // as if the points lay on the two sides of a wall
+        for (std::size_t i = 0; i < wall.size(); ++i) {
+            const bool behind = pose.to_local(wall.positions[i] + wall.origin)[0] < 0;
+            wall.normals[i] = pose.rotate({behind != turned_normals ? -1.0 : 1.0, 0, 0});
+        }
+        CHECK_FALSE(Witnesses(wall, rod.level, part.voxel, mesh).surround(ring));
 
         const Stages stages(facing_boxes(turned_normals, 5), 3);
         DualContour boxes = dual_contour(stages.octree, stages.level, stages.sets);
@@ -212,6 +218,34 @@ TEST_CASE("measured points speak for a bridge, completed ones do not", "[contour
     for (std::size_t i : beside) octree.source[i] = no_index;
     CHECK(cut_handles(octree, stages.level, stages.sets, part.voxel, mesh, links) == 1);
     if (links) CHECK(links->twin == link_facets(mesh).twin);
+}
+
+TEST_CASE("a ring narrower than points are apart is cut, in full view of them", "[contour]") {
+    const Stages stages(facing_boxes(false, 5), 5);
+    DualContour part = dual_contour(stages.octree, stages.level, stages.sets);
+    PolygonMesh& mesh = part.mesh;
+    for (Vec3& p : mesh.positions) p += stages.octree.origin;
+    mesh.origin = indices_below(mesh.vertex_count());
+    const auto ring = bridge_with_ring(mesh, quad_at(mesh, -0.07), quad_at(mesh, 0.07));
+    for (Vec3& p : mesh.positions) p -= stages.octree.origin;
+    const auto is_narrow = [&] {
+        return Witnesses(stages.octree, stages.level, part.voxel, mesh).is_narrow(ring);
+    };
+    CHECK_FALSE(is_narrow());
+    Vec3 middle(0, 0, 0);
+    for (const Index v : ring) middle += 0.25 * mesh.positions[v];
+    for (const Index v : ring) mesh.positions[v] += 0.9 * (middle - mesh.positions[v]);
+    CHECK(is_narrow());
+    Octree speaking = stages.octree; // for every facet of the bridge
+    for (std::size_t i = 0; i < speaking.size(); ++i) {
+        Vec3 away = speaking.positions[i] + speaking.origin;
+        away[0] = 0;
+        if (i % 2 == 0 && away.norm() > 0) speaking.normals[i] = away.normalized();
+    }
+    std::optional<FacetLinks> links;
+    CHECK(cut_handles(speaking, stages.level, stages.sets, part.voxel, mesh, links) == 1);
+    CHECK(measure_topology(mesh).euler == 4);
+    CHECK(faults(mesh) == "");
 }
 
 TEST_CASE("holes and rods of the part that points speak for stay, however short the way round", "[contour]") {

@@ -84,12 +84,11 @@ public:
         for (std::size_t i = 0; i < count_; ++i) {
             if (!sheets_[i].crosses) continue;
             if (count_ > 1 && relations_for_ != i) relate(i);
-            const double within = margin(i);
-            const bool on_solid = within > 0, carried = supported(i),
-                       standing = on_solid && (carried || sheets_[i].beside());
-            dropped_beyond_crease += !on_solid;
-            const bool by_crease = standing || !on_solid; // or for want of points
-            found.push_back({crossing(i, carried), standing, by_crease ? sureness(within) : 1});
+            const double off = beyond(i);
+            dropped_beyond_crease += off > 0;
+            const bool carried = supported(i);
+            found.push_back({crossing(i, carried), off == 0 && (carried || sheets_[i].beside()),
+                             off > 0 ? sureness(off) : 1});
         }
         std::sort(found.begin() + static_cast<std::ptrdiff_t>(begin), found.end(),
                   [](const Candidate& a, const Candidate& b) {
@@ -281,40 +280,39 @@ private:
         return b.distance[before ? 0 : 1] >= 0;
     }
 
-    /// How far a crossing of sheet i lies within what sheet j leaves of it, outside j or inside; below 0 if
-    /// beyond.
-    double margin_to(std::size_t j, std::size_t i, bool wants_outside) const {
+    /// Of a crossing of sheet i from sheet j; not 0.
+    double distance_to(std::size_t j, std::size_t i) const {
         const EdgeSheet& b = sheets_[j];
-        const double distance = std::abs(b.distance[0] + sheets_[i].t * (b.distance[1] - b.distance[0]));
-        const double least = std::max(distance, std::numeric_limits<double>::min());
-        return outside_at(j, i) == wants_outside ? least : -least;
+        const double distance = b.distance[0] + sheets_[i].t * (b.distance[1] - b.distance[0]);
+        return std::max(std::abs(distance), std::numeric_limits<double>::min());
     }
 
     /// A crossing counts if it lies on the solid's surface: inside every convex crease partner, outside every
     /// concave one. Two convex partners that meet in a concave crease bound the sheet together, so being
     /// inside one of them is enough (likewise with convex and concave exchanged); the top of an L-shaped
-    /// bracket at its inner corner is an example. Returns by how far it does, below 0 if it does not.
-    double margin(std::size_t i) const {
-        double least = std::numeric_limits<double>::infinity();
+    /// bracket at its inner corner is an example. Returns how far it is off; 0 if it counts.
+    double beyond(std::size_t i) const {
+        double farthest = 0;
         for (std::size_t j = 0; j < count_; ++j) {
             if (j == i || relations_for_ != i) continue;
             if (relations_[j] != Relation::convex && relations_[j] != Relation::concave) continue;
             const bool wants_outside = relations_[j] == Relation::concave;
-            double one = margin_to(j, i, wants_outside);
+            if (outside_at(j, i) == wants_outside) continue;
             const Relation opposite = wants_outside ? Relation::convex : Relation::concave;
-            for (std::size_t k = 0; k < count_ && one < 0; ++k) {
-                if (k == i || k == j || relations_[k] != relations_[j]) continue;
-                const double other = margin_to(k, i, wants_outside);
-                if (other > one && relation_between(j, k) == opposite) one = other;
+            double off = distance_to(j, i);
+            for (std::size_t k = 0; k < count_ && off > 0; ++k) {
+                if (k == i || k == j || relations_[k] != relations_[j] || relation_between(j, k) != opposite)
+                    continue;
+                off = outside_at(k, i) == wants_outside ? 0 : std::min(off, distance_to(k, i));
             }
-            least = std::min(least, one);
+            farthest = std::max(farthest, off);
         }
-        return least;
+        return farthest;
     }
 
-    /// Of what a margin says, from 0 to 1: none where it is within the error of a sheet.
-    float sureness(double margin) const {
-        return static_cast<float>(std::min(1.0, std::abs(margin) / (sheets::surface_error * h_)));
+    /// Of what is so far beyond a crease, that it is: within the error of a sheet a share.
+    float sureness(double off) const {
+        return static_cast<float>(std::min(1.0, off / (sheets::surface_error * h_)));
     }
 
     Vec3 position(std::size_t i) const {

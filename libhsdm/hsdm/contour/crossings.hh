@@ -48,7 +48,7 @@ struct Crossings {
 struct CrossingCandidates {
     Crossings crossings;
     std::vector<std::uint8_t> standing; ///< per crossing
-    /// Per crossing, from 0 to 1: how far from its creases it stands, or is clipped, in
+    /// Per crossing, from 0 to 1: that it does not stand; less than 1 where it is clipped by less than
     /// sheets::surface_error.
     std::vector<float> sureness;
 };
