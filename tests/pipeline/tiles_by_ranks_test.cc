@@ -62,11 +62,11 @@ void check_same_by_ranks(const Reconstruction& whole, const Reconstruction& by_r
 
 /// What each rank throws; the first one's result.
 std::vector<std::string> run_on(int count, const PointCloud& cloud, const TileOptions& tiles,
-                                std::optional<Reconstruction>& result, TileReport& how) {
+                                std::optional<Reconstruction>& result, TileReport& how, int depth = 6) {
     return support::run_ranks(count, [&](Ranks& ranks) {
         TileReport own;
         Reconstruction made =
-            reconstruct_in_tiles(part_of(cloud, ranks), {.depth = 6, .threads = 2}, tiles, ranks, &own);
+            reconstruct_in_tiles(part_of(cloud, ranks), {.depth = depth, .threads = 2}, tiles, ranks, &own);
         if (!ranks.is_first()) return;
         result.emplace(std::move(made));
         how = std::move(own);
@@ -125,6 +125,15 @@ TEST_CASE("tiles of two ranks that know too little around them are made again wi
     REQUIRE(result);
     check_same_by_ranks(reconstruct(cloud, {.depth = 6}), *result);
     CHECK(how.widened > 0);
+}
+
+TEST_CASE("ranks tell together what is small beside the largest part", "[pipeline]") {
+    const PointCloud cloud = bored_box();
+    std::optional<Reconstruction> result;
+    TileReport how;
+    for (const std::string& failure : run_on(3, cloud, small_tiles(), result, how, 4)) CHECK(failure.empty());
+    REQUIRE(result);
+    check_same_by_ranks(reconstruct(cloud, {.depth = 4}), *result);
 }
 
 TEST_CASE("ranks that no cell is left for have nothing to do", "[pipeline][slow]") {

@@ -2,7 +2,6 @@
 
 #include "hsdm/contour/flat_facets.hh"
 #include "hsdm/contour/grid_signs.hh"
-#include "hsdm/contour/handles.hh"
 #include "hsdm/contour/inner_tunnels.hh"
 #include "hsdm/contour/move_to_creases.hh"
 #include "hsdm/contour/rims.hh"
@@ -263,6 +262,28 @@ std::size_t merge_corners(std::span<const EdgeCollapse> edges, PolygonMesh& mesh
     return count;
 }
 
+MeshOfPart part_of_whole(const DualContourOptions& options, const DualContour& result) {
+    return {result.mesh, [&](Index v) { return result.voxel[result.mesh.origin[v]]; }, options.part};
+}
+
+/// `stage`: the first time or the second.
+Occurrences leave_out_splinters(const OctreeLevel& level, const DualContourOptions& options,
+                                std::size_t stage, DualContour& result) {
+    SplinterOptions splinters = options.splinters;
+    splinters.flat *= level.voxel_size, splinters.layers *= level.voxel_size;
+    if (options.part.is_part()) {
+        splinters.largest = options.largest[stage];
+        result.components[stage] = components_of_part(part_of_whole(options, result), splinters.enough(),
+                                                      [&](Index voxel) { return level.codes[voxel]; });
+    }
+    return drop_splinters(result.mesh, splinters);
+}
+
+/// May it be that the whole has no component beside which all splinters go?
+bool may_be_small(const DualContourOptions& options, const PartComponents& part) {
+    return options.part.is_part() && part.largest < options.splinters.enough();
+}
+
 /// Anew, after facets have changed.
 void count_intersections(DualContour& result) {
     const SelfIntersections found = find_self_intersections(result.mesh);
@@ -338,6 +359,51 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     return to_corners;
 }
 
+UntangleOptions untangle_options(const DualContourOptions& options, double voxel_size) {
+    UntangleOptions result = options.untangle;
+    result.reach *= voxel_size;
+    result.nearby *= voxel_size;
+    return result;
+}
+
+/// Facets have changed, if any.
+bool forget_links(std::size_t count, DualContour& result) {
+    if (count > 0) result.links.reset();
+    return count > 0;
+}
+
+void untangle_whole(const Vec3& origin, double h, const DualContourOptions& options, DualContour& result) {
+    const UntangleOptions how = untangle_options(options, h);
+    result.cells.emplace(result.mesh, h);
+    result.intersections = untangle(result.mesh, how, &*result.cells);
+    if (result.intersections.after > 0) {
+        const UntangleCounts merged = mend_tangles(result.mesh, how.nearby);
+        result.intersections.moved += merged.moved;
+        result.intersections.after = merged.after;
+        result.intersections.first = merged.first;
+        if (forget_links(merged.moved, result)) remove_isolated_vertices(result.mesh);
+    }
+    if (result.intersections.moved > 0) {
+        result.cells.reset();
+        if (forget_links(collapse_flat_facets(origin, result.mesh), result)) count_intersections(result);
+    }
+}
+
+/// The same of part of a level.
+void untangle_share(const Vec3& origin, double h, const DualContourOptions& options, DualContour& result) {
+    const MeshOfPart part = part_of_whole(options, result);
+    result.cells.emplace(result.mesh, h);
+    bool moved = false;
+    result.tangles =
+        untangle_part(result.mesh, part, untangle_options(options, h), options.tangles, *result.cells, moved);
+    if (!moved) return;
+    result.cells.reset();
+    result.links.reset();
+    remove_isolated_vertices(result.mesh);
+    collapse_flat_facets(origin, result.mesh);
+    if (options.tangles.weighed && result.tangles.near) result.tangles.left = own_intersections(part);
+}
+
 } // namespace
 
 DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
@@ -346,30 +412,30 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     const double h = level.voxel_size;
     const std::vector<EdgeCollapse> to_corners = build_facets(octree, level, sets, options, result);
     result.corners_merged = merge_corners(to_corners, result.mesh, result.classes);
-    SplinterOptions splinters = options.splinters;
-    splinters.flat *= h, splinters.layers *= h;
-    result.splinters = drop_splinters(result.mesh, splinters);
+    result.splinters = leave_out_splinters(level, options, 0, result);
     // Links and splinters are found once, for as long as facets stay as they are.
     bool edited = false;
     const auto changed = [&](std::size_t count) {
         if (count > 0) result.links.reset(), edited = true;
         return count;
     };
-    const auto cut = [&] {
-        bool gave_up = false;
-        const std::size_t handles =
-            cut_handles(octree, level, sets, result.voxel, result.mesh, result.links, &gave_up);
+    const auto cut = [&](std::size_t stage) {
+        HandlesOfPart part{options.part, options.facets_of_whole};
+        const std::size_t handles = cut_handles(octree, level, sets, result.voxel, result.mesh, result.links,
+                                                options.part.is_part() ? &part : nullptr);
         result.handles_cut += handles;
-        result.depends_on_all |= gave_up;
+        result.handle_work[stage] = part.own;
         edited |= handles > 0;
     };
-    cut();
+    cut(0);
+    const std::size_t again = result.handle_work[0].last; // in the whole, if not here
+    result.handle_work[1] = {1, again, again};
     if (options.fill) {
         FillHolesOptions holes = options.holes;
         holes.max_diameter *= h;
         if (!result.links) result.links = link_facets(result.mesh);
         result.holes = fill_holes(result.mesh, *result.links, holes);
-        if (changed(result.holes.closed) > 0) cut(); // those of which a hole was a side
+        if (changed(result.holes.closed) > 0) cut(1); // those of which a hole was a side
     }
     result.doublets = changed(merge_doublets(
         result.mesh, [&](Index v) { return result.classes[result.mesh.origin[v]] == VertexClass::smooth; }));
@@ -377,31 +443,20 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
         result.manifold = make_manifold(result.mesh);
         changed(1);
     }
-    if (edited) {
-        const Occurrences more = drop_splinters(result.mesh, splinters);
+    if (edited || may_be_small(options, result.components[0])) {
+        const Occurrences more = leave_out_splinters(level, options, 1, result);
         changed(more.count);
         result.splinters.add(more);
+    } else {
+        result.components[1] = result.components[0];
     }
     if (result.splinters.count + result.tunnels_opened > 0) remove_isolated_vertices(result.mesh);
     result.drawn_in = draw_in_spikes(octree, level, result.voxel, result.mesh);
     changed(collapse_flat_facets(octree.origin, result.mesh));
-    UntangleOptions untangle_options = options.untangle;
-    untangle_options.reach *= h;
-    untangle_options.nearby *= h;
-    result.cells.emplace(result.mesh, h);
-    result.intersections = untangle(result.mesh, untangle_options, &*result.cells);
-    if (result.intersections.after > 0) {
-        result.depends_on_all = true;
-        const UntangleCounts merged = mend_tangles(result.mesh, untangle_options.nearby);
-        result.intersections.moved += merged.moved;
-        result.intersections.after = merged.after;
-        result.intersections.first = merged.first;
-        if (changed(merged.moved) > 0) remove_isolated_vertices(result.mesh);
-    }
-    if (result.intersections.moved > 0) {
-        result.cells.reset();
-        if (changed(collapse_flat_facets(octree.origin, result.mesh)) > 0) count_intersections(result);
-    }
+    if (options.part.is_part())
+        untangle_share(octree.origin, h, options, result);
+    else
+        untangle_whole(octree.origin, h, options, result);
     settle_origins(result);
     return result;
 }

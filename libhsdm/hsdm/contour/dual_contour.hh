@@ -1,8 +1,10 @@
 #pragma once
 // Section 3.4.2 as a whole: sets -> local sheets -> crossings -> pairs -> dual vertices -> facets.
 
+#include "hsdm/contour/components_of_part.hh"
+#include "hsdm/contour/handles.hh"
 #include "hsdm/contour/relax_vertices.hh"
-#include "hsdm/contour/untangle.hh"
+#include "hsdm/contour/tangles_of_part.hh"
 #include "hsdm/mesh/fill_holes.hh"
 #include "hsdm/mesh/manifold.hh"
 #include "hsdm/mesh/small_components.hh"
@@ -10,6 +12,9 @@
 #include <optional>
 
 namespace hsdm {
+
+/// At two stages.
+using LargestOfWhole = std::array<std::size_t, 2>;
 
 struct DualContourOptions {
     RelationOptions relation;
@@ -22,6 +27,12 @@ struct DualContourOptions {
     bool fill = true; ///< close small boundary loops
     /// the data go round the whole solid: it has no border (label_grid_signs, trim_unsupported)
     bool all_round = false;
+    PartVoxels part{};               ///< where the level is part of a larger one
+    std::size_t facets_of_whole = 0; ///< the same: of that one, about
+    TanglePlan tangles{};            ///< the same: what is done about intersections
+    /// The same: facets of the largest component, at most SplinterOptions::enough(), when splinters are
+    /// looked for the first time and the second.
+    LargestOfWhole largest{};
 };
 
 struct DualContour {
@@ -47,9 +58,9 @@ struct DualContour {
     std::optional<FacetCells> cells; ///< the mesh's facets by voxel; empty if untangling moved vertices
     std::optional<FacetLinks> links; ///< the mesh's; empty if facets changed after they were found
     ManifoldCounts manifold;         ///< what make_manifold still had to mend at the end
-    /// What was done is perhaps not the same for part of a level as for the whole: much was spent on handles,
-    /// or intersections were left that all count when it is judged whether there are fewer.
-    bool depends_on_all = false;
+    std::array<PartComponents, 2> components;   ///< with DualContourOptions::part
+    TangleCounts tangles;                       ///< in the place of `intersections`
+    std::array<HandleWork, 2> handle_work;      ///< before holes are filled and after it
     double misfit_placed = 0, misfit_moved = 0; ///< with RelaxOptions::part_of_whole: see there
 };
 

@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace hsdm {
 namespace {
@@ -194,12 +195,14 @@ class Round {
 public:
     Round(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
           std::span<const Index> voxel, std::size_t& work, PolygonMesh& mesh,
-          std::optional<FacetLinks>& links)
+          std::optional<FacetLinks>& links, HandlesOfPart* part)
         : mesh_(mesh),
           known_links_(links),
+          part_(part),
+          voxel_(voxel),
           witnesses_(octree, level, voxel, mesh),
           work_(work),
-          most_work_(handles::most_work * mesh.facet_count()) {
+          most_work_(handles::most_work * std::max(mesh.facet_count(), part ? part->facets : 0)) {
         const double voxel_size = level.voxel_size;
         assign_large(contradicted_, mesh.facet_count(), 0);
         for_each_index(mesh.facet_count(), chunks::quick, [&](Index f) {
@@ -216,21 +219,21 @@ public:
         assign_large(touched_, mesh_.vertex_count(), 0);
         assign_large(seen_, mesh_.facet_count(), 0);
         for_each_in_order(roots.size(), [&](std::size_t i) {
-            if (work_ > most_work_) return;
+            if (part_ ? !is_due(roots[i]) : work_ > most_work_) return;
             Interruption::poll();
-            const std::vector<Index> ring = vicinity.ring_at(roots[i]);
-            const double share = share_contradicted(vicinity, ring);
-            if (share < 0 || bounds()) return;
-            if ((witnesses_.is_narrow(ring) || witnesses_.span(ring)
-                 || (share >= handles::least_contradicted && are_contradicted_beside(vicinity, ring)))
-                && !witnesses_.surround(ring))
-                keep(vicinity, ring);
+            const std::size_t work = work_, rings = rings_.size();
+            look_at(roots[i], vicinity);
+            if (part_) note_work(roots[i], work_ - work, rings_.size() > rings);
         });
         for (const Ring& ring : rings_) open(ring);
         for (const auto& [v, place] : moves_) mesh_.positions[v] = place;
         if (rings_.empty()) known_links_ = std::move(links_);
         return rings_.size();
     }
+
+    /// Of the part.
+    std::size_t own_work() const { return own_work_; }
+    bool cuts_own() const { return cuts_own_; }
 
 private:
     struct Ring {
@@ -264,6 +267,35 @@ private:
         std::vector<Index> found = collected<Index>(mesh_.facet_count(), chunks::usual, add);
         sort_unique(found);
         return found;
+    }
+
+    Index voxel_at(Index root) const { return voxel_[mesh_.origin[root]]; }
+    bool is_far(Index root) const {
+        return !part_->voxels.owns(voxel_at(root)) && !part_->voxels.is_near(voxel_at(root));
+    }
+
+    /// Is there work left to do at a part's vertex? What is done far off, where the rim of the known may be
+    /// torn, does not count.
+    bool is_due(Index root) {
+        if (is_far(root)) return part_->far <= most_work_;
+        if (work_ - part_->far <= most_work_) return true;
+        return part_->own.is_complete = false;
+    }
+
+    void note_work(Index root, std::size_t work, bool cuts) {
+        if (is_far(root)) part_->far += work;
+        if (part_->voxels.owns(voxel_at(root))) own_work_ += work, cuts_own_ |= cuts;
+    }
+
+    /// Keeps the ring at a vertex if it is to be cut.
+    void look_at(Index root, Vicinity& vicinity) {
+        const std::vector<Index> ring = vicinity.ring_at(root);
+        const double share = share_contradicted(vicinity, ring);
+        if (share < 0 || bounds()) return;
+        if ((witnesses_.is_narrow(ring) || witnesses_.span(ring)
+             || (share >= handles::least_contradicted && are_contradicted_beside(vicinity, ring)))
+            && !witnesses_.surround(ring))
+            keep(vicinity, ring);
     }
 
     /// The ring's sides, on its left; false if one has none on its right, or another ring has come near.
@@ -422,9 +454,12 @@ private:
 
     PolygonMesh& mesh_;
     std::optional<FacetLinks>& known_links_;
+    HandlesOfPart* part_;
+    std::span<const Index> voxel_;
     Witnesses witnesses_;
     std::size_t& work_; // facets looked at, in all rounds
-    std::size_t most_work_;
+    std::size_t most_work_, own_work_ = 0;
+    bool cuts_own_ = false;
     FacetLinks links_;
     std::vector<std::uint8_t> contradicted_; // per facet
     std::vector<std::uint8_t> touched_;      // per vertex, near a ring that is to be cut
@@ -434,18 +469,47 @@ private:
     std::vector<std::pair<Index, Vec3>> moves_;
 };
 
+/// The rounds that a part's own rings make for: one after each in which some are cut.
+class OwnRounds {
+public:
+    void add(const Round& round, HandleWork& own) {
+        own.last = round.own_work();
+        work_ += own.last, ++rounds_;
+        if (makes_for_it_) own.work += std::exchange(work_, 0), own.rounds += std::exchange(rounds_, 0);
+        makes_for_it_ = round.cuts_own();
+    }
+
+private:
+    std::size_t work_ = 0, rounds_ = 0; // of those since
+    bool makes_for_it_ = true;
+};
+
 } // namespace
+
+bool HandleWork::fits(std::size_t facets) const {
+    return is_complete && 2 * work <= handles::most_work * facets;
+}
+
+void HandleWork::operator+=(const HandleWork& other) {
+    const std::size_t most = std::max(rounds, other.rounds);
+    work += (most - rounds) * last + other.work + (most - other.rounds) * other.last;
+    rounds = most;
+    last += other.last;
+    is_complete &= other.is_complete;
+}
 
 std::size_t cut_handles(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
                         std::span<const Index> voxel, PolygonMesh& mesh, std::optional<FacetLinks>& links,
-                        bool* gave_up) {
+                        HandlesOfPart* part) {
     std::size_t cut = 0, work = 0;
+    OwnRounds own_rounds;
     for (int round = 0; round < enough_rounds; ++round) {
-        const std::size_t rings = Round(octree, level, sets, voxel, work, mesh, links).cut();
+        Round one(octree, level, sets, voxel, work, mesh, links, part);
+        const std::size_t rings = one.cut();
+        if (part) own_rounds.add(one, part->own);
         cut += rings;
         if (rings == 0) break;
     }
-    if (gave_up) *gave_up = 2 * work > handles::most_work * mesh.facet_count();
     return cut;
 }
 

@@ -1,6 +1,6 @@
 #include "hsdm/contour/untangle.hh"
 
-#include "hsdm/contour/tangled_part.hh"
+#include "hsdm/contour/untangle_rounds.hh"
 #include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/collapse_edges.hh"
@@ -8,7 +8,6 @@
 #include "hsdm/mesh/remove_facets.hh"
 #include "hsdm/mesh/split_polygon.hh"
 #include "hsdm/quality/topology.hh"
-#include "hsdm/spatial/self_intersections.hh"
 
 #include <algorithm>
 #include <numbers>
@@ -90,6 +89,9 @@ public:
         } while (changes > before && found_.triangle_pairs > 0);
         return changes;
     }
+
+    /// What still intersects.
+    const SelfIntersections& found() const { return found_; }
 
 private:
     /// Takes the changed part if fewer facets meet in it. `made`: facets at its end that are new.
@@ -260,6 +262,13 @@ private:
 
 } // namespace
 
+std::size_t mend_part(TangledPart& around, SelfIntersections& left) {
+    Mender mender(around);
+    const std::size_t changes = mender.run();
+    left = mender.found();
+    return changes;
+}
+
 UntangleCounts mend_tangles(PolygonMesh& mesh, double nearby, std::size_t most_pairs) {
     check_option(nearby > 0, "nearby", nearby, "be positive");
     SelfIntersections found = find_self_intersections(mesh);
@@ -269,7 +278,7 @@ UntangleCounts mend_tangles(PolygonMesh& mesh, double nearby, std::size_t most_p
     counts.first = mesh.positions[mesh.facet(found.facet_pairs[0][0])[0]];
     if (found.facet_pairs.size() > most_pairs) return counts;
     TangledPart around(mesh, found.facet_pairs, nearby);
-    counts.moved = Mender(around).run();
+    counts.moved = mend_part(around, found);
     if (counts.moved == 0) return counts;
     around.replace_facets(mesh);
     found = find_self_intersections(mesh); // what is filled anew may reach farther than the part

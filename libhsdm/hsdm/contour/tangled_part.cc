@@ -48,6 +48,13 @@ TangledPart::TangledPart(const PolygonMesh& mesh, const std::vector<std::array<I
     }
 }
 
+std::vector<Index> TangledPart::vertices() const {
+    std::vector<Index> of_part(part.vertex_count());
+    for (std::size_t v = 0; v < of_vertex_.size(); ++v)
+        if (of_vertex_[v] != no_index) of_part[of_vertex_[v]] = static_cast<Index>(v);
+    return of_part;
+}
+
 void TangledPart::write_back(PolygonMesh& mesh) const {
     for (std::size_t v = 0; v < of_vertex_.size(); ++v)
         if (of_vertex_[v] != no_index) mesh.positions[v] = part.positions[of_vertex_[v]];
@@ -61,9 +68,7 @@ void TangledPart::replace_facets(PolygonMesh& mesh) const {
         next += out;
         return out;
     });
-    std::vector<Index> of_part(part.vertex_count());
-    for (std::size_t v = 0; v < of_vertex_.size(); ++v)
-        if (of_vertex_[v] != no_index) of_part[of_vertex_[v]] = static_cast<Index>(v);
+    const std::vector<Index> of_part = vertices();
     std::vector<Index> corners;
     for (std::size_t f = 0; f < part.facet_count(); ++f) {
         corners.clear();

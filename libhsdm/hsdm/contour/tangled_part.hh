@@ -19,6 +19,9 @@ public:
     /// Per vertex of the part: may it move? One that has facets outside must stay: not all of its neighbours
     /// are known here.
     bool inner(Index v) const { return inner_[v] != 0; }
+    /// The part's facets in the mesh, ascending, and what its vertices are there.
+    const std::vector<Index>& facets() const { return facets_; }
+    std::vector<Index> vertices() const;
 
     void write_back(PolygonMesh& mesh) const;
     /// The same where the part's facets have changed too: they follow the mesh's others.

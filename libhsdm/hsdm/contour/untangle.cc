@@ -1,8 +1,7 @@
 #include "hsdm/contour/untangle.hh"
 
-#include "hsdm/contour/tangled_part.hh"
+#include "hsdm/contour/untangle_rounds.hh"
 #include "hsdm/core/check_option.hh"
-#include "hsdm/spatial/self_intersections.hh"
 
 namespace hsdm {
 namespace {
@@ -35,9 +34,27 @@ void validate(const UntangleOptions& options) {
 
 } // namespace
 
+void UntangleRounds::move() {
+    const std::vector<Vec3> means = neighbour_means(part_);
+    std::vector<std::uint8_t> due(part_.vertex_count(), 0);
+    for (const auto& pair : found_.facet_pairs)
+        for (Index f : pair)
+            for (Index v : part_.facet(f)) due[v] = around_.inner(v);
+    for (Index v = 0; v < due.size(); ++v) {
+        if (!due[v]) continue;
+        Vec3& p = part_.positions[v];
+        p += (means[v] - p) * options_.step;
+        const Vec3 way = p - start_[v];
+        if (options_.reach > 0 && way.norm() > options_.reach)
+            p = start_[v] + way * (options_.reach / way.norm());
+    }
+    find();
+}
+
 UntangleCounts untangle(PolygonMesh& mesh, const UntangleOptions& options, const FacetCells* cells) {
     validate(options);
-    SelfIntersections found = cells ? find_self_intersections(mesh, *cells) : find_self_intersections(mesh);
+    const SelfIntersections found =
+        cells ? find_self_intersections(mesh, *cells) : find_self_intersections(mesh);
     UntangleCounts counts;
     counts.before = counts.after = found.triangle_pairs;
     if (found.triangle_pairs == 0) return counts;
@@ -46,30 +63,18 @@ UntangleCounts untangle(PolygonMesh& mesh, const UntangleOptions& options, const
     if (options.rounds == 0) return counts;
 
     TangledPart around(mesh, found.facet_pairs, options.nearby);
-    const std::vector<Vec3> start = around.part.positions;
-    found = find_self_intersections(around.part);
+    UntangleRounds rounds(around, options);
+    const std::vector<Vec3>& start = rounds.start();
     std::vector<Vec3> best = start;
-    std::size_t fewest = found.triangle_pairs;
-    if (fewest > 0) first = around.part.facet(found.facet_pairs[0][0])[0];
-    for (int round = 0; round < options.rounds && found.triangle_pairs > 0; ++round) {
-        const std::vector<Vec3> means = neighbour_means(around.part);
-        std::vector<std::uint8_t> due(around.part.vertex_count(), 0);
-        for (const auto& pair : found.facet_pairs)
-            for (Index f : pair)
-                for (Index v : around.part.facet(f)) due[v] = around.inner(v);
-        for (Index v = 0; v < due.size(); ++v) {
-            if (!due[v]) continue;
-            Vec3& p = around.part.positions[v];
-            p += (means[v] - p) * options.step;
-            const Vec3 way = p - start[v];
-            if (options.reach > 0 && way.norm() > options.reach)
-                p = start[v] + way * (options.reach / way.norm());
-        }
-        found = find_self_intersections(around.part);
-        if (found.triangle_pairs >= fewest) continue;
-        fewest = found.triangle_pairs;
+    const auto first_of = [&] { return around.part.facet(rounds.found().facet_pairs[0][0])[0]; };
+    std::size_t fewest = rounds.found().triangle_pairs;
+    if (fewest > 0) first = first_of();
+    for (int round = 0; round < options.rounds && rounds.found().triangle_pairs > 0; ++round) {
+        rounds.move();
+        if (rounds.found().triangle_pairs >= fewest) continue;
+        fewest = rounds.found().triangle_pairs;
         best = around.part.positions;
-        if (fewest > 0) first = around.part.facet(found.facet_pairs[0][0])[0];
+        if (fewest > 0) first = first_of();
     }
     around.part.positions = best;
     for (std::size_t v = 0; v < best.size(); ++v) counts.moved += best[v] != start[v];

@@ -95,6 +95,14 @@ std::uint64_t Ranks::sum(std::uint64_t own) {
     return std::accumulate(all.begin(), all.end(), std::uint64_t{0});
 }
 
+std::vector<std::uint8_t> Ranks::any_of_each(const std::vector<std::uint8_t>& own) {
+    std::vector<std::uint8_t> any(own.size(), 0);
+    for (const Bytes& got : gather(bytes_of(own)))
+        std::ranges::transform(any, got, any.begin(),
+                               [](std::uint8_t a, char b) { return static_cast<std::uint8_t>(a | b); });
+    return any;
+}
+
 bool Ranks::of_first(bool own) {
     return gather(std::uint64_t{own}).front() != 0;
 }

@@ -50,6 +50,8 @@ public:
     std::vector<std::uint64_t> gather(std::uint64_t own); ///< a number of each rank
     std::uint64_t sum(std::uint64_t own);
     bool any(bool own) { return sum(own ? 1 : 0) > 0; }
+    /// Entry by entry, does any rank give a 1? All give as many.
+    std::vector<std::uint8_t> any_of_each(const std::vector<std::uint8_t>& own);
     /// What the first rank gives.
     bool of_first(bool own);
     Bytes of_first(Bytes&& own);

@@ -126,11 +126,10 @@ Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options) {
     if (mesh.facet_count() == 0) return {};
     Components components(mesh);
     const std::vector<std::size_t>& sizes = components.facets();
-    const auto largest = static_cast<double>(*std::max_element(sizes.begin(), sizes.end()));
+    const auto largest = static_cast<double>(options.largest > 0 ? options.largest : std::ranges::max(sizes));
     const std::size_t most = std::max({options.most_open, options.most_flat, options.most_facets});
     const auto may_go = [&](std::size_t size) {
-        return size <= most
-               && (options.of_larger || static_cast<double>(size) * options.least_ratio <= largest);
+        return size <= most && static_cast<double>(size) * options.least_ratio <= largest;
     };
     const bool has_layers = options.layers > 0;
     if (!has_layers
@@ -153,11 +152,6 @@ Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options) {
         return may_go(sizes[c]) && sizes[c] <= (open[c] ? options.most_open : most_closed);
     });
     return remove_components(mesh, none, small).facets;
-}
-
-std::size_t largest_component(const PolygonMesh& mesh) {
-    if (mesh.facet_count() == 0) return 0;
-    return std::ranges::max(Components(mesh).facets());
 }
 
 SmallComponentFacets find_small_components(const PolygonMesh& mesh, const SmallComponentOptions& options) {

@@ -6,6 +6,8 @@
 #include "hsdm/mesh/feature_hints.hh"
 #include "hsdm/polygon_mesh.hh"
 
+#include <algorithm>
+
 namespace hsdm {
 
 struct SplinterOptions {
@@ -25,17 +27,19 @@ struct SplinterOptions {
     double layers = 0;
     /// least ratio of the facets of the largest component to those of a splinter
     double least_ratio = splinters::least_ratio;
-    /// the mesh is part of one of which some component is larger than any splinter times that ratio
-    bool of_larger = false;
+    /// facets of the largest component, where the mesh is part of one that has it; 0: as it is in the mesh
+    std::size_t largest = 0;
+
+    /// Beside a component of so many facets all splinters go.
+    std::size_t enough() const {
+        return static_cast<std::size_t>(least_ratio) * std::max({most_facets, most_open, most_flat});
+    }
 };
 
 /// Removes the components (facets joined by shared vertices) that are splinters beside the largest one: a few
 /// facets on their own beside a surface of many. Vertices stay. Returns the number of facets removed, and
 /// where. O(facets), parallel.
 Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options = {});
-
-/// Facets of the component that has most of them; 0 for none. O(facets), parallel.
-std::size_t largest_component(const PolygonMesh& mesh);
 
 struct SmallComponentOptions {
     double least_facets = 0; ///< smaller components go

@@ -40,11 +40,7 @@ public:
             if (take_seen) ++s;
             if (take_own) ++o;
         }
-        std::vector<std::uint8_t> of_any(found.size(), 0);
-        for (const Ranks::Bytes& got : ranks_.gather(bytes_of(found)))
-            std::ranges::transform(of_any, got, of_any.begin(),
-                                   [](std::uint8_t a, char b) { return static_cast<std::uint8_t>(a | b); });
-        return of_any;
+        return ranks_.any_of_each(found);
     }
 
 private:

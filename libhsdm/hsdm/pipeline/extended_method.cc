@@ -424,7 +424,9 @@ void FacetCounts::operator+=(const FacetCounts& other) {
     sets += other.sets;
     middle += other.middle, tilted += other.tilted;
     misfit_placed += other.misfit_placed, misfit_moved += other.misfit_moved;
-    depends_on_all |= other.depends_on_all;
+    tangles += other.tangles;
+    for (std::size_t i = 0; i < handle_work.size(); ++i) handle_work[i] += other.handle_work[i];
+    facets += other.facets;
 }
 
 PartFacets facets_of_part(const MethodInput& in, const PartOfLevel& part) {
@@ -433,11 +435,15 @@ PartFacets facets_of_part(const MethodInput& in, const PartOfLevel& part) {
     drop_outlier_sets(in.level, related, sets, {.typical = part.typical_set});
     separate_patches(in.octree, in.level, related, sets);
     DualContourOptions options = options_for(in, part.spacing);
-    options.splinters.of_larger = true;
     const auto is_own = [&](Index voxel) { return part.owns(in.level.codes[voxel]); };
+    options.facets_of_whole = part.voxels; // a facet a voxel, mostly
+    options.tangles = part.tangles;
+    options.largest = part.largest;
     std::vector<std::uint8_t> own_voxels = large_vector<std::uint8_t>(in.level.size());
     for_each_index(own_voxels.size(), chunks::light, [&](Index v) { own_voxels[v] = is_own(v); });
     options.relax.part_of_whole = own_voxels;
+    options.part = {[&](Index voxel) { return own_voxels[voxel] != 0; },
+                    [&](Index voxel) { return part.is_near(in.level.codes[voxel]); }};
     options.relax.go_back = part.go_back;
     DualContour facets = dual_contour(in.octree, in.level, sets, options);
     if (part.turned) {
@@ -461,7 +467,9 @@ PartFacets facets_of_part(const MethodInput& in, const PartOfLevel& part) {
     order_by_voxels(in.level.size(), facets.voxel, facets.mesh, result.known);
     for (const NormalSet& set : sets.sets) result.counts.sets += is_own(set.voxel);
     result.counts.misfit_placed = facets.misfit_placed, result.counts.misfit_moved = facets.misfit_moved;
-    result.counts.depends_on_all = facets.depends_on_all;
+    result.counts.tangles = facets.tangles;
+    result.components = std::move(facets.components);
+    result.counts.handle_work = facets.handle_work;
     result.mesh = std::move(facets.mesh);
     result.voxel = std::move(facets.voxel);
     return result;

@@ -1,6 +1,7 @@
 #pragma once
 // Phase 2 by the extended method, section 3.4.2: graph and facets from normal-consistent sets.
 
+#include "hsdm/contour/dual_contour.hh"
 #include "hsdm/pipeline/method.hh"
 #include "hsdm/polygon_mesh.hh"
 
@@ -17,12 +18,15 @@ PolygonMesh extended_method(const MethodInput& input, Report& report, FacetKnowl
 
 /// What is to be known of the whole level to make part of it.
 struct PartOfLevel {
-    double spacing = 0;     ///< of the points
-    double typical_set = 0; ///< points in a normal set, the mean over points
-    bool turned = false;    ///< do the points' normals point into a closed solid?
-    bool go_back = false;   ///< as in RelaxOptions
-    /// Does the part own this voxel?
-    std::function<bool(MortonCode)> owns;
+    double spacing = 0;       ///< of the points
+    double typical_set = 0;   ///< points in a normal set, the mean over points
+    bool turned = false;      ///< do the points' normals point into a closed solid?
+    bool go_back = false;     ///< as in RelaxOptions
+    std::size_t voxels = 0;   ///< of the level
+    TanglePlan tangles{};     ///< of the whole
+    LargestOfWhole largest{}; ///< as in DualContourOptions
+    /// Does the part own this voxel, or does it lie near those that it owns?
+    std::function<bool(MortonCode)> owns, is_near;
 };
 
 /// What must be added up over parts.
@@ -30,7 +34,9 @@ struct FacetCounts {
     std::size_t sets = 0;                       ///< of own voxels
     std::size_t middle = 0, tilted = 0;         ///< as in SheetFeatures, of edges of own facets
     double misfit_placed = 0, misfit_moved = 0; ///< as in DualContour, of own voxels
-    bool depends_on_all = false;                ///< as in DualContour
+    TangleCounts tangles;                       ///< as in DualContour
+    std::array<HandleWork, 2> handle_work;      ///< as in DualContour
+    std::size_t facets = 0;                     ///< own ones
 
     void operator+=(const FacetCounts& other);
 };
@@ -41,6 +47,7 @@ struct PartFacets {
     std::vector<Index> voxel; ///< per vertex
     FacetKnowledge known;     ///< hints: smooth ones for judge_normals()
     FacetCounts counts;
+    std::array<PartComponents, 2> components; ///< as in DualContour
 };
 
 /// The local part of extended_method(): all but slits and what is missing, which are of the whole. `input`:

@@ -40,8 +40,7 @@ public:
                 pieces, ranges_, [&](std::size_t k) { return owner(k); }, ranks_);
             for (std::size_t k = 0; k < ranges_.size(); ++k)
                 if (due[k]) ghost[k] *= 2, ++how_.widened;
-            if (std::ranges::count(due, 1) == 0 && must_go_back(pieces))
-                std::ranges::fill(due, std::uint8_t{1});
+            if (std::ranges::count(due, 1) == 0) due = due_by_sums(pieces);
         }
         return pieces;
     }
@@ -65,11 +64,14 @@ private:
 
     Piece checked_piece(const VoxelRange& range, int ghost) {
         Piece piece = make_tile(range, ghost);
-        if (piece.counts.depends_on_all)
-            refuse_in_tiles(
-                "facets pass through each other that could not be parted, or normals are at random");
+        for (const HandleWork& work : piece.counts.handle_work)
+            if (!work.is_complete) refuse_handles();
         if (in_.store) in_.store->put(piece);
         return piece;
+    }
+
+    static void refuse_handles() {
+        refuse_in_tiles("there are many tunnels and bridges that no points speak for");
     }
 
     Piece make_tile(const VoxelRange& range, int ghost) {
@@ -84,8 +86,16 @@ private:
         if (!strays_.empty()) return piece; // all are made again without them
         const OctreeLevel level = extract_level(octree, cloud_.depth());
         const MethodInput in{cloud_.frame(), {}, octree, level, in_.options, in_.phases};
-        const PartOfLevel part{in_.survey.spacing, in_.survey.sums.set_sizes().typical(), turned_,
-                               known_.go_back, [&](MortonCode code) { return range.holds(code); }};
+        const PartOfLevel part{
+            in_.survey.spacing,
+            in_.survey.sums.set_sizes().typical(),
+            turned_,
+            known_.go_back,
+            in_.survey.sums.voxels(),
+            known_.tangles,
+            known_.largest,
+            [&](MortonCode code) { return range.holds(code); },
+            [&](MortonCode code) { return range.is_near(morton_decode(code), ghost / 2); }};
         return make_piece(in, part, range);
     }
 
@@ -140,10 +150,52 @@ private:
         return all;
     }
 
+    /// Tiles to be made once more since sums over all tell something that these were not made by.
+    std::vector<std::uint8_t> due_by_sums(const std::vector<Piece>& pieces) {
+        const FacetCounts sums = counts_of_all(pieces);
+        for (const HandleWork& work : sums.handle_work)
+            if (!work.fits(sums.facets)) refuse_handles();
+        std::vector<std::uint8_t> due(pieces.size(), 0);
+        if (must_go_back(sums) || must_use_largest(pieces))
+            std::ranges::fill(due, std::uint8_t{1});
+        else if (known_.tangles.weigh(sums.tangles))
+            for (std::size_t k = 0; k < pieces.size(); ++k) due[k] = pieces[k].counts.tangles.near;
+        return ranks_.any_of_each(due);
+    }
+
+    /// Splinters are small beside the largest component, which was taken for large.
+    bool must_use_largest(const std::vector<Piece>& pieces) {
+        LargestOfWhole largest;
+        for (std::size_t stage = 0; stage < largest.size(); ++stage)
+            largest[stage] = largest_of_all(pieces, stage);
+        return std::exchange(known_.largest, largest) != largest;
+    }
+
+    std::size_t largest_of_all(const std::vector<Piece>& pieces, std::size_t stage) {
+        const std::size_t enough = SplinterOptions().enough();
+        std::vector<PartComponents> parts;
+        for (std::size_t k = 0; k < pieces.size(); ++k)
+            if (is_own(k)) parts.push_back(pieces[k].components[stage]);
+        if (ranks_.any(largest_component(parts, enough) >= enough)) return enough;
+        Ranks::Bytes own;
+        for (const PartComponents& part : parts) {
+            put(part.largest, own);
+            put_vector(part.sizes, own), put_vector(part.shared, own);
+        }
+        parts.clear();
+        for (const Ranks::Bytes& got : ranks_.gather(own))
+            for (ByteReader reader(got); !reader.at_end();) {
+                PartComponents& part = parts.emplace_back();
+                part.largest = reader.take<std::size_t>();
+                part.sizes = reader.take_vector<std::size_t>();
+                part.shared = reader.take_vector<PartComponents::Shared>();
+            }
+        return std::max<std::size_t>(1, largest_component(parts, enough));
+    }
+
     /// Vertices as moved towards the points stay only where that brings all together nearer. Are they to go
     /// back, and have not yet?
-    bool must_go_back(const std::vector<Piece>& pieces) {
-        const FacetCounts all = counts_of_all(pieces);
+    bool must_go_back(const FacetCounts& all) {
         const double gain = all.misfit_placed - all.misfit_moved;
         constexpr double rounding = 1e-9; // sums of parts are rounded otherwise than that of the whole
         if (std::abs(gain) <= rounding * all.misfit_placed && all.misfit_placed > 0)

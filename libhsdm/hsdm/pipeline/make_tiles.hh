@@ -23,6 +23,8 @@ struct TilesInput {
 struct TilesKnown {
     bool outliers = false; ///< have they been looked for?
     bool go_back = false;  ///< as in PartOfLevel
+    TanglePlan tangles{};  ///< as in PartOfLevel
+    LargestOfWhole largest{SplinterOptions().enough(), SplinterOptions().enough()}; ///< the same
     Vec3 first_outlier{0, 0, 0};
 };
 

@@ -134,9 +134,11 @@ private:
 } // namespace
 
 Piece make_piece(const MethodInput& in, const PartOfLevel& part, const VoxelRange& range) {
-    const PartFacets facets = facets_of_part(in, part);
+    PartFacets facets = facets_of_part(in, part);
     Piece piece = TileMesh(in, facets, range).piece();
     piece.counts = facets.counts;
+    piece.counts.facets = piece.first.size() - 1;
+    piece.components = std::move(facets.components);
     return piece;
 }
 

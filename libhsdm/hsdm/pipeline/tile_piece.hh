@@ -36,7 +36,8 @@ struct Piece {
     std::vector<Digest> border; ///< its voxels that others see, ascending
     std::vector<Digest> beyond; ///< voxels of others that it sees, ascending
 
-    FacetCounts counts; ///< of its facets
+    FacetCounts counts;                       ///< of its facets
+    std::array<PartComponents, 2> components; ///< as in DualContour
 };
 
 /// How far beyond a tile its neighbours' results are compared with its own, in voxels.

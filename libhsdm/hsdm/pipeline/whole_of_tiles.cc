@@ -3,13 +3,13 @@
 #include "hsdm/contour/sheet_features.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/core/system.hh"
-#include "hsdm/mesh/small_components.hh"
 #include "hsdm/mesh/turn_outward.hh"
 #include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/pipeline/cloud_distance.hh"
 #include "hsdm/pipeline/finish_mesh.hh"
 #include "hsdm/pipeline/join_pieces.hh"
 #include "hsdm/pipeline/measure.hh"
+#include "hsdm/pipeline/warnings.hh"
 #include "hsdm/quality/degenerate_facets.hh"
 
 #include <algorithm>
@@ -26,13 +26,15 @@ void judge(const FacetCounts& counts, FacetKnowledge& known) {
     known.hints = std::move(features.hints);
 }
 
+void note_intersections(const WholeInput& in, Occurrences left, Report& report) {
+    report.rejected["intersections_left"] = left.count;
+    left.first += in.cloud.origin();
+    warn(warning_of::intersections, left, in.cloud.frame(), report);
+}
+
 /// Refuses what was taken for granted of the whole and is not so.
 void check_whole(const WholeInput& in, const MethodInput& method, const PolygonMesh& mesh,
                  const FacetLinks& links) {
-    const SplinterOptions splinters;
-    const std::size_t most = std::max({splinters.most_facets, splinters.most_open, splinters.most_flat});
-    if (static_cast<double>(largest_component(mesh)) < splinters.least_ratio * static_cast<double>(most))
-        refuse_in_tiles("no part of the mesh is large");
     if (in.options.holes == Holes::automatic && has_slits(method, in.survey.spacing, mesh, links))
         refuse_in_tiles("a slit has to be closed (--holes keep would leave it)");
 }
@@ -56,6 +58,7 @@ public:
           level_(in.cloud.no_voxels()),
           method_{in.cloud.frame(), no_cloud_, in.cloud.no_points(), level_, in.options, in.phases},
           hints_(std::move(facets.known.hints)),
+          intersections_(facets.known.intersections),
           report_(std::move(report)) {
         result_.mesh = std::move(facets.mesh);
     }
@@ -64,6 +67,7 @@ public:
         Report::Seconds& seconds = report_.seconds;
         in_.phases.run("whole", 0.55, seconds.facets, [&] {
             check_facets(mesh(), report_);
+            note_intersections(in_, intersections_, report_);
             links() = link_facets(mesh());
             check_whole(in_, method_, mesh(), links());
             leave_out_unsound();
@@ -142,6 +146,7 @@ private:
     const OctreeLevel level_;
     const MethodInput method_;
     FeatureHints hints_;
+    Occurrences intersections_;
     Report report_;
     FlatReconstruction result_;
 };
@@ -151,6 +156,7 @@ private:
 WholeFacets join_tiles(std::vector<Piece>&& pieces, const PieceStore* store) {
     WholeFacets whole;
     for (const Piece& piece : pieces) whole.counts += piece.counts;
+    whole.known.intersections = whole.counts.tangles.left;
     whole.mesh = joined_pieces(std::move(pieces), whole.known.hints.sides, store);
     judge(whole.counts, whole.known);
     return whole;
@@ -161,6 +167,7 @@ Reconstruction finish_whole(const WholeInput& in, WholeFacets&& facets, Report&&
     const MethodInput method{in.cloud.frame(), {}, in.cloud.no_points(), level, in.options, in.phases};
     in.phases.run("whole", 0.55, report.seconds.facets, [&] {
         check_facets(facets.mesh, report);
+        report.rejected["intersections_left"] = facets.known.intersections.count;
         facets.known.links = link_facets(facets.mesh);
         check_whole(in, method, facets.mesh, *facets.known.links);
         const auto count = facets.mesh.vertex_count();

@@ -41,11 +41,23 @@ public:
         result.facet_pairs = collected<FacetPair>(tree_.block_count(), blocks_per_chunk, test_blocks);
         result.skipped = static_cast<std::size_t>(std::count(collinear_.begin(), collinear_.end(), 1));
         result.triangle_pairs = result.facet_pairs.size();
-        parallel_sort_unique(result.facet_pairs);
+        parallel_sort(result.facet_pairs);
+        count_each(result);
         return result;
     }
 
 private:
+    /// Leaves each of the sorted pairs once.
+    static void count_each(SelfIntersections& found) {
+        std::vector<FacetPair> once;
+        for (const FacetPair& pair : found.facet_pairs) {
+            if (once.empty() || once.back() != pair)
+                once.push_back(pair), found.triangles_of_pair.push_back(0);
+            ++found.triangles_of_pair.back();
+        }
+        found.facet_pairs = std::move(once);
+    }
+
     PlacedTriangle place(std::size_t t) const {
         PlacedTriangle placed;
         for (std::size_t k = 0; k < 3; ++k) {

@@ -13,6 +13,7 @@ struct SelfIntersections {
     std::size_t skipped = 0;        ///< triangles whose corners lie on a line: they take part in no pair
     std::vector<std::array<Index, 2>> facet_pairs; ///< the facets they belong to, lesser index first, sorted,
                                                    ///< each pair once; {f, f} for a facet folded onto itself
+    std::vector<std::size_t> triangles_of_pair;    ///< how many pairs of triangles each is
 };
 
 /// Finds every pair of triangles (facets cut as the STL writer cuts them) that have a point in common,
