@@ -31,10 +31,10 @@ PolygonMesh cut_tube(double gap) {
                    [&](const Vec3& p) { return std::abs(p[2] - 3) < 0.5 * gap + 0.05; });
 }
 
-/// A ring, four times as high as thick, without the wall of its bore.
+/// A ring, four times as high as thick, without the wall of its bore, whose ends are funnels.
 PolygonMesh tall_ring() {
     return support::quad_tube(100, 120, [](Index c, Index r) {
-        const double turn = 2 * std::numbers::pi * c / 100, up = 2.6 * (r / 60.0 - 1);
+        const double turn = 2 * std::numbers::pi * c / 100, up = 1.9 * (r / 60.0 - 1);
         const double radius = 1 + 0.5 * std::cos(up);
         return Vec3(radius * std::cos(turn), radius * std::sin(turn), 2 * std::sin(up));
     });

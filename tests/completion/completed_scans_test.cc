@@ -274,6 +274,21 @@ TEST_CASE("a bore that a scanner looked through stays open, though nobody saw it
     }
 }
 
+TEST_CASE("a bore of whose wall the ends alone were seen goes through, however long it is", "[completion]") {
+    const double half_pi = 0.5 * std::numbers::pi;
+    const Solid block = box({2.4, 1, 1}) - cylinder(0.25, 3).placed(turned({0, 1, 0}, half_pi));
+    for (const double strip : {-1.0, 0.18}) { // wide, seen all along
+        const PointCloud cloud = partial_scan(block, {.points = 40000, .normals = false}, [&](const Vec3& p) {
+            return std::hypot(p[1], p[2]) < 0.3 && std::abs(p[0]) < 0.8
+                   && !(p[2] > 0 && std::abs(p[1]) < strip);
+        });
+        const Completed completed = complete(cloud, 0.06);
+        CHECK(completed.report.mesh.components == 1);
+        CHECK(completed.report.mesh.euler == 0);
+        CHECK(farthest_vertex(completed.mesh, block) < 0.06);
+    }
+}
+
 TEST_CASE(
     "a wall no thicker than four deviations of the noise comes out as a wall, not as a sheet that is closed "
     "behind",

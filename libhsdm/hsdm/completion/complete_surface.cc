@@ -1,8 +1,11 @@
 #include "hsdm/completion/complete_surface.hh"
 
+#include "hsdm/completion/bores.hh"
 #include "hsdm/completion/completion_patch.hh"
 #include "hsdm/completion/constants.hh"
+#include "hsdm/completion/slits.hh"
 #include "hsdm/core/check_option.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/turn_outward.hh"
 
@@ -45,6 +48,45 @@ bool faces_inward(const PolygonMesh& mesh, const BoundaryLoops& border) {
     return volume < 0 && length * length < 0.1 * 4 * std::numbers::pi * area;
 }
 
+/// A mesh with the walls of its bores, and the loops that are left then.
+struct JoinedMesh {
+    PolygonMesh mesh;
+    BoundaryLoops loops;
+
+    JoinedMesh(const PolygonMesh& open, const BoundaryLoops& all, const Bores& bores) : mesh(open) {
+        const auto first = static_cast<Index>(mesh.vertex_count());
+        append_large(mesh.positions, bores.walls.positions);
+        for (std::size_t f = 0; f < bores.walls.facet_count(); ++f) {
+            const auto facet = bores.walls.facet(f);
+            mesh.add_facet(std::array{first + facet[0], first + facet[1], first + facet[2]});
+        }
+        std::vector<std::uint8_t> joined(all.size());
+        for (const Index l : bores.loops) joined[l] = 1;
+        for (std::size_t l = 0; l < all.size(); ++l) {
+            if (joined[l] != 0) continue;
+            for (Index i = all.begin[l]; i < all.begin[l + 1]; ++i) {
+                loops.vertices.push_back(all.vertices[i]);
+                loops.facets.push_back(all.facets[i]);
+            }
+            loops.begin.push_back(static_cast<Index>(loops.vertices.size()));
+        }
+    }
+};
+
+/// Adds points of the surface that closes a mesh, facets outward.
+void add_completing(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size, Passing passing,
+                    const KnownSpace& space, CompletedPoints& points) {
+    if (loops.size() == 0) return;
+    CompletionPatch patch = completion_patch(completion_field(mesh, loops, voxel_size, space), mesh, loops);
+    if (passing == Passing::stopped)
+        fair_beside(mesh, patch, space);
+    else
+        fair(patch, space);
+    const std::vector<Vec3> normals = vertex_area_vectors(patch.net);
+    for (std::size_t q = 0; q < patch.net.facet_count(); ++q)
+        if (patch.missing[q] != 0) add_samples(patch.net.facet(q), patch, normals, points);
+}
+
 } // namespace
 
 CompletedPoints complete_surface(const PolygonMesh& mesh, double voxel_size) {
@@ -71,15 +113,16 @@ CompletedPoints complete_surface(const PolygonMesh& mesh, const BoundaryLoops& l
         return empty(p);
     };
     const KnownSpace space{inward && empty ? std::function<bool(const Vec3&)>(within) : empty, !inward};
-    CompletionPatch patch =
-        completion_patch(completion_field(outward, loops, voxel_size, space), outward, loops);
-    if (passing == Passing::stopped)
-        fair_beside(outward, patch, space);
-    else
-        fair(patch, space);
-    const std::vector<Vec3> normals = vertex_area_vectors(patch.net);
-    for (std::size_t q = 0; q < patch.net.facet_count(); ++q)
-        if (patch.missing[q] != 0) add_samples(patch.net.facet(q), patch, normals, points);
+    const BoundaryLoops turned_loops = inward ? boundary_loops(turned) : BoundaryLoops();
+    const BoundaryLoops& border = inward ? turned_loops : loops;
+    const Bores bores = find_bores(outward, border, voxel_size);
+    if (bores.loops.empty()) {
+        add_completing(outward, border, voxel_size, passing, space, points);
+    } else {
+        points = points_across(bores.walls, voxel_size);
+        const JoinedMesh joined(outward, border, bores);
+        add_completing(joined.mesh, joined.loops, voxel_size, passing, space, points);
+    }
     if (inward)
         for (Vec3& n : points.normals) n = -n;
     return points;

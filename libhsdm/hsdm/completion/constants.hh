@@ -106,3 +106,24 @@ inline constexpr double least_slenderness = 16;
 inline constexpr std::size_t most_edges = 4096;
 
 } // namespace hsdm::slits
+
+// bores.hh
+namespace hsdm::bores {
+
+/// sine: of the slope of a bore's wall to its axis, root mean square over the facets beside its border.
+/// Why: 20 degrees: half of what normals of one sheet may differ by, as noise and conical bores do.
+inline constexpr double most_slope = 0.35;
+
+/// cosine: of the way beyond a border to the axis, on average.
+/// Why: of a border that zigzags at right angles it is 0.7, of a hole in a wall 0; midway.
+inline constexpr double least_beyond = 0.35;
+
+/// cosine: of a bore's normals and the way to its axis, on average.
+/// Why: 0.88 of a square bore, 0.62 of a slot four times as long as wide, negative of a rod.
+inline constexpr double least_inward = 0.5;
+
+/// share: of a bore's radius, that its axis may miss the centre of the other end by, and the radii differ.
+/// Why: two ends placed by chance on faces a few radii wide miss each other's quarter in 99 of 100.
+inline constexpr double most_miss = 0.25;
+
+} // namespace hsdm::bores

@@ -57,6 +57,20 @@ struct Closing {
     }
 };
 
+/// Points of a triangle: n (n + 1) / 2 of the n^2 alike ones that it consists of have one each.
+void add_points_of(const std::array<Vec3, 3>& triangle, double voxel_size, CompletedPoints& points) {
+    const auto& [a, b, c] = triangle;
+    const Vec3 twice = (b - a) % (c - a);
+    if (!(twice.norm() > 0)) return;
+    const int n =
+        std::max(1, static_cast<int>(std::ceil(std::sqrt(twice.norm()) * completing::samples / voxel_size)));
+    for (int i = 0; i < n; ++i)
+        for (int k = 0; i + k < n; ++k) {
+            points.positions.push_back(a + (b - a) * ((i + 1.0 / 3) / n) + (c - a) * ((k + 1.0 / 3) / n));
+            points.normals.push_back(unit(twice));
+        }
+}
+
 } // namespace
 
 Slits find_slits(const PolygonMesh& mesh, const BoundaryLoops& loops, double widest) {
@@ -91,17 +105,20 @@ Slits find_slits(const PolygonMesh& mesh, const BoundaryLoops& loops, double wid
 
 CompletedPoints points_across(const Slits& slits, double voxel_size) {
     CompletedPoints points;
-    for (const auto& [a, b, c] : slits.closing) {
-        const Vec3 twice = (b - a) % (c - a);
-        if (!(twice.norm() > 0)) continue;
-        // n (n + 1) / 2 of the n^2 alike triangles that it consists of have a point each.
-        const int n = std::max(
-            1, static_cast<int>(std::ceil(std::sqrt(twice.norm()) * completing::samples / voxel_size)));
-        for (int i = 0; i < n; ++i)
-            for (int k = 0; i + k < n; ++k) {
-                points.positions.push_back(a + (b - a) * ((i + 1.0 / 3) / n) + (c - a) * ((k + 1.0 / 3) / n));
-                points.normals.push_back(unit(twice));
-            }
+    for (const auto& triangle : slits.closing) add_points_of(triangle, voxel_size, points);
+    return points;
+}
+
+CompletedPoints points_across(const PolygonMesh& triangles, double voxel_size) {
+    const double side = voxel_size / completing::samples;
+    CompletedPoints points;
+    for (std::size_t f = 0; f < triangles.facet_count(); ++f) {
+        const auto corners = triangles.facet(f);
+        const auto& at = triangles.positions;
+        const std::array<Vec3, 3> triangle{at[corners[0]], at[corners[1]], at[corners[2]]};
+        // Of less than a tenth of the area that a point stands for the normal says nothing.
+        if (area_vector(triangles, corners).norm() > 0.2 * side * side)
+            add_points_of(triangle, voxel_size, points);
     }
     return points;
 }

@@ -21,5 +21,7 @@ Slits find_slits(const PolygonMesh& mesh, const BoundaryLoops& loops, double wid
 
 /// Points of what closes slits, nine to a squared voxel and more, with its normals.
 CompletedPoints points_across(const Slits& slits, double voxel_size);
+/// The same of a mesh's triangles, but for the smallest.
+CompletedPoints points_across(const PolygonMesh& triangles, double voxel_size);
 
 } // namespace hsdm

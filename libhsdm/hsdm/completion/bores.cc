@@ -1,0 +1,244 @@
+#include "hsdm/completion/bores.hh"
+
+#include "hsdm/completion/constants.hh"
+#include "hsdm/core/chunks.hh"
+#include "hsdm/mesh/area_vector.hh"
+#include "hsdm/normals/plane_fit.hh"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace hsdm {
+namespace {
+
+/// A side of a boundary loop.
+struct BorderSide {
+    Vec3 middle, normal, beyond; ///< `beyond` points away from the facet beside it, as long as the side
+    double length;
+};
+
+std::vector<BorderSide> sides_of(const PolygonMesh& mesh, const BoundaryLoops& loops, std::size_t l) {
+    const auto loop = loops[l];
+    std::vector<BorderSide> sides;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+        const Vec3 &from = mesh.positions[loop[i]], &to = mesh.positions[loop[(i + 1) % loop.size()]];
+        const Vec3 normal = unit(area_vector(mesh, mesh.facet(loops.facets[loops.begin[l] + i])));
+        // The facet beside the loop runs against it.
+        sides.push_back({0.5 * (from + to), normal, normal % (to - from), (to - from).norm()});
+    }
+    return sides;
+}
+
+/// A straight wall round an axis that it faces, as far as a loop tells.
+struct BoreWall {
+    Vec3 centre{0, 0, 0}, axis{0, 0, 0}; ///< the axis is a unit vector, of either sign
+    double radius = 0;
+};
+
+/// The axis is the one least along the normals. None where the mesh beside the loop is no such wall, as at
+/// the end of a rod, which faces away from its axis.
+std::optional<BoreWall> wall_of(const std::vector<BorderSide>& sides) {
+    BoreWall wall;
+    PlaneSums normals;
+    double length = 0;
+    for (const BorderSide& side : sides) {
+        length += side.length;
+        wall.centre += side.length * side.middle;
+        normals.add(side.normal, 0.5 * side.length);
+        normals.add(-side.normal, 0.5 * side.length);
+    }
+    if (!(length > 0)) return {};
+    wall.centre /= length;
+    const PlaneFit fit = fit_plane(normals);
+    if (fit.normal.sqrnorm() == 0 || fit.variance > bores::most_slope * bores::most_slope) return {};
+    wall.axis = fit.normal;
+    double inward = 0;
+    for (const BorderSide& side : sides) {
+        Vec3 out = side.middle - wall.centre;
+        out -= wall.axis * (out | wall.axis);
+        wall.radius += side.length / length * out.norm();
+        inward -= side.length * (side.normal | unit(out));
+    }
+    if (inward < bores::least_inward * length) return {};
+    return wall;
+}
+
+/// Sides from `begin` on, round the loop.
+struct Run {
+    std::size_t begin = 0, count = 0;
+};
+
+/// Do most of the sides of a run go on along the axis?
+bool goes_on(const std::vector<BorderSide>& sides, const Run& run, const Vec3& axis) {
+    double along = 0, length = 0;
+    for (std::size_t i = 0; i < run.count; ++i) {
+        const BorderSide& side = sides[(run.begin + i) % sides.size()];
+        along += side.beyond | axis;
+        length += side.length;
+    }
+    return length > 0 && along >= bores::least_beyond * length;
+}
+
+/// The run of sides that goes on farthest along the axis, all in all (Kadane's algorithm, twice round).
+Run farthest_run(const std::vector<BorderSide>& sides, const Vec3& axis) {
+    Run best, now;
+    double most = 0, sum = 0;
+    for (std::size_t i = 0; i < 2 * sides.size(); ++i) {
+        if (sum <= 0 || now.count == sides.size()) now = {i % sides.size(), 0}, sum = 0;
+        sum += sides[i % sides.size()].beyond | axis;
+        ++now.count;
+        if (sum > most) most = sum, best = now;
+    }
+    return best;
+}
+
+/// A loop all of whose sides are one end of a bore.
+struct BoreEnd {
+    Index loop = 0;
+    BoreWall wall; ///< its axis points beyond the end
+
+    /// Does this one go on to the other?
+    bool leads_to(const BoreEnd& other) const {
+        const Vec3 way = other.wall.centre - wall.centre;
+        const double along = way | wall.axis,
+                     most = bores::most_miss * std::min(wall.radius, other.wall.radius);
+        return along > 0 && (way - wall.axis * along).norm() <= most
+               && std::abs(wall.radius - other.wall.radius) <= most;
+    }
+};
+
+/// Numbers of a loop's vertices, one after the other: those of a run of its sides.
+std::vector<Index> vertices_of(std::span<const Index> loop, const Run& run) {
+    std::vector<Index> vertices;
+    for (std::size_t i = 0; i <= run.count; ++i) vertices.push_back(loop[(run.begin + i) % loop.size()]);
+    return vertices;
+}
+
+/// Adds what is ruled between two rows of vertices, of which the first runs as the border does and the second
+/// against it: rungs from the one to the other, of which the next is always the one less askew to the axis.
+class RuledWall {
+public:
+    RuledWall(const PolygonMesh& mesh, std::vector<Index> forward, std::vector<Index> back, const Vec3& axis,
+              double step, PolygonMesh& walls)
+        : mesh_(mesh), forward_(std::move(forward)), back_(std::move(back)), axis_(axis), walls_(walls) {
+        double longest = 0;
+        for (Rung rung{0, 0};;) {
+            rungs_.push_back(rung);
+            longest = std::max(longest, way(rung).norm());
+            const bool at_end = rung[0] + 1 == forward_.size(), back_at_end = rung[1] + 1 == back_.size();
+            if (at_end && back_at_end) break;
+            const Rung next{rung[0] + 1, rung[1]}, other{rung[0], rung[1] + 1};
+            rung = back_at_end || (!at_end && askew(next) <= askew(other)) ? next : other;
+        }
+        steps_ = std::max(std::size_t{1}, static_cast<std::size_t>(std::ceil(longest / step)));
+        for (std::size_t r = 0; r + 1 < rungs_.size(); ++r) add_between(rungs_[r], rungs_[r + 1]);
+    }
+
+private:
+    using Rung = std::array<std::size_t, 2>; // places in both rows
+
+    Vec3 way(const Rung& r) const { return mesh_.positions[back_[r[1]]] - mesh_.positions[forward_[r[0]]]; }
+    double askew(const Rung& r) const { return (way(r) % axis_).norm(); }
+    Vec3 place(const Rung& r, std::size_t step) const {
+        const double share = static_cast<double>(step) / static_cast<double>(steps_);
+        return mesh_.positions[forward_[r[0]]] * (1 - share) + mesh_.positions[back_[r[1]]] * share;
+    }
+    void add_between(const Rung& one, const Rung& next) {
+        for (std::size_t s = 0; s < steps_; ++s) {
+            const Vec3 from = place(one, s), to = place(next, s);
+            const Vec3 beyond = place(one, s + 1), beyond_to = place(next, s + 1);
+            if (s > 0 || one[0] != next[0]) add({from, to, beyond});
+            if (s + 1 < steps_ || one[1] != next[1]) add({to, beyond_to, beyond});
+        }
+    }
+    void add(const std::array<Vec3, 3>& triangle) {
+        if (((triangle[1] - triangle[0]) % (triangle[2] - triangle[0])).sqrnorm() == 0) return;
+        const auto first = static_cast<Index>(walls_.vertex_count());
+        walls_.positions.insert(walls_.positions.end(), triangle.begin(), triangle.end());
+        walls_.add_facet(std::array{first, first + 1, first + 2});
+    }
+
+    const PolygonMesh& mesh_;
+    std::vector<Index> forward_, back_;
+    Vec3 axis_;
+    PolygonMesh& walls_;
+    std::vector<Rung> rungs_;
+    std::size_t steps_ = 1;
+};
+
+/// What loops tell.
+struct LoopEnds {
+    std::optional<BoreEnd> one;
+    std::optional<std::array<Run, 2>> both; ///< of a loop that is both ends of a bore
+    Vec3 axis{0, 0, 0};
+};
+
+LoopEnds ends_of(const PolygonMesh& mesh, const BoundaryLoops& loops, std::size_t l) {
+    const std::vector<BorderSide> sides = sides_of(mesh, loops, l);
+    std::optional<BoreWall> wall = wall_of(sides);
+    LoopEnds ends;
+    if (!wall) return ends;
+    Vec3 beyond(0, 0, 0);
+    for (const BorderSide& side : sides) beyond += side.beyond;
+    if ((beyond | wall->axis) < 0) wall->axis = -wall->axis;
+    ends.axis = wall->axis;
+    if (goes_on(sides, {0, sides.size()}, wall->axis)) {
+        ends.one = BoreEnd{static_cast<Index>(l), *wall};
+        return ends;
+    }
+    const Run there = farthest_run(sides, wall->axis);
+    const Run back{(there.begin + there.count) % sides.size(), sides.size() - there.count};
+    if (goes_on(sides, there, wall->axis) && goes_on(sides, back, -wall->axis)) ends.both = {there, back};
+    return ends;
+}
+
+void join_ends(const PolygonMesh& mesh, const BoundaryLoops& loops, const BoreEnd& a, const BoreEnd& b,
+               double step, PolygonMesh& walls) {
+    const auto loop = loops[a.loop], other = loops[b.loop];
+    const Vec3 axis = unit(a.wall.axis - b.wall.axis);
+    const auto askew = [&](Index v) { return ((mesh.positions[v] - mesh.positions[loop[0]]) % axis).norm(); };
+    const auto nearest = std::ranges::min_element(other, {}, askew) - other.begin();
+    std::vector<Index> back = vertices_of(other, {static_cast<std::size_t>(nearest), other.size()});
+    std::ranges::reverse(back);
+    RuledWall(mesh, vertices_of(loop, {0, loop.size()}), std::move(back), axis, step, walls);
+}
+
+} // namespace
+
+Bores find_bores(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size) {
+    std::vector<LoopEnds> found(loops.size());
+    for_each_task(loops.size(), [&](std::size_t l) { found[l] = ends_of(mesh, loops, l); });
+    Bores result;
+    std::vector<BoreEnd> ends;
+    for (std::size_t l = 0; l < loops.size(); ++l) {
+        if (found[l].one) ends.push_back(*found[l].one);
+        if (!found[l].both) continue;
+        const auto& [there, back] = *found[l].both;
+        result.loops.push_back(static_cast<Index>(l));
+        std::vector<Index> row = vertices_of(loops[l], back);
+        std::ranges::reverse(row);
+        RuledWall(mesh, vertices_of(loops[l], there), std::move(row), found[l].axis, voxel_size,
+                  result.walls);
+    }
+    std::vector<std::size_t> nearest(ends.size(), ends.size());
+    for_each_index(ends.size(), chunks::heavy, [&](std::size_t i) {
+        double least = Box::inf;
+        for (std::size_t k = 0; k < ends.size(); ++k) {
+            const double far = (ends[k].wall.centre - ends[i].wall.centre).norm();
+            if (k != i && far < least && ends[i].leads_to(ends[k]) && ends[k].leads_to(ends[i]))
+                least = far, nearest[i] = k;
+        }
+    });
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        const std::size_t k = nearest[i];
+        if (k == ends.size() || k < i || nearest[k] != i) continue;
+        result.loops.push_back(ends[i].loop);
+        result.loops.push_back(ends[k].loop);
+        join_ends(mesh, loops, ends[i], ends[k], voxel_size, result.walls);
+    }
+    return result;
+}
+
+} // namespace hsdm
