@@ -115,7 +115,8 @@ CompletedPoints complete_surface(const PolygonMesh& mesh, const BoundaryLoops& l
     const KnownSpace space{inward && empty ? std::function<bool(const Vec3&)>(within) : empty, !inward};
     const BoundaryLoops turned_loops = inward ? boundary_loops(turned) : BoundaryLoops();
     const BoundaryLoops& border = inward ? turned_loops : loops;
-    const Bores bores = find_bores(outward, border, voxel_size);
+    // A wall of a bore may pass through the mesh as well.
+    const Bores bores = passing == Passing::stopped ? Bores() : find_bores(outward, border, voxel_size);
     if (bores.loops.empty()) {
         add_completing(outward, border, voxel_size, passing, space, points);
     } else {

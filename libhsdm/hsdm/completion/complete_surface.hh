@@ -18,7 +18,7 @@ CompletedPoints complete_surface(const PolygonMesh& mesh, double voxel_size);
 /// What becomes of a completion that would pass through the mesh or through itself.
 enum class Passing {
     ignored, ///< it passes: where that is little, what makes facets of the points mends it
-    stopped, ///< there it stays beside the mesh, less smooth and farther from what is missing
+    stopped, ///< there it stays beside the mesh, less smooth and farther from what is missing; no bores
 };
 /// The same where the mesh's boundary loops are known. `empty`: is a place known to hold nothing, as a
 /// scanner looked through it? The surface does not close it off.
