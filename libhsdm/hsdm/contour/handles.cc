@@ -248,7 +248,6 @@ private:
     /// Those of facets that no set speaks for, and where two edges of a facet meet that are shorter together
     /// than a narrow ring is across.
     std::vector<Index> doubtful_vertices() const {
-        const double most = 2 * witnesses_.spacing();
         const auto add = [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
             for (std::size_t f = begin; f < end; ++f) {
                 const auto facet = mesh_.facet(f);
@@ -259,7 +258,8 @@ private:
                 double before = length(n - 1);
                 for (std::size_t i = 0; i < n; ++i) {
                     const double after = length(i);
-                    if (contradicted_[f] || before + after < most) found.push_back(facet[i]);
+                    if (contradicted_[f] || before + after < 2 * witnesses_.spacing_at(facet[i]))
+                        found.push_back(facet[i]);
                     before = after;
                 }
             }

@@ -155,12 +155,19 @@ bool Witnesses::surround(std::span<const Index> ring) const {
 }
 
 bool Witnesses::is_narrow(std::span<const Index> ring) const {
-    return Tube(mesh_, ring, 0).width() < spacing();
+    std::size_t points = 0;
+    const std::vector<Index> voxels = voxels_at(ring);
+    for (const Index v : voxels) points += level_.first_point[v + 1] - level_.first_point[v];
+    return Tube(mesh_, ring, 0).width() < spacing(points, voxels.size());
 }
 
-double Witnesses::spacing() const {
-    return level_.voxel_size
-           * std::sqrt(static_cast<double>(level_.size()) / static_cast<double>(octree_.size()));
+double Witnesses::spacing_at(Index vertex) const {
+    const Index v = voxel_of(vertex);
+    return spacing(level_.first_point[v + 1] - level_.first_point[v], 1);
+}
+
+double Witnesses::spacing(std::size_t points, std::size_t voxels) const {
+    return level_.voxel_size * std::sqrt(static_cast<double>(voxels) / static_cast<double>(points));
 }
 
 bool Witnesses::is_served(Index point) {

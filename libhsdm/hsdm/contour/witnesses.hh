@@ -30,13 +30,14 @@ public:
     /// those of the two sides of one wall or gap, and face two opposite ways.
     bool surround(std::span<const Index> ring) const;
 
-    /// Do the vertices of a ring lie nearer to its middle than points to each other?
+    /// Do the vertices of a ring lie nearer to its middle than points around to each other?
     bool is_narrow(std::span<const Index> ring) const;
 
-    /// Of points, as if those of each voxel lay on a plane through it.
-    double spacing() const;
+    /// Spacing of the points in a vertex's voxel, as if they lay on a plane through it.
+    double spacing_at(Index vertex) const;
 
 private:
+    double spacing(std::size_t points, std::size_t voxels) const;
     Index voxel_of(Index vertex) const { return voxel_[mesh_.origin[vertex]]; }
     void gather(Index voxel, const Vec3& centre);
     /// The voxels of the ring's vertices and those round them, each once.
