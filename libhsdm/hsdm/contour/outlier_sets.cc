@@ -28,6 +28,36 @@ bool reaches_few(const OctreeLevel& level, const RelationTest& related, const No
     return true;
 }
 
+/// Does the foot of p on the plane of a set lie amid its points, which spread evenly?
+bool is_over(const NormalSet& set, const Vec3& p, double distance) {
+    const Vec3 foot = p - distance * set.normal - set.centroid;
+    const double length_squared = foot.sqrnorm();
+    return length_squared * length_squared <= 3 * set.spread.along(foot);
+}
+
+/// Which sides of the sheets of many points set s lies over or under, as bits: over and under those that face
+/// one way, over and under those that face the other way.
+bool lies_between(const OctreeLevel& level, const NormalSets& sets, double most, double most_cosine,
+                  Index s) {
+    const NormalSet& set = sets.sets[s];
+    const NormalSet* first = nullptr;
+    std::array<bool, 2> over{}, under{}; // of those that face as the first, and against it
+    const auto look_at = [&](Index voxel) {
+        for (const NormalSet& sheet : sets.of_voxel(voxel)) {
+            if (sheet.count <= most || std::abs(sheet.normal | set.normal) >= most_cosine) continue;
+            const double distance = sheet.normal | (set.centroid - sheet.centroid);
+            if (!is_over(sheet, set.centroid, distance)) continue;
+            if (first == nullptr) first = &sheet;
+            const double cosine = sheet.normal | first->normal;
+            if (std::abs(cosine) <= most_cosine) continue;
+            (distance > 0 ? over : under)[cosine < 0] = true;
+        }
+    };
+    look_at(set.voxel);
+    for_neighbors(level, set.voxel, look_at);
+    return (over[0] && over[1]) || (under[0] && under[1]);
+}
+
 Vec3 middle_of(const OctreeLevel& level, Index voxel) {
     const VoxelCoord c = level.coord(voxel);
     return (Vec3(c[0], c[1], c[2]) + Vec3(0.5, 0.5, 0.5)) * level.voxel_size;
@@ -73,7 +103,8 @@ Occurrences drop_outlier_sets(const OctreeLevel& level, const RelationTest& rela
         for (std::size_t s = begin; s < end; ++s)
             is_outlier[s] =
                 sets.sets[s].count <= most
-                && reaches_few(level, related, sets, most, options.most_sets, static_cast<Index>(s), group);
+                && (reaches_few(level, related, sets, most, options.most_sets, static_cast<Index>(s), group)
+                    || lies_between(level, sets, most, related.cos_smooth(), static_cast<Index>(s)));
     });
     Occurrences points;
     for (std::size_t s = 0; s < is_outlier.size(); ++s)

@@ -28,11 +28,14 @@ struct PlacedVertices {
         std::uint8_t crossed;
     };
     std::vector<Beyond> beyond; ///< by ascending dual vertex
-    /// A clamped vertex, and the point up to a quarter of a voxel outside where its two sheets meet.
+    /// A vertex kept in its voxel, and the point outside where its sheets meet: up to a quarter of a voxel
+    /// away for the two of a crease; for the three of a corner in a voxel beside that holds points of two of
+    /// them but has no vertex.
     struct OnCrease {
         Index dual;
         Vec3 position;
-        std::array<Vec3, 2> normals; ///< of the two sheets
+        std::array<Vec3, 3> normals; ///< of the sheets
+        std::uint8_t sheets;         ///< 2 or 3
     };
     std::vector<OnCrease> on_creases; ///< by ascending dual vertex
 };

@@ -50,6 +50,9 @@ public:
                && std::binary_search(others + first[0], others + first[1], static_cast<Index>(&b - sets));
     }
 
+    /// Cosine of the angle that normals of one sheet may make.
+    double cos_smooth() const { return cos_smooth_; }
+
 private:
     /// By their planes alone.
     bool one_sheet(const NormalSet& a, const NormalSet& b) const {
