@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 using namespace hsdm;
@@ -97,6 +98,31 @@ TEST_CASE("a bore of whose wall a strip was seen is closed from end to end besid
     REQUIRE(bores.loops.size() == 1);
     check_walls(bores.walls, 1, 2 * std::numbers::pi * length - area_of(support::cut_in_two(strip)));
     CHECK(bores_of(bore(1, gone(2.6))).loops.empty()); // a hole in the wall is none
+}
+
+TEST_CASE("a bore with a strip seen is found wherever its border begins", "[completion]") {
+    for (const double slope : {0.0, 0.15})
+        for (const double turn : {0.0, 0.7, 1.4, 2.1, 2.8, -0.7, -1.4, -2.1, -2.8}) {
+            INFO("slope " << slope << ", strip at " << turn);
+            const PolygonMesh strip = bore(
+                2,
+                [&](const Vec3& p) {
+                    const double aside = std::remainder(std::atan2(p[1], p[0]) - turn, 2 * std::numbers::pi);
+                    return std::abs(p[2]) < 2.2 && std::abs(aside) > 0.3;
+                },
+                slope);
+            CHECK(bores_of(strip).loops.size() == 1);
+        }
+}
+
+TEST_CASE("ends between which scanners looked through the wall are two holes", "[completion]") {
+    const PolygonMesh mesh = two_halves(0, 1);
+    const auto found = [&](const std::function<bool(const Vec3&)>& empty) {
+        return find_bores(mesh, boundary_loops(mesh), 0.2, empty).loops.size();
+    };
+    CHECK(found([](const Vec3& p) { return std::hypot(p[0], p[1]) < 0.9; }) == 2); // through the bore
+    CHECK(found([](const Vec3& p) { return std::abs(p[2]) < 0.2; }) == 2);         // past an edge of it
+    CHECK(found([](const Vec3& p) { return std::abs(p[2]) < 1.2; }) == 0);
 }
 
 TEST_CASE("what does not go on to each other is no bore", "[completion]") {

@@ -4,6 +4,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
+#include <numbers>
+
 using namespace hsdm;
 
 namespace {
@@ -69,4 +72,27 @@ TEST_CASE("a lone set of many points is a surface", "[contour]") {
     const OctreeLevel level = extract_level(octree, 4);
     NormalSets sets = build_normal_sets(octree, level);
     CHECK(drop_outlier_sets(level, RelationTest({}, level.voxel_size), sets).count == 0);
+}
+
+TEST_CASE("few points that face aside between the two sides of a wall are strays", "[contour]") {
+    // Each faces nearly as the one before: step by step they lead from one side of the wall to the other.
+    for (const double side : {1.0, -1.0}) { // a wall, or a gap
+        PointCloud cloud;
+        support::Random random(5);
+        for (int i = 0; i < 12000; ++i) {
+            const double up = i % 2 == 0 ? 1 : -1;
+            cloud.positions.emplace_back(random.uniform(0, 1), random.uniform(0, 1), 0.5 + 0.015 * up);
+            cloud.normals.emplace_back(0, 0, side * up);
+        }
+        for (const double degrees : {30.0, 60.0, 90.0, 120.0, 150.0}) {
+            const double angle = degrees * std::numbers::pi / 180;
+            cloud.positions.emplace_back(0.53, 0.53, 0.5);
+            cloud.normals.emplace_back(std::sin(angle), 0, std::cos(angle));
+        }
+        const Octree octree = build_octree(cloud, {.merge_duplicates = false});
+        const OctreeLevel level = extract_level(octree, 4);
+        NormalSets sets = build_normal_sets(octree, level);
+        CHECK(drop_outlier_sets(level, RelationTest({}, level.voxel_size), sets).count == 3);
+        for (const NormalSet& set : sets.sets) CHECK(std::abs(set.normal[2]) > 0.8);
+    }
 }

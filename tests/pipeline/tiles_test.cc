@@ -48,6 +48,7 @@ void check_same_as_whole(const Reconstruction& whole, const Reconstruction& tile
     CHECK(one.error.points_to_mesh_mean == other.error.points_to_mesh_mean);
     CHECK(one.input.spacing == other.input.spacing);
     CHECK(one.rejected.at("points_outlying") == other.rejected.at("points_outlying"));
+    CHECK(one.rejected.at("intersections_left") == other.rejected.at("intersections_left"));
     std::vector<Report::Dropped> of_whole = one.dropped;
     std::erase_if(of_whole, [](const auto& dropped) { // what stages find within tiles
         return dropped.what == "facets of splinters" || dropped.what == "points that no neighbour continues";

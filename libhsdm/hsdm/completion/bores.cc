@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <optional>
+#include <utility>
 
 namespace hsdm {
 namespace {
@@ -81,17 +83,27 @@ bool goes_on(const std::vector<BorderSide>& sides, const Run& run, const Vec3& a
     return length > 0 && along >= bores::least_beyond * length;
 }
 
-/// The run of sides that goes on farthest along the axis, all in all (Kadane's algorithm, twice round).
+/// The run of sides that goes on farthest along the axis, all in all: a run between the first and the last
+/// side, or all but the run that goes back farthest (Kadane's algorithm for both).
 Run farthest_run(const std::vector<BorderSide>& sides, const Vec3& axis) {
-    Run best, now;
-    double most = 0, sum = 0;
-    for (std::size_t i = 0; i < 2 * sides.size(); ++i) {
-        if (sum <= 0 || now.count == sides.size()) now = {i % sides.size(), 0}, sum = 0;
-        sum += sides[i % sides.size()].beyond | axis;
-        ++now.count;
-        if (sum > most) most = sum, best = now;
-    }
-    return best;
+    const auto farthest = [&](const Vec3& way) {
+        std::pair<double, Run> best;
+        Run now;
+        double sum = 0;
+        for (std::size_t i = 0; i < sides.size(); ++i) {
+            if (sum <= 0) now = {i, 0}, sum = 0;
+            sum += sides[i].beyond | way;
+            ++now.count;
+            if (sum > best.first) best = {sum, now};
+        }
+        return best;
+    };
+    const auto [there, run] = farthest(axis);
+    const auto [back, rest] = farthest(-axis);
+    double all = 0;
+    for (const BorderSide& side : sides) all += side.beyond | axis;
+    if (all + back <= there) return run;
+    return {(rest.begin + rest.count) % sides.size(), sides.size() - rest.count};
 }
 
 /// A loop all of whose sides are one end of a bore.
@@ -205,23 +217,8 @@ void join_ends(const PolygonMesh& mesh, const BoundaryLoops& loops, const BoreEn
     RuledWall(mesh, vertices_of(loop, {0, loop.size()}), std::move(back), axis, step, walls);
 }
 
-} // namespace
-
-Bores find_bores(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size) {
-    std::vector<LoopEnds> found(loops.size());
-    for_each_task(loops.size(), [&](std::size_t l) { found[l] = ends_of(mesh, loops, l); });
-    Bores result;
-    std::vector<BoreEnd> ends;
-    for (std::size_t l = 0; l < loops.size(); ++l) {
-        if (found[l].one) ends.push_back(*found[l].one);
-        if (!found[l].both) continue;
-        const auto& [there, back] = *found[l].both;
-        result.loops.push_back(static_cast<Index>(l));
-        std::vector<Index> row = vertices_of(loops[l], back);
-        std::ranges::reverse(row);
-        RuledWall(mesh, vertices_of(loops[l], there), std::move(row), found[l].axis, voxel_size,
-                  result.walls);
-    }
+/// Per end, the nearest that leads to it and that it leads to; their number if there is none.
+std::vector<std::size_t> nearest_of(const std::vector<BoreEnd>& ends) {
     std::vector<std::size_t> nearest(ends.size(), ends.size());
     for_each_index(ends.size(), chunks::heavy, [&](std::size_t i) {
         double least = Box::inf;
@@ -231,12 +228,51 @@ Bores find_bores(const PolygonMesh& mesh, const BoundaryLoops& loops, double vox
                 least = far, nearest[i] = k;
         }
     });
+    return nearest;
+}
+
+/// Does it hold at the middle of more than half of a wall's triangles?
+bool is_mostly(const std::function<bool(const Vec3&)>& empty, const PolygonMesh& wall) {
+    std::size_t count = 0;
+    for (std::size_t v = 0; v < wall.vertex_count(); v += 3)
+        count += empty((wall.positions[v] + wall.positions[v + 1] + wall.positions[v + 2]) / 3);
+    return 2 * count > wall.facet_count();
+}
+
+} // namespace
+
+Bores find_bores(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size,
+                 const std::function<bool(const Vec3&)>& empty) {
+    std::vector<LoopEnds> found(loops.size());
+    for_each_task(loops.size(), [&](std::size_t l) { found[l] = ends_of(mesh, loops, l); });
+    Bores result;
+    const auto take = [&](const PolygonMesh& wall, std::initializer_list<Index> closed) {
+        if (empty && is_mostly(empty, wall)) return;
+        result.loops.insert(result.loops.end(), closed);
+        const auto first = static_cast<Index>(result.walls.vertex_count());
+        result.walls.positions.insert(result.walls.positions.end(), wall.positions.begin(),
+                                      wall.positions.end());
+        for (Index v = first; v < result.walls.vertex_count(); v += 3)
+            result.walls.add_facet(std::array{v, v + 1, v + 2});
+    };
+    std::vector<BoreEnd> ends;
+    for (std::size_t l = 0; l < loops.size(); ++l) {
+        if (found[l].one) ends.push_back(*found[l].one);
+        if (!found[l].both) continue;
+        const auto& [there, back] = *found[l].both;
+        std::vector<Index> row = vertices_of(loops[l], back);
+        std::ranges::reverse(row);
+        PolygonMesh wall;
+        RuledWall(mesh, vertices_of(loops[l], there), std::move(row), found[l].axis, voxel_size, wall);
+        take(wall, {static_cast<Index>(l)});
+    }
+    const std::vector<std::size_t> nearest = nearest_of(ends);
     for (std::size_t i = 0; i < ends.size(); ++i) {
         const std::size_t k = nearest[i];
         if (k == ends.size() || k < i || nearest[k] != i) continue;
-        result.loops.push_back(ends[i].loop);
-        result.loops.push_back(ends[k].loop);
-        join_ends(mesh, loops, ends[i], ends[k], voxel_size, result.walls);
+        PolygonMesh wall;
+        join_ends(mesh, loops, ends[i], ends[k], voxel_size, wall);
+        take(wall, {ends[i].loop, ends[k].loop});
     }
     return result;
 }

@@ -116,7 +116,8 @@ CompletedPoints complete_surface(const PolygonMesh& mesh, const BoundaryLoops& l
     const BoundaryLoops turned_loops = inward ? boundary_loops(turned) : BoundaryLoops();
     const BoundaryLoops& border = inward ? turned_loops : loops;
     // A wall of a bore may pass through the mesh as well.
-    const Bores bores = passing == Passing::stopped ? Bores() : find_bores(outward, border, voxel_size);
+    const Bores bores =
+        passing == Passing::stopped ? Bores() : find_bores(outward, border, voxel_size, space.holds);
     if (bores.loops.empty()) {
         add_completing(outward, border, voxel_size, passing, space, points);
     } else {

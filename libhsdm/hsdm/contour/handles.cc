@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -246,7 +247,7 @@ private:
     Index facet_of(Index side) const { return links_.facet[side]; }
 
     /// Those of facets that no set speaks for, and where two edges of a facet meet that are shorter together
-    /// than a narrow ring is across.
+    /// than a narrow ring is across: where points are as dense as in the fullest voxel at the facet.
     std::vector<Index> doubtful_vertices() const {
         const auto add = [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
             for (std::size_t f = begin; f < end; ++f) {
@@ -255,11 +256,12 @@ private:
                 const auto length = [&](std::size_t i) {
                     return (mesh_.positions[facet[i % n]] - mesh_.positions[facet[(i + 1) % n]]).norm();
                 };
+                double spacing = std::numeric_limits<double>::infinity();
+                for (const Index v : facet) spacing = std::min(spacing, witnesses_.spacing_at(v));
                 double before = length(n - 1);
                 for (std::size_t i = 0; i < n; ++i) {
                     const double after = length(i);
-                    if (contradicted_[f] || before + after < 2 * witnesses_.spacing_at(facet[i]))
-                        found.push_back(facet[i]);
+                    if (contradicted_[f] || before + after < 2 * spacing) found.push_back(facet[i]);
                     before = after;
                 }
             }

@@ -92,9 +92,9 @@ Foot find_foot(const Vec3& p, const Around& around, const unsigned* feet_inside,
 
 /// Where blocks of 16 x 16 x 16 voxels begin, and the number of voxels.
 std::vector<Index> blocks_of(const OctreeLevel& level) {
-    constexpr int per_block = 3 * 4; // bits of a code
+    constexpr int block_bits = 3 * 4; // bits of a code
     std::vector<Index> first = indices_where(level.size(), chunks::light, [&](Index v) {
-        return v == 0 || level.codes[v] >> per_block != level.codes[v - 1] >> per_block;
+        return v == 0 || level.codes[v] >> block_bits != level.codes[v - 1] >> block_bits;
     });
     first.push_back(static_cast<Index>(level.size()));
     return first;
