@@ -35,8 +35,8 @@ bool is_over(const NormalSet& set, const Vec3& p, double distance) {
     return length_squared * length_squared <= 3 * set.spread.along(foot);
 }
 
-/// Which sides of the sheets of many points set s lies over or under, as bits: over and under those that face
-/// one way, over and under those that face the other way.
+/// Does set s face aside from sheets of many points in the voxels around that face two opposite ways, and lie
+/// amid their points, over all of them or under all of them?
 bool lies_between(const OctreeLevel& level, const NormalSets& sets, double most, double most_cosine,
                   Index s) {
     const NormalSet& set = sets.sets[s];

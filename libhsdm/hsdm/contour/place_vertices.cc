@@ -299,26 +299,30 @@ private:
 
     /// The tip of a corner may reach into a voxel that holds no point of the third sheet. Adds the plane of a
     /// set from the voxels around that makes a crease with both of the dual vertex's sheets and cuts their
-    /// crease in this voxel; of several, the one whose centroid is nearest to that point.
+    /// crease in this voxel; of several, the one whose centroid is nearest to that point. Notes the tip in a
+    /// voxel beside if there is none, of a set that makes a crease with one of the sheets, chosen alike.
     bool add_corner_plane(Index dual, const SheetNormals& faces) {
         const auto corners = mesh_.duals.corners_of(dual);
         Index best = no_index;
-        double nearest = std::numeric_limits<double>::infinity();
+        double nearest = std::numeric_limits<double>::infinity(), nearest_tip = nearest;
         const std::size_t planes = problem_.planes.size();
         for (FacetCorner corner : corners)
             for (Index voxel : mesh_.grid.voxels[mesh_.crossings.of(corner).edge / 3]) {
                 if (voxel == no_index || voxel == voxel_) continue;
                 for (Index s = sets_.first[voxel]; s < sets_.first[voxel + 1]; ++s) {
-                    if (s == best || is_along(sets_.sets[s].normal, faces)) continue;
-                    const bool creases = creases_with_all(s, corners);
-                    if (!creases && tip_.sheets > 0) continue;
+                    if (s == best) continue;
+                    const auto creases = count_creases(s, corners);
+                    if (creases == 0) continue;
                     add_plane(s);
                     const Solution apex = least_squares(problem_, 3);
-                    if (tip_.sheets == 0 && !is_inside(apex.position, problem_))
-                        note_tip(dual, apex, {faces.normals[0], faces.normals[1], sets_.sets[s].normal}, 3);
-                    problem_.planes.resize(planes);
                     const double d = (apex.position - sets_.sets[s].centroid).sqrnorm();
-                    if (creases && apex.rank == 3 && is_inside(apex.position, problem_, -placement::margin)
+                    if (d < nearest_tip && !is_inside(apex.position, problem_)
+                        && note_tip(dual, apex, {faces.normals[0], faces.normals[1], sets_.sets[s].normal},
+                                    3))
+                        nearest_tip = d;
+                    problem_.planes.resize(planes);
+                    if (creases == std::ssize(corners) && apex.rank == 3
+                        && is_inside(apex.position, problem_, -placement::margin)
                         && (d < nearest || (d == nearest && s < best)))
                         nearest = d, best = s;
                 }
@@ -329,13 +333,9 @@ private:
         return true;
     }
 
-    /// Is a normal of one of the first two sheets?
-    static bool is_along(const Vec3& normal, const SheetNormals& faces) {
-        return std::max(normal | faces.normals[0], normal | faces.normals[1]) > angles::one_sheet;
-    }
-
-    bool creases_with_all(Index s, std::span<const FacetCorner> corners) const {
-        return std::all_of(corners.begin(), corners.end(), [&](FacetCorner corner) {
+    /// With the sets of how many of a dual vertex's corners does a set make a crease?
+    std::ptrdiff_t count_creases(Index s, std::span<const FacetCorner> corners) const {
+        return std::ranges::count_if(corners, [&](FacetCorner corner) {
             const Relation r = related_(sets_.sets[s], sets_.sets[mesh_.crossings.of(corner).set]);
             return r == Relation::convex || r == Relation::concave;
         });
@@ -368,18 +368,20 @@ private:
     }
 
     /// Records the corner of three sheets in a voxel beside that has no vertex, since the tip of the corner
-    /// crosses none of its edges, but points of two of them.
-    void note_tip(Index dual, const Solution& solution, const std::array<Vec3, 3>& normals, int sheets) {
+    /// crosses none of its edges, but points of two of them. False if it is none.
+    bool note_tip(Index dual, const Solution& solution, const std::array<Vec3, 3>& normals, int sheets) {
         if (voxel_ == no_index || sheets < 3
             || !meet(3, solution, solution.position, 1 - placement::margin, placement::clear_corner))
-            return;
+            return false;
         const VoxelCoord beside = beside_at(step_to(solution.position), 7);
         const Index corner = mesh_.grid.find(GridPoints::code(beside));
-        if (corner == no_index) return;
+        if (corner == no_index) return false;
         const Index voxel = mesh_.grid.voxels[corner][7];
-        if (voxel == no_index || has_crossing(beside, [](const Crossing&) { return true; })) return;
-        if (std::ranges::count_if(normals, [&](const Vec3& n) { return has_points(voxel, n); }) < 2) return;
+        if (voxel == no_index || has_crossing(beside, [](const Crossing&) { return true; })) return false;
+        if (std::ranges::count_if(normals, [&](const Vec3& n) { return has_points(voxel, n); }) < 2)
+            return false;
         tip_ = {dual, solution.position, normals, 3};
+        return true;
     }
 
     /// Does a voxel beside hold points of the vertex's sheet with about this normal?

@@ -92,6 +92,7 @@ private:
         DisjointSets groups(mesh_.vertex_count());
         for (const Index f : all.facets())
             for (const Index v : mesh_.facet(f)) groups.join(mesh_.facet(f)[0], v);
+        for (const auto& pair : pairs) groups.join(mesh_.facet(pair[0])[0], mesh_.facet(pair[1])[0]);
         const auto group_of = [&](const auto& pair) { return groups.find(mesh_.facet(pair[0])[0]); };
         const std::vector<Index> vertices = indices_below(mesh_.vertex_count());
         std::vector<Index> near;

@@ -30,7 +30,7 @@ public:
     /// those of the two sides of one wall or gap, and face two opposite ways.
     bool surround(std::span<const Index> ring) const;
 
-    /// Do the vertices of a ring lie nearer to its middle than points around to each other?
+    /// Do the vertices of a ring lie nearer to its axis than points around to each other?
     bool is_narrow(std::span<const Index> ring) const;
 
     /// Spacing of the points in a vertex's voxel, as if they lay on a plane through it.

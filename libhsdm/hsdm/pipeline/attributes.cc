@@ -55,12 +55,11 @@ private:
 
 std::vector<VertexProperty> average_attributes(const PointView& cloud, const Octree& octree,
                                                const OctreeLevel& level, std::span<const Index> voxel) {
-    using Type = VertexProperty::Type;
     const VoxelAverages averages(octree, level, voxel);
     std::vector<VertexProperty> properties;
     for (const PointAttribute& attribute : attributes_of(cloud)) properties.push_back(averages(attribute));
-    properties.push_back(
-        {level_property, Type::uint8, std::vector<double>(voxel.size(), static_cast<double>(level.depth))});
+    properties.push_back({level_property, VertexProperty::Type::uint8,
+                          std::vector<double>(voxel.size(), static_cast<double>(level.depth))});
     return properties;
 }
 
