@@ -19,7 +19,7 @@ constexpr double impossible = 1e30;
 constexpr double tie = 1e-5;
 
 using Side = std::uint8_t;
-constexpr Side inside = 0, outside = 1, unknown = 2; // the labels of cheapest_labels
+constexpr Side inner_side = 0, outer_side = 1, unknown = 2; // the labels of cheapest_labels
 
 /// The cheapest choice among an edge's crossings that alternates from one given side to the other (dynamic
 /// programming along the edge).
@@ -34,7 +34,7 @@ public:
     double weight(Index x) const { return list_.crossings[x].supported ? 1 : signs::cost_of_weak; }
     double cost_of_taking(Index x) const { return standing_[x] ? 0 : signs::cost_of_return * sureness_[x]; }
     double cost_of_leaving(Index x) const { return standing_[x] ? weight(x) : 0; }
-    Side side_before(Index x) const { return list_.crossings[x].leaving ? inside : outside; }
+    Side side_before(Index x) const { return list_.crossings[x].leaving ? inner_side : outer_side; }
 
     double cost(Index edge, Side low, Side high, double invention) const {
         std::array<double, 2> after = at_upper_end(high, invention);
@@ -63,7 +63,7 @@ public:
 
 private:
     static std::array<double, 2> at_upper_end(Side high, double invention) {
-        return {high == inside ? 0 : invention, high == outside ? 0 : invention};
+        return {high == inner_side ? 0 : invention, high == outer_side ? 0 : invention};
     }
 
     /// Least cost from each side before a crossing to the edge's upper end, given those after it.
@@ -119,7 +119,7 @@ private:
     /// one, the side of the other end.
     double vote(Index edge, bool upper, Side other, bool carried_only) const {
         const Index x = nearest_standing(edge, upper);
-        if (x == no_index) return carried_only || other == unknown ? 0 : other == outside ? 1 : -1;
+        if (x == no_index) return carried_only || other == unknown ? 0 : other == outer_side ? 1 : -1;
         if (carried_only && !list_.crossings[x].supported) return 0;
         return list_.crossings[x].leaving == upper ? choice_.weight(x) : -choice_.weight(x);
     }
@@ -144,7 +144,7 @@ private:
         for (unsigned a = 0; a < 3; ++a)
             for (const Index neighbour : {grid_.next[c][a], below_[c][a]})
                 if (neighbour != no_index && side_[neighbour] != unknown) return side_[neighbour];
-        return outside;
+        return outer_side;
     }
 
     /// One round of votes for the grid points still unknown: `carried_only`, by crossings that the data
@@ -161,7 +161,7 @@ private:
                 if (down != no_index) sum += vote(3 * down + a, true, side_[down], carried_only);
             }
             if (sum != 0)
-                next[c] = sum < 0 ? inside : outside;
+                next[c] = sum < 0 ? inner_side : outer_side;
             else if (!undecided)
                 next[c] = side_of_neighbour(c);
         });
@@ -219,13 +219,13 @@ private:
         const double invention = cost_of_invention(edge);
         const auto cost = [&](Side a, Side b) { return choice_.cost(edge, a, b, invention); };
         if (low == no_index && high != no_index)
-            costs.add(high, cost(side_[c], inside), cost(side_[c], outside));
+            costs.add(high, cost(side_[c], inner_side), cost(side_[c], outer_side));
         else if (high == no_index)
-            costs.add(low, cost(inside, side_[up]), cost(outside, side_[up]));
+            costs.add(low, cost(inner_side, side_[up]), cost(outer_side, side_[up]));
         else
             costs.add(low, high,
-                      {{{cost(inside, inside), cost(inside, outside)},
-                        {cost(outside, inside), cost(outside, outside)}}});
+                      {{{cost(inner_side, inner_side), cost(inner_side, outer_side)},
+                        {cost(outer_side, inner_side), cost(outer_side, outer_side)}}});
     }
 
     /// The doubtful grid points get the sides that all together cost least, given those around. An edge's
@@ -238,7 +238,7 @@ private:
         LabelCosts costs(points.size());
         for (std::size_t i = 0; i < points.size(); ++i) {
             const Index c = points[i];
-            costs.add(static_cast<Index>(i), 0, -belief_[c] + (side_[c] == outside ? -tie : tie));
+            costs.add(static_cast<Index>(i), 0, -belief_[c] + (side_[c] == outer_side ? -tie : tie));
             for (unsigned a = 0; a < 3; ++a) {
                 add_edge(3 * c + a, number, costs);
                 const Index down = below_[c][a];
@@ -265,7 +265,7 @@ private:
             if (taken) out.push_back(list_.crossings[x]);
             changes += taken != (standing_[x] != 0);
         });
-        if (reached != high && invent(edge, reached == inside, out)) ++changes;
+        if (reached != high && invent(edge, reached == inner_side, out)) ++changes;
     }
 
     /// Among the sets seen from an edge's ends the one nearest to its middle, with preference for those whose
