@@ -86,6 +86,24 @@ std::array<Index, 4> bridge_with_ring(PolygonMesh& mesh, std::size_t from, std::
     return ring;
 }
 
+/// Two boxes that face each other across a gap, bridged, and the ring round the bridge's middle.
+struct BridgedBoxes {
+    Stages stages;
+    DualContour part;
+    PolygonMesh& mesh = part.mesh; ///< relative to the octree's origin
+    std::array<Index, 4> ring{};
+
+    BridgedBoxes(bool turned_normals, int depth)
+        : stages(facing_boxes(turned_normals, 5), depth),
+          part(dual_contour(stages.octree, stages.level, stages.sets)) {
+        for (Vec3& p : mesh.positions) p += stages.octree.origin;
+        mesh.origin = indices_below(mesh.vertex_count());
+        ring = bridge_with_ring(mesh, quad_at(mesh, -0.07), quad_at(mesh, 0.07));
+        for (Vec3& p : mesh.positions) p -= stages.octree.origin;
+    }
+    Witnesses witnesses() const { return {stages.octree, stages.level, part.voxel, mesh}; }
+};
+
 } // namespace
 
 TEST_CASE("a bridge through the air is taken away, and a tunnel that no points speak for filled",
@@ -180,14 +198,8 @@ TEST_CASE("points surround the axis of a ring round a rod or in a bore, not that
         }
         CHECK_FALSE(Witnesses(wall, rod.level, part.voxel, mesh).surround(ring));
 
-        const Stages stages(facing_boxes(turned_normals, 5), 3);
-        DualContour boxes = dual_contour(stages.octree, stages.level, stages.sets);
-        PolygonMesh& bridged = boxes.mesh;
-        for (Vec3& p : bridged.positions) p += stages.octree.origin;
-        bridged.origin = indices_below(bridged.vertex_count());
-        const auto round = bridge_with_ring(bridged, quad_at(bridged, -0.07), quad_at(bridged, 0.07));
-        for (Vec3& p : bridged.positions) p -= stages.octree.origin;
-        CHECK_FALSE(Witnesses(stages.octree, stages.level, boxes.voxel, bridged).surround(round));
+        const BridgedBoxes boxes(turned_normals, 3);
+        CHECK_FALSE(boxes.witnesses().surround(boxes.ring));
     }
 }
 
@@ -221,21 +233,15 @@ TEST_CASE("measured points speak for a bridge, completed ones do not", "[contour
 }
 
 TEST_CASE("a ring narrower than points are apart is cut, in full view of them", "[contour]") {
-    const Stages stages(facing_boxes(false, 5), 5);
-    DualContour part = dual_contour(stages.octree, stages.level, stages.sets);
-    PolygonMesh& mesh = part.mesh;
-    for (Vec3& p : mesh.positions) p += stages.octree.origin;
-    mesh.origin = indices_below(mesh.vertex_count());
-    const auto ring = bridge_with_ring(mesh, quad_at(mesh, -0.07), quad_at(mesh, 0.07));
-    for (Vec3& p : mesh.positions) p -= stages.octree.origin;
-    const auto is_narrow = [&] {
-        return Witnesses(stages.octree, stages.level, part.voxel, mesh).is_narrow(ring);
-    };
-    CHECK_FALSE(is_narrow());
+    BridgedBoxes boxes(false, 5);
+    const Stages& stages = boxes.stages;
+    PolygonMesh& mesh = boxes.mesh;
+    const auto& ring = boxes.ring;
+    CHECK_FALSE(boxes.witnesses().is_narrow(ring));
     Vec3 middle(0, 0, 0);
     for (const Index v : ring) middle += 0.25 * mesh.positions[v];
     for (const Index v : ring) mesh.positions[v] += 0.9 * (middle - mesh.positions[v]);
-    CHECK(is_narrow());
+    CHECK(boxes.witnesses().is_narrow(ring));
     Octree speaking = stages.octree; // for every facet of the bridge
     for (std::size_t i = 0; i < speaking.size(); ++i) {
         Vec3 away = speaking.positions[i] + speaking.origin;
@@ -243,7 +249,7 @@ TEST_CASE("a ring narrower than points are apart is cut, in full view of them", 
         if (i % 2 == 0 && away.norm() > 0) speaking.normals[i] = away.normalized();
     }
     std::optional<FacetLinks> links;
-    CHECK(cut_handles(speaking, stages.level, stages.sets, part.voxel, mesh, links) == 1);
+    CHECK(cut_handles(speaking, stages.level, stages.sets, boxes.part.voxel, mesh, links) == 1);
     CHECK(measure_topology(mesh).euler == 4);
     CHECK(faults(mesh) == "");
 }

@@ -452,9 +452,7 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     }
     if (result.splinters.count + result.tunnels_opened > 0) remove_isolated_vertices(result.mesh);
     result.drawn_in = draw_in_spikes(octree, level, result.voxel, result.mesh);
-    // Until none is left, so that doing it again, where facets are parted below, changes nothing elsewhere.
-    while (changed(collapse_flat_facets(octree.origin, result.mesh)) > 0) {
-    }
+    changed(collapse_flat_facets(octree.origin, result.mesh));
     if (options.part.is_part())
         untangle_share(octree.origin, h, options, result);
     else

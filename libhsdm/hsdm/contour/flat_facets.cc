@@ -37,11 +37,14 @@ EdgeCollapse shortest_side(const PolygonMesh& mesh, std::span<const Index> facet
 } // namespace
 
 std::size_t collapse_flat_facets(const Vec3& origin, PolygonMesh& mesh) {
-    std::vector<EdgeCollapse> sides;
-    for (const Index f : flat_facets(origin, mesh)) sides.push_back(shortest_side(mesh, mesh.facet(f)));
-    const std::vector<std::uint8_t> collapsed = collapse_edges(mesh, sides);
-    const auto count = static_cast<std::size_t>(std::ranges::count(collapsed, 1));
-    if (count > 0) remove_isolated_vertices(mesh);
+    std::size_t count = 0;
+    for (std::size_t more = 1; more > 0; count += more) {
+        std::vector<EdgeCollapse> sides;
+        for (const Index f : flat_facets(origin, mesh)) sides.push_back(shortest_side(mesh, mesh.facet(f)));
+        const std::vector<std::uint8_t> collapsed = collapse_edges(mesh, sides);
+        more = static_cast<std::size_t>(std::ranges::count(collapsed, 1));
+        if (more > 0) remove_isolated_vertices(mesh);
+    }
     return count;
 }
 

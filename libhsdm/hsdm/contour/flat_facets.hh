@@ -7,8 +7,9 @@ namespace hsdm {
 
 /// Facets whose vertices lie at one place or in one line are left out when a mesh is handed over, and the
 /// surface is open there. Collapses the shortest side of each before that; a side that collapse_edges refuses
-/// stays. `origin`: what positions are relative to, as different ones may be equal once it is added. Returns
-/// how many sides collapsed. O(facets), parallel.
+/// stays. Again until none collapses, so that doing it twice changes nothing. `origin`: what positions are
+/// relative to, as different ones may be equal once it is added. Returns how many sides collapsed.
+/// O(facets) a round, parallel.
 std::size_t collapse_flat_facets(const Vec3& origin, PolygonMesh& mesh);
 
 } // namespace hsdm

@@ -201,7 +201,7 @@ public:
         }
         if (!is_inside(solution.position, problem_) && !may_leave(solution.position)) {
             note_corner(dual, solution, faces);
-            note_tip(dual, solution, faces.normals, faces.count);
+            if (faces.count == 3) note_tip(dual, solution, faces.normals);
             const Vec3 unclamped = solution.position;
             result.is_clamped[dual] = keep_inside(solution);
             if (tip_.sheets == 0 && result.is_clamped[dual] && faces.count == 2
@@ -317,8 +317,7 @@ private:
                     const Solution apex = least_squares(problem_, 3);
                     const double d = (apex.position - sets_.sets[s].centroid).sqrnorm();
                     if (d < nearest_tip && !is_inside(apex.position, problem_)
-                        && note_tip(dual, apex, {faces.normals[0], faces.normals[1], sets_.sets[s].normal},
-                                    3))
+                        && note_tip(dual, apex, {faces.normals[0], faces.normals[1], sets_.sets[s].normal}))
                         nearest_tip = d;
                     problem_.planes.resize(planes);
                     if (creases == std::ssize(corners) && apex.rank == 3
@@ -369,8 +368,8 @@ private:
 
     /// Records the corner of three sheets in a voxel beside that has no vertex, since the tip of the corner
     /// crosses none of its edges, but points of two of them. False if it is none.
-    bool note_tip(Index dual, const Solution& solution, const std::array<Vec3, 3>& normals, int sheets) {
-        if (voxel_ == no_index || sheets < 3
+    bool note_tip(Index dual, const Solution& solution, const std::array<Vec3, 3>& normals) {
+        if (voxel_ == no_index
             || !meet(3, solution, solution.position, 1 - placement::margin, placement::clear_corner))
             return false;
         const VoxelCoord beside = beside_at(step_to(solution.position), 7);

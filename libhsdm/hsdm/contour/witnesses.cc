@@ -155,10 +155,12 @@ bool Witnesses::surround(std::span<const Index> ring) const {
 }
 
 bool Witnesses::is_narrow(std::span<const Index> ring) const {
+    const double width = Tube(mesh_, ring, 0).width();
+    if (width >= level_.voxel_size) return false; // no voxel around is empty
     std::size_t points = 0;
     const std::vector<Index> voxels = voxels_at(ring);
     for (const Index v : voxels) points += level_.first_point[v + 1] - level_.first_point[v];
-    return Tube(mesh_, ring, 0).width() < spacing(points, voxels.size());
+    return width < spacing(points, voxels.size());
 }
 
 double Witnesses::spacing_at(Index vertex) const {
