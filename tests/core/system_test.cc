@@ -4,9 +4,12 @@
 
 #include <catch2/catch.hpp>
 
+#include <atomic>
 #include <cerrno>
 #include <filesystem>
 #include <set>
+#include <thread>
+#include <vector>
 
 using namespace hsdm;
 using hsdm::support::Folder;
@@ -87,4 +90,20 @@ TEST_CASE("every new name is another, and a folder tells all of them") {
     os::for_each_name(folder.path(), [&found](const char* name) { found.insert(name); });
     CHECK(found == made);
     os::for_each_name(folder / "missing", [](const char*) { FAIL(); });
+}
+
+// Beside another allocator than glibc's, as under the address sanitizer, threads that came first at once
+// aborted as they ended.
+TEST_CASE("threads give back freed memory at once") {
+    constexpr int count = 4;
+    std::atomic<int> ready = 0;
+    std::vector<std::thread> threads;
+    for (int i = 0; i < count; ++i)
+        threads.emplace_back([&] {
+            ++ready;
+            while (ready < count) std::this_thread::yield();
+            os::give_back_freed_memory();
+        });
+    for (std::thread& thread : threads) thread.join();
+    CHECK(ready == count);
 }

@@ -365,6 +365,10 @@ void keep_freed_memory() noexcept {
 
 void give_back_freed_memory() noexcept {
 #ifdef __GLIBC__
+    // Where another allocator replaces glibc's, the first call sets up glibc's own, which two threads must
+    // not do at once: both then count as users of its first heap, and the second of them aborts the process
+    // as it ends.
+    [[maybe_unused]] static const int first = ::malloc_trim(0);
     ::malloc_trim(0);
 #endif
 }
