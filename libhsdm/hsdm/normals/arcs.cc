@@ -3,9 +3,8 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
-#include "hsdm/core/vector_pair.hh"
+#include "hsdm/normals/arc_support.hh"
 #include "hsdm/normals/constants.hh"
-#include "hsdm/normals/neighborhood.hh"
 
 #include <algorithm>
 #include <array>
@@ -17,68 +16,57 @@ namespace {
 class Arcs {
 public:
     Arcs(const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate, Index i)
-        : around_(octree, neighbors, i), inverse_(1 / estimate.tolerance[i]) {
-        for (std::size_t k = 0; k < around_.size(); ++k) {
-            normals_[k] = estimate.normals[around_.point(k)];
-            rises_[k] = normals_[k] | around_.offset(k);
+        : points_(neighbors.of(i)) {
+        around_.count = points_.size();
+        around_.inverse_tolerance = 1 / estimate.tolerance[i];
+        for (std::size_t k = 0; k < around_.count; ++k) {
+            around_.normals[k] = estimate.normals[points_[k]];
+            around_.offsets[k] = octree.positions[points_[k]] - octree.positions[i];
+            around_.rises[k] = around_.normals[k] | around_.offsets[k];
         }
     }
 
     /// Turns the point's normal if arcs explain clearly more neighbours than planes; returns whether they do.
     bool settle(Vec3& own) const {
-        const Vec3 first = own;
+        ArcCandidates candidates;
+        candidates.add(own);
+        for (std::size_t k = 0; k < around_.count; ++k) candidates.add(carried_over(k));
+        ArcSupport support;
+        support_by_arcs(around_, candidates, support);
         double plane = 0, arc = 0;
-        for (std::size_t k = 0; k <= around_.size(); k += 2) { // the own one is carried over first
-            const std::array<Vec3, 2> carried{k == 0 ? first : carried_over(k - 1),
-                                              k < around_.size() ? carried_over(k) : first};
-            const Support found = support(VectorPair(carried[0], carried[1]));
-            for (std::size_t lane = 0; lane < 2; ++lane) {
-                plane = std::max(plane, found.plane[lane]);
-                if (found.arc[lane] > arc) arc = found.arc[lane], own = carried[lane];
-            }
+        std::size_t best = 0;
+        for (std::size_t k = 0; k < candidates.count; ++k) {
+            plane = std::max(plane, support.plane[k]);
+            if (support.arc[k] > arc) arc = support.arc[k], best = k;
         }
-        const bool is_arc = arc > arcs::clear_gain * plane;
-        own = is_arc ? halfway(own) : first;
-        return is_arc;
+        if (!(arc > arcs::clear_gain * plane)) return false;
+        own = halfway(candidates[best]);
+        return true;
     }
 
     /// Are most of the neighbours that arcs explain on arcs themselves?
     bool is_backed(const Vec3& own, const std::vector<std::uint8_t>& is_arc) const {
         double backing = 0, all = 0;
-        for (std::size_t k = 0; k < around_.size(); ++k) {
+        for (std::size_t k = 0; k < around_.count; ++k) {
             const double weight = weight_of(own, k);
             all += weight;
-            if (is_arc[around_.point(k)]) backing += weight;
+            if (is_arc[points_[k]]) backing += weight;
         }
         return backing > 0.5 * all;
     }
 
 private:
-    struct Support {
-        Double2 plane{}, arc{};
-    };
-
     /// The mirror image of a neighbour's normal in the plane halfway: on an arc it is that at the point.
     Vec3 carried_over(std::size_t k) const {
-        const Vec3& d = around_.offset(k);
+        const Vec3& d = around_.offsets[k];
         const double square = d.sqrnorm();
-        return square > 0 ? normals_[k] - d * (2 * rises_[k] / square) : normals_[k];
+        return square > 0 ? around_.normals[k] - d * (2 * around_.rises[k] / square) : around_.normals[k];
     }
 
-    /// Of two normals; neighbours count by the cosine with theirs, so those across a right angle not at all.
-    Support support(const VectorPair& normals) const {
-        Support sum;
-        for (std::size_t k = 0; k < around_.size(); ++k) {
-            const Double2 cosine = max_lanes(Double2{}, normals | normals_[k]);
-            const Double2 rise = normals | around_.offset(k), u = inverse_ * (rise + rises_[k]);
-            sum.plane += cosine * closeness(rise, inverse_);
-            sum.arc += cosine * square(max_lanes(Double2{}, 1 - u * u / (2 + 2 * cosine)));
-        }
-        return sum;
-    }
+    /// What a neighbour adds to the support of an arc.
     double weight_of(const Vec3& normal, std::size_t k) const {
-        const double cosine = std::max(0.0, normal | normals_[k]);
-        const double u = inverse_ * ((normal | around_.offset(k)) + rises_[k]);
+        const double cosine = std::max(0.0, normal | around_.normals[k]);
+        const double u = around_.inverse_tolerance * ((normal | around_.offsets[k]) + around_.rises[k]);
         const double near = std::max(0.0, 1 - u * u / (2 + 2 * cosine));
         return cosine * near * near;
     }
@@ -89,10 +77,10 @@ private:
         const Vec3 u = normal.cross(std::abs(normal[0]) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)).normalized();
         const Vec3 v = normal.cross(u);
         double uu = 0, uv = 0, vv = 0, ur = 0, vr = 0;
-        for (std::size_t k = 0; k < around_.size(); ++k) {
-            const Vec3& d = around_.offset(k);
-            const double w = weight_of(normal, k) / (2 + 2 * std::max(0.0, normal | normals_[k]));
-            const double x = u | d, y = v | d, rise = (normal | d) + rises_[k];
+        for (std::size_t k = 0; k < around_.count; ++k) {
+            const Vec3& d = around_.offsets[k];
+            const double w = weight_of(normal, k) / (2 + 2 * std::max(0.0, normal | around_.normals[k]));
+            const double x = u | d, y = v | d, rise = (normal | d) + around_.rises[k];
             uu += w * x * x, uv += w * x * y, vv += w * y * y, ur += w * x * rise, vr += w * y * rise;
         }
         const double det = uu * vv - uv * uv;
@@ -100,10 +88,8 @@ private:
         return (normal - (u * (vv * ur - uv * vr) + v * (uu * vr - uv * ur)) * (0.5 / det)).normalized();
     }
 
-    Neighborhood around_;
-    double inverse_;
-    std::array<Vec3, 64> normals_;   // Neighbors holds 64 per point at most
-    std::array<double, 64> rises_{}; // of the neighbours, over their own planes
+    std::span<const Index> points_; // the neighbours
+    ArcNeighbors around_;
 };
 
 class Bending {
