@@ -65,8 +65,13 @@ bool group_by_normals(std::span<const CreaseSample> samples, double least_weight
     std::array<Vec3, 2> modes = farthest_normals(samples);
     if ((modes[0] | modes[1]) > blunt_creases::bluntest_cosine) return false;
     for (int round = 0; round < most_rounds; ++round) {
-        for (std::size_t i = 0; i < samples.size(); ++i)
-            face[i] = (samples[i].normal | modes[1]) > (samples[i].normal | modes[0]);
+        bool same = round > 0; // faces then are what they were, and so are their means
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            const bool second = (samples[i].normal | modes[1]) > (samples[i].normal | modes[0]);
+            same = same && face[i] == second;
+            face[i] = second;
+        }
+        if (same) break;
         faces = means(samples, face);
         if (faces[0].weight < least_weight || faces[1].weight < least_weight) return false;
         for (std::size_t k : {0u, 1u}) {

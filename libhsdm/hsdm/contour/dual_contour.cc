@@ -225,8 +225,10 @@ PolygonMesh facets_of(const DualMesh& dual, const Midpoints& midpoints, const Pl
     std::vector<PolygonMesh> parts(2 * chunks); // facets, then strips
     for_chunks(edges, chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
         FacetBuilder builder(dual, midpoints, vertices, parts[chunk]);
-        for (std::size_t e = begin; e < end; ++e)
-            builder.add_facets(crossings.first[e], crossings.first[e + 1]);
+        for (std::size_t e = begin; e < end; ++e) {
+            const Index first = crossings.first[e], next = crossings.first[e + 1];
+            if (first < next) builder.add_facets(first, next); // most edges are not crossed
+        }
         FacetBuilder strip_builder(dual, midpoints, vertices, parts[chunks + chunk]);
         for (Index x = crossings.first[begin]; x < crossings.first[end]; ++x) strip_builder.add_strips(x);
     });

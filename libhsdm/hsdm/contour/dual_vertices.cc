@@ -100,13 +100,13 @@ public:
 
     void cut(const Chain& chain, Cut& result) {
         find_cuts(chain);
-        const std::size_t n = chain.corners.size();
-        result.corners.clear();
         result.pieces.clear();
         // A closed chain is rotated to start at its first cut. It has at least two cuts, so the first is not
         // after the last corner.
         const std::size_t begin = chain.closed && !cuts_.empty() ? (cuts_[0] + 1) / 2 : 0;
-        for (std::size_t i = 0; i < n; ++i) result.corners.push_back(chain.corners[(begin + i) % n]);
+        const auto middle = chain.corners.begin() + static_cast<std::ptrdiff_t>(begin);
+        result.corners.assign(middle, chain.corners.end());
+        result.corners.insert(result.corners.end(), chain.corners.begin(), middle);
         const bool around = chain.closed && !cuts_.empty() && cuts_[0] % 2 == 0;
         if (around) result.corners.push_back(result.corners[0]);
         std::size_t first = 0;

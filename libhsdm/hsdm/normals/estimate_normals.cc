@@ -211,22 +211,20 @@ private:
         for (std::size_t b = 0; b < bent.size(); ++b) result_.normals[bent[b]] = renewed[b];
     }
 
-    /// For two normals, how many neighbours lie on the plane with that normal through the point.
-    static Double2 support(const Neighborhood& around, const VectorPair& normal, double inverse) {
-        Double2 sum{};
-        for (std::size_t k = 0; k < around.size(); ++k) sum += closeness(normal | around.offset(k), inverse);
-        return sum;
-    }
-    /// The same for one normal and the parallel plane through the centroid, on which a bent sheet lies
-    /// better.
-    static double centred_support(const Neighborhood& around, const Vec3& normal, double inverse) {
-        double mean = 0;
-        for (std::size_t k = 0; k < around.size(); ++k) mean += normal | around.offset(k);
+    /// How many neighbours lie on the plane with that normal through the point, or on the parallel one
+    /// through the centroid, on which a bent sheet lies better: the more of the two.
+    static double support(const Neighborhood& around, const Vec3& normal, double inverse) {
+        std::array<double, Planes::most> rises;
+        double mean = 0, through = 0;
+        for (std::size_t k = 0; k < around.size(); ++k) {
+            rises[k] = normal | around.offset(k);
+            mean += rises[k];
+            through += closeness(rises[k], inverse);
+        }
         mean /= static_cast<double>(around.size() + 1);
-        double sum = closeness(mean, inverse) - 1;
-        for (std::size_t k = 0; k < around.size(); ++k)
-            sum += closeness((normal | around.offset(k)) - mean, inverse);
-        return sum;
+        double centred = closeness(mean, inverse) - 1;
+        for (std::size_t k = 0; k < around.size(); ++k) centred += closeness(rises[k] - mean, inverse);
+        return std::max(through, centred);
     }
 
     Vec3 best_plane(Index i) const {
@@ -234,9 +232,7 @@ private:
         if (!renewal_.differs(i, estimation::differing_cosine)) return own;
         const Neighborhood around(octree_, neighbors_, i);
         const double inverse = 1 / result_.tolerance[i];
-        double most = estimation::clear_gain
-                      * std::max(support(around, VectorPair(own, own), inverse)[0],
-                                 centred_support(around, own, inverse));
+        double most = estimation::clear_gain * support(around, own, inverse);
         Planes planes;
         planes.inverse_tolerance = inverse;
         for (std::size_t k = 0; k < around.size(); ++k)

@@ -63,7 +63,8 @@ std::uint32_t turns_at(const PolygonMesh& mesh, std::span<const Index> facet, st
     const std::size_t n = facet.size();
     if (n < 3) return 2;
     const auto arm = [&](std::size_t i) {
-        return mesh.positions[facet[(k + i) % n]] - mesh.positions[facet[k]];
+        const std::size_t at = k + i < n ? k + i : k + i - n;
+        return mesh.positions[facet[at]] - mesh.positions[facet[k]];
     };
     const auto area = [&](const Vec3& a, const Vec3& b) { return (a % b) | sight.direction; };
     const Vec3 first = arm(1);
@@ -97,11 +98,14 @@ std::vector<std::uint8_t> flat_fans(const PolygonMesh& mesh, const std::vector<I
     for_each_index(mesh.facet_count(), chunks::usual, [&](Index f) {
         const auto facet = mesh.facet(f);
         const std::size_t n = facet.size();
+        if (n == 0) return;
+        std::uint64_t last = hash_index(vertex[facet[n - 1]]), here = hash_index(vertex[facet[0]]);
         for (std::size_t k = 0; k < n; ++k) {
             const Index v = vertex[facet[k]];
-            const std::uint64_t next = hash_index(vertex[facet[(k + 1) % n]]),
-                                last = hash_index(vertex[facet[(k + n - 1) % n]]);
+            const std::uint64_t next = hash_index(vertex[facet[k + 1 < n ? k + 1 : 0]]);
             std::atomic_ref(fans[v].ends).fetch_add(next - last, std::memory_order_relaxed);
+            last = here;
+            here = next;
             const std::uint32_t turns = turns_at(mesh, facet, k, sights[v]);
             if (turns > 0) std::atomic_ref(fans[v].turns).fetch_add(turns, std::memory_order_relaxed);
         }

@@ -26,7 +26,8 @@ public:
           tree_(mesh.positions, cut_.triangles),
           flat_(flat_fans(mesh, welded_)),
           collinear_(cut_.size()) {
-        for_each_task(cut_.size(), [&](std::size_t t) { collinear_[t] = is_collinear(place(t).corner); });
+        for_each_index(cut_.size(), chunks::quick,
+                       [&](Index t) { collinear_[t] = is_collinear(place(t).corner); });
     }
 
     SelfIntersections run() const {
