@@ -359,6 +359,28 @@ HSDM_TUNED double doubt = 2;
 
 } // namespace hsdm::relaxation
 
+// reach.hh
+namespace hsdm::reach {
+
+/// voxels: points farther from the facets stand out.
+/// Why: twice of what a sheet may be off its planes.
+inline constexpr double least = 0.3;
+
+/// factor: on the mean distance of the points around, that those that stand out are farther than.
+/// Why: three deviations of noise.
+inline constexpr double means = 4;
+
+/// points: that stand out, at least.
+/// Why: two may be strays.
+inline constexpr std::size_t fewest = 3;
+
+/// share: of the sum of squared distances around, that may be left when a vertex has moved.
+/// Why: the points that stand out have most of it where the rest of the facets fits, and no vertex takes away
+/// half of what noise makes.
+inline constexpr double left = 0.5;
+
+} // namespace hsdm::reach
+
 // move_to_creases.hh, shared_corners.hh, and the diagonals of dual_contour.hh
 namespace hsdm::creases {
 

@@ -4,6 +4,7 @@
 #include "hsdm/contour/grid_signs.hh"
 #include "hsdm/contour/inner_tunnels.hh"
 #include "hsdm/contour/move_to_creases.hh"
+#include "hsdm/contour/reach.hh"
 #include "hsdm/contour/rims.hh"
 #include "hsdm/contour/shared_corners.hh"
 #include "hsdm/contour/spikes.hh"
@@ -304,7 +305,8 @@ GridPoints codes_alone(GridPoints grid) {
 /// Builds the facets; returns the edges to collapse to corners. Grid points, crossings and dual vertices, the
 /// largest part of the memory, are freed at the end.
 std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
-                                       const DualContourOptions& options, DualContour& result) {
+                                       const DualContourOptions& options, std::vector<Index>& far,
+                                       DualContour& result) {
     const double h = level.voxel_size;
     const RelationTest related(options.relation, h, sets);
     DualMesh dual;
@@ -358,6 +360,7 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     result.clamped = vertices.clamped;
     result.misfit_placed = vertices.misfit_placed;
     result.misfit_moved = vertices.misfit_moved;
+    far = std::move(vertices.far);
     return to_corners;
 }
 
@@ -412,7 +415,8 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
                          const DualContourOptions& options) {
     DualContour result;
     const double h = level.voxel_size;
-    const std::vector<EdgeCollapse> to_corners = build_facets(octree, level, sets, options, result);
+    std::vector<Index> far;
+    const std::vector<EdgeCollapse> to_corners = build_facets(octree, level, sets, options, far, result);
     result.corners_merged = merge_corners(to_corners, result.mesh, result.classes);
     result.splinters = leave_out_splinters(level, options, 0, result);
     // Links and splinters are found once, for as long as facets stay as they are.
@@ -454,6 +458,7 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     }
     if (result.splinters.count + result.tunnels_opened > 0) remove_isolated_vertices(result.mesh);
     result.drawn_in = draw_in_spikes(octree, level, result.voxel, result.mesh);
+    result.reached = reach_points(octree, level, result.voxel, far, result.mesh);
     changed(collapse_flat_facets(octree.origin, result.mesh));
     if (options.part.is_part())
         untangle_share(octree.origin, h, options, result);

@@ -38,6 +38,8 @@ struct PlacedVertices {
         std::uint8_t sheets;         ///< 2 or 3
     };
     std::vector<OnCrease> on_creases; ///< by ascending dual vertex
+    /// Voxels with points that stand out from the facets (PointFit::Measure::standing_out, reach_points).
+    std::vector<Index> far;
 };
 
 /// Minimises the QEF of the planes of the dual vertex's crossings and of the voxel's own sets, solved for as

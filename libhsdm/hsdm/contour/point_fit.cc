@@ -90,6 +90,11 @@ Foot find_foot(const Vec3& p, const Around& around, const unsigned* feet_inside,
     return best;
 }
 
+/// Of so many points of a voxel, from one that is compared to the next.
+std::size_t stride_of(std::size_t points) {
+    return chunk_count(points, relaxation::points_per_voxel);
+}
+
 /// Where blocks of 16 x 16 x 16 voxels begin, and the number of voxels.
 std::vector<Index> blocks_of(const OctreeLevel& level) {
     constexpr int block_bits = 3 * 4; // bits of a code
@@ -134,7 +139,8 @@ void PointFit::gather_beside(Index voxel, std::vector<Index>& duals) const {
 }
 
 PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
-    Measure result{large_vector<double>(level_.size(), 0), large_vector<Heights>(duals_.size())};
+    Measure result{large_vector<double>(level_.size(), 0), {}, large_vector<Heights>(duals_.size())};
+    std::vector<double> farthest_of = large_vector<double>(level_.size(), 0);
     // Contributions to vertices in other blocks' voxels are added afterwards, in the order of the blocks:
     // places in space, so that sums come out the same where only part of the level is known.
     const std::vector<Index> blocks = blocks_of(level_);
@@ -155,17 +161,17 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
             if (around.empty()) continue;
             around.prepare();
             const std::size_t first = level_.first_point[x], last = level_.first_point[x + 1];
-            const std::size_t stride =
-                (last - first + relaxation::points_per_voxel - 1) / relaxation::points_per_voxel;
+            const std::size_t stride = stride_of(last - first);
             inside.clear(); // of all points first: what follows waits for it where branches are guessed wrong
             for (std::size_t i = first; i < last; i += stride)
                 around.add_feet_inside(octree_.positions[i], inside);
             const unsigned* of_point = inside.data();
-            double misfit = 0;
+            double misfit = 0, farthest = 0;
             for (std::size_t i = first; i < last; i += stride, of_point += around.eights()) {
                 const Foot foot = find_foot(octree_.positions[i], around, of_point, positions);
                 const double distance = std::sqrt(foot.nearest.squared_distance);
                 misfit += distance;
+                farthest = std::max(farthest, distance);
                 const Vec3 way = octree_.positions[i] - foot.nearest.point, normal = octree_.normals[i];
                 const double least = angles::one_sheet * distance;
                 for (std::size_t k = 0; k < 3; ++k) {
@@ -182,13 +188,29 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
                 }
             }
             result.misfit[x] = misfit;
+            farthest_of[x] = farthest;
         }
     });
     for (const std::vector<Foreign>& share : foreign) {
         Interruption::poll();
         for (const Foreign& f : share) result.heights[f.dual].add(f.weight, f.height);
     }
+    result.standing_out = standing_out(farthest_of, result.misfit);
     return result;
+}
+
+std::vector<Index> PointFit::standing_out(const std::vector<double>& farthest,
+                                          const std::vector<double>& misfit) const {
+    return indices_where(level_.size(), chunks::light, [&](Index x) {
+        if (!(farthest[x] > reach::least * level_.voxel_size)) return false;
+        double sum = 0;
+        std::size_t count = 0;
+        for_neighbors(level_, x, [&](Index v) {
+            const std::size_t points = level_.first_point[v + 1] - level_.first_point[v];
+            sum += misfit[v], count += chunk_count(points, stride_of(points));
+        });
+        return farthest[x] * static_cast<double>(count) > reach::means * sum;
+    });
 }
 
 std::vector<double> PointFit::rises(const std::vector<Heights>& heights) const {

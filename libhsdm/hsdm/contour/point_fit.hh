@@ -32,6 +32,9 @@ public:
     struct Measure {
         /// per voxel, sum of the distances of its sampled points from the facets
         std::vector<double> misfit;
+        /// Voxels with a point that stands out from the facets: farther off than sheets may be, and than the
+        /// points of the voxels around; ascending.
+        std::vector<Index> standing_out;
         std::vector<Heights> heights; ///< per vertex; empty except at smooth vertices inside the surface
     };
     /// O(dual vertices), parallel, the same for any number of threads.
@@ -47,6 +50,8 @@ private:
         Index dual;
         double weight, height;
     };
+    std::vector<Index> standing_out(const std::vector<double>& farthest,
+                                    const std::vector<double>& misfit) const;
     void gather_beside(Index voxel, std::vector<Index>& duals) const;
 
     const Octree& octree_;

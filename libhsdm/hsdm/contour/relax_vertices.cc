@@ -68,14 +68,16 @@ public:
         // Heights are freed before others are measured.
         PointFit::Measure before = fit.measure(placed_);
         rise(fit.rises(std::exchange(before.heights, {})));
-        const PointFit::Measure after = fit.measure(vertices_.positions);
+        PointFit::Measure after = fit.measure(vertices_.positions);
         const double placed = sum_of(before.misfit, part), moved = sum_of(after.misfit, part);
         if (!part.empty()) vertices_.misfit_placed = placed, vertices_.misfit_moved = moved;
         if (part.empty() ? moved > placed : go_back) {
             vertices_.positions = copy_of_large(placed_);
+            vertices_.far = std::move(before.standing_out);
             return;
         }
         rise(fit.rises(after.heights));
+        vertices_.far = std::move(after.standing_out);
         for_each_index(duals_.size(), chunks::light, [&](Index v) {
             const Index voxel = vertices_.voxel[v];
             if (after.misfit[voxel] > (1 + relaxation::farther) * before.misfit[voxel])

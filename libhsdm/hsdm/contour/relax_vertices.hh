@@ -23,7 +23,8 @@ struct RelaxOptions {
 /// mean height of the vertices around as they were placed. Then smooth vertices rise or sink, twice, until
 /// the facets, not the vertices alone, lie amid the points (PointFit::rises). Where after the first of the
 /// two steps a voxel's points are a tenth farther from the facets than as placed, its vertices go back; all
-/// do if the sum over all points grew. Of a part of a whole they do if go_back says so; the sums of its
+/// do if the sum over all points grew. Voxels with points that stand out then are left in `vertices`
+/// (far). Of a part of a whole they do if go_back says so; the sums of its
 /// voxels are left in `vertices` (misfit_placed, misfit_moved). O(rounds * crossings), parallel; the same for
 /// any number of threads. Throws OptionError.
 void relax_vertices(const Octree& octree, const OctreeLevel& level, const DualMesh& mesh,

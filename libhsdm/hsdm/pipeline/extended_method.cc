@@ -64,6 +64,7 @@ void note_counts(const DualContour& facets, Report& report) {
     report.rejected["handles_cut"] = facets.handles_cut;
     report.rejected["vertices_clamped"] = facets.clamped;
     report.rejected["vertices_drawn_in"] = facets.drawn_in;
+    report.rejected["vertices_reached"] = facets.reached;
     report.rejected["corners_merged"] = facets.corners_merged;
     report.rejected["edges_halved"] = facets.midpoints;
     report.rejected["doublets_merged"] = facets.doublets;
