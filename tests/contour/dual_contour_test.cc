@@ -105,8 +105,7 @@ TEST_CASE("smooth and sharp solids in general pose come out closed, of the right
 }
 
 TEST_CASE("a thin wedge reaches to nearly all tips of its edge", "[contour]") {
-    // A tip that crosses no edge of its voxel has no vertex there: that of the next voxel moves to it, to
-    // where its sheets meet or else to the points.
+    // A tip that crosses no edge of its voxel has no vertex there: that of the next voxel moves to it.
     int cut_off = 0; // of 48; 9 if none moved
     const double angle = 0.25, length = 1, height = 0.7, voxel = 0.07;
     for (std::uint64_t seed = 1; seed <= 24; ++seed) {

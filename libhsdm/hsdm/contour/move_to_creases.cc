@@ -8,8 +8,6 @@
 #include "hsdm/spatial/self_intersections.hh"
 
 #include <algorithm>
-#include <span>
-#include <utility>
 
 namespace hsdm {
 namespace {
@@ -44,11 +42,11 @@ private:
     std::vector<std::pair<Index, Index>> pairs_; // vertex and facet
 };
 
-/// How well a facet faces along one of some normals: the least cosine of its triangles with the nearer
-/// normal. The triangles fan out from the corner for which that is largest, because a quad with three corners
-/// on a crease has a straight one, and a quad across a crease folds along one diagonal. -1 if triangles are
-/// too thin.
-double along(const std::vector<Vec3>& ring, std::span<const Vec3> normals) {
+/// How well a facet faces along one of two normals: the least cosine of its triangles with the nearer normal.
+/// The triangles fan out from the corner for which that is largest, because a quad with three corners on a
+/// crease has a straight one, and a quad across a crease folds along one diagonal. -1 if triangles are too
+/// thin.
+double along(const std::vector<Vec3>& ring, const std::array<Vec3, 2>& normals) {
     const std::size_t n = ring.size();
     double best = -1;
     for (std::size_t from = 0; from < n; ++from) {
@@ -58,9 +56,7 @@ double along(const std::vector<Vec3>& ring, std::span<const Vec3> normals) {
             const Vec3 up = (b - a) % (c - a);
             const double length = up.norm();
             const bool thin = length <= creases::least_sine * (b - a).norm() * (c - a).norm();
-            double most = up | normals[0];
-            for (const Vec3& normal : normals.subspan(1)) most = std::max(most, up | normal);
-            least = thin ? -1 : std::min(least, most / length);
+            least = thin ? -1 : std::min(least, std::max(up | normals[0], up | normals[1]) / length);
         }
         best = std::max(best, least);
     }
@@ -162,12 +158,9 @@ private:
                 return false;
         }
         const Vec3 now = area_vector(after_), then = area_vector(before_);
-        // Where the tip of a corner was cut off, the facet of the cut turns to one of the sheets.
-        const double most_turn = to.sheets == 3 ? 0 : angles::halfway;
-        if ((now | then) <= most_turn * now.norm() * then.norm()) return false;
-        const std::span<const Vec3> normals(to.normals.data(), to.sheets);
-        const double is = along(after_, normals);
-        return is > angles::halfway || is >= along(before_, normals);
+        if ((now | then) <= angles::halfway * now.norm() * then.norm()) return false;
+        const double is = along(after_, to.normals);
+        return is > angles::halfway || is >= along(before_, to.normals);
     }
 
     PolygonMesh& mesh_;
@@ -187,13 +180,11 @@ std::size_t move_to_creases(PolygonMesh& mesh, double voxel_size, PlacedVertices
     if (vertices.on_creases.empty()) return 0;
     CreaseMoves moves(mesh, voxel_size, vertices.on_creases);
     const std::vector<std::uint8_t>& moved = moves.run();
-    for (std::size_t i = 0; i < moved.size(); ++i) {
-        if (!moved[i]) continue;
-        const PlacedVertices::OnCrease& to = vertices.on_creases[i];
-        vertices.clamped -= std::exchange(vertices.is_clamped[to.dual], std::uint8_t{0});
-        if (to.sheets == 3) vertices.classes[to.dual] = VertexClass::corner;
-    }
-    return static_cast<std::size_t>(std::ranges::count(moved, 1));
+    for (std::size_t i = 0; i < moved.size(); ++i)
+        if (moved[i]) vertices.is_clamped[vertices.on_creases[i].dual] = 0;
+    const auto count = static_cast<std::size_t>(std::ranges::count(moved, 1));
+    vertices.clamped -= count;
+    return count;
 }
 
 } // namespace hsdm

@@ -193,22 +193,20 @@ public:
                              : is_one_sheet() ? SheetNormals(problem_.planes[0].normal)
                                               : SheetNormals(problem_.planes);
         Solution solution = least_squares(problem_, faces.count);
-        tip_.sheets = 0;
-        if (faces.count == 2 && solution.rank == 2 && add_corner_plane(dual, faces)) {
+        if (faces.count == 2 && solution.rank == 2 && add_corner_plane(dual)) {
             faces.normals[2] = problem_.planes.back().normal;
             faces.count = 3;
             solution = least_squares(problem_, faces.count);
         }
         if (!is_inside(solution.position, problem_) && !may_leave(solution.position)) {
             note_corner(dual, solution, faces);
-            if (faces.count == 3) note_tip(dual, solution, faces.normals);
             const Vec3 unclamped = solution.position;
             result.is_clamped[dual] = keep_inside(solution);
-            if (tip_.sheets == 0 && result.is_clamped[dual] && faces.count == 2
-                && meet(2, solution, unclamped, placement::crease_out, placement::clear_crease))
-                tip_ = {dual, unclamped, faces.normals, 2};
+            if (result.is_clamped[dual] && faces.count == 2
+                && meet(2, solution, unclamped, placement::crease_out, placement::clear_crease)) {
+                on_creases.push_back({dual, unclamped, {faces.normals[0], faces.normals[1]}});
+            }
         }
-        if (tip_.sheets > 0) on_creases.push_back(tip_);
         result.positions[dual] = solution.position;
         const bool upward = (solution.steep | problem_.planes[0].normal) > 0;
         result.directions[dual] =
@@ -299,42 +297,32 @@ private:
 
     /// The tip of a corner may reach into a voxel that holds no point of the third sheet. Adds the plane of a
     /// set from the voxels around that makes a crease with both of the dual vertex's sheets and cuts their
-    /// crease in this voxel; of several, the one whose centroid is nearest to that point. Notes the tip in a
-    /// voxel beside if there is none, of a set that makes a crease with one of the sheets, chosen alike.
-    bool add_corner_plane(Index dual, const SheetNormals& faces) {
+    /// crease in this voxel; of several, the one whose centroid is nearest to that point.
+    bool add_corner_plane(Index dual) {
         const auto corners = mesh_.duals.corners_of(dual);
         Index best = no_index;
-        double nearest = std::numeric_limits<double>::infinity(), nearest_tip = nearest;
+        double nearest = std::numeric_limits<double>::infinity();
         const std::size_t planes = problem_.planes.size();
         for (FacetCorner corner : corners)
             for (Index voxel : mesh_.grid.voxels[mesh_.crossings.of(corner).edge / 3]) {
                 if (voxel == no_index || voxel == voxel_) continue;
                 for (Index s = sets_.first[voxel]; s < sets_.first[voxel + 1]; ++s) {
-                    if (s == best) continue;
-                    const auto creases = count_creases(s, corners);
-                    if (creases == 0) continue;
+                    if (s == best || !creases_with_all(s, corners)) continue;
                     add_plane(s);
                     const Solution apex = least_squares(problem_, 3);
-                    const double d = (apex.position - sets_.sets[s].centroid).sqrnorm();
-                    if (d < nearest_tip && !is_inside(apex.position, problem_)
-                        && note_tip(dual, apex, {faces.normals[0], faces.normals[1], sets_.sets[s].normal}))
-                        nearest_tip = d;
                     problem_.planes.resize(planes);
-                    if (creases == std::ssize(corners) && apex.rank == 3
-                        && is_inside(apex.position, problem_, -placement::margin)
+                    const double d = (apex.position - sets_.sets[s].centroid).sqrnorm();
+                    if (apex.rank == 3 && is_inside(apex.position, problem_, -placement::margin)
                         && (d < nearest || (d == nearest && s < best)))
                         nearest = d, best = s;
                 }
             }
-        if (best == no_index) return false;
-        tip_.sheets = 0;
-        add_plane(best);
-        return true;
+        if (best != no_index) add_plane(best);
+        return best != no_index;
     }
 
-    /// With the sets of how many of a dual vertex's corners does a set make a crease?
-    std::ptrdiff_t count_creases(Index s, std::span<const FacetCorner> corners) const {
-        return std::ranges::count_if(corners, [&](FacetCorner corner) {
+    bool creases_with_all(Index s, std::span<const FacetCorner> corners) const {
+        return std::all_of(corners.begin(), corners.end(), [&](FacetCorner corner) {
             const Relation r = related_(sets_.sets[s], sets_.sets[mesh_.crossings.of(corner).set]);
             return r == Relation::convex || r == Relation::concave;
         });
@@ -366,32 +354,6 @@ private:
                && misfit(position, problem_) <= clear * problem_.size;
     }
 
-    /// Records the corner of three sheets in a voxel beside that has no vertex, since the tip of the corner
-    /// crosses none of its edges, but points of two of them. False if it is none.
-    bool note_tip(Index dual, const Solution& solution, const std::array<Vec3, 3>& normals) {
-        if (voxel_ == no_index
-            || !meet(3, solution, solution.position, 1 - placement::margin, placement::clear_corner))
-            return false;
-        const VoxelCoord beside = beside_at(step_to(solution.position), 7);
-        const Index corner = mesh_.grid.find(GridPoints::code(beside));
-        if (corner == no_index) return false;
-        const Index voxel = mesh_.grid.voxels[corner][7];
-        if (voxel == no_index || has_crossing(beside, [](const Crossing&) { return true; })) return false;
-        if (std::ranges::count_if(normals, [&](const Vec3& n) { return has_points(voxel, n); }) < 2)
-            return false;
-        tip_ = {dual, solution.position, normals, 3};
-        return true;
-    }
-
-    /// Does a voxel beside hold points of the vertex's sheet with about this normal?
-    bool has_points(Index voxel, const Vec3& normal) const {
-        return std::ranges::any_of(sets_.of_voxel(voxel), [&](const NormalSet& set) {
-            return (set.normal | normal) > angles::one_sheet && std::ranges::any_of(near_, [&](Index t) {
-                       return related_.smooth(set, sets_.sets[t]);
-                   });
-        });
-    }
-
     /// Records a corner outside, which the vertex of another voxel may take over (shared_corners).
     void note_corner(Index dual, const Solution& solution, const SheetNormals& faces) {
         if (!meet(3, solution, solution.position, placement::farthest_out, placement::clear_corner)) return;
@@ -412,35 +374,31 @@ private:
         return step;
     }
 
-    /// The voxel that the part of `step` along the axes in mask `way` leads to.
-    VoxelCoord beside_at(const VoxelCoord& step, unsigned way) const {
-        VoxelCoord beside;
-        for (unsigned k = 0; k < 3; ++k)
-            beside[k] =
-                static_cast<int>(std::lround(problem_.lo[k] / problem_.size)) + (way >> k & 1u ? step[k] : 0);
-        return beside;
-    }
-
     /// Take the part of `step` along the axes in mask `way`: does one of the vertex's sheets cross an edge of
     /// that voxel? False if `step` is 0 along one of them.
     bool is_crossed(const VoxelCoord& step, unsigned way) const {
-        for (unsigned k = 0; k < 3; ++k)
-            if ((way >> k & 1u) && step[k] == 0) return false;
-        return has_crossing(beside_at(step, way), [&](const Crossing& x) { return has_sheet(x.normal); });
+        VoxelCoord beside;
+        for (unsigned k = 0; k < 3; ++k) {
+            beside[k] = static_cast<int>(std::lround(problem_.lo[k] / problem_.size));
+            if (!(way >> k & 1u)) continue;
+            if (step[k] == 0) return false;
+            beside[k] += step[k];
+        }
+        return is_crossed(beside);
     }
 
-    /// Does an edge of this voxel have a crossing that passes the test?
-    template <class Test>
-    bool has_crossing(const VoxelCoord& voxel, const Test& test) const {
+    /// Does one of the vertex's sheets cross an edge of this voxel?
+    bool is_crossed(const VoxelCoord& voxel) const {
         for (unsigned corner = 0; corner < 8; ++corner) {
             VoxelCoord c = voxel;
             for (unsigned k = 0; k < 3; ++k) c[k] += static_cast<int>(corner >> k & 1u);
             const Index lower = mesh_.grid.find(GridPoints::code(c));
             if (lower == no_index) continue;
-            for (unsigned axis = 0; axis < 3; ++axis)
-                if (!(corner >> axis & 1u)
-                    && std::ranges::any_of(mesh_.crossings.on_edge(3 * lower + axis), test))
-                    return true;
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                if (corner >> axis & 1u) continue;
+                for (const Crossing& x : mesh_.crossings.on_edge(3 * lower + axis))
+                    if (has_sheet(x.normal)) return true;
+            }
         }
         return false;
     }
@@ -474,8 +432,7 @@ private:
     std::vector<Index> near_;
     std::vector<CreaseSample> samples_;
     std::vector<std::uint8_t> face_;
-    PlacedVertices::OnCrease tip_{}; // of the vertex, to which it may move; no sheets if there is none
-    bool by_crease_ = false;         // is a crossing on one face of a blunt crease?
+    bool by_crease_ = false; // is a crossing on one face of a blunt crease?
     Index voxel_ = no_index;
 };
 

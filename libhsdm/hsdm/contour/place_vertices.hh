@@ -28,14 +28,11 @@ struct PlacedVertices {
         std::uint8_t crossed;
     };
     std::vector<Beyond> beyond; ///< by ascending dual vertex
-    /// A vertex kept in its voxel, and the point outside where its sheets meet: up to a quarter of a voxel
-    /// away for the two of a crease; for the three of a corner in a voxel beside that holds points of two of
-    /// them but has no vertex.
+    /// A clamped vertex, and the point up to a quarter of a voxel outside where its two sheets meet.
     struct OnCrease {
         Index dual;
         Vec3 position;
-        std::array<Vec3, 3> normals; ///< of the sheets
-        std::uint8_t sheets;         ///< 2 or 3
+        std::array<Vec3, 2> normals; ///< of the two sheets
     };
     std::vector<OnCrease> on_creases; ///< by ascending dual vertex
     /// Voxels with points that stand out from the facets (PointFit::Measure::standing_out, reach_points).
