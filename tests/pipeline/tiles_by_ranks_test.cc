@@ -88,6 +88,11 @@ TEST_CASE("several ranks give the mesh of one piece, bit for bit", "[pipeline][s
         }
         cloud.positions[5][1] = std::numeric_limits<double>::quiet_NaN();
     }
+    SECTION("with outliers outside all others") {
+        cloud.positions.push_back({0.7, 0.5, 0.4});
+        cloud.positions.push_back({-0.2, 0.6, 0.1});
+        cloud.normals.resize(cloud.positions.size(), {0, 0, 1});
+    }
     SECTION("with normals that point into the part") {
         for (Vec3& n : cloud.normals) n = -n;
     }

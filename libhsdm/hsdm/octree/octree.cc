@@ -331,14 +331,17 @@ bool has_voxels(const Box& bounds) {
            && std::isfinite(bounds.extent()) && std::isfinite(cells / bounds.extent());
 }
 
+bool is_other_box(const Box& left, const Box& before) {
+    constexpr double negligible = 1e-9; // of the box
+    const double change = std::max((left.lo - before.lo).max_abs(), (left.hi - before.hi).max_abs());
+    return has_voxels(left) && change > negligible * left.extent();
+}
+
 bool fit_to_points(Octree& octree) {
     if (octree.size() == 0) return false;
-    constexpr double negligible = 1e-9; // of the box
     const Box box = bounds_of(octree.positions);
     const Box bounds{box.lo + octree.origin, box.hi + octree.origin};
-    const double change =
-        std::max((bounds.lo - octree.bounds.lo).max_abs(), (bounds.hi - octree.bounds.hi).max_abs());
-    if (!has_voxels(bounds) || change <= negligible * bounds.extent()) return false;
+    if (!is_other_box(bounds, octree.bounds)) return false;
     octree.bounds = bounds;
     rearrange(octree, std::move(octree.positions), bounds.extent());
     return true;

@@ -98,6 +98,9 @@ Occurrences remove_points(Octree& octree, std::span<const std::uint8_t> marked);
 /// numbers?
 bool has_voxels(const Box& bounds);
 
+/// Does the box of the points that are left differ, beyond rounding, from the one before, and has it voxels?
+bool is_other_box(const Box& left, const Box& before);
+
 /// After points were removed: `bounds` becomes the box of those left, and they are rearranged in the cube of
 /// its longest side about its middle. Leaves the octree as it is, and returns false, if the box has stayed
 /// (but for rounding). O(n).

@@ -3,6 +3,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/pipeline/compare_pieces.hh"
+#include "hsdm/pipeline/stray_search.hh"
 
 #include <algorithm>
 #include <utility>
@@ -10,8 +11,7 @@
 namespace hsdm {
 namespace {
 
-constexpr int most_ghost_voxels = 256;                    // of a tile that is made again and again
-constexpr std::size_t most_strays = std::size_t{1} << 20; // that are kept in memory
+constexpr int most_ghost_voxels = 256; // of a tile that is made again and again
 
 class TileMaker {
 public:
@@ -24,17 +24,18 @@ public:
           turned_(turned),
           known_(known),
           how_(how),
-          sparse_(in.survey.sums.sparse()) {}
+          strays_(in.cloud, in.survey) {}
 
-    std::vector<Piece> pieces() {
+    std::optional<std::vector<Piece>> pieces() {
         std::vector<Piece> pieces(ranges_.size());
         std::vector<int> ghost(ranges_.size(), in_.ghost_voxels);
         std::vector<std::uint8_t> due(ranges_.size(), 1);
         while (std::ranges::count(due, 1) > 0) {
             make_due(due, ghost, pieces);
-            if (has_new_strays()) {
-                std::ranges::fill(due, std::uint8_t{1});
-                continue;
+            if (!known_.outliers) {
+                const StraySearch::Result strays = leave_strays_out();
+                if (strays.moved) return std::nullopt;
+                if (strays.outliers.count > 0) continue; // all are due still
             }
             due = disagreeing_tiles(
                 pieces, ranges_, [&](std::size_t k) { return owner(k); }, ranks_);
@@ -82,8 +83,8 @@ private:
         if (rows.empty()) return piece;
         const Octree octree = cloud_.octree_of(rows);
         rows = std::vector<PointRow>();
-        if (!known_.outliers) find_strays(octree, range, ghost);
-        if (!strays_.empty()) return piece; // all are made again without them
+        if (!known_.outliers) strays_.add(octree, range, ghost);
+        if (strays_.found_here()) return piece; // all are made again without them
         const OctreeLevel level = extract_level(octree, cloud_.depth());
         const MethodInput in{cloud_.frame(), {}, octree, level, in_.options, in_.phases};
         const PartOfLevel part{
@@ -99,44 +100,11 @@ private:
         return make_piece(in, part, range);
     }
 
-    /// Adds a tile's points that are dropped as outliers. Refuses those without which the whole would have
-    /// another cube.
-    void find_strays(const Octree& octree, const VoxelRange& range, int ghost) {
-        std::vector<double> reach;
-        const std::vector<std::uint8_t> strays = strays_by_normals(octree, sparse_, {}, &reach);
-        const double seen = ghost * cloud_.voxel_size();
-        const int shift = 3 * (morton_levels - cloud_.depth());
-        for_each_in_order(octree.size(), [&](std::size_t i) {
-            if (!range.holds(octree.codes[i] >> shift)) return;
-            if (reach[i] > seen) refuse_in_tiles("some points are far from all others");
-            if (!strays[i]) return;
-            if (is_at_border(octree.positions[i] + cloud_.origin()))
-                refuse_in_tiles("some points are off every surface, outside all others");
-            if (strays_.size() == most_strays) refuse_in_tiles("many points are off every surface");
-            strays_.push_back(ScratchCloud::row_at(octree, i));
-        });
-    }
-
-    bool is_at_border(const Vec3& place) const {
-        const double near = 1e-9 * cloud_.cube_extent();
-        const Box& box = cloud_.extent().box;
-        return std::min((place - box.lo).min(), (box.hi - place).min()) <= near;
-    }
-
-    /// Once all tiles have looked for strays: are there some, so that all is different without them?
-    bool has_new_strays() {
-        if (std::exchange(known_.outliers, true)) return false;
-        if (ranks_.sum(strays_.size()) > most_strays) refuse_in_tiles("many points are off every surface");
-        std::vector<PointRow> all;
-        for (const Ranks::Bytes& got : ranks_.gather(bytes_of(strays_)))
-            append_large(all, ByteReader(got).take_rest<PointRow>());
-        strays_.clear();
-        if (all.empty()) return false;
-        known_.first_outlier = Vec3(all[0][0], all[0][1], all[0][2]);
-        const std::size_t points = in_.survey.sums.points() - all.size();
-        cloud_.leave_out(std::move(all));
-        in_.survey = survey_cloud(cloud_, points, in_.group_points);
-        return true;
+    /// Once all tiles have looked for them: all is different without them.
+    StraySearch::Result leave_strays_out() {
+        const StraySearch::Result result = strays_.leave_out(cloud_, in_.survey, in_.group_points);
+        known_.outliers = result.outliers;
+        return result;
     }
 
     /// Of all ranks' tiles, added up in one order.
@@ -210,14 +178,13 @@ private:
     bool turned_;
     TilesKnown& known_;
     TileReport& how_;
-    SparseLevel sparse_;
-    std::vector<PointRow> strays_; // found, and not left out yet
+    StraySearch strays_;
 };
 
 } // namespace
 
-std::vector<Piece> make_tiles(const TilesInput& in, const std::vector<VoxelRange>& ranges, bool turned,
-                              TilesKnown& known, TileReport& how) {
+std::optional<std::vector<Piece>> make_tiles(const TilesInput& in, const std::vector<VoxelRange>& ranges,
+                                             bool turned, TilesKnown& known, TileReport& how) {
     return TileMaker(in, ranges, turned, known, how).pieces();
 }
 

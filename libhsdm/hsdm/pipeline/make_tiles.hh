@@ -5,6 +5,8 @@
 #include "hsdm/pipeline/piece_store.hh"
 #include "hsdm/pipeline/tile_piece.hh"
 
+#include <optional>
+
 namespace hsdm {
 
 /// What tiles are made of.
@@ -21,17 +23,17 @@ struct TilesInput {
 /// What making tiles finds out of the whole, so that tiles must be made again; it holds for those made
 /// later, too.
 struct TilesKnown {
-    bool outliers = false; ///< have they been looked for?
-    bool go_back = false;  ///< as in PartOfLevel
-    TanglePlan tangles{};  ///< as in PartOfLevel
+    std::optional<Occurrences> outliers{}; ///< once they have been looked for; in the cloud's coordinates
+    bool go_back = false;                  ///< as in PartOfLevel
+    TanglePlan tangles{};                  ///< as in PartOfLevel
     LargestOfWhole largest{SplinterOptions().enough(), SplinterOptions().enough()}; ///< the same
-    Vec3 first_outlier{0, 0, 0};
 };
 
 /// The piece of every range that is this rank's, all of all ranks in agreement; none of the others. No range
-/// may be of two ranks. `turned`: as in PartOfLevel. Throws Error if they cannot agree, or if what they leave
+/// may be of two ranks. `turned`: as in PartOfLevel. Nothing if outliers are left out without which the cloud
+/// lies in another cube: its cells are others then. Throws Error if they cannot agree, or if what they leave
 /// to the whole would change them; Cancelled.
-std::vector<Piece> make_tiles(const TilesInput& in, const std::vector<VoxelRange>& ranges, bool turned,
-                              TilesKnown& known, TileReport& how);
+std::optional<std::vector<Piece>> make_tiles(const TilesInput& in, const std::vector<VoxelRange>& ranges,
+                                             bool turned, TilesKnown& known, TileReport& how);
 
 } // namespace hsdm

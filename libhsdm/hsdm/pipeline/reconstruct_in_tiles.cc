@@ -56,13 +56,14 @@ std::size_t points_of_tile(const TileOptions& tiles, const Survey& sums, std::si
 void note_cloud(const ScratchCloud& cloud, const CloudSurvey& survey, std::size_t duplicates,
                 const TilesKnown& known, Report& report) {
     const CloudExtent& extent = cloud.extent();
-    const std::size_t outliers = cloud.left_out().size(), voxels = survey.sums.voxels();
+    const Occurrences outliers = known.outliers.value_or(Occurrences());
+    const std::size_t voxels = survey.sums.voxels();
     report.input.points = extent.finite();
     report.input.dropped_nonfinite = extent.nonfinite;
     if (extent.nonfinite > 0) report.input.first_nonfinite = extent.first_nonfinite;
     report.input.merged_duplicates = duplicates;
     report.input.has_normals = true;
-    report.input.bbox = extent.box;
+    report.input.bbox = cloud.bounds();
     report.input.spacing = survey.spacing;
     report.grid.depth = cloud.depth();
     report.grid.voxel_size = cloud.voxel_size();
@@ -70,9 +71,8 @@ void note_cloud(const ScratchCloud& cloud, const CloudSurvey& survey, std::size_
     report.grid.leaves_per_level.assign(static_cast<std::size_t>(cloud.depth()) + 1, 0);
     report.grid.leaves_per_level.back() = voxels;
     report.rejected["normals_mended"] = 0;
-    report.rejected["points_outlying"] = outliers;
-    note_dropped("points off every surface", {outliers, known.first_outlier + cloud.origin()}, cloud.frame(),
-                 report);
+    report.rejected["points_outlying"] = outliers.count;
+    note_dropped("points off every surface", outliers, cloud.frame(), report);
 }
 
 /// What each rank does from now on.
@@ -154,31 +154,41 @@ private:
     /// All tiles; once more if normals point into the solid, as what is judged depends on the side.
     void make_facets(std::size_t group) {
         const std::size_t duplicates = cloud_->extent().finite() - survey_->sums.points();
-        const std::size_t most = points_of_tile(tiles_, survey_->sums, bytes_per_voxel_);
-        const std::vector<VoxelRange> ranges =
-            plan_tiles(cloud_->cells(),
-                       {cloud_->depth(), cloud_->cell_depth(), tiles_.ghost_voxels, most, cloud_->borders()});
-        how_.tiles = ranges.size();
-        const auto owner = [&](std::size_t k) { return cloud_->owner_of(ranges[k]); };
-        for (std::size_t k = 0; k < ranges.size(); ++k) how_.own_tiles += owner(k) == ranks_.rank();
         TilesKnown known;
-        bool turned = false;
-        const auto make = [&] {
-            store_.emplace(tiles_.scratch);
-            const TilesInput in{*cloud_, *survey_, options_, phases_, group, tiles_.ghost_voxels, &*store_};
-            facets_ = WholeFacets();
-            os::give_back_freed_memory();
-            std::vector<Piece> pieces = make_tiles(in, ranges, turned, known, how_);
-            gather_pieces(pieces, *store_, owner, ranks_);
-            os::give_back_freed_memory();
-            facets_ = join_tiles(std::move(pieces), &*store_);
-        };
-        make();
-        turned = ranks_.of_first(ranks_.is_first() && faces_inward(facets_.mesh));
-        if (turned) make();
+        make_facets(group, false, known);
+        const bool turned = ranks_.of_first(ranks_.is_first() && faces_inward(facets_.mesh));
+        if (turned) make_facets(group, true, known);
         report_.grid.sets = facets_.counts.sets;
         report_.rejected["normals_turned"] = turned ? survey_->sums.points() : 0;
         note_cloud(*cloud_, *survey_, duplicates, known, report_);
+    }
+
+    void make_facets(std::size_t group, bool turned, TilesKnown& known) {
+        store_.emplace(tiles_.scratch);
+        const TilesInput in{*cloud_, *survey_, options_, phases_, group, tiles_.ghost_voxels, &*store_};
+        facets_ = WholeFacets();
+        os::give_back_freed_memory();
+        std::vector<VoxelRange> ranges;
+        std::optional<std::vector<Piece>> pieces;
+        do {
+            ranges = plan();
+            pieces = make_tiles(in, ranges, turned, known, how_);
+        } while (!pieces);
+        gather_pieces(
+            *pieces, *store_, [&](std::size_t k) { return cloud_->owner_of(ranges[k]); }, ranks_);
+        os::give_back_freed_memory();
+        facets_ = join_tiles(std::move(*pieces), &*store_);
+    }
+
+    std::vector<VoxelRange> plan() {
+        const std::size_t most = points_of_tile(tiles_, survey_->sums, bytes_per_voxel_);
+        std::vector<VoxelRange> ranges =
+            plan_tiles(cloud_->cells(),
+                       {cloud_->depth(), cloud_->cell_depth(), tiles_.ghost_voxels, most, cloud_->borders()});
+        how_.tiles = ranges.size();
+        how_.own_tiles = static_cast<std::size_t>(std::ranges::count_if(
+            ranges, [&](const VoxelRange& range) { return cloud_->owner_of(range) == ranks_.rank(); }));
+        return ranges;
     }
 
     const Clock::time_point start_ = Clock::now();
@@ -215,7 +225,6 @@ void check_options(const ReconstructOptions& options, const TileOptions& tiles) 
         if (!holds) throw OptionError(std::string("memory: ") + what);
     };
     need(options.depth.has_value(), "must come with --depth, as the resolution is not chosen in tiles yet");
-    need(*options.depth >= 4, "must come with a --depth of 4 or more");
     need(!wants_adaptive(options), "cannot come with an adaptive grid yet");
     need(method_for(options) == Method::extended, "cannot come with --method basic yet");
     need(options.normals != NormalSource::estimate, "cannot come with --normals estimate yet");

@@ -112,32 +112,40 @@ ScratchCloud::ScratchCloud(const PointParts& parts, const CloudExtent& extent, i
       depth_(depth),
       cell_depth_(cell_depth_of(depth)),
       most_waiting_(points_waiting(options)),
+      folder_(options.scratch),
+      buffered_(bytes_buffered(options)),
       ranks_(ranks),
-      scratch_(options.scratch, extent.finite() / static_cast<std::size_t>(ranks.size()),
-               bytes_buffered(options)) {
+      scratch_(std::make_unique<ScratchPoints>(
+          folder_, extent.finite() / static_cast<std::size_t>(ranks.size()), buffered_)) {
     options_.placement = CubePlacement::centred;
     options_.whole = extent.box;
     none_.extent = extent.box.extent();
     none_.origin = centred_origin(extent.box, none_.extent);
     none_.bounds = extent.box;
-    divide(extent);
+    for (Vec3& place : extent_.sample) place -= origin();
+    divide(extent_.sample, extent_.sample_stride);
     extent_.sample = {};
     sort_points(parts);
     gather_cells();
 }
 
-MortonCode ScratchCloud::cell_of(const Vec3& place) const {
-    return code_at(place - origin(), cube_extent()) >> 3 * (morton_levels - cell_depth_);
+MortonCode ScratchCloud::cell_of(const Vec3& relative) const {
+    return code_at(relative, cube_extent()) >> 3 * (morton_levels - cell_depth_);
+}
+
+Vec3 ScratchCloud::relative_place(const PointRow& row) const {
+    const Vec3 place(row[0], row[1], row[2]);
+    return arranged_ ? place : place - origin();
 }
 
 /// Each rank gets cells that about as many points of the samples lie in.
-void ScratchCloud::divide(const CloudExtent& extent) {
+void ScratchCloud::divide(std::span<const Vec3> sample, std::size_t stride) {
     std::map<MortonCode, double> weights;
-    for (const Vec3& place : extent.sample) weights[cell_of(place)] += 1;
+    for (const Vec3& place : sample) weights[cell_of(place)] += 1;
     Ranks::Bytes bytes;
     for (const auto& [cell, count] : weights) {
         put(cell, bytes);
-        put(count * static_cast<double>(extent.sample_stride), bytes);
+        put(count * static_cast<double>(stride), bytes);
     }
     weights.clear();
     double total = 0;
@@ -170,32 +178,36 @@ std::vector<MortonCode> ScratchCloud::borders() const {
     return borders;
 }
 
+/// To the rank that has its cell.
+void ScratchCloud::put_row(const PointRow& row, MortonCode cell, PointExchange& exchange) {
+    if (const int to = owner(cell); to != ranks_.rank())
+        exchange.add(to, row);
+    else
+        scratch_->add(cell, row);
+}
+
 /// This rank's part of the points goes to those that have their cells.
 void ScratchCloud::sort_points(const PointParts& parts) {
-    const auto keep = [&](const PointRow& row) { scratch_.add(cell_of(Vec3(row[0], row[1], row[2])), row); };
+    const auto keep = [&](const PointRow& row) { scratch_->add(cell_of(relative_place(row)), row); };
     PointExchange exchange(ranks_, most_waiting_, keep);
     std::size_t added = 0;
     parts([&](const PointView& part) {
         for_each_in_order(part.size(), [&](std::size_t i) {
             const Vec3 p = vec3_at(part.positions, i), n = vec3_at(part.normals, i);
             if (!is_finite(p)) return;
-            const PointRow row{p[0], p[1], p[2], n[0], n[1], n[2]};
-            const MortonCode cell = cell_of(p);
-            if (const int to = owner(cell); to != ranks_.rank())
-                exchange.add(to, row);
-            else
-                scratch_.add(cell, row);
+            put_row({p[0], p[1], p[2], n[0], n[1], n[2]}, cell_of(p - origin()), exchange);
             ++added;
         });
     });
     exchange.finish();
-    scratch_.finish();
+    scratch_->finish();
     if (ranks_.sum(added) != extent_.finite())
         throw Error("the points have changed while they were read; read them again");
 }
 
 void ScratchCloud::gather_cells() {
-    for (const Ranks::Bytes& got : ranks_.gather(bytes_of(scratch_.cells())))
+    cells_.clear();
+    for (const Ranks::Bytes& got : ranks_.gather(bytes_of(scratch_->cells())))
         for (const auto& cell : ByteReader(got).take_rest<ScratchPoints::Cell>()) cells_.push_back(cell);
 }
 
@@ -220,11 +232,27 @@ OctreeLevel ScratchCloud::no_voxels() const {
     return level;
 }
 
+/// The rows of octrees as one, but for what they are in the cloud: nothing is rounded or merged.
+Octree ScratchCloud::arranged_octree(const std::vector<PointRow>& rows) const {
+    Octree octree = none_;
+    std::vector<Vec3> positions = unwritten_vector<Vec3>(rows.size());
+    resize_unwritten(octree.normals, rows.size());
+    resize_unwritten(octree.source, rows.size());
+    for_each_index(rows.size(), chunks::light, [&](Index i) {
+        const PointRow& row = rows[i];
+        positions[i] = Vec3(row[0], row[1], row[2]);
+        octree.normals[i] = Vec3(row[3], row[4], row[5]);
+        octree.source[i] = i;
+    });
+    hsdm::rearrange(octree, std::move(positions), octree.extent);
+    return octree;
+}
+
 Octree ScratchCloud::octree_of(const std::vector<PointRow>& rows) const {
     PointView view;
     view.positions = StridedSpan(rows.front().data(), rows.size(), sizeof(PointRow));
     view.normals = StridedSpan(rows.front().data() + 3, rows.size(), sizeof(PointRow));
-    Octree octree = build_octree(view, options_);
+    Octree octree = arranged_ ? arranged_octree(rows) : build_octree(view, options_);
     if (!left_out_.empty()) {
         std::vector<std::uint8_t> marks = large_vector<std::uint8_t>(octree.size(), 0);
         for_each_index(octree.size(), chunks::usual,
@@ -256,18 +284,17 @@ void ScratchCloud::fetch(const std::vector<Surroundings>& wanted) {
     std::vector<Ranks::Bytes> out(static_cast<std::size_t>(ranks_.size()));
     for (const MortonCode cell : missing) put(cell, out[static_cast<std::size_t>(owner(cell))]);
     const std::vector<Ranks::Bytes> requests = ranks_.exchange(std::move(out));
-    PointExchange exchange(ranks_, most_waiting_, [&](const PointRow& row) {
-        scratch_.add(cell_of(Vec3(row[0], row[1], row[2])), row);
-    });
+    PointExchange exchange(ranks_, most_waiting_,
+                           [&](const PointRow& row) { scratch_->add(cell_of(relative_place(row)), row); });
     std::vector<PointRow> rows;
     for (std::size_t to = 0; to < requests.size(); ++to)
         for (const auto cell : ByteReader(requests[to]).take_rest<MortonCode>()) {
             rows.clear();
-            scratch_.read(cell, rows);
+            scratch_->read(cell, rows);
             for (const PointRow& row : rows) exchange.add(static_cast<int>(to), row);
         }
     exchange.finish();
-    scratch_.finish();
+    scratch_->finish();
     fetched_.insert(fetched_.end(), missing.begin(), missing.end());
     std::ranges::sort(fetched_);
 }
@@ -284,14 +311,14 @@ std::vector<PointRow> ScratchCloud::rows_of(const VoxelRange& range, int ghost) 
     const VoxelRange of_cells = cells_of(range);
     for (const MortonCode c : cells_near(of_cells, cells_within(ghost), cells_)) {
         if (of_cells.holds(c)) {
-            scratch_.read(c, rows);
+            scratch_->read(c, rows);
             continue;
         }
         Interruption::poll();
         cell.clear();
-        scratch_.read(c, cell);
+        scratch_->read(c, cell);
         for (const PointRow& row : cell) {
-            const MortonCode code = code_at(Vec3(row[0], row[1], row[2]) - origin(), cube_extent());
+            const MortonCode code = code_at(relative_place(row), cube_extent());
             if (range.is_near(morton_decode(code >> to_level), ghost)) rows.push_back(row);
         }
     }
@@ -303,7 +330,7 @@ void ScratchCloud::for_groups(std::size_t most, const std::function<void(const O
     const auto is_own = [&](const ScratchPoints::Cell& cell) { return owner(cell.code) == ranks_.rank(); };
     const auto first = std::ranges::find_if(cells_, is_own);
     for (auto c = first; c != cells_.end() && is_own(*c); ++c) {
-        scratch_.read(c->code, rows);
+        scratch_->read(c->code, rows);
         const auto next = c + 1;
         if (next != cells_.end() && is_own(*next) && rows.size() + next->points <= most) continue;
         const Octree octree = octree_of(rows);
@@ -315,6 +342,74 @@ void ScratchCloud::for_groups(std::size_t most, const std::function<void(const O
 void ScratchCloud::leave_out(std::vector<PointRow> rows) {
     left_out_ = std::move(rows);
     std::ranges::sort(left_out_);
+}
+
+Box ScratchCloud::box_of_points(std::size_t most) const {
+    Box own, all;
+    for_groups(most, [&](const Octree& part) { own.add(bounds_of(part.positions)); });
+    Ranks::Bytes bytes;
+    put(own, bytes);
+    for (const Ranks::Bytes& got : ranks_.gather(bytes)) all.add(ByteReader(got).take<Box>());
+    return {all.lo + origin(), all.hi + origin()};
+}
+
+ScratchCloud::ScratchCloud(const ScratchCloud& before, const Box& bounds, double extent, int depth)
+    : extent_(before.extent_),
+      frame_(before.frame_),
+      options_(before.options_),
+      none_(before.none_),
+      depth_(depth),
+      cell_depth_(cell_depth_of(depth)),
+      most_waiting_(before.most_waiting_),
+      folder_(before.folder_),
+      buffered_(before.buffered_),
+      ranks_(before.ranks_),
+      scratch_(std::make_unique<ScratchPoints>(folder_, before.points_here(), buffered_)),
+      arranged_(true) {
+    none_.bounds = bounds;
+    if (extent != none_.extent) none_.origin = centred_origin(bounds, extent); // as rearrange() has it
+    none_.extent = extent;
+}
+
+/// The same for points of another one that lie elsewhere in this cube.
+void ScratchCloud::divide(const ScratchCloud& before, const Vec3& shift, std::size_t most) {
+    const std::size_t stride = before.points_here() / most_sampled + 1;
+    std::vector<Vec3> sample;
+    std::size_t number = 0;
+    if (ranks_.size() > 1)
+        before.for_groups(most, [&](const Octree& part) {
+            for (const Vec3& p : part.positions)
+                if (number++ % stride == 0) sample.push_back(p + shift);
+        });
+    divide(sample, stride);
+}
+
+void ScratchCloud::rearrange(const Box& bounds, double extent, int depth, std::size_t most) {
+    ScratchCloud next(*this, bounds, extent, depth);
+    const Vec3 shift = origin() - next.origin();
+    next.divide(*this, shift, most);
+    PointExchange exchange(ranks_, most_waiting_, [&](const PointRow& row) {
+        next.scratch_->add(next.cell_of(next.relative_place(row)), row);
+    });
+    for_groups(most, [&](const Octree& part) {
+        for_each_in_order(part.size(), [&](std::size_t i) {
+            const Vec3 p = part.positions[i] + shift, &n = part.normals[i];
+            next.put_row({p[0], p[1], p[2], n[0], n[1], n[2]}, next.cell_of(p), exchange);
+        });
+    });
+    exchange.finish();
+    next.scratch_->finish();
+    next.gather_cells();
+    take(std::move(next));
+}
+
+void ScratchCloud::take(ScratchCloud&& next) {
+    none_ = std::move(next.none_);
+    depth_ = next.depth_, cell_depth_ = next.cell_depth_;
+    scratch_ = std::move(next.scratch_);
+    arranged_ = next.arranged_;
+    begins_ = std::move(next.begins_), cells_ = std::move(next.cells_);
+    fetched_ = {}, left_out_ = {};
 }
 
 PointRow ScratchCloud::row_at(const Octree& octree, std::size_t point) {

@@ -8,7 +8,11 @@
 #include "hsdm/pipeline/reconstruct_in_tiles.hh"
 #include "hsdm/pipeline/voxel_range.hh"
 
+#include <memory>
+
 namespace hsdm {
+
+class PointExchange;
 
 /// Throws Error of a cloud that can be reconstructed, but not in tiles.
 [[noreturn]] void refuse_in_tiles(const std::string& what);
@@ -39,7 +43,8 @@ public:
     ScratchCloud(const PointParts& parts, const CloudExtent& extent, int depth, const TileOptions& options,
                  Ranks& ranks);
 
-    const CloudExtent& extent() const { return extent_; }
+    const CloudExtent& extent() const { return extent_; } ///< as it was measured
+    const Box& bounds() const { return none_.bounds; }
     const CloudFrame& frame() const { return frame_; }
     Ranks& ranks() const { return ranks_; }
     const std::vector<ScratchPoints::Cell>& cells() const { return cells_; } ///< of all ranks
@@ -54,7 +59,7 @@ public:
     double cube_extent() const { return none_.extent; }
     const Vec3& origin() const { return none_.origin; } ///< of the cube, in the cloud's coordinates
     double voxel_size() const { return none_.voxel_size(depth_); }
-    std::size_t bytes() const { return scratch_.bytes(); } ///< on disk
+    std::size_t bytes() const { return scratch_->bytes(); } ///< on disk
 
     /// The octree of the whole without its points, and the level of all facets without its voxels.
     const Octree& no_points() const { return none_; }
@@ -74,12 +79,25 @@ public:
     void for_groups(std::size_t most, const std::function<void(const Octree&)>& visit) const;
     /// Leaves points out from now on, as the octrees have them.
     void leave_out(std::vector<PointRow> rows);
-    const std::vector<PointRow>& left_out() const { return left_out_; } ///< ascending
+    /// As rearrange() of an octree with this box, but in voxels of this depth: all points go to a new file,
+    /// `most` or a cell's at a time. For all ranks at the same time.
+    void rearrange(const Box& bounds, double extent, int depth, std::size_t most);
+    /// The box of the points that are not left out, in the cloud's coordinates. For all ranks.
+    Box box_of_points(std::size_t most) const;
     static PointRow row_at(const Octree& octree, std::size_t point);
 
 private:
-    MortonCode cell_of(const Vec3& place) const;
-    void divide(const CloudExtent& extent);
+    /// Without points yet: those of another one, in another cube.
+    ScratchCloud(const ScratchCloud& before, const Box& bounds, double extent, int depth);
+    void take(ScratchCloud&& next);
+    /// The cell of a position relative to the cube.
+    MortonCode cell_of(const Vec3& relative) const;
+    Vec3 relative_place(const PointRow& row) const;
+    Octree arranged_octree(const std::vector<PointRow>& rows) const;
+    /// By every so-manieth of this rank's points.
+    void divide(std::span<const Vec3> sample, std::size_t stride);
+    void divide(const ScratchCloud& before, const Vec3& shift, std::size_t most);
+    void put_row(const PointRow& row, MortonCode cell, PointExchange& exchange);
     void sort_points(const PointParts& parts);
     void gather_cells();
     int cells_within(int ghost) const;
@@ -92,8 +110,11 @@ private:
     Octree none_;
     int depth_, cell_depth_;
     std::size_t most_waiting_; // points
+    std::string folder_;
+    std::size_t buffered_; // bytes
     Ranks& ranks_;
-    ScratchPoints scratch_;
+    std::unique_ptr<ScratchPoints> scratch_;
+    bool arranged_ = false;          // rows are those of octrees, not as the points came
     std::vector<MortonCode> begins_; // of the ranks' cells
     std::vector<ScratchPoints::Cell> cells_;
     std::vector<MortonCode> fetched_; // cells of others, ascending

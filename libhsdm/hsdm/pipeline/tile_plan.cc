@@ -65,7 +65,7 @@ private:
 } // namespace
 
 int cell_depth_of(int depth) {
-    return depth <= 8 ? depth - 3 : std::min(depth - 5, 6);
+    return depth <= 8 ? std::max(0, depth - 3) : std::min(depth - 5, 6);
 }
 
 std::vector<VoxelRange> plan_tiles(std::span<const ScratchPoints::Cell> cells,

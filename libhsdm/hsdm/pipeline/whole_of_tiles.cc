@@ -46,7 +46,7 @@ void measure_error(const WholeInput& in, const PolygonMesh& facets, Report& repo
     report.error.points_to_mesh_max = distance.max;
     report.error.points_to_mesh_mean = distance.mean;
     report.error.points_to_mesh_rms = distance.rms;
-    report.error.normalised_max = distance.max / in.cloud.extent().box.diagonal();
+    report.error.normalised_max = distance.max / in.cloud.bounds().diagonal();
     note_dropped("points more than a voxel's diagonal off the mesh", off, in.cloud.frame(), report);
 }
 
