@@ -62,7 +62,8 @@ void check_same_by_ranks(const Reconstruction& whole, const Reconstruction& by_r
 
 /// What each rank throws; the first one's result.
 std::vector<std::string> run_on(int count, const PointCloud& cloud, const TileOptions& tiles,
-                                std::optional<Reconstruction>& result, TileReport& how, int depth = 6) {
+                                std::optional<Reconstruction>& result, TileReport& how,
+                                std::optional<int> depth = 6) {
     return support::run_ranks(count, [&](Ranks& ranks) {
         TileReport own;
         Reconstruction made =
@@ -139,6 +140,18 @@ TEST_CASE("ranks tell together what is small beside the largest part", "[pipelin
     for (const std::string& failure : run_on(3, cloud, small_tiles(), result, how, 4)) CHECK(failure.empty());
     REQUIRE(result);
     check_same_by_ranks(reconstruct(cloud, {.depth = 4}), *result);
+}
+
+TEST_CASE("ranks choose the voxels together", "[pipeline][slow]") {
+    PointCloud cloud = bored_box();
+    cloud.positions.push_back({0.7, 0.5, 0.4}); // an outlier
+    cloud.normals.push_back({0, 0, 1});
+    std::optional<Reconstruction> result;
+    TileReport how;
+    for (const std::string& failure : run_on(3, cloud, small_tiles(), result, how, std::nullopt))
+        CHECK(failure.empty());
+    REQUIRE(result);
+    check_same_by_ranks(reconstruct(cloud, {}), *result);
 }
 
 TEST_CASE("ranks that no cell is left for have nothing to do", "[pipeline][slow]") {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace hsdm {
@@ -100,7 +101,7 @@ Occurrences crowded_sheets(const OctreeLevel& level, const NormalSets& sets, dou
     return doubts;
 }
 
-std::size_t count_narrow_cylinders(const Octree& octree, const OctreeLevel& level, const NormalSets& sets) {
+std::vector<Index> narrow_cylinders(const Octree& octree, const OctreeLevel& level, const NormalSets& sets) {
     const auto bends = [&](const NormalSet& set) {
         return bends_like_cylinder(octree, level, sets, static_cast<Index>(&set - sets.sets.data()));
     };
@@ -113,8 +114,14 @@ std::size_t count_narrow_cylinders(const Octree& octree, const OctreeLevel& leve
         });
         return any;
     });
-    return static_cast<std::size_t>(
-        std::ranges::count_if(found, [&](Index v) { return has_neighbor(level, v, found); }));
+    std::vector<Index> together;
+    std::ranges::copy_if(found, std::back_inserter(together),
+                         [&](Index v) { return has_neighbor(level, v, found); });
+    return together;
+}
+
+std::size_t count_narrow_cylinders(const Octree& octree, const OctreeLevel& level, const NormalSets& sets) {
+    return narrow_cylinders(octree, level, sets).size();
 }
 
 } // namespace hsdm

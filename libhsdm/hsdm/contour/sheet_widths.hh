@@ -26,10 +26,12 @@ std::optional<SheetPair> nearest_pair(const OctreeLevel& level, const NormalSets
 /// lie unevenly, for what is narrow goes on. O(sets), parallel.
 Occurrences crowded_sheets(const OctreeLevel& level, const NormalSets& sets, double least = widths::least);
 
-/// How many voxels, with another one beside them, a bore or a rod under two voxels in diameter passes: two
-/// sheets face each other or turn their backs less than two voxels apart, and both turn round as fast as such
-/// a cylinder. The few facets round it are one voxel's decision each, so finer voxels do better. O(points),
-/// parallel.
+/// The voxels, ascending, with another one beside them, that a bore or a rod under two voxels in diameter
+/// passes: two sheets face each other or turn their backs less than two voxels apart, and both turn round as
+/// fast as such a cylinder. The few facets round it are one voxel's decision each, so finer voxels do better.
+/// What is more than two voxels off a voxel says nothing of it. O(points), parallel.
+std::vector<Index> narrow_cylinders(const Octree& octree, const OctreeLevel& level, const NormalSets& sets);
+/// How many these are.
 std::size_t count_narrow_cylinders(const Octree& octree, const OctreeLevel& level, const NormalSets& sets);
 
 } // namespace hsdm

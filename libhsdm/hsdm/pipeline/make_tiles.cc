@@ -4,14 +4,13 @@
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/pipeline/compare_pieces.hh"
 #include "hsdm/pipeline/stray_search.hh"
+#include "hsdm/pipeline/tile_plan.hh"
 
 #include <algorithm>
 #include <utility>
 
 namespace hsdm {
 namespace {
-
-constexpr int most_ghost_voxels = 256; // of a tile that is made again and again
 
 class TileMaker {
 public:

@@ -7,6 +7,7 @@
 #include "hsdm/normals/steady_normals.hh"
 #include "hsdm/octree/far_outliers.hh"
 #include "hsdm/octree/spacing.hh"
+#include "hsdm/pipeline/choose_resolution.hh"
 #include "hsdm/pipeline/constants.hh"
 #include "hsdm/pipeline/method.hh"
 #include "hsdm/pipeline/options.hh"
@@ -18,9 +19,6 @@
 
 namespace hsdm {
 namespace {
-
-constexpr double widest_voxel =
-    1 << 20; // extents of the cloud; all its points share eight voxels long before
 
 /// Throws Error for points that span no surface.
 void check_spread(const Octree& octree) {
@@ -108,32 +106,13 @@ void PreparedCloud::check_given_normals(const PointView& cloud, const Phases& ph
 }
 
 int PreparedCloud::choose_resolution(const ReconstructOptions& options) {
-    if (options.depth) {
-        report.options["depth"] = std::to_string(*options.depth);
-        report.options["resolution"] = "as asked by depth";
-        return *options.depth;
-    }
-    if (options.voxel_size) {
-        report.options["voxel-size"] = text_of(*options.voxel_size);
-        report.options["resolution"] = "as asked by voxel size";
-        return fit_voxels(*options.voxel_size / frame.unit());
-    }
-    if (options.max_error) { // as fine as two spacings only where the error needs it
-        const DepthChoice choice =
-            choose_depth(octree, report.input.spacing, resolution::adaptive_spacings, frame.unit());
-        report.options["resolution"] = choice.reason;
-        return choice.depth;
-    }
-    const VoxelChoice choice = choose_voxel(octree, report.input.spacing, noise_, frame.unit());
-    report.options["resolution"] = choice.reason;
-    const int depth = fit_voxels(choice.size);
-    if (method_for(options) != Method::extended) return depth;
-    const VoxelChoice finer =
-        choose_voxel(octree, report.input.spacing, noise_, frame.unit(), resolution::adaptive_spacings);
-    if (finer.size >= choice.size || !has_narrow_cylinders(depth)) return depth;
-    report.options["resolution"] = finer.reason + ", as bores or rods are under two voxels of "
-                                   + text_of(choice.size * frame.unit()) + " wide";
-    return fit_voxels(finer.size);
+    const auto rearrange_in = [&](const VoxelCube& cube) {
+        looked_.reset();
+        rearrange(octree, std::move(octree.positions), cube.extent);
+    };
+    const PlacedPoints points{octree, frame, noise_, rearrange_in,
+                              [&](int depth) { return has_narrow_cylinders(depth); }};
+    return hsdm::choose_resolution(options, points, report);
 }
 
 void PreparedCloud::smooth_for_depth(int depth, const Phases& phases) {
@@ -197,24 +176,6 @@ void PreparedCloud::note_smoothing(const SmoothReport& smoothed) {
     if (!moved_) return;
     report.rejected["points_moved"] = octree.size();
     report.input.spacing = estimate_spacing(octree); // measured again: noise had made it look wider
-}
-
-int PreparedCloud::fit_voxels(double voxel_size) {
-    const double extent = octree.bounds.extent();
-    if (voxel_size > widest_voxel * extent)
-        throw OptionError("voxel_size " + text_of(voxel_size * frame.unit()) + ": must be at most "
-                          + text_of(widest_voxel * extent * frame.unit())
-                          + ", a million times the cloud's extent");
-    int depth = 1;
-    double cube = 2 * voxel_size;
-    for (; cube < extent && depth < deepest_level; ++depth) cube *= 2;
-    if (cube < extent)
-        throw OptionError("voxel_size " + text_of(voxel_size * frame.unit()) + ": must be at least "
-                          + text_of(extent * frame.unit() / (1 << deepest_level))
-                          + ", the cloud's extent over 2^16");
-    looked_.reset();
-    rearrange(octree, std::move(octree.positions), cube);
-    return depth;
 }
 
 } // namespace hsdm

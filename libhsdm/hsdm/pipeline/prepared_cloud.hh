@@ -69,10 +69,6 @@ private:
 
     void note_smoothing(const SmoothReport& smoothed);
 
-    /// Puts the points in the smallest cube of 2^N voxels of this size around their box, N in [1, 16];
-    /// returns N.
-    int fit_voxels(double voxel_size);
-
     /// What has_narrow_cylinders() made, as long as it holds.
     struct Looked {
         OctreeLevel level;

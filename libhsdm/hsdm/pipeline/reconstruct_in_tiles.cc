@@ -3,10 +3,13 @@
 #include "hsdm/core/ranks.hh"
 #include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/pipeline/choose_resolution.hh"
 #include "hsdm/pipeline/cloud_distance.hh"
 #include "hsdm/pipeline/gather_pieces.hh"
 #include "hsdm/pipeline/make_tiles.hh"
+#include "hsdm/pipeline/narrow_cylinders.hh"
 #include "hsdm/pipeline/options.hh"
+#include "hsdm/pipeline/stray_search.hh"
 #include "hsdm/pipeline/tile_plan.hh"
 #include "hsdm/pipeline/whole_of_tiles.hh"
 
@@ -29,6 +32,14 @@ std::size_t points_at_once(const TileOptions& tiles, std::size_t bytes_of_mesh, 
     const std::size_t used = bytes_of_program + bytes_of_mesh;
     const auto left = static_cast<double>(tiles.memory - std::min(tiles.memory, used));
     return std::max(fewest, static_cast<std::size_t>(left / bytes_each));
+}
+
+/// A depth whose cells are not too many or too few for so many points. What follows does not depend on it.
+int depth_for_cells(std::size_t points) {
+    constexpr std::size_t most = 32; // points a voxel, of a surface across the cube
+    int depth = 4;
+    while (depth < deepest_level && points >> 2 * depth > most) ++depth;
+    return depth;
 }
 
 double voxels_per_point(const Survey& sums) {
@@ -117,10 +128,10 @@ public:
           bytes_per_voxel_(bytes_per_voxel) {
         report_.threads = tbb::this_task_arena::max_concurrency();
         note_options(false, options, report_);
-        report_.options["depth"] = std::to_string(*options.depth);
-        report_.options["resolution"] = "as asked by depth";
         phases_.run("octree", 0, report_.seconds.octree, [&] {
-            cloud_.emplace(parts, measure_extent(parts, ranks), *options.depth, tiles, ranks);
+            const CloudExtent extent = measure_extent(parts, ranks);
+            const int depth = options.depth.value_or(depth_for_cells(extent.finite()));
+            cloud_.emplace(parts, extent, depth, tiles, ranks);
         });
         const std::size_t group = points_at_once(tiles, 0, bytes_per_point);
         os::give_back_freed_memory(); // here and later, or what one phase had is held beside what the next
@@ -129,6 +140,8 @@ public:
             survey_.emplace(survey_cloud(*cloud_, cloud_->extent().finite(), group));
             check_survey(*survey_, *cloud_);
         });
+        duplicates_ = cloud_->extent().finite() - survey_->sums.points();
+        phases_.run("resolution", 0.15, report_.seconds.octree, [&] { choose_resolution(group); });
         phases_.run("tiles", 0.2, report_.seconds.facets, [&] { make_facets(group); });
     }
 
@@ -151,19 +164,33 @@ public:
     }
 
 private:
-    /// All tiles; once more if normals point into the solid, as what is judged depends on the side.
-    void make_facets(std::size_t group) {
-        const std::size_t duplicates = cloud_->extent().finite() - survey_->sums.points();
-        TilesKnown known;
-        make_facets(group, false, known);
-        const bool turned = ranks_.of_first(ranks_.is_first() && faces_inward(facets_.mesh));
-        if (turned) make_facets(group, true, known);
-        report_.grid.sets = facets_.counts.sets;
-        report_.rejected["normals_turned"] = turned ? survey_->sums.points() : 0;
-        note_cloud(*cloud_, *survey_, duplicates, known, report_);
+    /// Where no depth is given voxels follow from the points without outliers, which move to their cube.
+    void choose_resolution(std::size_t group) {
+        const int ghost = tiles_.ghost_voxels;
+        if (!options_.depth)
+            known_.outliers = drop_strays(*cloud_, *survey_, plan(group), ghost, group).outliers;
+        report_.input.spacing = survey_->spacing;
+        const auto rearrange = [&](const VoxelCube& cube) {
+            cloud_->rearrange(cloud_->bounds(), cube.extent, cube.depth, group);
+        };
+        const auto is_narrow = [&](int) { return has_narrow_cylinders(*cloud_, plan(group), ghost); };
+        hsdm::choose_resolution(options_, {cloud_->no_points(), cloud_->frame(), 0, rearrange, is_narrow},
+                                report_);
+        if (!options_.depth) // the spacing stays that of the cube before
+            survey_->sums = survey_cloud(*cloud_, survey_->sums.points(), group).sums;
     }
 
-    void make_facets(std::size_t group, bool turned, TilesKnown& known) {
+    /// All tiles; once more if normals point into the solid, as what is judged depends on the side.
+    void make_facets(std::size_t group) {
+        make_facets(group, false);
+        const bool turned = ranks_.of_first(ranks_.is_first() && faces_inward(facets_.mesh));
+        if (turned) make_facets(group, true);
+        report_.grid.sets = facets_.counts.sets;
+        report_.rejected["normals_turned"] = turned ? survey_->sums.points() : 0;
+        note_cloud(*cloud_, *survey_, duplicates_, known_, report_);
+    }
+
+    void make_facets(std::size_t group, bool turned) {
         store_.emplace(tiles_.scratch);
         const TilesInput in{*cloud_, *survey_, options_, phases_, group, tiles_.ghost_voxels, &*store_};
         facets_ = WholeFacets();
@@ -171,8 +198,9 @@ private:
         std::vector<VoxelRange> ranges;
         std::optional<std::vector<Piece>> pieces;
         do {
-            ranges = plan();
-            pieces = make_tiles(in, ranges, turned, known, how_);
+            ranges = plan(points_of_tile(tiles_, survey_->sums, bytes_per_voxel_));
+            count_tiles(ranges);
+            pieces = make_tiles(in, ranges, turned, known_, how_);
         } while (!pieces);
         gather_pieces(
             *pieces, *store_, [&](std::size_t k) { return cloud_->owner_of(ranges[k]); }, ranks_);
@@ -180,15 +208,14 @@ private:
         facets_ = join_tiles(std::move(*pieces), &*store_);
     }
 
-    std::vector<VoxelRange> plan() {
-        const std::size_t most = points_of_tile(tiles_, survey_->sums, bytes_per_voxel_);
-        std::vector<VoxelRange> ranges =
-            plan_tiles(cloud_->cells(),
-                       {cloud_->depth(), cloud_->cell_depth(), tiles_.ghost_voxels, most, cloud_->borders()});
+    std::vector<VoxelRange> plan(std::size_t most) const {
+        return plan_tiles(cloud_->cells(), {cloud_->depth(), cloud_->cell_depth(), tiles_.ghost_voxels, most,
+                                            cloud_->borders()});
+    }
+    void count_tiles(const std::vector<VoxelRange>& ranges) {
         how_.tiles = ranges.size();
         how_.own_tiles = static_cast<std::size_t>(std::ranges::count_if(
             ranges, [&](const VoxelRange& range) { return cloud_->owner_of(range) == ranks_.rank(); }));
-        return ranges;
     }
 
     const Clock::time_point start_ = Clock::now();
@@ -202,6 +229,8 @@ private:
     std::optional<ScratchCloud> cloud_;
     std::optional<CloudSurvey> survey_;
     std::optional<PieceStore> store_;
+    std::size_t duplicates_ = 0;
+    TilesKnown known_;
     WholeFacets facets_;
     TileReport how_;
 };
@@ -224,7 +253,7 @@ void check_options(const ReconstructOptions& options, const TileOptions& tiles) 
     const auto need = [](bool holds, const char* what) {
         if (!holds) throw OptionError(std::string("memory: ") + what);
     };
-    need(options.depth.has_value(), "must come with --depth, as the resolution is not chosen in tiles yet");
+    need(!options.max_error, "cannot come with --max-error yet");
     need(!wants_adaptive(options), "cannot come with an adaptive grid yet");
     need(method_for(options) == Method::extended, "cannot come with --method basic yet");
     need(options.normals != NormalSource::estimate, "cannot come with --normals estimate yet");

@@ -339,6 +339,21 @@ void ScratchCloud::for_groups(std::size_t most, const std::function<void(const O
     }
 }
 
+void ScratchCloud::for_tiles(std::span<const VoxelRange> ranges, int ghost,
+                             const std::function<void(const Octree&, const VoxelRange&)>& visit) {
+    std::vector<Surroundings> own;
+    for (const VoxelRange& range : ranges)
+        if (owner_of(range) == ranks_.rank()) own.push_back({range, ghost});
+    fetch(own);
+    for (const Surroundings& tile : own) {
+        std::vector<PointRow> rows = rows_of(tile.range, ghost);
+        if (rows.empty()) continue;
+        const Octree octree = octree_of(rows);
+        rows = std::vector<PointRow>();
+        visit(octree, tile.range);
+    }
+}
+
 void ScratchCloud::leave_out(std::vector<PointRow> rows) {
     left_out_ = std::move(rows);
     std::ranges::sort(left_out_);

@@ -77,6 +77,10 @@ public:
     std::vector<PointRow> rows_of(const VoxelRange& range, int ghost) const;
     /// visit(octree) of this rank's points, `most` or a cell's at a time, in Morton order.
     void for_groups(std::size_t most, const std::function<void(const Octree&)>& visit) const;
+    /// visit(octree, range) of those of the ranges that are this rank's, with so many voxels around each; of
+    /// ranges that have points. None may be of two ranks. For all ranks at the same time.
+    void for_tiles(std::span<const VoxelRange> ranges, int ghost,
+                   const std::function<void(const Octree&, const VoxelRange&)>& visit);
     /// Leaves points out from now on, as the octrees have them.
     void leave_out(std::vector<PointRow> rows);
     /// As rearrange() of an octree with this box, but in voxels of this depth: all points go to a new file,

@@ -32,6 +32,9 @@ inline constexpr std::size_t bytes_per_point_of_one_piece = 500, bytes_per_point
 /// and no more than 2^18 over the cube.
 int cell_depth_of(int depth);
 
+/// Round a tile that is made again and again.
+inline constexpr int most_ghost_voxels = 256;
+
 struct TilePlanOptions {
     int depth = 0, cell_depth = 0;
     int ghost_voxels = 0;
