@@ -47,3 +47,19 @@ TEST_CASE("clean clouds are seen through 16 neighbours, noisy ones through more"
     CHECK(neighbors_for_noise(noise_of(support::sphere(1), 5000, 0.5 * spacing)) == 32);
     CHECK(neighbors_for_noise(noise_of(support::sphere(1), 5000, 3 * spacing)) == 64);
 }
+
+TEST_CASE("samples of the points tell the deviation that all of them tell", "[normals]") {
+    const double spacing = std::sqrt(4 * std::numbers::pi / 5000);
+    const double sigma = GENERATE(0.0, 0.2, 3.0);
+    const Octree octree = build_octree(support::sample(
+        support::sphere(1), {.points = 5000, .normals = false, .position_noise = sigma * spacing}));
+    const Neighbors all = find_neighbors(octree);
+    std::vector<Index> points;
+    for (std::size_t i = 0; i < octree.size(); i += noise_stride(octree.size()))
+        points.push_back(static_cast<Index>(i));
+    const NeighborOptions options{.finest_level = finest_leaves(count_leaves(octree.codes))};
+    const auto samples = noise_samples(octree, points, find_neighbors_of(octree, points, options));
+    const std::optional<double> told = noise_deviation(samples);
+    CHECK(told.has_value() == (sigma < 1)); // beyond, a thinned cloud tells
+    if (told) CHECK(*told == noise_deviation(octree, all));
+}

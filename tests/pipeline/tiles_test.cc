@@ -213,6 +213,9 @@ TEST_CASE("tiles choose the voxels that one piece chooses", "[pipeline][slow]") 
         cloud.positions.push_back({0.7, 0.5, 0.4});
         cloud.normals.push_back({0, 0, 1});
     }
+    SECTION("by the spacing of noisy points") {
+        cloud = support::sample(support::sphere(1), {.points = 20000, .position_noise = 0.012});
+    }
     SECTION("as asked") {
         options.voxel_size = 0.037;
     }
@@ -288,6 +291,10 @@ TEST_CASE("what tiles cannot tell is refused, with the reason", "[pipeline][slow
     SECTION("normals that contradict each other") {
         for (std::size_t i = 0; i < cloud.normals.size(); i += 3) cloud.normals[i] = -cloud.normals[i];
         CHECK(refusal(cloud, tiles).find("contradict") != std::string::npos);
+    }
+    SECTION("noise that takes smoothing") {
+        cloud = support::sample(support::sphere(1), {.points = 20000, .position_noise = 0.035});
+        CHECK(refusal(cloud, tiles).find("nois") != std::string::npos);
     }
     SECTION("no normals") {
         cloud.normals.clear();

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 
 namespace hsdm {
 namespace {
@@ -33,7 +34,7 @@ struct Leaf {
 };
 
 /// The largest voxels that hold at most leaf_points points (or are as small as voxels get: at most a crowd).
-std::vector<Leaf> find_leaves(const std::vector<MortonCode>& codes) {
+std::vector<Leaf> find_leaves(std::span<const MortonCode> codes) {
     std::vector<Leaf> leaves;
     leaves.reserve(codes.size() / 4 + 1);
     for (std::size_t i = 0, end = 0; i < codes.size(); i = end) {
@@ -50,16 +51,10 @@ std::vector<Leaf> find_leaves(const std::vector<MortonCode>& codes) {
     return leaves;
 }
 
-/// If few leaves are on the deepest level, that level is not worth building: they are searched one level
-/// above, where a voxel holds at most eight of them.
-void spare_deepest_level(std::vector<Leaf>& leaves) {
-    constexpr std::size_t few = 64; // one in so many
-    int deepest = 0;
-    for (const Leaf& leaf : leaves) deepest = std::max(deepest, leaf.level);
-    const auto count = std::count_if(leaves.begin(), leaves.end(),
-                                     [deepest](const Leaf& leaf) { return leaf.level == deepest; });
-    if (deepest == morton_levels || few * static_cast<std::size_t>(count) >= leaves.size()) return;
-    for (Leaf& leaf : leaves) leaf.level = std::min(leaf.level, deepest - 1);
+std::array<std::size_t, morton_levels + 1> count_leaves(const std::vector<Leaf>& leaves) {
+    std::array<std::size_t, morton_levels + 1> counts{};
+    for (const Leaf& leaf : leaves) ++counts[static_cast<std::size_t>(leaf.level)];
+    return counts;
 }
 
 constexpr std::size_t lanes = 4;
@@ -200,10 +195,12 @@ private:
 class Search {
 public:
     /// The neighbours of `points`, or of all if that is null.
-    Search(const Octree& octree, const std::vector<Index>* points, Neighbors& result)
+    Search(const Octree& octree, const std::vector<Index>* points, std::optional<int> finest_level,
+           Neighbors& result)
         : octree_(octree), points_(points), result_(result) {
         std::vector<Leaf> leaves = find_leaves(octree.codes);
-        spare_deepest_level(leaves);
+        const int finest = finest_level ? *finest_level : finest_leaves(count_leaves(leaves));
+        for (Leaf& leaf : leaves) leaf.level = std::min(leaf.level, finest);
         if (points) keep_leaves_of(*points, leaves);
         if (leaves.empty()) return;
         int deepest = 0;
@@ -342,11 +339,26 @@ Neighbors search(const Octree& octree, const std::vector<Index>* points, const N
     const std::size_t size = points ? points->size() : octree.size();
     resize_large(result.index, size * result.count);
     resize_large(result.reach, size);
-    const Search done(octree, points, result);
+    const Search done(octree, points, options.finest_level, result);
     return result;
 }
 
 } // namespace
+
+std::array<std::size_t, morton_levels + 1> count_leaves(std::span<const MortonCode> codes) {
+    return count_leaves(find_leaves(codes));
+}
+
+/// If few leaves are on the deepest level, that level is not worth building: they are searched one level
+/// above, where a voxel holds at most eight of them.
+int finest_leaves(const std::array<std::size_t, morton_levels + 1>& leaves) {
+    constexpr std::size_t few = 64; // one in so many
+    int deepest = morton_levels;
+    while (deepest > 0 && leaves[static_cast<std::size_t>(deepest)] == 0) --deepest;
+    const std::size_t all = std::accumulate(leaves.begin(), leaves.end(), std::size_t{0});
+    if (deepest == morton_levels || few * leaves[static_cast<std::size_t>(deepest)] >= all) return deepest;
+    return deepest - 1;
+}
 
 Neighbors find_neighbors(const Octree& octree, const NeighborOptions& options) {
     return search(octree, nullptr, options);

@@ -4,12 +4,22 @@
 #include "hsdm/normals/constants.hh"
 #include "hsdm/octree/octree.hh"
 
+#include <array>
+#include <optional>
+
 namespace hsdm {
 
 struct NeighborOptions {
     /// neighbours per point, [3, 64]; fewer where the cloud itself is smaller
     int count = neighborhoods::neighbors;
+    /// finest level that points are searched on, if these are part of a larger cloud: finest_leaves() of that
+    std::optional<int> finest_level{};
 };
+
+/// How many leaves of each level the points of these codes, ascending, are taken in.
+std::array<std::size_t, morton_levels + 1> count_leaves(std::span<const MortonCode> codes);
+/// The finest level that so many leaves of each are searched on: few of the finest are searched one above.
+int finest_leaves(const std::array<std::size_t, morton_levels + 1>& leaves);
 
 /// The neighbours of point i are index[i * count] .. index[(i + 1) * count - 1], in no order, without i.
 struct Neighbors {

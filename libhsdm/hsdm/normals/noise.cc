@@ -17,9 +17,8 @@ struct Roughness {
 };
 
 /// Root mean square distance from the plane of the nearest few, for the three parameters that a plane has.
-Roughness roughness(const Octree& octree, const Neighbors& neighbors, std::size_t few, std::size_t i) {
+Roughness roughness(const Octree& octree, std::span<const Index> around, std::size_t few, std::size_t i) {
     std::array<std::pair<double, Index>, 64> nearest;
-    const auto around = neighbors.of(i);
     for (std::size_t k = 0; k < around.size(); ++k)
         nearest[k] = {(octree.positions[around[k]] - octree.positions[i]).sqrnorm(), around[k]};
     const std::size_t count = std::min(few, around.size());
@@ -44,8 +43,7 @@ double lower_third(std::vector<double> values) {
 /// measure(point) of a sample of the points.
 template <class Measure>
 auto sampled(const Octree& octree, const Measure& measure) {
-    constexpr std::size_t samples = 1 << 14;
-    const std::size_t stride = octree.size() / samples + 1;
+    const std::size_t stride = noise_stride(octree.size());
     std::vector<decltype(measure(0))> values((octree.size() + stride - 1) / stride);
     for_each_index(values.size(), chunks::slow, [&](Index r) { values[r] = measure(r * stride); });
     return values;
@@ -62,35 +60,77 @@ Octree thinned(const Octree& octree) {
     return thin;
 }
 
+struct Scale {
+    std::size_t few;
+    /// most that counts as small against the reach: then that is about five deviations; where all is
+    /// noise it is 0.23 and 0.30
+    double small;
+    double deviation; ///< of a normal distribution whose distances have this lower third
+};
+std::array<Scale, 2> scales() {
+    return {Scale{noise::nearest, noise::small, 1.3}, Scale{noise::more_nearest, noise::small_of_more, 1.13}};
+}
+
+/// What the points of a sample say at a scale.
+struct ScaleNoise {
+    double deviation;
+    bool is_small; ///< against the reach
+};
+ScaleNoise noise_at(const Scale& scale, const std::vector<Roughness>& sample) {
+    std::vector<double> distances, relative; // to the reach
+    for (const Roughness& r : sample) {
+        distances.push_back(r.distance);
+        relative.push_back(r.reach > 0 ? r.distance / r.reach : 0);
+    }
+    return {scale.deviation * lower_third(std::move(distances)),
+            lower_third(std::move(relative)) < scale.small};
+}
+
 } // namespace
+
+std::size_t noise_stride(std::size_t points) {
+    constexpr std::size_t samples = 1 << 14;
+    return points / samples + 1;
+}
+
+std::vector<NoiseSample> noise_samples(const Octree& octree, std::span<const Index> points,
+                                       const Neighbors& neighbors) {
+    std::vector<NoiseSample> samples(points.size());
+    for_each_index(points.size(), chunks::slow, [&](Index k) {
+        for (std::size_t s = 0; s < scales().size(); ++s) {
+            const Roughness found = roughness(octree, neighbors.of(k), scales()[s].few, points[k]);
+            samples[k].distance[s] = found.distance, samples[k].reach[s] = found.reach;
+        }
+    });
+    return samples;
+}
+
+std::optional<double> noise_deviation(std::span<const NoiseSample> samples) {
+    for (std::size_t s = 0; s < scales().size(); ++s) {
+        std::vector<Roughness> sample;
+        for (const NoiseSample& of_point : samples)
+            sample.push_back({of_point.distance[s], of_point.reach[s]});
+        if (const ScaleNoise found = noise_at(scales()[s], sample); found.is_small) return found.deviation;
+    }
+    return std::nullopt;
+}
 
 double estimate_noise(const Octree& octree, const Neighbors& neighbors) {
     return lower_third(sampled(octree, [&](std::size_t i) {
         return neighbors.reach[i] > 0
-                   ? roughness(octree, neighbors, noise::nearest, i).distance / neighbors.reach[i]
+                   ? roughness(octree, neighbors.of(i), noise::nearest, i).distance / neighbors.reach[i]
                    : 0;
     }));
 }
 
 double noise_deviation(const Octree& octree, const Neighbors& neighbors) {
-    struct Scale {
-        std::size_t few;
-        /// most that counts as small against the reach: then that is about five deviations; where all is
-        /// noise it is 0.23 and 0.30
-        double small;
-        double deviation; ///< of a normal distribution whose distances have this lower third
-    };
     double deviation = 0;
-    for (const Scale& scale :
-         {Scale{noise::nearest, noise::small, 1.3}, Scale{noise::more_nearest, noise::small_of_more, 1.13}}) {
-        std::vector<double> distances, relative; // to the reach
-        for (const Roughness& r :
-             sampled(octree, [&](std::size_t i) { return roughness(octree, neighbors, scale.few, i); })) {
-            distances.push_back(r.distance);
-            relative.push_back(r.reach > 0 ? r.distance / r.reach : 0);
-        }
-        deviation = scale.deviation * lower_third(std::move(distances));
-        if (lower_third(std::move(relative)) < scale.small) return deviation;
+    for (const Scale& scale : scales()) {
+        const ScaleNoise found = noise_at(scale, sampled(octree, [&](std::size_t i) {
+                                              return roughness(octree, neighbors.of(i), scale.few, i);
+                                          }));
+        deviation = found.deviation;
+        if (found.is_small) return deviation;
     }
     if (octree.size() < 4 * noise::fewest) return deviation; // the next round uses a quarter of them
     const Octree thin = thinned(octree);

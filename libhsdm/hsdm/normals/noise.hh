@@ -3,6 +3,10 @@
 
 #include "hsdm/normals/neighbors.hh"
 
+#include <array>
+#include <optional>
+#include <span>
+
 namespace hsdm {
 
 /// Typical distance of a point from the plane of its six nearest neighbours, over the neighbourhood's reach:
@@ -16,6 +20,18 @@ double estimate_noise(const Octree& octree, const Neighbors& neighbors);
 /// is small against the reach. So it is found however many spacings it is, and no scale is looked at that is
 /// wider than needed: the sides of a plate or a slit stay apart. O(n).
 double noise_deviation(const Octree& octree, const Neighbors& neighbors);
+
+/// The same of a cloud that is not in memory: of every so-manieth of its points in octree order.
+std::size_t noise_stride(std::size_t points);
+struct NoiseSample {
+    /// The distance from the plane of the 6 and of the 12 nearest, and how far the farthest of these is.
+    std::array<double, 2> distance{}, reach{};
+};
+/// `neighbors`: of these points alone.
+std::vector<NoiseSample> noise_samples(const Octree& octree, std::span<const Index> points,
+                                       const Neighbors& neighbors);
+/// From the samples in any order; nothing where no scale is found without thinning the cloud.
+std::optional<double> noise_deviation(std::span<const NoiseSample> samples);
 
 /// Neighbours per point that such noise, measured with 16 of them, calls for: 16, 32 or 64.
 int neighbors_for_noise(double noise);

@@ -141,7 +141,8 @@ SparseLevel sparse_level(std::size_t points, const std::array<std::size_t, morto
 }
 
 std::vector<std::uint8_t> strays_by_normals(const Octree& octree, const SparseLevel& level,
-                                            const NormalOutlierOptions& options, std::vector<double>* reach) {
+                                            const NormalOutlierOptions& options, std::vector<double>* reach,
+                                            std::optional<int> finest_level) {
     const std::vector<Index> first = first_points(octree, level.depth);
     const auto most = static_cast<Index>(std::max(1.0, options.most_share * level.typical));
     std::vector<Index> sparse;
@@ -150,7 +151,8 @@ std::vector<std::uint8_t> strays_by_normals(const Octree& octree, const SparseLe
         if (first[v + 1] - first[v] <= most)
             for (Index i = first[v]; i < first[v + 1]; ++i) sparse.push_back(i), is_sparse[i] = 1;
     });
-    const Neighbors neighbors = find_neighbors_of(octree, sparse, {.count = options.neighbors});
+    const Neighbors neighbors =
+        find_neighbors_of(octree, sparse, {.count = options.neighbors, .finest_level = finest_level});
     const double farthest = options.most_distance * octree.voxel_size(level.depth);
     std::vector<std::uint8_t> stray = large_vector<std::uint8_t>(octree.size(), 0);
     if (reach) assign_large(*reach, octree.size(), 0);

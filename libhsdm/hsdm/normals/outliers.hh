@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace hsdm {
@@ -68,10 +69,12 @@ SparseLevel sparse_level(std::size_t points, const std::array<std::size_t, morto
                          const std::function<double(int)>& squares_at, double points_per_voxel);
 
 /// Per point, 1 if it is one of those that the next function removes; `reach`, unless it is null, becomes per
-/// such point or one that was asked about the distance of the farthest neighbour, else 0.
+/// such point or one that was asked about the distance of the farthest neighbour, else 0. `finest_level`: as
+/// in NeighborOptions.
 std::vector<std::uint8_t> strays_by_normals(const Octree& octree, const SparseLevel& level,
                                             const NormalOutlierOptions& options = {},
-                                            std::vector<double>* reach = nullptr);
+                                            std::vector<double>* reach = nullptr,
+                                            std::optional<int> finest_level = {});
 
 /// The same if normals are known: removes those points in sparse voxels that too few neighbours agree with.
 /// O(n), parallel; little more than one pass over the points if hardly any voxel is sparse. Throws

@@ -39,9 +39,13 @@ void check_survey(const CloudSurvey& survey, const ScratchCloud& cloud) {
         refuse_in_tiles("some points, or parts, are far from all others");
     if (are_scattered(sums.normals(), sums.points()))
         refuse_in_tiles("normals are noisy, and may have to be told by the positions");
-    const NormalConsistency normals = check_normals(sums.normals(), sums.points(), survey.spacing);
-    if (normals.doubtful()) refuse_in_tiles("normals contradict each other and must be turned to one side");
-    if (normals.rough()) refuse_in_tiles("normals contradict positions, as those of noisy points do");
+    if (check_normals(sums.normals(), sums.points(), survey.spacing).doubtful())
+        refuse_in_tiles("normals contradict each other and must be turned to one side");
+}
+
+bool is_rough(const CloudSurvey& survey) {
+    const Survey& sums = survey.sums;
+    return check_normals(sums.normals(), sums.points(), survey.spacing).rough();
 }
 
 } // namespace hsdm

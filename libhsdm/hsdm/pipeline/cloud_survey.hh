@@ -18,4 +18,7 @@ CloudSurvey survey_cloud(const ScratchCloud& cloud, std::size_t expected, std::s
 /// Throws Error for a cloud of which PreparedCloud would move, turn or drop points by what all of them are.
 void check_survey(const CloudSurvey& survey, const ScratchCloud& cloud);
 
+/// Is the noise perhaps not small against the spacing?
+bool is_rough(const CloudSurvey& survey);
+
 } // namespace hsdm

@@ -5,6 +5,8 @@
 #include "hsdm/errors.hh"
 #include "hsdm/pipeline/choose_resolution.hh"
 #include "hsdm/pipeline/cloud_distance.hh"
+#include "hsdm/pipeline/cloud_noise.hh"
+#include "hsdm/pipeline/constants.hh"
 #include "hsdm/pipeline/gather_pieces.hh"
 #include "hsdm/pipeline/make_tiles.hh"
 #include "hsdm/pipeline/narrow_cylinders.hh"
@@ -167,15 +169,18 @@ private:
     /// Where no depth is given voxels follow from the points without outliers, which move to their cube.
     void choose_resolution(std::size_t group) {
         const int ghost = tiles_.ghost_voxels;
-        if (!options_.depth)
+        const double noise = is_rough(*survey_) ? cloud_noise(*cloud_, *survey_, plan(group), ghost) : 0;
+        if (!options_.depth || noise > 0)
             known_.outliers = drop_strays(*cloud_, *survey_, plan(group), ghost, group).outliers;
         report_.input.spacing = survey_->spacing;
         const auto rearrange = [&](const VoxelCube& cube) {
             cloud_->rearrange(cloud_->bounds(), cube.extent, cube.depth, group);
         };
         const auto is_narrow = [&](int) { return has_narrow_cylinders(*cloud_, plan(group), ghost); };
-        hsdm::choose_resolution(options_, {cloud_->no_points(), cloud_->frame(), 0, rearrange, is_narrow},
+        hsdm::choose_resolution(options_, {cloud_->no_points(), cloud_->frame(), noise, rearrange, is_narrow},
                                 report_);
+        if (noise > resolution::harmless_noise * cloud_->voxel_size())
+            refuse_in_tiles("points are noisy, and would be moved onto their surface");
         if (!options_.depth) // the spacing stays that of the cube before
             survey_->sums = survey_cloud(*cloud_, survey_->sums.points(), group).sums;
     }

@@ -1,7 +1,6 @@
 #include "hsdm/pipeline/stray_search.hh"
 
 #include "hsdm/core/large_vector.hh"
-#include "hsdm/pipeline/tile_plan.hh"
 
 #include <algorithm>
 #include <utility>
@@ -10,10 +9,6 @@ namespace hsdm {
 namespace {
 
 constexpr std::size_t most_strays = std::size_t{1} << 20; // that are kept in memory
-
-void refuse_many() {
-    refuse_in_tiles("many points are off every surface");
-}
 
 /// The cloud in the cube of what is left of it, as fit_to_points() has it. Does that differ?
 bool fit_to_points_left(ScratchCloud& cloud, std::size_t most) {
@@ -26,46 +21,23 @@ bool fit_to_points_left(ScratchCloud& cloud, std::size_t most) {
 } // namespace
 
 StraySearch::StraySearch(const ScratchCloud& cloud, const CloudSurvey& survey)
-    : cloud_(cloud), sparse_(survey.sums.sparse()) {}
+    : CellPass(cloud), sparse_(survey.sums.sparse()), finest_(survey.sums.finest_leaves()) {}
 
-void StraySearch::add(const Octree& octree, const VoxelRange& range, int ghost) {
+std::vector<double> StraySearch::look(const Octree& octree, const VoxelRange&) {
     std::vector<double> reach;
-    const std::vector<std::uint8_t> strays = strays_by_normals(octree, sparse_, {}, &reach);
-    const double seen = ghost * cloud_.voxel_size();
-    const auto cell_of = [&](std::size_t i) {
-        return octree.codes[i] >> 3 * (morton_levels - cloud_.cell_depth());
-    };
-    const int to_level = 3 * (cloud_.depth() - cloud_.cell_depth());
-    widest_ = std::max(widest_, ghost);
-    for (std::size_t begin = 0, end; begin < octree.size(); begin = end) {
-        bool is_far = false;
-        for (end = begin; end < octree.size() && cell_of(end) == cell_of(begin); ++end)
-            is_far = is_far || reach[end] > seen;
-        if (!range.holds(cell_of(begin) << to_level)) continue;
-        if (is_far) far_cells_.push_back(cell_of(begin));
-        for (std::size_t i = begin; i < end && !is_far; ++i)
-            if (strays[i]) strays_.push_back(ScratchCloud::row_at(octree, i));
-        if (std::max(strays_.size(), far_cells_.size()) > most_strays) refuse_many();
-    }
+    found_ = strays_by_normals(octree, sparse_, {}, &reach, finest_);
+    return reach;
 }
 
-/// Around cells that were put off, twice as far each time.
-void StraySearch::look_farther(ScratchCloud& cloud) {
-    const int to_level = 3 * (cloud.depth() - cloud.cell_depth());
-    std::vector<std::uint64_t> ghosts = cloud.ranks().gather(static_cast<std::uint64_t>(widest_));
-    for (int ghost = static_cast<int>(std::ranges::max(ghosts)); cloud.ranks().any(!far_cells_.empty());) {
-        if ((ghost *= 2) > most_ghost_voxels) refuse_in_tiles("some points are far from all others");
-        std::vector<VoxelRange> cells;
-        for (const MortonCode cell : std::exchange(far_cells_, {}))
-            cells.push_back({cell << to_level, (cell + 1) << to_level, cloud.depth(), to_level / 3});
-        cloud.for_tiles(cells, ghost,
-                        [&](const Octree& octree, const VoxelRange& cell) { add(octree, cell, ghost); });
-    }
+void StraySearch::take(const Octree& octree, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+        if (found_[i]) strays_.push_back(ScratchCloud::row_at(octree, i));
+    if (strays_.size() > most_strays) refuse_many();
 }
 
 StraySearch::Result StraySearch::leave_out(ScratchCloud& cloud, CloudSurvey& survey, std::size_t most) {
     Ranks& ranks = cloud.ranks();
-    look_farther(cloud);
+    add_far_cells(cloud);
     if (ranks.sum(strays_.size()) > most_strays) refuse_many();
     std::vector<PointRow> all;
     for (const Ranks::Bytes& got : ranks.gather(bytes_of(strays_)))

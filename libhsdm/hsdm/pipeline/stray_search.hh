@@ -1,20 +1,17 @@
 #pragma once
 // Outliers of a cloud on disk that has normals, as drop_outliers_by_normals() finds them in memory.
 
+#include "hsdm/pipeline/cell_pass.hh"
 #include "hsdm/pipeline/cloud_survey.hh"
 
 namespace hsdm {
 
 /// Looks through tiles for points that are of no surface.
-class StraySearch {
+class StraySearch final : public CellPass {
 public:
-    /// The cloud must outlive it.
     StraySearch(const ScratchCloud& cloud, const CloudSurvey& survey);
 
-    /// Looks at a range's points; `octree` knows those of it and of so many voxels around. Cells with points
-    /// whose neighbours may lie farther off are put off.
-    void add(const Octree& octree, const VoxelRange& range, int ghost);
-    bool found_here() const { return !strays_.empty() || !far_cells_.empty(); } ///< perhaps, by this rank
+    bool may_have_found() const { return !strays_.empty() || has_far_cells(); } ///< here
 
     struct Result {
         Occurrences outliers; ///< of all ranks; the first in the cloud's coordinates
@@ -26,12 +23,12 @@ public:
     Result leave_out(ScratchCloud& cloud, CloudSurvey& survey, std::size_t most);
 
 private:
-    void look_farther(ScratchCloud& cloud);
+    std::vector<double> look(const Octree& octree, const VoxelRange& range) override;
+    void take(const Octree& octree, std::size_t begin, std::size_t end) override;
 
-    const ScratchCloud& cloud_;
     SparseLevel sparse_;
-    int widest_ = 0; // so many voxels have been looked at around cells that were put off
-    std::vector<MortonCode> far_cells_;
+    int finest_;                      // level of leaves
+    std::vector<std::uint8_t> found_; // of the points that were looked at last
     std::vector<PointRow> strays_;
 };
 

@@ -4,6 +4,7 @@
 #include "hsdm/core/large_vector.hh"
 
 #include <algorithm>
+#include <numeric>
 
 namespace hsdm {
 
@@ -20,6 +21,9 @@ void Survey::add(const Octree& part) {
     const VoxelCounts counts = count_places(part);
     for (std::size_t level = 0; level <= morton_levels; ++level) deep_.voxels[level] += counts.voxels[level];
     deep_.places += counts.places;
+    const auto leaves = count_leaves(part.codes); // those of cells' size or larger are not of the part alone
+    for (auto level = static_cast<std::size_t>(cell_depth_) + 1; level < leaves.size(); ++level)
+        leaves_[level] += leaves[level];
     count_squares(part);
     sample(part);
     const OctreeLevel level = extract_level(part, depth_);
@@ -86,6 +90,49 @@ double Survey::squares_at(int level) const {
     return squares + run * run;
 }
 
+/// Leaves as large as a cell or larger: the largest voxels that hold few enough points.
+std::size_t Survey::coarse_leaves() const {
+    const auto most = static_cast<double>(neighborhoods::leaf_points);
+    std::size_t leaves = 0;
+    for (std::size_t begin = 0, end; begin < cells_.size(); begin = end) {
+        end = begin + 1;
+        if (cells_[begin].points > most) continue; // its leaves are within
+        ++leaves;
+        for (int level = cell_depth_; level-- > 0;) {
+            const auto is_apart = [&](std::size_t c) {
+                return is_split(cells_[std::min(c, begin)].code, cells_[std::max(c, begin)].code, level);
+            };
+            if (begin > 0 && !is_apart(begin - 1)) break; // more came before than the leaf may hold
+            double points = 0;
+            std::size_t last = begin;
+            while (last < cells_.size() && points <= most && !is_apart(last)) points += cells_[last++].points;
+            if (points > most) break;
+            end = last;
+        }
+    }
+    return leaves;
+}
+
+std::size_t Survey::leaves() const {
+    return std::accumulate(leaves_.begin(), leaves_.end(), coarse_leaves());
+}
+
+int Survey::finest_leaves() const {
+    auto leaves = leaves_;
+    leaves[static_cast<std::size_t>(cell_depth_)] += coarse_leaves();
+    return hsdm::finest_leaves(leaves);
+}
+
+std::vector<Survey::FirstPoint> Survey::first_points() const {
+    std::vector<FirstPoint> first;
+    std::size_t before = 0;
+    for (const Cell& cell : cells_) {
+        first.push_back({cell.code, before});
+        before += static_cast<std::size_t>(cell.points);
+    }
+    return first;
+}
+
 SparseLevel Survey::sparse() const {
     return sparse_level(
         points_, counts().voxels, [&](int level) { return squares_at(level); },
@@ -98,6 +145,7 @@ void Survey::join(Ranks& ranks) {
     put(points_, own);
     put(deep_, own);
     put(squares_, own);
+    put(leaves_, own);
     put(sets_, own);
     put_vector(cells_, own);
     put_vector(normals_.number, own);
@@ -116,10 +164,12 @@ void Survey::add_next(ByteReader& rank) {
     points_ += rank.take<std::size_t>();
     const auto deep = rank.take<VoxelCounts>();
     const auto squares = rank.take<std::array<double, morton_levels + 1>>();
+    const auto leaves = rank.take<std::array<std::size_t, morton_levels + 1>>();
     const auto sets = rank.take<SetSizes>();
     for (std::size_t level = 0; level <= morton_levels; ++level) {
         deep_.voxels[level] += deep.voxels[level];
         squares_[level] += squares[level];
+        leaves_[level] += leaves[level];
     }
     deep_.places += deep.places;
     sets_.points += sets.points, sets_.squares += sets.squares;

@@ -5,6 +5,7 @@
 #include "hsdm/contour/outlier_sets.hh"
 #include "hsdm/core/ranks.hh"
 #include "hsdm/normals/mend_normals.hh"
+#include "hsdm/normals/neighbors.hh"
 #include "hsdm/normals/outliers.hh"
 #include "hsdm/octree/spacing.hh"
 
@@ -29,6 +30,14 @@ public:
     VoxelCounts counts() const;
     SparseLevel sparse() const;
     SetSizes set_sizes() const { return sets_; }
+    std::size_t leaves() const; ///< that neighbours are sought by, as count_leaves()
+    int finest_leaves() const;  ///< as in NeighborOptions
+    /// The number in the whole of a cell's first point.
+    struct FirstPoint {
+        MortonCode cell;
+        std::size_t number;
+    };
+    std::vector<FirstPoint> first_points() const; ///< of cells that have some, ascending
     const NormalSample& normals() const { return normals_; }
     /// Every so-manieth point's position in the cloud, less that of the cube.
     const std::vector<Vec3>& places() const { return places_; }
@@ -43,14 +52,16 @@ private:
     void count_squares(const Octree& part);
     void sample(const Octree& part);
     bool is_split(MortonCode cell, MortonCode next, int level) const;
+    std::size_t coarse_leaves() const;
     double squares_at(int level) const;
     void add_next(ByteReader& rank);
 
     int depth_, cell_depth_;
     std::size_t expected_, before_, points_ = 0;
-    VoxelCounts deep_;                                // from the cells' level on
-    std::array<double, morton_levels + 1> squares_{}; // the same: whole numbers
-    std::vector<Cell> cells_;                         // what is above follows from
+    VoxelCounts deep_;                                    // from the cells' level on
+    std::array<double, morton_levels + 1> squares_{};     // the same: whole numbers
+    std::array<std::size_t, morton_levels + 1> leaves_{}; // within cells
+    std::vector<Cell> cells_;                             // what is above follows from
     SetSizes sets_;
     NormalSample normals_;
     std::vector<Vec3> places_;
