@@ -264,12 +264,19 @@ TEST_CASE("what is small beside the largest part is judged by all tiles together
         cloud.positions.push_back({random.uniform(-0.16, 0.16), random.uniform(-0.16, 0.16), 0.4});
         cloud.normals.push_back({0, 0, 1});
     }
-    const ReconstructOptions options{.depth = 4};
+    ReconstructOptions options{.depth = 4};
     const Reconstruction whole = reconstruct(cloud, options);
     CHECK(whole.report.mesh.components == 2);
     TileReport how;
     check_same_as_whole(whole, reconstruct_in_tiles(view_of(cloud), options, tiles_of(12000), &how));
     CHECK(how.tiles > 1);
+    options.min_component = MinComponent{100};
+    const Reconstruction large = reconstruct(cloud, options);
+    CHECK(large.report.mesh.components == 1);
+    const Reconstruction tiles = reconstruct_in_tiles(view_of(cloud), options, tiles_of(12000));
+    check_same_as_whole(large, tiles);
+    CHECK(tiles.report.rejected.at("components_small") == 1);
+    CHECK(tiles.report.error.points_to_mesh_max > whole.report.error.points_to_mesh_max);
 }
 
 TEST_CASE("facets that pass through each other are parted by all tiles together", "[pipeline][slow]") {

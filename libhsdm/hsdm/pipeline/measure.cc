@@ -107,9 +107,19 @@ std::vector<Vec3> points_as_read(const PointView& cloud, const CloudFrame& frame
     return points;
 }
 
+std::size_t drop_small_components(const MethodInput& in, PolygonMesh& facets, FeatureHints& hints,
+                                  Report& report) {
+    const auto [value, of_largest] = *in.options.min_component;
+    SmallComponents small =
+        drop_small_components(facets, hints, {of_largest ? 0 : value, of_largest ? value : 0});
+    note_small_components(small, report);
+    small.facets.first += in.octree.origin;
+    note_dropped("facets of components smaller than asked for", small.facets, in.frame, report);
+    return small.components;
+}
+
 void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, PolygonMesh& facets,
                       FacetKnowledge& known, Report& report) {
-    const Octree& octree = in.octree; // no structured bindings: clang 14 cannot capture them
     const ReconstructOptions& options = in.options;
     const double enough = options.measure ? 0 : report.grid.max_error;
     bool measured = report.grid.max_error > 0 || (options.measure && options.min_component);
@@ -117,13 +127,7 @@ void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, Polyg
     if (measured) off = measure_error(points, in, facets, known, enough, report);
     check_error_kept(report, in.frame.unit());
     if (options.min_component) {
-        const auto [value, of_largest] = *options.min_component;
-        SmallComponents small =
-            drop_small_components(facets, known.hints, {of_largest ? 0 : value, of_largest ? value : 0});
-        note_small_components(small, report);
-        small.facets.first += octree.origin;
-        note_dropped("facets of components smaller than asked for", small.facets, in.frame, report);
-        if (small.components > 0) {
+        if (drop_small_components(in, facets, known.hints, report) > 0) {
             known.links.reset();
             known.cells.reset();
             measured = false;

@@ -11,6 +11,11 @@ namespace hsdm {
 /// The octree's points at the positions that they have in the cloud, relative to its origin.
 std::vector<Vec3> points_as_read(const PointView& cloud, const CloudFrame& frame, const Octree& octree);
 
+/// Leaves out the components that options.min_component, which must be given, has for too small, and notes
+/// them. Returns how many.
+std::size_t drop_small_components(const MethodInput& in, PolygonMesh& facets, FeatureHints& hints,
+                                  Report& report);
+
 /// Drops small components if asked to, and measures the rest. An error bound is checked before, because it
 /// covers the points of dropped components too.
 void drop_and_measure(std::span<const Vec3> points, const MethodInput& in, PolygonMesh& facets,

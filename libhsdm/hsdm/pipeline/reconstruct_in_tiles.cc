@@ -157,8 +157,11 @@ public:
         decltype(finish(in, std::move(facets_), std::move(report_))) result;
         if (ranks_.is_first())
             result = finish(in, std::move(facets_), std::move(report_));
-        else if (options_.measure)
+        else if (options_.measure) {
             assist_cloud_distance(*cloud_, in.group_points);
+            if (options_.min_component && ranks_.of_first(false)) // small components are out now
+                assist_cloud_distance(*cloud_, in.group_points);
+        }
         how_.ranks = work_.of_all(*cloud_, how_.own_tiles);
         how = how_;
         result.report.seconds.total = std::chrono::duration<double>(Clock::now() - start_).count();
@@ -265,7 +268,6 @@ void check_options(const ReconstructOptions& options, const TileOptions& tiles) 
     need(options.holes == Holes::automatic || options.holes == Holes::keep,
          "can only come with --holes auto and keep yet");
     need(!options.merge_layers, "cannot come with --merge-layers yet");
-    need(!options.min_component, "cannot come with --min-component yet");
     need(!wants_confidence(options), "cannot come with --confidence and --trim yet");
     need(options.debug_dir.empty(), "cannot come with --debug-dir yet");
     need(tiles.ghost_voxels >= 4, "needs a ghost layer of four voxels or more");

@@ -39,14 +39,33 @@ void check_whole(const WholeInput& in, const MethodInput& method, const PolygonM
         refuse_in_tiles("a slit has to be closed (--holes keep would leave it)");
 }
 
-/// Distances of points, group by group.
-void measure_error(const WholeInput& in, const PolygonMesh& facets, Report& report) {
+/// Distances of points, group by group. Returns the points that the mesh leaves out.
+Occurrences measure_error(const WholeInput& in, const PolygonMesh& facets, Report& report) {
     Occurrences off;
     const Distance distance = cloud_distance(in.cloud, facets, in.group_points, off);
     report.error.points_to_mesh_max = distance.max;
     report.error.points_to_mesh_mean = distance.mean;
     report.error.points_to_mesh_rms = distance.rms;
     report.error.normalised_max = distance.max / in.cloud.bounds().diagonal();
+    return off;
+}
+
+/// As drop_and_measure(); `relinked` is called where facets are left out.
+void drop_small_and_measure(const WholeInput& in, const MethodInput& method, PolygonMesh& facets,
+                            FeatureHints& hints, Report& report, const std::function<void()>& relinked,
+                            const std::function<void()>& note_connectivity) {
+    const bool measure = in.options.measure, drop = in.options.min_component.has_value();
+    Occurrences off; // of all components; those to be dropped are reported separately
+    bool measured = drop && measure;
+    if (measured) off = measure_error(in, facets, report);
+    if (drop && drop_small_components(method, facets, hints, report) > 0) measured = false, relinked();
+    if (!measure) return;
+    if (drop) in.cloud.ranks().of_first(!measured); // those that assist wait for it
+    note_connectivity();
+    if (!measured) {
+        const Occurrences left_out = measure_error(in, facets, report);
+        if (!drop) off = left_out;
+    }
     note_dropped("points more than a voxel's diagonal off the mesh", off, in.cloud.frame(), report);
 }
 
@@ -75,10 +94,14 @@ public:
         });
         os::give_back_freed_memory();
         in_.phases.run("error", 0.6, seconds.error, [&] {
-            if (in_.options.measure) note_connectivity();
-            keep_to_manifold();
-            os::give_back_freed_memory();
-            if (in_.options.measure) measure_error(in_, mesh(), report_);
+            drop_small_and_measure(
+                in_, method_, mesh(), hints_, report_, [&] { links() = link_facets(mesh()); },
+                [&] {
+                    note_connectivity();
+                    keep_to_manifold();
+                    os::give_back_freed_memory();
+                });
+            if (!in_.options.measure) keep_to_manifold();
         });
         os::give_back_freed_memory();
         in_.phases.run("mesh", 0.85, seconds.mesh, [&] { face_outward(); });
@@ -177,9 +200,9 @@ Reconstruction finish_whole(const WholeInput& in, WholeFacets&& facets, Report&&
     Reconstruction result;
     finish_mesh(method, std::move(facets.mesh), std::move(facets.known), std::move(report), result,
                 [&](PolygonMesh& mesh, FacetKnowledge& known, Report& of) {
-                    if (!in.options.measure) return;
-                    note_topology(mesh, known.links, of);
-                    measure_error(in, mesh, of);
+                    drop_small_and_measure(
+                        in, method, mesh, known.hints, of, [&] { known.links.reset(); },
+                        [&] { note_topology(mesh, known.links, of); });
                 });
     return result;
 }
