@@ -73,10 +73,12 @@ const std::vector<Shape> walls_and_gaps = {
     {"layers", layers, 3.4, 2, 4},
 };
 
-bool is_right(const Shape& shape, double width, std::uint64_t pose, NormalSource normals) {
+bool is_right(const Shape& shape, double width, std::uint64_t pose, NormalSource normals, double noise = 0) {
     const Solid solid = shape.of_width(width * voxel).placed(support::random_pose(pose));
-    const PointCloud cloud = support::sample(
-        solid, {.points = static_cast<std::size_t>(per_voxel * shape.area / (voxel * voxel)), .seed = pose});
+    const PointCloud cloud =
+        support::sample(solid, {.points = static_cast<std::size_t>(per_voxel * shape.area / (voxel * voxel)),
+                                .seed = pose,
+                                .position_noise = noise * voxel});
     try {
         const Report r = reconstruct(cloud, {.voxel_size = voxel, .normals = normals}).report;
         return r.mesh.closed && r.mesh.components == shape.components && r.mesh.euler == shape.euler
@@ -113,6 +115,30 @@ std::vector<double> print_table(NormalSource normals, const std::vector<double>&
     return percents;
 }
 
+/// Prints a row for each width: percent of all shapes, by how many deviations of the noise that is. Normals
+/// are estimated.
+void print_noise(const std::vector<double>& widths, const std::vector<double>& deviations,
+                 std::uint64_t poses) {
+    std::printf("| spacings |");
+    for (const double d : deviations) std::printf(" %g |", d);
+    std::printf("\n|---|");
+    for (std::size_t i = 0; i < deviations.size(); ++i) std::printf("---|");
+    std::printf("\n");
+    for (const double width : widths) {
+        std::printf("| %.1f |", width * std::sqrt(per_voxel));
+        for (const double d : deviations) {
+            std::uint64_t right = 0;
+            for (const Shape& shape : walls_and_gaps)
+                for (std::uint64_t pose = 1; pose <= poses; ++pose)
+                    right += is_right(shape, width, pose, NormalSource::estimate, width / d);
+            std::printf(" %.0f |", 100.0 * static_cast<double>(right)
+                                       / static_cast<double>(poses * walls_and_gaps.size()));
+            std::fflush(stdout);
+        }
+        std::printf("\n");
+    }
+}
+
 /// Percentages over the width, and where the width is a spacing of the points.
 bench::Plot plot_of(const std::vector<double>& widths) {
     const auto [least, most] = std::ranges::minmax(widths);
@@ -137,11 +163,17 @@ int bench::walls(int argc, char** argv) {
         "Percent of meshes with the topology of the shape, and without intersections, by width in voxels.");
     std::uint64_t poses = 20;
     std::string plot_file;
-    std::vector<double> widths{0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1, 1.4, 2};
+    std::vector<double> widths{0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1, 1.4, 2}, deviations;
     app.add_option("--poses", poses, "of each shape and width");
     app.add_option("--widths", widths, "in voxels; a spacing is 0.35");
     app.add_option("--plot", plot_file, "an SVG file: what is right of all shapes, by width");
+    app.add_option("--deviations", deviations,
+                   "noise instead: widths in its deviations; percent of all shapes");
     CLI11_PARSE(app, argc, argv);
+    if (!deviations.empty()) {
+        print_noise(widths, deviations, poses);
+        return 0;
+    }
     Plot plot = plot_of(widths);
     std::printf("Normals given:\n\n");
     add_line(widths, print_table(NormalSource::given, widths, poses), "normals given", plot);

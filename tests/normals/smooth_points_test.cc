@@ -100,6 +100,30 @@ TEST_CASE("the noisy sides of a plate stay two", "[normals][slow]") {
     }
 }
 
+TEST_CASE("no points stay between the sides of a wall that is as thick as their surroundings are wide",
+          "[normals]") {
+    const double step = std::sqrt(2.0 / points);
+    for (const double noise : {0.5, 0.8})
+        for (const std::uint64_t seed : {1u, 2u}) {
+            const double sigma = noise * step, thickness = 8 * sigma;
+            const support::Pose pose = support::random_pose(seed);
+            const Solid plate = support::box(Vec3(1, 1, thickness)).placed(pose);
+            const Solid middle = support::box(Vec3(0.8, 0.8, 1)).placed(pose); // without the rims
+            const Smoothed s =
+                smoothed(support::sample(plate, {.points = points, .seed = seed, .position_noise = sigma}));
+            CHECK(s.report.noise > 0);
+            double between = 0, inner = 0;
+            for (const Vec3& p : s.octree.positions) {
+                const Vec3 at = p + s.octree.origin;
+                if (!middle.contains(at)) continue;
+                ++inner;
+                between += plate.distance(at) < -0.25 * thickness;
+            }
+            INFO(noise << " spacings of noise, pose " << seed << ": " << between << " of " << inner);
+            CHECK(between < 0.01 * inner);
+        }
+}
+
 TEST_CASE("points between the sides of a wall four deviations thick come to lie on either",
           "[normals][slow]") {
     constexpr std::size_t many = 3 * points;

@@ -122,7 +122,7 @@ public:
     MovedPoints onto_planes(const std::vector<Vec3>& positions, std::vector<Vec3> normals = {}) const {
         const Surroundings surroundings = around(positions);
         const std::vector<VoxelSums> sums = sums_of(surroundings);
-        normals.resize(positions.size(), Vec3(0, 0, 0));
+        if (normals.empty()) normals = first_normals(surroundings, sums, positions.size());
         MovedPoints moved{std::vector<Vec3>(positions.size()), std::move(normals)};
         surroundings.for_each_point([&](const Vec3& p, Index i, const std::vector<Index>& around) {
             moved.positions[i] = project(p, sums, around, moved.normals[i]) + surroundings.origin();
@@ -177,6 +177,57 @@ private:
         return sums;
     }
 
+    /// All points around: those of a wall as thick as they are far spread lie as much across it as along it,
+    /// so that the plane of a point midway stands across the wall. But most points are not midway. Each
+    /// voxel's normal is that of a disc in the plane of most around: of the discs' moments, weighted by how
+    /// flat each plane is (tensor voting: Medioni, Lee, Tang 2000).
+    std::vector<Vec3> first_normals(const Surroundings& surroundings, const std::vector<VoxelSums>& sums,
+                                    std::size_t points) const {
+        std::vector<PlaneSums> discs(sums.size());
+        surroundings.for_each_voxel([&](Index v, const std::vector<Index>& around) {
+            discs[v] = disc(plane_sums(sums[v].mean, sums, around), sums[v].count);
+        });
+        std::vector<Vec3> normals(points);
+        surroundings.for_each_voxel([&](Index v, const std::vector<Index>& around) {
+            PlaneSums moments;
+            for (const Index k : around) {
+                const double weight = closeness((sums[k].mean - sums[v].mean).norm(), inverse_radius_);
+                moments.weight += weight * discs[k].weight;
+                for (std::size_t c = 0; c < 6; ++c) moments.second[c] += weight * discs[k].second[c];
+            }
+            const Vec3 normal = fit_plane(moments).normal;
+            surroundings.for_points_of(v, [&](const Vec3&, Index i) { normals[i] = normal; });
+        });
+        return normals;
+    }
+
+    /// Second moments of a disc in the plane of some points, weighted by their flatness: 1 of a plane, 0 of a
+    /// ball.
+    static PlaneSums disc(const PlaneSums& points, double count) {
+        const PlaneFit plane = fit_plane(points);
+        const double across = plane.variance * points.weight;
+        const double along = points.second[0] + points.second[1] + points.second[2]
+                             - points.first.sqrnorm() / points.weight - across;
+        const Vec3& n = plane.normal;
+        PlaneSums result;
+        result.weight = along > 0 && n.sqrnorm() > 0 ? count * (1 - 2 * across / along) : 0;
+        const double w = result.weight;
+        result.second = {w * (1 - n[0] * n[0]), w * (1 - n[1] * n[1]), w * (1 - n[2] * n[2]),
+                         -w * n[0] * n[1],      -w * n[1] * n[2],      -w * n[2] * n[0]};
+        return result;
+    }
+
+    /// Of the points around p; off the plane through it, those of another sheet do not count.
+    PlaneSums plane_sums(const Vec3& p, const std::vector<VoxelSums>& voxels,
+                         const std::vector<Index>& around, const Vec3& normal = Vec3(0, 0, 0)) const {
+        PlaneSums sums;
+        for (const Index v : around) {
+            const double weight = weight_of(voxels[v].mean - p, normal);
+            if (weight > 0) add(sums, voxels[v], p, weight);
+        }
+        return sums;
+    }
+
     static std::vector<WayBack> ways_back(const Surroundings& surroundings, const std::vector<Vec3>& from,
                                           const std::vector<Vec3>& to) {
         std::vector<WayBack> ways(surroundings.voxels());
@@ -194,12 +245,7 @@ private:
                  Vec3& normal) const {
         Vec3 p = point;
         for (int round = 0; round < rounds_; ++round) {
-            PlaneSums sums;
-            for (const Index v : around) {
-                const double weight = weight_of(voxels[v].mean - p, normal);
-                if (weight > 0) add(sums, voxels[v], p, weight);
-            }
-            const PlaneFit plane = fit_plane(sums);
+            const PlaneFit plane = fit_plane(plane_sums(p, voxels, around, normal));
             if (plane.normal.sqrnorm() == 0) return p;
             normal = plane.normal;
             p += normal * (plane.centroid | normal);
