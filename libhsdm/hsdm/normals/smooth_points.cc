@@ -178,9 +178,9 @@ private:
     }
 
     /// All points around: those of a wall as thick as they are far spread lie as much across it as along it,
-    /// so that the plane of a point midway stands across the wall. But most points are not midway. Each
-    /// voxel's normal is that of a disc in the plane of most around: of the discs' moments, weighted by how
-    /// flat each plane is (tensor voting: Medioni, Lee, Tang 2000).
+    /// so that the plane of a point midway stands across the wall. But most points are not midway. So a point
+    /// begins with the plane of discs around it that lie in theirs, weighted by how flat these are (tensor
+    /// voting: Medioni, Lee, Tang 2000).
     std::vector<Vec3> first_normals(const Surroundings& surroundings, const std::vector<VoxelSums>& sums,
                                     std::size_t points) const {
         std::vector<PlaneSums> discs(sums.size());
@@ -188,15 +188,14 @@ private:
             discs[v] = disc(plane_sums(sums[v].mean, sums, around), sums[v].count);
         });
         std::vector<Vec3> normals(points);
-        surroundings.for_each_voxel([&](Index v, const std::vector<Index>& around) {
+        surroundings.for_each_point([&](const Vec3& p, Index i, const std::vector<Index>& around) {
             PlaneSums moments;
-            for (const Index k : around) {
-                const double weight = closeness((sums[k].mean - sums[v].mean).norm(), inverse_radius_);
-                moments.weight += weight * discs[k].weight;
-                for (std::size_t c = 0; c < 6; ++c) moments.second[c] += weight * discs[k].second[c];
+            for (const Index v : around) {
+                const double weight = closeness((sums[v].mean - p).norm(), inverse_radius_);
+                moments.weight += weight * discs[v].weight;
+                for (std::size_t k = 0; k < 6; ++k) moments.second[k] += weight * discs[v].second[k];
             }
-            const Vec3 normal = fit_plane(moments).normal;
-            surroundings.for_points_of(v, [&](const Vec3&, Index i) { normals[i] = normal; });
+            normals[i] = fit_plane(moments).normal;
         });
         return normals;
     }
