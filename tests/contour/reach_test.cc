@@ -17,7 +17,7 @@ using namespace hsdm::support;
 
 namespace {
 
-/// A mesh of a cloud, relative to the octree's origin, as it is before the points are reached.
+/// A mesh of a cloud, relative to the octree's origin, as dual_contour leaves it.
 struct Unreached {
     Stages stages;
     DualContour part;
@@ -33,23 +33,22 @@ struct Unreached {
     std::size_t reach(PolygonMesh& mesh) const {
         return reach_points(stages.octree, stages.level, part.voxel, voxels, mesh);
     }
-    /// Of the points from a mesh, in voxels.
-    double farthest(const PolygonMesh& mesh) const {
+    /// Points farther than that from a mesh, in voxels.
+    std::ptrdiff_t beyond(double far, const PolygonMesh& mesh) const {
         const MeshDistance distance(mesh);
-        double most = 0;
-        for (const Vec3& p : stages.octree.positions) most = std::max(most, distance(p));
-        return most / stages.h();
+        return std::ranges::count_if(stages.octree.positions,
+                                     [&](const Vec3& p) { return distance(p) > far * stages.h(); });
     }
 };
 
-PointCloud ball() {
-    return sample(sphere(1), {.points = 40000, .seed = 1});
+PointCloud ball(std::size_t points) {
+    return sample(sphere(1), {.points = points, .seed = 1});
 }
 
 } // namespace
 
 TEST_CASE("a dent is drawn out to the points, and nothing moves elsewhere", "[contour]") {
-    const Unreached made(ball());
+    const Unreached made(ball(40000));
     const PolygonMesh& smooth = made.part.mesh;
     PolygonMesh mesh = smooth;
     CHECK(made.reach(mesh) == 0);
@@ -58,10 +57,10 @@ TEST_CASE("a dent is drawn out to the points, and nothing moves elsewhere", "[co
     const Index pushed = smooth.facet(smooth.facet_count() / 2)[0];
     const Vec3 middle = -made.stages.octree.origin; // of the sphere
     mesh.positions[pushed] -= (mesh.positions[pushed] - middle).normalized() * (0.8 * made.stages.h());
-    REQUIRE(made.farthest(mesh) > 0.32);
+    REQUIRE(made.beyond(0.3, mesh) > 3);
     PolygonMesh again = mesh;
     CHECK(made.reach(mesh) > 0);
-    CHECK(made.farthest(mesh) < 0.3);
+    CHECK(made.beyond(0.3, mesh) < 3);
     std::set<Index> dent;
     for (std::size_t f = 0; f < mesh.facet_count(); ++f)
         if (std::ranges::find(mesh.facet(f), pushed) != mesh.facet(f).end())
@@ -76,14 +75,14 @@ TEST_CASE("a dent is drawn out to the points, and nothing moves elsewhere", "[co
 }
 
 TEST_CASE("strays beside a surface are not reached", "[contour]") {
-    PointCloud cloud = ball();
+    PointCloud cloud = ball(8000); // nine a voxel face
     const double voxel = Unreached(cloud).stages.h();
     for (const double height : {0.9, 1.0, 1.1, 1.2}) { // more than are asked for, on one another
         cloud.positions.push_back(Vec3(0, 0, 1 + height * voxel));
         cloud.normals.push_back(Vec3(0, 0, 1));
     }
     const Unreached made(cloud);
-    REQUIRE(made.farthest(made.part.mesh) > 0.4);
+    REQUIRE(made.beyond(0.4, made.part.mesh) > 2);
     PolygonMesh mesh = made.part.mesh;
     CHECK(made.reach(mesh) == 0);
     CHECK(mesh.positions == made.part.mesh.positions);

@@ -311,7 +311,7 @@ TEST_CASE("what tiles cannot tell is refused, with the reason", "[pipeline][slow
     }
     SECTION("noise that takes smoothing") {
         cloud = support::sample(support::sphere(1), {.points = 20000, .position_noise = 0.035});
-        CHECK(refusal(cloud, tiles).find("nois") != std::string::npos);
+        CHECK(refusal(cloud, tiles).find("moved onto their surface") != std::string::npos);
     }
     SECTION("no normals") {
         cloud.normals.clear();

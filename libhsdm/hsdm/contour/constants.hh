@@ -374,6 +374,10 @@ inline constexpr double means = 4;
 /// Why: two may be strays.
 inline constexpr std::size_t fewest = 3;
 
+/// share: of the points on as much surface elsewhere, that those reached are of what is added, at least.
+/// Why: those at the foot of what is added do not stand out; of a cone half a voxel high a third does.
+inline constexpr double carried = 0.25;
+
 /// share: of the sum of squared distances around, that may be left when a vertex has moved.
 /// Why: the points that stand out have most of it where the rest of the facets fits, and no vertex takes away
 /// half of what noise makes.

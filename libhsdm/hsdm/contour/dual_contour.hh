@@ -48,7 +48,7 @@ struct DualContour {
     std::size_t handles_cut = 0;    ///< rings of edges that no points speak for (cut_handles)
     std::size_t clamped = 0;        ///< vertices kept in their voxels
     std::size_t drawn_in = 0;       ///< vertices that stood far out from all points (draw_in_spikes)
-    std::size_t reached = 0;        ///< vertices moved to points that stood out (reach_points)
+    std::size_t reached = 0;        ///< moves of vertices to points that stood out (reach_points)
     /// vertices merged into the vertex of the next voxel, which holds their corner (shared_corners)
     std::size_t corners_merged = 0;
     std::size_t midpoints = 0; ///< vertices added so that no two mesh edges join the same two vertices

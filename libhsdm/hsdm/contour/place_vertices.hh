@@ -35,7 +35,8 @@ struct PlacedVertices {
         std::array<Vec3, 2> normals; ///< of the two sheets
     };
     std::vector<OnCrease> on_creases; ///< by ascending dual vertex
-    /// Voxels with points that stand out from the facets (PointFit::Measure::standing_out, reach_points).
+    /// Voxels with points that stood out from the facets when these were fitted
+    /// (PointFit::Measure::standing_out, reach_points).
     std::vector<Index> far;
 };
 

@@ -206,10 +206,11 @@ std::vector<Index> PointFit::standing_out(const std::vector<double>& farthest,
         double sum = 0;
         std::size_t count = 0;
         for_neighbors(level_, x, [&](Index v) {
+            if (!(misfit[v] > 0)) return; // there are no facets near it, or all points lie on them
             const std::size_t points = level_.first_point[v + 1] - level_.first_point[v];
             sum += misfit[v], count += chunk_count(points, stride_of(points));
         });
-        return farthest[x] * static_cast<double>(count) > reach::means * sum;
+        return count == 0 || farthest[x] * static_cast<double>(count) > reach::means * sum;
     });
 }
 

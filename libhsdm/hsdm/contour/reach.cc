@@ -25,19 +25,24 @@ struct VoxelFacets {
     std::vector<Index> facets;       // ... ascending
     std::vector<Index> voxels;       // the one and those round it, ascending
     std::vector<Index> own, sampled; // points of the one; these and some of those round it
+    std::vector<double> weights;     // how many points each of the sampled stands for
+    double points = 0;               // in all voxels
 };
 
-/// How far points are from facets.
+/// How far points are from facets. Each counts as often as its weight says.
 struct Farness {
-    double squares = 0, farthest = 0; // sum of squared distances, and the largest of them
-    std::size_t far = 0;              // points that stand out
-    double squares_of_far = 0;        // of those alone
+    double squares = 0;        // sum of squared distances
+    double far = 0;            // points that stand out
+    double squares_of_far = 0; // of those alone
+    double facing = 0;         // sum of the cosines of their normals with those of the nearest triangles
+    double farthest = 0;       // largest squared distance
+    Index point = no_index;    // the one so far
+    Triangle triangle{};       // the nearest one of that
 
-    /// Do enough stand out, and is the rest near beside them?
-    bool stands_out() const { return far >= reach::fewest && squares_of_far > (1 - reach::left) * squares; }
-
-    Index point = no_index; // the farthest
-    Triangle triangle{};    // the nearest one of that
+    /// Do enough stand out, on the outside of what they are near to, and is the rest near beside them?
+    bool stands_out() const {
+        return far >= reach::fewest && facing > 0 && squares_of_far > (1 - reach::left) * squares;
+    }
 };
 
 double total_area(const PolygonMesh& mesh) {
@@ -73,8 +78,9 @@ public:
     double standing_out(Index x) const {
         const VoxelFacets around = facets_round(x);
         if (around.facets.empty()) return 0;
-        const Farness own = measure(around.mesh, around.own);
-        return own.far > 0 && measure(around.mesh, around.sampled).stands_out() ? own.farthest : 0;
+        const Farness own = measure(around.mesh, around.own, {});
+        return own.far > 0 && measure(around.mesh, around.sampled, around.weights).stands_out() ? own.farthest
+                                                                                                : 0;
     }
 
     /// Moves vertices to the points of a voxel, as long as one may move. Returns how many did.
@@ -95,9 +101,11 @@ private:
                  it != of_voxel_.end() && it->first == v; ++it)
                 around.facets.push_back(it->second);
             const Index first = level_.first_point[v], last = level_.first_point[v + 1];
+            around.points += last - first;
             const std::size_t stride = v == x ? 1 : chunk_count(last - first, relaxation::points_per_voxel);
             for (std::size_t p = first; p < last; p += stride) {
                 around.sampled.push_back(static_cast<Index>(p));
+                around.weights.push_back(static_cast<double>(std::min<std::size_t>(stride, last - p)));
                 if (v == x) around.own.push_back(static_cast<Index>(p));
             }
         }
@@ -121,24 +129,51 @@ private:
         }
     }
 
-    Farness measure(const PolygonMesh& mesh, const std::vector<Index>& points) const {
+    /// Weights are 1 where none are given.
+    Farness measure(const PolygonMesh& mesh, std::span<const Index> points,
+                    std::span<const double> weights) const {
         Farness result;
         const Triangulation cut = triangulate(mesh);
         std::vector<PreparedTriangle> prepared;
         for (const Triangle& t : cut.triangles)
             prepared.emplace_back(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]);
-        for (const Index p : points) {
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const Index p = points[i];
+            const double weight = weights.empty() ? 1 : weights[i];
             double least = std::numeric_limits<double>::infinity();
             std::size_t nearest = 0;
             for (std::size_t t = 0; t < prepared.size(); ++t)
                 if (const double d = prepared[t].nearest(octree_.positions[p]).squared_distance; d < least)
                     least = d, nearest = t;
-            result.squares += least;
-            if (least > squared_far_) ++result.far, result.squares_of_far += least;
+            const Triangle& triangle = cut.triangles[nearest];
+            result.squares += weight * least;
+            if (least > squared_far_) {
+                result.far += weight;
+                result.squares_of_far += weight * least;
+                const Vec3& a = mesh.positions[triangle[0]];
+                const Vec3 up = (mesh.positions[triangle[1]] - a) % (mesh.positions[triangle[2]] - a);
+                result.facing += weight * (octree_.normals[p] | unit(up));
+            }
             if (result.point == no_index || least > result.farthest)
-                result.farthest = least, result.point = p, result.triangle = cut.triangles[nearest];
+                result.farthest = least, result.point = p, result.triangle = triangle;
         }
         return result;
+    }
+
+    bool is_around(Index v, const VoxelFacets& around) const {
+        return std::ranges::binary_search(around.voxels, voxel_[mesh_.origin[around.vertices[v]]]);
+    }
+
+    /// Of the facets as far as they lie in the voxels: a corner stands for its share of a facet.
+    double area_in_voxels(const VoxelFacets& around) const {
+        double sum = 0;
+        for (std::size_t f = 0; f < around.mesh.facet_count(); ++f) {
+            const auto facet = around.mesh.facet(f);
+            const auto inside = std::ranges::count_if(facet, [&](Index v) { return is_around(v, around); });
+            sum += 0.5 * area_vector(around.mesh, facet).norm() * static_cast<double>(inside)
+                   / static_cast<double>(facet.size());
+        }
+        return sum;
     }
 
     /// May a vertex move: are all facets at it there, and all round it? At a border points may go on.
@@ -161,32 +196,45 @@ private:
     /// What a move is judged by.
     struct State {
         Farness own, sampled;
-        double area;
+        double area, density; // of all facets; points on a unit of it
         std::size_t intersections;
     };
 
+    /// Does no facet turn by a right angle when a vertex moves from there?
+    static bool keeps_sides(VoxelFacets& around, Index vertex, const Vec3& from) {
+        PolygonMesh& mesh = around.mesh;
+        for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+            if (std::ranges::find(mesh.facet(f), vertex) == mesh.facet(f).end()) continue;
+            const Vec3 now = area_vector(mesh, mesh.facet(f)),
+                       to = std::exchange(mesh.positions[vertex], from);
+            const Vec3 then = area_vector(mesh, mesh.facet(f));
+            mesh.positions[vertex] = to;
+            if ((now | then) < 0) return false;
+        }
+        return true;
+    }
+
     /// May facets that were so become those that they are now?
     bool is_better(const VoxelFacets& around, const State& was) const {
-        if (measure(around.mesh, around.own).squares > reach::left * was.own.squares) return false;
-        const Farness is = measure(around.mesh, around.sampled);
+        if (measure(around.mesh, around.own, {}).squares > reach::left * was.own.squares) return false;
+        const Farness is = measure(around.mesh, around.sampled, around.weights);
         if (is.squares > reach::left * was.sampled.squares || is.farthest >= was.sampled.farthest
             || is.far >= was.sampled.far)
             return false;
         // What the surface has more must have its points, which strays have not.
-        double points = 0;
-        for (const Index v : around.voxels) points += level_.first_point[v + 1] - level_.first_point[v];
-        const double expected = points * (total_area(around.mesh) / was.area - 1);
-        return static_cast<double>(was.sampled.far - is.far) >= crossing::fair_share * expected
+        const double expected = was.density * (total_area(around.mesh) - was.area);
+        return was.sampled.far - is.far >= reach::carried * expected
                && find_self_intersections(around.mesh).triangle_pairs <= was.intersections;
     }
 
     bool move_one(Index x) {
         VoxelFacets around = facets_round(x);
-        State now{measure(around.mesh, around.own), {}, 0, 0};
+        State now{measure(around.mesh, around.own, {}), {}, 0, 0, 0};
         if (now.own.far == 0) return false;
-        now.sampled = measure(around.mesh, around.sampled);
+        now.sampled = measure(around.mesh, around.sampled, around.weights);
         if (!now.sampled.stands_out()) return false;
         now.area = total_area(around.mesh);
+        now.density = around.points / area_in_voxels(around);
         now.intersections = find_self_intersections(around.mesh).triangle_pairs;
         const Vec3& to = octree_.positions[now.own.point];
         Triangle corners = now.own.triangle;
@@ -194,7 +242,7 @@ private:
         for (const Index v : corners) {
             if (!is_free(v, around)) continue;
             const Vec3 from = std::exchange(around.mesh.positions[v], to);
-            if (is_better(around, now)) {
+            if (keeps_sides(around, v, from) && is_better(around, now)) {
                 mesh_.positions[around.vertices[v]] = to;
                 return true;
             }

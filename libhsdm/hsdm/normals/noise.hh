@@ -21,7 +21,7 @@ double estimate_noise(const Octree& octree, const Neighbors& neighbors);
 /// wider than needed: the sides of a plate or a slit stay apart. O(n).
 double noise_deviation(const Octree& octree, const Neighbors& neighbors);
 
-/// The same of a cloud that is not in memory: of every so-manieth of its points in octree order.
+/// The same of a cloud that is not in memory: of one of so many of its points, evenly taken in octree order.
 std::size_t noise_stride(std::size_t points);
 struct NoiseSample {
     /// The distance from the plane of the 6 and of the 12 nearest, and how far the farthest of these is.

@@ -1,5 +1,6 @@
 #include "hsdm/pipeline/cell_pass.hh"
 
+#include "hsdm/normals/neighbors.hh"
 #include "hsdm/pipeline/tile_plan.hh"
 
 #include <algorithm>
@@ -12,17 +13,18 @@ constexpr std::size_t most_far_cells = std::size_t{1} << 16; // each is read alo
 
 } // namespace
 
-void CellPass::refuse_many() {
-    refuse_in_tiles("many points are off every surface");
-}
-
 void CellPass::add(const Octree& octree, const VoxelRange& range, int ghost) {
     const std::vector<double> reach = look(octree, range);
-    const double seen = ghost * cloud_.voxel_size();
+    // Neighbours are sought level by level, by voxels around: how far, hangs on what is known there, but not
+    // for those within half of what is known. Where all that is known are fewer than are sought, others
+    // follow.
+    const double seen = ghost * cloud_.voxel_size() / 2;
+    const bool are_few =
+        octree.size() <= static_cast<std::size_t>(NeighborOptions().count) && octree.size() < points_;
     widest_ = std::max(widest_, ghost);
     for (std::size_t begin = 0, end; begin < octree.size(); begin = end) {
         const MortonCode cell = cell_of(octree, begin);
-        bool is_far = false;
+        bool is_far = are_few;
         for (end = begin; end < octree.size() && cell_of(octree, end) == cell; ++end)
             is_far = is_far || reach[end] > seen;
         if (!is_own(range, cell)) continue;
@@ -31,10 +33,11 @@ void CellPass::add(const Octree& octree, const VoxelRange& range, int ghost) {
         else
             take(octree, begin, end);
     }
-    if (far_cells_.size() > most_far_cells) refuse_many();
 }
 
 void CellPass::add_far_cells(ScratchCloud& cloud) {
+    if (cloud.ranks().sum(far_cells_.size()) > most_far_cells)
+        refuse_in_tiles("many points are far from their neighbours");
     const int shift = cloud.depth() - cloud.cell_depth();
     auto ghost =
         static_cast<int>(std::ranges::max(cloud.ranks().gather(static_cast<std::uint64_t>(widest_))));

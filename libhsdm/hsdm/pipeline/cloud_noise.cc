@@ -12,7 +12,7 @@ namespace {
 class NoisePass final : public CellPass {
 public:
     NoisePass(const ScratchCloud& cloud, const Survey& sums)
-        : CellPass(cloud), first_(sums.first_points()), stride_(noise_stride(sums.points())) {
+        : CellPass(cloud, sums.points()), first_(sums.first_points()), stride_(noise_stride(sums.points())) {
         options_.finest_level = sums.finest_leaves();
     }
 

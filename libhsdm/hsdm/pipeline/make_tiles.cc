@@ -83,7 +83,7 @@ private:
         const Octree octree = cloud_.octree_of(rows);
         rows = std::vector<PointRow>();
         if (!known_.outliers) strays_.add(octree, range, ghost);
-        if (strays_.may_have_found()) return piece; // all are made again without them
+        if (strays_.has_found()) return piece; // all are made again without them
         const OctreeLevel level = extract_level(octree, cloud_.depth());
         const MethodInput in{cloud_.frame(), {}, octree, level, in_.options, in_.phases};
         const PartOfLevel part{

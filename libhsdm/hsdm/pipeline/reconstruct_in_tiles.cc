@@ -36,7 +36,7 @@ std::size_t points_at_once(const TileOptions& tiles, std::size_t bytes_of_mesh, 
     return std::max(fewest, static_cast<std::size_t>(left / bytes_each));
 }
 
-/// A depth whose cells are not too many or too few for so many points. What follows does not depend on it.
+/// A depth whose cells are not too many or too few for so many points. What is found does not depend on it.
 int depth_for_cells(std::size_t points) {
     constexpr std::size_t most = 32; // points a voxel, of a surface across the cube
     int depth = 4;
@@ -57,7 +57,8 @@ std::size_t points_of_tile(const TileOptions& tiles, const Survey& sums, std::si
     if (finished > tiles.memory)
         throw Error("the mesh of " + std::to_string(voxels) + " voxels takes about "
                     + std::to_string(finished / 1000000)
-                    + " MB, which is held in memory; give --memory that much, or a smaller --depth"
+                    + " MB, which is held in memory; give --memory that much, or a smaller --depth or larger "
+                      "--voxel-size"
                     + (bytes_per_voxel > bytes_per_voxel_of_flat_mesh
                            ? "; PLY, OFF and STL without --features, --intersections and --strict take less"
                            : ""));

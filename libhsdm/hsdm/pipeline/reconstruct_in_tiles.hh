@@ -40,8 +40,8 @@ void check_options(const ReconstructOptions& options, const TileOptions& tiles);
 bool fits_in_one_piece(std::size_t points, const ReconstructOptions& options, std::size_t memory);
 
 /// As reconstruct() of the whole cloud, but that the report's `rejected` tells of the whole mesh alone.
-/// Throws Error also for a cloud of which not all that is needed is local, such as one with outliers, and if
-/// the memory does not suffice; OptionError, Cancelled.
+/// Throws Error also for a cloud of which not all that is needed is local, such as one without normals, and
+/// if the memory does not suffice; OptionError, Cancelled.
 Reconstruction reconstruct_in_tiles(const PointParts& parts, const ReconstructOptions& options,
                                     const TileOptions& tiles, TileReport* how = nullptr);
 /// The same by several ranks, all at the same time; `parts` are those of this rank's part of the points, in

@@ -98,7 +98,7 @@ private:
     MortonCode cell_of(const Vec3& relative) const;
     Vec3 relative_place(const PointRow& row) const;
     Octree arranged_octree(const std::vector<PointRow>& rows) const;
-    /// By every so-manieth of this rank's points.
+    /// By one of so many of this rank's points.
     void divide(std::span<const Vec3> sample, std::size_t stride);
     void divide(const ScratchCloud& before, const Vec3& shift, std::size_t most);
     void put_row(const PointRow& row, MortonCode cell, PointExchange& exchange);

@@ -11,7 +11,7 @@ class StraySearch final : public CellPass {
 public:
     StraySearch(const ScratchCloud& cloud, const CloudSurvey& survey);
 
-    bool may_have_found() const { return !strays_.empty() || has_far_cells(); } ///< here
+    bool has_found() const { return !strays_.empty(); } ///< here, so far
 
     struct Result {
         Occurrences outliers; ///< of all ranks; the first in the cloud's coordinates

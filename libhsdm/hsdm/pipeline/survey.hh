@@ -39,7 +39,7 @@ public:
     };
     std::vector<FirstPoint> first_points() const; ///< of cells that have some, ascending
     const NormalSample& normals() const { return normals_; }
-    /// Every so-manieth point's position in the cloud, less that of the cube.
+    /// The position of one of so many points in the cloud, less that of the cube.
     const std::vector<Vec3>& places() const { return places_; }
     static std::size_t place_stride(std::size_t points); ///< as drop_far_outliers() has it
 
