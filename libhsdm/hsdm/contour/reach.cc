@@ -39,9 +39,11 @@ struct Farness {
     Index point = no_index;    // the one so far
     Triangle triangle{};       // the nearest one of that
 
-    /// Do enough stand out, on the outside of what they are near to, and is the rest near beside them?
+    /// Do enough stand out, and is the rest near beside them? Those that face away from what they are near to
+    /// are of the other side of a wall; at a tip the two may be at right angles.
     bool stands_out() const {
-        return far >= reach::fewest && facing > 0 && squares_of_far > (1 - reach::left) * squares;
+        return far >= reach::fewest && facing > -angles::halfway * far
+               && squares_of_far > (1 - reach::left) * squares;
     }
 };
 
