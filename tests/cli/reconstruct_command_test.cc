@@ -194,7 +194,7 @@ TEST_CASE("what does not go with bounded memory is refused before any work", "[c
     const Folder folder;
     folder.write("scan.xyz", xyz(sphere_scan(500)));
     for (const char* option :
-         {"--memory 1M", "--memory much --depth 5", "--memory 0 --depth 5", "--scratch .",
+         {"--memory much --depth 5", "--memory 0 --depth 5", "--scratch .",
           "--memory 1M --depth 5 --normals estimate", "--memory 1M --depth 5 --holes close",
           "--memory 1M --levels 4:5", "--memory 1M --max-error 1%", "--memory 1M --depth 5 --html a.html"}) {
         const CommandResult result = run(folder, std::string("reconstruct scan.xyz -o a.off ") + option);

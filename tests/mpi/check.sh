@@ -35,6 +35,11 @@ for count in 1 2 3; do
     grep -q "^ranks     $count: " out || fail "the summary does not tell of $count ranks"
 done
 
+# The voxel follows from the points.
+"$hsdm" reconstruct scan.ply -o chosen.ply --quiet
+by 3 scan.ply -o ranks.ply --scratch scratch --threads 1 || fail "no depth: status $?"
+cmp chosen.ply ranks.ply || fail "3 processes choose another voxel"
+
 # Several scans of one thing, binary and text: part of the points in each, and in a folder.
 mkdir scans
 "$generate" part --points 20000 --seed 2 -o scans/a.ply
@@ -79,7 +84,6 @@ refused() {
 }
 refused "no such file" "none.ply" none.ply --depth 6 -o ranks.ply
 refused "an option that ranks do not have" "--levels" scan.ply --levels 4:5 -o ranks.ply
-refused "no depth" "depth" scan.ply -o ranks.ply
 refused "several inputs" "one input" scan.ply scan.ply --depth 6 --out-dir .
 refused "standard output" "names of files" scan.ply --depth 6 -o - --format off
 refused "no folder for scratch" "/no/such" scan.ply --depth 6 -o ranks.ply --scratch /no/such
