@@ -36,9 +36,9 @@ for count in 1 2 3; do
 done
 
 # The voxel follows from the points.
-"$hsdm" reconstruct scan.ply -o chosen.ply --quiet
+"$hsdm" reconstruct scan.ply -o one-chosen.ply --quiet
 by 3 scan.ply -o ranks.ply --scratch scratch --threads 1 || fail "no depth: status $?"
-cmp chosen.ply ranks.ply || fail "3 processes choose another voxel"
+cmp one-chosen.ply ranks.ply || fail "3 processes choose another voxel"
 
 # Several scans of one thing, binary and text: part of the points in each, and in a folder.
 mkdir scans
