@@ -199,7 +199,6 @@ private:
     struct State {
         Farness own, sampled;
         double area, density; // of all facets; points on a unit of it
-        std::size_t intersections;
     };
 
     /// Does no facet turn by a right angle when a vertex moves from there?
@@ -225,26 +224,34 @@ private:
             return false;
         // What the surface has more must have its points, which strays have not.
         const double expected = was.density * (total_area(around.mesh) - was.area);
-        return was.sampled.far - is.far >= reach::carried * expected
-               && find_self_intersections(around.mesh).triangle_pairs <= was.intersections;
+        return was.sampled.far - is.far >= reach::carried * expected;
+    }
+
+    /// Do more facets intersect than before a vertex moved from there?
+    static bool is_tangled(VoxelFacets& around, Index vertex, const Vec3& from) {
+        const std::size_t now = find_self_intersections(around.mesh).triangle_pairs;
+        if (now == 0) return false;
+        const Vec3 to = std::exchange(around.mesh.positions[vertex], from);
+        const std::size_t then = find_self_intersections(around.mesh).triangle_pairs;
+        around.mesh.positions[vertex] = to;
+        return now > then;
     }
 
     bool move_one(Index x) {
         VoxelFacets around = facets_round(x);
-        State now{measure(around.mesh, around.own, {}), {}, 0, 0, 0};
+        State now{measure(around.mesh, around.own, {}), {}, 0, 0};
         if (now.own.far == 0) return false;
         now.sampled = measure(around.mesh, around.sampled, around.weights);
         if (!now.sampled.stands_out()) return false;
         now.area = total_area(around.mesh);
         now.density = around.points / area_in_voxels(around);
-        now.intersections = find_self_intersections(around.mesh).triangle_pairs;
         const Vec3& to = octree_.positions[now.own.point];
         Triangle corners = now.own.triangle;
         std::ranges::sort(corners, {}, [&](Index v) { return (around.mesh.positions[v] - to).sqrnorm(); });
         for (const Index v : corners) {
             if (!is_free(v, around)) continue;
             const Vec3 from = std::exchange(around.mesh.positions[v], to);
-            if (keeps_sides(around, v, from) && is_better(around, now)) {
+            if (keeps_sides(around, v, from) && is_better(around, now) && !is_tangled(around, v, from)) {
                 mesh_.positions[around.vertices[v]] = to;
                 return true;
             }
