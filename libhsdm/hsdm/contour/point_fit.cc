@@ -90,11 +90,6 @@ Foot find_foot(const Vec3& p, const Around& around, const unsigned* feet_inside,
     return best;
 }
 
-/// Of so many points of a voxel, from one that is compared to the next.
-std::size_t stride_of(std::size_t points) {
-    return chunk_count(points, relaxation::points_per_voxel);
-}
-
 /// Where blocks of 16 x 16 x 16 voxels begin, and the number of voxels.
 std::vector<Index> blocks_of(const OctreeLevel& level) {
     constexpr int block_bits = 3 * 4; // bits of a code
@@ -106,6 +101,10 @@ std::vector<Index> blocks_of(const OctreeLevel& level) {
 }
 
 } // namespace
+
+std::size_t sample_stride(std::size_t points) {
+    return chunk_count(points, relaxation::points_per_voxel);
+}
 
 double PointFit::Heights::variance() const {
     if (!(weight > 0)) return 0;
@@ -161,7 +160,7 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
             if (around.empty()) continue;
             around.prepare();
             const std::size_t first = level_.first_point[x], last = level_.first_point[x + 1];
-            const std::size_t stride = stride_of(last - first);
+            const std::size_t stride = sample_stride(last - first);
             inside.clear(); // of all points first: what follows waits for it where branches are guessed wrong
             for (std::size_t i = first; i < last; i += stride)
                 around.add_feet_inside(octree_.positions[i], inside);
@@ -208,7 +207,7 @@ std::vector<Index> PointFit::standing_out(const std::vector<double>& farthest,
         for_neighbors(level_, x, [&](Index v) {
             if (!(misfit[v] > 0)) return; // there are no facets near it, or all points lie on them
             const std::size_t points = level_.first_point[v + 1] - level_.first_point[v];
-            sum += misfit[v], count += chunk_count(points, stride_of(points));
+            sum += misfit[v], count += chunk_count(points, sample_stride(points));
         });
         return count == 0 || farthest[x] * static_cast<double>(count) > reach::means * sum;
     });

@@ -6,6 +6,9 @@
 
 namespace hsdm {
 
+/// Of so many points of a voxel, from one that is compared with facets to the next.
+std::size_t sample_stride(std::size_t points);
+
 /// Compares facets with points, at most eight per voxel, evenly taken. The points of a voxel are compared
 /// with the facets round the voxel's vertices, or, if it has none, round those of the voxels beside it.
 class PointFit {

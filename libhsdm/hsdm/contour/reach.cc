@@ -1,6 +1,7 @@
 #include "hsdm/contour/reach.hh"
 
 #include "hsdm/contour/constants.hh"
+#include "hsdm/contour/point_fit.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/core/interruption.hh"
@@ -104,7 +105,7 @@ private:
                 around.facets.push_back(it->second);
             const Index first = level_.first_point[v], last = level_.first_point[v + 1];
             around.points += last - first;
-            const std::size_t stride = v == x ? 1 : chunk_count(last - first, relaxation::points_per_voxel);
+            const std::size_t stride = v == x ? 1 : sample_stride(last - first);
             for (std::size_t p = first; p < last; p += stride) {
                 around.sampled.push_back(static_cast<Index>(p));
                 around.weights.push_back(static_cast<double>(std::min<std::size_t>(stride, last - p)));
