@@ -2,6 +2,7 @@
 
 #include "benchmarks.hh"
 
+#include "hsdm/contour/constants.hh"
 #include "hsdm/contour/flat_facets.hh"
 #include "hsdm/contour/grid_signs.hh"
 #include "hsdm/contour/handles.hh"
@@ -11,6 +12,7 @@
 #include "hsdm/contour/spikes.hh"
 #include "hsdm/contour/trim_crossings.hh"
 #include "hsdm/contour/webs.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/features/features.hh"
 #include "hsdm/io/read_points.hh"
 #include "hsdm/io/write_mesh.hh"
@@ -199,7 +201,8 @@ void make_cells(Work& w) {
 }
 void find_intersections(Work& w) {
     const double h = w.level.voxel_size;
-    const UntangleOptions options{.reach = untangling::reach * h, .nearby = untangling::nearby * h};
+    const UntangleOptions options{.reach = placement::farthest_out * h,
+                                  .nearby = 2 * placement::farthest_out * h};
     w.checksum += static_cast<double>(untangle(w.mended, options, &*w.cells).before);
 }
 double mended_mesh(const Work& w) {

@@ -2,6 +2,7 @@
 
 #include "hsdm/completion/constants.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/normals/plane_fit.hh"
 
@@ -63,7 +64,7 @@ std::optional<BoreWall> wall_of(const std::vector<BorderSide>& sides) {
         wall.radius += side.length / length * out.norm();
         inward -= side.length * (side.normal | unit(out));
     }
-    if (inward < bores::least_inward * length) return {};
+    if (inward < angles::facing * length) return {};
     return wall;
 }
 
@@ -80,7 +81,7 @@ bool goes_on(const std::vector<BorderSide>& sides, const Run& run, const Vec3& a
         along += side.beyond | axis;
         length += side.length;
     }
-    return length > 0 && along >= bores::least_beyond * length;
+    return length > 0 && along >= angles::halfway / 2 * length;
 }
 
 /// The run of sides that goes on farthest along the axis, all in all: a run between the first and the last

@@ -3,6 +3,7 @@
 #include "hsdm/completion/conjugate_gradients.hh"
 #include "hsdm/completion/constants.hh"
 #include "hsdm/completion/crossed_moves.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/mesh/vertex_neighbors.hh"
 
 #include <Eigen/SparseCholesky>
@@ -201,7 +202,7 @@ private:
                 const auto v = static_cast<Index>(i);
                 if (patch_.held[v] == 0) return;
                 for (const Index k : around(v))
-                    if (patch_.held[k] != 0 && (normals[k] | normals[v]) > completing::smooth_cosine)
+                    if (patch_.held[k] != 0 && (normals[k] | normals[v]) > angles::one_sheet)
                         next[v] += normals[k];
                 if (const double length = next[v].norm(); length > 0) next[v] *= 1 / length;
             });

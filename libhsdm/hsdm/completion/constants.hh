@@ -44,9 +44,6 @@ inline constexpr int crease_reach = 5;
 /// Why: by trial; none lets caps follow noise, three do less. The rim is two rings of vertices wide.
 inline constexpr int slope_rounds = 6;
 
-/// cosine of 40 degrees: normals of vertices beside each other that are levelled; more is a crease.
-inline constexpr double smooth_cosine = 0.77;
-
 /// keeps patches that nothing holds where they are; small against the least stiffness of a patch a thousand
 /// cells wide.
 inline constexpr double hold = 1e-12;
@@ -68,11 +65,6 @@ inline constexpr int samples = 3;
 /// facets come up again: of nine real scans three came out sound, and seven with the grid moved.
 inline constexpr double shift = 0.5;
 
-/// rounds: of completing slits, while loops are left that are not small; all else is completed twice. Where
-/// the completed points and the measured ones contradict each other some are left; the second round closes
-/// all but a few.
-inline constexpr int most_rounds = 2;
-
 } // namespace hsdm::completing
 
 // free_space.hh
@@ -82,10 +74,6 @@ namespace hsdm::seeing {
 /// Why: nine bins around a place then hold 36, of which some hit what stands in front of it, if that is not
 /// thinner than a spacing.
 inline constexpr std::size_t points_per_bin = 4;
-
-/// points: of a bin that is looked through.
-/// Why: a single one may be an outlier.
-inline constexpr Index least_points = 2;
 
 /// voxels: what is less in front of a point is not known to be free.
 /// Why: noise and what scans are apart are less than a voxel where a surface is made of them at all; twice
@@ -113,14 +101,6 @@ namespace hsdm::bores {
 /// sine: of the slope of a bore's wall to its axis, root mean square over the facets beside its border.
 /// Why: 20 degrees: half of what normals of one sheet may differ by, as noise and conical bores do.
 inline constexpr double most_slope = 0.35;
-
-/// cosine: of the way beyond a border to the axis, on average.
-/// Why: of a border that zigzags at right angles it is 0.7, of a hole in a wall 0; midway.
-inline constexpr double least_beyond = 0.35;
-
-/// cosine: of a bore's normals and the way to its axis, on average.
-/// Why: 0.88 of a square bore, 0.62 of a slot four times as long as wide, negative of a rod.
-inline constexpr double least_inward = 0.5;
 
 /// share: of a bore's radius, that its axis may miss the centre of the other end by, and the radii differ.
 /// Why: two ends placed by chance on faces a few radii wide miss each other's quarter in 99 of 100.

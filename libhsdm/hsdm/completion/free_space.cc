@@ -1,6 +1,7 @@
 #include "hsdm/completion/free_space.hh"
 
 #include "hsdm/completion/constants.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/groups.hh"
 #include "hsdm/core/parallel_sort.hh"
 
@@ -110,7 +111,7 @@ bool FreeSpace::View::sees_through(const Vec3& place, double voxel_size) const {
         static_cast<int>(std::min<double>(std::ilogb(bins), static_cast<double>(levels.size())));
     const Bins& map = levels[static_cast<std::size_t>(level) - 1];
     const Index bin = map.index.find(morton_encode(bin_of(way, level)));
-    return bin != no_index && map.points[bin] >= seeing::least_points
+    return bin != no_index && map.points[bin] >= two_agree
            && map.depth[bin] > distance + seeing::margin * voxel_size;
 }
 

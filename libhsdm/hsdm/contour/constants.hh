@@ -15,19 +15,6 @@ namespace hsdm::sets {
 /// two sets.
 HSDM_TUNED double cluster_angle = 0.61;
 
-/// rounds: mean shifts from the normal that most others agree with to the mode.
-/// Why: by trial.
-HSDM_TUNED int mode_rounds = 3;
-
-/// rounds: assignments of all points to the nearest mode, which then moves to their mean (Lloyd).
-/// Why: by trial; the second settles what the first one's means changed.
-HSDM_TUNED int lloyd_rounds = 2;
-
-/// voxels: a set's centroid moves at most this far along its normal onto the curved surface.
-/// Why: noise in the normals must not push the set out of its own neighbourhood; a third of what one sheet
-/// may be off.
-HSDM_TUNED double most_lift = 0.1;
-
 } // namespace hsdm::sets
 
 // outlier_sets.hh
@@ -71,10 +58,6 @@ HSDM_TUNED double bluntest_cosine = 0.966;
 /// Why: on a round surface cut in halves it is 0.29, on two halves of noise 0.38.
 HSDM_TUNED double most_scatter = 0.25;
 
-/// share: of what normals turn from one face to the other, that they would by the turn within each.
-/// Why: on a round surface it is 1, on two flat faces 0: nearer to flat than to round.
-HSDM_TUNED double most_turn = 0.5;
-
 /// share: of what lies on the other face's side.
 /// Why: by trial; where normals alone make two groups it is a half.
 HSDM_TUNED double most_astray = 0.2;
@@ -87,23 +70,6 @@ namespace hsdm::patches {
 /// voxels: between the two sheets of a wall or gap.
 /// Why: beyond that the sets beside it are no neighbours.
 inline constexpr double widest = 1.5;
-
-/// voxels: from where a point meets the other sheet's plane to the points of it.
-/// Why: by trial; the centroid of a full voxel is up to 0.87 from its corners.
-inline constexpr double beside = 1.0;
-
-/// spacings: of a sheet's points, radius of the discs that stand for its middle surface.
-/// Why: with two, six points of each sheet are expected round a place on its end; that none is has a chance
-/// of a four hundredth.
-inline constexpr double reach = 2;
-
-/// points: of a sheet in the voxels round one; fewer are strays with odd normals and no wall.
-/// Why: by trial; a sheet that passes two voxels has more in any scan that shows walls.
-inline constexpr double least_points = 8;
-
-/// share: the same, of the points of the fullest set there.
-/// Why: a wall that fills half of a voxel's width in three voxels has more, odd normals of noise have not.
-inline constexpr double least_share = 0.5;
 
 /// points: of a set that are looked at, evenly taken.
 /// Why: four by four in a voxel.
@@ -130,10 +96,10 @@ namespace hsdm::widths {
 /// Why: where a sheet ends is known to a spacing; two that end on each other's ground need one each.
 inline constexpr double least = 1;
 
-/// voxels: between the two sheets of a bore or rod, at most, and radians that both turn across a voxel, at
-/// least.
-/// Why: a cylinder two voxels in diameter turns by one radian a voxel across its axis, by none along it.
-inline constexpr double of_cylinder = 2, turn_of_cylinder = 0.5;
+/// voxels: between the two sheets of a bore or rod, at most.
+/// Why: it turns by one radian a voxel across its axis, by none along it; what turns by less than half of
+/// that is none.
+inline constexpr double of_cylinder = 2;
 
 /// share: of the scatter of a set's normals, that its turn explains, at least.
 /// Why: round a cylinder half, as positions scatter along its axis, too; of noise one in the number of
@@ -145,13 +111,21 @@ inline constexpr double explained = 0.3;
 // local_sheets.hh, grid_signs.hh
 namespace hsdm::sheets {
 
-/// voxels: how far off its planes a sheet may pass.
-/// Why: half of smooth_gap: two sets of one sheet that far apart each miss their mean by half of it.
-HSDM_TUNED double surface_error = 0.15;
+/// Voxels, how far off its planes a sheet may pass: two sets of one sheet that lie smooth_gap apart each miss
+/// their mean by half of it.
+inline double surface_error() {
+    return relations::smooth_gap / 2;
+}
 
-/// pairs: of sets apart, between two sheets that do not become one though they are one elsewhere.
-/// Why: one pair may be an error.
-inline constexpr unsigned fewest_apart = 2;
+/// voxels: how far off a sheet's plane in one voxel its surface and its points may lie.
+/// Why: by trial; a tenth is what a uniform grid keeps in the mean on curved ground, less than
+/// surface_error() and three times placement.clear_corner.
+HSDM_TUNED double plane_error = 0.1;
+
+/// voxels: from a place to the centroid of a set, or the tip of a wedge, that is still beside it.
+/// Why: a voxel's corner is 0.87 from its middle; the centroid of a full voxel beside an edge is 0.7 off,
+/// that of a clipped one more.
+HSDM_TUNED double beside = 1.0;
 
 /// cosine: of the normals of two sets that may become one sheet since they are one elsewhere.
 /// Why: 70 degrees: less than the right angle between a plate's side and its rim, through which its two sides
@@ -163,27 +137,14 @@ HSDM_TUNED double least_closure_cosine = 0.35;
 /// decide.
 HSDM_TUNED double nearness = 0.5;
 
-/// points: a set of more has no more say.
-/// Why: by trial; eight points fix a plane's height well, beyond that nearness should decide and not density.
-HSDM_TUNED double most_points = 8;
-
 } // namespace hsdm::sheets
 
 // crossings.hh
 namespace hsdm::crossing {
 
-/// voxels: from a crossing to the centroid of the nearest set of its sheet; beyond, the data do not carry it.
-/// Why: by trial; the centroid of a full voxel beside the edge is 0.7 off, that of a clipped one more.
-HSDM_TUNED double far_from_data = 1.0;
-
 /// share: of the points expected in a voxel; of fewer, the sheet ends in it.
 /// Why: by trial; the density of a scan may differ by two or three from voxel to voxel.
 HSDM_TUNED double fair_share = 0.25;
-
-/// voxels: how far off a sheet's plane its points may lie, in another voxel.
-/// Why: by trial; smaller than sheets.surface_error since only the area of a plane inside a voxel depends on
-/// it.
-HSDM_TUNED double plane_error = 0.1;
 
 /// points: a voxel beside a crossed edge that holds none of the sheet is a sliver that the sampling missed
 /// while fewer are expected in it.
@@ -203,21 +164,11 @@ HSDM_TUNED double cost_of_weak = 0.2;
 /// Why: by trial; cheaper than taking back what is carried, dearer than what is not.
 HSDM_TUNED double cost_of_return = 0.6;
 
-/// crossings: cost of one where no sheet has any.
-/// Why: by trial; less than taking back both crossings of a thin part.
-HSDM_TUNED double cost_of_invention = 1.6;
-
-/// crossings: cost of one where the grid ends beside the edge, so that a side stays open.
-/// Why: by trial; dearer, surfaces get closed at the ends of slots, or taken away there.
-HSDM_TUNED double cost_of_border = 0.8;
-
-/// crossings: cost of a side against all sheets around a grid point.
-/// Why: less than one crossing that the data carry, which decides if nothing else does.
-HSDM_TUNED double most_belief = 0.8;
-
-/// rounds: of votes by neighbours after the first.
-/// Why: by trial; what is farther off has no sheet near, and the last round leaves none undecided.
-HSDM_TUNED int vote_rounds = 3;
+/// crossings: cost of a side against all sheets around a grid point; of a crossing where no sheet has any and
+/// the grid ends beside the edge, so that a side stays open; half of one where it does not.
+/// Why: by trial; less than a crossing that the data carry, which decides if nothing else does, and for two
+/// less than both crossings of a thin part. Dearer, surfaces get closed at the ends of slots.
+HSDM_TUNED double cost_of_belief = 0.8;
 
 /// grid points: so far around contradictions sides are in doubt.
 /// Why: with six instead of two the same sides come out, on scans with noise as well.
@@ -241,10 +192,6 @@ HSDM_TUNED double opposed_cosine = -0.3;
 /// Why: by trial; one sheet is to be preferred at any angle of less than 90 degrees, whose cost is 1.
 HSDM_TUNED double cost_of_crease = 1;
 
-/// cost: of pairing two that have nothing to do with each other.
-/// Why: twice that of a crease.
-HSDM_TUNED double cost_of_strangers = 2;
-
 /// cost: of pairing two that face one way, with a wall or gap between them.
 /// Why: twice that of a rim, across which two strangers face opposite ways a voxel apart.
 inline constexpr double cost_of_parted = 10;
@@ -265,11 +212,6 @@ HSDM_TUNED int longest_outline = 20;
 
 // dual_vertices.hh
 namespace hsdm::cuts {
-
-/// voxels: from a voxel's middle to the tip of a wedge that it can serve; farther off, two opposite sides are
-/// a thin part.
-/// Why: the corner of a voxel is 0.87 from its middle; a vertex may lie outside its voxel by some more.
-HSDM_TUNED double tip_reach = 1.0;
 
 /// voxels: a narrower face between two sides is none; one vertex serves both its creases.
 /// Why: by trial; as small as the noise of a crossing.
@@ -329,10 +271,6 @@ HSDM_TUNED double most_points = 6;
 // relax_vertices.hh
 namespace hsdm::relaxation {
 
-/// rounds: moves within the sheet.
-/// Why: measured; ten gain nothing more.
-HSDM_TUNED int rounds = 3;
-
 /// share: of the way to the mean of the neighbours in a round.
 /// Why: by trial; the whole way makes neighbours change places on a grid.
 HSDM_TUNED double step = 0.7;
@@ -345,14 +283,6 @@ HSDM_TUNED double farther = 0.1;
 /// Why: a tenth of a voxel squared, so that the weight at a neighbour stays finite.
 HSDM_TUNED double nearness = 0.01;
 
-/// share: weight of a neighbour per side of its edge, against that of the vertex itself.
-/// Why: an edge inside the surface has two sides, so that each neighbour weighs as much as the vertex.
-HSDM_TUNED double side_weight = 0.5;
-
-/// points: of a voxel that facets are compared with, evenly taken.
-/// Why: by trial; eight points tell a mean height to a third of the noise.
-HSDM_TUNED std::size_t points_per_voxel = 8;
-
 /// factor: on the variance that squared rises must exceed.
 /// Why: where they are equal noise explains the rise; twice moves less than noise would in the mean.
 HSDM_TUNED double doubt = 2;
@@ -362,26 +292,9 @@ HSDM_TUNED double doubt = 2;
 // reach.hh
 namespace hsdm::reach {
 
-/// voxels: points farther from the facets stand out.
-/// Why: twice of what a sheet may be off its planes.
-inline constexpr double least = 0.3;
-
 /// factor: on the mean distance of the points around, that those that stand out are farther than.
 /// Why: three deviations of noise.
 inline constexpr double means = 4;
-
-/// points: that stand out, at least.
-/// Why: two may be strays.
-inline constexpr std::size_t fewest = 3;
-
-/// share: of the points on as much surface elsewhere, that those reached are of what is added, at least.
-/// Why: those at the foot of what is added do not stand out; of a cone half a voxel high a third does.
-inline constexpr double carried = 0.25;
-
-/// share: of the sum of squared distances around, that may be left when a vertex has moved.
-/// Why: the points that stand out have most of it where the rest of the facets fits, and no vertex takes away
-/// half of what noise makes.
-inline constexpr double left = 0.5;
 
 } // namespace hsdm::reach
 
@@ -391,10 +304,6 @@ namespace hsdm::creases {
 /// sine: of the corners of triangles at such a vertex.
 /// Why: 1 degree: thinner ones have no normal to judge by.
 HSDM_TUNED double least_sine = 0.02;
-
-/// voxels: corners this near are one, planes this near pass through it; no vertex comes this near to another.
-/// Why: by trial; three times clear_corner, as the planes are those of another voxel.
-HSDM_TUNED double same_place = 0.1;
 
 } // namespace hsdm::creases
 
@@ -408,14 +317,6 @@ inline constexpr int rounds = 6;
 /// share: of the way to the mean of its neighbours that a vertex moves in a round.
 /// Why: by trial; the whole way shrinks what is sharp.
 HSDM_TUNED double step = 0.5;
-
-/// voxels: how far a vertex may move in all.
-/// Why: half a voxel: farther off it is in another one.
-HSDM_TUNED double reach = 0.5;
-
-/// voxels: facets this close to a moved one are checked against it.
-/// Why: reach on both sides.
-inline constexpr double nearby = 1;
 
 /// rings: of facets round one that meets another, that may make place for others, and facets, most.
 /// Why: within two of them a fold that one voxel makes ends; more are a piece of the surface, not a mishap.

@@ -1,5 +1,6 @@
 #include "hsdm/contour/crossing_pairs.hh"
 
+#include "hsdm/contour/constants.hh"
 #include "hsdm/contour/sets_round_face.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
@@ -90,7 +91,7 @@ private:
         return (1 - cosine) + off_plane
                + (crease                  ? pairing::cost_of_crease
                   : r == Relation::smooth ? 0
-                                          : pairing::cost_of_strangers);
+                                          : 2 * pairing::cost_of_crease);
     }
 
     /// Of all ways to pair the crossings without a link that crosses another the one of least cost, by

@@ -312,7 +312,7 @@ private:
 
     /// Of what is so far beyond a crease, that it is: within the error of a sheet a share.
     float sureness(double off) const {
-        return static_cast<float>(std::min(1.0, off / (sheets::surface_error * h_)));
+        return static_cast<float>(std::min(1.0, off / (sheets::surface_error() * h_)));
     }
 
     Vec3 position(std::size_t i) const {
@@ -336,11 +336,11 @@ private:
         const double offset = sheet.normal | position(i);
         for (unsigned v = 0; v < 4; ++v) {
             if (!(doubtful >> v & 1u)) continue;
-            Vec3 lo = low_ + Vec3(1, 1, 1) * (crossing::plane_error * h_);
+            Vec3 lo = low_ + Vec3(1, 1, 1) * (sheets::plane_error * h_);
             if (!(v & 1u)) lo[(axis_ + 1) % 3] -= h_;
             if (!(v & 2u)) lo[(axis_ + 2) % 3] -= h_;
-            if (passes(sheet.normal, offset, lo, (1 - 2 * crossing::plane_error) * h_)) continue;
-            const double area = plane_area(sheet.normal, offset, lo, (1 - 2 * crossing::plane_error) * h_,
+            if (passes(sheet.normal, offset, lo, (1 - 2 * sheets::plane_error) * h_)) continue;
+            const double area = plane_area(sheet.normal, offset, lo, (1 - 2 * sheets::plane_error) * h_,
                                            {clips.data(), clip_count});
             const double expected = area * density / (h_ * h_);
             if (expected > options_.sliver_points && sheet.held[v] < crossing::fair_share * expected)
@@ -382,7 +382,7 @@ private:
             const double d = (sets_.sets[m.set].centroid - x).sqrnorm();
             if (d < nearest || (d == nearest && m.set < set)) nearest = d, set = m.set;
         });
-        carried = carried && nearest < crossing::far_from_data * crossing::far_from_data * h_ * h_;
+        carried = carried && nearest < sheets::beside * sheets::beside * h_ * h_;
         return {sheets_[i].t,         sheets_[i].normal, 3 * ends_[0] + axis_, set,
                 sheets_[i].leaving(), carried,           sheets_[i].by_crease};
     }

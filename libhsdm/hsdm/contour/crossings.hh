@@ -2,6 +2,7 @@
 // Section 3.4.2: where the sheets cross the grid edges. A crossing is what a facet is dual to. See
 // docs/sheets.md.
 
+#include "hsdm/contour/constants.hh"
 #include "hsdm/contour/facet_corner.hh"
 #include "hsdm/contour/local_sheets.hh"
 
@@ -49,7 +50,7 @@ struct CrossingCandidates {
     Crossings crossings;
     std::vector<std::uint8_t> standing; ///< per crossing
     /// Per crossing, from 0 to 1: that it does not stand; less than 1 where it is clipped by less than
-    /// sheets::surface_error.
+    /// sheets::surface_error().
     std::vector<float> sureness;
 };
 

@@ -2,6 +2,7 @@
 // Section 3.4.2 as a whole: sets -> local sheets -> crossings -> pairs -> dual vertices -> facets.
 
 #include "hsdm/contour/components_of_part.hh"
+#include "hsdm/contour/constants.hh"
 #include "hsdm/contour/handles.hh"
 #include "hsdm/contour/relax_vertices.hh"
 #include "hsdm/contour/tangles_of_part.hh"
@@ -23,7 +24,7 @@ struct DualContourOptions {
     /// The lengths in these three are in voxels here.
     SplinterOptions splinters{.flat = splinters::flat};
     FillHolesOptions holes{.max_edges = holes::most_edges, .max_diameter = holes::widest};
-    UntangleOptions untangle{.reach = untangling::reach, .nearby = untangling::nearby};
+    UntangleOptions untangle{.reach = placement::farthest_out, .nearby = 2 * placement::farthest_out};
     bool fill = true; ///< close small boundary loops
     /// the data go round the whole solid: it has no border (label_grid_signs, trim_unsupported)
     bool all_round = false;

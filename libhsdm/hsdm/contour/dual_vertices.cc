@@ -180,7 +180,7 @@ private:
         const double k = of(a).normal | (crossing_position(grid_, of(a), 1) - centre);
         const double l = of(b).normal | (crossing_position(grid_, of(b), 1) - centre);
         const double cosine = of(a).normal | of(b).normal;
-        return k * k + l * l - 2 * cosine * k * l < cuts::tip_reach * cuts::tip_reach * (1 - cosine * cosine);
+        return k * k + l * l - 2 * cosine * k * l < sheets::beside * sheets::beside * (1 - cosine * cosine);
     }
 
     /// How wide a face is between the planes of two sides, in voxels; 0 if it belongs to one of them. The rim

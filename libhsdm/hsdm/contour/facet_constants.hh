@@ -27,9 +27,9 @@ namespace hsdm::handles {
 /// Why: a vertex lies on its sets' planes, a facet's middle not farther off than it is bent.
 inline constexpr double agreeing_gap = 0.5;
 
-/// points: nearest to a facet, that are asked whether they face its way, and fewest that must.
-/// Why: eight lie within one and a half spacings; one of them may be a stray or stand at a crease.
-inline constexpr std::size_t witnesses = 8, fewest_witnesses = 2;
+/// points: nearest to a facet, that are asked whether they face its way.
+/// Why: eight lie within one and a half spacings; one of them may stand at a crease.
+inline constexpr std::size_t witnesses = 8;
 
 /// share: of the facets beside a ring, that no points speak for.
 /// Why: a web has four sides, above, below and at its ends, and below at least there are no points.
@@ -73,11 +73,6 @@ namespace hsdm::spikes {
 /// voxels: from a vertex to the nearest point; farther ones stand out from the surface.
 /// Why: half of a voxel's diagonal: a vertex whose voxel the sampling missed has points beside it.
 inline constexpr double farthest = 0.87;
-
-/// spacings: the same where points are few.
-/// Why: beside a corner of three faces the nearest point of each is expected within one, and seldom beyond
-/// two.
-inline constexpr double spacings = 2;
 
 /// rounds: half of the way to the mean of the neighbours in each.
 /// Why: bounds the work; where there are points to come near to, ten are enough.
@@ -123,10 +118,6 @@ HSDM_TUNED double end_band = 0.25;
 /// Why: a bend of one direction to the other has half of them there; a tenth are noise.
 HSDM_TUNED double most_between = 0.1;
 
-/// share: of them, that each side of a crease has at least.
-/// Why: half of most_between, or the sheet beside is hardly there.
-HSDM_TUNED double least_side = 0.05;
-
 /// voxels: from the edge; a second look where a small radius would show.
 /// Why: by trial on the clouds of docs/features.md; less than a voxel's diagonal, more than half its edge.
 HSDM_TUNED double nearby = 0.75;
@@ -138,10 +129,6 @@ HSDM_TUNED double chord = 0.5;
 /// share: of the points between in the whole cloud that chords contradict; of more, normals are smeared.
 /// Why: by trial on the clouds of docs/features.md: clean normals have next to none, smeared ones most.
 HSDM_TUNED double most_tilted = 0.4;
-
-/// share: of the fold's angle, between chords and normals.
-/// Why: half of end_band.
-HSDM_TUNED double most_tilt = 0.125;
 
 /// points: round an edge, whose chords are looked at, and those that these lead to; both evenly taken.
 /// Why: at eight a voxel an edge has some fifty; the chords of one point say less where they are few.

@@ -3,6 +3,7 @@
 #include "hsdm/contour/constants.hh"
 #include "hsdm/contour/minimum_cut.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
 
 #include <algorithm>
@@ -91,7 +92,7 @@ public:
           standing_(candidates.standing),
           choice_(candidates),
           h_(voxel_size),
-          cost_of_border_(all_round ? signs::cost_of_invention : signs::cost_of_border),
+          cost_of_border_(all_round ? 2 * signs::cost_of_belief : signs::cost_of_belief),
           side_(grid.size(), unknown),
           belief_(grid.size(), 0),
           below_(grid_points_below(grid)) {}
@@ -99,7 +100,7 @@ public:
     Crossings run() {
         set_beliefs();
         vote(true);
-        for (int ring = 0; ring < signs::vote_rounds; ++ring) vote(false, ring + 1 < signs::vote_rounds);
+        for (int ring = 0; ring < repeats::few; ++ring) vote(false, ring + 1 < repeats::few);
         settle_doubtful();
         return chosen();
     }
@@ -131,11 +132,11 @@ private:
         for_each_index(grid_.size(), chunks::usual, [&](Index c) {
             double sum = 0, size = 0;
             for (const LocalSheet& sheet : sheets_.sheets_at(c)) {
-                if (std::abs(sheet.distance) < sheets::surface_error * h_ * sheet.weight) return;
+                if (std::abs(sheet.distance) < sheets::surface_error() * h_ * sheet.weight) return;
                 sum += sheet.distance;
                 size += std::abs(sheet.distance);
             }
-            if (size > 0) belief_[c] = signs::most_belief * sum / size;
+            if (size > 0) belief_[c] = signs::cost_of_belief * sum / size;
         });
     }
 
@@ -179,7 +180,7 @@ private:
     }
 
     double cost_of_invention(Index edge) const {
-        return is_at_end(edge) ? cost_of_border_ : signs::cost_of_invention;
+        return is_at_end(edge) ? cost_of_border_ : 2 * signs::cost_of_belief;
     }
 
     /// Do the crossings of an edge contradict the sides of its ends?
@@ -187,7 +188,7 @@ private:
         const Index c = edge / 3, up = grid_.next[c][edge % 3];
         if (up == no_index) return false;
         if (list_.first[edge] == list_.first[edge + 1]) return side_[c] != side_[up]; // most
-        return choice_.cost(edge, side_[c], side_[up], signs::cost_of_invention) > 0;
+        return choice_.cost(edge, side_[c], side_[up], 2 * signs::cost_of_belief) > 0;
     }
 
     /// The grid points whose sides are in doubt: those at the ends of a contradicted edge, and those around.

@@ -101,7 +101,7 @@ private:
 bool is_free(const Ring& a, const Ring& b, Index voxel, const OctreeLevel& level, const NormalSets& sets) {
     const double h = level.voxel_size;
     WayBetween way(a, b);
-    if (!way.is_clear(sheets::surface_error * h)) return false;
+    if (!way.is_clear(sheets::surface_error() * h)) return false;
     for (const NormalSet& s : sets.of_voxel(voxel)) {
         if (!way.is_beside(s)) return false;
         way.add(s);

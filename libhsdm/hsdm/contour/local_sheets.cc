@@ -118,7 +118,7 @@ struct SheetsAtPoint {
                 static_cast<std::uint8_t>(octants[members[i].sheet] | 1u << members[i].octant);
         for (std::size_t k = 0; k < sheet_count; ++k) {
             LocalSheet& sheet = sheets[k];
-            if (std::abs(sheet.distance) > sheets::surface_error * voxel_size * sheet.weight) continue;
+            if (std::abs(sheet.distance) > sheets::surface_error() * voxel_size * sheet.weight) continue;
             const Vec3 toward =
                 sheet.distance < 0 ? sheet.normal : -sheet.normal; // from the grid point to the sheet
             unsigned axis = 0;
@@ -190,7 +190,7 @@ bool are_apart(std::span<const SheetMember> members, std::uint8_t one, std::uint
         for (const SheetMember& b : members)
             pairs += b.sheet == other && related.apart(sets.sets[a.set], sets.sets[b.set]);
     }
-    return pairs >= sheets::fewest_apart && std::min(points_of_one, points_of_other) >= points_of_plane;
+    return pairs >= two_agree && std::min(points_of_one, points_of_other) >= points_of_plane;
 }
 
 std::vector<Index> grid_points_with_several(const LocalSheets& sheets) {

@@ -2,8 +2,10 @@
 // Section 3.4.2, local sheets: at each grid point, the sets of its up to eight voxels grouped into smooth
 // sheets, and one signed distance per grid point and sheet. See docs/sheets.md.
 
+#include "hsdm/contour/constants.hh"
 #include "hsdm/contour/grid_points.hh"
 #include "hsdm/contour/set_relation.hh"
+#include "hsdm/octree/constants.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +32,7 @@ struct LocalSheet {
 /// The say of a set about a place that lies `d` from its centroid.
 inline double sheet_weight(const NormalSet& set, const Vec3& d, double voxel_size) {
     const double falloff = 1 / (sheets::nearness * sheets::nearness * voxel_size * voxel_size);
-    return std::min<double>(set.count, sheets::most_points) * std::exp(-d.sqrnorm() * falloff);
+    return std::min<double>(set.count, spacings::points_per_voxel) * std::exp(-d.sqrnorm() * falloff);
 }
 
 /// Members and sheets of every grid point: those of grid point c are members[first_member[c]] ..

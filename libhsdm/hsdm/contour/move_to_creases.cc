@@ -153,7 +153,7 @@ private:
             before_.push_back(v == to.dual ? was_[i] : mesh_.positions[v]);
             after_.push_back(v == to.dual ? to.position : mesh_.positions[v]);
             const double side = (after_.back() - to.position).norm();
-            if (v != to.dual && side < creases::same_place * voxel_size_
+            if (v != to.dual && side < sheets::plane_error * voxel_size_
                 && side < (after_.back() - was_[i]).norm())
                 return false;
         }

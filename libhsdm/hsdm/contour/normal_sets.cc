@@ -51,7 +51,7 @@ public:
     void run() {
         if (!one_direction()) {
             find_modes();
-            for (int round = 0; round < sets::lloyd_rounds; ++round) assign_to_nearest();
+            for (int round = 0; round < repeats::twice; ++round) assign_to_nearest();
         }
         std::size_t directions = modes_.size();
         for (std::size_t k = 0; k < directions; ++k) split_at_crease(static_cast<std::uint8_t>(k));
@@ -97,7 +97,7 @@ private:
         while (static_cast<int>(modes_.size()) < options_.max_sets) {
             Vec3 mode;
             if (!densest(mode)) break;
-            for (int round = 0; round < sets::mode_rounds; ++round) mode = mean_within(mode);
+            for (int round = 0; round < repeats::few; ++round) mode = mean_within(mode);
             const auto k = static_cast<std::uint8_t>(modes_.size());
             modes_.push_back(mode);
             Index taken = 0;
@@ -308,7 +308,7 @@ NormalSet measure_set(const Octree& octree, std::span<const Index> points, Index
     normal = length > 0 ? normal / length : Vec3(0, 0, 1);
     // Limited, because noise in the normals must not push the centroid out of its own points.
     const double lift =
-        std::clamp(0.5 * below / n, -sets::most_lift * voxel_size, sets::most_lift * voxel_size);
+        std::clamp(0.5 * below / n, -sheets::plane_error * voxel_size, sheets::plane_error * voxel_size);
     return {position + normal * lift, normal, n, voxel, spread, below / n};
 }
 

@@ -6,6 +6,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/core/parallel_sort.hh"
+#include "hsdm/octree/constants.hh"
 
 #include <tbb/enumerable_thread_specific.h>
 
@@ -128,7 +129,7 @@ public:
         const double sine = cross.norm();
         const Vec3 along = cross / sine;
         const double outward = (crease == Relation::convex ? 1 : -1) / sine;
-        const double here = along | b.centroid, far = patches::beside * level_.voxel_size;
+        const double here = along | b.centroid, far = sheets::beside * level_.voxel_size;
         const double least = patches::goes_on_from * step, most = patches::goes_on_within * step;
         // Points of the sheet near the crease: where along it, and how far beyond the other's plane.
         auto& near = at_.near;
@@ -226,7 +227,8 @@ private:
             squares += n * n;
             scanned += set(j).count;
         }
-        const double least = std::max(patches::least_points, patches::least_share * most);
+        // A wall that fills half of a voxel's width in three voxels has more than half; odd normals have not.
+        const double least = std::max(spacings::points_per_voxel, 0.5 * most);
         return known = scanned < least ? 0 : level_.voxel_size * std::sqrt(points / squares);
     }
 
@@ -251,7 +253,7 @@ private:
             if (const double cosine = a.normal | set(j).normal; j != i && cosine < angles::opposed)
                 at_.facing.push_back({set(j).normal, set(j).centroid, cosine});
         if (at_.facing.empty()) return;
-        const double radius = patches::reach * spacing(i);
+        const double radius = spacings::beside * spacing(i);
         if (radius == 0) return;
         for (const Vec3& p : samples(i)) {
             double nearest[2] = {patches::widest * h, patches::widest * h}; // behind, before
@@ -259,7 +261,7 @@ private:
                 const double t = (normal | (centroid - p)) / cosine;
                 double& distance = nearest[t > 0];
                 if (std::abs(t) < distance
-                    && !((p + t * a.normal - centroid).sqrnorm() > patches::beside * patches::beside * h * h))
+                    && !((p + t * a.normal - centroid).sqrnorm() > sheets::beside * sheets::beside * h * h))
                     distance = std::abs(t);
             }
             for (unsigned before : {0u, 1u})

@@ -4,6 +4,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
+#include "hsdm/octree/constants.hh"
 #include "hsdm/spatial/eight_triangles.hh"
 
 #include <bit>
@@ -103,7 +104,7 @@ std::vector<Index> blocks_of(const OctreeLevel& level) {
 } // namespace
 
 std::size_t sample_stride(std::size_t points) {
-    return chunk_count(points, relaxation::points_per_voxel);
+    return chunk_count(points, static_cast<std::size_t>(spacings::points_per_voxel));
 }
 
 double PointFit::Heights::variance() const {
@@ -201,7 +202,7 @@ PointFit::Measure PointFit::measure(const std::vector<Vec3>& positions) const {
 std::vector<Index> PointFit::standing_out(const std::vector<double>& farthest,
                                           const std::vector<double>& misfit) const {
     return indices_where(level_.size(), chunks::light, [&](Index x) {
-        if (!(farthest[x] > reach::least * level_.voxel_size)) return false;
+        if (!(farthest[x] > relations::smooth_gap * level_.voxel_size)) return false;
         double sum = 0;
         std::size_t count = 0;
         for_neighbors(level_, x, [&](Index v) {

@@ -41,10 +41,10 @@ struct Farness {
     Triangle triangle{};       // the nearest one of that
 
     /// Do enough stand out, and is the rest near beside them? Those that face away from what they are near to
-    /// are of the other side of a wall; at a tip the two may be at right angles.
+    /// are of the other side of a wall; at a tip the two may be at right angles. They have most of the
+    /// squared distances where the rest of the facets fits.
     bool stands_out() const {
-        return far >= reach::fewest && facing > -angles::halfway * far
-               && squares_of_far > (1 - reach::left) * squares;
+        return far >= points_of_plane && facing > -angles::halfway * far && squares_of_far > 0.5 * squares;
     }
 };
 
@@ -62,7 +62,7 @@ public:
           level_(level),
           voxel_(voxel),
           mesh_(mesh),
-          squared_far_(reach::least * reach::least * level.voxel_size * level.voxel_size) {
+          squared_far_(relations::smooth_gap * relations::smooth_gap * level.voxel_size * level.voxel_size) {
         std::vector<std::uint8_t> near = large_vector<std::uint8_t>(level.size());
         for (const Index x : far) {
             near[x] = 1;
@@ -216,16 +216,16 @@ private:
         return true;
     }
 
-    /// May facets that were so become those that they are now?
+    /// May facets that were so become those that they are now? No vertex takes away half of what noise makes.
     bool is_better(const VoxelFacets& around, const State& was) const {
-        if (measure(around.mesh, around.own, {}).squares > reach::left * was.own.squares) return false;
+        if (measure(around.mesh, around.own, {}).squares > 0.5 * was.own.squares) return false;
         const Farness is = measure(around.mesh, around.sampled, around.weights);
-        if (is.squares > reach::left * was.sampled.squares || is.farthest >= was.sampled.farthest
+        if (is.squares > 0.5 * was.sampled.squares || is.farthest >= was.sampled.farthest
             || is.far >= was.sampled.far)
             return false;
         // What the surface has more must have its points, which strays have not.
         const double expected = was.density * (total_area(around.mesh) - was.area);
-        return was.sampled.far - is.far >= reach::carried * expected;
+        return was.sampled.far - is.far >= crossing::fair_share * expected;
     }
 
     /// Do more facets intersect than before a vertex moved from there?

@@ -159,7 +159,7 @@ private:
         };
         if (!vertices_.is_clamped[dual]) add(dual, 1);
         for (const Neighbour& n : neighbours(dual))
-            if (n.carries) add(n.vertex, relaxation::side_weight * n.sides);
+            if (n.carries) add(n.vertex, 0.5 * n.sides); // two sides inside: as much as the vertex itself
         if (!(sum > 0)) return p;
         normal.normalize();
         return p - normal * (normal | (p - place / sum));

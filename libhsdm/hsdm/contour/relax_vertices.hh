@@ -2,12 +2,13 @@
 // Moves vertices along the surface so that facets become more square.
 
 #include "hsdm/contour/place_vertices.hh"
+#include "hsdm/core/constants.hh"
 
 namespace hsdm {
 
 struct RelaxOptions {
     /// >= 0: rounds of moves within the sheet
-    int rounds = relaxation::rounds;
+    int rounds = repeats::few;
     /// (0, 1]: share of the way to the mean of the neighbours in a round
     double step = relaxation::step;
     bool fit = true; ///< after that, move the sheet towards the points

@@ -2,6 +2,7 @@
 
 #include "hsdm/contour/components.hh"
 #include "hsdm/contour/constants.hh"
+#include "hsdm/octree/constants.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -69,7 +70,7 @@ double SetsRoundFace::points_of(std::uint8_t patch) const {
 bool SetsRoundFace::parted(Index s, Index t) const {
     const Member *const a = find(s), *const b = find(t);
     if (a == nullptr || b == nullptr || a->patch == b->patch) return false;
-    if (std::min(points_of(a->patch), points_of(b->patch)) < patches::least_points) return false;
+    if (std::min(points_of(a->patch), points_of(b->patch)) < spacings::points_per_voxel) return false;
     return std::ranges::any_of(members_, [&](const Member& i) {
         return i.patch == a->patch && std::ranges::any_of(members_, [&](const Member& j) {
                    return j.patch == b->patch && related_.apart(set(i), set(j));

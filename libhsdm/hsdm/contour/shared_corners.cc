@@ -37,7 +37,7 @@ private:
 
     bool can_hold(Index dual, const PlacedVertices::Beyond& beyond) const {
         if (dual == beyond.dual || duals_.open[dual] || !may_reach(dual, beyond)) return false;
-        const double near = creases::same_place * mesh_.voxel_size;
+        const double near = sheets::plane_error * mesh_.voxel_size;
         if (is_corner(dual)) return (vertices_.positions[dual] - beyond.position).norm() < near;
         const auto corners = duals_.corners_of(dual);
         return std::all_of(corners.begin(), corners.end(), [&](FacetCorner corner) {
@@ -50,7 +50,7 @@ private:
     /// May the vertex of a neighbouring voxel lie at the corner: in its own voxel, or beyond a face of it
     /// into voxels of which no sheet crosses an edge?
     bool may_reach(Index dual, const PlacedVertices::Beyond& beyond) const {
-        if (outside(dual, beyond.position) < creases::same_place) return true;
+        if (outside(dual, beyond.position) < sheets::plane_error) return true;
         const VoxelCoord here = mesh_.voxel_of(beyond.dual), there = mesh_.voxel_of(dual);
         unsigned axis = 0;
         while (axis < 2 && here[axis] == there[axis]) ++axis;
@@ -106,7 +106,7 @@ std::vector<EdgeCollapse> shared_corners(const DualMesh& mesh, const PlacedVerti
     std::vector<EdgeCollapse> edges;
     SharedCorners corners(mesh, vertices);
     for (const PlacedVertices::Beyond& beyond : vertices.beyond) corners.find(beyond, edges);
-    return with_one_corner_each(edges, creases::same_place * mesh.voxel_size);
+    return with_one_corner_each(edges, sheets::plane_error * mesh.voxel_size);
 }
 
 } // namespace hsdm

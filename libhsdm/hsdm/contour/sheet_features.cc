@@ -7,6 +7,7 @@
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/facet_normal.hh"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -59,7 +60,8 @@ public:
             near_middle += p.near && is_middle;
         }
         const auto all = static_cast<double>(points_.size());
-        return low > edge_hints::least_side * all && high > edge_hints::least_side * all
+        // Each sheet is there: it has half as many as may lie between at least.
+        return std::min(low, high) > edge_hints::most_between / 2 * all
                && middle <= edge_hints::most_between * all && near_middle <= edge_hints::most_between * near;
     }
 
@@ -73,7 +75,7 @@ public:
             const Point& p = points_[i];
             if (!between(p)) continue;
             middle += stride; // speaks for those between it and the next one
-            if (std::abs(tilt(p)) > edge_hints::most_tilt * angle_) tilted += stride;
+            if (std::abs(tilt(p)) > edge_hints::end_band / 2 * angle_) tilted += stride;
         }
     }
 

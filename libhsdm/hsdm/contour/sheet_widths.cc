@@ -25,7 +25,7 @@ bool is_facing(const NormalSet& a, const NormalSet& b, double voxel_size) {
     if ((a.normal | b.normal) >= angles::opposed) return false;
     if (std::min(a.count, b.count) < points_of_plane) return false;
     const Vec3 way = b.centroid - a.centroid, across = (a.normal - b.normal).normalized();
-    const double beside = patches::beside * voxel_size;
+    const double beside = sheets::beside * voxel_size;
     return way.sqrnorm() - (across | way) * (across | way) < beside * beside;
 }
 
@@ -38,7 +38,8 @@ bool bends_like_cylinder(const Octree& octree, const OctreeLevel& level, const N
     const NormalSet& set = sets.sets[s];
     const auto& m = set.spread.moments;
     const double along = m[0] + m[1] + m[2] - set.spread.along(set.normal);
-    if (!(std::abs(set.turn) * level.voxel_size > widths::turn_of_cylinder * along)) return false;
+    // half of what a cylinder of that width turns by
+    if (!(std::abs(set.turn) * level.voxel_size * widths::of_cylinder > along)) return false;
     double scatter = 0;
     for (Index p = level.first_point[set.voxel]; p < level.first_point[set.voxel + 1]; ++p)
         if (sets.of_point[p] == s) scatter += (octree.normals[p] - set.normal).sqrnorm();

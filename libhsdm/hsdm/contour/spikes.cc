@@ -4,6 +4,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/vertex_neighbors.hh"
+#include "hsdm/octree/constants.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +21,7 @@ public:
     bool none(const Vec3& place, Index own) const {
         const double usual = spikes::farthest * level_.voxel_size;
         if (holds(own, place, usual)) return false;
-        const double within = std::max(usual, spikes::spacings * spacing_around(own));
+        const double within = std::max(usual, spacings::beside * spacing_around(own));
         return !any_around(level_.coord(own), place, within) && !any_around(coord_of(place), place, within);
     }
 

@@ -93,7 +93,7 @@ bool Witnesses::speak_for(Index f) {
     std::size_t agree = 0;
     for (std::size_t k = 0; k < count; ++k)
         agree += (octree_.normals[near_[k].second] | normal) > angles::facing;
-    return agree >= handles::fewest_witnesses;
+    return agree >= two_agree;
 }
 
 void Witnesses::gather(Index v, const Vec3& centre) {

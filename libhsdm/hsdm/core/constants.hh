@@ -33,11 +33,28 @@ HSDM_TUNED double opposed = -0.5;
 
 } // namespace hsdm::angles
 
+// How often what settles by itself is repeated; how often what may go on, below (enough_rounds).
+namespace hsdm::repeats {
+
+/// rounds: of what one round does nearly all of.
+/// Why: by trial; the second one takes in what the first one changed around.
+HSDM_TUNED int twice = 2;
+
+/// rounds: of what comes nearer in every one.
+/// Why: by trial; after three little changes.
+HSDM_TUNED int few = 3;
+
+} // namespace hsdm::repeats
+
 namespace hsdm {
 
 /// points: of which a plane can be told: of a set, a sheet or a face that says where it lies.
 /// Why: as many as a plane has; the rim of a wall has few, and outliers agree with two by chance.
 inline constexpr unsigned points_of_plane = 3;
+
+/// points: or pairs of sets, at least, that say one thing.
+/// Why: a single one may be a stray, or wrong.
+inline constexpr unsigned two_agree = 2;
 
 /// rounds: of whatever is repeated until a round changes nothing.
 /// Why: bounds the work; what is left after so many is rare, and told or mended elsewhere.

@@ -156,9 +156,9 @@ private:
                 after.erase(after.begin() + static_cast<std::ptrdiff_t>(at));
             else
                 std::replace(after.begin(), after.end(), from, to);
+            // half of what it had: what was thin already does not refuse
             changes_.push_back({r, std::move(after), area_vector(mesh_, rings_[r]),
-                                std::min(edge_collapses::least_area,
-                                         edge_collapses::least_share * relative_area(rings_[r]))});
+                                std::min(edge_collapses::least_area, 0.5 * relative_area(rings_[r]))});
         }
     }
 

@@ -39,10 +39,6 @@ namespace hsdm::edge_collapses {
 /// Why: by trial; a hundredth of a square, the normal of less is rounding.
 HSDM_TUNED double least_area = 0.01;
 
-/// share: of what a facet with less than that had before, which it must keep.
-/// Why: by trial; half, so that what was thin already does not refuse.
-inline constexpr double least_share = 0.5;
-
 /// corners: of two facets that are united.
 /// Why: two quads with an edge in common have six.
 HSDM_TUNED std::size_t most_corners = 6;

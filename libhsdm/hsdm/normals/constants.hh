@@ -67,14 +67,6 @@ inline constexpr std::size_t face_percent = 44;
 /// Why: by trial; a point beyond a crease is less far off.
 HSDM_TUNED double least_height = 0.45;
 
-/// deviations: a point's distance from its neighbours' plane, in theirs.
-/// Why: noise is farther off once in four hundred.
-HSDM_TUNED double least_deviations = 3;
-
-/// rounds: of removing.
-/// Why: by trial; the fewer outliers there are, the more those left stand out.
-HSDM_TUNED int rounds = 3;
-
 } // namespace hsdm::distance_outliers
 
 // outliers.hh: drop_outliers_by_normals
@@ -100,16 +92,16 @@ HSDM_TUNED double most_rise = 0.35;
 
 } // namespace hsdm::normal_outliers
 
-// noise.hh
+// noise.hh, and what noise does not explain
 namespace hsdm::noise {
+
+/// deviations: or means of what noise does, beyond which it does hardly anything.
+/// Why: a point lies farther off once in four hundred.
+HSDM_TUNED double deviations = 3;
 
 /// neighbours: nearest ones whose plane tells the noise.
 /// Why: six are of one sheet even where that is one side of a thin plate.
 HSDM_TUNED std::size_t nearest = 6;
-
-/// neighbours: of the next scale.
-/// Why: twice as many.
-HSDM_TUNED std::size_t more_nearest = 12;
 
 /// share: of the reach, below which the distance from the plane of the nearest is small.
 /// Why: about five deviations to the reach; where all is noise it is 0.23.
@@ -140,13 +132,10 @@ namespace hsdm::smoothing {
 /// Why: by trial; below, planes of 16 to 64 neighbours are steady and creases stay crisper.
 HSDM_TUNED double least_noise = 0.4;
 
-/// deviations: radius of the surroundings.
-/// Why: by trial; wider ones round creases, narrower ones hold points of one side of the noise.
+/// deviations: radius of the surroundings, and off the plane, where another sheet begins.
+/// Why: by trial; wider ones round creases, narrower ones hold points of one side of the noise. A point of
+/// the sheet lies farther off once in 16,000; sides of a plate stay apart at seven.
 HSDM_TUNED double least_radius = 4;
-
-/// deviations: off the plane, where another sheet begins.
-/// Why: a point of the sheet lies farther once in 16,000; sides of a plate stay apart at seven.
-HSDM_TUNED double another_sheet = 4;
 
 /// geometric means: of deviation and spacing, in the radius of the surroundings.
 /// Why: a plane's tilt falls with noise * spacing / radius^2: some four degrees at six.
@@ -156,10 +145,6 @@ HSDM_TUNED double steady_radius = 6;
 /// Why: by trial; one is too coarse for a round weight, three take three times as long.
 HSDM_TUNED std::int32_t reach = 2;
 
-/// rounds: of moving to the plane of where the point came to lie.
-/// Why: by trial.
-HSDM_TUNED int rounds = 3;
-
 /// rounds: of all of that, with the noise that the moves say.
 /// Why: bounds the work.
 inline constexpr int most_rounds = 4;
@@ -167,10 +152,6 @@ inline constexpr int most_rounds = 4;
 /// share: of the noise that was thought; found less, all is done again.
 /// Why: by trial; a twentieth makes no difference.
 HSDM_TUNED double clearly_less = 0.95;
-
-/// rounds: of removing those.
-/// Why: some lie there in twos.
-HSDM_TUNED int removal_rounds = 2;
 
 } // namespace hsdm::smoothing
 
@@ -181,21 +162,9 @@ namespace hsdm::estimation {
 /// Why: by trial; curved ground of 20 spacings' radius is that far off its plane at the reach.
 HSDM_TUNED double least_tolerance = 0.05;
 
-/// factor: the same in multiples of the noise, counted from none.
-/// Why: three deviations.
-HSDM_TUNED double noise_tolerance = 3;
-
-/// reaches: the same at most.
-/// Why: half a neighbourhood's radius: beyond, every plane holds all neighbours.
-inline constexpr double most_tolerance = 0.5;
-
 /// factor: by which the spread of the flattest neighbour may widen the tolerance.
 /// Why: by trial.
 HSDM_TUNED double most_widening = 2;
-
-/// rounds: how many neighbourhoods far a crease is looked past.
-/// Why: two: so planes from well inside a face reach a crease even where the whole neighbourhood is mixed.
-HSDM_TUNED int rounds = 2;
 
 /// share: of the tolerance; neighbours that deviate more from their plane bend.
 /// Why: by trial; all that are within the tolerance deviate by 0.4 at most.
@@ -213,10 +182,6 @@ HSDM_TUNED double differing_cosine = 0.97;
 /// points: by their weights, that a plane is fitted to at least.
 /// Why: three and a half: the point and two and a half others.
 HSDM_TUNED double fewest = 3.5;
-
-/// steps: of fitting a plane to what it holds.
-/// Why: by trial.
-HSDM_TUNED int fit_steps = 2;
 
 /// points: weight of a point's own normal in means over neighbours.
 /// Why: by trial; half of one neighbour's: it is no better than theirs near a crease.
@@ -255,18 +220,10 @@ HSDM_TUNED double steepest = 0.3;
 /// Why: 30 degrees: steeper, the points are not beside each other.
 HSDM_TUNED double most_rise = 0.5;
 
-/// points: before it in a leaf that a point is compared with.
-/// Why: those of a leaf (neighborhoods.leaf_points); more only share a voxel of the deepest level.
-HSDM_TUNED Index compared = 12;
-
 /// reaches: nearer points are compared by how far they lie off each other's planes, not by the angle of their
 /// chord.
 /// Why: by trial; two sides of a plate oppose each other even where the chord is slanted.
 HSDM_TUNED double near_pair = 0.45;
-
-/// tolerances: the same.
-/// Why: the tolerances of both points.
-HSDM_TUNED double near_tolerances = 2;
 
 } // namespace hsdm::patches
 
@@ -289,10 +246,6 @@ HSDM_TUNED int steps = 5;
 /// spacings: how far ahead of a patch a point of another sheet lies.
 /// Why: by trial; under two, the least thickness that is promised, above what a patch bends.
 HSDM_TUNED double off_plane = 1.6;
-
-/// spacings: how far aside of the ray such a point may lie.
-/// Why: by trial; some ten points of a sheet across the ray.
-HSDM_TUNED double aside = 2;
 
 } // namespace hsdm::views
 
@@ -335,10 +288,6 @@ HSDM_TUNED double clear_gain = 1.2;
 /// Why: by trial.
 HSDM_TUNED double least_support = 0.1;
 
-/// rounds: of votes.
-/// Why: by trial; the second carries what the first one found to its neighbours.
-HSDM_TUNED int rounds = 2;
-
 } // namespace hsdm::normal_votes
 
 // arcs.hh
@@ -365,10 +314,6 @@ namespace hsdm::scattered_normals {
 /// Why: eight degrees; clean clouds stay below five, and normals of less noise than that do no harm.
 HSDM_TUNED double least = 0.14;
 
-/// share: of that angle, which the axes that positions tell may scatter at most.
-/// Why: half; of clean normals both scatter alike, to a tenth.
-HSDM_TUNED double share = 0.5;
-
 } // namespace hsdm::scattered_normals
 
 // mend_normals.hh
@@ -377,15 +322,6 @@ namespace hsdm::contradictions {
 /// sine: of the rise of a chord out of a plane that both points are on.
 /// Why: 12 degrees; by trial.
 inline constexpr double flattest = 0.2;
-
-/// spacings: between points that say something.
-/// Why: twice, so that most of successors in the octree's order count and none of another sheet.
-inline constexpr double farthest = 2;
-
-/// mean rises: that a pair on one plane may have.
-/// Why: three times what curvature and noise make; the sides of the thinnest plate lie farther off each
-/// other.
-inline constexpr double most_rises = 3;
 
 /// sine: added to that.
 /// Why: half a degree, for clouds without noise.

@@ -184,10 +184,11 @@ private:
     }
 
     /// Chooses the tolerances; not below the spread of the flattest neighbour, because a neighbourhood that
-    /// is rough throughout is no crease.
+    /// is rough throughout is no crease, and half a neighbourhood's radius at most: beyond, every plane holds
+    /// all neighbours.
     void choose_tolerance(const EstimateOptions& options) {
-        const double relative = std::clamp(options.noise_tolerance * result_.noise, options.least_tolerance,
-                                           estimation::most_tolerance);
+        const double relative =
+            std::clamp(options.noise_tolerance * result_.noise, options.least_tolerance, 0.5);
         for_each_index(octree_.size(), chunks::slow, [&](Index i) {
             double least = result_.spread[i];
             for (Index j : neighbors_.of(i)) least = std::min(least, result_.spread[j]);
@@ -247,7 +248,7 @@ private:
 
     /// Fits a plane to the neighbours that it holds, twice.
     static Vec3 refitted(const Neighborhood& around, Vec3 normal, double inverse) {
-        for (int step = 0; step < estimation::fit_steps; ++step) {
+        for (int step = 0; step < repeats::twice; ++step) {
             PlaneSums sums;
             sums.add(Vec3(0, 0, 0), 1);
             for (std::size_t k = 0; k < around.size(); ++k)

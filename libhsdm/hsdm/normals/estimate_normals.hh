@@ -1,6 +1,7 @@
 #pragma once
 // Normals from positions alone, such that creases stay creases.
 
+#include "hsdm/core/constants.hh"
 #include "hsdm/normals/constants.hh"
 #include "hsdm/normals/neighbors.hh"
 
@@ -11,10 +12,10 @@ struct EstimateOptions {
     /// neighbourhood, (0, 0.5): for clean data
     double least_tolerance = estimation::least_tolerance;
     /// in multiples of the noise, > 0
-    double noise_tolerance = estimation::noise_tolerance;
+    double noise_tolerance = noise::deviations;
     /// >= 0: rounds of taking over neighbours' planes, each reaching one neighbourhood farther from a crease;
     /// 0 is plain least squares
-    int rounds = estimation::rounds;
+    int rounds = repeats::twice;
 };
 
 struct EstimatedNormals {

@@ -5,6 +5,7 @@
 #include "hsdm/normals/constants.hh"
 #include "hsdm/normals/estimate_normals.hh"
 #include "hsdm/normals/orient_normals.hh"
+#include "hsdm/octree/constants.hh"
 #include "hsdm/octree/spacing.hh"
 
 #include <algorithm>
@@ -70,9 +71,8 @@ double mean_rise(std::size_t size, const GetPoint& point, double farthest) {
 template <class GetPoint>
 NormalConsistency check_pairs(std::size_t size, const GetPoint& point, double spacing) {
     // The sides of the thinnest plate are opposed, too, but lie off each other's planes.
-    const double farthest = contradictions::farthest * spacing;
-    const double highest =
-        contradictions::most_rises * mean_rise(size, point, farthest) + contradictions::added_rise;
+    const double farthest = spacings::beside * spacing;
+    const double highest = noise::deviations * mean_rise(size, point, farthest) + contradictions::added_rise;
     const auto add = [&](const Pair& pair, Index at, NormalConsistency& sum) {
         if (pair.kind == Pair::flat && pair.rise < highest) {
             ++sum.flat, sum.flat_opposed += pair.opposed;

@@ -68,7 +68,7 @@ struct Scale {
     double deviation; ///< of a normal distribution whose distances have this lower third
 };
 std::array<Scale, 2> scales() {
-    return {Scale{noise::nearest, noise::small, 1.3}, Scale{noise::more_nearest, noise::small_of_more, 1.13}};
+    return {Scale{noise::nearest, noise::small, 1.3}, Scale{2 * noise::nearest, noise::small_of_more, 1.13}};
 }
 
 /// What the points of a sample say at a scale.

@@ -68,7 +68,7 @@ bool is_off_surface(const Octree& octree, const Neighbors& neighbors, std::size_
     const double deviation = deviation_from(plane), reach = neighbors.reach[i];
     if (deviation > options.least_volume * reach) return !lies_on_face(octree, neighbors, i);
     const double height = std::abs(plane.normal | plane.centroid);
-    return height > options.least_height * reach && height > distance_outliers::least_deviations * deviation;
+    return height > options.least_height * reach && height > noise::deviations * deviation;
 }
 
 std::vector<std::uint8_t> find_outliers(const Octree& octree, const Neighbors& neighbors,

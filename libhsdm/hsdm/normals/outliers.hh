@@ -30,7 +30,7 @@ struct OutlierOptions {
     /// their deviations as well
     double least_height = distance_outliers::least_height;
     /// rounds: when some outliers are gone, others stand out more
-    int rounds = distance_outliers::rounds;
+    int rounds = repeats::few;
 };
 
 /// Removes points that are far from their neighbours while these are near each other, or far from all; less

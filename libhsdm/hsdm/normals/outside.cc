@@ -4,6 +4,7 @@
 #include "hsdm/core/interruption.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/normals/constants.hh"
+#include "hsdm/octree/constants.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -188,7 +189,7 @@ private:
             const Vec3 d = octree_.positions[i] - from;
             const double ahead = d | along;
             if (ahead > views::off_plane * h && ahead < nearest
-                && d.sqrnorm() - ahead * ahead < views::aside * views::aside * h * h)
+                && d.sqrnorm() - ahead * ahead < spacings::beside * spacings::beside * h * h)
                 nearest = ahead, first = i;
         }
         return first;

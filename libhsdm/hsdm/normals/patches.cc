@@ -56,10 +56,11 @@ private:
     /// its first point.
     Index join_leaf(std::size_t leaf, Index base) {
         const Index begin = neighbors_.leaf_first[leaf], end = neighbors_.leaf_first[leaf + 1];
+        const auto most = static_cast<Index>(neighborhoods::leaf_points); // others share the deepest voxel
         Index count = 0;
         for (Index i = begin; i < end; ++i) {
             if (estimate_.normals[i].sqrnorm() < 0.5) continue;
-            for (Index j = i - begin > patches::compared ? i - patches::compared : begin; j < i; ++j) {
+            for (Index j = i - std::min(i - begin, most); j < i; ++j) {
                 if (result_.of_point[j] == no_index || result_.of_point[j] == result_.of_point[i]) continue;
                 const double cosine = estimate_.normals[i] | estimate_.normals[j];
                 if (!flat(i, j, cosine)) continue;
@@ -122,8 +123,8 @@ double mirrored(const Vec3& n, const Vec3& m, const Vec3& d, double square) {
 
 /// The squared length from which on chords from a point count as that long.
 double longest_square(const Neighbors& neighbors, const EstimatedNormals& estimate, Index i) {
-    const double span =
-        std::max(patches::near_pair * neighbors.reach[i], patches::near_tolerances * estimate.tolerance[i]);
+    const double both = 2 * estimate.tolerance[i]; // the tolerances of both points, much alike
+    const double span = std::max(patches::near_pair * neighbors.reach[i], both);
     return span * span;
 }
 

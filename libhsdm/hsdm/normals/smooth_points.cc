@@ -2,6 +2,7 @@
 
 #include "hsdm/core/check_option.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/normals/constants.hh"
 #include "hsdm/normals/neighborhood.hh"
 #include "hsdm/normals/noise.hh"
@@ -104,7 +105,7 @@ public:
         : radius_(
             std::max(smoothing::least_radius * noise, smoothing::steady_radius * std::sqrt(noise * spacing))),
           inverse_radius_(1 / radius_),
-          inverse_gap_(1 / (smoothing::another_sheet * noise)) {}
+          inverse_gap_(1 / (smoothing::least_radius * noise)) {}
 
     /// For the points of two sheets that mix: half as far off the plane the other one begins, so that each
     /// keeps a mode of its own; voxels half as wide do not hold both, and modes take more rounds than means.
@@ -254,7 +255,7 @@ private:
 
     double radius_, inverse_radius_, inverse_gap_;
     std::int32_t reach_ = smoothing::reach;
-    int rounds_ = smoothing::rounds;
+    int rounds_ = repeats::few;
 };
 
 /// How points scatter about where they were moved to, and where they lie; all summed.
@@ -432,7 +433,7 @@ SmoothReport smooth_known_noise(Octree& octree, double noise, Neighbors& neighbo
     report.noise = smooth_points(octree, noise);
     neighbors = find_neighbors(octree);
     report.between = drop_outliers_by_distance(
-        octree, neighbors, {.most_stretch = options.most_stretch, .rounds = smoothing::removal_rounds});
+        octree, neighbors, {.most_stretch = options.most_stretch, .rounds = repeats::twice});
     return report;
 }
 

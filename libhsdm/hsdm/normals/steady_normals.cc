@@ -49,7 +49,8 @@ std::size_t steady_normals(Octree& octree) {
     const Neighbors neighbors = find_neighbors(octree);
     EstimatedNormals told = estimate_normals(octree, neighbors);
     told.normals = refined_normals(octree, neighbors, told);
-    if (median_angle(told.normals) > scattered_normals::share * median_angle(octree.normals)) return 0;
+    // of clean normals both scatter alike, to a tenth
+    if (median_angle(told.normals) > 0.5 * median_angle(octree.normals)) return 0;
     turn_along(octree.normals, told.normals);
     vote_on_normals(octree, neighbors, told); // near creases: with the sides they have now
     std::size_t changed = 0;

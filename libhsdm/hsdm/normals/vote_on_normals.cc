@@ -60,7 +60,7 @@ private:
 void vote_on_normals(const Octree& octree, const Neighbors& neighbors, EstimatedNormals& estimate) {
     const std::vector<Index>& bent = estimate.bent;
     std::vector<Vec3> settled(bent.size());
-    for (int round = 0; round < normal_votes::rounds; ++round) {
+    for (int round = 0; round < repeats::twice; ++round) {
         for_each_index(bent.size(), chunks::heavy, [&](Index b) {
             const Vec3& own = settled[b] = estimate.normals[bent[b]];
             const auto around = neighbors.of(bent[b]);

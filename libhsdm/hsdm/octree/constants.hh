@@ -9,8 +9,10 @@
 // spacing.hh
 namespace hsdm::spacings {
 
-/// points: per voxel of the level on which voxels are counted.
-/// Why: so many leave few of a surface's voxels without a point; more see curvature and thin parts.
+/// points: of a voxel that a surface passes, that tell its height; more have no more say, a sheet of fewer in
+/// the voxels round one is strays. So many there are in voxels of the level on which voxels are counted.
+/// Why: eight tell a mean height to a third of the noise, and leave few of a surface's voxels without a
+/// point; more see curvature and thin parts.
 HSDM_TUNED double points_per_voxel = 8;
 
 /// share: of the voxels that a surface crosses, times the root of the points per voxel, that holds none.
@@ -21,6 +23,10 @@ HSDM_TUNED double empty_share = 0.4;
 /// Why: nine points a voxel, which fix a set's normal, while one voxel in seven is a sliver without any; by
 /// trial.
 HSDM_TUNED double spacings_per_voxel = 3;
+
+/// spacings: from a place on a sheet to the nearest of its points, at most.
+/// Why: six points are expected on either half of that disc; that none is has a chance of a four hundredth.
+inline constexpr double beside = 2;
 
 /// deviations: edge of the voxel that suits the noise.
 /// Why: by trial; two sheets of one voxel are told apart by 0.3 of it, and noise reaches as far.
@@ -46,13 +52,5 @@ inline constexpr double margin = 1 << 10;
 /// points: of a part, far from all else though it is.
 /// Why: eight voxels of a surface, by eight points each.
 inline constexpr std::size_t fewest_of_part = 64;
-
-/// gaps: across the cloud's box, the widest that is first tried as a cut.
-/// Why: as boxes_across.
-inline constexpr double gaps_per_extent = 1 << 12;
-
-/// share: of the points between cuts that belong to no part; of more, nothing is cut.
-/// Why: by trial; such a cloud is scattered and has no parts.
-inline constexpr double most_scraps = 0.02;
 
 } // namespace hsdm::far_points

@@ -142,7 +142,7 @@ std::size_t mark_scraps(const Octree& octree, const PointView& cloud, const Clou
 
 /// The frame with all gaps cut that are wide compared with parts; without cuts if there are none.
 CloudFrame with_cuts(const Octree& octree, const PointView& cloud, CloudFrame frame, double least_gap) {
-    double widest = std::max(octree.extent / far_points::gaps_per_extent, least_gap);
+    double widest = std::max(octree.extent / far_points::boxes_across, least_gap);
     for (;;) {
         const double longest = cut_gaps(octree, cloud, widest, frame);
         if (!(longest > 0)) return frame.without_cuts();              // each stretch is a single place
@@ -179,7 +179,7 @@ Occurrences cut_empty_space(Octree& octree, const PointView& cloud, CloudFrame& 
         if (!cut.has_cuts()) return discarded;
         std::vector<std::uint8_t> marks;
         const std::size_t scraps = mark_scraps(octree, cloud, cut, marks);
-        if (static_cast<double>(scraps) > far_points::most_scraps * static_cast<double>(octree.size()))
+        if (scraps * far_points::one_outer_in > octree.size()) // scattered, and no parts
             return discarded;
         if (scraps == 0) {
             if (take_anew(octree, cloud, cut)) frame = cut;

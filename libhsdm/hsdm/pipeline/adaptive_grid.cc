@@ -1,5 +1,6 @@
 #include "hsdm/pipeline/adaptive_grid.hh"
 
+#include "hsdm/contour/constants.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/pipeline/attributes.hh"
@@ -15,7 +16,7 @@ namespace hsdm {
 namespace {
 
 double error_bound(const MethodInput& in) {
-    if (!in.options.max_error) return resolution::default_error * in.level.voxel_size;
+    if (!in.options.max_error) return sheets::plane_error * in.level.voxel_size;
     const MaxError& asked = *in.options.max_error;
     return asked.of_diagonal ? asked.value * in.octree.bounds.diagonal() : asked.value / in.frame.unit();
 }

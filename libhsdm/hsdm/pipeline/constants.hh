@@ -15,14 +15,6 @@ HSDM_TUNED double adaptive_spacings = 2;
 /// finer.
 inline constexpr double share_of_cylinders = 0.001;
 
-/// voxels: the error bound of an adaptive grid that none is asked of.
-/// Why: a tenth: what a uniform grid of such voxels keeps in the mean on curved ground.
-inline constexpr double default_error = 0.1;
-
-/// voxels: standard deviation of noise that need not be taken out of points with normals.
-/// Why: beyond, noise decides topology; below, creases stay as crisp as they are.
-HSDM_TUNED double harmless_noise = 0.3;
-
 } // namespace hsdm::resolution
 
 // which holes extended_method.hh closes; holes.widest of contour/constants.hh where voxels are wide against

@@ -9,6 +9,7 @@
 #include "hsdm/contour/sheet_features.hh"
 #include "hsdm/contour/sheet_widths.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/constants.hh"
 #include "hsdm/mesh/turn_outward.hh"
@@ -254,8 +255,7 @@ struct Completing {
 /// Completes the slits of a draft, and once more where some are left, as long as that makes it better.
 void complete_slits(Completing how, Draft& draft) {
     const DualContourOptions options = options_for(how.measured, how.base.input.spacing);
-    for (int round = 1;
-         round <= completing::most_rounds && draft.facets.holes.loops > draft.facets.holes.closed;
+    for (int round = 1; round <= repeats::twice && draft.facets.holes.loops > draft.facets.holes.closed;
          ++round, how.done += how.share) {
         const MethodInput in = draft.input(how.measured);
         const SlitCompletion completion = in.phases.run("completion", how.done, draft.report.seconds.facets,

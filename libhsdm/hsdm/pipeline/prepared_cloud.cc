@@ -1,5 +1,6 @@
 #include "hsdm/pipeline/prepared_cloud.hh"
 
+#include "hsdm/contour/constants.hh"
 #include "hsdm/contour/sheet_widths.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/normals/noise.hh"
@@ -116,7 +117,7 @@ int PreparedCloud::choose_resolution(const ReconstructOptions& options) {
 }
 
 void PreparedCloud::smooth_for_depth(int depth, const Phases& phases) {
-    if (moved_ || noise_ <= resolution::harmless_noise * octree.voxel_size(depth)) return;
+    if (moved_ || noise_ <= relations::smooth_gap * octree.voxel_size(depth)) return;
     looked_.reset();
     note_smoothing(phases.run("noise", 0.1, report.seconds.normals, [&] {
         Neighbors neighbors;

@@ -1,5 +1,6 @@
 #include "hsdm/pipeline/reconstruct_in_tiles.hh"
 
+#include "hsdm/contour/constants.hh"
 #include "hsdm/core/ranks.hh"
 #include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
@@ -183,7 +184,7 @@ private:
         const auto is_narrow = [&](int) { return has_narrow_cylinders(*cloud_, plan(group), ghost); };
         hsdm::choose_resolution(options_, {cloud_->no_points(), cloud_->frame(), noise, rearrange, is_narrow},
                                 report_);
-        if (noise > resolution::harmless_noise * cloud_->voxel_size())
+        if (noise > relations::smooth_gap * cloud_->voxel_size())
             refuse_in_tiles("points are noisy, and would be moved onto their surface");
         if (!options_.depth) // the spacing stays that of the cube before
             survey_->sums = survey_cloud(*cloud_, survey_->sums.points(), group).sums;

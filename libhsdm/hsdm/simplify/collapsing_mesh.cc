@@ -150,7 +150,7 @@ bool CollapsingMesh::flip(Index side) {
     const Index a = start(side), b = end(side), c = opposite(side), d = opposite(twin(side));
     if ((locked_[a] && locked_[b]) || (locked_[c] && locked_[d])) return false;
     if (!spares(a) || !spares(b)) return false;
-    if (std::max(facet_count(c), facet_count(d)) >= collapses::most_ring) return false;
+    if (std::max(facet_count(c), facet_count(d)) >= bounds::most_squared) return false;
     if (!ring_of(previous_side(side), ring_)) return false;
     if (std::find(ring_.begin(), ring_.end(), d) != ring_.end()) return false;
     lay(side);

@@ -14,11 +14,6 @@ namespace hsdm::bounds {
 /// Why: by trial; the largest distance is two or three times the root mean square.
 HSDM_TUNED double planes_share = 0.35;
 
-/// share: of the error, that the surface may be off a patch's plane.
-/// Why: half, so that what bends to either side of a strip's plane and its neighbours' corners are within the
-/// error.
-HSDM_TUNED double patch_share = 0.5;
-
 /// share: of planes_share, for places on the facets that a dropped vertex leaves.
 /// Why: by trial, 0.6 of the error; with twice that places that are not looked at go too far.
 HSDM_TUNED double drop_share = 1.75;
@@ -36,6 +31,11 @@ HSDM_TUNED double place_spacing = 0.5;
 /// Why: bounds the work.
 inline constexpr int rounds = 24;
 
+/// members: of the leaves below that are joined to parts, facets of a vertex that flips give facets or that
+/// may go; what has more stays as it is.
+/// Why: bounds the work, which grows with the square; eight children of eight parts each.
+inline constexpr std::size_t most_squared = 64;
+
 } // namespace hsdm::bounds
 
 // clusters.hh, divide_by_planes.hh
@@ -44,10 +44,6 @@ namespace hsdm::leaf_parts {
 /// parts: of one piece of the surface in a leaf.
 /// Why: the four edges of a rod; what needs more is left to smaller leaves.
 HSDM_TUNED std::size_t most_parts = 4;
-
-/// members: of the leaves below that are joined to parts; a piece of more is divided no further.
-/// Why: bounds the work, which grows with the square; eight children of eight parts each.
-inline constexpr std::size_t most_members = 64;
 
 } // namespace hsdm::leaf_parts
 
@@ -109,10 +105,6 @@ HSDM_TUNED double most_deviation = 0.01;
 /// Why: by trial; a cone fits always better, having one parameter more.
 HSDM_TUNED double cone_share = 0.3;
 
-/// facets: of a region at least.
-/// Why: by trial; a strip of eight facets on a fillet of a few rows.
-HSDM_TUNED std::size_t least_facets = 60;
-
 /// facets: when the axis is fitted for the first time, and again whenever there are twice as many.
 /// Why: as many as surroundings have, roughly: what comes sooner was fitted there.
 HSDM_TUNED std::size_t first_refit = 40;
@@ -126,10 +118,6 @@ inline constexpr int most_trims = 2;
 // strips.hh
 namespace hsdm::strips {
 
-/// facets: width of a strip at least.
-/// Why: vertices cannot follow lines closer than the fine mesh's own.
-HSDM_TUNED double least_width = 1;
-
 /// rounds: of fitting planes and letting them take over facets.
 /// Why: both are settled by then.
 HSDM_TUNED int rounds = 4;
@@ -141,10 +129,6 @@ HSDM_TUNED double bin_width = 0.02;
 /// share: of a region's area to one side; with less it goes all round and strips may begin anywhere.
 /// Why: by trial; a closed shaft sums up to nothing but its rounding.
 HSDM_TUNED double least_lean = 0.05;
-
-/// tries: of numbers of strips.
-/// Why: bounds the work: what bends two ways takes ever more.
-HSDM_TUNED int most_tries = 16;
 
 /// factor: on the number of strips that the height asks for.
 /// Why: a little less than it asks for, since strips of even height are not missed evenly.
@@ -194,10 +178,6 @@ HSDM_TUNED double least_shape = 0.02;
 /// facets: of a vertex that others merge into.
 /// Why: bounds the work; fans of more are the middles of discs.
 HSDM_TUNED std::size_t most_facets = 24;
-
-/// facets: of a vertex that flips give facets, or that may go.
-/// Why: bounds the work, which grows with the square.
-inline constexpr std::size_t most_ring = 64;
 
 /// share: of the tolerance, that a vertex may be off its shared planes and count as where they meet.
 /// Why: far below what is seen, far above rounding.

@@ -94,7 +94,8 @@ std::vector<DevelopableRegion> find_developable_regions(const FacetField& field,
         if (seen[seed]) return;
         DevelopableRegion region = grow(field, seed, taken, seen);
         const std::vector<Index> trimmed = trim(field, region);
-        if (region.facets.size() < developable::least_facets
+        // a strip on a fillet of a few rows at least
+        if (region.facets.size() < 2 * flat_ground::least_facets
             || region.axis.deviation > developable::most_deviation)
             return;
         regions.push_back(std::move(region));

@@ -78,7 +78,7 @@ Vec3 place_in(const Quadric& planes, const Box& box) {
 std::vector<Index> divide_by_planes(std::span<const Quadric> members,
                                     std::span<const std::pair<Index, Index>> adjacent, const Box& box,
                                     double tolerance) {
-    if (members.size() > leaf_parts::most_members) return {};
+    if (members.size() > bounds::most_squared) return {};
     return Division(members, adjacent, box).run(tolerance);
 }
 

@@ -30,7 +30,7 @@ private:
     /// at one end of the crease, and the position of its other end in other_end_ (0 on a flat place).
     bool may_go(Index side) {
         vertex_ = mesh_.start(side);
-        if (!gives_way(vertex_) || !mesh_.ring_of(side, ring_) || ring_.size() > collapses::most_ring)
+        if (!gives_way(vertex_) || !mesh_.ring_of(side, ring_) || ring_.size() > bounds::most_squared)
             return false;
         normals_.clear();
         for (std::size_t i = 0; i < ring_.size(); ++i)

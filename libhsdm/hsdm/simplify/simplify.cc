@@ -40,7 +40,8 @@ public:
           tree_(build_cell_tree(fine.positions, extent, depth)) {
         run_both( // each has steps that run on one thread
             [&] {
-                patches_ = find_planar_patches(fine, bounds::patch_share * options.max_error);
+                // half, for what bends to either side of a strip's plane, and its neighbours' corners
+                patches_ = find_planar_patches(fine, 0.5 * options.max_error);
                 planes_ = vertex_planes(fine, patches_, tolerance());
                 clusters_ = build_clusters(fine, tree_, planes_, tolerance());
             },

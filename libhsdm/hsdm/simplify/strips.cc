@@ -61,7 +61,7 @@ public:
 
     std::optional<Strips> run(double tolerance) {
         std::size_t m = 1;
-        for (int tries = 0; tries < strips::most_tries && resolves(m); ++tries) {
+        for (int tries = 0; tries < enough_rounds && resolves(m); ++tries) {
             const double missed = cut(m);
             if (missed <= tolerance) return std::move(strips_);
             // The height that an arc spans grows with the square of its length.
@@ -115,8 +115,8 @@ private:
     static double most_growth(double missed) { return std::isfinite(missed) ? 1000 : strips::blind_growth; }
 
     bool resolves(std::size_t m) const {
-        return strips::least_width * facets_along_ * static_cast<double>(m)
-               <= static_cast<double>(share_.size());
+        // vertices cannot follow lines closer than the fine mesh's own
+        return facets_along_ * static_cast<double>(m) <= static_cast<double>(share_.size());
     }
 
     /// Cuts into m strips; returns half of the height that the worst strip spans across its plane.
