@@ -1,4 +1,5 @@
 #include "hsdm/normals/mend_normals.hh"
+#include "hsdm/normals/steady_normals.hh"
 #include "support/sample.hh"
 
 #include <catch2/catch.hpp>
@@ -137,6 +138,23 @@ TEST_CASE("right normals of points that are all noise stay as they are", "[norma
     const std::vector<Vec3> given = octree.normals;
     mend_normals(octree);
     CHECK(octree.normals == given);
+}
+
+TEST_CASE("the two sides of a wall as thin as points are apart keep theirs, whatever the noise",
+          "[normals]") {
+    const double spacing = std::sqrt(2.0 / 15000);
+    for (const std::uint64_t seed : {1, 2, 3}) {
+        INFO("seed " << seed);
+        const Solid wall = in_general_pose(support::box(Vec3(1, 1, spacing)));
+        PointCloud cloud = support::sample(
+            wall, {.points = 15000, .seed = seed, .position_noise = 0.2 * spacing, .normal_noise = 0.26});
+        Octree octree = build_octree(cloud);
+        REQUIRE(steady_normals(octree) > 0);
+        const std::vector<Vec3> given = octree.normals;
+        REQUIRE(check_normals(octree).doubtful());
+        mend_normals(octree);
+        CHECK(octree.normals == given);
+    }
 }
 
 TEST_CASE("points without a normal are left without when the others are mended", "[normals]") {

@@ -76,3 +76,20 @@ TEST_CASE("a part with noisy normals comes out like the one with clean ones", "[
     CHECK(noisy.mesh.euler == clean.mesh.euler);
     CHECK(noisy.error.points_to_mesh_mean < 2 * clean.error.points_to_mesh_mean);
 }
+
+TEST_CASE("outliers beside a thin plate with noisy normals make no part of their own", "[normals]") {
+    for (const std::uint64_t seed : {1, 2, 3, 4}) {
+        INFO("seed " << seed);
+        const Solid plate = in_general_pose(support::box(Vec3(1, 1, 0.05)));
+        const Report report = reconstruct(support::sample(plate, {.points = 40000,
+                                                                  .seed = seed,
+                                                                  .position_noise = 0.001,
+                                                                  .normal_noise = 12 * one_degree,
+                                                                  .outliers = 0.03}),
+                                          {.depth = 3})
+                                  .report;
+        REQUIRE(report.rejected.at("normals_steadied") > 0);
+        CHECK(report.mesh.closed);
+        CHECK(report.mesh.components == 1);
+    }
+}

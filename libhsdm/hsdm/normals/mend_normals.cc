@@ -113,6 +113,16 @@ std::vector<Vec3> turned_by_positions(const Octree& octree, const Neighbors& nei
     return turned;
 }
 
+/// Did turning leave more than half of the contradictions? Or did it double those at creases where these have
+/// no say? Turned normals contradict each other there, too, but those of two sides of a wall near each other
+/// do only once one of them faces in.
+bool came_of_noise(const NormalConsistency& before, const NormalConsistency& after) {
+    const bool creases_count = !before.askew();
+    if (2 * after.contradiction(creases_count) > before.contradiction(creases_count)) return true;
+    return !creases_count && after.creased_opposed >= contradictions::fewest
+           && after.creased_opposed > 2 * before.creased_opposed;
+}
+
 } // namespace
 
 bool NormalConsistency::doubtful() const {
@@ -187,9 +197,7 @@ std::size_t mend_normals(Octree& octree, OrientOptions options) {
     std::vector<Vec3> mended = before.askew() ? turned_by_positions(octree, neighbors, options)
                                               : turned_by_normals(octree, neighbors, options);
     octree.normals.swap(mended);
-    const bool creases_count = !before.askew();
-    if (2 * check_normals(octree).contradiction(creases_count)
-        > before.contradiction(creases_count)) { // noise, no flips
+    if (came_of_noise(before, check_normals(octree))) {
         octree.normals.swap(mended);
         return 0;
     }

@@ -86,24 +86,37 @@ void PreparedCloud::provide_normals(const PointView& cloud, const Phases& phases
 }
 
 void PreparedCloud::check_given_normals(const PointView& cloud, const Phases& phases) {
-    report.rejected["normals_steadied"] = phases.run("normals", 0.05, report.seconds.normals, [&] {
-        return are_scattered(octree) ? steady_normals(octree) : 0;
+    bool scattered = false, trusted = false;
+    phases.run("normals", 0.05, report.seconds.normals, [&] {
+        const NormalConsistency consistency = check_normals(octree, report.input.spacing);
+        scattered = are_scattered(octree);
+        trusted = !scattered && !consistency.doubtful();
+        if (trusted) measure_noise(consistency); // outliers included, as tiles do, which spares them a pass
     });
-    report.rejected["normals_mended"] = phases.run("normals", 0.05, report.seconds.normals, [&] {
-        NormalConsistency consistency = check_normals(octree, report.input.spacing);
-        if (consistency.rough() && octree.size() > 1)
-            noise_ = noise_deviation(octree, find_neighbors(octree));
-        if (!consistency.doubtful()) return std::size_t{0};
-        const std::size_t mended = mend_normals(octree, orientation_of(cloud));
-        if (mended > 0) consistency = check_normals(octree);
-        warn_of_sides(consistency, false);
-        return mended;
-    });
+    // Before normals are changed: outliers that take the axes of their positions agree with each other.
     note_outliers(phases.run("strays", 0.08, report.seconds.normals, [&] {
         const Occurrences outliers = drop_outliers_by_normals(octree);
         if (outliers.count > 0) fit_to_points(octree);
         return outliers;
     }));
+    report.rejected["normals_steadied"] = report.rejected["normals_mended"] = 0;
+    if (!trusted)
+        phases.run("normals", 0.1, report.seconds.normals, [&] { correct_normals(scattered, cloud); });
+}
+
+void PreparedCloud::measure_noise(const NormalConsistency& consistency) {
+    if (consistency.rough() && octree.size() > 1) noise_ = noise_deviation(octree, find_neighbors(octree));
+}
+
+void PreparedCloud::correct_normals(bool scattered, const PointView& cloud) {
+    if (scattered) report.rejected["normals_steadied"] = steady_normals(octree);
+    NormalConsistency consistency = check_normals(octree, report.input.spacing);
+    measure_noise(consistency);
+    if (!consistency.doubtful()) return;
+    const std::size_t mended = mend_normals(octree, orientation_of(cloud));
+    report.rejected["normals_mended"] = mended;
+    if (mended > 0) consistency = check_normals(octree);
+    warn_of_sides(consistency, false);
 }
 
 int PreparedCloud::choose_resolution(const ReconstructOptions& options) {

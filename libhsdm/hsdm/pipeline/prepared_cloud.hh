@@ -21,8 +21,8 @@ public:
     /// Estimates normals if the method needs them and the cloud has none or they are not wanted.
     void provide_normals(const PointView& cloud, const Phases& phases);
 
-    /// Turns given normals to one side if their signs contradict each other, and measures the noise where
-    /// there seems to be much.
+    /// Removes outliers, gives scattered normals the axes of the positions, turns normals to one side if
+    /// their signs contradict each other, and measures the noise where there seems to be much.
     void check_given_normals(const PointView& cloud, const Phases& phases);
 
     /// Chooses the depth that the options ask for or that spacing and noise suggest, with a cube that fits;
@@ -63,6 +63,12 @@ private:
 
     /// Enters what normals contradict each other.
     void warn_of_sides(const NormalConsistency& consistency, bool estimated);
+
+    /// Measures the noise of positions where normals say that there may be much.
+    void measure_noise(const NormalConsistency& consistency);
+
+    /// Gives scattered normals other axes, and turns those that contradict each other.
+    void correct_normals(bool scattered, const PointView& cloud);
 
     /// What the cloud knows of its scanners, relative to the octree's origin.
     OrientOptions orientation_of(const PointView& cloud) const;
