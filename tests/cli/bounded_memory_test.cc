@@ -63,7 +63,7 @@ TEST_CASE("two jobs share a folder for scratch", "[cli][tiles]") {
     CHECK(read_file(job.folder / "b.ply") == one);
 }
 
-TEST_CASE("a signal in any phase of bounded memory leaves nothing", "[cli][tiles]") {
+TEST_CASE("a signal in any phase of bounded memory leaves nothing", "[cli][tiles][slow]") {
     const Job job(300000);
     int cancelled = 0;
     for (const char* phase : {"octree", "survey", "tiles", "whole", "error", "write"}) {
