@@ -143,7 +143,7 @@ TEST_CASE("right normals of points that are all noise stay as they are", "[norma
 TEST_CASE("the two sides of a wall as thin as points are apart keep theirs, whatever the noise",
           "[normals]") {
     const double spacing = std::sqrt(2.0 / 15000);
-    for (const std::uint64_t seed : {1, 2, 3}) {
+    for (const std::uint64_t seed : {1u, 2u, 3u}) {
         INFO("seed " << seed);
         const Solid wall = in_general_pose(support::box(Vec3(1, 1, spacing)));
         PointCloud cloud = support::sample(

@@ -78,7 +78,7 @@ TEST_CASE("a part with noisy normals comes out like the one with clean ones", "[
 }
 
 TEST_CASE("outliers beside a thin plate with noisy normals make no part of their own", "[normals]") {
-    for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    for (const std::uint64_t seed : {1u, 2u, 3u, 4u}) {
         INFO("seed " << seed);
         const Solid plate = in_general_pose(support::box(Vec3(1, 1, 0.05)));
         const Report report = reconstruct(support::sample(plate, {.points = 40000,
