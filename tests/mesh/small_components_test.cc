@@ -138,7 +138,6 @@ TEST_CASE("what is thinner than layers lie apart goes with them: cavities, and w
         bool inward = false;
         Vec3 at{0, 0, 0};
         bool all_turned = false;
-        bool was_open = false; // a vertex of it was on a border
     };
     const auto stays = [](const Thin& thin, double layers) {
         PolygonMesh mesh = support::divided_cube(6);
@@ -155,9 +154,7 @@ TEST_CASE("what is thinner than layers lie apart goes with them: cavities, and w
         }
         if (thin.all_turned) turn_over(mesh);
         const std::size_t before = mesh.facet_count();
-        std::vector<std::uint8_t> on_border(mesh.vertex_count(), 0);
-        on_border[0] = thin.was_open;
-        drop_splinters(mesh, {.flat = 0.1, .layers = layers, .on_border = on_border});
+        drop_splinters(mesh, {.flat = 0.1, .layers = layers});
         CHECK((mesh.facet_count() == before || mesh.facet_count() == before - facets));
         return mesh.facet_count() == before;
     };
@@ -165,9 +162,6 @@ TEST_CASE("what is thinner than layers lie apart goes with them: cavities, and w
     for (const bool all_turned : {false, true}) {
         CHECK_FALSE(stays({.inward = true, .all_turned = all_turned}, 0.6));
         CHECK(stays({.thickness = 0.9, .inward = true, .all_turned = all_turned}, 0.6));
-        CHECK_FALSE(stays({.thickness = 4, .inward = true, .all_turned = all_turned, .was_open = true}, 0.6));
-        CHECK(stays({.thickness = 4, .inward = true, .all_turned = all_turned, .was_open = true}, 0));
-        CHECK(stays({.thickness = 4, .all_turned = all_turned, .was_open = true}, 0.6)); // no cavity
         CHECK_FALSE(stays({.all_turned = all_turned}, 0.6));
         CHECK(stays({.thickness = 0.9, .all_turned = all_turned}, 0.6));
         // Of more than a thirty-second of the cube's area.

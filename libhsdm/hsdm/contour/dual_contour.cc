@@ -269,27 +269,11 @@ MeshOfPart part_of_whole(const DualContourOptions& options, const DualContour& r
     return {result.mesh, [&](Index v) { return result.voxel[result.mesh.origin[v]]; }, options.part};
 }
 
-/// Per origin, does a vertex of its lie on a border?
-std::vector<std::uint8_t> border_origins(const DualContour& result) {
-    const PolygonMesh& mesh = result.mesh;
-    std::vector<std::uint8_t> found(result.voxel.size(), 0);
-    for_each_in_order(mesh.corners.size(), [&](std::size_t c) {
-        if (result.links->twin[c] == no_index) found[mesh.origin[mesh.corners[c]]] = 1;
-    });
-    return found;
-}
-
-/// `stage`: the first time or the second; `closed`: what border_origins() found before borders were closed,
-/// if anything.
+/// `stage`: the first time or the second.
 Occurrences leave_out_splinters(const OctreeLevel& level, const DualContourOptions& options,
-                                std::size_t stage, DualContour& result,
-                                std::span<const std::uint8_t> closed = {}) {
+                                std::size_t stage, DualContour& result) {
     SplinterOptions splinters = options.splinters;
     splinters.flat *= level.voxel_size, splinters.layers *= level.voxel_size;
-    std::vector<std::uint8_t> on_border(closed.empty() ? 0 : result.mesh.vertex_count());
-    for_each_index(on_border.size(), chunks::quick,
-                   [&](Index v) { on_border[v] = closed[result.mesh.origin[v]]; });
-    splinters.on_border = on_border;
     if (options.part.is_part()) {
         splinters.largest = options.largest[stage];
         result.components[stage] = components_of_part(part_of_whole(options, result), splinters.enough(),
@@ -452,12 +436,10 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     cut(0);
     const std::size_t again = result.handle_work[0].last; // in the whole, if not here
     result.handle_work[1] = {1, again, again};
-    std::vector<std::uint8_t> closed;
     if (options.fill) {
         FillHolesOptions holes = options.holes;
         holes.max_diameter *= h;
         if (!result.links) result.links = link_facets(result.mesh);
-        if (options.all_round && options.splinters.layers > 0) closed = border_origins(result);
         result.holes = fill_holes(result.mesh, *result.links, holes);
         if (changed(result.holes.closed) > 0) cut(1); // those of which a hole was a side
     }
@@ -468,7 +450,7 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
         changed(1);
     }
     if (edited || may_be_small(options, result.components[0])) {
-        const Occurrences more = leave_out_splinters(level, options, 1, result, closed);
+        const Occurrences more = leave_out_splinters(level, options, 1, result);
         changed(more.count);
         result.splinters.add(more);
     } else {

@@ -17,18 +17,16 @@ namespace {
 struct Extent {
     double area = 0, volume = 0; ///< negative: it faces inward, as the side of a cavity does
     Box box;
-    bool was_open = false; ///< had a border
 
     bool is_thinner_than(double thickness) const { return 2 * std::abs(volume) < thickness * area; }
 
-    /// Is this layers of the largest component: a cavity in it, or small and beside it?
-    bool is_layers_of(const Extent& largest, double thickness, double least_ratio) const {
+    /// May this be layers of the largest component: a cavity in it, or small and beside it?
+    bool may_be_of(const Extent& largest, double margin, double least_ratio) const {
         for (unsigned k = 0; k < 3; ++k)
-            if (box.lo[k] < largest.box.lo[k] - thickness || box.hi[k] > largest.box.hi[k] + thickness)
+            if (box.lo[k] < largest.box.lo[k] - margin || box.hi[k] > largest.box.hi[k] + margin)
                 return false;
         const bool is_cavity = (volume < 0) != (largest.volume < 0); // nothing is turned outward yet
-        const bool may_be = is_cavity ? area < largest.area : area * least_ratio <= largest.area;
-        return may_be && (is_thinner_than(thickness) || (is_cavity && was_open));
+        return is_cavity ? area < largest.area : area * least_ratio <= largest.area;
     }
 };
 
@@ -58,9 +56,8 @@ public:
             areas[of(f)] += area_vector(mesh_, mesh_.facet(f)).norm();
         return areas;
     }
-    /// Per component of at most `most` facets, its area, what it encloses, its box and whether it had
-    /// a border; nothing for others.
-    std::vector<Extent> extents(std::size_t most, std::span<const std::uint8_t> on_border) {
+    /// Per component of at most `most` facets, its area, what it encloses and its box; nothing for others.
+    std::vector<Extent> extents(std::size_t most) {
         std::vector<Extent> result(facets_.size());
         for_each_in_order(mesh_.facet_count(), [&](std::size_t f) {
             const Index component = of(f);
@@ -69,10 +66,7 @@ public:
             Extent& extent = result[component];
             extent.area += area.norm();
             extent.volume += (area | (mesh_.positions[mesh_.facet(f)[0]] - mesh_.positions[component])) / 3;
-            for (const Index v : mesh_.facet(f)) {
-                extent.box.add(mesh_.positions[v]);
-                extent.was_open |= !on_border.empty() && on_border[v] != 0;
-            }
+            for (const Index v : mesh_.facet(f)) extent.box.add(mesh_.positions[v]);
         });
         return result;
     }
@@ -143,14 +137,15 @@ Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options) {
         return {};
     const std::size_t looked_at = has_layers ? mesh.facet_count() : options.most_flat;
     const std::vector<std::uint8_t> open = components.are_open(std::max(options.most_open, looked_at));
-    const std::vector<Extent> extents = components.extents(looked_at, options.on_border);
+    const std::vector<Extent> extents = components.extents(looked_at);
     const auto of_most = std::ranges::max_element(extents, {}, &Extent::area) - extents.begin();
     Extent widest = extents[static_cast<std::size_t>(of_most)];
     if (open[static_cast<std::size_t>(of_most)] != 0) widest.volume = 0;
     std::vector<EdgeHint> none;
     const SmallComponentFacets small = components_where(mesh, components, [&](std::size_t c) {
         const Extent& extent = extents[c];
-        if (has_layers && open[c] == 0 && extent.is_layers_of(widest, options.layers, options.least_ratio))
+        if (open[c] == 0 && extent.is_thinner_than(options.layers)
+            && extent.may_be_of(widest, options.layers, options.least_ratio))
             return true;
         const bool flat = sizes[c] <= options.most_flat && extent.is_thinner_than(options.flat);
         const std::size_t most_closed = flat ? options.most_flat : options.most_facets;

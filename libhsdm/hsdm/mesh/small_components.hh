@@ -7,8 +7,6 @@
 #include "hsdm/polygon_mesh.hh"
 
 #include <algorithm>
-#include <cstdint>
-#include <span>
 
 namespace hsdm {
 
@@ -27,10 +25,6 @@ struct SplinterOptions {
     /// of it, whatever its number of facets: if it faces the other way (no scanner sees into a cavity), or if
     /// its area times `least_ratio` is at most that. 0: nothing is.
     double layers = 0;
-    /// Per vertex, was it on a border that has been closed? Where sheets are layers, a closed component in
-    /// the largest one's box that faces the other way and has such a vertex goes, whatever its thickness:
-    /// what a guess closes is no cavity that was seen. Empty: none was.
-    std::span<const std::uint8_t> on_border{};
     /// least ratio of the facets of the largest component to those of a splinter
     double least_ratio = splinters::least_ratio;
     /// facets of the largest component, where the mesh is part of one that has it; 0: as it is in the mesh
