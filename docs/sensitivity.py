@@ -12,7 +12,7 @@
 finds in build/sensitivity/trials.json: a run that was stopped goes on. For each value, at half and at double, it
 reconstructs some small clouds of both suites (SUBSET below, or those whose names match --cases), compares hashes of the
 meshes, and has the cases whose mesh has changed judged from outside, by suite.py and meshjudge with a tenth of its samples.
-What changes none of them is tried on a few more (MORE). Values of simplify/ are tried on adaptive grids, those of pipeline/
+What changes none of them is tried on a few more (MORE). Values of simplify/ are tried on adaptive grids, those of core/ and pipeline/
 on all, all others on uniform ones. A case is sound if its mesh is a 2-manifold of the topology that the suite expects,
 within limits if it keeps all of the suite's limits.
 
@@ -228,7 +228,7 @@ def trial(value, to, cases, base, limit):
     """What a setting changes."""
     setting = "%s=%r" % (value["name"], to)
     tried = {n: c for n, c in cases.items()
-             if value["folder"] == "pipeline" or is_adaptive(c) == (value["folder"] == "simplify")}
+             if value["folder"] in ("core", "pipeline") or is_adaptive(c) == (value["folder"] == "simplify")}
     found = hashes(tried, setting, limit)
     if isinstance(found, str):
         return {"failure": found}

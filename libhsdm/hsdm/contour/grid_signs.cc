@@ -100,6 +100,7 @@ public:
     Crossings run() {
         set_beliefs();
         vote(true);
+        // The last ring settles what no vote reached.
         for (int ring = 0; ring < repeats::few; ++ring) vote(false, ring + 1 < repeats::few);
         settle_doubtful();
         return chosen();
@@ -126,8 +127,8 @@ private:
     }
 
     /// belief_: the vote of the sheets around a grid point, without crossings: the sum of its distances to
-    /// them, weighted by nearness, over the sum of their absolute values; in units of most_belief, 1 if it is
-    /// outside all, -1 inside all. 0 if a sheet passes nearer than its error.
+    /// them, weighted by nearness, over the sum of their absolute values; in units of cost_of_belief, 1 if it
+    /// is outside all, -1 inside all. 0 if a sheet passes nearer than its error.
     void set_beliefs() {
         for_each_index(grid_.size(), chunks::usual, [&](Index c) {
             double sum = 0, size = 0;

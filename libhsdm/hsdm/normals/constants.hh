@@ -145,7 +145,7 @@ HSDM_TUNED double steady_radius = 6;
 /// Why: by trial; one is too coarse for a round weight, three take three times as long.
 HSDM_TUNED std::int32_t reach = 2;
 
-/// rounds: of all of that, with the noise that the moves say.
+/// rounds: of moving all points onto their planes, with the noise that the moves say.
 /// Why: bounds the work.
 inline constexpr int most_rounds = 4;
 
@@ -323,7 +323,7 @@ namespace hsdm::contradictions {
 /// Why: 12 degrees; by trial.
 inline constexpr double flattest = 0.2;
 
-/// sine: added to that.
+/// sine: added to noise.deviations times the mean rise of flat pairs; what rises less is on one plane.
 /// Why: half a degree, for clouds without noise.
 inline constexpr double added_rise = 0.01;
 

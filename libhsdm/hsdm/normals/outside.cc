@@ -188,6 +188,7 @@ private:
         for (Index i = begin; i < end; i += 1 + (end - begin) / looked_at) {
             const Vec3 d = octree_.positions[i] - from;
             const double ahead = d | along;
+            // A ray that passes a sheet meets one of its points within that width.
             if (ahead > views::off_plane * h && ahead < nearest
                 && d.sqrnorm() - ahead * ahead < spacings::beside * spacings::beside * h * h)
                 nearest = ahead, first = i;

@@ -61,6 +61,7 @@ public:
 
     std::optional<Strips> run(double tolerance) {
         std::size_t m = 1;
+        // Numbers of strips that are tried: each is larger than the one before.
         for (int tries = 0; tries < enough_rounds && resolves(m); ++tries) {
             const double missed = cut(m);
             if (missed <= tolerance) return std::move(strips_);
