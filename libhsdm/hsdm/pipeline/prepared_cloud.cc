@@ -130,8 +130,8 @@ int PreparedCloud::choose_resolution(const ReconstructOptions& options) {
 }
 
 void PreparedCloud::smooth_for_depth(int depth, const Phases& phases) {
-    // Noise as large as what tells sheets apart decides topology; less leaves it alone, and creases are as crisp
-    // as they are.
+    // Noise as large as what tells sheets apart decides topology; less leaves it alone, and creases are as
+    // crisp as they are.
     if (moved_ || noise_ <= relations::smooth_gap * octree.voxel_size(depth)) return;
     looked_.reset();
     note_smoothing(phases.run("noise", 0.1, report.seconds.normals, [&] {
