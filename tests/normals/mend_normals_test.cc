@@ -152,7 +152,8 @@ TEST_CASE("the two sides of a wall as thin as points are apart keep theirs, what
         REQUIRE(steady_normals(octree) > 0);
         const std::vector<Vec3> given = octree.normals;
         REQUIRE(check_normals(octree).doubtful());
-        mend_normals(octree);
+        REQUIRE(check_normals(octree).askew());
+        CHECK(mend_normals(octree) == 0);
         CHECK(octree.normals == given);
     }
 }
