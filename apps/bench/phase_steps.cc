@@ -2,7 +2,7 @@
 
 #include "benchmarks.hh"
 
-#include "hsdm/contour/constants.hh"
+#include "hsdm/contour/dual_contour.hh"
 #include "hsdm/contour/flat_facets.hh"
 #include "hsdm/contour/grid_signs.hh"
 #include "hsdm/contour/handles.hh"
@@ -201,8 +201,8 @@ void make_cells(Work& w) {
 }
 void find_intersections(Work& w) {
     const double h = w.level.voxel_size;
-    const UntangleOptions options{.reach = placement::farthest_out * h,
-                                  .nearby = 2 * placement::farthest_out * h};
+    UntangleOptions options = DualContourOptions{}.untangle;
+    options.reach *= h, options.nearby *= h;
     w.checksum += static_cast<double>(untangle(w.mended, options, &*w.cells).before);
 }
 double mended_mesh(const Work& w) {

@@ -165,8 +165,8 @@ HSDM_TUNED double cost_of_weak = 0.2;
 HSDM_TUNED double cost_of_return = 0.6;
 
 /// crossings: cost of a side against all sheets around a grid point; of a crossing where no sheet has any and
-/// the grid ends beside the edge, so that a side stays open; twice that is the
-/// cost of one where the grid does not end, or where the data go round the whole solid.
+/// the grid ends beside the edge, so that a side stays open; twice that is the cost of one where the grid
+/// does not end, or where the data go round the whole solid.
 /// Why: by trial; less than a crossing that the data carry, which decides if nothing else does, and for two
 /// less than both crossings of a thin part. Dearer, surfaces get closed at the ends of slots.
 HSDM_TUNED double cost_of_belief = 0.8;

@@ -70,9 +70,9 @@ double mean_rise(std::size_t size, const GetPoint& point, double farthest) {
 
 template <class GetPoint>
 NormalConsistency check_pairs(std::size_t size, const GetPoint& point, double spacing) {
-    // The sides of the thinnest plate are opposed, too, but lie off each other's planes.
     // Most successors are as near, and none of another sheet is.
     const double farthest = spacings::beside * spacing;
+    // The sides of the thinnest plate are opposed, too, but lie off each other's planes.
     const double highest = noise::deviations * mean_rise(size, point, farthest) + contradictions::added_rise;
     const auto add = [&](const Pair& pair, Index at, NormalConsistency& sum) {
         if (pair.kind == Pair::flat && pair.rise < highest) {

@@ -88,9 +88,10 @@ void PreparedCloud::provide_normals(const PointView& cloud, const Phases& phases
 void PreparedCloud::check_given_normals(const PointView& cloud, const Phases& phases) {
     bool scattered = false, trusted = false;
     phases.run("normals", 0.05, report.seconds.normals, [&] {
-        const NormalConsistency consistency = check_normals(octree, report.input.spacing);
         scattered = are_scattered(octree);
-        trusted = !scattered && !consistency.doubtful();
+        if (scattered) return;
+        const NormalConsistency consistency = check_normals(octree, report.input.spacing);
+        trusted = !consistency.doubtful();
         if (trusted) measure_noise(consistency); // outliers included, as tiles do, which spares them a pass
     });
     // Before normals are changed: outliers that take the axes of their positions agree with each other.
