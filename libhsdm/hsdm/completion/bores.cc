@@ -131,56 +131,59 @@ std::vector<Index> vertices_of(std::span<const Index> loop, const Run& run) {
     return vertices;
 }
 
-/// Adds what is ruled between two rows of vertices, of which the first runs as the border does and the second
+/// What is ruled between two rows of vertices, of which the first runs as the border does and the second
 /// against it: rungs from the one to the other, of which the next is always the one less askew to the axis.
 class RuledWall {
 public:
-    RuledWall(const PolygonMesh& mesh, std::vector<Index> forward, std::vector<Index> back, const Vec3& axis,
-              double step, PolygonMesh& walls)
-        : mesh_(mesh), forward_(std::move(forward)), back_(std::move(back)), axis_(axis), walls_(walls) {
+    RuledWall(const PolygonMesh& mesh, std::vector<Index> forward, std::vector<Index> back, const Vec3& axis)
+        : mesh_(mesh), forward_(std::move(forward)), back_(std::move(back)), axis_(axis) {}
+
+    /// Appends its triangles to walls, with sides of at most a step along the rungs.
+    void add_to(PolygonMesh& walls, double step) const {
+        const std::vector<Rung> rungs = all_rungs();
         double longest = 0;
-        for (Rung rung{0, 0};;) {
-            rungs_.push_back(rung);
-            longest = std::max(longest, way(rung).norm());
-            const bool at_end = rung[0] + 1 == forward_.size(), back_at_end = rung[1] + 1 == back_.size();
-            if (at_end && back_at_end) break;
-            const Rung next{rung[0] + 1, rung[1]}, other{rung[0], rung[1] + 1};
-            rung = back_at_end || (!at_end && askew(next) <= askew(other)) ? next : other;
-        }
-        steps_ = std::max(std::size_t{1}, static_cast<std::size_t>(std::ceil(longest / step)));
-        for (std::size_t r = 0; r + 1 < rungs_.size(); ++r) add_between(rungs_[r], rungs_[r + 1]);
+        for (const Rung& rung : rungs) longest = std::max(longest, way(rung).norm());
+        const auto steps = std::max(std::size_t{1}, static_cast<std::size_t>(std::ceil(longest / step)));
+        for (std::size_t r = 0; r + 1 < rungs.size(); ++r)
+            for (std::size_t s = 0; s < steps; ++s) add_between(rungs[r], rungs[r + 1], s, steps, walls);
     }
 
 private:
     using Rung = std::array<std::size_t, 2>; // places in both rows
 
-    Vec3 way(const Rung& r) const { return mesh_.positions[back_[r[1]]] - mesh_.positions[forward_[r[0]]]; }
-    double askew(const Rung& r) const { return (way(r) % axis_).norm(); }
-    Vec3 place(const Rung& r, std::size_t step) const {
-        const double share = static_cast<double>(step) / static_cast<double>(steps_);
-        return mesh_.positions[forward_[r[0]]] * (1 - share) + mesh_.positions[back_[r[1]]] * share;
-    }
-    void add_between(const Rung& one, const Rung& next) {
-        for (std::size_t s = 0; s < steps_; ++s) {
-            const Vec3 from = place(one, s), to = place(next, s);
-            const Vec3 beyond = place(one, s + 1), beyond_to = place(next, s + 1);
-            if (s > 0 || one[0] != next[0]) add({from, to, beyond});
-            if (s + 1 < steps_ || one[1] != next[1]) add({to, beyond_to, beyond});
+    std::vector<Rung> all_rungs() const {
+        std::vector<Rung> rungs{{0, 0}};
+        for (;;) {
+            const Rung& rung = rungs.back();
+            const bool at_end = rung[0] + 1 == forward_.size(), back_at_end = rung[1] + 1 == back_.size();
+            if (at_end && back_at_end) return rungs;
+            const Rung next{rung[0] + 1, rung[1]}, other{rung[0], rung[1] + 1};
+            rungs.push_back(back_at_end || (!at_end && askew(next) <= askew(other)) ? next : other);
         }
     }
-    void add(const std::array<Vec3, 3>& triangle) {
+    Vec3 way(const Rung& r) const { return mesh_.positions[back_[r[1]]] - mesh_.positions[forward_[r[0]]]; }
+    double askew(const Rung& r) const { return (way(r) % axis_).norm(); }
+    Vec3 place(const Rung& r, std::size_t step, std::size_t steps) const {
+        const double share = static_cast<double>(step) / static_cast<double>(steps);
+        return mesh_.positions[forward_[r[0]]] * (1 - share) + mesh_.positions[back_[r[1]]] * share;
+    }
+    void add_between(const Rung& one, const Rung& next, std::size_t s, std::size_t steps,
+                     PolygonMesh& walls) const {
+        const Vec3 from = place(one, s, steps), to = place(next, s, steps);
+        const Vec3 beyond = place(one, s + 1, steps), beyond_to = place(next, s + 1, steps);
+        if (s > 0 || one[0] != next[0]) add({from, to, beyond}, walls);
+        if (s + 1 < steps || one[1] != next[1]) add({to, beyond_to, beyond}, walls);
+    }
+    static void add(const std::array<Vec3, 3>& triangle, PolygonMesh& walls) {
         if (((triangle[1] - triangle[0]) % (triangle[2] - triangle[0])).sqrnorm() == 0) return;
-        const auto first = static_cast<Index>(walls_.vertex_count());
-        walls_.positions.insert(walls_.positions.end(), triangle.begin(), triangle.end());
-        walls_.add_facet(std::array{first, first + 1, first + 2});
+        const auto first = static_cast<Index>(walls.vertex_count());
+        walls.positions.insert(walls.positions.end(), triangle.begin(), triangle.end());
+        walls.add_facet(std::array{first, first + 1, first + 2});
     }
 
     const PolygonMesh& mesh_;
     std::vector<Index> forward_, back_;
     Vec3 axis_;
-    PolygonMesh& walls_;
-    std::vector<Rung> rungs_;
-    std::size_t steps_ = 1;
 };
 
 /// What loops tell.
@@ -217,7 +220,7 @@ void join_ends(const PolygonMesh& mesh, const BoundaryLoops& loops, const BoreEn
     const auto nearest = std::ranges::min_element(other, {}, askew) - other.begin();
     std::vector<Index> back = vertices_of(other, {static_cast<std::size_t>(nearest), other.size()});
     std::ranges::reverse(back);
-    RuledWall(mesh, vertices_of(loop, {0, loop.size()}), std::move(back), axis, step, walls);
+    RuledWall(mesh, vertices_of(loop, {0, loop.size()}), std::move(back), axis).add_to(walls, step);
 }
 
 /// Per end, the nearest that leads to it and that it leads to; their number if there is none.
@@ -266,7 +269,7 @@ Bores find_bores(const PolygonMesh& mesh, const BoundaryLoops& loops, double vox
         std::vector<Index> row = vertices_of(loops[l], back);
         std::ranges::reverse(row);
         PolygonMesh wall;
-        RuledWall(mesh, vertices_of(loops[l], there), std::move(row), found[l].axis, voxel_size, wall);
+        RuledWall(mesh, vertices_of(loops[l], there), std::move(row), found[l].axis).add_to(wall, voxel_size);
         take(wall, {static_cast<Index>(l)});
     }
     const std::vector<std::size_t> nearest = nearest_of(ends);

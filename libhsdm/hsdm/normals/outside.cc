@@ -83,7 +83,12 @@ private:
 class Sky {
 public:
     explicit Sky(const EmptySpace& space) : space_(space), open_(space.side() * space.side() * space.side()) {
-        for (std::size_t k = 0; k < directions; ++k) ways_[k] = way(k).normalized();
+        for (std::size_t k = 0; k < directions; ++k) {
+            const auto step = way(k);
+            ways_[k] =
+                Vec3(static_cast<double>(step[0]), static_cast<double>(step[1]), static_cast<double>(step[2]))
+                    .normalized();
+        }
         const auto side = static_cast<std::int32_t>(space.side());
         for_each_in_order(open_.size(), [&](std::size_t c) { see(c, side, 0, directions / 2); });
         for_each_in_order(open_.size(), [&](std::size_t c) {
@@ -110,10 +115,9 @@ private:
     static constexpr std::size_t directions = 26;
 
     /// The neighbour's number in a block of 27 without the middle: the first half comes before the middle.
-    static Vec3 way(std::size_t k) {
-        const std::size_t n = k < directions / 2 ? k : k + 1;
-        return {static_cast<double>(n % 3) - 1, static_cast<double>(n / 3 % 3) - 1,
-                static_cast<double>(n / 9) - 1};
+    static std::array<std::int64_t, 3> way(std::size_t k) {
+        const auto n = static_cast<std::int64_t>(k < directions / 2 ? k : k + 1);
+        return {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
     }
     /// The directions `from` to `to` of a voxel whose neighbours that way are done.
     void see(std::size_t cell, std::int32_t side, std::size_t from, std::size_t to) {
@@ -121,10 +125,8 @@ private:
         const auto place = static_cast<std::int64_t>(cell);
         const std::array<std::int64_t, 3> at{place % side, place / side % side, place / side / side};
         for (std::size_t k = from; k < to; ++k) {
-            const std::size_t n = k < directions / 2 ? k : k + 1;
-            const std::array<std::int64_t, 3> next{at[0] + static_cast<std::int64_t>(n % 3) - 1,
-                                                   at[1] + static_cast<std::int64_t>(n / 3 % 3) - 1,
-                                                   at[2] + static_cast<std::int64_t>(n / 9) - 1};
+            const std::array<std::int64_t, 3> step = way(k);
+            const std::array<std::int64_t, 3> next{at[0] + step[0], at[1] + step[1], at[2] + step[2]};
             const bool out = std::ranges::any_of(next, [&](std::int64_t x) { return x < 0 || x >= side; });
             if (out
                 || (open_[static_cast<std::size_t>((next[2] * side + next[1]) * side + next[0])] >> k & 1)
