@@ -81,7 +81,11 @@ TriangleTree::TriangleTree(const std::vector<Vec3>& positions, const std::vector
 
 void TriangleTree::set_order(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                              Order order) {
-    std::vector<Item> items(triangles.size());
+    if (order == Order::given) {
+        triangle_of_ = place_of_ = indices_below(triangles.size());
+        return;
+    }
+    std::vector<Item> items = unwritten_vector<Item>(triangles.size());
     for_each_index(items.size(), chunks::slow, [&](Index t) {
         Box box;
         for (Index v : triangles[t]) box.add(positions[v] - centre_);
@@ -89,9 +93,9 @@ void TriangleTree::set_order(const std::vector<Vec3>& positions, const std::vect
         for (unsigned k = 0; k < 3; ++k) items[t].centre[k] = middle[k];
         items[t].triangle = t;
     });
-    if (order == Order::compact) split(items.data(), items.data() + items.size());
-    triangle_of_.resize(items.size());
-    place_of_.resize(items.size());
+    split(items.data(), items.data() + items.size());
+    resize_unwritten(triangle_of_, items.size());
+    resize_unwritten(place_of_, items.size());
     for_each_index(items.size(), chunks::slow, [&](Index i) {
         triangle_of_[i] = items[i].triangle;
         place_of_[items[i].triangle] = i;
