@@ -386,15 +386,15 @@ void TriangleTree::Part::take_near(const TriangleTree& tree, const Vec3& middle,
         copy_pair(eights_[at / pairs], (pair_count_ - 1) % pairs, eights_[at / pairs], at % pairs);
 }
 
-void TriangleTree::Part::load(const TriangleTree& tree, Index block, std::size_t half_of, Eight& eight) {
+void TriangleTree::Part::load(const TriangleTree& tree, Index block, std::size_t half, Eight& eight) {
     for (std::size_t lane = 0; lane < width; ++lane) {
         const TwoTriangles& two = tree.blocks_[block][lane / 2];
         const auto vector = [&](const std::array<Double2, 3>& lanes) {
             return Vec3(lanes[0][lane % 2], lanes[1][lane % 2], lanes[2][lane % 2]);
         };
         const Vec3 a = vector(two.a);
-        eight.bounds.put(half_of * width + lane, a, a + vector(two.ab), a + vector(two.ac));
-        eight.pair[half_of * width / 2 + lane / 2] = static_cast<Index>(2 * block + lane / 2);
+        eight.bounds.put(half * width + lane, a, a + vector(two.ab), a + vector(two.ac));
+        eight.pair[half * width / 2 + lane / 2] = static_cast<Index>(2 * block + lane / 2);
     }
 }
 

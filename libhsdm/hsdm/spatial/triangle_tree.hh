@@ -138,7 +138,7 @@ class TriangleTree::Part {
 
     bool find_blocks(const TriangleTree& tree, const Box& box, double reach);
     void take_near(const TriangleTree& tree, const Vec3& middle, double most);
-    static void load(const TriangleTree& tree, Index block, std::size_t half_of, Eight& eight);
+    static void load(const TriangleTree& tree, Index block, std::size_t half, Eight& eight);
     double measure(Eight& eight, const Vec3& point) const;
     void add_pair(const Eight& from, std::size_t k, double off);
     static void copy_pair(const Eight& from, std::size_t k, Eight& eight, std::size_t to);
