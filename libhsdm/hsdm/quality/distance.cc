@@ -62,7 +62,7 @@ private:
         for (const Vec3& p : points) radius = std::max(radius, (p - middle).norm());
         double off = has_part_ ? std::sqrt(tree_.nearest(part_, middle).squared) : Box::inf;
         if (off > near_enough * radius) off = std::sqrt(tree_.nearest(middle, hint_).squared);
-        has_part_ = off <= tree_.block_size() && tree_.find_part(box, 1.00001 * (off + radius), part_);
+        has_part_ = off <= tree_.block_size() && tree_.find_part({box, middle, radius, off}, part_);
     }
 
     const TriangleTree& tree_;

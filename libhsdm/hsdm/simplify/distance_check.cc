@@ -221,11 +221,18 @@ FarPoints DistanceCheck::find_far_points() {
     if (!missed.empty()) found.first_unreachable = missed.front();
     // If the fine mesh misses points by more than the bound, such a point counts only if the mesh is farther
     // from it than the fine mesh is from any.
-    std::vector<double> off = large_vector<double>(missed.size());
-    for_each_index(missed.size(), far_per_chunk,
-                   [&](Index i) { off[i] = to_mesh_->tree()(points_[missed[i]]); });
+    // Nearly all are sooner seen to be nearer than measured.
+    std::vector<std::uint8_t> farther(missed.size());
+    for_chunks(missed.size(), chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t) {
+        Index hint = no_index;
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vec3& place = points_[missed[i]];
+            farther[i] = to_mesh_->is_beyond(place, (1 - rounding) * farthest, hint)
+                         && to_mesh_->tree()(place) > farthest;
+        }
+    });
     for (std::size_t i = 0; i < missed.size(); ++i)
-        if (off[i] > farthest) found.points.push_back(missed[i]);
+        if (farther[i]) found.points.push_back(missed[i]);
     return found;
 }
 

@@ -6,6 +6,7 @@
 #include "hsdm/spatial/self_intersections.hh"
 
 #include <algorithm>
+#include <array>
 
 namespace hsdm {
 namespace {
@@ -33,7 +34,8 @@ public:
         add_along_axes();
         // the next cell in all directions; no box reaches the last cells
         const std::size_t next = 1 + side() + side() * side();
-        for (std::size_t i = counts_.size(); i-- > 0;) counts_[i] = i >= next && counts_[i - next] > 0;
+        for (std::size_t i = counts_.size(); i-- > next;) counts_[i] = counts_[i - next] > 0;
+        std::fill_n(counts_.begin(), next, 0);
         add_along_axes();
     }
 
@@ -54,22 +56,24 @@ private:
     /// ones, with the sign that the sum over the box gives them.
     template <class F>
     void for_corners(const Box& box, F&& visit) const {
+        std::array<std::array<std::size_t, 2>, 3> ends; // per axis the offsets of the cells at both ends
+        for (unsigned k = 0; k < 3; ++k)
+            ends[k] = {cell_of(box.lo[k], k) << bits_ * k, (cell_of(box.hi[k], k) + 1) << bits_ * k};
         for (unsigned corner = 0; corner < 8; ++corner) {
-            std::size_t at = 0;
-            int sign = 1;
-            for (unsigned k = 0; k < 3; ++k) {
-                const bool upper = corner >> k & 1;
-                at |= (upper ? cell_of(box.hi[k], k) + 1 : cell_of(box.lo[k], k)) << bits_ * k;
-                if (!upper) sign = -sign;
-            }
-            visit(at, sign);
+            const unsigned x = corner & 1, y = corner >> 1 & 1, z = corner >> 2;
+            visit(ends[0][x] + ends[1][y] + ends[2][z], (x + y + z) % 2 == 1 ? 1 : -1);
         }
     }
 
     void add_along_axes() {
-        for (unsigned shift = 0; shift < 3 * bits_; shift += bits_)
-            for (std::size_t i = 0; i < counts_.size(); ++i)
-                if (i >> shift & (side() - 1)) counts_[i] += counts_[i - (std::size_t{1} << shift)];
+        for (std::size_t row = 0; row < counts_.size(); row += side())
+            for (std::size_t x = 1; x < side(); ++x) counts_[row + x] += counts_[row + x - 1];
+        for (std::size_t step = side(); step < counts_.size(); step *= side()) // rows, then layers
+            for (std::size_t block = 0; block < counts_.size(); block += step * side()) {
+                std::int32_t* const cells = counts_.data() + block;
+                for (std::size_t at = step; at < step * side(); at += side())
+                    for (std::size_t x = 0; x < side(); ++x) cells[at + x] += cells[at + x - step];
+            }
     }
 
     Vec3 lo_, scale_;

@@ -30,37 +30,42 @@ void find_vertices(const PolygonMesh& before, const PolygonMesh& now, Unchanged&
     });
 }
 
-/// Turns a triangle to begin at its least vertex. How a larger polygon is cut depends on where it begins.
-void normalise(std::vector<Index>& ring) {
-    if (ring.size() == 3) std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end()), ring.end());
+/// Where rings are compared from: triangles from their least vertex on. How a larger polygon is cut depends
+/// on where it begins.
+template <class At>
+std::size_t beginning(std::size_t size, const At& at) {
+    if (size != 3) return 0;
+    return at(0) < at(1) ? (at(2) < at(0) ? 2 : 0) : (at(2) < at(1) ? 2 : 1);
 }
 
-/// Per facet, the first vertex of its normalised ring.
+/// Per facet, the first vertex of its ring as it is compared.
 std::vector<Index> first_vertices(const PolygonMesh& mesh) {
-    std::vector<Index> first = large_vector<Index>(mesh.facet_count());
+    std::vector<Index> first = unwritten_vector<Index>(mesh.facet_count());
     for_each_index(first.size(), chunks::light, [&](Index f) {
         const auto ring = mesh.facet(f);
-        first[f] = ring.size() == 3 ? *std::min_element(ring.begin(), ring.end()) : ring[0];
+        first[f] = ring[beginning(ring.size(), [&](std::size_t i) { return ring[i]; })];
     });
     return first;
 }
 
 void find_facets(const PolygonMesh& before, const PolygonMesh& now, Unchanged& same) {
     const Groups facets_from(first_vertices(before), before.vertex_count());
-    for_chunks(now.facet_count(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
-        std::vector<Index> ring, other;
-        for (std::size_t f = begin; f < end; ++f) {
-            ring.clear();
-            for (Index v : now.facet(f)) ring.push_back(same.vertex[v]);
-            if (std::ranges::find(ring, no_index) != ring.end()) continue;
-            normalise(ring);
-            for (Index g : facets_from.of(ring[0])) {
-                other.assign(before.facet(g).begin(), before.facet(g).end());
-                normalise(other);
-                if (ring != other) continue;
-                same.facet[f] = g;
-                break;
-            }
+    for_each_index(now.facet_count(), chunks::usual, [&](Index f) {
+        const auto ring = now.facet(f);
+        const std::size_t size = ring.size();
+        for (const Index v : ring)
+            if (same.vertex[v] == no_index) return;
+        const auto was = [&](std::size_t i) { return same.vertex[ring[i]]; };
+        const std::size_t begin = beginning(size, was);
+        for (const Index g : facets_from.of(was(begin))) {
+            const auto other = before.facet(g);
+            if (other.size() != size) continue;
+            const std::size_t there = beginning(size, [&](std::size_t i) { return other[i]; });
+            std::size_t alike = 1; // corners; the first ones are the same
+            while (alike < size && was((begin + alike) % size) == other[(there + alike) % size]) ++alike;
+            if (alike < size) continue;
+            same.facet[f] = g;
+            break;
         }
     });
     for_each_in_order(now.facet_count(), [&](std::size_t i) {

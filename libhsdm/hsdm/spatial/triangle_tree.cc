@@ -15,6 +15,8 @@ namespace {
 using Range = tbb::blocked_range<std::size_t>;
 /// Four entries a level of the walk, and 4^15 blocks hold 2^32 triangles.
 constexpr std::size_t stack_size = 4 * 17;
+// of the mesh's diagonal: covers what rounding makes of distances in EightBounds
+constexpr double bounds_rounding_share = 1e-11;
 
 /// A triangle while they are sorted: the centre of its box, and its index.
 struct Item {
@@ -79,7 +81,11 @@ TriangleTree::TriangleTree(const std::vector<Vec3>& positions, const std::vector
 
 void TriangleTree::set_order(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles,
                              Order order) {
-    std::vector<Item> items(triangles.size());
+    if (order == Order::given) {
+        triangle_of_ = place_of_ = indices_below(triangles.size());
+        return;
+    }
+    std::vector<Item> items = unwritten_vector<Item>(triangles.size());
     for_each_index(items.size(), chunks::slow, [&](Index t) {
         Box box;
         for (Index v : triangles[t]) box.add(positions[v] - centre_);
@@ -87,9 +93,9 @@ void TriangleTree::set_order(const std::vector<Vec3>& positions, const std::vect
         for (unsigned k = 0; k < 3; ++k) items[t].centre[k] = middle[k];
         items[t].triangle = t;
     });
-    if (order == Order::compact) split(items.data(), items.data() + items.size());
-    triangle_of_.resize(items.size());
-    place_of_.resize(items.size());
+    split(items.data(), items.data() + items.size());
+    resize_unwritten(triangle_of_, items.size());
+    resize_unwritten(place_of_, items.size());
     for_each_index(items.size(), chunks::slow, [&](Index i) {
         triangle_of_[i] = items[i].triangle;
         place_of_[items[i].triangle] = i;
@@ -175,6 +181,13 @@ public:
         take(squared, block * static_cast<Index>(width) + lane);
     }
 
+    /// Tests half a block.
+    void look_at(Index block, Index half) {
+        const Double2 pair = to_pair(block, half);
+        const Index lane = pair[1] < pair[0];
+        if (pair[lane] < squared_) take(pair[lane], block * static_cast<Index>(width) + 2 * half + lane);
+    }
+
     /// Tests two triangles, one of them at this place.
     void look_around(Index place) {
         const Double2 pair = to_pair(place / width, place / 2 % 2);
@@ -190,6 +203,10 @@ public:
                     max_lanes(boxes.lo[k][half] - point_[k], point_[k] - boxes.hi[k][half]), Double2{}));
         return squared;
     }
+
+    /// To be called before any test where other distances than those of boxes decide what is tested: by how
+    /// much rounding may change them.
+    void rely_on(double rounding) { rounding_ = std::max(rounding_, rounding); }
 
     /// May a box at this squared distance hold a nearer triangle? Never true of an absent child, whose box is
     /// infinitely far.
@@ -225,6 +242,10 @@ private:
     double squared_ = Box::inf;
     Index place_ = no_index; // in the tree's order
 };
+
+double TriangleTree::bounds_rounding() const {
+    return bounds_rounding_share * diagonal_;
+}
 
 /// Number of nodes of a level, or of blocks for level -1.
 std::size_t TriangleTree::size_of(int level) const {
@@ -302,75 +323,130 @@ bool TriangleTree::is_apart(const Boxes& boxes, std::size_t child, const std::ar
     return false;
 }
 
-bool TriangleTree::find_part(const Box& box, double reach, Part& part) const {
-    part.count_ = 0;
+bool TriangleTree::find_part(const Packet& packet, Part& part) const {
+    part.pair_count_ = 0;
     if (block_count_ == 0) return true;
+    if (!part.find_blocks(*this, packet.box, 1.00001 * (packet.off + packet.radius))) return false;
+    part.take_near(*this, packet.middle, 1.00001 * (packet.off + 2 * packet.radius));
+    return true;
+}
+
+/// Finds all blocks that may have a point within `reach` of a box; false if there are too many.
+bool TriangleTree::Part::find_blocks(const TriangleTree& tree, const Box& box, double reach) {
+    blocks_.clear();
     std::array<double, 3> lo, hi;
-    reach += 4 * rounding_; // a distance that rounds to 0 need not be 0
+    reach += 4 * tree.rounding_; // a distance that rounds to 0 need not be 0
     for (unsigned k = 0; k < 3; ++k) {
-        lo[k] = box.lo[k] - centre_[k] - reach;
-        hi[k] = box.hi[k] - centre_[k] + reach;
+        lo[k] = box.lo[k] - tree.centre_[k] - reach;
+        hi[k] = box.hi[k] - tree.centre_[k] + reach;
     }
-    struct Entry {
-        Index node; // in its level
-        int level;
-    };
-    std::array<Entry, stack_size> stack;
+    std::array<Node, stack_size> stack;
     std::size_t top = 0;
-    stack[top++] = {0, static_cast<int>(level_first_.size()) - 1};
+    stack[top++] = tree.root();
     while (top > 0) {
-        const Entry entry = stack[--top];
-        if (entry.node >= size_of(entry.level)) continue;
-        const Boxes& boxes = nodes_[level_first_[static_cast<std::size_t>(entry.level)] + entry.node];
+        const Node node = stack[--top];
+        if (node.index >= tree.size_of(node.level)) continue;
+        const Boxes& boxes =
+            tree.nodes_[tree.level_first_[static_cast<std::size_t>(node.level)] + node.index];
         for (std::size_t i = 0; i < width; ++i) {
             if (is_apart(boxes, i, lo, hi)) continue;
-            const auto child = static_cast<Index>(width * entry.node + i);
-            if (entry.level > 0)
-                stack[top++] = {child, entry.level - 1};
-            else if (child < block_count_ && !part.add(boxes, i, child))
-                return false;
+            const auto child = static_cast<Index>(width * node.index + i);
+            if (node.level > 0)
+                stack[top++] = {node.level - 1, child};
+            else if (child < tree.block_count_)
+                blocks_.push_back(child);
         }
+        if (blocks_.size() > most_blocks) return false;
     }
-    part.fill_up();
     return true;
 }
 
-bool TriangleTree::Part::add(const Boxes& boxes, std::size_t lane, Index block) {
-    if (count_ == width * most_nodes) return false;
-    for (unsigned k = 0; k < 3; ++k) {
-        nodes_[count_ / width].lo[k][count_ % width / 2][count_ % 2] = boxes.lo[k][lane / 2][lane % 2];
-        nodes_[count_ / width].hi[k][count_ % width / 2][count_ % 2] = boxes.hi[k][lane / 2][lane % 2];
+/// Takes the pairs of the blocks' triangles of which one may be within `most` of the middle, the nearest
+/// ones first.
+void TriangleTree::Part::take_near(const TriangleTree& tree, const Vec3& middle, double most) {
+    middle_ = middle - tree.centre_;
+    if (found_.size() < chunk_count(blocks_.size(), 2)) found_.resize(chunk_count(blocks_.size(), 2));
+    order_.clear();
+    for (std::size_t b = 0; b < blocks_.size(); b += 2) {
+        Eight& eight = found_[b / 2];
+        load(tree, blocks_[b], 0, eight);
+        load(tree, blocks_[std::min(b + 1, blocks_.size() - 1)], 1, eight);
+        lanes_.prepare(eight.bounds);
+        measure(eight, middle_);
+        const std::size_t filled = b + 1 < blocks_.size() ? pairs : pairs / 2;
+        for (std::size_t k = 0; k < filled; ++k)
+            if (const double squared = eight.least_of(k); squared <= square(most + tree.bounds_rounding()))
+                order_.push_back({squared, static_cast<Index>(b / 2 * pairs + k)});
     }
-    blocks_[count_ / width][count_ % width] = block;
-    ++count_;
-    return true;
+    std::sort(order_.begin(), order_.end());
+    for (const auto& [squared, k] : order_) add_pair(found_[k / pairs], k % pairs, std::sqrt(squared));
+    // the lanes that are left say what others say
+    pair_count_ = order_.size();
+    for (std::size_t at = pair_count_; at % pairs != 0; ++at)
+        copy_pair(eights_[at / pairs], (pair_count_ - 1) % pairs, eights_[at / pairs], at % pairs);
 }
 
-/// Repeats the last block where the last node lacks blocks.
-void TriangleTree::Part::fill_up() {
-    if (count_ == 0) return;
-    const std::size_t last = count_ - 1;
-    while (count_ % width != 0) add(nodes_[last / width], last % width, blocks_[last / width][last % width]);
+void TriangleTree::Part::load(const TriangleTree& tree, Index block, std::size_t half, Eight& eight) {
+    for (std::size_t lane = 0; lane < width; ++lane) {
+        const TwoTriangles& two = tree.blocks_[block][lane / 2];
+        const auto vector = [&](const std::array<Double2, 3>& lanes) {
+            return Vec3(lanes[0][lane % 2], lanes[1][lane % 2], lanes[2][lane % 2]);
+        };
+        const Vec3 a = vector(two.a);
+        eight.bounds.put(half * width + lane, a, a + vector(two.ab), a + vector(two.ac));
+        eight.pair[half * width / 2 + lane / 2] = static_cast<Index>(2 * block + lane / 2);
+    }
 }
 
-TriangleTree::Nearest TriangleTree::nearest(const Part& part, const Vec3& point) const {
-    Search search(*this, point);
-    if (part.count_ == 0) return search.result();
-    const std::size_t nodes = part.count_ / width;
-    std::array<Search::FourSquares, Part::most_nodes> squared;
-    Double2 least = Double2{} + Box::inf;
-    for (std::size_t n = 0; n < nodes; ++n) {
-        squared[n] = search.to_children(part.nodes_[n]);
-        least = min_lanes(least, min_lanes(squared[n][0], squared[n][1]));
-    }
-    const double nearest = std::min(least[0], least[1]);
-    const auto look_where = [&](const auto& wanted) {
-        for (std::size_t n = 0; n < nodes; ++n)
-            for (std::size_t i = 0; i < width; ++i)
-                if (wanted(squared[n][i / 2][i % 2])) search.look_at(part.blocks_[n][i]);
+void TriangleTree::Part::add_pair(const Eight& from, std::size_t k, double off) {
+    const std::size_t at = pair_count_++;
+    if (at / pairs == eights_.size()) eights_.emplace_back();
+    Eight& eight = eights_[at / pairs];
+    if (at % pairs == 0) eight.off_middle = off;
+    copy_pair(from, k, eight, at % pairs);
+}
+
+void TriangleTree::Part::copy_pair(const Eight& from, std::size_t k, Eight& eight, std::size_t to) {
+    const auto copy = [&](const EightBounds::Row& row, EightBounds::Row& into) {
+        into[2 * to] = row[2 * k];
+        into[2 * to + 1] = row[2 * k + 1];
     };
-    look_where([&](double square) { return square == nearest; });
-    look_where([&](double square) { return square != nearest && search.reaches(square); });
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        copy(from.bounds.corner[axis], eight.bounds.corner[axis]);
+        copy(from.bounds.normal[axis], eight.bounds.normal[axis]);
+        for (std::size_t side = 0; side < 3; ++side)
+            copy(from.bounds.out[side][axis], eight.bounds.out[side][axis]);
+    }
+    copy(from.bounds.across, eight.bounds.across);
+    eight.pair[to] = from.pair[k];
+}
+
+/// Sets the least squares of an eight, those of planes where the point is beyond no side; returns the least.
+double TriangleTree::Part::measure(Eight& eight, const Vec3& point) const {
+    const LeastSquares found = lanes_.squares(eight.bounds, point, eight.least);
+    for (double& squared : eight.least) squared = squared == Box::inf ? found.above : squared;
+    return std::min(found.above, found.beyond);
+}
+
+/// Ends where all triangles that are left are so far from the packet's middle that they are too far from the
+/// point.
+TriangleTree::Nearest TriangleTree::nearest(Part& part, const Vec3& given) const {
+    Search search(*this, given);
+    search.rely_on(bounds_rounding());
+    const Vec3 point = given - centre_;
+    const double away = (point - part.middle_).norm();
+    for (std::size_t first = 0; first < part.pair_count_; first += Part::pairs) {
+        Part::Eight& eight = part.eights_[first / Part::pairs];
+        if (const double off = eight.off_middle - away; off > 0 && !search.reaches(off * off)) break;
+        const double least = part.measure(eight, point);
+        if (!search.reaches(least)) continue;
+        const std::size_t count = std::min(Part::pairs, part.pair_count_ - first);
+        for (std::size_t k = 0; k < count; ++k)
+            if (eight.least_of(k) <= least) search.look_at(eight.pair[k] / 2, eight.pair[k] % 2);
+        for (std::size_t k = 0; k < count; ++k)
+            if (const double squared = eight.least_of(k); squared > least && search.reaches(squared))
+                search.look_at(eight.pair[k] / 2, eight.pair[k] % 2);
+    }
     return search.result();
 }
 

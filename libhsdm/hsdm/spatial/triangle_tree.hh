@@ -2,6 +2,7 @@
 // A hierarchy of boxes over triangles: nearest triangle to a point, pairs of triangles that may touch.
 
 #include "hsdm/mesh/triangulate.hh"
+#include "hsdm/spatial/eight_bounds.hh"
 #include "hsdm/spatial/two_triangles.hh"
 
 #include <array>
@@ -40,13 +41,21 @@ public:
     /// there.
     Nearest within(const Vec3& point, double bound, Index hint = no_index) const;
 
-    /// The blocks in a part of space, to search instead of the whole tree.
+    /// The triangles that may be nearest to some of a few points close together, to search instead of the
+    /// whole tree.
     class Part;
-    /// Replaces `part` by all blocks that may have a point within `reach` of a box. False if there are too
-    /// many: the part is then not to be used.
-    bool find_part(const Box& box, double reach, Part& part) const;
-    /// As above for a point whose nearest triangle is known to be in the part.
-    Nearest nearest(const Part& part, const Vec3& point) const;
+    /// Points in the mesh's own coordinates: their box, one of them, how far the others are from that one at
+    /// most, and how far it is from the mesh.
+    struct Packet {
+        Box box;
+        Vec3 middle;
+        double radius, off;
+    };
+    /// Replaces `part` by the triangles for a packet. False if there are too many: the part is then not to be
+    /// used.
+    bool find_part(const Packet& packet, Part& part) const;
+    /// As above for a point of the part's packet. The part keeps what it measures.
+    Nearest nearest(Part& part, const Vec3& point) const;
 
     /// Replaces `pairs` by all pairs of triangles whose boxes overlap or touch, one of the pair being in
     /// `block` and the other in it or a later one. Over all blocks every such pair comes once.
@@ -79,6 +88,7 @@ private:
     void fill_blocks(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
     void build_levels(std::vector<Boxes>& block_boxes);
     std::size_t size_of(int level) const;
+    double bounds_rounding() const;
     static bool is_apart(const Boxes& boxes, std::size_t child, const std::array<double, 3>& lo,
                          const std::array<double, 3>& hi);
     /// A node, or below them a block.
@@ -103,16 +113,43 @@ private:
     std::vector<std::size_t> level_first_; // of each level, its first node
 };
 
+/// By the triangle inequality no point of a packet is farther from its nearest triangle than from that of the
+/// packet's middle, so triangles farther from the middle than that and twice the radius are left out.
 class TriangleTree::Part {
     friend class TriangleTree;
-    static constexpr std::size_t most_nodes = 32;
+    static constexpr std::size_t most_blocks = 128;
+    static constexpr std::size_t pairs = EightBounds::size / 2;
 
-    bool add(const Boxes& boxes, std::size_t lane, Index block);
-    void fill_up();
+    /// Four pairs of triangles as they stand in the tree's blocks, and for the point that is looked at the
+    /// square of a distance that each triangle is no nearer than.
+    struct Eight {
+        EightBounds bounds;
+        EightBounds::Row least;
+        std::array<Index, pairs> pair;
+        double off_middle; ///< of the packet: none of the pairs, and of those of later eights, is nearer
 
-    std::array<Boxes, most_nodes> nodes_;
-    std::array<std::array<Index, width>, most_nodes> blocks_;
-    std::size_t count_ = 0; // of blocks
+        double least_of(std::size_t k) const { return std::min(least[2 * k], least[2 * k + 1]); }
+    };
+    struct Found {
+        double squared; ///< of a distance from the middle that the pair is no nearer than
+        Index pair;
+        auto operator<=>(const Found&) const = default;
+    };
+
+    bool find_blocks(const TriangleTree& tree, const Box& box, double reach);
+    void take_near(const TriangleTree& tree, const Vec3& middle, double most);
+    static void load(const TriangleTree& tree, Index block, std::size_t half, Eight& eight);
+    double measure(Eight& eight, const Vec3& point) const;
+    void add_pair(const Eight& from, std::size_t k, double off);
+    static void copy_pair(const Eight& from, std::size_t k, Eight& eight, std::size_t to);
+
+    const BoundLanes& lanes_ = bound_lanes().front();
+    Vec3 middle_{0, 0, 0};      // relative to the tree's centre
+    std::vector<Index> blocks_; // while triangles are looked for, as the next two
+    std::vector<Eight> found_;
+    std::vector<Found> order_;
+    std::vector<Eight> eights_; // of the packet, and memory that is kept
+    std::size_t pair_count_ = 0;
 };
 
 } // namespace hsdm
