@@ -116,6 +116,29 @@ TEST_CASE("a wall that is seen from both sides stays one, and so does what nobod
     CHECK(TwoSheets().taken() == 0);
 }
 
+TEST_CASE("what sees no sky is layers where most of what is in question is", "[normals]") {
+    for (const Index unseen :
+         {30, 49, 50, 70}) { // the last patches of the second sheet, a region of their own
+        INFO(unseen << " patches without a view");
+        TwoSheets sheets;
+        const Index first = 2 * of_sheet - unseen;
+        std::erase_if(sheets.layers.edges, [&](const SignedEdge& e) { return e.b == first; });
+        sheets.see(0, of_sheet, 1);
+        sheets.see(of_sheet, first, 1);
+        CHECK(sheets.taken() == 5 * (2 * unseen < of_sheet ? of_sheet : of_sheet - unseen));
+    }
+}
+
+TEST_CASE("what is turned away from the sky stays a wall where most is layers", "[normals]") {
+    TwoSheets sheets;
+    const Index first = 2 * of_sheet - 30;
+    std::erase_if(sheets.layers.edges, [&](const SignedEdge& e) { return e.b == first; });
+    sheets.see(0, of_sheet, 1);
+    sheets.see(of_sheet, first, 1);
+    sheets.see(first, first + 1, -1);
+    CHECK(sheets.taken() == 5 * (of_sheet - 30));
+}
+
 TEST_CASE("the side in question is the layers' even if most of the sheets is turned away", "[normals]") {
     TwoSheets sheets;
     for (std::int8_t& sign : sheets.walls.sign) sign = static_cast<std::int8_t>(-sign);
@@ -138,6 +161,18 @@ TEST_CASE("layers of scans that do not register have their normals on one side",
             layers += sides.of_layers;
         }
     CHECK(layers > 0);
+}
+
+TEST_CASE("layers that see no sky have their normals on one side where others show them", "[normals][slow]") {
+    const auto block = support::box({1.6, 1.6, 1});
+    const auto cup = block - support::cylinder(0.5, 1).placed(support::turned({0, 0, 1}, 0, {0, 0, 0.4}));
+    for (std::uint64_t seed = 41; seed <= 43; ++seed)
+        for (const double spacings : {0.7, 1.0}) {
+            INFO("seed " << seed << ", " << spacings << " spacings");
+            const double wrong = sides_of(cup, misaligned(cup, spacings, seed)).wrong;
+            std::printf("%.4f\n", wrong);
+            CHECK(wrong < 0.01);
+        }
 }
 
 TEST_CASE("the sides of thin walls are no layers", "[normals]") {

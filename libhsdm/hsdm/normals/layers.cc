@@ -29,6 +29,14 @@ struct Views {
     }
 };
 
+/// What differs of a component.
+struct Question {
+    Views all;
+    std::size_t clear = 0; ///< points of regions that are clearly layers
+
+    bool shows_layers() const { return 2 * clear > all.points; }
+};
+
 /// +1 for components whose patches face the sky more than they turn away from it, -1 for the others, 0
 /// without a view.
 std::vector<std::int8_t> outward_signs(const Patches& patches, const std::vector<std::int8_t>& sky,
@@ -59,23 +67,30 @@ SkyReading take_layers(const Patches& patches, const LayerReading& layers, Signs
         const SignedEdge& edge = layers.edges[e];
         if (edge.weight != 0 && differ[edge.a] != 0 && differ[edge.b] != 0) regions.join(edge.a, edge.b);
     });
-    std::vector<Views> of_region = large_vector<Views>(patches.size()), of_component(walls.components);
+    std::vector<Views> of_region = large_vector<Views>(patches.size());
+    std::vector<Question> of_component(walls.components);
     const auto for_differing = [&](const auto& work) {
         for_each_in_order(patches.size(), [&](std::size_t p) {
-            if (differ[p] != 0) work(p, of_region[regions.find(static_cast<Index>(p))], walls.component[p]);
+            if (differ[p] != 0)
+                work(p, regions.find(static_cast<Index>(p)), of_component[walls.component[p]]);
         });
     };
-    for_differing([&](std::size_t p, Views& region, Index component) {
+    for_differing([&](std::size_t p, Index region, Question& question) {
         const int faces = layers.sky[p] * other.sign[p] * other_out[other.component[p]];
-        region.add(patches.counts[p], faces);
-        of_component[component].add(patches.counts[p], faces);
+        of_region[region].add(patches.counts[p], faces);
+        question.all.add(patches.counts[p], faces);
+    });
+    for_differing([&](std::size_t p, Index region, Question& question) {
+        if (of_region[region].are_clear()) question.clear += patches.counts[p];
     });
     SkyReading result;
     std::vector<std::uint8_t> turned(walls.components, 0);
-    for_differing([&](std::size_t p, const Views& region, Index component) {
-        if (!region.are_clear() || of_component[component].facing <= 0) return;
+    for_differing([&](std::size_t p, Index region, const Question& question) {
+        const Views& views = of_region[region];
+        if (question.all.facing <= 0) return;
+        if (!views.are_clear() && (!question.shows_layers() || views.facing < 0)) return;
         walls.sign[p] = static_cast<std::int8_t>(-walls.sign[p]);
-        turned[component] = 1;
+        turned[walls.component[p]] = 1;
         result.points += patches.counts[p];
     });
     result.outward = outward_signs(patches, layers.sky, walls);

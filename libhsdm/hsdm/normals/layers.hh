@@ -8,8 +8,8 @@ namespace hsdm {
 /// Signs as they are if sheets beside each other are layers of one surface.
 struct LayerReading {
     std::vector<SignedEdge> edges; ///< layer_evidence
-    Signs signs;                   ///< by that evidence, of the patches and maybe more nodes
     std::vector<std::int8_t> sky;  ///< per patch, as OutsideView::sky
+    Signs signs;                   ///< by both, of the patches and maybe more nodes
 };
 
 /// Which way out is, by the sky.
@@ -23,8 +23,9 @@ struct SkyReading {
 /// open space on both sides or on neither: read as layers it has one of them turned away from the sky. Layers
 /// have it in front of the outermost alone, and of two that cross now the one is outermost, now the other:
 /// read as a wall one of them is turned away from the sky. Regions of patches that differ are turned as a
-/// whole where that is clear, if the sum over all regions of their component is for it; without a view they
-/// stay. `walls`: signs of the patches and maybe more nodes, turned in place. O(edges).
+/// whole where that is clear, if the sum over all regions of their component is for it. Without a clear view
+/// they stay, unless most points in question of their component are turned: then it shows layers.
+/// `walls`: signs of the patches and maybe more nodes, turned in place. O(edges).
 SkyReading take_layers(const Patches& patches, const LayerReading& layers, Signs& walls);
 
 } // namespace hsdm
