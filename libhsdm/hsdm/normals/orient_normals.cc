@@ -86,13 +86,14 @@ LayerReading read_as_layers(const Octree& octree, const Neighbors& neighbors,
                             const EstimatedNormals& estimate, const Patches& patches) {
     LayerReading layers;
     layers.edges = layer_evidence(octree, neighbors, estimate, patches);
+    layers.signs = agglomerate(patches.size(), layers.edges);
     const std::vector<std::uint8_t> beside = sheets_beside(octree, neighbors, estimate, patches);
     layers.sky = view_outside(octree, patches, estimate_spacing(octree), {.beside = beside}).sky;
     std::vector<SignedEdge> edges;
     reserve_large(edges, layers.edges.size() + patches.size());
     append_large(edges, layers.edges);
     add_views(layers.sky, patches, edges);
-    layers.signs = agglomerate(patches.size() + 1, std::move(edges), static_cast<Index>(patches.size()));
+    layers.skyward = agglomerate(patches.size() + 1, std::move(edges), static_cast<Index>(patches.size()));
     return layers;
 }
 
