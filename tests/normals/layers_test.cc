@@ -175,18 +175,6 @@ TEST_CASE("layers of scans that do not register have their normals on one side",
     CHECK(layers > 0);
 }
 
-TEST_CASE("layers that see no sky have their normals on one side where others show them", "[normals][slow]") {
-    const auto block = support::box({1.6, 1.6, 1});
-    const auto cup = block - support::cylinder(0.5, 1).placed(support::turned({0, 0, 1}, 0, {0, 0, 0.4}));
-    for (std::uint64_t seed = 41; seed <= 43; ++seed)
-        for (const double spacings : {0.7, 1.0}) {
-            INFO("seed " << seed << ", " << spacings << " spacings");
-            const double wrong = sides_of(cup, misaligned(cup, spacings, seed)).wrong;
-            std::printf("%.4f\n", wrong);
-            CHECK(wrong < 0.01);
-        }
-}
-
 TEST_CASE("the sides of thin walls are no layers", "[normals]") {
     const auto cup = support::cylinder(0.8, 1.4)
                      - support::cylinder(0.75, 1.4).placed(support::turned({0, 0, 1}, 0.3, {0, 0, 0.05}));
