@@ -33,6 +33,7 @@ struct TwoSheets {
     }
     /// How many points took the layers' signs; all of a sheet or none.
     std::size_t taken() {
+        layers.skyward = layers.signs;
         const std::size_t points = take_layers(patches, layers, walls).points;
         std::size_t turned = 0;
         for (std::size_t p = of_sheet; p < 2 * of_sheet; ++p) turned += walls.sign[p] > 0 ? 5 : 0;
@@ -88,6 +89,7 @@ TEST_CASE("components of which nothing is turned keep their outward side, whatev
     sheets.layers.sky.push_back(-1);
     sheets.see(0, of_sheet, 1);
     sheets.see(of_sheet, of_sheet + 30, 1);
+    sheets.layers.skyward = sheets.layers.signs;
     const SkyReading sky = take_layers(sheets.patches, sheets.layers, sheets.walls);
     CHECK(sky.points > 0);
     CHECK(sky.outward[0] == 1);
@@ -116,11 +118,44 @@ TEST_CASE("a wall that is seen from both sides stays one, and so does what nobod
     CHECK(TwoSheets().taken() == 0);
 }
 
+TEST_CASE("what sees no sky is layers where most of what is in question is", "[normals]") {
+    for (const Index unseen :
+         {30, 49, 50, 70}) { // the last patches of the second sheet, a region of their own
+        INFO(unseen << " patches without a view");
+        TwoSheets sheets;
+        const Index first = 2 * of_sheet - unseen;
+        std::erase_if(sheets.layers.edges, [&](const SignedEdge& e) { return e.b == first; });
+        sheets.see(0, of_sheet, 1);
+        sheets.see(of_sheet, first, 1);
+        CHECK(sheets.taken() == 5 * (2 * unseen < of_sheet ? of_sheet : of_sheet - unseen));
+    }
+}
+
+TEST_CASE("what is turned away from the sky stays a wall where most is layers", "[normals]") {
+    TwoSheets sheets;
+    const Index first = 2 * of_sheet - 30;
+    std::erase_if(sheets.layers.edges, [&](const SignedEdge& e) { return e.b == first; });
+    sheets.see(0, of_sheet, 1);
+    sheets.see(of_sheet, first, 1);
+    sheets.see(first, first + 1, -1);
+    CHECK(sheets.taken() == 5 * (of_sheet - 30));
+}
+
+TEST_CASE("a wall stays one if only signs that follow the sky call it layers", "[normals]") {
+    TwoSheets sheets;
+    sheets.see(0, of_sheet, 1);
+    sheets.see(of_sheet, of_sheet + 20, 1);
+    sheets.layers.skyward = sheets.layers.signs;
+    sheets.layers.signs = sheets.walls;
+    CHECK(take_layers(sheets.patches, sheets.layers, sheets.walls).points == 0);
+}
+
 TEST_CASE("the side in question is the layers' even if most of the sheets is turned away", "[normals]") {
     TwoSheets sheets;
     for (std::int8_t& sign : sheets.walls.sign) sign = static_cast<std::int8_t>(-sign);
     sheets.see(0, of_sheet, 1);
     sheets.see(2 * of_sheet - 20, 2 * of_sheet, 1);
+    sheets.layers.skyward = sheets.layers.signs;
     const SkyReading sky = take_layers(sheets.patches, sheets.layers, sheets.walls);
     CHECK(sky.points == 5 * of_sheet);
     REQUIRE(sky.outward.size() == 1);

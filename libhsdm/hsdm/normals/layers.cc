@@ -43,37 +43,68 @@ std::vector<std::int8_t> outward_signs(const Patches& patches, const std::vector
     return outward;
 }
 
+/// Where signs of walls differ from those of layers, and for which of them the sky is there.
+class Differences {
+public:
+    Differences(const Patches& patches, const std::vector<std::int8_t>& sky, const Signs& walls,
+                const Signs& layers)
+        : patches_(patches), faces_(large_vector<std::int8_t>(patches.size())), differ_(faces_.size()) {
+        const std::vector<std::int8_t> out = outward_signs(patches, sky, walls),
+                                       layers_out = outward_signs(patches, sky, layers);
+        for_each_index(patches.size(), chunks::light, [&](Index p) {
+            const int sign = layers.sign[p] * layers_out[layers.component[p]];
+            differ_[p] = out[walls.component[p]] * walls.sign[p] * sign < 0;
+            faces_[p] = static_cast<std::int8_t>(sky[p] * sign);
+        });
+    }
+
+    bool at(std::size_t patch) const { return differ_[patch] != 0; }
+    /// What those of each group see; group_of(patch) is its number.
+    template <class GroupOf>
+    std::vector<Views> views(std::size_t groups, const GroupOf& group_of) const {
+        std::vector<Views> result = large_vector<Views>(groups);
+        for_each_in_order(patches_.size(), [&](std::size_t p) {
+            if (at(p)) result[group_of(p)].add(patches_.counts[p], faces_[p]);
+        });
+        return result;
+    }
+
+private:
+    const Patches& patches_;
+    std::vector<std::int8_t> faces_; // which way layers face: +1 the sky, -1 away from it
+    std::vector<std::uint8_t> differ_;
+};
+
 } // namespace
 
 SkyReading take_layers(const Patches& patches, const LayerReading& layers, Signs& walls) {
-    const Signs& other = layers.signs;
-    const std::vector<std::int8_t> out = outward_signs(patches, layers.sky, walls),
-                                   other_out = outward_signs(patches, layers.sky, other);
-    std::vector<std::uint8_t> differ = large_vector<std::uint8_t>(patches.size(), 0);
-    for_each_index(patches.size(), chunks::light, [&](Index p) {
-        differ[p] =
-            out[walls.component[p]] * walls.sign[p] * other_out[other.component[p]] * other.sign[p] < 0;
-    });
-    DisjointSets regions(patches.size());
+    const auto component_of = [&](std::size_t p) { return walls.component[p]; };
+    const std::vector<Views> unbiased =
+        Differences(patches, layers.sky, walls, layers.signs).views(walls.components, component_of);
+    const Differences differences(patches, layers.sky, walls, layers.skyward);
+    DisjointSets joined(patches.size());
     for_each_in_order(layers.edges.size(), [&](std::size_t e) {
         const SignedEdge& edge = layers.edges[e];
-        if (edge.weight != 0 && differ[edge.a] != 0 && differ[edge.b] != 0) regions.join(edge.a, edge.b);
+        if (edge.weight != 0 && differences.at(edge.a) && differences.at(edge.b)) joined.join(edge.a, edge.b);
     });
-    std::vector<Views> of_region = large_vector<Views>(patches.size()), of_component(walls.components);
+    const auto region_of = [&](std::size_t p) { return joined.find(static_cast<Index>(p)); };
+    const std::vector<Views> of_region = differences.views(patches.size(), region_of),
+                             of_component = differences.views(walls.components, component_of);
     const auto for_differing = [&](const auto& work) {
         for_each_in_order(patches.size(), [&](std::size_t p) {
-            if (differ[p] != 0) work(p, of_region[regions.find(static_cast<Index>(p))], walls.component[p]);
+            if (differences.at(p)) work(p, of_region[region_of(p)], component_of(p));
         });
     };
-    for_differing([&](std::size_t p, Views& region, Index component) {
-        const int faces = layers.sky[p] * other.sign[p] * other_out[other.component[p]];
-        region.add(patches.counts[p], faces);
-        of_component[component].add(patches.counts[p], faces);
+    std::vector<std::size_t> clear(walls.components, 0); // points
+    for_differing([&](std::size_t p, const Views& region, Index component) {
+        if (region.are_clear()) clear[component] += patches.counts[p];
     });
     SkyReading result;
     std::vector<std::uint8_t> turned(walls.components, 0);
     for_differing([&](std::size_t p, const Views& region, Index component) {
-        if (!region.are_clear() || of_component[component].facing <= 0) return;
+        if (unbiased[component].facing <= 0) return;
+        const bool most_are_clear = 2 * clear[component] > of_component[component].points;
+        if (!region.are_clear() && (region.facing < 0 || !most_are_clear)) return;
         walls.sign[p] = static_cast<std::int8_t>(-walls.sign[p]);
         turned[component] = 1;
         result.points += patches.counts[p];

@@ -69,7 +69,19 @@ bool views_agree(const Patches& patches, const OutsideView& view, const Signs& s
     return sum >= turning::clear_views * total;
 }
 
-/// Signs of the patches as of layers of one surface, and what they see of the sky.
+/// That patches see the outside, which is the node after them: `votes` per patch, +1 in front, -1 behind.
+void add_views(const std::vector<std::int8_t>& votes, const Patches& patches,
+               std::vector<SignedEdge>& edges) {
+    const auto outside = static_cast<Index>(patches.size());
+    for_each_in_order(patches.size(), [&](std::size_t p) {
+        if (votes[p] == 0) return;
+        const auto weight = turning::view_weight * static_cast<float>(patches.counts[p]);
+        push_large(edges,
+                   SignedEdge{static_cast<Index>(p), outside, static_cast<float>(votes[p]) * weight, weight});
+    });
+}
+
+/// Signs of the patches as of layers of one surface, and what they see of the sky, which is outside.
 LayerReading read_as_layers(const Octree& octree, const Neighbors& neighbors,
                             const EstimatedNormals& estimate, const Patches& patches) {
     LayerReading layers;
@@ -77,6 +89,11 @@ LayerReading read_as_layers(const Octree& octree, const Neighbors& neighbors,
     layers.signs = agglomerate(patches.size(), layers.edges);
     const std::vector<std::uint8_t> beside = sheets_beside(octree, neighbors, estimate, patches);
     layers.sky = view_outside(octree, patches, estimate_spacing(octree), {.beside = beside}).sky;
+    std::vector<SignedEdge> edges;
+    reserve_large(edges, layers.edges.size() + patches.size());
+    append_large(edges, layers.edges);
+    add_views(layers.sky, patches, edges);
+    layers.skyward = agglomerate(patches.size() + 1, std::move(edges), static_cast<Index>(patches.size()));
     return layers;
 }
 
@@ -102,11 +119,9 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
     append_large(edges, view.facing);
     Orientation result;
     OrientReport& report = result.report;
+    add_views(view.votes, patches, edges);
     for_each_in_order(patches.size(), [&](std::size_t p) {
-        if (view.votes[p] == 0) return;
-        const auto weight = turning::view_weight * static_cast<float>(patches.counts[p]);
-        edges.push_back({static_cast<Index>(p), outside, static_cast<float>(view.votes[p]) * weight, weight});
-        report.seen_from_outside += patches.counts[p];
+        if (view.votes[p] != 0) report.seen_from_outside += patches.counts[p];
     });
     const std::vector<float> seen_by = seen_by_sensors(octree, patches, options.viewpoints);
     for_each_in_order(seen_by.size(), [&](std::size_t p) {
