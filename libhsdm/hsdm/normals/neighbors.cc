@@ -159,9 +159,9 @@ private:
             return farthest;
         }
         rank(low, high);
-        keep(low);
-        for (std::size_t r = 0; count_ < wanted; ++r) near_[count_++] = ranked_[r].second;
-        return ranked_[wanted - below - 1].first;
+        const auto [farthest, last] = ranked_[wanted - below - 1];
+        keep_up_to(farthest, last);
+        return farthest;
     }
 
     /// Sorts those near that are beyond `low` and within `high`, nearest first.
@@ -171,6 +171,15 @@ private:
             if (near_distance_[k] > low && near_distance_[k] <= high)
                 ranked_.emplace_back(near_distance_[k], near_[k]);
         std::sort(ranked_.begin(), ranked_.end());
+    }
+    /// Those nearer, and of those as far the ones up to a place; they stay in the order of places, which does
+    /// not depend on how the distance was found.
+    void keep_up_to(float farthest, Index last) {
+        std::size_t kept = 0;
+        for (std::size_t k = 0; k < count_; ++k)
+            if (near_distance_[k] < farthest || (near_distance_[k] == farthest && near_[k] <= last))
+                near_[kept++] = near_[k];
+        count_ = kept;
     }
     void keep(float limit) { count_ = lanes_.keep(near_distance_.data(), count_, limit, near_.data()); }
 

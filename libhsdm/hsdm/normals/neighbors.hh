@@ -21,7 +21,9 @@ std::array<std::size_t, morton_levels + 1> count_leaves(std::span<const MortonCo
 /// The finest level that so many leaves of each are searched on: few of the finest are searched one above.
 int finest_leaves(const std::array<std::size_t, morton_levels + 1>& leaves);
 
-/// The neighbours of point i are index[i * count] .. index[(i + 1) * count - 1], in no order, without i.
+/// The neighbours of point i are index[i * count] .. index[(i + 1) * count - 1], without i, in an order by place
+/// alone: voxel by voxel of those around, octree order in each. Sums over them are the same bits wherever the
+/// points around are the same.
 struct Neighbors {
     std::size_t count = 0;         ///< per point: min(options.count, points - 1)
     std::vector<Index> index;      ///< points x count, octree order

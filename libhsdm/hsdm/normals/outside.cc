@@ -267,7 +267,7 @@ std::vector<SignedEdge> facing_patches(const std::vector<Sights>& seen, const Pa
         for (const Sight& sight : seen[p]) {
             const Index q = patch_ahead(sight, patches);
             if (q == no_index || q == p) continue;
-            const auto weight = static_cast<float>(patches.counts[p] * facing(patches, p, q));
+            const float weight = in_steps(patches.counts[p] * facing(patches, p, q));
             if (weight != 0)
                 push_large(edges, SignedEdge{std::min(p, q), std::max(p, q), weight, std::abs(weight)});
         }

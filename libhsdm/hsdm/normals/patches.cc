@@ -101,7 +101,7 @@ public:
             place = edges.size();
             edges.push_back({a, b, 0, 0});
         }
-        const auto w = static_cast<float>(weight);
+        const float w = in_steps(weight);
         edges[place].weight += w;
         edges[place].total += std::abs(w);
     }
