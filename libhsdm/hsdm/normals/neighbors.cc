@@ -218,11 +218,15 @@ public:
         levels_.back() = extract_level(octree, deepest);
         for (auto level = levels_.size() - 1; level-- > 0;)
             levels_[level] = coarser_level(levels_[level + 1], static_cast<int>(level));
+        if (!points) resize_large(result.leaf_level, leaves.size());
         tbb::enumerable_thread_specific<Scratch> scratch;
         for_chunks(leaves.size(), chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t) {
             Scratch& own = scratch.local();
             float limit = 0; // not known yet
-            for (std::size_t l = begin; l < end; ++l) limit = search_leaf(leaves[l], limit, own);
+            for (std::size_t l = begin; l < end; ++l) {
+                limit = search_leaf(leaves[l], limit, own);
+                if (!points) result.leaf_level[l] = static_cast<std::int8_t>(own.candidates.level);
+            }
         });
         if (points) return;
         result.leaf_first.reserve(leaves.size() + 1);
