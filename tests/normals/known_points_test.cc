@@ -11,13 +11,13 @@ using namespace hsdm;
 namespace {
 
 /// The points of some voxels of a level, in the whole cloud's cube.
-struct Part {
+struct VoxelPart {
     Octree octree;
     std::vector<Index> in_whole;
 };
 
-Part part_of(const Octree& whole, int level, const std::function<bool(const VoxelCoord&)>& has) {
-    Part part;
+VoxelPart voxels_of(const Octree& whole, int level, const std::function<bool(const VoxelCoord&)>& has) {
+    VoxelPart part;
     part.octree.origin = whole.origin, part.octree.extent = whole.extent, part.octree.bounds = whole.bounds;
     for (Index i = 0; i < whole.size(); ++i) {
         if (!has(morton_decode(whole.codes[i] >> 3 * (morton_levels - level)))) continue;
@@ -62,7 +62,7 @@ TEST_CASE("known points of a part have the neighbours and the normals of the who
         }
         return true;
     };
-    const Part part = part_of(whole, level, has);
+    const VoxelPart part = voxels_of(whole, level, has);
     REQUIRE(part.in_whole.size() < whole.size());
     const Neighbors found = find_neighbors(part.octree, {.finest_level = finest});
     const EstimatedNormals made = estimate_normals(part.octree, found, {.noise = estimate.noise});

@@ -20,6 +20,9 @@ inline float in_steps(double evidence) {
     return static_cast<float>(evidence + shift - shift);
 }
 
+/// Sorts edges by their ends, and adds up those between the same nodes. O(e).
+void merge_edges(std::vector<SignedEdge>& edges, std::size_t nodes);
+
 struct Signs {
     std::vector<std::int8_t> sign; ///< per node, +1 or -1, relative to its component
     std::vector<Index> component;  ///< per node

@@ -68,12 +68,11 @@ bool views_agree(const Patches& patches, const OutsideView& view, const Signs& s
     return sum >= turning::clear_views * total;
 }
 
-/// Signs of the patches as of layers of one surface, and what they see of the sky.
+/// The evidence of patches as of layers of one surface, and what they see of the sky.
 LayerReading read_as_layers(const Octree& octree, const Neighbors& neighbors,
                             const EstimatedNormals& estimate, const Patches& patches) {
     LayerReading layers;
     layers.edges = layer_evidence(octree, neighbors, estimate, patches);
-    layers.signs = agglomerate(patches.size(), layers.edges);
     const std::vector<std::uint8_t> beside = sheets_beside(octree, neighbors, estimate, patches);
     layers.sky = view_outside(octree, patches, estimate_spacing(octree), {.beside = beside}).sky;
     return layers;
@@ -88,6 +87,17 @@ const Vec3* Viewpoints::of(Index source) const {
                ? &sensors[static_cast<std::size_t>(number)]
                : nullptr;
 }
+
+namespace {
+
+/// An edge counts by all that is said of it, however that was divided.
+SkyReading layers_taken(const Patches& patches, LayerReading&& layers, Signs& signs) {
+    merge_edges(layers.edges, patches.size());
+    layers.signs = agglomerate(patches.size(), layers.edges);
+    return take_layers(patches, layers, signs);
+}
+
+} // namespace
 
 PatchSigns sign_patches(const Patches& patches, std::vector<SignedEdge> edges, const OutsideView& view,
                         const std::vector<float>& seen_by, const OrientOptions& options,
@@ -111,7 +121,7 @@ PatchSigns sign_patches(const Patches& patches, std::vector<SignedEdge> edges, c
     const bool scanned = std::ranges::any_of(seen_by, [](float vote) { return vote != 0; });
     SkyReading sky;
     if (!scanned && signs.contradicted > turning::least_contradicted)
-        sky = take_layers(patches, read_as_layers(), signs);
+        sky = layers_taken(patches, read_as_layers(), signs);
     std::vector<std::int8_t> turn = free_signs(patches, signs, options);
     std::vector<std::uint8_t> is_known(turn.size(), 0); // by views or by the sky
     const auto decide = [&](std::size_t component, std::int8_t sign) {

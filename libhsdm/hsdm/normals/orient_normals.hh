@@ -54,8 +54,8 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
 
 /// The last step of that, of all patches of a cloud: by the evidence between them, by what they see of the
 /// outside, and by the scanners (per patch, as in Viewpoints; none: empty). read_as_layers() is asked where
-/// the evidence contradicts itself. Of `patches` what is of points is read for OrientOptions::signs_count
-/// alone.
+/// the evidence contradicts itself; the signs in what it gives are found here. Of `patches` what is of points
+/// is read for OrientOptions::signs_count alone.
 struct PatchSigns {
     std::vector<std::int8_t> sign; ///< per patch, -1 if its normal is to be turned
     OrientReport report;

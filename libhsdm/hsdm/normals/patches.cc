@@ -202,8 +202,13 @@ std::vector<std::uint8_t> sheets_beside(const Octree& octree, const Neighbors& n
 
 std::vector<SignedEdge> layer_evidence(const Octree& octree, const Neighbors& neighbors,
                                        const EstimatedNormals& estimate, const Patches& patches) {
-    const std::size_t leaves = neighbors.leaf_first.size() - 1;
-    return evidence_of_pairs(octree, neighbors, patches, 0, leaves, [&](Index i) {
+    return layer_evidence(octree, neighbors, estimate, patches, 0, neighbors.leaf_first.size() - 1);
+}
+
+std::vector<SignedEdge> layer_evidence(const Octree& octree, const Neighbors& neighbors,
+                                       const EstimatedNormals& estimate, const Patches& patches,
+                                       std::size_t begin, std::size_t end) {
+    return evidence_of_pairs(octree, neighbors, patches, begin, end, [&](Index i) {
         return [&estimate, n = estimate.normals[i]](Index j, const Vec3& d) {
             const Vec3& m = estimate.normals[j];
             const double said = mirrored(n, m, d, d.sqrnorm()), cosine = n | m;

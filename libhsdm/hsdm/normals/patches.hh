@@ -42,5 +42,9 @@ std::vector<std::uint8_t> sheets_beside(const Octree& octree, const Neighbors& n
 /// each other are then layers of one surface, as scans that do not register show it. O(n), parallel.
 std::vector<SignedEdge> layer_evidence(const Octree& octree, const Neighbors& neighbors,
                                        const EstimatedNormals& estimate, const Patches& patches);
+/// The same by the pairs of which the first point is of the leaves from `begin` to `end`.
+std::vector<SignedEdge> layer_evidence(const Octree& octree, const Neighbors& neighbors,
+                                       const EstimatedNormals& estimate, const Patches& patches,
+                                       std::size_t begin, std::size_t end);
 
 } // namespace hsdm

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace hsdm {
 namespace {
@@ -61,12 +62,14 @@ struct PatchRow {
     Index number, count;
     Vec3 centroid, normal;
     Sights sights;
+    std::uint8_t beside; ///< as sheets_beside(), if sheets may be layers
 };
 
 /// What is gathered of all parts to tell the sides.
 struct SideEvidence {
     std::vector<PatchRow> patches;
     std::vector<SignedEdge> edges;
+    std::vector<SignedEdge> layers; ///< as layer_evidence(), if sheets may be layers
 };
 
 /// The empty space of the whole cloud.
@@ -85,8 +88,8 @@ EmptySpace space_of(const ScratchCloud& cloud, double spacing, std::size_t most)
 /// Looks at the parts for what tells the sides.
 class EvidencePass {
 public:
-    EvidencePass(const Estimating& how, const EmptySpace& space, double spacing)
-        : how_(how), space_(space), spacing_(spacing) {}
+    EvidencePass(const Estimating& how, const EmptySpace& space, double spacing, bool may_be_layers)
+        : how_(how), space_(space), spacing_(spacing), may_be_layers_(may_be_layers) {}
 
     SideEvidence evidence;
 
@@ -113,12 +116,16 @@ public:
         for (const Sights& sights : seen)
             for (const Sight& sight : sights)
                 if (sight.patch != no_index && !made.known[made.first_point[sight.patch]]) return false;
-        for (Index p = first_patch; p < last_patch; ++p) take_patch(made, p, seen[p - first_patch]);
-        for (SignedEdge edge :
-             patch_evidence(part.octree(), made.neighbors, made.estimate, made.patches, begin, end)) {
-            edge.a = made.number(edge.a), edge.b = made.number(edge.b);
-            push_large(evidence.edges, edge);
+        std::vector<std::uint8_t> beside(made.patches.size(), 0);
+        if (may_be_layers_) {
+            beside = sheets_beside(part.octree(), made.neighbors, made.estimate, made.patches);
+            take(made, layer_evidence(part.octree(), made.neighbors, made.estimate, made.patches, begin, end),
+                 evidence.layers);
         }
+        for (Index p = first_patch; p < last_patch; ++p)
+            take_patch(made, p, seen[p - first_patch], beside[p]);
+        take(made, patch_evidence(part.octree(), made.neighbors, made.estimate, made.patches, begin, end),
+             evidence.edges);
         return true;
     }
 
@@ -135,16 +142,22 @@ private:
         return true;
     }
 
-    void take_patch(const PartNormals& made, Index p, Sights sights) {
+    void take_patch(const PartNormals& made, Index p, Sights sights, std::uint8_t beside) {
         for (Sight& sight : sights)
             if (sight.patch != no_index) sight.patch = made.number(sight.patch);
-        push_large(evidence.patches, PatchRow{made.number(p), made.patches.counts[p],
-                                              made.patches.centroids[p], made.patches.normals[p], sights});
+        push_large(evidence.patches,
+                   PatchRow{made.number(p), made.patches.counts[p], made.patches.centroids[p],
+                            made.patches.normals[p], sights, beside});
+    }
+    static void take(const PartNormals& made, std::vector<SignedEdge> found, std::vector<SignedEdge>& all) {
+        for (SignedEdge& edge : found) edge.a = made.number(edge.a), edge.b = made.number(edge.b);
+        append_large(all, found);
     }
 
     const Estimating& how_;
     const EmptySpace& space_;
     double spacing_;
+    bool may_be_layers_;
 };
 
 /// Bytes that the first rank holds while it tells the sides: of a patch, and of what pairs of points say.
@@ -152,8 +165,8 @@ constexpr std::size_t bytes_per_patch = 300, bytes_per_edge = 80;
 
 /// On the first rank: what all have found. Others are left with nothing.
 SideEvidence gathered(SideEvidence&& own, Ranks& ranks, std::size_t memory) {
-    const std::size_t bytes =
-        ranks.sum(own.patches.size()) * bytes_per_patch + ranks.sum(own.edges.size()) * bytes_per_edge;
+    const std::size_t bytes = ranks.sum(own.patches.size()) * bytes_per_patch
+                              + ranks.sum(own.edges.size() + own.layers.size()) * bytes_per_edge;
     if (bytes > memory)
         throw Error("telling the sides of normals takes about " + std::to_string(bytes / 1000000)
                     + " MB, which is held in memory; give --memory that much, or a cloud with normals");
@@ -161,12 +174,14 @@ SideEvidence gathered(SideEvidence&& own, Ranks& ranks, std::size_t memory) {
     std::vector<Ranks::Bytes> out(static_cast<std::size_t>(ranks.size()));
     put_vector(own.patches, out.front());
     put_vector(own.edges, out.front());
+    put_vector(own.layers, out.front());
     own = {};
     for (const Ranks::Bytes& got : ranks.exchange(std::move(out))) {
         if (got.empty()) continue;
         ByteReader reader(got);
         append_large(own.patches, reader.take_vector<PatchRow>());
         append_large(own.edges, reader.take_vector<SignedEdge>());
+        append_large(own.layers, reader.take_vector<SignedEdge>());
     }
     return std::move(own);
 }
@@ -182,44 +197,67 @@ struct SignsOfAll {
     }
 };
 
-SignsOfAll signs_of(SideEvidence&& all, const EmptySpace& space) {
-    std::ranges::sort(all.patches, {}, &PatchRow::number);
-    SignsOfAll result;
-    Patches patches;
+/// The evidence of all patches as make_normals() has it; leaves `all` without it.
+struct WholeEvidence {
+    Patches patches; ///< without what is of points
     std::vector<Sights> seen;
+    std::vector<std::uint8_t> beside;
+};
+
+/// Patches in the order of their numbers, which become their places in it.
+WholeEvidence whole_evidence(SideEvidence& all, SignsOfAll& result) {
+    std::ranges::sort(all.patches, {}, &PatchRow::number);
+    WholeEvidence whole;
     for (const PatchRow& row : all.patches) {
         push_large(result.number, row.number);
-        push_large(patches.counts, row.count);
-        push_large(patches.centroids, row.centroid);
-        push_large(patches.normals, row.normal);
-        push_large(seen, row.sights);
+        push_large(whole.patches.counts, row.count);
+        push_large(whole.patches.centroids, row.centroid);
+        push_large(whole.patches.normals, row.normal);
+        push_large(whole.seen, row.sights);
+        push_large(whole.beside, row.beside);
     }
     all.patches = {};
-    for (Sights& sights : seen)
+    for (Sights& sights : whole.seen)
         for (Sight& sight : sights)
             if (sight.patch != no_index) sight.patch = result.place(sight.patch);
-    for (SignedEdge& edge : all.edges) edge.a = result.place(edge.a), edge.b = result.place(edge.b);
-    const OutsideView view = judge_sights(space, seen, patches);
-    seen = {};
-    PatchSigns signs = sign_patches(patches, std::move(all.edges), view, {}, {}, []() -> LayerReading {
-        refuse_in_tiles("sheets near each other may be layers of one surface");
-    });
+    for (std::vector<SignedEdge>* edges : {&all.edges, &all.layers})
+        for (SignedEdge& edge : *edges) edge.a = result.place(edge.a), edge.b = result.place(edge.b);
+    return whole;
+}
+
+/// None if it takes the evidence of layers, which `all` has not.
+std::optional<SignsOfAll> signs_of(SideEvidence&& all, const EmptySpace& space, bool may_be_layers) {
+    SignsOfAll result;
+    const WholeEvidence whole = whole_evidence(all, result);
+    bool lacks_layers = false;
+    PatchSigns signs =
+        sign_patches(whole.patches, std::move(all.edges), judge_sights(space, whole.seen, whole.patches), {},
+                     {}, [&]() -> LayerReading {
+                         lacks_layers = !may_be_layers;
+                         std::vector<std::int8_t> sky(whole.patches.size(), 0);
+                         if (may_be_layers)
+                             sky = judge_sights(space, whole.seen, whole.patches, whole.beside).sky;
+                         return {std::move(all.layers), {}, std::move(sky)};
+                     });
+    if (lacks_layers) return std::nullopt;
     result.sign = std::move(signs.sign);
     result.report = signs.report;
     return result;
 }
 
-/// What the first rank finds.
-SignsOfAll signs_of_all(SideEvidence&& own, const EmptySpace& space, Ranks& ranks, std::size_t memory) {
+/// What the first rank finds, if it does.
+std::optional<SignsOfAll> signs_of_all(SideEvidence&& own, const EmptySpace& space, bool may_be_layers,
+                                       Ranks& ranks, std::size_t memory) {
     SideEvidence all = gathered(std::move(own), ranks, memory);
     Ranks::Bytes bytes;
-    if (ranks.is_first()) {
-        const SignsOfAll found = signs_of(std::move(all), space);
-        put(found.report, bytes);
-        put_vector(found.number, bytes);
-        put_vector(found.sign, bytes);
-    }
+    if (ranks.is_first())
+        if (const auto found = signs_of(std::move(all), space, may_be_layers)) {
+            put(found->report, bytes);
+            put_vector(found->number, bytes);
+            put_vector(found->sign, bytes);
+        }
     const Ranks::Bytes got = ranks.of_first(std::move(bytes));
+    if (got.empty()) return std::nullopt;
     ByteReader reader(got);
     SignsOfAll result;
     result.report = reader.take<OrientReport>();
@@ -251,9 +289,10 @@ public:
         estimate.normals = std::move(refined);
         vote_on_normals(part.octree(), made.neighbors, estimate);
         made.known.step(estimate.bent, repeats::twice);
-        bend_to_arcs(part.octree(), made.neighbors, estimate);
+        const bool bends = signs_.report.of_layers == 0; // as make_normals() has it
+        if (bends) bend_to_arcs(part.octree(), made.neighbors, estimate);
         // Which are on arcs at first, the rounds, and which are backed.
-        if (!(estimate.noise > estimation::rough)) made.known.step(estimate.bent, arcs::rounds + 2);
+        if (bends && !(estimate.noise > estimation::rough)) made.known.step(estimate.bent, arcs::rounds + 2);
         if (!made.known.all(part.begin(), part.end())) return false;
         keep(part, std::move(estimate));
         return true;
@@ -292,6 +331,19 @@ Estimating estimating(ScratchCloud& cloud, const CloudSurvey& survey, const Clou
     return how;
 }
 
+/// In one pass, and one more where sheets may be layers.
+SignsOfAll find_signs(ScratchCloud& cloud, const CloudSurvey& survey, std::span<const VoxelRange> ranges,
+                      const Estimating& how, const CloudNormalsOptions& options) {
+    const EmptySpace space = space_of(cloud, survey.spacing, options.most_points);
+    for (bool may_be_layers = false;; may_be_layers = true) {
+        EvidencePass pass(how, space, survey.spacing, may_be_layers);
+        for_parts(cloud, survey.sums, ranges, [&](const CloudPart& part) { return pass.add(part); });
+        if (auto signs =
+                signs_of_all(std::move(pass.evidence), space, may_be_layers, cloud.ranks(), options.memory))
+            return std::move(*signs);
+    }
+}
+
 } // namespace
 
 NormalsReport make_cloud_normals(ScratchCloud& cloud, CloudSurvey& survey,
@@ -301,13 +353,7 @@ NormalsReport make_cloud_normals(ScratchCloud& cloud, CloudSurvey& survey,
     const Estimating how = estimating(cloud, survey, options);
     report.noise = *how.estimate.noise;
     const std::vector<VoxelRange> ranges = options.plan();
-    SignsOfAll signs;
-    {
-        const EmptySpace space = space_of(cloud, survey.spacing, options.most_points);
-        EvidencePass pass(how, space, survey.spacing);
-        for_parts(cloud, survey.sums, ranges, [&](const CloudPart& part) { return pass.add(part); });
-        signs = signs_of_all(std::move(pass.evidence), space, cloud.ranks(), options.memory);
-    }
+    const SignsOfAll signs = find_signs(cloud, survey, ranges, how, options);
     report.orientation = signs.report;
     ScratchCloud next = cloud.without_points();
     SidedPass pass(how, signs, next);

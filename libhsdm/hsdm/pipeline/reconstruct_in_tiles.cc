@@ -193,7 +193,8 @@ private:
         report_.rejected["normals_near_creases"] = made.bent;
         report_.rejected["normals_missing"] = made.missing;
         report_.rejected["normals_by_volume"] = made.orientation.by_volume;
-        report_.rejected["normals_of_layers"] = 0;
+        report_.rejected["normals_of_layers"] = made.orientation.of_layers;
+        known_.has_layers = made.orientation.of_layers > 0;
         report_.rejected["points_between_sheets"] = 0;
     }
 
