@@ -12,7 +12,7 @@ namespace hsdm {
 KnownPoints::KnownPoints(const Octree& octree, const Neighbors& neighbors, const HasAround& has_around)
     : neighbors_(neighbors), known_(large_vector<std::uint8_t>(octree.size())) {
     for_each_index(neighbors.leaf_level.size(), chunks::slow, [&](Index leaf) {
-        const auto level = static_cast<int>(neighbors.leaf_level[leaf]);
+        const int level = neighbors.leaf_level[leaf];
         const Index begin = neighbors.leaf_first[leaf], end = neighbors.leaf_first[leaf + 1];
         const VoxelCoord voxel = morton_decode(octree.codes[begin] >> 3 * (morton_levels - level));
         const std::uint8_t known = has_around(voxel, level);

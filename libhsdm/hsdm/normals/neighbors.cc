@@ -225,7 +225,7 @@ public:
             float limit = 0; // not known yet
             for (std::size_t l = begin; l < end; ++l) {
                 limit = search_leaf(leaves[l], limit, own);
-                if (!points) result.leaf_level[l] = static_cast<std::int8_t>(own.candidates.level);
+                if (!points) result.leaf_level[l] = static_cast<std::uint8_t>(own.candidates.level);
             }
         });
         if (points) return;

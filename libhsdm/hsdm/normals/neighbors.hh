@@ -31,8 +31,8 @@ struct Neighbors {
     std::vector<Index> leaf_first; ///< of all points: the leaves they were taken in: leaf l holds points
                                    ///< leaf_first[l] .. leaf_first[l + 1] - 1, of one voxel, a dozen at most
                                    ///< (more where the finest voxels hold more); empty if of some points
-    std::vector<std::int8_t> leaf_level; ///< per leaf: its points' neighbours are of the voxels within one of
-                                         ///< its own of this level
+    std::vector<std::uint8_t> leaf_level; ///< per leaf: its points' neighbours are of the voxels within one
+                                          ///< of its own of this level
 
     std::span<const Index> of(std::size_t point) const { return {index.data() + point * count, count}; }
 };
