@@ -127,3 +127,22 @@ TEST_CASE("what no evidence joins stays apart, and the order of the edges does n
     CHECK(again.sign == signs.sign);
     CHECK(again.component == signs.component);
 }
+
+TEST_CASE("signs of evidence in steps do not depend on its order, nor on how it is divided", "[normals]") {
+    support::Random random(3);
+    const Index side = 40;
+    const std::vector<int> hidden(side * side, 1);
+    std::vector<SignedEdge> edges;
+    for (int part = 0; part < 3; ++part)
+        for (const SignedEdge& e : grid_edges(side, hidden, 0.3, random)) {
+            const float weight = in_steps(e.weight);
+            edges.push_back({e.a, e.b, weight, std::abs(weight)});
+        }
+    const Signs signs = agglomerate(side * side, edges);
+    for (std::size_t i = edges.size(); i > 1; --i)
+        std::swap(edges[i - 1], edges[static_cast<std::size_t>(random.uniform() * static_cast<double>(i))]);
+    const Signs shuffled = agglomerate(side * side, edges);
+    CHECK(signs.sign == shuffled.sign);
+    CHECK(signs.contradicted == shuffled.contradicted);
+    CHECK(signs.contradicted > 0);
+}

@@ -186,11 +186,11 @@ TEST_CASE("what one rank cannot read no rank waits for", "[pipeline]") {
 
 TEST_CASE("ranks refuse what tiles cannot do, all with one reason", "[pipeline]") {
     PointCloud cloud = bored_box();
-    cloud.normals.clear();
+    cloud.scalars = {{"height", std::vector<double>(cloud.size(), 1.0), false}};
     const auto failures = support::run_ranks(2, [&](Ranks& ranks) {
         reconstruct_in_tiles([&](const auto& visit) { visit(view_of(cloud)); }, {.depth = 6}, small_tiles(),
                              ranks);
     });
-    CHECK(failures[0].find("no normals") != std::string::npos);
+    CHECK(failures[0].find("colours or scalars") != std::string::npos);
     CHECK(failures[1] == failures[0]);
 }

@@ -313,10 +313,6 @@ TEST_CASE("what tiles cannot tell is refused, with the reason", "[pipeline][slow
         cloud = support::sample(support::sphere(1), {.points = 20000, .position_noise = 0.035});
         CHECK(refusal(cloud, tiles).find("the noise is wider") != std::string::npos);
     }
-    SECTION("no normals") {
-        cloud.normals.clear();
-        CHECK(refusal(cloud, tiles).find("no normals") != std::string::npos);
-    }
     SECTION("too little memory for the mesh") {
         TileOptions small;
         small.memory = 1000000;

@@ -63,31 +63,6 @@ private:
     std::vector<std::int8_t> sign_;
 };
 
-/// Sorts by both ends and adds up edges between the same nodes.
-void sort_and_merge(std::vector<SignedEdge>& edges, std::size_t nodes) {
-    std::vector<Index> end = large_vector<Index>(nodes + 1); // of each node's edges, once they are there
-    for_each_in_order(edges.size(), [&](std::size_t e) { ++end[edges[e].a + 1]; });
-    counts_to_first(end);
-    std::vector<SignedEdge> sorted = large_vector<SignedEdge>(edges.size());
-    for_each_in_order(edges.size(), [&](std::size_t e) { sorted[end[edges[e].a]++] = edges[e]; });
-    for_each_index(nodes, chunks::quick, [&](Index v) {
-        std::sort(sorted.begin() + (v == 0 ? 0 : end[v - 1]), sorted.begin() + end[v],
-                  [](const SignedEdge& e, const SignedEdge& f) { return e.b < f.b; });
-    });
-    std::size_t kept = 0;
-    for_each_in_order(sorted.size(), [&](std::size_t i) {
-        const SignedEdge& e = sorted[i];
-        if (kept == 0 || sorted[kept - 1].a != e.a || sorted[kept - 1].b != e.b) {
-            sorted[kept++] = e;
-        } else {
-            sorted[kept - 1].weight += e.weight;
-            sorted[kept - 1].total += e.total;
-        }
-    });
-    sorted.resize(kept);
-    edges.swap(sorted);
-}
-
 /// Sort key: strength of the evidence, then the edge's place; smaller is stronger.
 std::uint64_t rank_of(const SignedEdge& e, std::size_t place) {
     const float strength = e.total > 0 ? e.weight / e.total * e.weight : 0;
@@ -134,7 +109,7 @@ std::vector<Round> join_all(SignedForest& forest, std::vector<SignedEdge> edges,
                             const MayJoin& may_join) {
     std::vector<Round> rounds;
     while (!edges.empty()) {
-        sort_and_merge(edges, nodes);
+        merge_edges(edges, nodes);
         std::vector<Joint> joints;
         const std::vector<Index> picked = picked_edges(edges, nodes, may_join);
         for_each_in_order(picked.size(), [&](std::size_t i) {
@@ -263,6 +238,30 @@ bool turn_regions(std::vector<SignedEdge>& edges, std::vector<std::int8_t>& sign
 }
 
 } // namespace
+
+void merge_edges(std::vector<SignedEdge>& edges, std::size_t nodes) {
+    std::vector<Index> end = large_vector<Index>(nodes + 1); // of each node's edges, once they are there
+    for_each_in_order(edges.size(), [&](std::size_t e) { ++end[edges[e].a + 1]; });
+    counts_to_first(end);
+    std::vector<SignedEdge> sorted = large_vector<SignedEdge>(edges.size());
+    for_each_in_order(edges.size(), [&](std::size_t e) { sorted[end[edges[e].a]++] = edges[e]; });
+    for_each_index(nodes, chunks::quick, [&](Index v) {
+        std::sort(sorted.begin() + (v == 0 ? 0 : end[v - 1]), sorted.begin() + end[v],
+                  [](const SignedEdge& e, const SignedEdge& f) { return e.b < f.b; });
+    });
+    std::size_t kept = 0;
+    for_each_in_order(sorted.size(), [&](std::size_t i) {
+        const SignedEdge& e = sorted[i];
+        if (kept == 0 || sorted[kept - 1].a != e.a || sorted[kept - 1].b != e.b) {
+            sorted[kept++] = e;
+        } else {
+            sorted[kept - 1].weight += e.weight;
+            sorted[kept - 1].total += e.total;
+        }
+    });
+    sorted.resize(kept);
+    edges.swap(sorted);
+}
 
 Signs agglomerate(std::size_t nodes, std::vector<SignedEdge> edges, Index pole) {
     SignedForest forest(nodes);

@@ -13,6 +13,16 @@ struct SignedEdge {
     float total;  ///< sum of its magnitudes: a weight far below it is evidence that contradicts itself
 };
 
+/// Evidence, below 4,096, in steps of 1/4,096: sums of such floats are exact up to there, and so the same in
+/// any order.
+inline float in_steps(double evidence) {
+    constexpr double shift = 0x1.8p40; // the last digit of sums with it is a step
+    return static_cast<float>(evidence + shift - shift);
+}
+
+/// Sorts edges by their ends, and adds up those between the same nodes. O(e).
+void merge_edges(std::vector<SignedEdge>& edges, std::size_t nodes);
+
 struct Signs {
     std::vector<std::int8_t> sign; ///< per node, +1 or -1, relative to its component
     std::vector<Index> component;  ///< per node

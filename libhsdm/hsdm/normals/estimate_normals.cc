@@ -136,7 +136,7 @@ public:
         resize_unwritten(result_.tolerance, octree_.size());
         resize_unwritten(result_.spread, octree_.size());
         fit_all();
-        result_.noise = estimate_noise(octree_, neighbors_);
+        result_.noise = options.noise ? *options.noise : estimate_noise(octree_, neighbors_);
         choose_tolerance(options);
         find_bent();
         for (int round = 0; round < options.rounds; ++round) renew([this](Index i) { return best_plane(i); });

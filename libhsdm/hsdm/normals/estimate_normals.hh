@@ -16,6 +16,8 @@ struct EstimateOptions {
     /// >= 0: rounds of taking over neighbours' planes, each reaching one neighbourhood farther from a crease;
     /// 0 is plain least squares
     int rounds = repeats::twice;
+    /// EstimatedNormals::noise of a larger cloud that the points are part of
+    std::optional<double> noise{};
 };
 
 struct EstimatedNormals {

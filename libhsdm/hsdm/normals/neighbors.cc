@@ -159,9 +159,9 @@ private:
             return farthest;
         }
         rank(low, high);
-        keep(low);
-        for (std::size_t r = 0; count_ < wanted; ++r) near_[count_++] = ranked_[r].second;
-        return ranked_[wanted - below - 1].first;
+        const auto [farthest, last] = ranked_[wanted - below - 1];
+        keep_up_to(farthest, last);
+        return farthest;
     }
 
     /// Sorts those near that are beyond `low` and within `high`, nearest first.
@@ -171,6 +171,15 @@ private:
             if (near_distance_[k] > low && near_distance_[k] <= high)
                 ranked_.emplace_back(near_distance_[k], near_[k]);
         std::sort(ranked_.begin(), ranked_.end());
+    }
+    /// Those nearer, and of those as far the ones up to a place; they stay in the order of places, which does
+    /// not depend on how the distance was found.
+    void keep_up_to(float farthest, Index last) {
+        std::size_t kept = 0;
+        for (std::size_t k = 0; k < count_; ++k)
+            if (near_distance_[k] < farthest || (near_distance_[k] == farthest && near_[k] <= last))
+                near_[kept++] = near_[k];
+        count_ = kept;
     }
     void keep(float limit) { count_ = lanes_.keep(near_distance_.data(), count_, limit, near_.data()); }
 
@@ -209,11 +218,15 @@ public:
         levels_.back() = extract_level(octree, deepest);
         for (auto level = levels_.size() - 1; level-- > 0;)
             levels_[level] = coarser_level(levels_[level + 1], static_cast<int>(level));
+        if (!points) resize_large(result.leaf_level, leaves.size());
         tbb::enumerable_thread_specific<Scratch> scratch;
         for_chunks(leaves.size(), chunks::heavy, [&](std::size_t begin, std::size_t end, std::size_t) {
             Scratch& own = scratch.local();
             float limit = 0; // not known yet
-            for (std::size_t l = begin; l < end; ++l) limit = search_leaf(leaves[l], limit, own);
+            for (std::size_t l = begin; l < end; ++l) {
+                limit = search_leaf(leaves[l], limit, own);
+                if (!points) result.leaf_level[l] = static_cast<std::uint8_t>(own.candidates.level);
+            }
         });
         if (points) return;
         result.leaf_first.reserve(leaves.size() + 1);

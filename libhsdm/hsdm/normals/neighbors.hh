@@ -21,7 +21,9 @@ std::array<std::size_t, morton_levels + 1> count_leaves(std::span<const MortonCo
 /// The finest level that so many leaves of each are searched on: few of the finest are searched one above.
 int finest_leaves(const std::array<std::size_t, morton_levels + 1>& leaves);
 
-/// The neighbours of point i are index[i * count] .. index[(i + 1) * count - 1], in no order, without i.
+/// The neighbours of point i are index[i * count] .. index[(i + 1) * count - 1], without i, in an order by
+/// place alone: voxel by voxel of those around, octree order in each. Sums over them are the same bits
+/// wherever the points around are the same.
 struct Neighbors {
     std::size_t count = 0;         ///< per point: min(options.count, points - 1)
     std::vector<Index> index;      ///< points x count, octree order
@@ -29,6 +31,8 @@ struct Neighbors {
     std::vector<Index> leaf_first; ///< of all points: the leaves they were taken in: leaf l holds points
                                    ///< leaf_first[l] .. leaf_first[l + 1] - 1, of one voxel, a dozen at most
                                    ///< (more where the finest voxels hold more); empty if of some points
+    std::vector<std::uint8_t> leaf_level; ///< per leaf: its points' neighbours are of the voxels within one
+                                          ///< of its own of this level
 
     std::span<const Index> of(std::size_t point) const { return {index.data() + point * count, count}; }
 };

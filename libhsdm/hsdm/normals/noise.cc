@@ -97,6 +97,7 @@ std::vector<NoiseSample> noise_samples(const Octree& octree, std::span<const Ind
                                        const Neighbors& neighbors) {
     std::vector<NoiseSample> samples(points.size());
     for_each_index(points.size(), chunks::slow, [&](Index k) {
+        samples[k].farthest = neighbors.reach[k];
         for (std::size_t s = 0; s < scales().size(); ++s) {
             const Roughness found = roughness(octree, neighbors.of(k), scales()[s].few, points[k]);
             samples[k].distance[s] = found.distance, samples[k].reach[s] = found.reach;
@@ -121,6 +122,13 @@ double estimate_noise(const Octree& octree, const Neighbors& neighbors) {
                    ? roughness(octree, neighbors.of(i), noise::nearest, i).distance / neighbors.reach[i]
                    : 0;
     }));
+}
+
+double estimate_noise(std::span<const NoiseSample> samples) {
+    std::vector<double> relative;
+    for (const NoiseSample& of_point : samples)
+        relative.push_back(of_point.farthest > 0 ? of_point.distance.front() / of_point.farthest : 0);
+    return lower_third(std::move(relative));
 }
 
 double noise_deviation(const Octree& octree, const Neighbors& neighbors) {

@@ -26,7 +26,10 @@ std::size_t noise_stride(std::size_t points);
 struct NoiseSample {
     /// The distance from the plane of the 6 and of the 12 nearest, and how far the farthest of these is.
     std::array<double, 2> distance{}, reach{};
+    double farthest = 0; ///< how far the farthest of all neighbours is
 };
+/// estimate_noise() by such a sample.
+double estimate_noise(std::span<const NoiseSample> samples);
 /// `neighbors`: of these points alone.
 std::vector<NoiseSample> noise_samples(const Octree& octree, std::span<const Index> points,
                                        const Neighbors& neighbors);

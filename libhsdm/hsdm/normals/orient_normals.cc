@@ -5,7 +5,6 @@
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/normals/constants.hh"
 #include "hsdm/normals/layers.hh"
-#include "hsdm/normals/outside.hh"
 #include "hsdm/octree/spacing.hh"
 
 #include <algorithm>
@@ -81,19 +80,13 @@ void add_views(const std::vector<std::int8_t>& votes, const Patches& patches,
     });
 }
 
-/// Signs of the patches as of layers of one surface, and what they see of the sky, which is outside.
+/// The evidence of patches as of layers of one surface, and what they see of the sky.
 LayerReading read_as_layers(const Octree& octree, const Neighbors& neighbors,
                             const EstimatedNormals& estimate, const Patches& patches) {
     LayerReading layers;
     layers.edges = layer_evidence(octree, neighbors, estimate, patches);
-    layers.signs = agglomerate(patches.size(), layers.edges);
     const std::vector<std::uint8_t> beside = sheets_beside(octree, neighbors, estimate, patches);
     layers.sky = view_outside(octree, patches, estimate_spacing(octree), {.beside = beside}).sky;
-    std::vector<SignedEdge> edges;
-    reserve_large(edges, layers.edges.size() + patches.size());
-    append_large(edges, layers.edges);
-    add_views(layers.sky, patches, edges);
-    layers.skyward = agglomerate(patches.size() + 1, std::move(edges), static_cast<Index>(patches.size()));
     return layers;
 }
 
@@ -107,23 +100,35 @@ const Vec3* Viewpoints::of(Index source) const {
                : nullptr;
 }
 
-Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate,
-                           const OrientOptions& options) {
-    const Patches patches = build_patches(octree, neighbors, estimate);
-    OutsideView view;
+namespace {
+
+/// Reads the evidence alone and with the sky, which is outside. An edge counts by all that is said of it,
+/// however that was divided.
+SkyReading layers_taken(const Patches& patches, LayerReading&& layers, Signs& signs) {
+    merge_edges(layers.edges, patches.size());
+    layers.signs = agglomerate(patches.size(), layers.edges);
     std::vector<SignedEdge> edges;
-    run_both([&] { view = view_outside(octree, patches, estimate_spacing(octree)); },
-             [&] { edges = patch_evidence(octree, neighbors, estimate, patches); });
+    reserve_large(edges, layers.edges.size() + patches.size());
+    append_large(edges, layers.edges);
+    add_views(layers.sky, patches, edges);
+    layers.skyward = agglomerate(patches.size() + 1, std::move(edges), static_cast<Index>(patches.size()));
+    return take_layers(patches, layers, signs);
+}
+
+} // namespace
+
+PatchSigns sign_patches(const Patches& patches, std::vector<SignedEdge> edges, const OutsideView& view,
+                        const std::vector<float>& seen_by, const OrientOptions& options,
+                        const std::function<LayerReading()>& read_as_layers) {
     const auto outside = static_cast<Index>(patches.size());
     reserve_large(edges, edges.size() + view.facing.size() + patches.size());
     append_large(edges, view.facing);
-    Orientation result;
+    PatchSigns result;
     OrientReport& report = result.report;
     add_views(view.votes, patches, edges);
     for_each_in_order(patches.size(), [&](std::size_t p) {
         if (view.votes[p] != 0) report.seen_from_outside += patches.counts[p];
     });
-    const std::vector<float> seen_by = seen_by_sensors(octree, patches, options.viewpoints);
     for_each_in_order(seen_by.size(), [&](std::size_t p) {
         const float vote = turning::sensor_weight * seen_by[p];
         if (vote != 0) edges.push_back({static_cast<Index>(p), outside, vote, std::abs(vote)});
@@ -132,7 +137,7 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
     const bool scanned = std::ranges::any_of(seen_by, [](float vote) { return vote != 0; });
     SkyReading sky;
     if (!scanned && signs.contradicted > turning::least_contradicted)
-        sky = take_layers(patches, read_as_layers(octree, neighbors, estimate, patches), signs);
+        sky = layers_taken(patches, read_as_layers(), signs);
     std::vector<std::int8_t> turn = free_signs(patches, signs, options);
     std::vector<std::uint8_t> is_known(turn.size(), 0); // by views or by the sky
     const auto decide = [&](std::size_t component, std::int8_t sign) {
@@ -142,18 +147,39 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
     if (scanned || views_agree(patches, view, signs)) decide(signs.component[outside], signs.sign[outside]);
     for (std::size_t c = 0; c < sky.outward.size(); ++c)
         if (sky.outward[c] != 0) decide(c, sky.outward[c]);
-    resize_large(result.turns, octree.size());
-    for_each_index(octree.size(), chunks::light, [&](Index i) {
-        const Index p = patches.of_point[i];
-        result.turns[i] = p != no_index && patches.sign[i] * signs.sign[p] * turn[signs.component[p]] < 0;
-    });
     report.patches = patches.size();
     report.of_layers = sky.points;
     report.components = signs.components; // the outside's node is a component too if no patch sees it
     for_each_in_order(patches.size(), [&](std::size_t p) {
         if (!is_known[signs.component[p]]) report.by_volume += patches.counts[p];
     });
+    resize_large(result.sign, patches.size());
+    for_each_index(patches.size(), chunks::light, [&](Index p) {
+        result.sign[p] = static_cast<std::int8_t>(signs.sign[p] * turn[signs.component[p]]);
+    });
     return result;
+}
+
+std::vector<std::uint8_t> turns_of(const Patches& patches, const std::vector<std::int8_t>& sign) {
+    std::vector<std::uint8_t> turns = large_vector<std::uint8_t>(patches.of_point.size());
+    for_each_index(turns.size(), chunks::light, [&](Index i) {
+        const Index p = patches.of_point[i];
+        turns[i] = p != no_index && patches.sign[i] * sign[p] < 0;
+    });
+    return turns;
+}
+
+Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate,
+                           const OrientOptions& options) {
+    const Patches patches = build_patches(octree, neighbors, estimate);
+    OutsideView view;
+    std::vector<SignedEdge> edges;
+    run_both([&] { view = view_outside(octree, patches, estimate_spacing(octree)); },
+             [&] { edges = patch_evidence(octree, neighbors, estimate, patches); });
+    const PatchSigns signs =
+        sign_patches(patches, std::move(edges), view, seen_by_sensors(octree, patches, options.viewpoints),
+                     options, [&] { return read_as_layers(octree, neighbors, estimate, patches); });
+    return {turns_of(patches, signs.sign), signs.report};
 }
 
 void turn_normals(const Orientation& orientation, std::vector<Vec3>& normals) {

@@ -31,12 +31,11 @@ double deviation_from(const PlaneFit& plane) {
 
 /// Do the neighbours of most points fill a volume? Then the noise is as wide as the neighbourhoods, and a
 /// volume is no sign of an outlier. A sample tells.
-bool is_volume(const Octree& octree, const Neighbors& neighbors, double least_volume) {
-    constexpr std::size_t sample = 4096; // its share is off by a hundredth
-    const std::size_t step = std::max<std::size_t>(1, octree.size() / sample);
+bool fill_volume(const Octree& octree, const Neighbors& neighbors, const OutlierOptions& options) {
+    const std::size_t step = volume_stride(octree.size());
     std::size_t volumes = 0, looked_at = 0;
     for (std::size_t i = 0; i < octree.size(); i += step, ++looked_at)
-        volumes += deviation_from(plane_around(octree, neighbors, i)) > least_volume * neighbors.reach[i];
+        volumes += fills_volume(octree, neighbors, i, options);
     return 2 * volumes > looked_at;
 }
 
@@ -71,31 +70,6 @@ bool is_off_surface(const Octree& octree, const Neighbors& neighbors, std::size_
     return height > options.least_height * reach && height > noise::deviations * deviation;
 }
 
-std::vector<std::uint8_t> find_outliers(const Octree& octree, const Neighbors& neighbors,
-                                        const OutlierOptions& options) {
-    std::vector<double> all = copy_of_large(neighbors.reach);
-    const double typical = median(all);
-    const bool all_volume = is_volume(octree, neighbors, options.least_volume);
-    std::vector<std::uint8_t> found = large_vector<std::uint8_t>(octree.size(), 0);
-    for_each_index(octree.size(), chunks::quick, [&](Index i) {
-        const double reach = neighbors.reach[i], sparseness = reach / typical;
-        const auto around = neighbors.of(i);
-        // Is the reach more than `times` the neighbours' median reach, that is, more than that for over
-        // half of them?
-        const auto is_stretched = [&](double times) {
-            std::size_t count = 0;
-            for (Index n : around) count += reach > times * neighbors.reach[n];
-            return count > around.size() / 2;
-        };
-        if (sparseness > options.most_sparseness || is_stretched(options.most_stretch))
-            found[i] = 1;
-        else if (!all_volume
-                 && (sparseness > options.doubtful_sparseness || is_stretched(options.doubtful_stretch)))
-            found[i] = is_off_surface(octree, neighbors, i, options);
-    });
-    return found;
-}
-
 /// How many neighbours continue the point's plane with a normal like its own. A dense surface far away does
 /// not.
 int support(const Octree& octree, Index i, std::span<const Index> neighbors,
@@ -115,10 +89,46 @@ int support(const Octree& octree, Index i, std::span<const Index> neighbors,
 
 } // namespace
 
+std::size_t volume_stride(std::size_t points) {
+    constexpr std::size_t sample = 4096; // its share is off by a hundredth
+    return std::max<std::size_t>(1, points / sample);
+}
+
+bool fills_volume(const Octree& octree, const Neighbors& neighbors, std::size_t point,
+                  const OutlierOptions& options) {
+    return deviation_from(plane_around(octree, neighbors, point))
+           > options.least_volume * neighbors.reach[point];
+}
+
+std::vector<std::uint8_t> outliers_by_distance(const Octree& octree, const Neighbors& neighbors,
+                                               const ReachOfAll& all, const OutlierOptions& options) {
+    const double typical = all.typical;
+    std::vector<std::uint8_t> found = large_vector<std::uint8_t>(octree.size(), 0);
+    for_each_index(octree.size(), chunks::quick, [&](Index i) {
+        const double reach = neighbors.reach[i], sparseness = reach / typical;
+        const auto around = neighbors.of(i);
+        // Is the reach more than `times` the neighbours' median reach, that is, more than that for over
+        // half of them?
+        const auto is_stretched = [&](double times) {
+            std::size_t count = 0;
+            for (Index n : around) count += reach > times * neighbors.reach[n];
+            return count > around.size() / 2;
+        };
+        if (sparseness > options.most_sparseness || is_stretched(options.most_stretch))
+            found[i] = 1;
+        else if (!all.fill_volume
+                 && (sparseness > options.doubtful_sparseness || is_stretched(options.doubtful_stretch)))
+            found[i] = is_off_surface(octree, neighbors, i, options);
+    });
+    return found;
+}
+
 Occurrences drop_outliers_by_distance(Octree& octree, Neighbors& neighbors, const OutlierOptions& options) {
     Occurrences total;
     for (int round = 0; round < options.rounds && neighbors.count > 0; ++round) {
-        const Occurrences some = remove_points(octree, find_outliers(octree, neighbors, options));
+        std::vector<double> reach = copy_of_large(neighbors.reach);
+        const ReachOfAll all{median(reach), fill_volume(octree, neighbors, options)};
+        const Occurrences some = remove_points(octree, outliers_by_distance(octree, neighbors, all, options));
         if (some.count == 0) break;
         total.add(some);
         neighbors = find_neighbors(octree, {.count = static_cast<int>(neighbors.count)});

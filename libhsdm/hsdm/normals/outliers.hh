@@ -41,6 +41,19 @@ struct OutlierOptions {
 Occurrences drop_outliers_by_distance(Octree& octree, Neighbors& neighbors,
                                       const OutlierOptions& options = {});
 
+/// What the last function knows of all points, for one that looks at part of them.
+struct ReachOfAll {
+    double typical = 0;       ///< the median
+    bool fill_volume = false; ///< do the neighbours of most points, by a sample?
+};
+/// One of so many points is in that sample, in octree order.
+std::size_t volume_stride(std::size_t points);
+bool fills_volume(const Octree& octree, const Neighbors& neighbors, std::size_t point,
+                  const OutlierOptions& options = {});
+/// Per point, 1 if a round of drop_outliers_by_distance() removes it.
+std::vector<std::uint8_t> outliers_by_distance(const Octree& octree, const Neighbors& neighbors,
+                                               const ReachOfAll& all, const OutlierOptions& options = {});
+
 struct NormalOutlierOptions {
     /// points in a typical point's voxel on the level where sparse voxels are looked for
     double points_per_voxel = spacings::points_per_voxel;

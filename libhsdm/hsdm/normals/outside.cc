@@ -12,73 +12,6 @@
 namespace hsdm {
 namespace {
 
-constexpr Index occupied = no_index - 1, unlabelled = no_index;
-
-/// Connected regions of empty voxels in the octree's cube and a margin of one voxel around; region 0 is
-/// outside.
-class EmptySpace {
-public:
-    explicit EmptySpace(const OctreeLevel& level)
-        : side_((std::size_t{1} << level.depth) + 2), label_(side_ * side_ * side_, unlabelled) {
-        for_each_in_order(level.size(), [&](std::size_t v) {
-            label_[cell(level.coord(static_cast<Index>(v)))] = occupied;
-        });
-        for_each_in_order(label_.size(), [&](std::size_t start) {
-            if (label_[start] == unlabelled) flood(start);
-        });
-    }
-    std::size_t regions() const { return regions_; }
-    /// The region at a voxel, or `occupied`.
-    Index region(const VoxelCoord& c) const {
-        const auto last = static_cast<std::int32_t>(side_) - 2;
-        for (std::int32_t x : c)
-            if (x < 0 || x >= last) return 0;
-        return label_[cell(c)];
-    }
-
-    /// Voxels along an edge of the cube and its margin.
-    std::size_t side() const { return side_; }
-    /// Place of a voxel of the cube or its margin, x running fastest.
-    std::size_t cell(const VoxelCoord& c) const {
-        return (static_cast<std::size_t>(c[2] + 1) * side_ + static_cast<std::size_t>(c[1] + 1)) * side_
-               + static_cast<std::size_t>(c[0] + 1);
-    }
-    bool is_empty(std::size_t cell) const { return label_[cell] != occupied; }
-
-private:
-    /// Flood fill by rows: each row's run of empty cells is labelled at once.
-    void flood(std::size_t start) {
-        const auto region = static_cast<Index>(regions_++);
-        stack_.assign(1, start);
-        for (std::size_t looks = 0; !stack_.empty(); ++looks) {
-            if (looks % chunks::slow == 0) Interruption::poll();
-            const std::size_t seed = stack_.back();
-            stack_.pop_back();
-            if (label_[seed] != unlabelled) continue;
-            const std::size_t row = seed - seed % side_;
-            std::size_t begin = seed, end = seed + 1;
-            while (begin > row && label_[begin - 1] == unlabelled) --begin;
-            while (end < row + side_ && label_[end] == unlabelled) ++end;
-            std::fill(label_.begin() + static_cast<std::ptrdiff_t>(begin),
-                      label_.begin() + static_cast<std::ptrdiff_t>(end), region);
-            const std::size_t y = row / side_ % side_, z = row / side_ / side_;
-            if (y > 0) push_runs(begin - side_, end - side_);
-            if (y + 1 < side_) push_runs(begin + side_, end + side_);
-            if (z > 0) push_runs(begin - side_ * side_, end - side_ * side_);
-            if (z + 1 < side_) push_runs(begin + side_ * side_, end + side_ * side_);
-        }
-    }
-    void push_runs(std::size_t begin, std::size_t end) {
-        for (std::size_t c = begin; c < end; ++c)
-            if (label_[c] == unlabelled && (c == begin || label_[c - 1] != unlabelled)) stack_.push_back(c);
-    }
-
-    std::size_t side_;
-    std::vector<Index> label_;
-    std::vector<std::size_t> stack_;
-    std::size_t regions_ = 0;
-};
-
 /// In which of the 26 directions to neighbours the way from an empty voxel out of the box is empty.
 class Sky {
 public:
@@ -140,29 +73,23 @@ private:
     std::array<Vec3, directions> ways_;
 };
 
-/// The first thing a patch sees along a direction.
-struct Sight {
-    Index region = no_index;   ///< empty space; no_index if there is none near or a sheet comes first
-    Index point = no_index;    ///< a point of that sheet
-    VoxelCoord voxel{0, 0, 0}; ///< of that space
-};
-
 /// Looks from a patch along its normal, both ways.
 class View {
 public:
-    View(const Octree& octree, const OctreeLevel& level, const EmptySpace& space, double spacing)
-        : octree_(octree), level_(level), space_(space), spacing_(spacing) {}
+    View(const Octree& octree, const OctreeLevel& level, const EmptySpace& space, const Patches& patches,
+         double spacing)
+        : octree_(octree), level_(level), space_(space), patches_(patches), spacing_(spacing) {}
 
     /// Empty space counts if it is seen at two places: one voxel may be empty by chance.
     Sight look(const Vec3& from, const Vec3& along) const {
-        Index last = occupied, searched = no_index; // most voxels are passed twice
+        Index last = EmptySpace::occupied, searched = no_index; // most voxels are passed twice
         for (int step = 0; step <= views::steps; ++step) {
             const VoxelCoord c = voxel_at(from + along * (0.5 * step * level_.voxel_size));
             const Index region = space_.region(c);
-            if (region == occupied) {
+            if (region == EmptySpace::occupied) {
                 const Index voxel = level_.find(c);
                 const Index point = voxel == searched ? no_index : sheet_ahead(voxel, from, along);
-                if (point != no_index) return {no_index, point, c};
+                if (point != no_index) return {no_index, patches_.of_point[point], c};
                 searched = voxel;
             } else if (region == last) {
                 return {region, no_index, c};
@@ -201,18 +128,12 @@ private:
     const Octree& octree_;
     const OctreeLevel& level_;
     const EmptySpace& space_;
+    const Patches& patches_;
     double spacing_;
 };
 
-using Sights = std::array<Sight, 2>; // in front of and behind a patch
-
 bool between_regions(const Sights& s) {
     return s[0].region != no_index && s[1].region != no_index && s[0].region != s[1].region;
-}
-
-/// The patch that another sees before any empty space; no_index if it sees none.
-Index patch_ahead(const Sight& sight, const Patches& patches) {
-    return sight.point == no_index ? no_index : patches.of_point[sight.point];
 }
 
 /// Sheets that follow each other along a ray face alternately forward and back; how strongly that relates two
@@ -247,7 +168,7 @@ std::vector<std::int8_t> classify(std::size_t regions, const std::vector<Sights>
         const auto weight = static_cast<float>(patches.counts[p]);
         if (between_regions(seen[p])) relate(seen[p][0].region, seen[p][1].region, -weight);
         for (std::size_t side : {0u, 1u}) {
-            const Index q = patch_ahead(seen[p][side], patches);
+            const Index q = seen[p][side].patch;
             if (q == no_index || q == p || seen[p][1 - side].region == no_index) continue;
             const Index farther = far_sight(seen, patches, q, p).region;
             const auto surely = static_cast<float>(std::abs(facing(patches, p, q)));
@@ -267,9 +188,9 @@ std::vector<SignedEdge> facing_patches(const std::vector<Sights>& seen, const Pa
     for_each_in_order(seen.size(), [&](std::size_t place) {
         const auto p = static_cast<Index>(place);
         for (const Sight& sight : seen[p]) {
-            const Index q = patch_ahead(sight, patches);
+            const Index q = sight.patch;
             if (q == no_index || q == p) continue;
-            const auto weight = static_cast<float>(patches.counts[p] * facing(patches, p, q));
+            const float weight = in_steps(patches.counts[p] * facing(patches, p, q));
             if (weight != 0)
                 push_large(edges, SignedEdge{std::min(p, q), std::max(p, q), weight, std::abs(weight)});
         }
@@ -295,18 +216,26 @@ std::vector<std::int8_t> sky_of(const EmptySpace& space, const std::vector<Sight
 
 } // namespace
 
-OutsideView view_outside(const Octree& octree, const Patches& patches, double spacing,
-                         const OutsideOptions& options) {
+int depth_of_space(double cube_extent, double spacing, const OutsideOptions& options) {
     int depth = options.deepest;
-    while (depth > 1 && octree.voxel_size(depth) < options.voxel_spacings * spacing) --depth;
-    const OctreeLevel level = extract_level(octree, depth);
-    const EmptySpace space(level);
-    const View view(octree, level, space, spacing);
-    std::vector<Sights> seen = large_vector<Sights>(patches.size());
-    for_each_index(patches.size(), chunks::slow, [&](Index p) {
-        seen[p] = {view.look(patches.centroids[p], patches.normals[p]),
-                   view.look(patches.centroids[p], -patches.normals[p])};
+    while (depth > 1 && cube_extent / static_cast<double>(1u << depth) < options.voxel_spacings * spacing)
+        --depth;
+    return depth;
+}
+
+std::vector<Sights> look_around(const Octree& octree, const OctreeLevel& level, const EmptySpace& space,
+                                const Patches& patches, double spacing, Index begin, Index end) {
+    const View view(octree, level, space, patches, spacing);
+    std::vector<Sights> seen = large_vector<Sights>(end - begin);
+    for_each_index(seen.size(), chunks::slow, [&](Index k) {
+        const Vec3 &from = patches.centroids[begin + k], &along = patches.normals[begin + k];
+        seen[k] = {view.look(from, along), view.look(from, -along)};
     });
+    return seen;
+}
+
+OutsideView judge_sights(const EmptySpace& space, const std::vector<Sights>& seen, const Patches& patches,
+                         std::span<const std::uint8_t> beside) {
     const std::vector<std::int8_t> kind = classify(space.regions(), seen, patches);
     OutsideView result;
     assign_large(result.votes, patches.size(), 0);
@@ -316,8 +245,17 @@ OutsideView view_outside(const Octree& octree, const Patches& patches, double sp
         if (front * kind[seen[p][1].region] == -1) result.votes[p] = front;
     });
     result.facing = facing_patches(seen, patches);
-    if (!options.beside.empty()) result.sky = sky_of(space, seen, patches, options.beside);
+    if (!beside.empty()) result.sky = sky_of(space, seen, patches, beside);
     return result;
+}
+
+OutsideView view_outside(const Octree& octree, const Patches& patches, double spacing,
+                         const OutsideOptions& options) {
+    const OctreeLevel level = extract_level(octree, depth_of_space(octree.extent, spacing, options));
+    const EmptySpace space(level.codes, level.depth);
+    const auto all = static_cast<Index>(patches.size());
+    return judge_sights(space, look_around(octree, level, space, patches, spacing, 0, all), patches,
+                        options.beside);
 }
 
 } // namespace hsdm

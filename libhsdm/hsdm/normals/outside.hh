@@ -2,6 +2,7 @@
 // Which side of a patch is outside, by the empty space around and inside an object.
 
 #include "hsdm/normals/constants.hh"
+#include "hsdm/normals/empty_space.hh"
 #include "hsdm/normals/patches.hh"
 
 #include <span>
@@ -35,5 +36,26 @@ struct OutsideView {
 /// + 8^deepest).
 OutsideView view_outside(const Octree& octree, const Patches& patches, double spacing,
                          const OutsideOptions& options = {});
+
+/// The steps of that, for a cloud whose parts are looked at one after the other.
+/// The level of the voxels of the empty space.
+int depth_of_space(double cube_extent, double spacing, const OutsideOptions& options = {});
+/// The first thing that a patch sees along a direction.
+struct Sight {
+    Index region = no_index;   ///< empty space; no_index if there is none near or a sheet comes first
+    Index patch = no_index;    ///< of that sheet
+    VoxelCoord voxel{0, 0, 0}; ///< of the space
+};
+using Sights = std::array<Sight, 2>; ///< in front of a patch and behind it
+/// Those of the patches `begin` to `end`. `level`: of the octree, as deep as the space, which is the whole
+/// cloud's. No point farther off than depth_of_sight() voxels of it matters.
+std::vector<Sights> look_around(const Octree& octree, const OctreeLevel& level, const EmptySpace& space,
+                                const Patches& patches, double spacing, Index begin, Index end);
+inline int depth_of_sight() {
+    return views::steps / 2 + 2; // as steps are halves of a voxel, and a centroid lies anywhere in one
+}
+/// What the sights of all patches tell.
+OutsideView judge_sights(const EmptySpace& space, const std::vector<Sights>& seen, const Patches& patches,
+                         std::span<const std::uint8_t> beside = {});
 
 } // namespace hsdm

@@ -101,7 +101,7 @@ public:
             place = edges.size();
             edges.push_back({a, b, 0, 0});
         }
-        const auto w = static_cast<float>(weight);
+        const float w = in_steps(weight);
         edges[place].weight += w;
         edges[place].total += std::abs(w);
     }
@@ -131,10 +131,12 @@ double longest_square(const Neighbors& neighbors, const EstimatedNormals& estima
 /// Sums up what pair_of(point)(neighbour, chord) says of the signs of neighbouring points' normals.
 template <class PairOf>
 std::vector<SignedEdge> evidence_of_pairs(const Octree& octree, const Neighbors& neighbors,
-                                          const Patches& patches, const PairOf& pair_of) {
+                                          const Patches& patches, std::size_t first_leaf,
+                                          std::size_t last_leaf, const PairOf& pair_of) {
     const auto gather = [&](std::size_t begin, std::size_t end, std::vector<SignedEdge>& found) {
         EdgeList list;
-        for (Index i = neighbors.leaf_first[begin]; i < neighbors.leaf_first[end]; ++i) {
+        const Index first = neighbors.leaf_first[first_leaf + begin];
+        for (Index i = first; i < neighbors.leaf_first[first_leaf + end]; ++i) {
             const Index a = patches.of_point[i];
             if (a == no_index) continue;
             const auto pair = pair_of(i);
@@ -148,7 +150,7 @@ std::vector<SignedEdge> evidence_of_pairs(const Octree& octree, const Neighbors&
         }
         found = std::move(list.edges);
     };
-    return collected<SignedEdge>(neighbors.leaf_first.size() - 1, chunks::heavy, gather);
+    return collected<SignedEdge>(last_leaf - first_leaf, chunks::heavy, gather);
 }
 
 } // namespace
@@ -159,7 +161,13 @@ Patches build_patches(const Octree& octree, const Neighbors& neighbors, const Es
 
 std::vector<SignedEdge> patch_evidence(const Octree& octree, const Neighbors& neighbors,
                                        const EstimatedNormals& estimate, const Patches& patches) {
-    return evidence_of_pairs(octree, neighbors, patches, [&](Index i) {
+    return patch_evidence(octree, neighbors, estimate, patches, 0, neighbors.leaf_first.size() - 1);
+}
+
+std::vector<SignedEdge> patch_evidence(const Octree& octree, const Neighbors& neighbors,
+                                       const EstimatedNormals& estimate, const Patches& patches,
+                                       std::size_t begin, std::size_t end) {
+    return evidence_of_pairs(octree, neighbors, patches, begin, end, [&](Index i) {
         return [&estimate, n = estimate.normals[i],
                 longest = longest_square(neighbors, estimate, i)](Index j, const Vec3& d) {
             return mirrored(n, estimate.normals[j], d, std::min(d.sqrnorm(), longest));
@@ -194,7 +202,13 @@ std::vector<std::uint8_t> sheets_beside(const Octree& octree, const Neighbors& n
 
 std::vector<SignedEdge> layer_evidence(const Octree& octree, const Neighbors& neighbors,
                                        const EstimatedNormals& estimate, const Patches& patches) {
-    return evidence_of_pairs(octree, neighbors, patches, [&](Index i) {
+    return layer_evidence(octree, neighbors, estimate, patches, 0, neighbors.leaf_first.size() - 1);
+}
+
+std::vector<SignedEdge> layer_evidence(const Octree& octree, const Neighbors& neighbors,
+                                       const EstimatedNormals& estimate, const Patches& patches,
+                                       std::size_t begin, std::size_t end) {
+    return evidence_of_pairs(octree, neighbors, patches, begin, end, [&](Index i) {
         return [&estimate, n = estimate.normals[i]](Index j, const Vec3& d) {
             const Vec3& m = estimate.normals[j];
             const double said = mirrored(n, m, d, d.sqrnorm()), cosine = n | m;

@@ -27,6 +27,10 @@ Patches build_patches(const Octree& octree, const Neighbors& neighbors, const Es
 /// two sides of a plate or a slit. O(n), parallel.
 std::vector<SignedEdge> patch_evidence(const Octree& octree, const Neighbors& neighbors,
                                        const EstimatedNormals& estimate, const Patches& patches);
+/// The same by the pairs of which the first point is of the leaves from `begin` to `end`.
+std::vector<SignedEdge> patch_evidence(const Octree& octree, const Neighbors& neighbors,
+                                       const EstimatedNormals& estimate, const Patches& patches,
+                                       std::size_t begin, std::size_t end);
 
 /// Per patch, whether a sheet lies close in front of it, by the evidence of neighbouring points (1), and
 /// behind it (2). O(n), parallel.
@@ -38,5 +42,9 @@ std::vector<std::uint8_t> sheets_beside(const Octree& octree, const Neighbors& n
 /// each other are then layers of one surface, as scans that do not register show it. O(n), parallel.
 std::vector<SignedEdge> layer_evidence(const Octree& octree, const Neighbors& neighbors,
                                        const EstimatedNormals& estimate, const Patches& patches);
+/// The same by the pairs of which the first point is of the leaves from `begin` to `end`.
+std::vector<SignedEdge> layer_evidence(const Octree& octree, const Neighbors& neighbors,
+                                       const EstimatedNormals& estimate, const Patches& patches,
+                                       std::size_t begin, std::size_t end);
 
 } // namespace hsdm

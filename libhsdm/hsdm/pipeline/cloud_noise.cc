@@ -11,8 +11,9 @@ namespace {
 
 class NoisePass final : public CellPass {
 public:
-    NoisePass(const ScratchCloud& cloud, const Survey& sums)
+    NoisePass(const ScratchCloud& cloud, const Survey& sums, int neighbors)
         : CellPass(cloud, sums.points()), first_(sums.first_points()), stride_(noise_stride(sums.points())) {
+        options_.count = neighbors;
         options_.finest_level = sums.finest_leaves();
     }
 
@@ -57,9 +58,9 @@ private:
 
 } // namespace
 
-double cloud_noise(ScratchCloud& cloud, const CloudSurvey& survey, std::span<const VoxelRange> ranges,
-                   int ghost) {
-    NoisePass pass(cloud, survey.sums);
+CloudNoise cloud_noise(ScratchCloud& cloud, const CloudSurvey& survey, std::span<const VoxelRange> ranges,
+                       int ghost, int neighbors) {
+    NoisePass pass(cloud, survey.sums, neighbors);
     cloud.for_tiles(ranges, ghost,
                     [&](const Octree& octree, const VoxelRange& range) { pass.add(octree, range, ghost); });
     pass.add_far_cells(cloud);
@@ -68,7 +69,7 @@ double cloud_noise(ScratchCloud& cloud, const CloudSurvey& survey, std::span<con
         append_large(all, ByteReader(got).take_rest<NoiseSample>());
     const std::optional<double> deviation = noise_deviation(all);
     if (!deviation) refuse_in_tiles("the noise is wider than neighbours are apart");
-    return *deviation;
+    return {*deviation, estimate_noise(all)};
 }
 
 } // namespace hsdm

@@ -5,10 +5,15 @@
 
 namespace hsdm {
 
-/// Standard deviation, in the cloud's units, in one pass over tiles with so many voxels around them. None of
+struct CloudNoise {
+    double deviation = 0; ///< in the cloud's units
+    double relative = 0;  ///< as estimate_noise()
+};
+
+/// In one pass over tiles with so many voxels around them. None of
 /// the ranges may be of two ranks. For all ranks at the same time. Throws Error where it takes a part of all
 /// points to tell.
-double cloud_noise(ScratchCloud& cloud, const CloudSurvey& survey, std::span<const VoxelRange> ranges,
-                   int ghost);
+CloudNoise cloud_noise(ScratchCloud& cloud, const CloudSurvey& survey, std::span<const VoxelRange> ranges,
+                       int ghost, int neighbors = NeighborOptions().count);
 
 } // namespace hsdm

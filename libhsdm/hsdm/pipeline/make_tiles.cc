@@ -85,7 +85,8 @@ private:
         if (!known_.outliers) strays_.add(octree, range, ghost);
         if (strays_.has_found()) return piece; // all are made again without them
         const OctreeLevel level = extract_level(octree, cloud_.depth());
-        const MethodInput in{cloud_.frame(), {}, octree, level, in_.options, in_.phases};
+        MethodInput in{cloud_.frame(), {}, octree, level, in_.options, in_.phases};
+        in.has_layers = known_.has_layers;
         const PartOfLevel part{
             in_.survey.spacing,
             in_.survey.sums.set_sizes().typical(),

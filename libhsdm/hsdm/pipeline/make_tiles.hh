@@ -23,6 +23,7 @@ struct TilesInput {
 /// What making tiles finds out of the whole, so that tiles must be made again; it holds for those made
 /// later, too.
 struct TilesKnown {
+    bool has_layers = false;               ///< did points take the sides of layers of one surface?
     std::optional<Occurrences> outliers{}; ///< once they have been looked for; in the cloud's coordinates
     bool go_back = false;                  ///< as in PartOfLevel
     TanglePlan tangles{};                  ///< as in PartOfLevel

@@ -7,6 +7,7 @@
 #include "hsdm/pipeline/choose_resolution.hh"
 #include "hsdm/pipeline/cloud_distance.hh"
 #include "hsdm/pipeline/cloud_noise.hh"
+#include "hsdm/pipeline/cloud_normals.hh"
 #include "hsdm/pipeline/constants.hh"
 #include "hsdm/pipeline/gather_pieces.hh"
 #include "hsdm/pipeline/make_tiles.hh"
@@ -77,7 +78,7 @@ void note_cloud(const ScratchCloud& cloud, const CloudSurvey& survey, std::size_
     report.input.dropped_nonfinite = extent.nonfinite;
     if (extent.nonfinite > 0) report.input.first_nonfinite = extent.first_nonfinite;
     report.input.merged_duplicates = duplicates;
-    report.input.has_normals = true;
+    report.input.has_normals = extent.has_normals;
     report.input.bbox = cloud.bounds();
     report.input.spacing = survey.spacing;
     report.grid.depth = cloud.depth();
@@ -85,7 +86,6 @@ void note_cloud(const ScratchCloud& cloud, const CloudSurvey& survey, std::size_
     report.grid.voxels = voxels;
     report.grid.leaves_per_level.assign(static_cast<std::size_t>(cloud.depth()) + 1, 0);
     report.grid.leaves_per_level.back() = voxels;
-    report.rejected["normals_mended"] = 0;
     report.rejected["points_outlying"] = outliers.count;
     note_dropped("points off every surface", outliers, cloud.frame(), report);
 }
@@ -131,20 +131,26 @@ public:
           phases_(options),
           bytes_per_voxel_(bytes_per_voxel) {
         report_.threads = tbb::this_task_arena::max_concurrency();
-        note_options(false, options, report_);
         phases_.run("octree", 0, report_.seconds.octree, [&] {
             const CloudExtent extent = measure_extent(parts, ranks);
             const int depth = options.depth.value_or(depth_for_cells(extent.finite()));
-            cloud_.emplace(parts, extent, depth, tiles, ranks);
+            const bool given = extent.has_normals && options.normals != NormalSource::estimate;
+            estimates_ = !given;
+            check_normals_of(extent);
+            note_options(estimates_, options, report_);
+            cloud_.emplace(parts, extent, depth, tiles, ranks, given);
         });
         const std::size_t group = points_at_once(tiles, 0, bytes_per_point);
         os::give_back_freed_memory(); // here and later, or what one phase had is held beside what the next
                                       // has
         phases_.run("survey", 0.1, report_.seconds.normals, [&] {
             survey_.emplace(survey_cloud(*cloud_, cloud_->extent().finite(), group));
-            check_survey(*survey_, *cloud_);
+            check_places(*survey_, *cloud_);
+            if (!estimates_) check_normals(*survey_);
         });
         duplicates_ = cloud_->extent().finite() - survey_->sums.points();
+        if (estimates_)
+            phases_.run("normals", 0.12, report_.seconds.normals, [&] { estimate_normals(group); });
         phases_.run("resolution", 0.15, report_.seconds.octree, [&] { choose_resolution(group); });
         phases_.run("tiles", 0.2, report_.seconds.facets, [&] { make_facets(group); });
     }
@@ -171,11 +177,33 @@ public:
     }
 
 private:
+    void check_normals_of(const CloudExtent& extent) const {
+        if (!estimates_) return;
+        if (options_.normals == NormalSource::given)
+            throw Error("normals given were asked for, but the cloud has none");
+        if (extent.has_scanners)
+            refuse_in_tiles("scanners are known, and normals would have to be turned towards them");
+    }
+
+    void estimate_normals(std::size_t group) {
+        const auto left = tiles_.memory - std::min(tiles_.memory, bytes_of_program);
+        const NormalsReport made = make_cloud_normals(
+            *cloud_, *survey_, {[&] { return plan(group); }, tiles_.ghost_voxels, group, left});
+        known_.outliers = made.outliers;
+        report_.rejected["normals_near_creases"] = made.bent;
+        report_.rejected["normals_missing"] = made.missing;
+        report_.rejected["normals_by_volume"] = made.orientation.by_volume;
+        report_.rejected["normals_of_layers"] = made.orientation.of_layers;
+        known_.has_layers = made.orientation.of_layers > 0;
+        report_.rejected["points_between_sheets"] = 0;
+    }
+
     /// Where no depth is given voxels follow from the points without outliers, which move to their cube.
     void choose_resolution(std::size_t group) {
         const int ghost = tiles_.ghost_voxels;
-        const double noise = is_rough(*survey_) ? cloud_noise(*cloud_, *survey_, plan(group), ghost) : 0;
-        if (!options_.depth || noise > 0)
+        const bool may_be_rough = !estimates_ && is_rough(*survey_);
+        const double noise = may_be_rough ? cloud_noise(*cloud_, *survey_, plan(group), ghost).deviation : 0;
+        if (!estimates_ && (!options_.depth || noise > 0))
             known_.outliers = drop_strays(*cloud_, *survey_, plan(group), ghost, group).outliers;
         report_.input.spacing = survey_->spacing;
         const auto rearrange = [&](const VoxelCube& cube) {
@@ -198,6 +226,7 @@ private:
         report_.grid.sets = facets_.counts.sets;
         report_.rejected["normals_turned"] = turned ? survey_->sums.points() : 0;
         note_cloud(*cloud_, *survey_, duplicates_, known_, report_);
+        if (!estimates_) report_.rejected["normals_mended"] = 0;
     }
 
     void make_facets(std::size_t group, bool turned) {
@@ -240,6 +269,7 @@ private:
     std::optional<CloudSurvey> survey_;
     std::optional<PieceStore> store_;
     std::size_t duplicates_ = 0;
+    bool estimates_ = false; // normals
     TilesKnown known_;
     WholeFacets facets_;
     TileReport how_;
@@ -266,7 +296,6 @@ void check_options(const ReconstructOptions& options, const TileOptions& tiles) 
     need(!options.max_error, "cannot come with --max-error yet");
     need(!wants_adaptive(options), "cannot come with an adaptive grid yet");
     need(method_for(options) == Method::extended, "cannot come with --method basic yet");
-    need(options.normals != NormalSource::estimate, "cannot come with --normals estimate yet");
     need(options.holes == Holes::automatic || options.holes == Holes::keep,
          "can only come with --holes auto and keep yet");
     need(!options.merge_layers, "cannot come with --merge-layers yet");

@@ -48,8 +48,10 @@ CloudExtent extent_of_part(const PointParts& parts) {
     parts([&](const PointView& part) {
         check_view(part);
         if (part.size() == 0) return;
-        if (!part.has_normals())
-            refuse_in_tiles("the cloud has no normals, which would have to be estimated");
+        if (extent.points > 0 && extent.has_normals != part.has_normals())
+            refuse_in_tiles("some parts of the cloud have normals and others have none");
+        extent.has_normals = part.has_normals();
+        extent.has_scanners = extent.has_scanners || part.sensor || !part.sensors.empty();
         if (part.colors.count > 0 || !part.scalars.empty())
             refuse_in_tiles("the cloud has colours or scalars");
         const NonfiniteRows nonfinite = find_nonfinite(part.positions);
@@ -65,6 +67,10 @@ CloudExtent extent_of_part(const PointParts& parts) {
 
 /// Adds what the next rank finds.
 void join(const CloudExtent& next, CloudExtent& extent) {
+    if (extent.points > 0 && next.points > 0 && extent.has_normals != next.has_normals)
+        refuse_in_tiles("some parts of the cloud have normals and others have none");
+    extent.has_normals = next.points > 0 ? next.has_normals : extent.has_normals;
+    extent.has_scanners = extent.has_scanners || next.has_scanners;
     if (extent.nonfinite == 0) extent.first_nonfinite = extent.points + next.first_nonfinite;
     extent.nonfinite += next.nonfinite;
     extent.points += next.points;
@@ -83,12 +89,14 @@ CloudExtent measure_extent(const PointParts& parts, Ranks& ranks) {
     Ranks::Bytes bytes;
     for (const std::size_t count : {own.points, own.nonfinite, own.first_nonfinite}) put(count, bytes);
     put(own.box, bytes);
+    for (const bool has : {own.has_normals, own.has_scanners}) put(has, bytes);
     for (const Ranks::Bytes& got : ranks.gather(bytes)) {
         ByteReader reader(got);
         CloudExtent next;
         for (std::size_t* count : {&next.points, &next.nonfinite, &next.first_nonfinite})
             *count = reader.take<std::size_t>();
         next.box = reader.take<Box>();
+        next.has_normals = reader.take<bool>(), next.has_scanners = reader.take<bool>();
         join(next, extent);
     }
     extent.sample = std::move(own.sample);
@@ -106,7 +114,7 @@ CloudExtent measure_extent(const PointParts& parts, Ranks& ranks) {
 }
 
 ScratchCloud::ScratchCloud(const PointParts& parts, const CloudExtent& extent, int depth,
-                           const TileOptions& options, Ranks& ranks)
+                           const TileOptions& options, Ranks& ranks, bool use_normals)
     : extent_(extent),
       frame_(extent.box),
       depth_(depth),
@@ -116,7 +124,9 @@ ScratchCloud::ScratchCloud(const PointParts& parts, const CloudExtent& extent, i
       buffered_(bytes_buffered(options)),
       ranks_(ranks),
       scratch_(std::make_unique<ScratchPoints>(
-          folder_, extent.finite() / static_cast<std::size_t>(ranks.size()), buffered_)) {
+          folder_, extent.finite() / static_cast<std::size_t>(ranks.size()), buffered_)),
+      has_normals_(use_normals && extent.has_normals) {
+    options_.use_normals = has_normals_;
     options_.placement = CubePlacement::centred;
     options_.whole = extent.box;
     none_.extent = extent.box.extent();
@@ -193,7 +203,8 @@ void ScratchCloud::sort_points(const PointParts& parts) {
     std::size_t added = 0;
     parts([&](const PointView& part) {
         for_each_in_order(part.size(), [&](std::size_t i) {
-            const Vec3 p = vec3_at(part.positions, i), n = vec3_at(part.normals, i);
+            const Vec3 p = vec3_at(part.positions, i);
+            const Vec3 n = has_normals_ ? vec3_at(part.normals, i) : Vec3(0, 0, 0);
             if (!is_finite(p)) return;
             put_row({p[0], p[1], p[2], n[0], n[1], n[2]}, cell_of(p - origin()), exchange);
             ++added;
@@ -236,12 +247,12 @@ OctreeLevel ScratchCloud::no_voxels() const {
 Octree ScratchCloud::arranged_octree(const std::vector<PointRow>& rows) const {
     Octree octree = none_;
     std::vector<Vec3> positions = unwritten_vector<Vec3>(rows.size());
-    resize_unwritten(octree.normals, rows.size());
+    if (has_normals_) resize_unwritten(octree.normals, rows.size());
     resize_unwritten(octree.source, rows.size());
     for_each_index(rows.size(), chunks::light, [&](Index i) {
         const PointRow& row = rows[i];
         positions[i] = Vec3(row[0], row[1], row[2]);
-        octree.normals[i] = Vec3(row[3], row[4], row[5]);
+        if (has_normals_) octree.normals[i] = Vec3(row[3], row[4], row[5]);
         octree.source[i] = i;
     });
     hsdm::rearrange(octree, std::move(positions), octree.extent);
@@ -325,6 +336,17 @@ std::vector<PointRow> ScratchCloud::rows_of(const VoxelRange& range, int ghost) 
     return rows;
 }
 
+std::vector<PointRow> ScratchCloud::rows_of_cells(const VoxelRange& range, int ghost,
+                                                  std::vector<MortonCode>& missing) const {
+    const std::vector<MortonCode> near = cells_near(cells_of(range), cells_within(ghost), cells_);
+    missing.clear();
+    for (const ScratchPoints::Cell& cell : cells_)
+        if (!std::ranges::binary_search(near, cell.code)) missing.push_back(cell.code);
+    std::vector<PointRow> rows;
+    for (const MortonCode cell : near) scratch_->read(cell, rows);
+    return rows;
+}
+
 void ScratchCloud::for_groups(std::size_t most, const std::function<void(const Octree&)>& visit) const {
     std::vector<PointRow> rows;
     const auto is_own = [&](const ScratchPoints::Cell& cell) { return owner(cell.code) == ranks_.rank(); };
@@ -380,6 +402,7 @@ ScratchCloud::ScratchCloud(const ScratchCloud& before, const Box& bounds, double
       buffered_(before.buffered_),
       ranks_(before.ranks_),
       scratch_(std::make_unique<ScratchPoints>(folder_, before.points_here(), buffered_)),
+      has_normals_(before.has_normals_),
       arranged_(true) {
     none_.bounds = bounds;
     if (extent != none_.extent) none_.origin = centred_origin(bounds, extent); // as rearrange() has it
@@ -408,8 +431,10 @@ void ScratchCloud::rearrange(const Box& bounds, double extent, int depth, std::s
     });
     for_groups(most, [&](const Octree& part) {
         for_each_in_order(part.size(), [&](std::size_t i) {
-            const Vec3 p = part.positions[i] + shift, &n = part.normals[i];
-            next.put_row({p[0], p[1], p[2], n[0], n[1], n[2]}, next.cell_of(p), exchange);
+            PointRow row = row_at(part, i);
+            const Vec3 p = part.positions[i] + shift;
+            std::copy_n(p.data(), 3, row.begin());
+            next.put_row(row, next.cell_of(p), exchange);
         });
     });
     exchange.finish();
@@ -422,14 +447,33 @@ void ScratchCloud::take(ScratchCloud&& next) {
     none_ = std::move(next.none_);
     depth_ = next.depth_, cell_depth_ = next.cell_depth_;
     scratch_ = std::move(next.scratch_);
+    has_normals_ = next.has_normals_;
     arranged_ = next.arranged_;
     begins_ = std::move(next.begins_), cells_ = std::move(next.cells_);
     fetched_ = {}, left_out_ = {};
 }
 
 PointRow ScratchCloud::row_at(const Octree& octree, std::size_t point) {
-    const Vec3 &p = octree.positions[point], &n = octree.normals[point];
+    const Vec3& p = octree.positions[point];
+    const Vec3 n = octree.has_normals() ? octree.normals[point] : Vec3(0, 0, 0);
     return {p[0], p[1], p[2], n[0], n[1], n[2]};
+}
+
+ScratchCloud ScratchCloud::without_points() const {
+    ScratchCloud next(*this, bounds(), cube_extent(), depth_);
+    next.has_normals_ = true;
+    next.begins_ = begins_;
+    return next;
+}
+
+void ScratchCloud::add_with_normal(const Octree& octree, std::size_t point) {
+    scratch_->add(cell_of(octree.positions[point]), row_at(octree, point));
+}
+
+void ScratchCloud::take_with_normals(ScratchCloud&& next) {
+    next.scratch_->finish();
+    next.gather_cells();
+    take(std::move(next));
 }
 
 } // namespace hsdm

@@ -22,6 +22,8 @@ struct CloudExtent {
     std::size_t points = 0, nonfinite = 0;
     std::size_t first_nonfinite = 0; ///< if there is one
     Box box;                         ///< of those that are finite
+    bool has_normals = false;        ///< have all, or none?
+    bool has_scanners = false;       ///< is it known where they were seen from?
 
     std::size_t finite() const { return points - nonfinite; }
 
@@ -40,8 +42,9 @@ class ScratchCloud {
 public:
     /// One more pass over the points. `memory` and `scratch` of the options. Throws Error as ScratchPoints,
     /// and if there are other points than were measured.
+    /// `use_normals`: false: it has none until they are made, whether the points have or not.
     ScratchCloud(const PointParts& parts, const CloudExtent& extent, int depth, const TileOptions& options,
-                 Ranks& ranks);
+                 Ranks& ranks, bool use_normals = true);
 
     const CloudExtent& extent() const { return extent_; } ///< as it was measured
     const Box& bounds() const { return none_.bounds; }
@@ -75,6 +78,12 @@ public:
     void fetch(const std::vector<Surroundings>& wanted);
     /// The points of a range of this rank and of what was fetched around it.
     std::vector<PointRow> rows_of(const VoxelRange& range, int ghost) const;
+    /// Voxels along an edge of a cell.
+    int cell_side() const { return 1 << (depth_ - cell_depth_); }
+    /// All points of the cells that a range has and of those within so many voxels; `missing` become the
+    /// other cells, ascending.
+    std::vector<PointRow> rows_of_cells(const VoxelRange& range, int ghost,
+                                        std::vector<MortonCode>& missing) const;
     /// visit(octree) of this rank's points, `most` or a cell's at a time, in Morton order.
     void for_groups(std::size_t most, const std::function<void(const Octree&)>& visit) const;
     /// visit(octree, range) of those of the ranges that are this rank's, with so many voxels around each; of
@@ -89,6 +98,11 @@ public:
     /// The box of the points that are not left out, in the cloud's coordinates. For all ranks.
     Box box_of_points(std::size_t most) const;
     static PointRow row_at(const Octree& octree, std::size_t point);
+    /// The same cube and cells of the same ranks, without points, which add_with_normal() gives it.
+    ScratchCloud without_points() const;
+    void add_with_normal(const Octree& octree, std::size_t point);
+    /// Has the points of another one from now on, all with normals. For all ranks at the same time.
+    void take_with_normals(ScratchCloud&& next);
 
 private:
     /// Without points yet: those of another one, in another cube.
@@ -118,6 +132,7 @@ private:
     std::size_t buffered_; // bytes
     Ranks& ranks_;
     std::unique_ptr<ScratchPoints> scratch_;
+    bool has_normals_ = true;
     bool arranged_ = false;          // rows are those of octrees, not as the points came
     std::vector<MortonCode> begins_; // of the ranks' cells
     std::vector<ScratchPoints::Cell> cells_;

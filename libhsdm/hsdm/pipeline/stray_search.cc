@@ -14,15 +14,14 @@ constexpr std::size_t most_strays = std::size_t{1} << 20; // that are kept in me
     refuse_in_tiles("many points are off every surface");
 }
 
-/// The cloud in the cube of what is left of it, as fit_to_points() has it. Does that differ?
+} // namespace
+
 bool fit_to_points_left(ScratchCloud& cloud, std::size_t most) {
     const Box left = cloud.box_of_points(most);
     if (!is_other_box(left, cloud.bounds())) return false;
     cloud.rearrange(left, left.extent(), cloud.depth(), most);
     return true;
 }
-
-} // namespace
 
 StraySearch::StraySearch(const ScratchCloud& cloud, const CloudSurvey& survey)
     : CellPass(cloud, survey.sums.points()),

@@ -32,6 +32,10 @@ private:
     std::vector<PointRow> strays_;
 };
 
+/// The cloud in the cube of what is left of it, as fit_to_points() has it; points are read `most` or a cell's
+/// at a time. Does that differ?
+bool fit_to_points_left(ScratchCloud& cloud, std::size_t most);
+
 /// The same in one pass over tiles with so many voxels around them. None of the ranges may be of two ranks.
 StraySearch::Result drop_strays(ScratchCloud& cloud, CloudSurvey& survey, std::span<const VoxelRange> ranges,
                                 int ghost, std::size_t most);

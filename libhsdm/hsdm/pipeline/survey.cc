@@ -26,9 +26,10 @@ void Survey::add(const Octree& part) {
         leaves_[level] += leaves[level];
     count_squares(part);
     sample(part);
-    const OctreeLevel level = extract_level(part, depth_);
-    const SetSizes sizes = sizes_of(build_normal_sets(part, level));
-    sets_.points += sizes.points, sets_.squares += sizes.squares;
+    if (part.has_normals()) {
+        const SetSizes sizes = sizes_of(build_normal_sets(part, extract_level(part, depth_)));
+        sets_.points += sizes.points, sets_.squares += sizes.squares;
+    }
     points_ += part.size();
 }
 
@@ -55,7 +56,7 @@ void Survey::sample(const Octree& part) {
     const std::size_t stride = place_stride(expected_);
     for_each_in_order(part.size(), [&](std::size_t i) {
         const std::size_t number = before_ + points_ + i;
-        if (NormalSample::holds(number, expected_)) {
+        if (part.has_normals() && NormalSample::holds(number, expected_)) {
             normals_.number.push_back(number);
             normals_.points.push_back({part.positions[i], part.normals[i]});
         }

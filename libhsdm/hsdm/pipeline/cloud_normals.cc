@@ -1,0 +1,367 @@
+#include "hsdm/pipeline/cloud_normals.hh"
+
+#include "hsdm/core/large_vector.hh"
+#include "hsdm/errors.hh"
+#include "hsdm/normals/arcs.hh"
+#include "hsdm/normals/known_points.hh"
+#include "hsdm/normals/noise.hh"
+#include "hsdm/normals/vote_on_normals.hh"
+#include "hsdm/pipeline/cloud_noise.hh"
+#include "hsdm/pipeline/cloud_parts.hh"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace hsdm {
+namespace {
+
+/// How normals are estimated in all parts.
+struct Estimating {
+    NeighborOptions neighbors;
+    EstimateOptions estimate;
+};
+
+/// Unoriented normals of a part and its patches, with their number in the whole: that of their first point.
+class PartNormals {
+public:
+    PartNormals(const CloudPart& part, const Estimating& how)
+        : part_(part),
+          neighbors(find_neighbors(part.octree(), how.neighbors)),
+          estimate(estimate_normals(part.octree(), neighbors, how.estimate)),
+          known(part.octree(), neighbors,
+                [&](const VoxelCoord& voxel, int level) { return part.has_around(voxel, level); }),
+          patches(build_patches(part.octree(), neighbors, estimate)) {
+        known.step();                                       // what is bent hangs on how far neighbours spread
+        known.step(estimate.bent, 2 * how.estimate.rounds); // as estimate_normals() renews them
+        known.step_leaves();
+        for (std::size_t i = 0; i < part.octree().size(); ++i)
+            if (patches.of_point[i] == first_point.size()) first_point.push_back(static_cast<Index>(i));
+    }
+
+    Index number(Index patch) const { return part_.number(first_point[patch]); }
+
+private:
+    const CloudPart& part_;
+
+public:
+    Neighbors neighbors;
+    EstimatedNormals estimate;
+    KnownPoints known;
+    Patches patches;
+    std::vector<Index> first_point; ///< per patch
+};
+
+/// A part with too few points for as many neighbours as the whole has.
+bool are_few(const CloudPart& part, const Estimating& how) {
+    return !part.is_whole() && part.octree().size() <= static_cast<std::size_t>(how.neighbors.count);
+}
+
+/// A patch of the whole, by the numbers that patches have there.
+struct PatchRow {
+    Index number, count;
+    Vec3 centroid, normal;
+    Sights sights;
+    std::uint8_t beside; ///< as sheets_beside(), if sheets may be layers
+};
+
+/// What is gathered of all parts to tell the sides.
+struct SideEvidence {
+    std::vector<PatchRow> patches;
+    std::vector<SignedEdge> edges;
+    std::vector<SignedEdge> layers; ///< as layer_evidence(), if sheets may be layers
+};
+
+/// The empty space of the whole cloud.
+EmptySpace space_of(const ScratchCloud& cloud, double spacing, std::size_t most) {
+    const int depth = depth_of_space(cloud.cube_extent(), spacing);
+    std::vector<MortonCode> codes;
+    cloud.for_groups(most,
+                     [&](const Octree& part) { append_large(codes, extract_level(part, depth).codes); });
+    std::vector<MortonCode> all;
+    for (const Ranks::Bytes& got : cloud.ranks().gather(bytes_of(codes)))
+        append_large(all, ByteReader(got).take_rest<MortonCode>());
+    sort_unique(all);
+    return EmptySpace(all, depth);
+}
+
+/// Looks at the parts for what tells the sides.
+class EvidencePass {
+public:
+    EvidencePass(const Estimating& how, const EmptySpace& space, double spacing, bool may_be_layers)
+        : how_(how), space_(space), spacing_(spacing), may_be_layers_(may_be_layers) {}
+
+    SideEvidence evidence;
+
+    /// Returns false, and takes nothing, if not all is known.
+    bool add(const CloudPart& part) {
+        if (are_few(part, how_)) return false;
+        const PartNormals made(part, how_);
+        const std::vector<Index>& leaves = made.neighbors.leaf_first; // its own begin with its own points
+        const auto leaf_at = [&](std::size_t point) {
+            return static_cast<std::size_t>(std::ranges::lower_bound(leaves, point) - leaves.begin());
+        };
+        const std::size_t begin = leaf_at(part.begin()), end = leaf_at(part.end());
+        const Index first = leaves[begin], last = leaves[end];
+        if (!made.known.all(first, last) || !made.known.all_around(first, last)) return false;
+        const auto patch_at = [&](Index point) {
+            return static_cast<Index>(std::ranges::lower_bound(made.first_point, point)
+                                      - made.first_point.begin());
+        };
+        const Index first_patch = patch_at(first), last_patch = patch_at(last);
+        if (!see_all(part, made.patches, first_patch, last_patch)) return false;
+        const OctreeLevel level = extract_level(part.octree(), space_.depth());
+        const std::vector<Sights> seen =
+            look_around(part.octree(), level, space_, made.patches, spacing_, first_patch, last_patch);
+        for (const Sights& sights : seen)
+            for (const Sight& sight : sights)
+                if (sight.patch != no_index && !made.known[made.first_point[sight.patch]]) return false;
+        std::vector<std::uint8_t> beside(made.patches.size(), 0);
+        if (may_be_layers_) {
+            beside = sheets_beside(part.octree(), made.neighbors, made.estimate, made.patches);
+            take(made, layer_evidence(part.octree(), made.neighbors, made.estimate, made.patches, begin, end),
+                 evidence.layers);
+        }
+        for (Index p = first_patch; p < last_patch; ++p)
+            take_patch(made, p, seen[p - first_patch], beside[p]);
+        take(made, patch_evidence(part.octree(), made.neighbors, made.estimate, made.patches, begin, end),
+             evidence.edges);
+        return true;
+    }
+
+private:
+    /// Has the part all that these patches may see?
+    bool see_all(const CloudPart& part, const Patches& patches, Index begin, Index end) const {
+        const double h = part.octree().voxel_size(space_.depth());
+        for (Index p = begin; p < end; ++p) {
+            VoxelCoord at;
+            for (unsigned k = 0; k < 3; ++k)
+                at[k] = static_cast<std::int32_t>(std::floor(patches.centroids[p][k] / h));
+            if (!part.has_around(at, space_.depth(), depth_of_sight())) return false;
+        }
+        return true;
+    }
+
+    void take_patch(const PartNormals& made, Index p, Sights sights, std::uint8_t beside) {
+        for (Sight& sight : sights)
+            if (sight.patch != no_index) sight.patch = made.number(sight.patch);
+        push_large(evidence.patches,
+                   PatchRow{made.number(p), made.patches.counts[p], made.patches.centroids[p],
+                            made.patches.normals[p], sights, beside});
+    }
+    static void take(const PartNormals& made, std::vector<SignedEdge> found, std::vector<SignedEdge>& all) {
+        for (SignedEdge& edge : found) edge.a = made.number(edge.a), edge.b = made.number(edge.b);
+        append_large(all, found);
+    }
+
+    const Estimating& how_;
+    const EmptySpace& space_;
+    double spacing_;
+    bool may_be_layers_;
+};
+
+/// Bytes that the first rank holds while it tells the sides: of a patch, and of what pairs of points say.
+constexpr std::size_t bytes_per_patch = 300, bytes_per_edge = 80;
+
+/// On the first rank: what all have found. Others are left with nothing.
+SideEvidence gathered(SideEvidence&& own, Ranks& ranks, std::size_t memory) {
+    const std::size_t bytes = ranks.sum(own.patches.size()) * bytes_per_patch
+                              + ranks.sum(own.edges.size() + own.layers.size()) * bytes_per_edge;
+    if (bytes > memory)
+        throw Error("telling the sides of normals takes about " + std::to_string(bytes / 1000000)
+                    + " MB, which is held in memory; give --memory that much, or a cloud with normals");
+    if (ranks.size() == 1) return std::move(own);
+    std::vector<Ranks::Bytes> out(static_cast<std::size_t>(ranks.size()));
+    put_vector(own.patches, out.front());
+    put_vector(own.edges, out.front());
+    put_vector(own.layers, out.front());
+    own = {};
+    for (const Ranks::Bytes& got : ranks.exchange(std::move(out))) {
+        if (got.empty()) continue;
+        ByteReader reader(got);
+        append_large(own.patches, reader.take_vector<PatchRow>());
+        append_large(own.edges, reader.take_vector<SignedEdge>());
+        append_large(own.layers, reader.take_vector<SignedEdge>());
+    }
+    return std::move(own);
+}
+
+/// Numbers of all patches, ascending, and their signs.
+struct SignsOfAll {
+    std::vector<Index> number;
+    std::vector<std::int8_t> sign;
+    OrientReport report;
+
+    Index place(Index patch) const {
+        return static_cast<Index>(std::ranges::lower_bound(number, patch) - number.begin());
+    }
+};
+
+/// The evidence of all patches as make_normals() has it; leaves `all` without it.
+struct WholeEvidence {
+    Patches patches; ///< without what is of points
+    std::vector<Sights> seen;
+    std::vector<std::uint8_t> beside;
+};
+
+/// Patches in the order of their numbers, which become their places in it.
+WholeEvidence whole_evidence(SideEvidence& all, SignsOfAll& result) {
+    std::ranges::sort(all.patches, {}, &PatchRow::number);
+    WholeEvidence whole;
+    for (const PatchRow& row : all.patches) {
+        push_large(result.number, row.number);
+        push_large(whole.patches.counts, row.count);
+        push_large(whole.patches.centroids, row.centroid);
+        push_large(whole.patches.normals, row.normal);
+        push_large(whole.seen, row.sights);
+        push_large(whole.beside, row.beside);
+    }
+    all.patches = {};
+    for (Sights& sights : whole.seen)
+        for (Sight& sight : sights)
+            if (sight.patch != no_index) sight.patch = result.place(sight.patch);
+    for (std::vector<SignedEdge>* edges : {&all.edges, &all.layers})
+        for (SignedEdge& edge : *edges) edge.a = result.place(edge.a), edge.b = result.place(edge.b);
+    return whole;
+}
+
+/// None if it takes the evidence of layers, which `all` has not.
+std::optional<SignsOfAll> signs_of(SideEvidence&& all, const EmptySpace& space, bool may_be_layers) {
+    SignsOfAll result;
+    const WholeEvidence whole = whole_evidence(all, result);
+    bool lacks_layers = false;
+    PatchSigns signs =
+        sign_patches(whole.patches, std::move(all.edges), judge_sights(space, whole.seen, whole.patches), {},
+                     {}, [&]() -> LayerReading {
+                         lacks_layers = !may_be_layers;
+                         std::vector<std::int8_t> sky(whole.patches.size(), 0);
+                         if (may_be_layers)
+                             sky = judge_sights(space, whole.seen, whole.patches, whole.beside).sky;
+                         return {std::move(all.layers), {}, std::move(sky)};
+                     });
+    if (lacks_layers) return std::nullopt;
+    result.sign = std::move(signs.sign);
+    result.report = signs.report;
+    return result;
+}
+
+/// What the first rank finds, if it does.
+std::optional<SignsOfAll> signs_of_all(SideEvidence&& own, const EmptySpace& space, bool may_be_layers,
+                                       Ranks& ranks, std::size_t memory) {
+    SideEvidence all = gathered(std::move(own), ranks, memory);
+    Ranks::Bytes bytes;
+    if (ranks.is_first())
+        if (const auto found = signs_of(std::move(all), space, may_be_layers)) {
+            put(found->report, bytes);
+            put_vector(found->number, bytes);
+            put_vector(found->sign, bytes);
+        }
+    const Ranks::Bytes got = ranks.of_first(std::move(bytes));
+    if (got.empty()) return std::nullopt;
+    ByteReader reader(got);
+    SignsOfAll result;
+    result.report = reader.take<OrientReport>();
+    result.number = reader.take_vector<Index>();
+    result.sign = reader.take_vector<std::int8_t>();
+    return result;
+}
+
+/// Gives the parts' points normals with their sides.
+class SidedPass {
+public:
+    SidedPass(const Estimating& how, const SignsOfAll& signs, ScratchCloud& next)
+        : how_(how), signs_(signs), next_(next) {}
+
+    std::size_t bent = 0, missing = 0; ///< points of this rank, as in NormalsReport
+
+    /// Returns false, and takes nothing, if not all is known.
+    bool add(const CloudPart& part) {
+        if (are_few(part, how_)) return false;
+        PartNormals made(part, how_);
+        EstimatedNormals& estimate = made.estimate;
+        std::vector<std::int8_t> sign(made.patches.size(), 1); // of patches that are not known
+        for (Index p = 0; p < sign.size(); ++p)
+            if (made.known[made.first_point[p]]) sign[p] = signs_.sign[signs_.place(made.number(p))];
+        std::vector<Vec3> refined = refined_normals(part.octree(), made.neighbors, estimate);
+        made.known.step();
+        if (estimate.noise > estimation::rough) made.known.step();
+        turn_normals({turns_of(made.patches, sign), {}}, refined);
+        estimate.normals = std::move(refined);
+        vote_on_normals(part.octree(), made.neighbors, estimate);
+        made.known.step(estimate.bent, repeats::twice);
+        const bool bends = signs_.report.of_layers == 0; // as make_normals() has it
+        if (bends) bend_to_arcs(part.octree(), made.neighbors, estimate);
+        // Which are on arcs at first, the rounds, and which are backed.
+        if (bends && !(estimate.noise > estimation::rough)) made.known.step(estimate.bent, arcs::rounds + 2);
+        if (!made.known.all(part.begin(), part.end())) return false;
+        keep(part, std::move(estimate));
+        return true;
+    }
+
+private:
+    void keep(const CloudPart& part, EstimatedNormals&& estimate) {
+        Octree octree = part.octree();
+        octree.normals = std::move(estimate.normals);
+        for (std::size_t i = part.begin(); i < part.end(); ++i) {
+            next_.add_with_normal(octree, i);
+            missing += octree.normals[i].sqrnorm() == 0;
+        }
+        bent += static_cast<std::size_t>(std::ranges::lower_bound(estimate.bent, part.end())
+                                         - std::ranges::lower_bound(estimate.bent, part.begin()));
+    }
+
+    const Estimating& how_;
+    const SignsOfAll& signs_;
+    ScratchCloud& next_;
+};
+
+/// How neighbours are sought and planes fitted, by the noise of all points.
+Estimating estimating(ScratchCloud& cloud, const CloudSurvey& survey, const CloudNormalsOptions& options) {
+    const std::vector<VoxelRange> ranges = options.plan();
+    CloudNoise noise = cloud_noise(cloud, survey, ranges, options.ghost_voxels);
+    if (noise.deviation > SmoothOptions().least_noise * survey.spacing)
+        refuse_in_tiles("points are noisy, and would be moved onto their surface");
+    Estimating how;
+    if (const int wanted = neighbors_for_noise(noise.relative); wanted > how.neighbors.count) {
+        how.neighbors.count = wanted;
+        noise = cloud_noise(cloud, survey, ranges, options.ghost_voxels, wanted);
+    }
+    how.neighbors.finest_level = survey.sums.finest_leaves();
+    how.estimate.noise = noise.relative;
+    return how;
+}
+
+/// In one pass, and one more where sheets may be layers.
+SignsOfAll find_signs(ScratchCloud& cloud, const CloudSurvey& survey, std::span<const VoxelRange> ranges,
+                      const Estimating& how, const CloudNormalsOptions& options) {
+    const EmptySpace space = space_of(cloud, survey.spacing, options.most_points);
+    for (bool may_be_layers = false;; may_be_layers = true) {
+        EvidencePass pass(how, space, survey.spacing, may_be_layers);
+        for_parts(cloud, survey.sums, ranges, [&](const CloudPart& part) { return pass.add(part); });
+        if (auto signs =
+                signs_of_all(std::move(pass.evidence), space, may_be_layers, cloud.ranks(), options.memory))
+            return std::move(*signs);
+    }
+}
+
+} // namespace
+
+NormalsReport make_cloud_normals(ScratchCloud& cloud, CloudSurvey& survey,
+                                 const CloudNormalsOptions& options) {
+    NormalsReport report;
+    report.outliers = leave_outliers_out(cloud, survey, options.plan, options.most_points);
+    const Estimating how = estimating(cloud, survey, options);
+    report.noise = *how.estimate.noise;
+    const std::vector<VoxelRange> ranges = options.plan();
+    const SignsOfAll signs = find_signs(cloud, survey, ranges, how, options);
+    report.orientation = signs.report;
+    ScratchCloud next = cloud.without_points();
+    SidedPass pass(how, signs, next);
+    for_parts(cloud, survey.sums, ranges, [&](const CloudPart& part) { return pass.add(part); });
+    report.bent = cloud.ranks().sum(pass.bent), report.missing = cloud.ranks().sum(pass.missing);
+    cloud.take_with_normals(std::move(next));
+    survey = survey_cloud(cloud, survey.sums.points(), options.most_points);
+    return report;
+}
+
+} // namespace hsdm

@@ -1,0 +1,134 @@
+#include "hsdm/pipeline/cloud_outliers.hh"
+
+#include "hsdm/core/large_vector.hh"
+#include "hsdm/normals/known_points.hh"
+#include "hsdm/pipeline/cloud_parts.hh"
+#include "hsdm/pipeline/stray_search.hh"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace hsdm {
+namespace {
+
+/// The neighbours in a part, and of which points they are those of the whole.
+struct PartNeighbors {
+    Neighbors neighbors;
+    KnownPoints known;
+
+    PartNeighbors(const CloudPart& part, int finest)
+        : neighbors(find_neighbors(part.octree(), {.finest_level = finest})),
+          known(part.octree(), neighbors,
+                [&](const VoxelCoord& voxel, int level) { return part.has_around(voxel, level); }) {}
+};
+
+/// Too few points for as many neighbours as the whole has.
+bool are_few(const CloudPart& part) {
+    return !part.is_whole() && part.octree().size() <= static_cast<std::size_t>(NeighborOptions().count);
+}
+
+std::vector<std::uint64_t> sum_of_each(const std::vector<std::uint64_t>& own, Ranks& ranks) {
+    std::vector<std::uint64_t> all(own.size(), 0);
+    for (const Ranks::Bytes& got : ranks.gather(bytes_of(own))) {
+        const auto counts = ByteReader(got).take_rest<std::uint64_t>();
+        for (std::size_t k = 0; k < all.size(); ++k) all[k] += counts[k];
+    }
+    return all;
+}
+
+/// The one in the middle of all ranks' values, none negative: by its first sixteen bits, then by the others.
+float median_of_all(const std::vector<float>& values, Ranks& ranks) {
+    constexpr unsigned half = 16;
+    std::uint64_t before = ranks.sum(values.size()) / 2;
+    std::uint32_t high = 0;
+    for (const bool second : {false, true}) {
+        std::vector<std::uint64_t> counts(std::size_t{1} << half, 0);
+        for (const float value : values) {
+            const auto bits = std::bit_cast<std::uint32_t>(value);
+            if (!second)
+                ++counts[bits >> half];
+            else if (bits >> half == high)
+                ++counts[bits & 0xffffu];
+        }
+        counts = sum_of_each(counts, ranks);
+        std::uint32_t place = 0;
+        while (before >= counts[place]) before -= counts[place++];
+        if (second) return std::bit_cast<float>(high << half | place);
+        high = place;
+    }
+    return 0;
+}
+
+ReachOfAll reach_of_all(ScratchCloud& cloud, const Survey& sums, std::span<const VoxelRange> ranges) {
+    std::vector<float> squares; // as single precision has them, which reaches are roots of
+    std::size_t volumes = 0, looked_at = 0;
+    const std::size_t step = volume_stride(sums.points());
+    const int finest = sums.finest_leaves();
+    for_parts(cloud, sums, ranges, [&](const CloudPart& part) {
+        if (are_few(part)) return false;
+        const auto [neighbors, known] = PartNeighbors(part, finest);
+        if (!known.all(part.begin(), part.end())) return false;
+        for (std::size_t i = part.begin(); i < part.end(); ++i) {
+            push_large(squares, static_cast<float>(neighbors.reach[i] * neighbors.reach[i]));
+            if (part.number(i) % step != 0) continue;
+            ++looked_at;
+            volumes += fills_volume(part.octree(), neighbors, i);
+        }
+        return true;
+    });
+    const double typical = std::sqrt(static_cast<double>(median_of_all(squares, cloud.ranks())));
+    return {typical, 2 * cloud.ranks().sum(volumes) > cloud.ranks().sum(looked_at)};
+}
+
+/// Those of all ranks that a round finds.
+std::vector<PointRow> find_outliers(ScratchCloud& cloud, const Survey& sums,
+                                    std::span<const VoxelRange> ranges) {
+    const ReachOfAll all = reach_of_all(cloud, sums, ranges);
+    const int finest = sums.finest_leaves();
+    std::vector<PointRow> rows;
+    for_parts(cloud, sums, ranges, [&](const CloudPart& part) {
+        if (are_few(part)) return false;
+        auto [neighbors, known] = PartNeighbors(part, finest);
+        if (!known.all(part.begin(), part.end()) || !known.all_around(part.begin(), part.end())) return false;
+        const std::vector<std::uint8_t> found = outliers_by_distance(part.octree(), neighbors, all);
+        for (std::size_t i = part.begin(); i < part.end(); ++i)
+            if (found[i]) rows.push_back(ScratchCloud::row_at(part.octree(), i));
+        return true;
+    });
+    std::vector<PointRow> of_all;
+    for (const Ranks::Bytes& got : cloud.ranks().gather(bytes_of(rows)))
+        append_large(of_all, ByteReader(got).take_rest<PointRow>());
+    return of_all;
+}
+
+Occurrences occurrences(const std::vector<PointRow>& rows, const ScratchCloud& cloud) {
+    const auto place = [](const PointRow& row) { return Vec3(row[0], row[1], row[2]); };
+    const auto in_order = [&](const PointRow& row) {
+        return std::pair(code_at(place(row), cloud.cube_extent()), row);
+    };
+    return {rows.size(), place(std::ranges::min(rows, {}, in_order)) + cloud.origin()};
+}
+
+} // namespace
+
+Occurrences leave_outliers_out(ScratchCloud& cloud, CloudSurvey& survey, const PlanRanges& plan,
+                               std::size_t most) {
+    Occurrences total;
+    std::vector<PointRow> out;
+    for (int round = 0; round < OutlierOptions().rounds; ++round) {
+        const std::vector<PointRow> some = find_outliers(cloud, survey.sums, plan());
+        if (some.empty()) break;
+        total.add(occurrences(some, cloud));
+        append_large(out, some);
+        cloud.leave_out(out);
+        const std::size_t left = survey.sums.points() - some.size();
+        survey = survey_cloud(cloud, left, most);
+        if (some.size() < left / 1000) break; // too few to have hidden others
+    }
+    if (total.count > 0 && fit_to_points_left(cloud, most))
+        survey = survey_cloud(cloud, survey.sums.points(), most);
+    return total;
+}
+
+} // namespace hsdm

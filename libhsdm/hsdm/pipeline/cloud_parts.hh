@@ -1,0 +1,43 @@
+#pragma once
+// Parts of a cloud on disk, each with as much around it as it takes to know all that is asked of it.
+
+#include "hsdm/pipeline/cloud_survey.hh"
+
+namespace hsdm {
+
+/// Whole cells of a cloud.
+class CloudPart {
+public:
+    /// `missing`: cells with points that it has not, ascending.
+    CloudPart(const ScratchCloud& cloud, const Survey& sums, const VoxelRange& range,
+              const std::vector<PointRow>& rows, std::vector<MortonCode> missing);
+
+    const Octree& octree() const { return octree_; }
+    std::size_t begin() const { return begin_; } ///< of its own points, those of the range
+    std::size_t end() const { return end_; }
+    bool is_whole() const { return missing_.empty(); } ///< has it all cells?
+    /// Has it all points of the voxels from `lo` to `hi` of a level?
+    bool has(const VoxelCoord& lo, const VoxelCoord& hi, int level) const;
+    bool has_around(const VoxelCoord& voxel, int level, int reach = 1) const;
+    /// The number in the whole cloud of a point of the part.
+    Index number(std::size_t point) const;
+
+private:
+    Octree octree_;
+    int cell_depth_;
+    std::vector<MortonCode> missing_;
+    std::size_t begin_, end_;
+    struct Cell {
+        MortonCode code;
+        std::size_t first, number; ///< of its first point, here and in the whole
+    };
+    std::vector<Cell> cells_;
+};
+
+/// work(part) of each of those ranges that are this rank's and have points; where it returns false, as not
+/// all that it needs is known, again with twice as much around it. For all ranks at the same time. Throws
+/// Error where that is wider than tiles see.
+void for_parts(ScratchCloud& cloud, const Survey& sums, std::span<const VoxelRange> ranges,
+               const std::function<bool(const CloudPart&)>& work);
+
+} // namespace hsdm
