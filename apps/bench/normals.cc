@@ -2,7 +2,6 @@
 // those of the shape itself.
 
 #include "benchmarks.hh"
-#include "segment.hh"
 
 #include "hsdm/io/read_mesh.hh"
 #include "hsdm/io/read_points.hh"
@@ -10,6 +9,7 @@
 #include "hsdm/octree/spacing.hh"
 #include "hsdm/quality/distance.hh"
 #include "hsdm/spatial/mesh_distance.hh"
+#include "support/segment.hh"
 
 #include <CLI/CLI.hpp>
 
@@ -25,7 +25,7 @@ using namespace hsdm;
 
 namespace {
 
-using bench::Segment;
+using support::Segment;
 
 /// Lines `e x y z x y z ...` of a file of sharp edges.
 std::vector<Segment> read_edges(const std::string& path) {

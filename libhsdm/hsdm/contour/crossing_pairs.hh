@@ -14,10 +14,13 @@ inline bool opposed(const Crossing& x, const Crossing& y) {
 
 /// What a side of a facet is joined to.
 struct Link {
-    FacetSide twin;   ///< the side of the other facet; no_side: the surface ends here
-    bool rim = false; ///< does the pair join two opposite sheets, round the rim of a thin part?
+    FacetSide twin;     ///< the side of the other facet; no_side: the surface ends here
+    bool rim = false;   ///< does the pair join two opposite sheets, round the rim of a thin part?
+    bool bevel = false; ///< does it join two sheets with a third between them in the grid face (mark_bevels)?
 
     bool open() const { return twin == no_side; }
+    /// May there be a strip of facets between the two sides?
+    bool strip() const { return rim || bevel; }
 };
 
 struct Links {

@@ -1,5 +1,6 @@
 #include "hsdm/contour/dual_contour.hh"
 
+#include "hsdm/contour/bevels.hh"
 #include "hsdm/contour/flat_facets.hh"
 #include "hsdm/contour/grid_signs.hh"
 #include "hsdm/contour/inner_tunnels.hh"
@@ -49,8 +50,9 @@ public:
                 seen.clear();
                 continue;
             }
-            const auto& [twin, rim] = dual.links.of(side);
-            const bool strip = rim && dual.duals.ends(side) != dual.duals.ends(twin);
+            const Link& link = dual.links.of(side);
+            const FacetSide twin = link.twin;
+            const bool strip = link.strip() && dual.duals.ends(side) != dual.duals.ends(twin);
             const bool halved = repeated(side);
             if (twin == no_side || strip) {
                 if (halved) halve(side, dual.crossing_position_of(side));
@@ -95,8 +97,9 @@ public:
     /// The strip of facets along a thin part's rim, between the vertices of its two sides; once per rim link.
     void add_strips(Index x) {
         for (const FacetSide side : corners_of_facet(x)) {
-            const auto& [twin, rim] = dual_.links.of(side);
-            if (!rim || side > twin) continue;
+            const Link& link = dual_.links.of(side);
+            const FacetSide twin = link.twin;
+            if (!link.strip() || side > twin) continue;
             const auto [from, to] = dual_.duals.ends(side);
             const auto [twin_from, twin_to] = dual_.duals.ends(twin);
             if (from == twin_from && to == twin_to) continue; // not cut: an ordinary edge
@@ -328,8 +331,13 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
     for (int round = 0; round < enough_rounds && drop_tips(sets, related, dual.links, dual.crossings) > 0;
          ++round)
         pair();
-    dual.duals = build_dual_vertices(dual.grid, dual.crossings, dual.links);
+    const auto cut_into_vertices = [&] {
+        mark_bevels(dual.grid, dual.crossings, sets, h, dual.links);
+        dual.duals = build_dual_vertices(dual.grid, dual.crossings, dual.links);
+    };
+    cut_into_vertices();
     result.webs_opened = open_all_webs(dual);
+    if (result.webs_opened > 0) cut_into_vertices(); // what partners changed lead over
     PlacedVertices vertices = place_vertices(dual, sets, related);
     extend_borders(dual, sets, vertices);
     dual.grid = codes_alone(std::move(dual.grid));

@@ -1,5 +1,6 @@
 #include "hsdm/contour/dual_vertices.hh"
 
+#include "hsdm/contour/bevels.hh"
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
@@ -128,6 +129,7 @@ private:
     /// Fills cuts_, ascending: 2 i for corner i, 2 i + 1 for the link after it.
     void find_cuts(const Chain& chain) {
         cuts_.clear();
+        find_bevels(chain);
         if (!any_opposite(chain)) return;
         const std::size_t n = chain.corners.size();
         // From each corner, the shortest way (in steps) along the chain to a corner of the other side, and
@@ -142,6 +144,35 @@ private:
             }
         for (std::size_t i = 0; i < n; ++i)
             if (place_[i] != none && !holds_shorter(i, chain)) cuts_.push_back(place_[i]);
+        sort_unique(cuts_);
+        if (chain.closed && cuts_.size() < 2) cuts_.clear();
+    }
+
+    /// Cuts between two creases with a narrow face between them: across a link that leads over it, and in a
+    /// facet of that face. A closed chain passes two such places or more, or the face ends in the voxel.
+    void find_bevels(const Chain& chain) {
+        const std::size_t n = chain.corners.size();
+        const auto corner = [&](std::size_t i) -> const Crossing& { return of(chain.corners[i % n]); };
+        const auto link = [&](std::size_t i) -> const Link& { return links_.of(chain.way_on(i % n)); };
+        const auto ends_after = [&](std::size_t i) {
+            return (corner(i).normal | corner(i + 1).normal) < angles::one_sheet;
+        };
+        std::size_t begin = 0;
+        if (chain.closed) {
+            while (begin < n && !ends_after(begin)) ++begin;
+            if (begin++ == n) return;
+        }
+        const std::size_t last = chain.closed ? begin + n : n - 1;
+        std::size_t first = begin;
+        for (std::size_t i = begin; i < last; ++i) {
+            if (!ends_after(i)) continue;
+            if (link(i).bevel) cuts_.push_back(2 * (i % n) + 1);
+            const bool inner = chain.closed || first > 0;
+            if (inner && !link(i).bevel && !link(first + n - 1).bevel
+                && lies_between(corner(first + n - 1).normal, corner(first).normal, corner(i + 1).normal))
+                cuts_.push_back(2 * ((first + i) / 2 % n));
+            first = i + 1;
+        }
         sort_unique(cuts_);
         if (chain.closed && cuts_.size() < 2) cuts_.clear();
     }

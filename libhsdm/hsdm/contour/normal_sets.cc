@@ -158,13 +158,17 @@ private:
         points_.clear();
         Vec3 sum(0, 0, 0);
         for_each(k, [&](Index i) { points_.push_back(i), sum += octree_.normals[i]; });
-        if (points_.size() < 2 * points_of_plane || !is_bent(sum, static_cast<double>(points_.size())))
-            return;
+        if (points_.size() < 2 || !is_bent(sum, static_cast<double>(points_.size()))) return;
         samples_.clear();
         for (Index i : points_) samples_.push_back({octree_.positions[i], octree_.normals[i]});
         face_.resize(points_.size());
         BluntCrease crease;
-        if (!find_blunt_crease(samples_, points_of_plane, face_, crease)) return;
+        if (!find_blunt_crease(samples_, 1, face_, crease)) return;
+        // Fewer points than make a plane tell a face that turns by more than one sheet may.
+        const auto second = static_cast<std::size_t>(std::ranges::count(face_, 1));
+        if (std::min(second, points_.size() - second) < points_of_plane
+            && (crease.normals[0] | crease.normals[1]) > angles::one_sheet)
+            return;
         modes_[k] = crease.normals[0];
         for (std::size_t i = 0; i < points_.size(); ++i)
             if (face_[i] == 1) label_[points_[i] - begin_] = static_cast<std::uint8_t>(modes_.size());

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace hsdm::bench {
+namespace hsdm::support {
 
 struct Segment {
     Vec3 from, to;
@@ -18,4 +18,4 @@ inline double distance(const Vec3& p, const Segment& s) {
     return (p - s.from - along * t).norm();
 }
 
-} // namespace hsdm::bench
+} // namespace hsdm::support
