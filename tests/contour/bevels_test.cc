@@ -16,16 +16,18 @@ using support::Stages;
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
-constexpr double voxel = 1.0 / 12;
+constexpr double one_degree = std::numbers::pi / 180;
+constexpr double bar_voxel = 1.0 / 12;
 
 /// Eight points a voxel's face.
-PointCloud scan(const support::EdgedSolid& part, std::uint64_t seed) {
+PointCloud scan_of(const support::EdgedSolid& part, std::uint64_t seed) {
     return support::sample(
-        part.solid, {.points = static_cast<std::size_t>(8 * part.area / (voxel * voxel)), .seed = seed});
+        part.solid,
+        {.points = static_cast<std::size_t>(8 * part.area / (bar_voxel * bar_voxel)), .seed = seed});
 }
 
-std::size_t mark(Stages& stages) {
+/// Marks their links.
+std::size_t marked_in(Stages& stages) {
     const std::size_t marked =
         mark_bevels(stages.grid, stages.crossings, stages.sets, stages.h(), stages.links);
     stages.place();
@@ -37,8 +39,8 @@ std::size_t mark(Stages& stages) {
 TEST_CASE("a face lies between two others if it turns from both, and along their crease", "[contour]") {
     const Vec3 y(0, 1, 0), z(0, 0, 1);
     const auto tilted = [](double turn, double along) {
-        return Vec3(std::sin(along * degree), std::cos(along * degree) * std::cos(turn * degree),
-                    std::cos(along * degree) * std::sin(turn * degree));
+        return Vec3(std::sin(along * one_degree), std::cos(along * one_degree) * std::cos(turn * one_degree),
+                    std::cos(along * one_degree) * std::sin(turn * one_degree));
     };
     for (const double turn : {42.0, 45.0, 48.0}) {
         CHECK(lies_between(y, tilted(turn, 0), z));
@@ -58,16 +60,16 @@ TEST_CASE("chamfers of half a voxel and more keep both edges", "[contour]") {
             for (std::uint64_t seed = 1; seed <= 3; ++seed) {
                 INFO("turn " << turn << ", width " << width << ", seed " << seed);
                 const support::EdgedSolid bar = support::placed(
-                    support::chamfered_bar(width * voxel, turn * degree), support::random_pose(seed));
+                    support::chamfered_bar(width * bar_voxel, turn * one_degree), support::random_pose(seed));
                 const Reconstruction result =
-                    reconstruct(scan(bar, seed), {.voxel_size = voxel, .classify = false});
+                    reconstruct(scan_of(bar, seed), {.voxel_size = bar_voxel, .classify = false});
                 const PolygonMesh facets = to_polygons(result.mesh);
                 CHECK(support::faults(facets).empty());
                 CHECK(result.mesh.n_vertices() + result.mesh.n_faces() == result.mesh.n_edges() + 2);
-                CHECK(support::farthest_vertex(facets, bar.solid) < 0.25 * voxel);
-                const support::Lines found = support::folds(result.mesh, turn / 2 * degree);
-                CHECK(support::share_near(bar.blunt, found, voxel / 4) > 0.9);
-                CHECK(support::share_near(found, bar.all, voxel / 4) > 0.9);
+                CHECK(support::farthest_vertex(facets, bar.solid) < 0.25 * bar_voxel);
+                const support::Lines found = support::folds(result.mesh, turn / 2 * one_degree);
+                CHECK(support::share_near(bar.blunt, found, bar_voxel / 4) > 0.9);
+                CHECK(support::share_near(found, bar.all, bar_voxel / 4) > 0.9);
             }
 }
 
@@ -76,18 +78,18 @@ TEST_CASE("where no face lies between two nothing is marked, and no other vertex
     for (const support::Solid& solid : {support::box({1, 0.8, 0.6}), support::sphere(0.5),
                                         support::torus(0.5, 0.2), support::cylinder(0.2, 1)}) {
         Stages stages(solid.placed(pose), 6000, 4);
-        CHECK(mark(stages) == 0);
+        CHECK(marked_in(stages) == 0);
         CHECK(stages.duals.after_cut.empty());
     }
 }
 
 TEST_CASE("bevels and what is cut at them are the same under turned normals", "[contour]") {
     const support::EdgedSolid bar =
-        support::placed(support::chamfered_bar(0.5 * voxel, 45 * degree), support::random_pose(5));
-    PointCloud cloud = scan(bar, 5);
+        support::placed(support::chamfered_bar(0.5 * bar_voxel, 45 * one_degree), support::random_pose(5));
+    PointCloud cloud = scan_of(bar, 5);
     const auto bevels = [&] {
         Stages stages(cloud, 4);
-        const std::size_t marked = mark(stages);
+        const std::size_t marked = marked_in(stages);
         return std::array{marked, stages.duals.size(), stages.duals.after_cut.size()};
     };
     const auto before = bevels();

@@ -62,7 +62,8 @@ bool follows(const Stages& stages, Index before, Index after) {
     const FacetCorner next = stages.duals.corners_of(after).front();
     const FacetSide way_on = stages.crossings.of(last).leaving ? last : last.previous();
     const Link& link = stages.links.of(way_on);
-    return last == next || (!link.open() && (link.twin == next || link.twin.next() == next));
+    const bool is_shared = stages.duals.to(last.previous()) != stages.duals.from(last);
+    return is_shared ? last == next : !link.open() && (link.twin == next || link.twin.next() == next);
 }
 
 } // namespace

@@ -1,6 +1,6 @@
 #include "support/edges.hh"
 
-#include "hsdm/mesh/area_vector.hh"
+#include "hsdm/mesh/facet_normal.hh"
 
 #include <algorithm>
 #include <cmath>

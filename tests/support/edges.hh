@@ -1,7 +1,7 @@
 #pragma once
 // Solids whose sharp edges are known, and how many of them a mesh has.
 
-#include "hsdm/types.hh"
+#include "hsdm/mesh_types.hh"
 #include "support/segment.hh"
 #include "support/solid.hh"
 

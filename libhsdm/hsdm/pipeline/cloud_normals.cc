@@ -230,15 +230,14 @@ std::optional<SignsOfAll> signs_of(SideEvidence&& all, const EmptySpace& space, 
     SignsOfAll result;
     const WholeEvidence whole = whole_evidence(all, result);
     bool lacks_layers = false;
-    PatchSigns signs =
-        sign_patches(whole.patches, std::move(all.edges), judge_sights(space, whole.seen, whole.patches), {},
-                     {}, [&]() -> LayerReading {
-                         lacks_layers = !may_be_layers;
-                         std::vector<std::int8_t> sky(whole.patches.size(), 0);
-                         if (may_be_layers)
-                             sky = judge_sights(space, whole.seen, whole.patches, whole.beside).sky;
-                         return {std::move(all.layers), {}, std::move(sky)};
-                     });
+    PatchSigns signs = sign_patches(
+        whole.patches, std::move(all.edges), judge_sights(space, whole.seen, whole.patches), {}, {},
+        [&]() -> LayerReading {
+            lacks_layers = !may_be_layers;
+            std::vector<std::int8_t> sky(whole.patches.size(), 0);
+            if (may_be_layers) sky = judge_sights(space, whole.seen, whole.patches, whole.beside).sky;
+            return {.edges = std::move(all.layers), .sky = std::move(sky), .signs = {}, .skyward = {}};
+        });
     if (lacks_layers) return std::nullopt;
     result.sign = std::move(signs.sign);
     result.report = signs.report;
