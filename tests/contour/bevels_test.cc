@@ -51,7 +51,7 @@ TEST_CASE("a face lies between two others if it turns from both, and along their
     for (const double turn : {-45.0, 0.0, 35.0, 55.0, 90.0, 135.0})
         CHECK(!lies_between(y, tilted(turn, 0), z));
     CHECK(!lies_between(y, y, y));
-    CHECK(!lies_between(y, z, -y * 1.0));
+    CHECK(!lies_between(y, z, -y));
 }
 
 TEST_CASE("chamfers of half a voxel and more keep both edges", "[contour]") {
@@ -71,6 +71,28 @@ TEST_CASE("chamfers of half a voxel and more keep both edges", "[contour]") {
                 CHECK(support::share_near(bar.blunt, found, bar_voxel / 4) > 0.9);
                 CHECK(support::share_near(found, bar.all, bar_voxel / 4) > 0.9);
             }
+}
+
+TEST_CASE("chamfers of a cavity keep both edges, whichever way axes point", "[contour]") {
+    const support::EdgedSolid bar = support::chamfered_bar(0.6 * bar_voxel, 45 * one_degree);
+    support::EdgedSolid hollow = bar;
+    hollow.solid = support::box({1.5, 1.5, 1.5}) - bar.solid, hollow.area = 19.5;
+    const support::EdgedSolid placed = support::placed(hollow, support::random_pose(4));
+    PointCloud cloud = scan_of(placed, 4);
+    for (const bool mirrored : {false, true}) {
+        INFO((mirrored ? "mirrored" : "as it is"));
+        support::Lines edges = placed.blunt;
+        if (mirrored) {
+            for (auto* places : {&cloud.positions, &cloud.normals})
+                for (Vec3& p : *places) p = -p;
+            for (support::Segment& s : edges) s = {-s.from, -s.to};
+        }
+        const Reconstruction result = reconstruct(cloud, {.voxel_size = bar_voxel, .classify = false});
+        CHECK(support::faults(to_polygons(result.mesh)).empty());
+        CHECK(result.mesh.n_vertices() + result.mesh.n_faces() == result.mesh.n_edges() + 4);
+        CHECK(support::share_near(edges, support::folds(result.mesh, 22.5 * one_degree), bar_voxel / 4)
+              > 0.9);
+    }
 }
 
 TEST_CASE("where no face lies between two nothing is marked, and no other vertex is made", "[contour]") {

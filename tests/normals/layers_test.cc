@@ -120,7 +120,7 @@ TEST_CASE("a wall that is seen from both sides stays one, and so does what nobod
 
 TEST_CASE("what sees no sky is layers where most of what is in question is", "[normals]") {
     for (const Index unseen :
-         {30, 49, 50, 70}) { // the last patches of the second sheet, a region of their own
+         {30u, 49u, 50u, 70u}) { // the last patches of the second sheet, a region of their own
         INFO(unseen << " patches without a view");
         TwoSheets sheets;
         const Index first = 2 * of_sheet - unseen;

@@ -56,7 +56,14 @@ public:
         const Crossing &x = crossings_.of(side), &y = crossings_.of(twin);
         if ((x.normal | y.normal) > angles::halfway) return false;
         const LinkFace face(grid_, crossings_, side);
-        return std::ranges::any_of(std::array{x.edge / 3, y.edge / 3}, [&](Index grid_point) {
+        return is_cut_off_round(x.edge, x, y, face) || is_cut_off_round(y.edge, x, y, face);
+    }
+
+private:
+    /// ... by a set of the voxels round an edge's two ends?
+    bool is_cut_off_round(Index edge, const Crossing& x, const Crossing& y, const LinkFace& face) const {
+        const std::array ends{edge / 3, grid_.next[edge / 3][edge % 3]};
+        return std::ranges::any_of(ends, [&](Index grid_point) {
             return std::ranges::any_of(grid_.voxels[grid_point], [&](Index voxel) {
                 return voxel != no_index
                        && std::ranges::any_of(sets_.of_voxel(voxel), [&](const NormalSet& set) {
@@ -65,8 +72,6 @@ public:
             });
         });
     }
-
-private:
     /// Does a set lie near a face, and its plane between two crossings and the tip where their planes meet
     /// there?
     bool is_cut_off(const Crossing& x, const Crossing& y, const LinkFace& face, const NormalSet& set) const {
@@ -74,8 +79,9 @@ private:
         const Vec3 from = crossing_position(grid_, x, 1), to = crossing_position(grid_, y, 1);
         const Vec3 centroid = set.centroid / voxel_size_;
         const Plane one(x.normal, from), other(y.normal, to), bevel(set.normal, centroid);
-        const double inward = one.above(to) < 0 ? 1 : -1; // in a convex crease, or a concave one
-        if (inward * other.above(from) >= 0) return false;
+        const double k = one.above(to), l = other.above(from);
+        if (!(k * l > 0)) return false;
+        const double inward = k < 0 ? 1 : -1; // in a convex crease, or a concave one
         const auto tip = face.meeting(one, other), begin = face.meeting(one, bevel),
                    end = face.meeting(bevel, other);
         if (!tip || !begin || !end || inward * bevel.above(*tip) < 0) return false;

@@ -94,7 +94,8 @@ public:
         for (const Quad& quad : round_) add_quad(quad);
     }
 
-    /// The strip of facets along a thin part's rim, between the vertices of its two sides; once per rim link.
+    /// The strip of facets along a thin part's rim or over a bevel, between the vertices of its two sides;
+    /// once per such link.
     void add_strips(Index x) {
         for (const FacetSide side : corners_of_facet(x)) {
             const Link& link = dual_.links.of(side);

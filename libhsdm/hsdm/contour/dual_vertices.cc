@@ -129,8 +129,14 @@ private:
     /// Fills cuts_, ascending: 2 i for corner i, 2 i + 1 for the link after it.
     void find_cuts(const Chain& chain) {
         cuts_.clear();
-        find_bevels(chain);
-        if (!any_opposite(chain)) return;
+        if (any_opposite(chain)) find_rims(chain);
+        if (cuts_.empty()) find_bevels(chain);
+        sort_unique(cuts_);
+        if (chain.closed && cuts_.size() < 2) cuts_.clear();
+    }
+
+    /// Cuts between the two sides of a thin part or of a gap.
+    void find_rims(const Chain& chain) {
         const std::size_t n = chain.corners.size();
         // From each corner, the shortest way (in steps) along the chain to a corner of the other side, and
         // where to cut it.
@@ -144,8 +150,6 @@ private:
             }
         for (std::size_t i = 0; i < n; ++i)
             if (place_[i] != none && !holds_shorter(i, chain)) cuts_.push_back(place_[i]);
-        sort_unique(cuts_);
-        if (chain.closed && cuts_.size() < 2) cuts_.clear();
     }
 
     /// Cuts between two creases with a narrow face between them: across a link that leads over it, and in a
@@ -173,8 +177,6 @@ private:
                 cuts_.push_back(2 * ((first + i) / 2 % n));
             first = i + 1;
         }
-        sort_unique(cuts_);
-        if (chain.closed && cuts_.size() < 2) cuts_.clear();
     }
 
     bool any_opposite(const Chain& chain) const {

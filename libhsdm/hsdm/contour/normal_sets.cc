@@ -164,7 +164,7 @@ private:
         face_.resize(points_.size());
         BluntCrease crease;
         if (!find_blunt_crease(samples_, 1, face_, crease)) return;
-        // Fewer points than make a plane tell a face that turns by more than one sheet may.
+        // A face of fewer points than make a plane counts if it turns by more than one sheet may.
         const auto second = static_cast<std::size_t>(std::ranges::count(face_, 1));
         if (std::min(second, points_.size() - second) < points_of_plane
             && (crease.normals[0] | crease.normals[1]) > angles::one_sheet)

@@ -448,6 +448,7 @@ void separate_sides(const DualMesh& mesh, std::vector<Vec3>& positions) {
     };
     for (Index v : mesh.duals.after_cut) {
         const Vec3 d = positions[v] - positions[v - 1], one = outward(v - 1), other = outward(v);
+        if ((one | other) > 0) continue; // beside a narrow face, on one surface
         if (std::max(std::abs(d | one), std::abs(d | other)) > 2 * placement::side_gap * mesh.voxel_size)
             continue;
         positions[v - 1] += one * gap;
