@@ -71,8 +71,8 @@ struct DualVertices {
 };
 
 /// Walks the chains. A chain that passes both sides of a thin part is cut between them, at a rim link or in a
-/// facet of the rim's own face, so that each side has its own vertex; one that passes both edges of a narrow face
-/// at a link over it or in a facet of it. O(crossings), parallel.
+/// facet of the rim's own face, so that each side has its own vertex; one that passes both edges of a narrow
+/// face at a link over it or in a facet of it. O(crossings), parallel.
 DualVertices build_dual_vertices(const GridPoints& grid, const Crossings& crossings, const Links& links);
 
 } // namespace hsdm

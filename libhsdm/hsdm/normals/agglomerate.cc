@@ -39,7 +39,7 @@ public:
         while (parent_[root] != root) sign *= sign_[root], root = parent_[root];
         for (int rest = sign; parent_[node] != root && node != root;) {
             const Index next = parent_[node];
-            const int step = sign_[node];
+            const std::int8_t step = sign_[node];
             parent_[node] = root;
             sign_[node] = static_cast<std::int8_t>(rest);
             rest *= step;
