@@ -214,8 +214,7 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
     app.add_option(
            "--memory", a.memory,
            "bytes (or 500M, 4G) of memory that are used at most: points lie sorted on disk and are worked "
-           "through in tiles, with the same result; clouds that do not fit in one piece need given normals "
-           "(default: no bound)")
+           "through in tiles, with the same result (default: no bound)")
         ->type_name("SIZE")
         ->group(method);
     app.add_option("--scratch", a.scratch,

@@ -85,6 +85,21 @@ TEST_CASE("tiles of a cloud without normals give the mesh of one piece, bit for 
     }
 }
 
+TEST_CASE("tiles of many cells see as far as a thinly sampled part takes", "[pipeline][slow]") {
+    const auto sampled = [](const support::Solid& solid, std::size_t points) {
+        return support::sample(support::in_general_pose(solid), {.points = points, .normals = false});
+    };
+    PointCloud cloud = sampled(support::box({1, 0.7, 0.4}), 3000);
+    for (const Vec3& p : sampled(support::sphere(0.1), 9000).positions)
+        cloud.positions.push_back(p + Vec3(0.8, 0.1, 0.2));
+    const ReconstructOptions options{.depth = GENERATE(7, 8, 10)};
+    INFO("depth " << *options.depth);
+    const Reconstruction whole = reconstruct(cloud, options);
+    TileReport how;
+    check_as_one_piece(whole, reconstruct_in_tiles(view_of(cloud), options, tiles_with(3000), &how));
+    CHECK(how.tiles > 1);
+}
+
 TEST_CASE("several ranks do a cloud without normals to the bits of one piece", "[pipeline][slow]") {
     PointCloud cloud = support::sample(solid_for_tiles(0), {.points = 12000, .normals = false});
     SECTION("as it is") {}

@@ -250,13 +250,15 @@ void merge_edges(std::vector<SignedEdge>& edges, std::size_t nodes) {
                   [](const SignedEdge& e, const SignedEdge& f) { return e.b < f.b; });
     });
     std::size_t kept = 0;
+    double weight = 0, total = 0; // exact, and rounded once, whatever the order
     for_each_in_order(sorted.size(), [&](std::size_t i) {
         const SignedEdge& e = sorted[i];
         if (kept == 0 || sorted[kept - 1].a != e.a || sorted[kept - 1].b != e.b) {
             sorted[kept++] = e;
+            weight = e.weight, total = e.total;
         } else {
-            sorted[kept - 1].weight += e.weight;
-            sorted[kept - 1].total += e.total;
+            sorted[kept - 1].weight = static_cast<float>(weight += e.weight);
+            sorted[kept - 1].total = static_cast<float>(total += e.total);
         }
     });
     sorted.resize(kept);

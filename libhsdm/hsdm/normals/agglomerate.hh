@@ -14,7 +14,8 @@ struct SignedEdge {
 };
 
 /// Evidence, below 4,096, in steps of 1/4,096: sums of such floats are exact up to there, and so the same in
-/// any order.
+/// any order. With 16 neighbours two patches have as much if their leaves hold 256 points each: all but
+/// leaves of the deepest level have neighborhoods::leaf_points at most.
 inline float in_steps(double evidence) {
     constexpr double shift = 0x1.8p40; // the last digit of sums with it is a step
     return static_cast<float>(evidence + shift - shift);

@@ -90,18 +90,6 @@ LayerReading read_as_layers(const Octree& octree, const Neighbors& neighbors,
     return layers;
 }
 
-} // namespace
-
-const Vec3* Viewpoints::of(Index source) const {
-    if (sensors.empty()) return nullptr;
-    const double number = sensor_of.count == 0 ? 0 : number_at(sensor_of, source, 0);
-    return number >= 0 && number < static_cast<double>(sensors.size())
-               ? &sensors[static_cast<std::size_t>(number)]
-               : nullptr;
-}
-
-namespace {
-
 /// Reads the evidence alone and with the sky, which is outside. An edge counts by all that is said of it,
 /// however that was divided.
 SkyReading layers_taken(const Patches& patches, LayerReading&& layers, Signs& signs) {
@@ -117,9 +105,17 @@ SkyReading layers_taken(const Patches& patches, LayerReading&& layers, Signs& si
 
 } // namespace
 
+const Vec3* Viewpoints::of(Index source) const {
+    if (sensors.empty()) return nullptr;
+    const double number = sensor_of.count == 0 ? 0 : number_at(sensor_of, source, 0);
+    return number >= 0 && number < static_cast<double>(sensors.size())
+               ? &sensors[static_cast<std::size_t>(number)]
+               : nullptr;
+}
+
 PatchSigns sign_patches(const Patches& patches, std::vector<SignedEdge> edges, const OutsideView& view,
                         const std::vector<float>& seen_by, const OrientOptions& options,
-                        const std::function<LayerReading()>& read_as_layers) {
+                        const std::function<LayerReading()>& evidence_of_layers) {
     const auto outside = static_cast<Index>(patches.size());
     reserve_large(edges, edges.size() + view.facing.size() + patches.size());
     append_large(edges, view.facing);
@@ -137,7 +133,7 @@ PatchSigns sign_patches(const Patches& patches, std::vector<SignedEdge> edges, c
     const bool scanned = std::ranges::any_of(seen_by, [](float vote) { return vote != 0; });
     SkyReading sky;
     if (!scanned && signs.contradicted > turning::least_contradicted)
-        sky = layers_taken(patches, read_as_layers(), signs);
+        sky = layers_taken(patches, evidence_of_layers(), signs);
     std::vector<std::int8_t> turn = free_signs(patches, signs, options);
     std::vector<std::uint8_t> is_known(turn.size(), 0); // by views or by the sky
     const auto decide = [&](std::size_t component, std::int8_t sign) {

@@ -53,16 +53,16 @@ Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, con
                            const OrientOptions& options = {});
 
 /// The last step of that, of all patches of a cloud: by the evidence between them, by what they see of the
-/// outside, and by the scanners (per patch, as in Viewpoints; none: empty). read_as_layers() is asked where
-/// the evidence contradicts itself; the signs in what it gives are found here. Of `patches` what is of points
-/// is read for OrientOptions::signs_count alone.
+/// outside, and by the scanners (per patch, as in Viewpoints; none: empty). evidence_of_layers() is asked
+/// where the evidence contradicts itself; the signs in what it gives are found here. Of `patches` what is of
+/// points is read for OrientOptions::signs_count alone.
 struct PatchSigns {
     std::vector<std::int8_t> sign; ///< per patch, -1 if its normal is to be turned
     OrientReport report;
 };
 PatchSigns sign_patches(const Patches& patches, std::vector<SignedEdge> edges, const OutsideView& view,
                         const std::vector<float>& seen_by, const OrientOptions& options,
-                        const std::function<LayerReading()>& read_as_layers);
+                        const std::function<LayerReading()>& evidence_of_layers);
 /// Per point, whether its normal is to be turned.
 std::vector<std::uint8_t> turns_of(const Patches& patches, const std::vector<std::int8_t>& sign);
 

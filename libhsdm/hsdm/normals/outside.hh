@@ -37,7 +37,8 @@ struct OutsideView {
 OutsideView view_outside(const Octree& octree, const Patches& patches, double spacing,
                          const OutsideOptions& options = {});
 
-/// The steps of that, for a cloud whose parts are looked at one after the other.
+// The steps of that, for a cloud whose parts are looked at one after the other.
+
 /// The level of the voxels of the empty space.
 int depth_of_space(double cube_extent, double spacing, const OutsideOptions& options = {});
 /// The first thing that a patch sees along a direction.

@@ -72,6 +72,18 @@ struct SideEvidence {
     std::vector<SignedEdge> layers; ///< as layer_evidence(), if sheets may be layers
 };
 
+/// Bytes that the first rank holds while it tells the sides: of a patch, and of what pairs of points say.
+constexpr std::size_t bytes_per_patch = 300, bytes_per_edge = 80;
+
+/// Throws Error where so many do not fit. `how`: that they are all, or more than.
+void refuse_large(std::size_t patches, std::size_t edges, std::size_t memory, const char* how) {
+    const std::size_t bytes = patches * bytes_per_patch + edges * bytes_per_edge;
+    if (bytes > memory)
+        throw Error(std::string("telling the sides of normals takes ") + how + " "
+                    + std::to_string(bytes / 1000000)
+                    + " MB, which is held in memory; give --memory that much, or a cloud with normals");
+}
+
 /// The empty space of the whole cloud.
 EmptySpace space_of(const ScratchCloud& cloud, double spacing, std::size_t most) {
     const int depth = depth_of_space(cloud.cube_extent(), spacing);
@@ -88,8 +100,10 @@ EmptySpace space_of(const ScratchCloud& cloud, double spacing, std::size_t most)
 /// Looks at the parts for what tells the sides.
 class EvidencePass {
 public:
-    EvidencePass(const Estimating& how, const EmptySpace& space, double spacing, bool may_be_layers)
-        : how_(how), space_(space), spacing_(spacing), may_be_layers_(may_be_layers) {}
+    /// `memory`: bytes that what is found may take, else it throws Error.
+    EvidencePass(const Estimating& how, const EmptySpace& space, double spacing, bool may_be_layers,
+                 std::size_t memory)
+        : how_(how), space_(space), spacing_(spacing), may_be_layers_(may_be_layers), memory_(memory) {}
 
     SideEvidence evidence;
 
@@ -103,7 +117,8 @@ public:
         };
         const std::size_t begin = leaf_at(part.begin()), end = leaf_at(part.end());
         const Index first = leaves[begin], last = leaves[end];
-        if (!made.known.all(first, last) || !made.known.all_around(first, last)) return false;
+        // Own points before `first` are of a leaf that begins before the range, if it does so in the whole.
+        if (!made.known.all(part.begin(), last) || !made.known.all_around(first, last)) return false;
         const auto patch_at = [&](Index point) {
             return static_cast<Index>(std::ranges::lower_bound(made.first_point, point)
                                       - made.first_point.begin());
@@ -115,7 +130,7 @@ public:
             look_around(part.octree(), level, space_, made.patches, spacing_, first_patch, last_patch);
         for (const Sights& sights : seen)
             for (const Sight& sight : sights)
-                if (sight.patch != no_index && !made.known[made.first_point[sight.patch]]) return false;
+                if (!knows(made, level, sight)) return false;
         std::vector<std::uint8_t> beside(made.patches.size(), 0);
         if (may_be_layers_) {
             beside = sheets_beside(part.octree(), made.neighbors, made.estimate, made.patches);
@@ -126,6 +141,8 @@ public:
             take_patch(made, p, seen[p - first_patch], beside[p]);
         take(made, patch_evidence(part.octree(), made.neighbors, made.estimate, made.patches, begin, end),
              evidence.edges);
+        refuse_large(evidence.patches.size(), evidence.edges.size() + evidence.layers.size(), memory_,
+                     "more than");
         return true;
     }
 
@@ -139,6 +156,16 @@ private:
                 at[k] = static_cast<std::int32_t>(std::floor(patches.centroids[p][k] / h));
             if (!part.has_around(at, space_.depth(), depth_of_sight())) return false;
         }
+        return true;
+    }
+
+    /// Does the patch see the same in the whole? A sheet whose points have no normal here may have one there.
+    static bool knows(const PartNormals& made, const OctreeLevel& level, const Sight& sight) {
+        if (sight.patch != no_index) return made.known[made.first_point[sight.patch]];
+        const Index voxel = sight.region == no_index ? level.find(sight.voxel) : no_index;
+        if (voxel == no_index) return true;
+        for (Index i = level.first_point[voxel]; i < level.first_point[voxel + 1]; ++i)
+            if (made.patches.of_point[i] == no_index && !made.known[i]) return false;
         return true;
     }
 
@@ -158,18 +185,13 @@ private:
     const EmptySpace& space_;
     double spacing_;
     bool may_be_layers_;
+    std::size_t memory_;
 };
-
-/// Bytes that the first rank holds while it tells the sides: of a patch, and of what pairs of points say.
-constexpr std::size_t bytes_per_patch = 300, bytes_per_edge = 80;
 
 /// On the first rank: what all have found. Others are left with nothing.
 SideEvidence gathered(SideEvidence&& own, Ranks& ranks, std::size_t memory) {
-    const std::size_t bytes = ranks.sum(own.patches.size()) * bytes_per_patch
-                              + ranks.sum(own.edges.size() + own.layers.size()) * bytes_per_edge;
-    if (bytes > memory)
-        throw Error("telling the sides of normals takes about " + std::to_string(bytes / 1000000)
-                    + " MB, which is held in memory; give --memory that much, or a cloud with normals");
+    refuse_large(ranks.sum(own.patches.size()), ranks.sum(own.edges.size() + own.layers.size()), memory,
+                 "about");
     if (ranks.size() == 1) return std::move(own);
     std::vector<Ranks::Bytes> out(static_cast<std::size_t>(ranks.size()));
     put_vector(own.patches, out.front());
@@ -193,18 +215,24 @@ struct SignsOfAll {
     OrientReport report;
 
     Index place(Index patch) const {
-        return static_cast<Index>(std::ranges::lower_bound(number, patch) - number.begin());
+        const auto at = std::ranges::lower_bound(number, patch);
+        if (at == number.end() || *at != patch)
+            throw Error(
+                "no part took patch " + std::to_string(patch)
+                + ", a fault of hsdm; reconstruct the cloud in one piece (by hsdm, without --memory)");
+        return static_cast<Index>(at - number.begin());
     }
 };
 
-/// The evidence of all patches as make_normals() has it; leaves `all` without it.
+/// What is of patches, as make_normals() has it.
 struct WholeEvidence {
     Patches patches; ///< without what is of points
     std::vector<Sights> seen;
     std::vector<std::uint8_t> beside;
 };
 
-/// Patches in the order of their numbers, which become their places in it.
+/// The evidence of all patches as make_normals() has it: in the order of their numbers, which become their
+/// places in it. Leaves `all` without what is of patches.
 WholeEvidence whole_evidence(SideEvidence& all, SignsOfAll& result) {
     std::ranges::sort(all.patches, {}, &PatchRow::number);
     WholeEvidence whole;
@@ -335,7 +363,7 @@ SignsOfAll find_signs(ScratchCloud& cloud, const CloudSurvey& survey, std::span<
                       const Estimating& how, const CloudNormalsOptions& options) {
     const EmptySpace space = space_of(cloud, survey.spacing, options.most_points);
     for (bool may_be_layers = false;; may_be_layers = true) {
-        EvidencePass pass(how, space, survey.spacing, may_be_layers);
+        EvidencePass pass(how, space, survey.spacing, may_be_layers, options.memory);
         for_parts(cloud, survey.sums, ranges, [&](const CloudPart& part) { return pass.add(part); });
         if (auto signs =
                 signs_of_all(std::move(pass.evidence), space, may_be_layers, cloud.ranks(), options.memory))

@@ -94,8 +94,10 @@ std::vector<PointRow> find_outliers(ScratchCloud& cloud, const Survey& sums,
         const std::vector<std::uint8_t> found = outliers_by_distance(part.octree(), neighbors, all);
         for (std::size_t i = part.begin(); i < part.end(); ++i)
             if (found[i]) rows.push_back(ScratchCloud::row_at(part.octree(), i));
+        refuse_many_strays(rows.size());
         return true;
     });
+    refuse_many_strays(cloud.ranks().sum(rows.size()));
     std::vector<PointRow> of_all;
     for (const Ranks::Bytes& got : cloud.ranks().gather(bytes_of(rows)))
         append_large(of_all, ByteReader(got).take_rest<PointRow>());
@@ -121,6 +123,7 @@ Occurrences leave_outliers_out(ScratchCloud& cloud, CloudSurvey& survey, const P
         if (some.empty()) break;
         total.add(occurrences(some, cloud));
         append_large(out, some);
+        refuse_many_strays(out.size());
         cloud.leave_out(out);
         const std::size_t left = survey.sums.points() - some.size();
         survey = survey_cloud(cloud, left, most);

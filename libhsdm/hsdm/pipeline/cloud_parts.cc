@@ -1,7 +1,5 @@
 #include "hsdm/pipeline/cloud_parts.hh"
 
-#include "hsdm/pipeline/tile_plan.hh"
-
 #include <algorithm>
 
 namespace hsdm {
@@ -65,6 +63,7 @@ Index CloudPart::number(std::size_t point) const {
 
 void for_parts(ScratchCloud& cloud, const Survey& sums, std::span<const VoxelRange> ranges,
                const std::function<bool(const CloudPart&)>& work) {
+    constexpr int most_cells = 32; // round a part, at any depth; up to 64 lie along the cube
     std::vector<ScratchCloud::Surroundings> due;
     for (const VoxelRange& range : ranges)
         if (cloud.owner_of(range) == cloud.ranks().rank()) due.push_back({range, cloud.cell_side()});
@@ -77,7 +76,8 @@ void for_parts(ScratchCloud& cloud, const Survey& sums, std::span<const VoxelRan
             if (rows.empty()) continue;
             const CloudPart part(cloud, sums, range, rows, std::move(missing));
             if (part.begin() == part.end() || work(part)) continue;
-            if (2 * ghost > most_ghost_voxels) refuse_in_tiles("some points are far from their neighbours");
+            if (2 * ghost > most_cells * cloud.cell_side())
+                refuse_in_tiles("what some points depend on is farther off than tiles see");
             again.push_back({range, 2 * ghost});
         }
         due = std::move(again);

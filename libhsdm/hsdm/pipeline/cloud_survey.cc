@@ -31,7 +31,7 @@ CloudSurvey survey_cloud(const ScratchCloud& cloud, std::size_t expected, std::s
     return {std::move(sums), spacing};
 }
 
-void check_places(const CloudSurvey& survey, const ScratchCloud& cloud) {
+void refuse_unfit_places(const CloudSurvey& survey, const ScratchCloud& cloud) {
     const Survey& sums = survey.sums;
     if (spans_no_surface(sums.places(), cloud.cube_extent()))
         refuse_in_tiles("too few points, or all on a line");
@@ -39,7 +39,7 @@ void check_places(const CloudSurvey& survey, const ScratchCloud& cloud) {
         refuse_in_tiles("some points, or parts, are far from all others");
 }
 
-void check_normals(const CloudSurvey& survey) {
+void refuse_unfit_normals(const CloudSurvey& survey) {
     const Survey& sums = survey.sums;
     if (are_scattered(sums.normals(), sums.points()))
         refuse_in_tiles("normals are noisy, and may have to be told by the positions");

@@ -16,9 +16,9 @@ struct CloudSurvey {
 CloudSurvey survey_cloud(const ScratchCloud& cloud, std::size_t expected, std::size_t most_points);
 
 /// Throws Error for a cloud of which PreparedCloud would move or drop points by what all of them are.
-void check_places(const CloudSurvey& survey, const ScratchCloud& cloud);
+void refuse_unfit_places(const CloudSurvey& survey, const ScratchCloud& cloud);
 /// The same where it would turn normals.
-void check_normals(const CloudSurvey& survey);
+void refuse_unfit_normals(const CloudSurvey& survey);
 
 /// Is the noise perhaps not small against the spacing?
 bool is_rough(const CloudSurvey& survey);

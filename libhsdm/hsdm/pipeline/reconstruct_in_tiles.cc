@@ -145,8 +145,8 @@ public:
                                       // has
         phases_.run("survey", 0.1, report_.seconds.normals, [&] {
             survey_.emplace(survey_cloud(*cloud_, cloud_->extent().finite(), group));
-            check_places(*survey_, *cloud_);
-            if (!estimates_) check_normals(*survey_);
+            refuse_unfit_places(*survey_, *cloud_);
+            if (!estimates_) refuse_unfit_normals(*survey_);
         });
         duplicates_ = cloud_->extent().finite() - survey_->sums.points();
         if (estimates_)
@@ -180,7 +180,8 @@ private:
     void check_normals_of(const CloudExtent& extent) const {
         if (!estimates_) return;
         if (options_.normals == NormalSource::given)
-            throw Error("normals given were asked for, but the cloud has none");
+            throw Error("normals given were asked for, but the cloud has none; use --normals auto or "
+                        "estimate");
         if (extent.has_scanners)
             refuse_in_tiles("scanners are known, and normals would have to be turned towards them");
     }

@@ -10,11 +10,11 @@ namespace {
 
 constexpr std::size_t most_strays = std::size_t{1} << 20; // that are kept in memory
 
-[[noreturn]] void refuse_many_strays() {
-    refuse_in_tiles("many points are off every surface");
-}
-
 } // namespace
+
+void refuse_many_strays(std::size_t count) {
+    if (count > most_strays) refuse_in_tiles("many points are off every surface");
+}
 
 bool fit_to_points_left(ScratchCloud& cloud, std::size_t most) {
     const Box left = cloud.box_of_points(most);
@@ -37,13 +37,13 @@ std::vector<double> StraySearch::look(const Octree& octree, const VoxelRange&) {
 void StraySearch::take(const Octree& octree, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
         if (found_[i]) strays_.push_back(ScratchCloud::row_at(octree, i));
-    if (strays_.size() > most_strays) refuse_many_strays();
+    refuse_many_strays(strays_.size());
 }
 
 StraySearch::Result StraySearch::leave_out(ScratchCloud& cloud, CloudSurvey& survey, std::size_t most) {
     Ranks& ranks = cloud.ranks();
     add_far_cells(cloud);
-    if (ranks.sum(strays_.size()) > most_strays) refuse_many_strays();
+    refuse_many_strays(ranks.sum(strays_.size()));
     std::vector<PointRow> all;
     for (const Ranks::Bytes& got : ranks.gather(bytes_of(strays_)))
         append_large(all, ByteReader(got).take_rest<PointRow>());

@@ -6,6 +6,9 @@
 
 namespace hsdm {
 
+/// Throws Error where so many points of no surface are more than are kept in memory.
+void refuse_many_strays(std::size_t count);
+
 /// Looks through tiles for points that are of no surface.
 class StraySearch final : public CellPass {
 public:
