@@ -80,7 +80,7 @@ void refuse_large(std::size_t patches, std::size_t edges, std::size_t memory, co
     const std::size_t bytes = patches * bytes_per_patch + edges * bytes_per_edge;
     if (bytes > memory)
         throw Error(std::string("telling the sides of normals takes ") + how + " "
-                    + std::to_string(bytes / 1000000)
+                    + std::to_string((bytes + 999999) / 1000000)
                     + " MB, which is held in memory; give --memory that much, or a cloud with normals");
 }
 
