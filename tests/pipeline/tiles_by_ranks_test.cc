@@ -1,13 +1,13 @@
 #include "hsdm/errors.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/pipeline/reconstruct_in_tiles.hh"
+#include "support/check.hh"
 #include "support/rank_threads.hh"
 #include "support/sample.hh"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
-#include <cstring>
 
 using namespace hsdm;
 
@@ -17,18 +17,6 @@ PointCloud bored_box() {
     return support::sample(support::box({1, 0.7, 0.4}) - support::cylinder(0.15, 2), {.points = 20000});
 }
 
-/// This rank's part of the points: every so-manieth, so that all of space has some of all.
-PointParts part_of(const PointCloud& cloud, const Ranks& ranks) {
-    return [&cloud, rank = ranks.rank(), size = ranks.size()](const auto& visit) {
-        PointCloud part;
-        for (auto i = static_cast<std::size_t>(rank); i < cloud.size(); i += static_cast<std::size_t>(size)) {
-            part.positions.push_back(cloud.positions[i]);
-            part.normals.push_back(cloud.normals[i]);
-        }
-        visit(view_of(part));
-    };
-}
-
 TileOptions small_tiles() {
     TileOptions tiles;
     tiles.memory = std::size_t{1} << 30;
@@ -36,15 +24,10 @@ TileOptions small_tiles() {
     return tiles;
 }
 
-template <class T>
-bool have_same_bits(const std::vector<T>& a, const std::vector<T>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
-
 void check_same_by_ranks(const Reconstruction& whole, const Reconstruction& by_ranks) {
     const PolygonMesh a = to_polygons(whole.mesh), b = to_polygons(by_ranks.mesh);
     CHECK(a.facet_count() > 0);
-    CHECK(have_same_bits(a.positions, b.positions));
+    CHECK(support::are_same_bits(a.positions, b.positions));
     CHECK(a.corners == b.corners);
     CHECK(a.first == b.first);
     CHECK(a.sharp_edges == b.sharp_edges);
@@ -66,8 +49,8 @@ std::vector<std::string> run_on(int count, const PointCloud& cloud, const TileOp
                                 std::optional<int> depth = 6) {
     return support::run_ranks(count, [&](Ranks& ranks) {
         TileReport own;
-        Reconstruction made =
-            reconstruct_in_tiles(part_of(cloud, ranks), {.depth = depth, .threads = 2}, tiles, ranks, &own);
+        Reconstruction made = reconstruct_in_tiles(support::share_of(cloud, ranks),
+                                                   {.depth = depth, .threads = 2}, tiles, ranks, &own);
         if (!ranks.is_first()) return;
         result.emplace(std::move(made));
         how = std::move(own);
@@ -175,7 +158,7 @@ TEST_CASE("what one rank cannot read no rank waits for", "[pipeline]") {
         int pass = 0;
         const PointParts parts = [&](const auto& visit) {
             if (++pass == failing_pass && ranks.rank() == 2) throw Error("scan.ply: cannot be read");
-            part_of(cloud, ranks)(visit);
+            support::share_of(cloud, ranks)(visit);
         };
         reconstruct_in_tiles(parts, {.depth = 6, .threads = 1}, small_tiles(), ranks);
     });

@@ -2,6 +2,7 @@
 #include "hsdm/io/points_in_parts.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/pipeline/reconstruct_in_tiles.hh"
+#include "support/check.hh"
 #include "support/folder.hh"
 #include "support/random.hh"
 #include "support/sample.hh"
@@ -40,20 +41,15 @@ PointCloud part_with_a_flake() {
     return cloud;
 }
 
-template <class T>
-bool are_same_bits(const std::vector<T>& a, const std::vector<T>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
-
 void check_same_as_whole(const Reconstruction& whole, const Reconstruction& tiles) {
     const PolygonMesh a = to_polygons(whole.mesh), b = to_polygons(tiles.mesh);
-    CHECK(are_same_bits(a.positions, b.positions));
+    CHECK(support::are_same_bits(a.positions, b.positions));
     CHECK(a.corners == b.corners);
     CHECK(a.first == b.first);
     CHECK(a.sharp_edges == b.sharp_edges);
     REQUIRE(a.properties.size() == b.properties.size());
     for (std::size_t i = 0; i < a.properties.size(); ++i)
-        CHECK(are_same_bits(a.properties[i].values, b.properties[i].values));
+        CHECK(support::are_same_bits(a.properties[i].values, b.properties[i].values));
     const Report &one = whole.report, &other = tiles.report;
     CHECK(one.error.points_to_mesh_max == other.error.points_to_mesh_max);
     CHECK(one.error.points_to_mesh_mean == other.error.points_to_mesh_mean);

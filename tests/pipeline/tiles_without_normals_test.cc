@@ -1,28 +1,23 @@
 #include "hsdm/errors.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/pipeline/reconstruct_in_tiles.hh"
+#include "support/check.hh"
 #include "support/random.hh"
 #include "support/rank_threads.hh"
 #include "support/sample.hh"
 
 #include <catch2/catch.hpp>
 
-#include <cstring>
 #include <optional>
 
 using namespace hsdm;
 
 namespace {
 
-template <class T>
-bool are_equal_bits(const std::vector<T>& a, const std::vector<T>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
-
 void check_as_one_piece(const Reconstruction& whole, const Reconstruction& tiles) {
     const PolygonMesh a = to_polygons(whole.mesh), b = to_polygons(tiles.mesh);
     CHECK(a.facet_count() > 100);
-    CHECK(are_equal_bits(a.positions, b.positions));
+    CHECK(support::are_same_bits(a.positions, b.positions));
     CHECK(a.corners == b.corners);
     CHECK(a.first == b.first);
     CHECK(a.sharp_edges == b.sharp_edges);
@@ -57,16 +52,6 @@ support::Solid solid_for_tiles(int which) {
     if (which == 1) return support::in_general_pose(support::box({1, 0.8, 0.06}));
     if (which == 2) return support::torus(1, 0.35);
     return support::random_solid(static_cast<std::uint64_t>(which));
-}
-
-/// This rank's part of the points: every so-manieth.
-PointParts share_of(const PointCloud& cloud, const Ranks& ranks) {
-    return [&cloud, rank = ranks.rank(), size = ranks.size()](const auto& visit) {
-        PointCloud part;
-        for (auto i = static_cast<std::size_t>(rank); i < cloud.size(); i += static_cast<std::size_t>(size))
-            part.positions.push_back(cloud.positions[i]);
-        visit(view_of(part));
-    };
 }
 
 } // namespace
@@ -119,7 +104,7 @@ TEST_CASE("several ranks do a cloud without normals to the bits of one piece", "
         std::optional<Reconstruction> result;
         const auto failures = support::run_ranks(count, [&](Ranks& ranks) {
             Reconstruction made =
-                reconstruct_in_tiles(share_of(cloud, ranks), options, tiles_with(5000), ranks);
+                reconstruct_in_tiles(support::share_of(cloud, ranks), options, tiles_with(5000), ranks);
             if (ranks.is_first()) result.emplace(std::move(made));
         });
         for (const std::string& failure : failures) CHECK(failure.empty());

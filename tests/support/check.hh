@@ -5,13 +5,21 @@
 #include "hsdm/quality/topology.hh"
 #include "support/solid.hh"
 
+#include <cstring>
 #include <string>
+#include <vector>
 
 namespace hsdm::support {
 
 /// Empty if the mesh is a consistently oriented 2-manifold (possibly with boundary) without degenerate or
 /// duplicate facets and isolated vertices, outward if closed; otherwise what is wrong with it.
 std::string faults(const PolygonMesh& mesh);
+
+/// Bit for bit, so that -0 is not 0.
+template <class T>
+bool are_same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
 
 /// The largest distance of a vertex from the solid's boundary.
 double farthest_vertex(const PolygonMesh& mesh, const Solid& solid);

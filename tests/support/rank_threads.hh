@@ -2,6 +2,7 @@
 // Ranks as threads of one process, for tests.
 
 #include "hsdm/core/ranks.hh"
+#include "hsdm/pipeline/reconstruct_in_tiles.hh"
 
 namespace hsdm::support {
 
@@ -11,5 +12,8 @@ std::vector<std::string> run_ranks(int count, const std::function<void(Ranks&)>&
 
 /// The same without together().
 std::vector<std::string> run_ranks_apart(int count, const std::function<void(Ranks&)>& work);
+
+/// A rank's part of the points: every so-manieth, so that all of space has some of all.
+PointParts share_of(const PointCloud& cloud, const Ranks& ranks);
 
 } // namespace hsdm::support

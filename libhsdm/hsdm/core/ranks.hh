@@ -141,6 +141,18 @@ private:
     std::size_t at_ = 0;
 };
 
+/// The values of all ranks, one rank's after the other's; of simple types.
+template <class T>
+std::vector<T> values_of_all(Ranks& ranks, const std::vector<T>& own) {
+    if (ranks.size() == 1) return own;
+    std::vector<T> all;
+    for (const Ranks::Bytes& got : ranks.gather(bytes_of(own))) {
+        const std::vector<T> values = ByteReader(got).take_rest<T>();
+        all.insert(all.end(), values.begin(), values.end());
+    }
+    return all;
+}
+
 template <class T>
 void put(const T& value, Ranks::Bytes& bytes) {
     append_bytes(std::span<const T>(&value, 1), bytes);

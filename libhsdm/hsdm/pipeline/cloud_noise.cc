@@ -64,9 +64,7 @@ CloudNoise cloud_noise(ScratchCloud& cloud, const CloudSurvey& survey, std::span
     cloud.for_tiles(ranges, ghost,
                     [&](const Octree& octree, const VoxelRange& range) { pass.add(octree, range, ghost); });
     pass.add_far_cells(cloud);
-    std::vector<NoiseSample> all;
-    for (const Ranks::Bytes& got : cloud.ranks().gather(bytes_of(pass.samples())))
-        append_large(all, ByteReader(got).take_rest<NoiseSample>());
+    const std::vector<NoiseSample> all = values_of_all(cloud.ranks(), pass.samples());
     const std::optional<double> deviation = noise_deviation(all);
     if (!deviation) refuse_in_tiles("the noise is wider than neighbours are apart");
     return {*deviation, estimate_noise(all)};

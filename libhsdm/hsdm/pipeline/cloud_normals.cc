@@ -3,7 +3,6 @@
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/normals/arcs.hh"
-#include "hsdm/normals/known_points.hh"
 #include "hsdm/normals/noise.hh"
 #include "hsdm/normals/vote_on_normals.hh"
 #include "hsdm/pipeline/cloud_noise.hh"
@@ -29,8 +28,7 @@ public:
         : part_(part),
           neighbors(find_neighbors(part.octree(), how.neighbors)),
           estimate(estimate_normals(part.octree(), neighbors, how.estimate)),
-          known(part.octree(), neighbors,
-                [&](const VoxelCoord& voxel, int level) { return part.has_around(voxel, level); }),
+          known(part.known_by(neighbors)),
           patches(build_patches(part.octree(), neighbors, estimate)) {
         known.step();                                       // what is bent hangs on how far neighbours spread
         known.step(estimate.bent, 2 * how.estimate.rounds); // as estimate_normals() renews them
@@ -51,11 +49,6 @@ public:
     Patches patches;
     std::vector<Index> first_point; ///< per patch
 };
-
-/// A part with too few points for as many neighbours as the whole has.
-bool are_few(const CloudPart& part, const Estimating& how) {
-    return !part.is_whole() && part.octree().size() <= static_cast<std::size_t>(how.neighbors.count);
-}
 
 /// A patch of the whole, by the numbers that patches have there.
 struct PatchRow {
@@ -90,9 +83,7 @@ EmptySpace space_of(const ScratchCloud& cloud, double spacing, std::size_t most)
     std::vector<MortonCode> codes;
     cloud.for_groups(most,
                      [&](const Octree& part) { append_large(codes, extract_level(part, depth).codes); });
-    std::vector<MortonCode> all;
-    for (const Ranks::Bytes& got : cloud.ranks().gather(bytes_of(codes)))
-        append_large(all, ByteReader(got).take_rest<MortonCode>());
+    std::vector<MortonCode> all = values_of_all(cloud.ranks(), codes);
     sort_unique(all);
     return EmptySpace(all, depth);
 }
@@ -109,7 +100,7 @@ public:
 
     /// Returns false, and takes nothing, if not all is known.
     bool add(const CloudPart& part) {
-        if (are_few(part, how_)) return false;
+        if (part.lacks_neighbors(how_.neighbors.count)) return false;
         const PartNormals made(part, how_);
         const std::vector<Index>& leaves = made.neighbors.leaf_first; // its own begin with its own points
         const auto leaf_at = [&](std::size_t point) {
@@ -303,7 +294,7 @@ public:
 
     /// Returns false, and takes nothing, if not all is known.
     bool add(const CloudPart& part) {
-        if (are_few(part, how_)) return false;
+        if (part.lacks_neighbors(how_.neighbors.count)) return false;
         PartNormals made(part, how_);
         EstimatedNormals& estimate = made.estimate;
         std::vector<std::int8_t> sign(made.patches.size(), 1); // of patches that are not known

@@ -1,7 +1,6 @@
 #include "hsdm/pipeline/cloud_outliers.hh"
 
 #include "hsdm/core/large_vector.hh"
-#include "hsdm/normals/known_points.hh"
 #include "hsdm/pipeline/cloud_parts.hh"
 #include "hsdm/pipeline/stray_search.hh"
 
@@ -19,14 +18,8 @@ struct PartNeighbors {
 
     PartNeighbors(const CloudPart& part, int finest)
         : neighbors(find_neighbors(part.octree(), {.finest_level = finest})),
-          known(part.octree(), neighbors,
-                [&](const VoxelCoord& voxel, int level) { return part.has_around(voxel, level); }) {}
+          known(part.known_by(neighbors)) {}
 };
-
-/// Too few points for as many neighbours as the whole has.
-bool are_few(const CloudPart& part) {
-    return !part.is_whole() && part.octree().size() <= static_cast<std::size_t>(NeighborOptions().count);
-}
 
 std::vector<std::uint64_t> sum_of_each(const std::vector<std::uint64_t>& own, Ranks& ranks) {
     std::vector<std::uint64_t> all(own.size(), 0);
@@ -66,7 +59,7 @@ ReachOfAll reach_of_all(ScratchCloud& cloud, const Survey& sums, std::span<const
     const std::size_t step = volume_stride(sums.points());
     const int finest = sums.finest_leaves();
     for_parts(cloud, sums, ranges, [&](const CloudPart& part) {
-        if (are_few(part)) return false;
+        if (part.lacks_neighbors(NeighborOptions().count)) return false;
         const auto [neighbors, known] = PartNeighbors(part, finest);
         if (!known.all(part.begin(), part.end())) return false;
         for (std::size_t i = part.begin(); i < part.end(); ++i) {
@@ -88,7 +81,7 @@ std::vector<PointRow> find_outliers(ScratchCloud& cloud, const Survey& sums,
     const int finest = sums.finest_leaves();
     std::vector<PointRow> rows;
     for_parts(cloud, sums, ranges, [&](const CloudPart& part) {
-        if (are_few(part)) return false;
+        if (part.lacks_neighbors(NeighborOptions().count)) return false;
         auto [neighbors, known] = PartNeighbors(part, finest);
         if (!known.all(part.begin(), part.end()) || !known.all_around(part.begin(), part.end())) return false;
         const std::vector<std::uint8_t> found = outliers_by_distance(part.octree(), neighbors, all);
@@ -98,10 +91,7 @@ std::vector<PointRow> find_outliers(ScratchCloud& cloud, const Survey& sums,
         return true;
     });
     refuse_many_strays(cloud.ranks().sum(rows.size()));
-    std::vector<PointRow> of_all;
-    for (const Ranks::Bytes& got : cloud.ranks().gather(bytes_of(rows)))
-        append_large(of_all, ByteReader(got).take_rest<PointRow>());
-    return of_all;
+    return values_of_all(cloud.ranks(), rows);
 }
 
 Occurrences occurrences(const std::vector<PointRow>& rows, const ScratchCloud& cloud) {

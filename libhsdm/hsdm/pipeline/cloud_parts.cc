@@ -4,8 +4,9 @@
 
 namespace hsdm {
 
-CloudPart::CloudPart(const ScratchCloud& cloud, const Survey& sums, const VoxelRange& range,
-                     const std::vector<PointRow>& rows, std::vector<MortonCode> missing)
+CloudPart::CloudPart(const ScratchCloud& cloud, std::span<const Survey::FirstPoint> first,
+                     const VoxelRange& range, const std::vector<PointRow>& rows,
+                     std::vector<MortonCode> missing)
     : octree_(cloud.octree_of(rows)), cell_depth_(cloud.cell_depth()), missing_(std::move(missing)) {
     const int shift = 3 * (morton_levels - cloud.depth());
     const auto first_of = [&](MortonCode code) {
@@ -13,7 +14,6 @@ CloudPart::CloudPart(const ScratchCloud& cloud, const Survey& sums, const VoxelR
                                         - octree_.codes.begin());
     };
     begin_ = first_of(range.begin), end_ = first_of(range.end);
-    const std::vector<Survey::FirstPoint> first = sums.first_points();
     const int to_cell = 3 * (morton_levels - cell_depth_);
     for (std::size_t i = 0; i < octree_.size(); ++i) {
         const MortonCode cell = octree_.codes[i] >> to_cell;
@@ -64,6 +64,7 @@ Index CloudPart::number(std::size_t point) const {
 void for_parts(ScratchCloud& cloud, const Survey& sums, std::span<const VoxelRange> ranges,
                const std::function<bool(const CloudPart&)>& work) {
     constexpr int most_cells = 32; // round a part, at any depth; up to 64 lie along the cube
+    const std::vector<Survey::FirstPoint> first = sums.first_points();
     std::vector<ScratchCloud::Surroundings> due;
     for (const VoxelRange& range : ranges)
         if (cloud.owner_of(range) == cloud.ranks().rank()) due.push_back({range, cloud.cell_side()});
@@ -74,7 +75,7 @@ void for_parts(ScratchCloud& cloud, const Survey& sums, std::span<const VoxelRan
             std::vector<MortonCode> missing;
             const std::vector<PointRow> rows = cloud.rows_of_cells(range, ghost, missing);
             if (rows.empty()) continue;
-            const CloudPart part(cloud, sums, range, rows, std::move(missing));
+            const CloudPart part(cloud, first, range, rows, std::move(missing));
             if (part.begin() == part.end() || work(part)) continue;
             if (2 * ghost > most_cells * cloud.cell_side())
                 refuse_in_tiles("what some points depend on is farther off than tiles see");

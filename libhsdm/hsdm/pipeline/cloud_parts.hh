@@ -1,6 +1,7 @@
 #pragma once
 // Parts of a cloud on disk, each with as much around it as it takes to know all that is asked of it.
 
+#include "hsdm/normals/known_points.hh"
 #include "hsdm/pipeline/cloud_survey.hh"
 
 namespace hsdm {
@@ -8,14 +9,23 @@ namespace hsdm {
 /// Whole cells of a cloud.
 class CloudPart {
 public:
-    /// `missing`: cells with points that it has not, ascending.
-    CloudPart(const ScratchCloud& cloud, const Survey& sums, const VoxelRange& range,
+    /// `first`: of the whole. `missing`: cells with points that it has not, ascending.
+    CloudPart(const ScratchCloud& cloud, std::span<const Survey::FirstPoint> first, const VoxelRange& range,
               const std::vector<PointRow>& rows, std::vector<MortonCode> missing);
 
     const Octree& octree() const { return octree_; }
     std::size_t begin() const { return begin_; } ///< of its own points, those of the range
     std::size_t end() const { return end_; }
     bool is_whole() const { return missing_.empty(); } ///< has it all cells?
+    /// Too few points for as many neighbours as the whole has?
+    bool lacks_neighbors(int count) const {
+        return !is_whole() && octree_.size() <= static_cast<std::size_t>(count);
+    }
+    /// Of which of its points these neighbours are those of the whole.
+    KnownPoints known_by(const Neighbors& neighbors) const {
+        return {octree_, neighbors,
+                [this](const VoxelCoord& voxel, int level) { return has_around(voxel, level); }};
+    }
     /// Has it all points of the voxels from `lo` to `hi` of a level?
     bool has(const VoxelCoord& lo, const VoxelCoord& hi, int level) const;
     bool has_around(const VoxelCoord& voxel, int level, int reach = 1) const;
