@@ -44,7 +44,7 @@ StraySearch::Result StraySearch::leave_out(ScratchCloud& cloud, CloudSurvey& sur
     Ranks& ranks = cloud.ranks();
     add_far_cells(cloud);
     refuse_many_strays(ranks.sum(strays_.size()));
-    const std::vector<PointRow> all = values_of_all(ranks, strays_);
+    std::vector<PointRow> all = values_of_all(ranks, strays_);
     strays_ = {};
     if (all.empty()) return {};
     const auto place = [](const PointRow& row) { return Vec3(row[0], row[1], row[2]); };
