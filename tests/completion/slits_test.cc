@@ -1,6 +1,7 @@
 #include "hsdm/completion/slits.hh"
 #include "hsdm/mesh/remove_facets.hh"
 #include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/mesh/weld.hh"
 #include "hsdm/reconstruct.hh"
 #include "hsdm/spatial/self_intersections.hh"
 #include "support/check.hh"
@@ -25,6 +26,21 @@ PolygonMesh sheet_without(Index columns, Index rows, const Gone& gone) {
         return gone(static_cast<Index>(f % columns), static_cast<Index>(f / columns));
     });
     return mesh;
+}
+
+/// With one vertex at each place, and no facet that has it twice in a row.
+PolygonMesh welded(const PolygonMesh& mesh) {
+    const std::vector<Index> first = weld(mesh.positions);
+    PolygonMesh result;
+    result.positions = mesh.positions;
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+        std::vector<Index> corners;
+        for (Index v : mesh.facet(f))
+            if (corners.empty() || (first[v] != corners.back() && first[v] != corners.front()))
+                corners.push_back(first[v]);
+        result.add_facet(corners);
+    }
+    return result;
 }
 
 BoundaryLoops slits_of(const PolygonMesh& mesh, double width) {
@@ -69,6 +85,30 @@ TEST_CASE("the end of a narrow pipe is no slit, the open edge of a blade is one"
     const BoundaryLoops slits = slits_of(bag, 4);
     REQUIRE(slits.size() == 1);
     for (Index v : slits[0]) CHECK(bag.positions[v][2] == 4);
+}
+
+TEST_CASE("a short gap in a lip is a slit, the end of a flat pipe as long is none", "[completion]") {
+    // A bag, whose sides meet at the top but for eight units, where they are two apart; and a pipe of 8 by 2.
+    const auto along = [](Index c) { return c < 30 ? c : 59 - c; };
+    const auto is_open = [&](Index c) { return along(c) > 10 && along(c) < 20; };
+    PolygonMesh bag = quad_tube(60, 4, [&](Index c, Index r) {
+        const double side = r < 4 || is_open(c) ? 1 : 0;
+        return Vec3(along(c), c < 30 ? side : -side, r);
+    });
+    bag = welded(bag);
+    std::vector<Index> bottom(60);
+    for (Index c = 0; c < 60; ++c) bottom[c] = 59 - c;
+    bag.add_facet(bottom);
+    const BoundaryLoops gaps = slits_of(bag, 7);
+    REQUIRE(gaps.size() == 1);
+    CHECK(gaps[0].size() == 20);
+    const PolygonMesh pipe = quad_tube(20, 8, [](Index c, Index r) {
+        const double along = c < 9 ? c : c < 11 ? 8 : c < 19 ? 18 - c : 0;
+        const double across = c < 8 ? 0 : c < 10 ? c - 8 : c < 18 ? 2 : 20 - c;
+        return Vec3(along, across, r);
+    });
+    REQUIRE(boundary_loops(pipe).size() == 2);
+    CHECK(slits_of(pipe, 7).size() == 0);
 }
 
 TEST_CASE("a long slit along a round sheet is closed along its curve", "[completion]") {

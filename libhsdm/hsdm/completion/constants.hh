@@ -85,9 +85,10 @@ inline constexpr double margin = 2;
 // slits.hh
 namespace hsdm::slits {
 
-/// squared length over twice the area of a loop that is a slit, at least.
-/// Why: a rectangle six times as long as wide has 16.3, a square 8: the ends of narrow pipes are borders.
-inline constexpr double least_slenderness = 16;
+/// ratio: of the sides of a rectangle that a loop is as slender as, or whose longer sides face as much one way
+/// and back, to be a slit, at least.
+/// Why: the ends of narrow pipes are borders, and few pipes are that flat.
+inline constexpr double least_ratio = 6;
 
 /// edges: longer loops are no slits.
 /// Why: what closes them is found in the square of their length; bounds it to a second.

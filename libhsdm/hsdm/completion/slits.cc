@@ -6,6 +6,7 @@
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/split_polygon.hh"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -29,6 +30,7 @@ std::vector<Vec3> normals_beside(const PolygonMesh& mesh, std::span<const Index>
 /// Sums over what closes a loop.
 struct Closing {
     double area = 0, length = 0, agreeing = 0;
+    Eigen::Matrix3d facing = Eigen::Matrix3d::Zero(); ///< squares of the normals beside, by length
 
     Closing(const PolygonMesh& mesh, std::span<const Index> loop, std::span<const Vec3> beside,
             const Pieces& triangles) {
@@ -45,15 +47,32 @@ struct Closing {
                     std::lower_bound(places.begin(), places.end(), std::pair(from, std::size_t{0}))->second;
                 if (loop[next(i)] != to) continue;
                 const double side = (mesh.positions[to] - mesh.positions[from]).norm();
+                const Eigen::Vector3d normal{beside[i][0], beside[i][1], beside[i][2]};
                 length += side;
                 agreeing += side * (unit(twice) | beside[i]);
+                facing += side * normal * normal.transpose();
             }
         }
     }
 
+    /// As long and narrow as a rectangle of that ratio.
+    bool is_slender() const {
+        const double perimeter = 2 * (slits::least_ratio + 1);
+        return length * length * slits::least_ratio >= perimeter * perimeter * area;
+    }
+
+    /// Between two sheets that face apart, not round the end of a pipe: of the sides of a rectangle of that
+    /// ratio as many face one way or back.
+    bool is_lip() const {
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
+        eigen.computeDirect(facing, Eigen::EigenvaluesOnly);
+        return agreeing < angles::facing * length
+               && eigen.eigenvalues()[2] * (slits::least_ratio + 1) >= slits::least_ratio * length;
+    }
+
     bool is_slit(double widest) const {
-        return 4 * area <= widest * length && length * length >= slits::least_slenderness * 2 * area
-               && agreeing > angles::opposed * length;
+        return 4 * area <= widest * length && agreeing > angles::opposed * length
+               && (is_slender() || is_lip());
     }
 };
 

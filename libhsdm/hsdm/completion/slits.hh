@@ -14,9 +14,9 @@ struct Slits {
 };
 
 /// The loops that enclose a slit: of no more area to their length than a round hole `widest` across has,
-/// slender, and not closed by going back over the mesh, as the outline of a ribbon would be. Loops of more
-/// than 4,096 edges are none. O(length of loop ^ 3) each up to 128 edges, ^ 2 beyond, but for those that
-/// enclose too much at first sight; parallel.
+/// slender or between two sheets that face apart, and not closed by going back over the mesh, as the outline
+/// of a ribbon would be. Loops of more than 4,096 edges are none. O(length of loop ^ 3) each up to 128 edges,
+/// ^ 2 beyond, but for those that enclose too much at first sight; parallel.
 Slits find_slits(const PolygonMesh& mesh, const BoundaryLoops& loops, double widest);
 
 /// Points of what closes slits, nine to a squared voxel and more, with its normals.
