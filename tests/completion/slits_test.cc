@@ -103,9 +103,9 @@ TEST_CASE("a short gap in a lip is a slit, the end of a flat pipe as long is non
     REQUIRE(gaps.size() == 1);
     CHECK(gaps[0].size() == 20);
     const PolygonMesh pipe = quad_tube(20, 8, [](Index c, Index r) {
-        const double along = c < 9 ? c : c < 11 ? 8 : c < 19 ? 18 - c : 0;
+        const double x = c < 9 ? c : c < 11 ? 8 : c < 19 ? 18 - c : 0;
         const double across = c < 8 ? 0 : c < 10 ? c - 8 : c < 18 ? 2 : 20 - c;
-        return Vec3(along, across, r);
+        return Vec3(x, across, r);
     });
     REQUIRE(boundary_loops(pipe).size() == 2);
     CHECK(slits_of(pipe, 7).size() == 0);
