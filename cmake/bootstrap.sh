@@ -24,11 +24,12 @@ cd "$(dirname "$0")/.."
 packages="g++ cmake ninja-build libopenmesh-dev libeigen3-dev libflann-dev libtbb-dev libfast-float-dev
     libboost-dev nlohmann-json3-dev libzip-dev libcli11-dev libpng-dev libjs-three catch2"
 python="pybind11-dev python3-dev python3-numpy"
+tests="$python python3-pytest python3-meshio mypy libopenmpi-dev openmpi-bin"
 case $goal in
 python) packages="$packages $python python3-skbuild python3-venv" ;;
-test) packages="$packages $python python3-pytest python3-meshio mypy libopenmpi-dev openmpi-bin" ;;
+test) packages="$packages $tests" ;;
 demo) packages="$packages f3d xvfb xauth" ;;
-tools) packages="$packages clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 llvm-14 doxygen git
+tools) packages="$packages $tests clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 llvm-14 doxygen git
     python3 libbenchmark-dev lintian zsh fish man-db libxml2-utils
     python3-numpy python3-ezdxf assimp-utils lib3mf1 chromium blender xvfb xauth" ;; # these for tests
 esac
