@@ -1,5 +1,5 @@
 #pragma once
-// Bytes on disk that are read again, in a file without a name.
+// Bytes on disk that are read again, in a file without a name, or in one that another process may go on with.
 
 #include <cstddef>
 #include <string>
@@ -8,12 +8,18 @@
 
 namespace hsdm {
 
-/// Nothing is left of the file, however the process ends. Not for several threads.
+/// Where scratch goes.
+struct ScratchPlace {
+    std::string folder{};   ///< empty: that for temporary files (TMPDIR, else /tmp)
+    std::string name{};     ///< of the file, which stays; empty: it has none, and nothing is left of it
+    std::size_t is_there{}; ///< so many bytes of that file, from the first on, hold what they should
+};
+
+/// Without a name nothing is left of the file, however the process ends. Not for several threads.
 class ScratchBytes {
 public:
-    /// `folder`: where the file is made; empty: that for temporary files (TMPDIR, else /tmp). Throws Error if
-    /// it cannot be made.
-    explicit ScratchBytes(const std::string& folder);
+    /// Throws Error if the file cannot be made, or opened where it is there.
+    explicit ScratchBytes(const ScratchPlace& place);
     ~ScratchBytes();
     ScratchBytes(const ScratchBytes&) = delete;
     ScratchBytes& operator=(const ScratchBytes&) = delete;
@@ -40,8 +46,12 @@ public:
     }
 
     std::size_t size() const { return size_; } ///< written so far
+    /// Returns once the disk has all. Throws Error if that fails.
+    void flush_to_disk() const;
 
 private:
+    void open(const std::string& path, std::size_t is_there);
+
     std::string folder_;
     int file_ = -1;
     std::size_t size_ = 0;

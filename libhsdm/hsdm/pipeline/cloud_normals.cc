@@ -362,20 +362,57 @@ SignsOfAll find_signs(ScratchCloud& cloud, const CloudSurvey& survey, std::span<
     }
 }
 
+/// What has been done before the normals are made.
+struct Begun {
+    bool is_sided = false;
+    NormalsReport report;
+    Estimating how;
+    SignsOfAll signs; ///< if it is
+};
+
+Ranks::Bytes bytes_of_begun(const Begun& begun) {
+    Ranks::Bytes bytes;
+    put(begun.is_sided, bytes), put(begun.report, bytes), put(begun.how, bytes);
+    put_vector(begun.signs.number, bytes), put_vector(begun.signs.sign, bytes);
+    put(begun.signs.report, bytes);
+    return bytes;
+}
+
+Begun begun_from(const Ranks::Bytes& bytes) {
+    ByteReader reader(bytes);
+    Begun begun;
+    begun.is_sided = reader.take<bool>();
+    begun.report = reader.take<NormalsReport>(), begun.how = reader.take<Estimating>();
+    begun.signs.number = reader.take_vector<Index>(), begun.signs.sign = reader.take_vector<std::int8_t>();
+    begun.signs.report = reader.take<OrientReport>();
+    return begun;
+}
+
 } // namespace
 
 NormalsReport make_cloud_normals(ScratchCloud& cloud, CloudSurvey& survey,
                                  const CloudNormalsOptions& options) {
-    NormalsReport report;
-    report.outliers = leave_outliers_out(cloud, survey, options.plan, options.most_points);
-    const Estimating how = estimating(cloud, survey, options);
-    report.noise = *how.estimate.noise;
+    Begun begun = options.begun.empty() ? Begun() : begun_from(options.begun);
+    const auto keep = [&](bool sided) {
+        begun.is_sided = sided;
+        if (options.keep) options.keep(sided, bytes_of_begun(begun));
+    };
+    if (options.begun.empty()) {
+        begun.report.outliers = leave_outliers_out(cloud, survey, options.plan, options.most_points);
+        begun.how = estimating(cloud, survey, options);
+        begun.report.noise = *begun.how.estimate.noise;
+        keep(false);
+    }
     const std::vector<VoxelRange> ranges = options.plan();
-    const SignsOfAll signs = find_signs(cloud, survey, ranges, how, options);
-    report.orientation = signs.report;
+    if (!begun.is_sided) {
+        begun.signs = find_signs(cloud, survey, ranges, begun.how, options);
+        begun.report.orientation = begun.signs.report;
+        keep(true);
+    }
     ScratchCloud next = cloud.without_points();
-    SidedPass pass(how, signs, next);
+    SidedPass pass(begun.how, begun.signs, next);
     for_parts(cloud, survey.sums, ranges, [&](const CloudPart& part) { return pass.add(part); });
+    NormalsReport report = begun.report;
     report.bent = cloud.ranks().sum(pass.bent), report.missing = cloud.ranks().sum(pass.missing);
     cloud.take_with_normals(std::move(next));
     survey = survey_cloud(cloud, survey.sums.points(), options.most_points);
