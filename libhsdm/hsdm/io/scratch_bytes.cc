@@ -65,6 +65,12 @@ void ScratchBytes::check_room(const char* what, std::size_t needed) const {
                                  + "; --scratch names another folder");
 }
 
+bool ScratchBytes::has_room(std::size_t needed) const {
+    std::error_code failed;
+    const std::filesystem::space_info space = std::filesystem::space(folder_, failed);
+    return !failed && space.available >= needed;
+}
+
 std::size_t ScratchBytes::append(const char* what, const void* bytes, std::size_t count) {
     if (!os::write_all(file_, {static_cast<const char*>(bytes), count}))
         throw Error(folder_, std::string(what) + " cannot be written to scratch after " + in_megabytes(size_)

@@ -28,6 +28,9 @@ public:
     /// `what` names them.
     void check_room(const char* what, std::size_t needed) const;
 
+    /// Has the disk room for so many bytes more? False if that cannot be told.
+    bool has_room(std::size_t needed) const;
+
     /// Appends; returns where. Throws Error if the disk is full.
     std::size_t append(const char* what, const void* bytes, std::size_t count);
     /// Throws Error if the file cannot be read.

@@ -373,6 +373,8 @@ VoxelRange ScratchCloud::cells_of(const VoxelRange& range) const {
 
 std::vector<PointRow> ScratchCloud::rows_of(const VoxelRange& range, int ghost) const {
     std::vector<PointRow> rows, cell;
+    constexpr std::size_t remembered = 1 << 12; // voxels: those of a cell, or sixteen along an edge
+    std::vector<std::pair<MortonCode, bool>> is_near(remembered, {~MortonCode{0}, false});
     const int to_level = 3 * (morton_levels - depth_);
     const VoxelRange of_cells = cells_of(range);
     for (const MortonCode c : cells_near(of_cells, cells_within(ghost), cells_)) {
@@ -384,8 +386,10 @@ std::vector<PointRow> ScratchCloud::rows_of(const VoxelRange& range, int ghost) 
         cell.clear();
         scratch_->read(c, cell);
         for (const PointRow& row : cell) {
-            const MortonCode code = code_at(relative_place(row), cube_extent());
-            if (range.is_near(morton_decode(code >> to_level), ghost)) rows.push_back(row);
+            const MortonCode voxel = code_at(relative_place(row), cube_extent()) >> to_level;
+            auto& [code, near] = is_near[voxel % remembered];
+            if (code != voxel) code = voxel, near = range.is_near(morton_decode(voxel), ghost);
+            if (near) rows.push_back(row);
         }
     }
     return rows;
@@ -434,6 +438,7 @@ void ScratchCloud::for_tiles(std::span<const VoxelRange> ranges, int ghost,
 void ScratchCloud::leave_out(std::vector<PointRow> rows) {
     left_out_ = std::move(rows);
     std::ranges::sort(left_out_);
+    ++version_;
 }
 
 Box ScratchCloud::box_of_points(std::size_t most) const {
@@ -507,6 +512,7 @@ void ScratchCloud::take(ScratchCloud&& next) {
     arranged_ = next.arranged_;
     begins_ = std::move(next.begins_), cells_ = std::move(next.cells_);
     fetched_ = {}, left_out_ = {};
+    ++version_;
 }
 
 PointRow ScratchCloud::row_at(const Octree& octree, std::size_t point) {

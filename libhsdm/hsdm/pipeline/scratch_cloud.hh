@@ -52,6 +52,8 @@ public:
     void put_state(Ranks::Bytes& bytes) const;
     const std::string& file_name() const { return place_.name; } ///< empty: it has none
     void flush_to_disk() const { scratch_->flush_to_disk(); }
+    const std::string& scratch_folder() const { return place_.folder; }
+    std::size_t version() const { return version_; } ///< another one each time that points change
 
     const CloudExtent& extent() const { return extent_; } ///< as it was measured
     const Box& bounds() const { return none_.bounds; }
@@ -146,6 +148,7 @@ private:
     std::vector<ScratchPoints::Cell> cells_;
     std::vector<MortonCode> fetched_; // cells of others, ascending
     std::vector<PointRow> left_out_;
+    std::size_t version_ = 0;
 };
 
 } // namespace hsdm
