@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace hsdm {
 namespace {
@@ -26,7 +27,10 @@ KeptPasses::KeptPasses(KeptScratch* kept, Ranks& ranks) : kept_(kept), ranks_(ra
     kept_->cut(done_ == Pass::none ? 0 : after);
     note_tiles();
     std::vector<std::string> used{pieces_name};
-    if (done_ != Pass::none) used.push_back(kept_at(last_).file);
+    if (done_ != Pass::none) {
+        Kept kept_pass = kept_at(last_);
+        used.push_back(std::move(kept_pass.points)), used.push_back(std::move(kept_pass.state));
+    }
     kept_->remove_all_but(used);
 }
 
@@ -37,7 +41,9 @@ std::uint64_t KeptPasses::passes_here() const {
         const std::uint64_t key = kept_->records()[r].key;
         if (key > last_pass) continue;
         const Kept kept = kept_at(r);
-        if (kept_->has_file(kept.file, kept.bytes)) passes |= std::uint64_t{1} << key;
+        if (kept_->has_file(kept.points, kept.bytes_of_points)
+            && kept_->has_file(kept.state, kept.bytes_of_state))
+            passes |= std::uint64_t{1} << key;
     }
     return passes;
 }
@@ -57,27 +63,38 @@ void KeptPasses::note_tiles() {
 KeptPasses::Kept KeptPasses::kept_at(std::size_t record) const {
     const Bytes bytes = kept_->read(kept_->records()[record]);
     ByteReader reader(bytes);
-    const auto file = reader.take_vector<char>();
-    Kept kept{{file.begin(), file.end()}, reader.take<std::size_t>(), {}};
-    kept.state = reader.take_rest<char>();
+    const auto take_text = [&] {
+        const auto text = reader.take_vector<char>();
+        return std::string(text.begin(), text.end());
+    };
+    Kept kept;
+    kept.points = take_text(), kept.state = take_text();
+    kept.bytes_of_points = reader.take<std::size_t>(), kept.bytes_of_state = reader.take<std::size_t>();
     return kept;
 }
 
 KeptPasses::Bytes KeptPasses::state() const {
-    return kept_at(last_).state;
+    const Kept kept = kept_at(last_);
+    const ScratchBytes file({kept_->folder(), kept.state, kept.bytes_of_state});
+    Bytes bytes;
+    file.read(0, kept.bytes_of_state, bytes);
+    return bytes;
 }
 
 void KeptPasses::keep(Pass pass, const ScratchCloud& cloud, const Bytes& state) {
     if (!kept_) return;
     cloud.flush_to_disk();
-    const std::string& file = cloud.file_name();
+    const std::string name = kept_->new_name("state");
+    ScratchBytes file({kept_->folder(), name, 0});
+    file.append("what a pass has found", state);
+    file.flush_to_disk();
     Bytes bytes;
-    put_vector(std::vector<char>(file.begin(), file.end()), bytes);
-    put(cloud.bytes(), bytes);
-    append_bytes(state.data(), state.size(), bytes);
+    for (const std::string& text : {cloud.file_name(), name})
+        put_vector(std::vector<char>(text.begin(), text.end()), bytes);
+    put(cloud.bytes(), bytes), put(file.size(), bytes);
     kept_->keep(static_cast<std::uint64_t>(pass), bytes);
     ranks_.any(false); // once all have it, none goes back to the one before
-    const std::vector<std::string> used{pieces_name, file};
+    const std::vector<std::string> used{pieces_name, cloud.file_name(), name};
     kept_->remove_all_but(used);
 }
 

@@ -46,10 +46,10 @@ public:
     ScratchPlace pieces(const std::string& folder) const;
 
 private:
+    /// The record of a pass. Its state is a file of its own, as long as nothing comes after it.
     struct Kept {
-        std::string file; ///< of the points
-        std::size_t bytes;
-        Bytes state;
+        std::string points, state; ///< files
+        std::size_t bytes_of_points, bytes_of_state;
     };
     Kept kept_at(std::size_t record) const;
     std::uint64_t passes_here() const;
