@@ -5,9 +5,12 @@
 #include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/join_points.hh"
+#include "hsdm/version.hh"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <filesystem>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -46,6 +49,13 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, T& value, const 
 constexpr int deepest = 16;
 constexpr int largest = std::numeric_limits<int>::max();
 constexpr double unbounded = std::numeric_limits<double>::infinity();
+
+/// All digits of a number.
+std::string exact(double value) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%.17g", value);
+    return digits;
+}
 
 /// ply|pcd|...
 std::string joined_formats() {
@@ -221,6 +231,10 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
                    "the folder for these points, 48 bytes each (default: TMPDIR, or /tmp)")
         ->type_name("DIR")
         ->group(method);
+    app.add_flag("--resume", a.resume,
+                 "what is done stays in --scratch until the mesh is written, and a run of the same files and "
+                 "options goes on with it")
+        ->group(method);
 }
 
 void add_text_options(CLI::App& app, ReconstructArguments& a) {
@@ -363,12 +377,54 @@ ReconstructOptions ReconstructArguments::options() const {
     return o;
 }
 
+void ReconstructArguments::check_resume() const {
+    if (!resume) return;
+    if (scratch.empty()) throw UsageError("--resume: give --scratch DIR, where what is done stays");
+    if ((inputs.size() > 1 && !join) || inputs.front() == "-")
+        throw UsageError("--resume: is of one cloud, of files; give one input, or --join scans of one thing");
+}
+
+std::vector<KeptScratch::Trait> ReconstructArguments::job(const CloudFiles& cloud, int processes) const {
+    std::vector<KeptScratch::Trait> job{{"version of hsdm", version}};
+    for (const std::string& file : cloud.files) {
+        std::error_code failed;
+        const std::string path = std::filesystem::absolute(file, failed).string();
+        os::FileStatus status;
+        if (failed || !os::status_of(file, status)) throw Error(file, "cannot be looked at");
+        job.push_back({"input", path});
+        job.push_back({"size of " + file, std::to_string(status.size) + " bytes"});
+        job.push_back({"time of " + file, std::to_string(status.modified) + " ns since 1970"});
+    }
+    const auto add = [&](const char* name, const std::string& value) {
+        job.push_back({name, value.empty() ? "none" : value});
+    };
+    add("number of processes", std::to_string(processes));
+    add("--depth", depth ? std::to_string(*depth) : "");
+    add("--voxel-size", voxel_size ? exact(*voxel_size) : "");
+    add("--normals", std::to_string(static_cast<int>(normals)));
+    add("--holes", std::to_string(static_cast<int>(holes)));
+    add("--method", std::to_string(static_cast<int>(method)));
+    add("--grid", std::to_string(static_cast<int>(grid)));
+    add("--crease-degrees", exact(crease_degrees));
+    add("--smoothing", std::to_string(smoothing));
+    add("--input-format", read.format);
+    add("--columns", read.columns);
+    add("--sensor-column", read.sensor_column);
+    std::string sensors;
+    for (const Vec3& place : read.sensors)
+        for (const double x : place) sensors += exact(x) + " ";
+    add("--sensor", sensors);
+    return job;
+}
+
 std::optional<TileOptions> ReconstructArguments::tiles() const {
     if (memory.empty()) {
         if (!scratch.empty())
             throw UsageError("--scratch " + scratch + ": is used with --memory alone; give that");
+        if (resume) throw UsageError("--resume: is used with --memory alone; give that");
         return std::nullopt;
     }
+    check_resume();
     const std::optional<std::size_t> bytes = bytes_of(memory);
     if (!bytes) throw UsageError("--memory " + memory + ": must be a number of bytes, or as 500M or 4G");
     TileOptions tiles;
@@ -383,6 +439,7 @@ TileOptions ReconstructArguments::tiles_of_rank() const {
     if (inputs.front() == "-" || output == "-")
         throw UsageError("several ranks have no standard input and output in common; give names of files");
     if (!memory.empty()) return *tiles();
+    check_resume();
     TileOptions without_bound;
     without_bound.scratch = scratch;
     without_bound.memory = TileOptions::no_bound;
@@ -443,8 +500,8 @@ CaseOptions case_options(const std::string& name, const std::vector<std::string>
         throw Error(name, "args: " + fault_of(app, error));
     }
     if (!arguments.levels.empty()) throw Error(name, "args: --levels makes several meshes; give one --depth");
-    if (!arguments.memory.empty() || !arguments.scratch.empty())
-        throw Error(name, "args: --memory and --scratch are for hsdm reconstruct; leave them out");
+    if (!arguments.memory.empty() || !arguments.scratch.empty() || arguments.resume)
+        throw Error(name, "args: --memory, --scratch and --resume are for hsdm reconstruct; leave them out");
     try {
         return {arguments.options(), arguments.read,  arguments.stages,
                 arguments.strict,    arguments.ascii, arguments.plain};

@@ -4,6 +4,7 @@
 #include "command.hh"
 #include "progress_bar.hh"
 
+#include "hsdm/io/kept_scratch.hh"
 #include "hsdm/io/read_points.hh"
 #include "hsdm/io/write_mesh.hh"
 #include "hsdm/pipeline/reconstruct_in_tiles.hh"
@@ -44,6 +45,7 @@ struct ReconstructArguments {
     std::vector<std::string> stages;
     bool strict = false;
     std::string memory, scratch;
+    bool resume = false;
     int threads = 0;
     std::string debug_dir;
 
@@ -62,6 +64,9 @@ struct ReconstructArguments {
     std::optional<TileOptions> tiles() const;
     /// The same of each of several processes that do it together, which need no bound.
     TileOptions tiles_of_rank() const;
+    /// What tells the job of this cloud from others, for --resume: the program, the files as they are, and
+    /// options that tiles depend on. Throws Error.
+    std::vector<KeptScratch::Trait> job(const CloudFiles& cloud, int processes) const;
     /// Throws UsageError and OptionError for what cannot be done in tiles.
     void check_for_tiles(const TileOptions& tiles) const;
     /// A cloud for each input, or one of all that are joined, of folders those in them. Throws UsageError,
@@ -69,6 +74,9 @@ struct ReconstructArguments {
     std::vector<CloudFiles> clouds() const;
     /// First and last depth of --levels A:B; nothing if it was not given. Throws UsageError.
     std::optional<std::pair<int, int>> level_range() const;
+
+private:
+    void check_resume() const;
 };
 
 /// Adds the options on how a cloud is reconstructed, shared by `reconstruct` and `regress`.

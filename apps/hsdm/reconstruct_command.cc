@@ -192,7 +192,9 @@ private:
         std::optional<PointFile> read;
         if (tiles_) {
             PointsInParts points(cloud.files, arguments_.read);
-            if (ranks_ || !fits_in_one_piece(points.size())) return make_in_tiles(points, cloud, start, bar);
+            const bool goes_on = arguments_.resume && KeptScratch::is_there(arguments_.scratch, 0);
+            if (ranks_ || goes_on || !fits_in_one_piece(points.size()))
+                return make_in_tiles(points, cloud, start, bar);
             if (points.in_memory()) read = std::move(points).file();
         }
         PointFile file = read ? std::move(*read) : read_joined(cloud.files, arguments_.read);
@@ -267,12 +269,18 @@ private:
         const std::vector<std::uint64_t> seen = ranks.gather(points.fingerprint());
         if (std::ranges::count(seen, seen.front()) != ranks.size())
             throw Error(cloud.name(), "is not the same to all processes; put it where all of them see it");
+        std::optional<KeptScratch> kept;
+        if (arguments_.resume) {
+            kept.emplace(arguments_.scratch, ranks.rank(), arguments_.job(cloud, ranks.size()));
+            tiles.kept = &*kept;
+        }
         TileReport how;
         PointFile read;
         const auto note = [&](Report& report) {
             note_reading(read, report);
             if (!arguments_.memory.empty()) report.options["memory"] = arguments_.memory;
             report.options["tiles"] = std::to_string(how.tiles);
+            if (how.went_on) report.options["resume"] = std::to_string(how.kept_tiles) + " tiles were kept";
             if (ranks_) {
                 report.options["ranks"] = std::to_string(ranks_->size());
                 report.ranks = std::move(how.ranks);
@@ -281,25 +289,35 @@ private:
             report.seconds.read = read_seconds;
             bar.show("write", 0.97);
         };
+        const auto notes_of = [&](const TileReport& report) {
+            if (report.went_on && ranks.is_first()) points.size(); // reads what was not read this time
+            return notes_of_all(points, ranks);
+        };
         std::vector<Report> made;
         if (is_written_as_it_comes()) {
             FlatReconstruction flat =
                 named(cloud, [&] { return reconstruct_flat_in_tiles(parts, options, tiles, ranks, &how); });
-            read = notes_of_all(points, ranks);
-            if (!ranks.is_first()) return {}; // which has all of it
-            note(flat.report);
-            write_as_it_comes(flat);
-            made.push_back(std::move(flat.report));
+            read = notes_of(how);
+            if (ranks.is_first()) { // which has all of it
+                note(flat.report);
+                write_as_it_comes(flat);
+                made.push_back(std::move(flat.report));
+            }
         } else {
             Reconstruction result =
                 named(cloud, [&] { return reconstruct_in_tiles(parts, options, tiles, ranks, &how); });
-            read = notes_of_all(points, ranks);
-            if (!ranks.is_first()) return {};
-            note(result.report);
-            write_one(cloud.name(), {}, result);
-            made.push_back(std::move(result.report));
+            read = notes_of(how);
+            if (ranks.is_first()) {
+                note(result.report);
+                write_one(cloud.name(), {}, result);
+                made.push_back(std::move(result.report));
+            }
         }
-        made.back().seconds.total = seconds_since(start);
+        if (kept) {
+            ranks.any(false); // the mesh is written
+            kept->remove();
+        }
+        if (ranks.is_first()) made.back().seconds.total = seconds_since(start);
         return made;
     }
 

@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 
@@ -61,6 +62,68 @@ TEST_CASE("two jobs share a folder for scratch", "[cli][tiles]") {
     const std::string one = job.in_one_piece();
     CHECK(read_file(job.folder / "a.ply") == one);
     CHECK(read_file(job.folder / "b.ply") == one);
+}
+
+TEST_CASE("what was done before the disk was full is gone on with", "[cli][tiles]") {
+    const Job job;
+    const std::string call =
+        "reconstruct scan.ply --depth 7 --memory 100M --scratch scratch --resume --report report.json ";
+    // The points take 2.9 MB of scratch, what the survey finds 3.4; or the mesh has no place, and all tiles
+    // are done.
+    const bool is_late = GENERATE(false, true);
+    const CommandResult failed = is_late
+                                     ? run(job.folder, call + "-o /dev/full --format ply")
+                                     : run(job.folder, call + "-o part.ply", "trap '' XFSZ; ulimit -f 6000;");
+    INFO(failed.err);
+    CHECK(failed.status == 1);
+    CHECK_FALSE(exists(job.folder / "part.ply"));
+    CHECK(exists(job.folder / "scratch/hsdm-resume-0/log"));
+    const CommandResult other = run(job.folder, call + "-o part.ply --holes keep");
+    CHECK(other.status == 1);
+    CHECK(other.err.find("scratch/hsdm-resume-0: is kept of a job with another --holes")
+          != std::string::npos);
+    const CommandResult result = run(job.folder, call + "-o part.ply --threads 1");
+    INFO(result.err);
+    CHECK(result.status == 0);
+    const std::string report = read_file(job.folder / "report.json");
+    CHECK(report.find(" tiles were kept\"") != std::string::npos);
+    CHECK((report.find("\"0 tiles were kept") == std::string::npos) == is_late);
+    CHECK(read_file(job.folder / "part.ply") == job.in_one_piece());
+    CHECK(job.left_nothing());
+}
+
+TEST_CASE("a scan that has changed is not taken for the one that was begun", "[cli][tiles]") {
+    const Job job(20000);
+    const std::string call =
+        "reconstruct scan.ply --depth 6 --memory 70M --scratch scratch --resume -o part.ply";
+    CHECK(run(job.folder, call, "trap '' XFSZ; ulimit -f 100;").status == 1);
+    std::filesystem::last_write_time(job.folder / "scan.ply",
+                                     std::filesystem::last_write_time(job.folder / "scan.ply")
+                                         + std::chrono::seconds(1));
+    const CommandResult result = run(job.folder, call);
+    CHECK(result.status == 1);
+    CHECK(result.err.find("is kept of a job with another time of scan.ply") != std::string::npos);
+    CHECK(result.err.find("remove the folder") != std::string::npos);
+}
+
+TEST_CASE("a job that is killed in any phase is gone on with", "[cli][tiles][slow]") {
+    const Job job(100000);
+    REQUIRE(run(job.folder, "reconstruct scan.ply --depth 7 --quiet -o one.ply").status == 0);
+    const std::string one = read_file(job.folder / "one.ply");
+    const std::string call =
+        "reconstruct scan.ply --depth 7 --memory 130M --scratch scratch --resume -o new.ply ";
+    for (const char* phase : {"octree", "survey", "tiles", "whole", "error", "write"}) {
+        INFO(phase);
+        run(job.folder, call + "--progress always >out 2>err & command=$!; until grep -q " + phase
+                            + " err; do kill -0 $command 2>/dev/null || break; sleep 0.01; done; "
+                              "kill -KILL $command 2>/dev/null; wait $command");
+        const CommandResult result = run(job.folder, call);
+        INFO(result.err);
+        CHECK(result.status == 0);
+        CHECK(read_file(job.folder / "new.ply") == one);
+        CHECK(job.left_nothing());
+        std::filesystem::remove(job.folder / "new.ply");
+    }
 }
 
 TEST_CASE("a signal in any phase of bounded memory leaves nothing", "[cli][tiles][slow]") {

@@ -193,9 +193,11 @@ TEST_CASE("bounded memory gives the same file, and leaves nothing on scratch", "
 TEST_CASE("what does not go with bounded memory is refused before any work", "[cli]") {
     const Folder folder;
     folder.write("scan.xyz", xyz(sphere_scan(500)));
-    for (const char* option : {"--memory much --depth 5", "--memory 0 --depth 5", "--scratch .",
-                               "--memory 1M --depth 5 --holes close", "--memory 1M --levels 4:5",
-                               "--memory 1M --max-error 1%", "--memory 1M --depth 5 --html a.html"}) {
+    for (const char* option :
+         {"--memory much --depth 5", "--memory 0 --depth 5", "--scratch .",
+          "--memory 1M --depth 5 --holes close", "--resume", "--memory 1M --depth 5 --resume",
+          "--memory 1M --resume --scratch . scan.xyz", "--memory 1M --levels 4:5",
+          "--memory 1M --max-error 1%", "--memory 1M --depth 5 --html a.html"}) {
         const CommandResult result = run(folder, std::string("reconstruct scan.xyz -o a.off ") + option);
         INFO(option << ": " << result.err);
         CHECK(result.status == 2);

@@ -90,6 +90,20 @@ refused "no folder for scratch" "/no/such" scan.ply --depth 6 -o ranks.ply --scr
 head -c 400000 scan.ply >short.ply
 refused "a truncated file" "short.ply" short.ply --depth 6 -o ranks.ply
 
+# What is done stays where the mesh has no place, and as many go on with it.
+status=0
+by 3 scan.ply --depth 6 -o /dev/full --format ply --scratch scratch --resume --threads 1 || status=$?
+[ $status -eq 1 ] || fail "a full disk: status $status"
+[ "$(ls scratch | tr '\n' ' ')" = "hsdm-resume-0 hsdm-resume-1 hsdm-resume-2 " ] || fail "a full disk: nothing was kept"
+status=0
+by 2 scan.ply --depth 6 -o ranks.ply --scratch scratch --resume --threads 1 || status=$?
+[ $status -ne 0 ] && grep -q "number of processes: 3, and not 2" err || fail "fewer processes went on: status $status"
+by 3 scan.ply --depth 6 -o ranks.ply --scratch scratch --resume --threads 1 --report report.json ||
+    fail "going on: status $?"
+cmp one.ply ranks.ply || fail "going on gives another mesh"
+grep -q '"resume": ".* tiles were kept"' report.json || fail "nothing was gone on with"
+[ -z "$(ls -A scratch)" ] || fail "scratch is left once the mesh is written"
+
 # A rank that is killed, or asked to end, at any time.
 "$generate" part --points 300000 -o long.ply
 cat >rank.sh <<'END'

@@ -65,6 +65,7 @@ bool fill(FileStatus& status, int result, const struct stat& found) {
     status.inode = found.st_ino;
     status.size = static_cast<std::uint64_t>(found.st_size);
     status.names = found.st_nlink;
+    status.modified = std::int64_t{found.st_mtim.tv_sec} * 1000000000 + found.st_mtim.tv_nsec;
     status.owner = found.st_uid;
     status.group = found.st_gid;
     status.mode = found.st_mode & 07777;
@@ -213,6 +214,10 @@ int open_entry_to_write(const std::string& path) noexcept {
     return ::open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
 }
 
+int open_to_append(const std::string& path) noexcept {
+    return ::open(path.c_str(), O_RDWR | O_APPEND | O_NOFOLLOW | O_CLOEXEC);
+}
+
 int create(const std::string& path, std::uint32_t mode) noexcept {
     return ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, mode);
 }
@@ -322,6 +327,14 @@ bool replace(const std::string& from, const std::string& to) noexcept {
 
 bool remove(const std::string& path) noexcept {
     return ::unlink(path.c_str()) == 0;
+}
+
+bool make_folder(const std::string& path) noexcept {
+    return ::mkdir(path.c_str(), 0700) == 0;
+}
+
+bool remove_folder(const std::string& path) noexcept {
+    return ::rmdir(path.c_str()) == 0;
 }
 
 bool lock(int descriptor) noexcept {

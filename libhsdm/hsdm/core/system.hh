@@ -23,6 +23,7 @@ struct FileStatus {
     bool is_null_device = false;         ///< which swallows everything
     std::uint64_t device = 0, inode = 0; ///< the same for all names of a file
     std::uint64_t size = 0, names = 0;   ///< bytes; hard links
+    std::int64_t modified = 0;           ///< nanoseconds since 1970
     std::uint32_t owner = 0, group = 0;
     std::uint32_t mode = 0; ///< 07777: who may read, write and run it, as chmod(1) takes it
 };
@@ -43,6 +44,8 @@ int open_to_read(const std::string& path) noexcept;
 int open_to_write(const std::string& path) noexcept; ///< as it is; waits for a pipe's reader
 /// No link, and without waiting for a pipe's reader.
 int open_entry_to_write(const std::string& path) noexcept;
+/// Reading, and writing at the end. No link.
+int open_to_append(const std::string& path) noexcept;
 /// Reading and writing; fails if there is something of that name. `mode` as in FileStatus, less the umask.
 int create(const std::string& path, std::uint32_t mode) noexcept;
 /// The same, this user's alone; XXXXXX before the extension become letters that make the name a new one.
@@ -72,6 +75,8 @@ bool set_mode(int descriptor, std::uint32_t mode) noexcept;
 
 bool replace(const std::string& from, const std::string& to) noexcept; ///< at once, whatever was at `to`
 bool remove(const std::string& path) noexcept;                         ///< also in a handler of signals
+bool make_folder(const std::string& path) noexcept;                    ///< this user's alone
+bool remove_folder(const std::string& path) noexcept;                  ///< an empty one
 
 /// Until the descriptor is closed, also by the process's end; EINTR: again. try_lock does not wait.
 bool lock(int descriptor) noexcept;

@@ -1,5 +1,5 @@
 #pragma once
-// Bytes on disk that are read again, in a file without a name.
+// Bytes on disk that are read again, in a file without a name, or in one that another process may go on with.
 
 #include <cstddef>
 #include <string>
@@ -8,12 +8,18 @@
 
 namespace hsdm {
 
-/// Nothing is left of the file, however the process ends. Not for several threads.
+/// Where scratch goes.
+struct ScratchPlace {
+    std::string folder{};   ///< empty: that for temporary files (TMPDIR, else /tmp)
+    std::string name{};     ///< of the file, which stays; empty: it has none, and nothing is left of it
+    std::size_t is_there{}; ///< so many bytes of that file, from the first on, hold what they should
+};
+
+/// Without a name nothing is left of the file, however the process ends. Not for several threads.
 class ScratchBytes {
 public:
-    /// `folder`: where the file is made; empty: that for temporary files (TMPDIR, else /tmp). Throws Error if
-    /// it cannot be made.
-    explicit ScratchBytes(const std::string& folder);
+    /// Throws Error if the file cannot be made, or opened where it is there.
+    explicit ScratchBytes(const ScratchPlace& place);
     ~ScratchBytes();
     ScratchBytes(const ScratchBytes&) = delete;
     ScratchBytes& operator=(const ScratchBytes&) = delete;
@@ -21,6 +27,9 @@ public:
     /// Throws Error, which says `needed` and what there is, if the disk has less room than so many bytes.
     /// `what` names them.
     void check_room(const char* what, std::size_t needed) const;
+
+    /// Has the disk room for so many bytes more? False if that cannot be told.
+    bool has_room(std::size_t needed) const;
 
     /// Appends; returns where. Throws Error if the disk is full.
     std::size_t append(const char* what, const void* bytes, std::size_t count);
@@ -40,8 +49,12 @@ public:
     }
 
     std::size_t size() const { return size_; } ///< written so far
+    /// Returns once the disk has all. Throws Error if that fails.
+    void flush_to_disk() const;
 
 private:
+    void open(const std::string& path, std::size_t is_there);
+
     std::string folder_;
     int file_ = -1;
     std::size_t size_ = 0;

@@ -9,9 +9,26 @@ constexpr const char* the_points = "the points";
 
 } // namespace
 
-ScratchPoints::ScratchPoints(const std::string& folder, std::size_t expected, std::size_t buffered)
-    : file_(folder), most_waiting_(buffered / sizeof(PointRow)) {
+ScratchPoints::ScratchPoints(const ScratchPlace& place, std::size_t expected, std::size_t buffered)
+    : file_(place), most_waiting_(buffered / sizeof(PointRow)) {
     file_.check_room(the_points, expected * sizeof(PointRow));
+}
+
+ScratchPoints::ScratchPoints(const ScratchPlace& place, ByteReader& index, std::size_t buffered)
+    : file_(place), most_waiting_(buffered / sizeof(PointRow)) {
+    for (auto cells = index.take<std::uint64_t>(); cells > 0; --cells) {
+        Bucket& bucket = buckets_[index.take<MortonCode>()];
+        bucket.points = index.take<std::size_t>();
+        bucket.blocks = index.take_vector<Block>();
+    }
+}
+
+void ScratchPoints::put_index(std::vector<char>& bytes) const {
+    put(std::uint64_t{buckets_.size()}, bytes);
+    for (const auto& [cell, bucket] : buckets_) {
+        put(cell, bytes), put(bucket.points, bytes);
+        put_vector(bucket.blocks, bytes);
+    }
 }
 
 void ScratchPoints::add(MortonCode cell, const PointRow& point) {

@@ -2,6 +2,7 @@
 // Points on disk, sorted by cells of space: more of them than fit the memory.
 
 #include "hsdm/core/morton.hh"
+#include "hsdm/core/ranks.hh"
 #include "hsdm/io/scratch_bytes.hh"
 #include "hsdm/types.hh"
 
@@ -15,14 +16,14 @@ namespace hsdm {
 /// A point and its normal, as they came.
 using PointRow = std::array<double, 6>;
 
-/// Points by the cell that each lies in. They are kept in a file without a name, so that nothing is left of
-/// it however the process ends. Not for several threads.
+/// Points by the cell that each lies in, in a file as ScratchBytes. Not for several threads.
 class ScratchPoints {
 public:
-    /// `folder`: where the file is made; empty: that for temporary files (TMPDIR, else /tmp). `expected`: so
-    /// many points are to come. `buffered`: bytes of memory that may be used, at least one point's a cell.
-    /// Throws Error if the file cannot be made or the disk has no room for so many.
-    ScratchPoints(const std::string& folder, std::size_t expected, std::size_t buffered);
+    /// `expected`: so many points are to come. `buffered`: bytes of memory that may be used, at least one
+    /// point's a cell. Throws Error if the file cannot be made or the disk has no room for so many.
+    ScratchPoints(const ScratchPlace& place, std::size_t expected, std::size_t buffered);
+    /// Those of a file that is there, as put_index() has told where they are.
+    ScratchPoints(const ScratchPlace& place, ByteReader& index, std::size_t buffered);
 
     /// Throws Error if the disk is full.
     void add(MortonCode cell, const PointRow& point);
@@ -40,6 +41,9 @@ public:
     void read(MortonCode cell, std::vector<PointRow>& points) const;
 
     std::size_t bytes() const { return file_.size(); } ///< of the file
+    void flush_to_disk() const { file_.flush_to_disk(); }
+    /// To be called after finish().
+    void put_index(std::vector<char>& bytes) const;
 
 private:
     struct Block {

@@ -35,6 +35,11 @@ void CellPass::add(const Octree& octree, const VoxelRange& range, int ghost) {
     }
 }
 
+void CellPass::put_off(const std::vector<MortonCode>& cells, int ghost) {
+    far_cells_.insert(far_cells_.end(), cells.begin(), cells.end());
+    widest_ = std::max(widest_, ghost);
+}
+
 void CellPass::add_far_cells(ScratchCloud& cloud) {
     if (cloud.ranks().sum(far_cells_.size()) > most_far_cells)
         refuse_in_tiles("many points are far from their neighbours");

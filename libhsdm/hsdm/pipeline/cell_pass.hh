@@ -21,6 +21,10 @@ public:
     /// Throws Error where neighbours are farther off than any tile sees.
     void add_far_cells(ScratchCloud& cloud);
 
+    /// Those put off so far; and more that another pass has put off where so much was around them.
+    const std::vector<MortonCode>& far_cells() const { return far_cells_; }
+    void put_off(const std::vector<MortonCode>& cells, int ghost);
+
 protected:
     /// The cell of a point of an octree.
     MortonCode cell_of(const Octree& octree, std::size_t point) const {

@@ -6,7 +6,7 @@
 #include "hsdm/normals/noise.hh"
 #include "hsdm/normals/vote_on_normals.hh"
 #include "hsdm/pipeline/cloud_noise.hh"
-#include "hsdm/pipeline/cloud_parts.hh"
+#include "hsdm/pipeline/part_store.hh"
 
 #include <algorithm>
 #include <cmath>
@@ -24,9 +24,9 @@ struct Estimating {
 /// Unoriented normals of a part and its patches, with their number in the whole: that of their first point.
 class PartNormals {
 public:
-    PartNormals(const CloudPart& part, const Estimating& how)
+    PartNormals(const CloudPart& part, const Estimating& how, PartStore& store)
         : part_(part),
-          neighbors(find_neighbors(part.octree(), how.neighbors)),
+          neighbors(store.neighbors(part, how.neighbors)),
           estimate(estimate_normals(part.octree(), neighbors, how.estimate)),
           known(part.known_by(neighbors)),
           patches(build_patches(part.octree(), neighbors, estimate)) {
@@ -93,15 +93,20 @@ class EvidencePass {
 public:
     /// `memory`: bytes that what is found may take, else it throws Error.
     EvidencePass(const Estimating& how, const EmptySpace& space, double spacing, bool may_be_layers,
-                 std::size_t memory)
-        : how_(how), space_(space), spacing_(spacing), may_be_layers_(may_be_layers), memory_(memory) {}
+                 std::size_t memory, PartStore& store)
+        : how_(how),
+          space_(space),
+          spacing_(spacing),
+          may_be_layers_(may_be_layers),
+          memory_(memory),
+          store_(store) {}
 
     SideEvidence evidence;
 
     /// Returns false, and takes nothing, if not all is known.
     bool add(const CloudPart& part) {
         if (part.lacks_neighbors(how_.neighbors.count)) return false;
-        const PartNormals made(part, how_);
+        const PartNormals made(part, how_, store_);
         const std::vector<Index>& leaves = made.neighbors.leaf_first; // its own begin with its own points
         const auto leaf_at = [&](std::size_t point) {
             return static_cast<std::size_t>(std::ranges::lower_bound(leaves, point) - leaves.begin());
@@ -177,6 +182,7 @@ private:
     double spacing_;
     bool may_be_layers_;
     std::size_t memory_;
+    PartStore& store_;
 };
 
 /// On the first rank: what all have found. Others are left with nothing.
@@ -287,15 +293,15 @@ std::optional<SignsOfAll> signs_of_all(SideEvidence&& own, const EmptySpace& spa
 /// Gives the parts' points normals with their sides.
 class SidedPass {
 public:
-    SidedPass(const Estimating& how, const SignsOfAll& signs, ScratchCloud& next)
-        : how_(how), signs_(signs), next_(next) {}
+    SidedPass(const Estimating& how, const SignsOfAll& signs, PartStore& store, ScratchCloud& next)
+        : how_(how), signs_(signs), store_(store), next_(next) {}
 
     std::size_t bent = 0, missing = 0; ///< points of this rank, as in NormalsReport
 
     /// Returns false, and takes nothing, if not all is known.
     bool add(const CloudPart& part) {
         if (part.lacks_neighbors(how_.neighbors.count)) return false;
-        PartNormals made(part, how_);
+        PartNormals made(part, how_, store_);
         EstimatedNormals& estimate = made.estimate;
         std::vector<std::int8_t> sign(made.patches.size(), 1); // of patches that are not known
         for (Index p = 0; p < sign.size(); ++p)
@@ -330,6 +336,7 @@ private:
 
     const Estimating& how_;
     const SignsOfAll& signs_;
+    PartStore& store_;
     ScratchCloud& next_;
 };
 
@@ -351,10 +358,10 @@ Estimating estimating(ScratchCloud& cloud, const CloudSurvey& survey, const Clou
 
 /// In one pass, and one more where sheets may be layers.
 SignsOfAll find_signs(ScratchCloud& cloud, const CloudSurvey& survey, std::span<const VoxelRange> ranges,
-                      const Estimating& how, const CloudNormalsOptions& options) {
+                      const Estimating& how, const CloudNormalsOptions& options, PartStore& store) {
     const EmptySpace space = space_of(cloud, survey.spacing, options.most_points);
     for (bool may_be_layers = false;; may_be_layers = true) {
-        EvidencePass pass(how, space, survey.spacing, may_be_layers, options.memory);
+        EvidencePass pass(how, space, survey.spacing, may_be_layers, options.memory, store);
         for_parts(cloud, survey.sums, ranges, [&](const CloudPart& part) { return pass.add(part); });
         if (auto signs =
                 signs_of_all(std::move(pass.evidence), space, may_be_layers, cloud.ranks(), options.memory))
@@ -362,20 +369,58 @@ SignsOfAll find_signs(ScratchCloud& cloud, const CloudSurvey& survey, std::span<
     }
 }
 
+/// What has been done before the normals are made.
+struct Begun {
+    bool is_sided = false;
+    NormalsReport report;
+    Estimating how;
+    SignsOfAll signs; ///< if it is
+};
+
+Ranks::Bytes bytes_of_begun(const Begun& begun) {
+    Ranks::Bytes bytes;
+    put(begun.is_sided, bytes), put(begun.report, bytes), put(begun.how, bytes);
+    put_vector(begun.signs.number, bytes), put_vector(begun.signs.sign, bytes);
+    put(begun.signs.report, bytes);
+    return bytes;
+}
+
+Begun begun_from(const Ranks::Bytes& bytes) {
+    ByteReader reader(bytes);
+    Begun begun;
+    begun.is_sided = reader.take<bool>();
+    begun.report = reader.take<NormalsReport>(), begun.how = reader.take<Estimating>();
+    begun.signs.number = reader.take_vector<Index>(), begun.signs.sign = reader.take_vector<std::int8_t>();
+    begun.signs.report = reader.take<OrientReport>();
+    return begun;
+}
+
 } // namespace
 
 NormalsReport make_cloud_normals(ScratchCloud& cloud, CloudSurvey& survey,
                                  const CloudNormalsOptions& options) {
-    NormalsReport report;
-    report.outliers = leave_outliers_out(cloud, survey, options.plan, options.most_points);
-    const Estimating how = estimating(cloud, survey, options);
-    report.noise = *how.estimate.noise;
+    Begun begun = options.begun.empty() ? Begun() : begun_from(options.begun);
+    const auto keep = [&](bool sided) {
+        begun.is_sided = sided;
+        if (options.keep) options.keep(sided, bytes_of_begun(begun));
+    };
+    PartStore store(cloud);
+    if (options.begun.empty()) {
+        begun.report.outliers = leave_outliers_out(cloud, survey, options.plan, options.most_points, store);
+        begun.how = estimating(cloud, survey, options);
+        begun.report.noise = *begun.how.estimate.noise;
+        keep(false);
+    }
     const std::vector<VoxelRange> ranges = options.plan();
-    const SignsOfAll signs = find_signs(cloud, survey, ranges, how, options);
-    report.orientation = signs.report;
+    if (!begun.is_sided) {
+        begun.signs = find_signs(cloud, survey, ranges, begun.how, options, store);
+        begun.report.orientation = begun.signs.report;
+        keep(true);
+    }
     ScratchCloud next = cloud.without_points();
-    SidedPass pass(how, signs, next);
+    SidedPass pass(begun.how, begun.signs, store, next);
     for_parts(cloud, survey.sums, ranges, [&](const CloudPart& part) { return pass.add(part); });
+    NormalsReport report = begun.report;
     report.bent = cloud.ranks().sum(pass.bent), report.missing = cloud.ranks().sum(pass.missing);
     cloud.take_with_normals(std::move(next));
     survey = survey_cloud(cloud, survey.sums.points(), options.most_points);

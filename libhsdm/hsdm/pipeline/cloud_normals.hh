@@ -11,6 +11,10 @@ struct CloudNormalsOptions {
     int ghost_voxels = 0;        ///< round the parts that noise is measured in
     std::size_t most_points = 0; ///< that are read at a time
     std::size_t memory = 0;      ///< bytes that the patches of all may take
+    /// Where what is done can be kept: called with what `begun` of a later call has to be, of the cloud and
+    /// the survey as they are then; `sided`: else outliers are left out, and nothing more.
+    std::function<void(bool sided, const Ranks::Bytes&)> keep{};
+    Ranks::Bytes begun{}; ///< empty: nothing is done
 };
 
 /// Leaves outliers out, fits the cube to what is left and gives all points normals: the same bits as in one

@@ -1,7 +1,7 @@
 #include "hsdm/pipeline/cloud_outliers.hh"
 
 #include "hsdm/core/large_vector.hh"
-#include "hsdm/pipeline/cloud_parts.hh"
+#include "hsdm/pipeline/part_store.hh"
 #include "hsdm/pipeline/stray_search.hh"
 
 #include <algorithm>
@@ -16,9 +16,8 @@ struct PartNeighbors {
     Neighbors neighbors;
     KnownPoints known;
 
-    PartNeighbors(const CloudPart& part, int finest)
-        : neighbors(find_neighbors(part.octree(), {.finest_level = finest})),
-          known(part.known_by(neighbors)) {}
+    PartNeighbors(const CloudPart& part, int finest, PartStore& store)
+        : neighbors(store.neighbors(part, {.finest_level = finest})), known(part.known_by(neighbors)) {}
 };
 
 std::vector<std::uint64_t> sum_of_each(const std::vector<std::uint64_t>& own, Ranks& ranks) {
@@ -53,14 +52,15 @@ float median_of_all(const std::vector<float>& values, Ranks& ranks) {
     return 0;
 }
 
-ReachOfAll reach_of_all(ScratchCloud& cloud, const Survey& sums, std::span<const VoxelRange> ranges) {
+ReachOfAll reach_of_all(ScratchCloud& cloud, const Survey& sums, std::span<const VoxelRange> ranges,
+                        PartStore& store) {
     std::vector<float> squares; // as single precision has them, which reaches are roots of
     std::size_t volumes = 0, looked_at = 0;
     const std::size_t step = volume_stride(sums.points());
     const int finest = sums.finest_leaves();
     for_parts(cloud, sums, ranges, [&](const CloudPart& part) {
         if (part.lacks_neighbors(NeighborOptions().count)) return false;
-        const auto [neighbors, known] = PartNeighbors(part, finest);
+        const auto [neighbors, known] = PartNeighbors(part, finest, store);
         if (!known.all(part.begin(), part.end())) return false;
         for (std::size_t i = part.begin(); i < part.end(); ++i) {
             push_large(squares, static_cast<float>(neighbors.reach[i] * neighbors.reach[i]));
@@ -76,13 +76,13 @@ ReachOfAll reach_of_all(ScratchCloud& cloud, const Survey& sums, std::span<const
 
 /// Those of all ranks that a round finds.
 std::vector<PointRow> find_outliers(ScratchCloud& cloud, const Survey& sums,
-                                    std::span<const VoxelRange> ranges) {
-    const ReachOfAll all = reach_of_all(cloud, sums, ranges);
+                                    std::span<const VoxelRange> ranges, PartStore& store) {
+    const ReachOfAll all = reach_of_all(cloud, sums, ranges, store);
     const int finest = sums.finest_leaves();
     std::vector<PointRow> rows;
     for_parts(cloud, sums, ranges, [&](const CloudPart& part) {
         if (part.lacks_neighbors(NeighborOptions().count)) return false;
-        auto [neighbors, known] = PartNeighbors(part, finest);
+        auto [neighbors, known] = PartNeighbors(part, finest, store);
         if (!known.all(part.begin(), part.end()) || !known.all_around(part.begin(), part.end())) return false;
         const std::vector<std::uint8_t> found = outliers_by_distance(part.octree(), neighbors, all);
         for (std::size_t i = part.begin(); i < part.end(); ++i)
@@ -105,11 +105,11 @@ Occurrences occurrences(const std::vector<PointRow>& rows, const ScratchCloud& c
 } // namespace
 
 Occurrences leave_outliers_out(ScratchCloud& cloud, CloudSurvey& survey, const PlanRanges& plan,
-                               std::size_t most) {
+                               std::size_t most, PartStore& store) {
     Occurrences total;
     std::vector<PointRow> out;
     for (int round = 0; round < OutlierOptions().rounds; ++round) {
-        const std::vector<PointRow> some = find_outliers(cloud, survey.sums, plan());
+        const std::vector<PointRow> some = find_outliers(cloud, survey.sums, plan(), store);
         if (some.empty()) break;
         total.add(occurrences(some, cloud));
         append_large(out, some);

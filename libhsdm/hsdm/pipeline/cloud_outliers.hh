@@ -9,10 +9,12 @@ namespace hsdm {
 /// ranks.
 using PlanRanges = std::function<std::vector<VoxelRange>()>;
 
+class PartStore;
+
 /// Leaves them out, and fits the cube to what is left; the survey becomes that of what is left. Points are
 /// read `most` or a cell's at a time. Keeps 4 bytes of each point of this rank. Returns how many, the first
 /// in the cloud's coordinates. For all ranks at the same time. Throws Error as for_parts().
 Occurrences leave_outliers_out(ScratchCloud& cloud, CloudSurvey& survey, const PlanRanges& plan,
-                               std::size_t most);
+                               std::size_t most, PartStore& store);
 
 } // namespace hsdm

@@ -5,15 +5,18 @@
 namespace hsdm {
 
 CloudPart::CloudPart(const ScratchCloud& cloud, std::span<const Survey::FirstPoint> first,
-                     const VoxelRange& range, const std::vector<PointRow>& rows,
+                     const ScratchCloud::Surroundings& around, const std::vector<PointRow>& rows,
                      std::vector<MortonCode> missing)
-    : octree_(cloud.octree_of(rows)), cell_depth_(cloud.cell_depth()), missing_(std::move(missing)) {
+    : around_(around),
+      octree_(cloud.octree_of(rows)),
+      cell_depth_(cloud.cell_depth()),
+      missing_(std::move(missing)) {
     const int shift = 3 * (morton_levels - cloud.depth());
     const auto first_of = [&](MortonCode code) {
         return static_cast<std::size_t>(std::ranges::lower_bound(octree_.codes, code << shift)
                                         - octree_.codes.begin());
     };
-    begin_ = first_of(range.begin), end_ = first_of(range.end);
+    begin_ = first_of(range().begin), end_ = first_of(range().end);
     const int to_cell = 3 * (morton_levels - cell_depth_);
     for (std::size_t i = 0; i < octree_.size(); ++i) {
         const MortonCode cell = octree_.codes[i] >> to_cell;
@@ -75,7 +78,7 @@ void for_parts(ScratchCloud& cloud, const Survey& sums, std::span<const VoxelRan
             std::vector<MortonCode> missing;
             const std::vector<PointRow> rows = cloud.rows_of_cells(range, ghost, missing);
             if (rows.empty()) continue;
-            const CloudPart part(cloud, first, range, rows, std::move(missing));
+            const CloudPart part(cloud, first, {range, ghost}, rows, std::move(missing));
             if (part.begin() == part.end() || work(part)) continue;
             if (2 * ghost > most_cells * cloud.cell_side())
                 refuse_in_tiles("what some points depend on is farther off than tiles see");

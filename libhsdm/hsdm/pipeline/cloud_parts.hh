@@ -10,8 +10,12 @@ namespace hsdm {
 class CloudPart {
 public:
     /// `first`: of the whole. `missing`: cells with points that it has not, ascending.
-    CloudPart(const ScratchCloud& cloud, std::span<const Survey::FirstPoint> first, const VoxelRange& range,
-              const std::vector<PointRow>& rows, std::vector<MortonCode> missing);
+    CloudPart(const ScratchCloud& cloud, std::span<const Survey::FirstPoint> first,
+              const ScratchCloud::Surroundings& around, const std::vector<PointRow>& rows,
+              std::vector<MortonCode> missing);
+
+    const VoxelRange& range() const { return around_.range; }
+    int ghost() const { return around_.ghost; } ///< voxels around it, or more
 
     const Octree& octree() const { return octree_; }
     std::size_t begin() const { return begin_; } ///< of its own points, those of the range
@@ -33,6 +37,7 @@ public:
     Index number(std::size_t point) const;
 
 private:
+    ScratchCloud::Surroundings around_;
     Octree octree_;
     int cell_depth_;
     std::vector<MortonCode> missing_;

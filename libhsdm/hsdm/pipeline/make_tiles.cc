@@ -1,6 +1,7 @@
 #include "hsdm/pipeline/make_tiles.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/hash.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/pipeline/compare_pieces.hh"
 #include "hsdm/pipeline/stray_search.hh"
@@ -33,6 +34,7 @@ public:
             make_due(due, ghost, pieces);
             if (!known_.outliers) {
                 const StraySearch::Result strays = leave_strays_out();
+                if (in_.on_outliers) in_.on_outliers();
                 if (strays.moved) return std::nullopt;
                 if (strays.outliers.count > 0) continue; // all are due still
             }
@@ -63,11 +65,52 @@ private:
     }
 
     Piece checked_piece(const VoxelRange& range, int ghost) {
+        const std::uint64_t key = key_of(range, ghost);
+        if (const auto record = in_.kept ? in_.kept->tile(key) : std::nullopt) return kept_piece(*record);
+        const std::size_t far = strays_.far_cells().size();
         Piece piece = make_tile(range, ghost);
         for (const HandleWork& work : piece.counts.handle_work)
             if (!work.is_complete) refuse_handles();
         if (in_.store) in_.store->put(piece);
+        if (in_.kept && in_.kept->is_kept() && !strays_.has_found()) keep(piece, key, ghost, far);
         return piece;
+    }
+
+    /// Of all that a piece is made by: what is of the whole cloud and its options goes without saying.
+    std::uint64_t key_of(const VoxelRange& range, int ghost) const {
+        OrderedHash hash;
+        for (const std::uint64_t code : {range.begin, range.end}) hash.add(code);
+        for (const int number : {range.depth, range.cell_shift, ghost, known_.tangles.rounds})
+            hash.add(static_cast<std::uint64_t>(number));
+        for (const bool is : {turned_, known_.has_layers, known_.go_back, known_.tangles.weighed,
+                              known_.tangles.mends, known_.tangles.replaces})
+            hash.add(std::uint64_t{is});
+        for (const std::size_t count : known_.largest) hash.add(std::uint64_t{count});
+        hash.add(std::uint64_t{in_.survey.sums.points()});
+        hash.add(cloud_.cube_extent());
+        for (const double x : cloud_.origin()) hash.add(x);
+        return hash.value() | std::uint64_t{1} << 63; // no pass
+    }
+
+    /// `far`: so many cells were put off before.
+    void keep(const Piece& piece, std::uint64_t key, int ghost, std::size_t far) {
+        in_.store->flush_to_disk();
+        Ranks::Bytes record;
+        put(ghost, record);
+        const std::vector<MortonCode>& cells = strays_.far_cells();
+        put_vector(std::vector<MortonCode>(cells.begin() + static_cast<std::ptrdiff_t>(far), cells.end()),
+                   record);
+        in_.store->put_record(piece, record);
+        in_.kept->keep_tile(key, record, in_.store->bytes());
+    }
+
+    Piece kept_piece(const Ranks::Bytes& record) {
+        ByteReader reader(record);
+        const auto ghost = reader.take<int>();
+        const auto far = reader.take_vector<MortonCode>();
+        if (!known_.outliers) strays_.put_off(far, ghost);
+        ++how_.kept_tiles;
+        return in_.store->take_record(reader);
     }
 
     static void refuse_handles() {

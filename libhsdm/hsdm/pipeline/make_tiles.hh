@@ -2,6 +2,7 @@
 // All tiles of a cloud on disk, each with as much around it as it takes for neighbours to agree.
 
 #include "hsdm/pipeline/cloud_survey.hh"
+#include "hsdm/pipeline/kept_passes.hh"
 #include "hsdm/pipeline/piece_store.hh"
 #include "hsdm/pipeline/tile_piece.hh"
 
@@ -15,9 +16,11 @@ struct TilesInput {
     CloudSurvey& survey; ///< is taken again then
     const ReconstructOptions& options;
     const Phases& phases;
-    std::size_t group_points = 0; ///< at once, for a survey
-    int ghost_voxels = 0;         ///< round a tile at first
-    PieceStore* store = nullptr;  ///< finished pieces are put there; null: they stay in memory
+    std::size_t group_points = 0;        ///< at once, for a survey
+    int ghost_voxels = 0;                ///< round a tile at first
+    PieceStore* store = nullptr;         ///< finished pieces are put there; null: they stay in memory
+    KeptPasses* kept = nullptr;          ///< where there is a store: keeps them, and has some of them
+    std::function<void()> on_outliers{}; ///< called once they have been looked for
 };
 
 /// What making tiles finds out of the whole, so that tiles must be made again; it holds for those made

@@ -43,4 +43,31 @@ void PieceStore::take_facets(Piece& piece) const {
     file_.read(place.sides_at, place.sides, piece.sides);
 }
 
+void PieceStore::put_record(const Piece& piece, Ranks::Bytes& bytes) const {
+    hsdm::put(piece.range, bytes);
+    hsdm::put(place_of(piece), bytes);
+    hsdm::put(piece.counts, bytes);
+    put_vector(piece.border, bytes), put_vector(piece.beyond, bytes);
+    for (const PartComponents& part : piece.components) {
+        hsdm::put(part.largest, bytes);
+        put_vector(part.sizes, bytes), put_vector(part.shared, bytes);
+    }
+}
+
+Piece PieceStore::take_record(ByteReader& record) {
+    Piece piece;
+    piece.first.clear(); // is on disk
+    piece.range = record.take<VoxelRange>();
+    places_[piece.range.begin] = record.take<Place>();
+    piece.counts = record.take<FacetCounts>();
+    piece.border = record.take_vector<Piece::Digest>();
+    piece.beyond = record.take_vector<Piece::Digest>();
+    for (PartComponents& part : piece.components) {
+        part.largest = record.take<std::size_t>();
+        part.sizes = record.take_vector<std::size_t>();
+        part.shared = record.take_vector<PartComponents::Shared>();
+    }
+    return piece;
+}
+
 } // namespace hsdm

@@ -1,6 +1,7 @@
 #pragma once
 // Finished pieces on disk, until all are joined.
 
+#include "hsdm/core/ranks.hh"
 #include "hsdm/io/scratch_bytes.hh"
 #include "hsdm/pipeline/tile_piece.hh"
 
@@ -13,7 +14,7 @@ namespace hsdm {
 class PieceStore {
 public:
     /// Throws Error as ScratchBytes.
-    explicit PieceStore(const std::string& folder) : file_(folder) {}
+    explicit PieceStore(const ScratchPlace& place) : file_(place) {}
 
     /// Writes a piece and takes its arrays; the range says which it is. Throws Error if the disk is full.
     void put(Piece& piece);
@@ -28,6 +29,12 @@ public:
     void take_facets(Piece& piece) const; ///< first, corners, sides
 
     std::size_t bytes() const { return file_.size(); } ///< on disk
+    void flush_to_disk() const { file_.flush_to_disk(); }
+
+    /// What is in memory of a piece that was put, and where on disk the rest is.
+    void put_record(const Piece& piece, Ranks::Bytes& bytes) const;
+    /// The piece of a record, with the rest in this store's file.
+    Piece take_record(ByteReader& record);
 
 private:
     struct Place {

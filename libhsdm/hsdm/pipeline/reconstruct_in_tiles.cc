@@ -10,6 +10,7 @@
 #include "hsdm/pipeline/cloud_normals.hh"
 #include "hsdm/pipeline/constants.hh"
 #include "hsdm/pipeline/gather_pieces.hh"
+#include "hsdm/pipeline/kept_passes.hh"
 #include "hsdm/pipeline/make_tiles.hh"
 #include "hsdm/pipeline/narrow_cylinders.hh"
 #include "hsdm/pipeline/options.hh"
@@ -23,6 +24,7 @@
 #include <algorithm>
 #include <chrono>
 #include <optional>
+#include <utility>
 
 namespace hsdm {
 namespace {
@@ -129,29 +131,18 @@ public:
           ranks_(ranks),
           work_(ranks),
           phases_(options),
-          bytes_per_voxel_(bytes_per_voxel) {
+          bytes_per_voxel_(bytes_per_voxel),
+          passes_(tiles.kept, ranks) {
+        if (passes_.done() != Pass::none) take_state();
         report_.threads = tbb::this_task_arena::max_concurrency();
-        phases_.run("octree", 0, report_.seconds.octree, [&] {
-            const CloudExtent extent = measure_extent(parts, ranks);
-            const int depth = options.depth.value_or(depth_for_cells(extent.finite()));
-            const bool given = extent.has_normals && options.normals != NormalSource::estimate;
-            estimates_ = !given;
-            check_normals_of(extent);
-            note_options(estimates_, options, report_);
-            cloud_.emplace(parts, extent, depth, tiles, ranks, given);
-        });
+        run(Pass::sorted, "octree", 0, report_.seconds.octree, [&] { sort_points(parts); });
         const std::size_t group = points_at_once(tiles, 0, bytes_per_point);
         os::give_back_freed_memory(); // here and later, or what one phase had is held beside what the next
                                       // has
-        phases_.run("survey", 0.1, report_.seconds.normals, [&] {
-            survey_.emplace(survey_cloud(*cloud_, cloud_->extent().finite(), group));
-            refuse_unfit_places(*survey_, *cloud_);
-            if (!estimates_) refuse_unfit_normals(*survey_);
-        });
-        duplicates_ = cloud_->extent().finite() - survey_->sums.points();
+        run(Pass::surveyed, "survey", 0.1, report_.seconds.normals, [&] { survey_points(group); });
         if (estimates_)
-            phases_.run("normals", 0.12, report_.seconds.normals, [&] { estimate_normals(group); });
-        phases_.run("resolution", 0.15, report_.seconds.octree, [&] { choose_resolution(group); });
+            run(Pass::normals, "normals", 0.12, report_.seconds.normals, [&] { estimate_normals(group); });
+        run(Pass::resolution, "resolution", 0.15, report_.seconds.octree, [&] { choose_resolution(group); });
         phases_.run("tiles", 0.2, report_.seconds.facets, [&] { make_facets(group); });
     }
 
@@ -177,6 +168,84 @@ public:
     }
 
 private:
+    /// A pass, unless it was kept.
+    template <class Work>
+    void run(Pass pass, const char* name, double share, double& seconds, const Work& work) {
+        phases_.run(name, share, seconds, [&] {
+            if (passes_.has(pass)) return;
+            work();
+            keep(pass);
+        });
+    }
+
+    void keep(Pass pass, const Ranks::Bytes& normals = {}) {
+        if (!passes_.is_kept()) return;
+        Ranks::Bytes bytes;
+        cloud_->put_state(bytes);
+        put(survey_.has_value(), bytes);
+        if (survey_) survey_->sums.put_state(bytes), put(survey_->spacing, bytes);
+        put(duplicates_, bytes), put(estimates_, bytes);
+        put(known_.has_layers, bytes), put(known_.outliers.has_value(), bytes);
+        put(known_.outliers.value_or(Occurrences()), bytes);
+        put(report_.input.spacing, bytes);
+        const auto put_text = [&](const std::string& text) {
+            put_vector(std::vector<char>(text.begin(), text.end()), bytes);
+        };
+        put(std::uint64_t{report_.options.size()}, bytes);
+        for (const auto& [name, value] : report_.options) put_text(name), put_text(value);
+        put(std::uint64_t{report_.rejected.size()}, bytes);
+        for (const auto& [name, count] : report_.rejected) put_text(name), put(count, bytes);
+        put_vector(normals, bytes);
+        passes_.keep(pass, *cloud_, bytes);
+    }
+
+    void take_state() {
+        how_.went_on = true;
+        const Ranks::Bytes bytes = passes_.state();
+        ByteReader reader(bytes);
+        cloud_.emplace(reader, tiles_, ranks_);
+        if (reader.take<bool>()) {
+            Survey sums(reader);
+            survey_.emplace(CloudSurvey{std::move(sums), reader.take<double>()});
+        }
+        duplicates_ = reader.take<std::size_t>(), estimates_ = reader.take<bool>();
+        known_.has_layers = reader.take<bool>();
+        const bool has_outliers = reader.take<bool>();
+        const auto outliers = reader.take<Occurrences>();
+        if (has_outliers) known_.outliers = outliers;
+        report_.input.spacing = reader.take<double>();
+        const auto take_text = [&] {
+            const auto text = reader.take_vector<char>();
+            return std::string(text.begin(), text.end());
+        };
+        for (auto count = reader.take<std::uint64_t>(); count > 0; --count) {
+            std::string name = take_text();
+            report_.options[std::move(name)] = take_text();
+        }
+        for (auto count = reader.take<std::uint64_t>(); count > 0; --count) {
+            std::string name = take_text();
+            report_.rejected[std::move(name)] = reader.take<std::size_t>();
+        }
+        normals_begun_ = reader.take_vector<char>();
+    }
+
+    void sort_points(const PointParts& parts) {
+        const CloudExtent extent = measure_extent(parts, ranks_);
+        const int depth = options_.depth.value_or(depth_for_cells(extent.finite()));
+        const bool given = extent.has_normals && options_.normals != NormalSource::estimate;
+        estimates_ = !given;
+        check_normals_of(extent);
+        note_options(estimates_, options_, report_);
+        cloud_.emplace(parts, extent, depth, tiles_, ranks_, given);
+    }
+
+    void survey_points(std::size_t group) {
+        survey_.emplace(survey_cloud(*cloud_, cloud_->extent().finite(), group));
+        refuse_unfit_places(*survey_, *cloud_);
+        if (!estimates_) refuse_unfit_normals(*survey_);
+        duplicates_ = cloud_->extent().finite() - survey_->sums.points();
+    }
+
     void check_normals_of(const CloudExtent& extent) const {
         if (!estimates_) return;
         if (options_.normals == NormalSource::given)
@@ -188,8 +257,14 @@ private:
 
     void estimate_normals(std::size_t group) {
         const auto left = tiles_.memory - std::min(tiles_.memory, bytes_of_program);
-        const NormalsReport made = make_cloud_normals(
-            *cloud_, *survey_, {[&] { return plan(group); }, tiles_.ghost_voxels, group, left});
+        const CloudNormalsOptions how{
+            [&] { return plan(group); },
+            tiles_.ghost_voxels,
+            group,
+            left,
+            [&](bool sided, const Ranks::Bytes& begun) { keep(sided ? Pass::sided : Pass::cleaned, begun); },
+            std::exchange(normals_begun_, {})};
+        const NormalsReport made = make_cloud_normals(*cloud_, *survey_, how);
         known_.outliers = made.outliers;
         report_.rejected["normals_near_creases"] = made.bent;
         report_.rejected["normals_missing"] = made.missing;
@@ -231,8 +306,10 @@ private:
     }
 
     void make_facets(std::size_t group, bool turned) {
-        store_.emplace(tiles_.scratch);
-        const TilesInput in{*cloud_, *survey_, options_, phases_, group, tiles_.ghost_voxels, &*store_};
+        store_.emplace(passes_.pieces(tiles_.scratch));
+        const TilesInput in{*cloud_,  *survey_, options_,
+                            phases_,  group,    tiles_.ghost_voxels,
+                            &*store_, &passes_, [&] { keep(Pass::strays); }};
         facets_ = WholeFacets();
         os::give_back_freed_memory();
         std::vector<VoxelRange> ranges;
@@ -272,6 +349,8 @@ private:
     std::size_t duplicates_ = 0;
     bool estimates_ = false; // normals
     TilesKnown known_;
+    KeptPasses passes_;
+    Ranks::Bytes normals_begun_; // and kept
     WholeFacets facets_;
     TileReport how_;
 };

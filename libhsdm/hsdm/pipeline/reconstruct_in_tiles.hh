@@ -9,6 +9,7 @@
 
 namespace hsdm {
 
+class KeptScratch;
 class Ranks;
 
 struct TileOptions {
@@ -18,6 +19,9 @@ struct TileOptions {
     std::string scratch{};       ///< folder for the points on disk; empty: that for temporary files
     int ghost_voxels = 16;       ///< voxels round a tile that its points are known of, >= 4
     std::size_t most_points = 0; ///< of a tile and what is round it; 0: as the memory allows
+    /// Where each pass stays once it is done, for a run after one that has ended before its time; the same
+    /// cloud and options must have made what is there. Null: nothing stays. Not removed by the run.
+    KeptScratch* kept = nullptr;
 };
 
 /// Calls visit(part) for parts of a cloud, in the order of its points; the same each time it is called.
@@ -29,6 +33,8 @@ struct TileReport {
     std::size_t own_tiles = 0;          ///< of all, this rank's
     std::size_t points_read = 0;        ///< by this rank's tiles, what is round them too
     std::size_t scratch_bytes = 0;      ///< of this rank
+    bool went_on = false;               ///< with passes that were kept
+    std::size_t kept_tiles = 0;         ///< of own_tiles, those that were
     std::vector<Report::Rank> ranks{};  ///< what each did
 };
 

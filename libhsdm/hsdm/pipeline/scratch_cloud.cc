@@ -4,6 +4,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/errors.hh"
+#include "hsdm/io/kept_scratch.hh"
 #include "hsdm/pipeline/near_cells.hh"
 #include "hsdm/pipeline/point_exchange.hh"
 #include "hsdm/pipeline/tile_plan.hh"
@@ -65,6 +66,35 @@ CloudExtent extent_of_part(const PointParts& parts) {
     return extent;
 }
 
+void put_extent(const CloudExtent& extent, Ranks::Bytes& bytes) {
+    for (const std::size_t count : {extent.points, extent.nonfinite, extent.first_nonfinite})
+        put(count, bytes);
+    put(extent.box, bytes);
+    for (const bool has : {extent.has_normals, extent.has_scanners}) put(has, bytes);
+}
+
+CloudExtent extent_from(ByteReader& bytes) {
+    CloudExtent extent;
+    for (std::size_t* count : {&extent.points, &extent.nonfinite, &extent.first_nonfinite})
+        *count = bytes.take<std::size_t>();
+    extent.box = bytes.take<Box>();
+    extent.has_normals = bytes.take<bool>(), extent.has_scanners = bytes.take<bool>();
+    return extent;
+}
+
+OctreeOptions octree_options(bool use_normals, const Box& whole) {
+    OctreeOptions options;
+    options.use_normals = use_normals;
+    options.placement = CubePlacement::centred;
+    options.whole = whole;
+    return options;
+}
+
+/// A new file of a job that is kept, or one without a name.
+ScratchPlace new_place(KeptScratch* kept, const std::string& folder) {
+    return kept ? ScratchPlace{kept->folder(), kept->new_name("points"), 0} : ScratchPlace{folder, {}, 0};
+}
+
 /// Adds what the next rank finds.
 void join(const CloudExtent& next, CloudExtent& extent) {
     if (extent.points > 0 && next.points > 0 && extent.has_normals != next.has_normals)
@@ -87,17 +117,10 @@ void refuse_in_tiles(const std::string& what) {
 CloudExtent measure_extent(const PointParts& parts, Ranks& ranks) {
     CloudExtent own = extent_of_part(parts), extent;
     Ranks::Bytes bytes;
-    for (const std::size_t count : {own.points, own.nonfinite, own.first_nonfinite}) put(count, bytes);
-    put(own.box, bytes);
-    for (const bool has : {own.has_normals, own.has_scanners}) put(has, bytes);
+    put_extent(own, bytes);
     for (const Ranks::Bytes& got : ranks.gather(bytes)) {
         ByteReader reader(got);
-        CloudExtent next;
-        for (std::size_t* count : {&next.points, &next.nonfinite, &next.first_nonfinite})
-            *count = reader.take<std::size_t>();
-        next.box = reader.take<Box>();
-        next.has_normals = reader.take<bool>(), next.has_scanners = reader.take<bool>();
-        join(next, extent);
+        join(extent_from(reader), extent);
     }
     extent.sample = std::move(own.sample);
     extent.sample_stride = own.sample_stride;
@@ -120,15 +143,14 @@ ScratchCloud::ScratchCloud(const PointParts& parts, const CloudExtent& extent, i
       depth_(depth),
       cell_depth_(cell_depth_of(depth)),
       most_waiting_(points_waiting(options)),
-      folder_(options.scratch),
+      kept_(options.kept),
+      place_(new_place(kept_, options.scratch)),
       buffered_(bytes_buffered(options)),
       ranks_(ranks),
       scratch_(std::make_unique<ScratchPoints>(
-          folder_, extent.finite() / static_cast<std::size_t>(ranks.size()), buffered_)),
+          place_, extent.finite() / static_cast<std::size_t>(ranks.size()), buffered_)),
       has_normals_(use_normals && extent.has_normals) {
-    options_.use_normals = has_normals_;
-    options_.placement = CubePlacement::centred;
-    options_.whole = extent.box;
+    options_ = octree_options(has_normals_, extent.box);
     none_.extent = extent.box.extent();
     none_.origin = centred_origin(extent.box, none_.extent);
     none_.bounds = extent.box;
@@ -137,6 +159,39 @@ ScratchCloud::ScratchCloud(const PointParts& parts, const CloudExtent& extent, i
     extent_.sample = {};
     sort_points(parts);
     gather_cells();
+}
+
+ScratchCloud::ScratchCloud(ByteReader& bytes, const TileOptions& options, Ranks& ranks)
+    : extent_(extent_from(bytes)),
+      frame_(extent_.box),
+      depth_(bytes.take<int>()),
+      cell_depth_(cell_depth_of(depth_)),
+      most_waiting_(points_waiting(options)),
+      kept_(options.kept),
+      buffered_(bytes_buffered(options)),
+      ranks_(ranks) {
+    none_.extent = bytes.take<double>(), none_.origin = bytes.take<Vec3>(), none_.bounds = bytes.take<Box>();
+    has_normals_ = bytes.take<bool>(), arranged_ = bytes.take<bool>();
+    options_ = octree_options(has_normals_, extent_.box);
+    begins_ = bytes.take_vector<MortonCode>(), fetched_ = bytes.take_vector<MortonCode>();
+    cells_ = bytes.take_vector<ScratchPoints::Cell>();
+    left_out_ = bytes.take_vector<PointRow>();
+    const std::vector<char> name = bytes.take_vector<char>();
+    place_ = {kept_->folder(), {name.begin(), name.end()}, bytes.take<std::size_t>()};
+    scratch_ = std::make_unique<ScratchPoints>(place_, bytes, buffered_);
+}
+
+void ScratchCloud::put_state(Ranks::Bytes& bytes) const {
+    put_extent(extent_, bytes);
+    put(depth_, bytes);
+    put(none_.extent, bytes), put(none_.origin, bytes), put(none_.bounds, bytes);
+    for (const bool has : {has_normals_, arranged_}) put(has, bytes);
+    put_vector(begins_, bytes), put_vector(fetched_, bytes);
+    put_vector(cells_, bytes);
+    put_vector(left_out_, bytes);
+    put_vector(std::vector<char>(place_.name.begin(), place_.name.end()), bytes);
+    put(scratch_->bytes(), bytes);
+    scratch_->put_index(bytes);
 }
 
 MortonCode ScratchCloud::cell_of(const Vec3& relative) const {
@@ -318,6 +373,8 @@ VoxelRange ScratchCloud::cells_of(const VoxelRange& range) const {
 
 std::vector<PointRow> ScratchCloud::rows_of(const VoxelRange& range, int ghost) const {
     std::vector<PointRow> rows, cell;
+    constexpr std::size_t remembered = 1 << 12; // voxels: those of a cell, or sixteen along an edge
+    std::vector<std::pair<MortonCode, bool>> is_near(remembered, {~MortonCode{0}, false});
     const int to_level = 3 * (morton_levels - depth_);
     const VoxelRange of_cells = cells_of(range);
     for (const MortonCode c : cells_near(of_cells, cells_within(ghost), cells_)) {
@@ -329,8 +386,10 @@ std::vector<PointRow> ScratchCloud::rows_of(const VoxelRange& range, int ghost) 
         cell.clear();
         scratch_->read(c, cell);
         for (const PointRow& row : cell) {
-            const MortonCode code = code_at(relative_place(row), cube_extent());
-            if (range.is_near(morton_decode(code >> to_level), ghost)) rows.push_back(row);
+            const MortonCode voxel = code_at(relative_place(row), cube_extent()) >> to_level;
+            auto& [code, near] = is_near[voxel % remembered];
+            if (code != voxel) code = voxel, near = range.is_near(morton_decode(voxel), ghost);
+            if (near) rows.push_back(row);
         }
     }
     return rows;
@@ -379,6 +438,7 @@ void ScratchCloud::for_tiles(std::span<const VoxelRange> ranges, int ghost,
 void ScratchCloud::leave_out(std::vector<PointRow> rows) {
     left_out_ = std::move(rows);
     std::ranges::sort(left_out_);
+    ++version_;
 }
 
 Box ScratchCloud::box_of_points(std::size_t most) const {
@@ -398,10 +458,11 @@ ScratchCloud::ScratchCloud(const ScratchCloud& before, const Box& bounds, double
       depth_(depth),
       cell_depth_(cell_depth_of(depth)),
       most_waiting_(before.most_waiting_),
-      folder_(before.folder_),
+      kept_(before.kept_),
+      place_(new_place(kept_, before.place_.folder)),
       buffered_(before.buffered_),
       ranks_(before.ranks_),
-      scratch_(std::make_unique<ScratchPoints>(folder_, before.points_here(), buffered_)),
+      scratch_(std::make_unique<ScratchPoints>(place_, before.points_here(), buffered_)),
       has_normals_(before.has_normals_),
       arranged_(true) {
     none_.bounds = bounds;
@@ -446,11 +507,12 @@ void ScratchCloud::rearrange(const Box& bounds, double extent, int depth, std::s
 void ScratchCloud::take(ScratchCloud&& next) {
     none_ = std::move(next.none_);
     depth_ = next.depth_, cell_depth_ = next.cell_depth_;
-    scratch_ = std::move(next.scratch_);
+    scratch_ = std::move(next.scratch_), place_ = std::move(next.place_);
     has_normals_ = next.has_normals_;
     arranged_ = next.arranged_;
     begins_ = std::move(next.begins_), cells_ = std::move(next.cells_);
     fetched_ = {}, left_out_ = {};
+    ++version_;
 }
 
 PointRow ScratchCloud::row_at(const Octree& octree, std::size_t point) {

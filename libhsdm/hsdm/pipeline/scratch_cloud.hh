@@ -12,6 +12,7 @@
 
 namespace hsdm {
 
+class KeptScratch;
 class PointExchange;
 
 /// Throws Error of a cloud that can be reconstructed, but not in tiles.
@@ -45,6 +46,14 @@ public:
     /// `use_normals`: false: it has none until they are made, whether the points have or not.
     ScratchCloud(const PointParts& parts, const CloudExtent& extent, int depth, const TileOptions& options,
                  Ranks& ranks, bool use_normals = true);
+    /// What put_state() of a cloud of these options has told.
+    ScratchCloud(ByteReader& bytes, const TileOptions& options, Ranks& ranks);
+    /// All but the points, which stay in the file.
+    void put_state(Ranks::Bytes& bytes) const;
+    const std::string& file_name() const { return place_.name; } ///< empty: it has none
+    void flush_to_disk() const { scratch_->flush_to_disk(); }
+    const std::string& scratch_folder() const { return place_.folder; }
+    std::size_t version() const { return version_; } ///< another one each time that points change
 
     const CloudExtent& extent() const { return extent_; } ///< as it was measured
     const Box& bounds() const { return none_.bounds; }
@@ -128,8 +137,9 @@ private:
     Octree none_;
     int depth_, cell_depth_;
     std::size_t most_waiting_; // points
-    std::string folder_;
-    std::size_t buffered_; // bytes
+    KeptScratch* kept_;        // null: files have no names
+    ScratchPlace place_;       // of this one's file
+    std::size_t buffered_;     // bytes
     Ranks& ranks_;
     std::unique_ptr<ScratchPoints> scratch_;
     bool has_normals_ = true;
@@ -138,6 +148,7 @@ private:
     std::vector<ScratchPoints::Cell> cells_;
     std::vector<MortonCode> fetched_; // cells of others, ascending
     std::vector<PointRow> left_out_;
+    std::size_t version_ = 0;
 };
 
 } // namespace hsdm

@@ -140,18 +140,36 @@ SparseLevel Survey::sparse() const {
         NormalOutlierOptions().points_per_voxel);
 }
 
+Survey::Survey(ByteReader& bytes)
+    : depth_(bytes.take<int>()),
+      cell_depth_(bytes.take<int>()),
+      expected_(bytes.take<std::size_t>()),
+      before_(bytes.take<std::size_t>()) {
+    add_next(bytes);
+}
+
+void Survey::put_state(Ranks::Bytes& bytes) const {
+    for (const int depth : {depth_, cell_depth_}) put(depth, bytes);
+    for (const std::size_t count : {expected_, before_}) put(count, bytes);
+    put_sums(bytes);
+}
+
+void Survey::put_sums(Ranks::Bytes& bytes) const {
+    put(points_, bytes);
+    put(deep_, bytes);
+    put(squares_, bytes);
+    put(leaves_, bytes);
+    put(sets_, bytes);
+    put_vector(cells_, bytes);
+    put_vector(normals_.number, bytes);
+    put_vector(normals_.points, bytes);
+    put_vector(places_, bytes);
+}
+
 void Survey::join(Ranks& ranks) {
     if (ranks.size() == 1) return;
     Ranks::Bytes own;
-    put(points_, own);
-    put(deep_, own);
-    put(squares_, own);
-    put(leaves_, own);
-    put(sets_, own);
-    put_vector(cells_, own);
-    put_vector(normals_.number, own);
-    put_vector(normals_.points, own);
-    put_vector(places_, own);
+    put_sums(own);
     Survey all(depth_, cell_depth_, expected_);
     for (const Ranks::Bytes& got : ranks.gather(own)) {
         ByteReader reader(got);

@@ -19,6 +19,10 @@ public:
     /// before the first part.
     Survey(int depth, int cell_depth, std::size_t expected, std::size_t before = 0);
 
+    /// What put_state() has told.
+    explicit Survey(ByteReader& bytes);
+    void put_state(Ranks::Bytes& bytes) const;
+
     void add(const Octree& part);
     /// Becomes that of all ranks, each of which has added parts that come before those of the next one.
     void join(Ranks& ranks);
@@ -54,6 +58,7 @@ private:
     bool is_split(MortonCode cell, MortonCode next, int level) const;
     std::size_t coarse_leaves() const;
     double squares_at(int level) const;
+    void put_sums(Ranks::Bytes& bytes) const;
     void add_next(ByteReader& rank);
 
     int depth_, cell_depth_;

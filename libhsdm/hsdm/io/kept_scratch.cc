@@ -1,0 +1,215 @@
+#include "hsdm/io/kept_scratch.hh"
+
+#include "hsdm/core/hash.hh"
+#include "hsdm/core/ranks.hh"
+#include "hsdm/core/system.hh"
+#include "hsdm/errors.hh"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+
+namespace hsdm {
+namespace {
+
+constexpr const char* log_name = "log";
+
+/// Before the bytes of each record; that of the first one, which tells the job, has no key.
+struct Head {
+    std::uint64_t key, size, hash;
+};
+
+std::string why() {
+    return std::strerror(errno);
+}
+
+std::uint64_t hash_of(std::uint64_t key, const KeptScratch::Bytes& bytes) {
+    OrderedHash hash;
+    hash.add(key), hash.add(std::uint64_t{bytes.size()});
+    for (std::size_t at = 0; at < bytes.size(); at += sizeof(std::uint64_t)) {
+        std::uint64_t word = 0;
+        std::memcpy(&word, bytes.data() + at, std::min(sizeof word, bytes.size() - at));
+        hash.add(word);
+    }
+    return hash.value();
+}
+
+KeptScratch::Bytes with_head(std::uint64_t key, const KeptScratch::Bytes& bytes) {
+    KeptScratch::Bytes all;
+    put(Head{key, bytes.size(), hash_of(key, bytes)}, all);
+    append_bytes(bytes.data(), bytes.size(), all);
+    return all;
+}
+
+KeptScratch::Bytes bytes_of_traits(const std::vector<KeptScratch::Trait>& job) {
+    KeptScratch::Bytes bytes;
+    for (const KeptScratch::Trait& trait : job)
+        for (const std::string* text : {&trait.name, &trait.value})
+            put_vector(std::vector<char>(text->begin(), text->end()), bytes);
+    return bytes;
+}
+
+std::vector<KeptScratch::Trait> traits_of(const KeptScratch::Bytes& bytes) {
+    std::vector<KeptScratch::Trait> job;
+    for (ByteReader reader(bytes); !reader.at_end();) {
+        const auto name = reader.take_vector<char>(), value = reader.take_vector<char>();
+        job.push_back({{name.begin(), name.end()}, {value.begin(), value.end()}});
+    }
+    return job;
+}
+
+/// The record that begins there, if it is whole.
+std::optional<std::pair<Head, KeptScratch::Bytes>> record_at(int log, std::size_t at, std::size_t end) {
+    Head head{};
+    if (end - at < sizeof head) return std::nullopt;
+    if (os::read_all_at(log, reinterpret_cast<char*>(&head), sizeof head, at)
+        != static_cast<std::ptrdiff_t>(sizeof head))
+        return std::nullopt;
+    if (head.size > end - at - sizeof head) return std::nullopt;
+    KeptScratch::Bytes bytes(head.size);
+    if (os::read_all_at(log, bytes.data(), bytes.size(), at + sizeof head)
+        != static_cast<std::ptrdiff_t>(bytes.size()))
+        return std::nullopt;
+    if (hash_of(head.key, bytes) != head.hash) return std::nullopt;
+    return std::pair(head, std::move(bytes));
+}
+
+std::string folder_of(const std::string& folder, int process) {
+    return (std::filesystem::path(folder) / ("hsdm-resume-" + std::to_string(process))).string();
+}
+
+} // namespace
+
+bool KeptScratch::is_there(const std::string& folder, int process) {
+    os::FileStatus status;
+    return os::status_of_entry(folder_of(folder, process), status);
+}
+
+KeptScratch::KeptScratch(const std::string& folder, int process, const std::vector<Trait>& job)
+    : folder_(folder_of(folder, process)) {
+    open();
+    try {
+        read_log(job);
+    } catch (...) {
+        os::close(log_);
+        throw;
+    }
+}
+
+KeptScratch::~KeptScratch() {
+    if (log_ >= 0) os::close(log_);
+}
+
+void KeptScratch::open() {
+    if (!os::make_folder(folder_) && errno != EEXIST)
+        throw Error(folder_, "cannot be made: " + why() + "; --scratch names another folder");
+    os::FileStatus status;
+    if (!os::status_of_entry(folder_, status) || status.kind != os::FileStatus::Kind::folder
+        || status.owner != os::effective_user())
+        throw Error(folder_, "is no folder of this user; --scratch names another one for it");
+    const std::string path = path_of(log_name);
+    log_ = os::open_to_append(path);
+    if (log_ < 0 && errno == ENOENT) {
+        os::close(os::create(path, 0600));
+        log_ = os::open_to_append(path);
+    }
+    if (log_ < 0) throw Error(path, "cannot be opened: " + why() + "; --scratch names another folder");
+    if (os::try_lock(log_)) return;
+    os::close(log_);
+    throw Error(folder_, "another process works on what is kept here; --scratch names another folder");
+}
+
+void KeptScratch::read_log(const std::vector<Trait>& job) {
+    os::FileStatus status;
+    if (!os::status_of(log_, status)) throw Error(folder_, "cannot be read: " + why());
+    const auto first = record_at(log_, 0, status.size);
+    if (!first) return begin(job);
+    const std::vector<Trait> kept = traits_of(first->second);
+    if (kept != job) refuse(kept, job);
+    end_ = sizeof(Head) + first->second.size();
+    while (const auto next = record_at(log_, end_, status.size)) {
+        records_.push_back({next->first.key, end_ + sizeof(Head), next->second.size()});
+        end_ = records_.back().at + records_.back().size;
+    }
+    cut(records_.size());
+    os::for_each_name(folder_, [&](const char* name) { // numbers that were given out
+        const char* const number = std::strrchr(name, '-');
+        if (number)
+            names_ = std::max(names_, static_cast<std::size_t>(std::strtoull(number + 1, nullptr, 10)));
+    });
+}
+
+/// There is nothing to go on with.
+void KeptScratch::begin(const std::vector<Trait>& job) {
+    remove_all_but({});
+    if (!os::resize(log_, 0)) throw Error(folder_, "cannot be written: " + why());
+    append(with_head(0, bytes_of_traits(job)));
+}
+
+void KeptScratch::refuse(const std::vector<Trait>& kept, const std::vector<Trait>& job) const {
+    constexpr const char* advice = "; remove the folder to begin anew, or name another with --scratch";
+    for (std::size_t i = 0; i < std::min(kept.size(), job.size()); ++i)
+        if (!(kept[i] == job[i]))
+            throw Error(folder_, "is kept of a job with another " + kept[i].name + ": " + kept[i].value
+                                     + ", and not " + job[i].value + advice);
+    throw Error(folder_, std::string("is kept of a job of other files or options") + advice);
+}
+
+void KeptScratch::append(const Bytes& bytes) {
+    if (!os::write_all(log_, {bytes.data(), bytes.size()}) || !os::flush_to_disk(log_)) {
+        const std::string failure = why();
+        os::resize(log_, end_); // or what comes next would stand behind half a record
+        throw Error(folder_,
+                    "cannot be written: " + failure + "; free some space, or name another --scratch");
+    }
+    end_ += bytes.size();
+}
+
+KeptScratch::Bytes KeptScratch::read(const Record& record) const {
+    Bytes bytes(record.size);
+    if (os::read_all_at(log_, bytes.data(), bytes.size(), record.at)
+        != static_cast<std::ptrdiff_t>(bytes.size()))
+        throw Error(folder_, "cannot be read; remove the folder to begin anew");
+    return bytes;
+}
+
+void KeptScratch::keep(std::uint64_t key, const Bytes& bytes) {
+    append(with_head(key, bytes));
+    records_.push_back({key, end_ - bytes.size(), bytes.size()});
+}
+
+void KeptScratch::cut(std::size_t count) {
+    if (count < records_.size()) {
+        end_ = records_[count].at - sizeof(Head);
+        records_.resize(count);
+    }
+    if (!os::resize(log_, end_)) throw Error(folder_, "cannot be written: " + why());
+}
+
+std::string KeptScratch::new_name(const std::string& name) {
+    return name + "-" + std::to_string(++names_);
+}
+
+bool KeptScratch::has_file(const std::string& name, std::size_t bytes) const {
+    os::FileStatus status;
+    return os::status_of_entry(path_of(name), status) && status.size >= bytes;
+}
+
+void KeptScratch::remove_all_but(std::span<const std::string> names) const {
+    std::vector<std::string> others;
+    os::for_each_name(folder_, [&](const char* name) {
+        if (name != std::string_view(log_name) && std::ranges::count(names, name) == 0)
+            others.emplace_back(name);
+    });
+    for (const std::string& name : others) os::remove(path_of(name));
+}
+
+void KeptScratch::remove() {
+    remove_all_but({});
+    os::remove(path_of(log_name));
+    os::remove_folder(folder_);
+}
+
+} // namespace hsdm

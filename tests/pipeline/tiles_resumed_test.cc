@@ -1,0 +1,209 @@
+// Runs in tiles that end before their time, and those that go on with what is left.
+#include "hsdm/errors.hh"
+#include "hsdm/io/kept_scratch.hh"
+#include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/pipeline/reconstruct_in_tiles.hh"
+#include "support/check.hh"
+#include "support/folder.hh"
+#include "support/rank_threads.hh"
+#include "support/sample.hh"
+
+#include <catch2/catch.hpp>
+
+#include <filesystem>
+#include <optional>
+
+using namespace hsdm;
+
+namespace {
+
+const std::vector<KeptScratch::Trait> this_job = {{"input", "a torus"}};
+
+PointCloud torus(bool normals) {
+    PointCloud cloud = support::sample(support::torus(1, 0.4), {.points = 2500, .normals = normals});
+    // is left out; one that is told by its distance alone lies beyond the others
+    cloud.positions.push_back({0.03, 0.02, normals ? 0.01 : 0.9});
+    if (normals) cloud.normals.push_back({0, 0, 1});
+    return cloud;
+}
+
+TileOptions small_tiles(KeptScratch* kept) {
+    TileOptions tiles;
+    tiles.memory = std::size_t{1} << 30;
+    tiles.most_points = 1200;
+    tiles.kept = kept;
+    return tiles;
+}
+
+/// One process that fails at a certain time that it would tell others something.
+class FailingRank final : public Ranks {
+public:
+    explicit FailingRank(std::size_t last) : last_(last) {}
+    int rank() const override { return 0; }
+    int size() const override { return 1; }
+
+private:
+    std::vector<Bytes> gather_bytes(const Bytes& own) override {
+        if (last_-- == 0) throw Error("a fault");
+        return {own};
+    }
+    std::vector<Bytes> exchange_bytes(std::vector<Bytes>&& out,
+                                      const std::vector<std::vector<std::uint64_t>>&) override {
+        return std::move(out);
+    }
+    [[noreturn]] void abort(const std::string&) noexcept override { std::terminate(); }
+
+    std::size_t last_;
+};
+
+struct Run {
+    std::optional<PolygonMesh> mesh; ///< none: it failed
+    std::size_t reads = 0;           ///< of the points
+    TileReport how;
+    Report report;
+};
+
+Run run_by(Ranks& ranks, const PointCloud& cloud, const ReconstructOptions& options, KeptScratch* kept) {
+    Run run;
+    const PointParts parts = [&](const auto& visit) { ++run.reads, visit(view_of(cloud)); };
+    try {
+        Reconstruction made = reconstruct_in_tiles(parts, options, small_tiles(kept), ranks, &run.how);
+        run.mesh = to_polygons(made.mesh);
+        run.report = std::move(made.report);
+    } catch (const Error& error) {
+        CHECK(std::string(error.what()) == "a fault");
+    }
+    return run;
+}
+
+Run run_until(std::size_t fault, const PointCloud& cloud, const ReconstructOptions& options,
+              KeptScratch* kept) {
+    FailingRank ranks(fault);
+    return run_by(ranks, cloud, options, kept);
+}
+
+void check_same(const Run& whole, const Run& other) {
+    REQUIRE(other.mesh);
+    CHECK(support::are_same_bits(whole.mesh->positions, other.mesh->positions));
+    CHECK(whole.mesh->corners == other.mesh->corners);
+    CHECK(whole.mesh->sharp_edges == other.mesh->sharp_edges);
+    CHECK(whole.report.rejected == other.report.rejected);
+    CHECK(whole.report.options == other.report.options);
+    CHECK(whole.report.error.points_to_mesh_mean == other.report.error.points_to_mesh_mean);
+    CHECK(whole.report.input.spacing == other.report.input.spacing);
+    CHECK(whole.report.input.merged_duplicates == other.report.input.merged_duplicates);
+    CHECK(whole.report.dropped.size() == other.report.dropped.size());
+}
+
+/// A fault every so-manieth time that it would tell others something, and a run that goes on.
+void check_faults(const PointCloud& cloud, const ReconstructOptions& options, std::size_t step) {
+    const support::Folder folder;
+    const Run whole = run_until(std::size_t{1} << 40, cloud, options, nullptr);
+    REQUIRE(whole.mesh);
+    CHECK(whole.how.tiles > 2);
+    CHECK(whole.report.rejected.at("points_outlying") == 1);
+    std::size_t went_on = 0, tiles = 0, faults = 0;
+    for (std::size_t fault = 1;; fault += step) {
+        INFO("fault " << fault);
+        bool ended = false;
+        {
+            KeptScratch kept(folder / ".", 0, this_job);
+            const Run first = run_until(fault, cloud, options, &kept);
+            CHECK_FALSE(first.how.went_on);
+            ended = first.mesh.has_value();
+            if (ended) check_same(whole, first);
+        }
+        KeptScratch kept(folder / ".", 0, this_job);
+        const Run second = run_until(std::size_t{1} << 40, cloud, options, &kept);
+        check_same(whole, second);
+        CHECK(second.reads == (second.how.went_on ? 0 : 2));
+        went_on += second.how.went_on, tiles += second.how.kept_tiles;
+        kept.remove();
+        CHECK(std::filesystem::is_empty(folder / "."));
+        if (ended) break;
+        ++faults;
+    }
+    CHECK(faults > 2);
+    CHECK(2 * went_on > faults);
+    CHECK(tiles > 0);
+}
+
+} // namespace
+
+TEST_CASE("a run in tiles goes on where one with a fault has ended", "[pipeline]") {
+    check_faults(torus(true), {.depth = 4}, 13);
+}
+
+TEST_CASE("wherever a run in tiles fails the next one goes on, whatever it has to find out",
+          "[pipeline][slow]") {
+    const bool normals = GENERATE(true, false);
+    ReconstructOptions options;
+    if (!normals) options.depth = 4; // else the voxel is chosen
+    check_faults(torus(normals), options, normals ? 2 : 3);
+}
+
+TEST_CASE("ranks go on with what all of them have kept", "[pipeline]") {
+    const PointCloud cloud = torus(true);
+    const ReconstructOptions options{.depth = 4, .threads = 1};
+    const Run whole = run_until(std::size_t{1} << 40, cloud, options, nullptr);
+    const support::Folder folder;
+    // What the second rank has is of no use without what the first one lost.
+    const bool loses = GENERATE(false, true);
+    std::size_t went_on = 0, reads = 0;
+    std::optional<Run> result;
+    for (int turn = 0; turn < 2; ++turn) {
+        if (turn == 1 && loses) std::filesystem::remove_all(folder / "hsdm-resume-0");
+        went_on = reads = 0;
+        std::vector<Run> runs(2);
+        const auto failures = support::run_ranks(2, [&](Ranks& ranks) {
+            KeptScratch kept(folder / ".", ranks.rank(), this_job);
+            Run& run = runs[static_cast<std::size_t>(ranks.rank())];
+            const PointParts parts = [&](const auto& visit) {
+                ++run.reads, support::share_of(cloud, ranks)(visit);
+            };
+            Reconstruction made = reconstruct_in_tiles(parts, options, small_tiles(&kept), ranks, &run.how);
+            run.mesh = to_polygons(made.mesh);
+            run.report = std::move(made.report);
+        });
+        for (const std::string& failure : failures) CHECK(failure.empty());
+        for (const Run& run : runs) went_on += run.how.went_on, reads += run.reads;
+        check_same(whole, runs.front());
+    }
+    CHECK(went_on == (loses ? 0 : 2));
+    CHECK(reads == (loses ? 4 : 0));
+}
+
+TEST_CASE("what is kept of another job, or by another process, is told apart", "[pipeline]") {
+    const support::Folder folder;
+    const auto refusal = [&](const std::vector<KeptScratch::Trait>& job) -> std::string {
+        try {
+            KeptScratch(folder / ".", 0, job).keep(1, {});
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "";
+    };
+    CHECK_FALSE(KeptScratch::is_there(folder / ".", 0));
+    {
+        KeptScratch kept(folder / ".", 0, this_job);
+        kept.keep(7, {'a', 'b'});
+        CHECK(refusal(this_job).find("another process") != std::string::npos);
+    }
+    CHECK(KeptScratch::is_there(folder / ".", 0));
+    CHECK(refusal({{"input", "a box"}}).find("another input: a torus, and not a box") != std::string::npos);
+    // A record that was not written to its end, as by a process that was killed.
+    const std::string log = folder / "hsdm-resume-0/log";
+    {
+        KeptScratch kept(folder / ".", 0, this_job);
+        REQUIRE(kept.records().size() == 1);
+        CHECK(kept.read(kept.records().front()) == KeptScratch::Bytes{'a', 'b'});
+        kept.keep(8, KeptScratch::Bytes(1000, 'c'));
+    }
+    std::filesystem::resize_file(log, std::filesystem::file_size(log) - 1);
+    KeptScratch kept(folder / ".", 0, this_job);
+    CHECK(kept.records().size() == 1);
+    kept.keep(9, {});
+    CHECK(kept.records().back().key == 9);
+    kept.remove();
+    CHECK(std::filesystem::is_empty(folder / "."));
+}
