@@ -171,3 +171,53 @@ TEST_CASE("what is thinner than layers lie apart goes with them: cavities, and w
         CHECK(stays({.inward = true, .at = Vec3(25, 0, 0), .all_turned = all_turned}, 0.6));
     }
 }
+
+TEST_CASE(
+    "cavities go that a completion closed off, where asked: closed, small, and in the largest component",
+    "[mesh]") {
+    struct Inner {
+        double width = 3; // in a cube of 20 by 20 by 20, or beside it
+        bool inward = true;
+        Vec3 at{0, 0, 0};
+        bool is_open = false, is_cube_open = false, all_turned = false;
+        double shear = 0; // of the cube, whose box is larger then
+        bool asked = true;
+    };
+    const auto stays = [](const Inner& inner) {
+        PolygonMesh mesh;
+        const auto add = [&](const PolygonMesh& part, double size, const Vec3& at, bool is_open) {
+            const auto base = static_cast<Index>(mesh.vertex_count());
+            for (const Vec3& p : part.positions) mesh.positions.push_back(at + p * size);
+            for (std::size_t f = is_open; f < part.facet_count(); ++f) {
+                std::vector<Index> facet;
+                for (const Index v : part.facet(f)) facet.push_back(base + v);
+                mesh.add_facet(facet);
+            }
+        };
+        PolygonMesh part = support::divided_cube(4); // more facets than a splinter has
+        if (inner.inward) turn_over(part);
+        add(part, inner.width / 2, inner.at, inner.is_open);
+        const std::size_t facets = mesh.facet_count();
+        PolygonMesh cube = support::divided_cube(6);
+        for (Vec3& p : cube.positions) p[0] += inner.shear * p[2];
+        add(cube, 10, Vec3(0, 0, 0), inner.is_cube_open);
+        if (inner.all_turned) turn_over(mesh);
+        const std::size_t before = mesh.facet_count();
+        CHECK(has_cavity(mesh) == (inner.inward && !inner.is_open));
+        drop_splinters(mesh, {.cavities = inner.asked});
+        CHECK((mesh.facet_count() == before || mesh.facet_count() == before - facets));
+        return mesh.facet_count() == before;
+    };
+    for (const bool all_turned : {false, true}) {
+        CHECK_FALSE(stays({.all_turned = all_turned}));
+        CHECK_FALSE(stays({.at = Vec3(7, 7, -7), .all_turned = all_turned}));
+        CHECK(stays({.all_turned = all_turned, .asked = false}));
+        CHECK(stays({.inward = false, .all_turned = all_turned}));
+        CHECK(stays({.width = 5, .all_turned = all_turned})); // a sixteenth of the cube's area
+        CHECK(stays({.at = Vec3(25, 0, 0), .all_turned = all_turned}));
+        CHECK(stays({.is_open = true, .all_turned = all_turned}));
+        CHECK(stays({.is_cube_open = true, .all_turned = all_turned}));
+        CHECK_FALSE(stays({.at = Vec3(-12, 0, -7), .all_turned = all_turned, .shear = 1.5}));
+        CHECK(stays({.at = Vec3(12, 0, -7), .all_turned = all_turned, .shear = 1.5}));
+    }
+}

@@ -9,6 +9,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <numbers>
 
 namespace hsdm {
 namespace {
@@ -20,13 +21,23 @@ struct Extent {
 
     bool is_thinner_than(double thickness) const { return 2 * std::abs(volume) < thickness * area; }
 
+    /// Nothing is turned outward yet.
+    bool faces_against(const Extent& largest) const { return (volume < 0) != (largest.volume < 0); }
+    bool is_small_in(const Extent& largest, double margin, double least_ratio) const {
+        return is_within(largest, margin) && area * least_ratio <= largest.area;
+    }
     /// May this be layers of the largest component: a cavity in it, or small and beside it?
     bool may_be_of(const Extent& largest, double margin, double least_ratio) const {
+        return faces_against(largest) ? is_within(largest, margin) && area < largest.area
+                                      : is_small_in(largest, margin, least_ratio);
+    }
+
+private:
+    bool is_within(const Extent& largest, double margin) const {
         for (unsigned k = 0; k < 3; ++k)
             if (box.lo[k] < largest.box.lo[k] - margin || box.hi[k] > largest.box.hi[k] + margin)
                 return false;
-        const bool is_cavity = (volume < 0) != (largest.volume < 0); // nothing is turned outward yet
-        return is_cavity ? area < largest.area : area * least_ratio <= largest.area;
+        return true;
     }
 };
 
@@ -90,6 +101,24 @@ public:
         return open;
     }
 
+    /// Does a closed component go round the vertex that another is known by? By the angles that its facets
+    /// fill there (A. van Oosterom, J. Strackee, The solid angle of a plane triangle, 1983).
+    bool encloses(Index component, Index other) {
+        const Vec3& p = mesh_.positions[other];
+        double half = 0; // of the angle
+        for_each_in_order(mesh_.facet_count(), [&](std::size_t f) {
+            if (of(f) != component) return;
+            const auto facet = mesh_.facet(f);
+            const Vec3 a = mesh_.positions[facet[0]] - p;
+            for (std::size_t i = 2; i < facet.size(); ++i) {
+                const Vec3 b = mesh_.positions[facet[i - 1]] - p, c = mesh_.positions[facet[i]] - p;
+                const double x = a.norm(), y = b.norm(), z = c.norm();
+                half += std::atan2(a | (b % c), x * y * z + (a | b) * z + (b | c) * x + (c | a) * y);
+            }
+        });
+        return std::abs(half) > std::numbers::pi;
+    }
+
 private:
     const PolygonMesh& mesh_;
     DisjointSets vertices_;
@@ -122,6 +151,17 @@ SmallComponents remove_components(PolygonMesh& mesh, std::vector<EdgeHint>& hint
 
 } // namespace
 
+bool has_cavity(const PolygonMesh& mesh) {
+    Components components(mesh);
+    const std::vector<std::uint8_t> open = components.are_open(mesh.facet_count());
+    const std::vector<Extent> extents = components.extents(mesh.facet_count());
+    if (extents.empty()) return false;
+    const Extent& widest = *std::ranges::max_element(extents, {}, &Extent::area);
+    for (std::size_t c = 0; c < extents.size(); ++c)
+        if (extents[c].area > 0 && open[c] == 0 && extents[c].faces_against(widest)) return true;
+    return false;
+}
+
 Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options) {
     if (mesh.facet_count() == 0) return {};
     Components components(mesh);
@@ -131,21 +171,26 @@ Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options) {
     const auto may_go = [&](std::size_t size) {
         return size <= most && static_cast<double>(size) * options.least_ratio <= largest;
     };
-    const bool has_layers = options.layers > 0;
-    if (!has_layers
+    const bool looks_at_all = options.layers > 0 || options.cavities;
+    if (!looks_at_all
         && std::ranges::none_of(sizes, [&](std::size_t size) { return size > 0 && may_go(size); }))
         return {};
-    const std::size_t looked_at = has_layers ? mesh.facet_count() : options.most_flat;
+    const std::size_t looked_at = looks_at_all ? mesh.facet_count() : options.most_flat;
     const std::vector<std::uint8_t> open = components.are_open(std::max(options.most_open, looked_at));
     const std::vector<Extent> extents = components.extents(looked_at);
     const auto of_most = std::ranges::max_element(extents, {}, &Extent::area) - extents.begin();
     Extent widest = extents[static_cast<std::size_t>(of_most)];
-    if (open[static_cast<std::size_t>(of_most)] != 0) widest.volume = 0;
+    const bool is_closed = open[static_cast<std::size_t>(of_most)] == 0;
+    if (!is_closed) widest.volume = 0;
     std::vector<EdgeHint> none;
     const SmallComponentFacets small = components_where(mesh, components, [&](std::size_t c) {
         const Extent& extent = extents[c];
         if (open[c] == 0 && extent.is_thinner_than(options.layers)
             && extent.may_be_of(widest, options.layers, options.least_ratio))
+            return true;
+        if (options.cavities && is_closed && open[c] == 0 && extent.faces_against(widest)
+            && extent.is_small_in(widest, 0, options.least_ratio)
+            && components.encloses(static_cast<Index>(of_most), static_cast<Index>(c)))
             return true;
         const bool flat = sizes[c] <= options.most_flat && extent.is_thinner_than(options.flat);
         const std::size_t most_closed = flat ? options.most_flat : options.most_facets;

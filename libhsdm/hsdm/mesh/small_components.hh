@@ -25,6 +25,9 @@ struct SplinterOptions {
     /// of it, whatever its number of facets: if it faces the other way (no scanner sees into a cavity), or if
     /// its area times `least_ratio` is at most that. 0: nothing is.
     double layers = 0;
+    /// Do closed cavities of the largest component go, too, if their area times `least_ratio` is at most its?
+    /// Where there were none while the mesh had holes, they were seen through one of them.
+    bool cavities = false;
     /// least ratio of the facets of the largest component to those of a splinter
     double least_ratio = splinters::least_ratio;
     /// facets of the largest component, where the mesh is part of one that has it; 0: as it is in the mesh
@@ -40,6 +43,10 @@ struct SplinterOptions {
 /// facets on their own beside a surface of many. Vertices stay. Returns the number of facets removed, and
 /// where. O(facets), parallel.
 Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options = {});
+
+/// Does a closed component face against the one with the most area, as the wall of a cavity does? O(facets),
+/// parallel in parts.
+bool has_cavity(const PolygonMesh& mesh);
 
 struct SmallComponentOptions {
     double least_facets = 0; ///< smaller components go

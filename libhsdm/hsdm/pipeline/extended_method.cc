@@ -285,6 +285,7 @@ Completion completed_all(Completing how, Passing passing, const PolygonMesh& mes
                          const Draft& draft, Report& report) {
     DualContourOptions options = options_for(how.measured, how.base.input.spacing);
     options.all_round = true;
+    options.splinters.cavities = !has_cavity(mesh);
     const MethodInput in = draft.input(how.measured);
     Draft result =
         how.draft(in, how.points(in, mesh, loops, passing, report), report, completing::shift, options);
