@@ -6,6 +6,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/core/parallel_sort.hh"
+#include "hsdm/core/vector_pair.hh"
 #include "hsdm/octree/constants.hh"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace hsdm {
 namespace {
@@ -26,11 +28,11 @@ struct PatchScratch {
     std::vector<std::uint8_t> one_sheet; // per set a row of all, from has_row on
     std::vector<std::uint8_t> has_row;
     std::vector<std::uint32_t> of_sheet; // per set a row: how many sets are of its sheet, then these
-    struct Facing {
-        Vec3 normal, centroid;
-        double cosine;
+    struct Facing {                      // two sheets that face a set
+        VectorPair normal, centroid;
+        Double2 cosine;
     };
-    std::vector<Facing> facing; // a set
+    std::vector<Facing> facing;
     MiddleDiscs discs; // its places are the samples, then the centroids of the sets, which are its surfaces
     std::vector<std::pair<double, double>> places; // along a crease, and off its plane
     struct NearCrease {
@@ -149,7 +151,7 @@ public:
             for (std::size_t sample = first_sample(k); sample < first_sample(k + 1); ++sample) {
                 const Vec3& p = at_.samples[sample];
                 const double s = along | p, t = outward * (b.normal | (p - b.centroid));
-                if (std::abs(s - here) > far || std::abs(t) > most) continue;
+                if (int{std::abs(s - here) > far} | int{std::abs(t) > most}) continue; // one branch
                 if (std::abs(a.normal | (p - a.centroid)) > relations::smooth_gap * level_.voxel_size)
                     continue;
                 near.push_back({s, t, sample});
@@ -254,26 +256,38 @@ private:
         return {sheet + 1, *sheet};
     }
 
+    void add_facing(const NormalSet& from, const NormalSet& a, const NormalSet& b) {
+        at_.facing.push_back({VectorPair(a.normal, b.normal), VectorPair(a.centroid, b.centroid),
+                              Double2{from.normal | a.normal, from.normal | b.normal}});
+    }
+
     /// The discs between a set and the nearest opposite sheet before it and behind it.
     void add_discs(std::size_t i) {
         const NormalSet& a = set(i);
         const double h = level_.voxel_size;
         at_.facing.clear();
-        for (std::size_t j = 0; j < size(); ++j)
-            if (const double cosine = a.normal | set(j).normal; j != i && cosine < angles::opposed)
-                at_.facing.push_back({set(j).normal, set(j).centroid, cosine});
+        std::optional<std::size_t> odd;
+        for (std::size_t j = 0; j < size(); ++j) {
+            if (j == i || !opposed(a, set(j))) continue;
+            if (odd) add_facing(a, set(*odd), set(j));
+            odd = odd ? std::nullopt : std::optional(j);
+        }
+        if (odd) add_facing(a, set(*odd), set(*odd)); // twice: two at a time are looked at
         if (at_.facing.empty()) return;
         const double radius = spacings::beside * spacing(i);
         if (radius == 0) return;
+        const double widest = patches::widest * h, beside = sheets::beside * sheets::beside * h * h;
         for (const Vec3& p : samples(i)) {
-            double nearest[2] = {patches::widest * h, patches::widest * h}; // behind, before
-            for (const auto& [normal, centroid, cosine] : at_.facing) {
-                const double t = (normal | (centroid - p)) / cosine;
-                double& distance = nearest[t > 0];
-                if (std::abs(t) < distance
-                    && !((p + t * a.normal - centroid).sqrnorm() > sheets::beside * sheets::beside * h * h))
-                    distance = std::abs(t);
+            Double2 behind = Double2{} + widest, front = behind; // the nearest sheets
+            const VectorPair place(p, p), normal(a.normal, a.normal);
+            for (const auto& [facing, centroid, cosine] : at_.facing) {
+                const Double2 t = (facing | (centroid - place)) / cosine;
+                const VectorPair off = place + normal * t - centroid;
+                const Double2 distance = (off | off) > beside ? Double2{} + widest : max_lanes(t, -t);
+                front = min_lanes(t > 0 ? distance : front, front);
+                behind = min_lanes(t > 0 ? behind : distance, behind);
             }
+            const double nearest[2] = {std::min(behind[0], behind[1]), std::min(front[0], front[1])};
             for (unsigned before : {0u, 1u})
                 if (nearest[before] < patches::widest * h)
                     at_.discs.add({p + a.normal * ((before ? 0.5 : -0.5) * nearest[before]), a.normal, p,
