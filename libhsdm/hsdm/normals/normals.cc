@@ -1,10 +1,9 @@
 #include "hsdm/normals/normals.hh"
 
+#include "hsdm/core/chunks.hh"
 #include "hsdm/normals/arcs.hh"
 #include "hsdm/normals/noise.hh"
 #include "hsdm/normals/vote_on_normals.hh"
-
-#include <algorithm>
 
 namespace hsdm {
 
@@ -54,8 +53,9 @@ NormalsReport make_normals(Octree& octree, const NormalsOptions& options) {
     if (orientation.report.of_layers == 0) bend_to_arcs(octree, neighbors, estimate);
     report.noise = estimate.noise;
     report.bent = estimate.bent.size();
-    report.missing = static_cast<std::size_t>(std::count_if(estimate.normals.begin(), estimate.normals.end(),
-                                                            [](const Vec3& n) { return n.sqrnorm() == 0; }));
+    report.missing = indices_where(octree.size(), chunks::light, [&](Index i) {
+                         return estimate.normals[i].sqrnorm() == 0;
+                     }).size();
     octree.normals = std::move(estimate.normals);
     return report;
 }
