@@ -151,7 +151,8 @@ public:
             for (std::size_t sample = first_sample(k); sample < first_sample(k + 1); ++sample) {
                 const Vec3& p = at_.samples[sample];
                 const double s = along | p, t = outward * (b.normal | (p - b.centroid));
-                if (int{std::abs(s - here) > far} | int{std::abs(t) > most}) continue; // one branch
+                // One branch, as neither can be foreseen.
+                if (int{std::abs(s - here) > far} | int{std::abs(t) > most}) continue;
                 if (std::abs(a.normal | (p - a.centroid)) > relations::smooth_gap * level_.voxel_size)
                     continue;
                 near.push_back({s, t, sample});
