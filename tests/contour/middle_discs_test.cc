@@ -60,6 +60,11 @@ TEST_CASE("discs part the places that they part one by one, in any unit and anyw
                         const bool expected = part_one_by_one(all, places[p], places[q], normals[n]);
                         parted += expected;
                         REQUIRE(discs.part({p, places[p]}, {q, places[q]}, {n, normals[n]}) == expected);
+                        const std::size_t m = (n + p + q) % normals.size();
+                        const std::array surfaces{MiddleDiscs::Surface{n, normals[n]},
+                                                  MiddleDiscs::Surface{m, normals[m]}};
+                        REQUIRE(discs.part({p, places[p]}, {q, places[q]}, surfaces)
+                                == (expected || part_one_by_one(all, places[p], places[q], normals[m])));
                     }
             }
             CHECK(discs.empty() == (count == 0));

@@ -62,4 +62,7 @@ TEST_CASE("samples of the points tell the deviation that all of them tell", "[no
     const std::optional<double> told = noise_deviation(samples);
     CHECK(told.has_value() == (sigma < 1)); // beyond, a thinned cloud tells
     if (told) CHECK(*told == noise_deviation(octree, all));
+    const auto of_six = noise_samples(octree, all);
+    CHECK(noise_deviation(octree, all, of_six) == noise_deviation(octree, all));
+    CHECK(estimate_noise(of_six) == estimate_noise(samples));
 }

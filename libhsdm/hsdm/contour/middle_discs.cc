@@ -29,6 +29,7 @@ void MiddleDiscs::lay_out() {
     words_ = (discs_.size() + word_bits - 1) / word_bits;
     flat_.assign(words_ * 6 * word_bits, 0);
     near_.assign(words_ * 4 * word_bits, 0);
+    gaps_.assign(words_, 0);
     for (std::size_t d = 0; d < discs_.size(); ++d) {
         double* const at = flat_.data() + d / word_bits * 6 * word_bits + d % word_bits;
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -39,6 +40,7 @@ void MiddleDiscs::lay_out() {
         float* const near = near_.data() + d / word_bits * 4 * word_bits + d % word_bits;
         for (std::size_t axis = 0; axis < 3; ++axis) near[axis * word_bits] = static_cast<float>(from[axis]);
         near[3 * word_bits] = static_cast<float>(std::sqrt(discs_[d].squared_radius) * per_voxel_);
+        if (discs_[d].is_gap) gaps_[d / word_bits] |= Word{1} << d % word_bits;
     }
     sides_.resize(place_count_ * words_);
     standing_.resize(surface_count_ * words_);
@@ -78,31 +80,65 @@ bool MiddleDiscs::stand_on(const Surface& surface) {
     return standing(surface) != nullptr;
 }
 
-bool MiddleDiscs::part(const Place& p, const Place& q, const Surface& surface) {
-    const Word* const here = standing(surface);
-    if (here == nullptr) return false;
+/// What of the discs on one surface a way was seen to cross.
+class MiddleDiscs::Question {
+public:
+    Question() = default;
+    Question(const Word* standing, const Vec3& normal) : standing_(standing), normal_(normal) {}
+
+    /// Those of a word that would say something new: of walls as of gaps one disc of each sheet is enough.
+    Word open(std::size_t word, Word behind, Word gaps) const {
+        return standing_[word] & ~(seen_of(seen_[0], behind) & ~gaps) & ~(seen_of(seen_[1], behind) & gaps);
+    }
+    /// Takes note of a disc that the way crosses at x. Returns whether both sheets of one kind were crossed.
+    bool note(const MiddleDisc& disc, bool is_behind, const Vec3& x) {
+        // At the mouth of a gap its sheets lie below the surface, on the ground of a wall above it; the
+        // rim of a wall and the bottom of a gap, which join the two sheets, see them on the other side.
+        if (((normal_ | (disc.point - x)) < 0) != disc.is_gap) return false;
+        unsigned& sheets = seen_[disc.is_gap];
+        sheets |= is_behind ? 1u : 2u;
+        return sheets == 3;
+    }
+
+private:
+    static Word seen_of(unsigned sheets, Word behind) {
+        return (sheets & 1u ? behind : 0) | (sheets & 2u ? ~behind : 0);
+    }
+
+    const Word* standing_ = nullptr;
+    Vec3 normal_;
+    std::array<unsigned, 2> seen_{0,
+                                  0}; // sheets of walls, of gaps: 1 is the one whose front the way comes to
+};
+
+bool MiddleDiscs::part(const Place& p, const Place& q, std::span<const Surface> surfaces) {
+    std::array<Question, 2> asked;
+    std::size_t count = 0;
+    for (const Surface& surface : surfaces)
+        if (const Word* const here = standing(surface)) asked[count++] = {here, surface.normal};
+    if (count == 0) return false;
     const Word *const behind_p = sides(p), *const behind_q = sides(q);
-    std::array<unsigned, 2> seen{0, 0}; // sheets of walls, of gaps
     const Vec3 way = q.position - p.position, middle = (p.position + way * 0.5 - amid_) * per_voxel_;
     const std::array<float, 4> of_way{static_cast<float>(middle[0]), static_cast<float>(middle[1]),
                                       static_cast<float>(middle[2]),
                                       static_cast<float>(0.5 * way.norm() * per_voxel_)};
     for (std::size_t w = 0; w < words_; ++w) {
-        Word crossed = (behind_p[w] ^ behind_q[w]) & here[w];
+        const auto open = [&](const Question& question) { return question.open(w, behind_p[w], gaps_[w]); };
+        const auto any_open = [&] { return count == 2 ? open(asked[0]) | open(asked[1]) : open(asked[0]); };
+        Word crossed = (behind_p[w] ^ behind_q[w]) & any_open();
         if (crossed != 0) crossed = lanes_.near_way(near_.data() + w * 4 * word_bits, crossed, of_way.data());
-        for (; crossed != 0; crossed &= crossed - 1) {
-            const MiddleDisc& disc =
-                discs_[w * word_bits + static_cast<std::size_t>(std::countr_zero(crossed))];
+        while (crossed != 0) {
+            const Word bit = crossed & -crossed;
+            crossed ^= bit;
+            const MiddleDisc& disc = discs_[w * word_bits + static_cast<std::size_t>(std::countr_zero(bit))];
             const double dp = disc.normal | (p.position - disc.middle),
                          dq = disc.normal | (q.position - disc.middle);
             const Vec3 x = p.position + way * (dp / (dp - dq));
             if ((x - disc.middle).sqrnorm() > disc.squared_radius) continue;
-            // At the mouth of a gap its sheets lie below the surface, on the ground of a wall above it; the
-            // rim of a wall and the bottom of a gap, which join the two sheets, see them on the other side.
-            if (((surface.normal | (disc.point - x)) < 0) != disc.is_gap) continue;
-            unsigned& sheets = seen[disc.is_gap];
-            sheets |= dp < 0 ? 1u : 2u;
-            if (sheets == 3) return true;
+            for (std::size_t s = 0; s < count; ++s)
+                if ((open(asked[s]) & bit) != 0 && asked[s].note(disc, (behind_p[w] & bit) != 0, x))
+                    return true;
+            crossed &= any_open();
         }
     }
     return false;

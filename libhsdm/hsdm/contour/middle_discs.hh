@@ -6,6 +6,7 @@
 #include "hsdm/types.hh"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace hsdm {
@@ -41,10 +42,13 @@ public:
     /// Does any wall or gap stand on a surface: across it rather than along it?
     bool stand_on(const Surface& surface);
     /// Does one that stands on a surface part two places on it?
-    bool part(const Place& p, const Place& q, const Surface& surface);
+    bool part(const Place& p, const Place& q, const Surface& surface) { return part(p, q, {&surface, 1}); }
+    /// The same of any of these surfaces, two at most: what discs the way crosses is found once for both.
+    bool part(const Place& p, const Place& q, std::span<const Surface> surfaces);
 
 private:
     using Word = std::uint64_t; ///< a bit for each of 64 discs
+    class Question;
 
     void lay_out();
     const Word* sides(const Place& place);
@@ -58,6 +62,7 @@ private:
     std::size_t words_ = 0;    // of a row; 0: not laid out yet
     std::vector<double> flat_; // of 64 discs six rows: of their normals and their middles
     std::vector<float> near_;  // of 64 discs four rows: of their middles, from amid_, and radii, in voxels
+    std::vector<Word> gaps_;   // a row: those that are no walls
     std::vector<Word> sides_, standing_; // a row for each place, for each surface
     enum class Known : std::uint8_t { no, yes, none };
     std::vector<Known> has_sides_, has_standing_; // none: known that it has no bit

@@ -6,6 +6,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/core/parallel_sort.hh"
+#include "hsdm/core/vector_pair.hh"
 #include "hsdm/octree/constants.hh"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace hsdm {
 namespace {
@@ -25,11 +27,12 @@ struct PatchScratch {
     std::vector<double> spacings;        // per set; below 0: not measured yet
     std::vector<std::uint8_t> one_sheet; // per set a row of all, from has_row on
     std::vector<std::uint8_t> has_row;
-    struct Facing {
-        Vec3 normal, centroid;
-        double cosine;
+    std::vector<std::uint32_t> of_sheet; // per set a row: how many sets are of its sheet, then these
+    struct Facing {                      // two sheets that face a set
+        VectorPair normal, centroid;
+        Double2 cosine;
     };
-    std::vector<Facing> facing; // a set
+    std::vector<Facing> facing;
     MiddleDiscs discs; // its places are the samples, then the centroids of the sets, which are its surfaces
     std::vector<std::pair<double, double>> places; // along a crease, and off its plane
     struct NearCrease {
@@ -84,6 +87,9 @@ public:
         at_.spacings.assign(size(), -1);
         at_.has_row.assign(size(), 0);
         at_.one_sheet.resize(size() * size());
+        at_.of_sheet.resize(size() * (size() + 1));
+        most_points_ = 0;
+        for (std::size_t i = 0; i < size(); ++i) most_points_ = std::max(most_points_, set(i).count);
         if (!opposed) return false;
         for (std::size_t i = 0; i < at_.sets.size(); ++i) add_discs(i);
         return !at_.discs.empty();
@@ -103,20 +109,27 @@ public:
     bool parted(std::size_t p, std::size_t q, std::size_t i) const {
         return at_.discs.part({p, at_.samples[p]}, {q, at_.samples[q]}, surface(i));
     }
+    /// The same of a surface with the normal of one set or of another.
+    bool parted(std::size_t p, std::size_t q, std::size_t i, std::size_t j) const {
+        return at_.discs.part({p, at_.samples[p]}, {q, at_.samples[q]}, std::array{surface(i), surface(j)});
+    }
     std::size_t first_sample(std::size_t i) const { return at_.first_sample[i]; }
 
     /// Of the shortest ways between two sets, are most parted?
     bool apart(std::size_t i, std::size_t j) {
-        const bool on_i = has_standing(i), on_j = has_standing(j);
-        if (!on_i && !on_j) return false;
+        if (!has_standing(i) && !has_standing(j)) return false;
         ShortestWays ways;
         for (std::size_t p = first_sample(i); p < first_sample(i + 1); ++p)
             for (std::size_t q = first_sample(j); q < first_sample(j + 1); ++q)
                 ways.offer({(at_.samples[q] - at_.samples[p]).sqrnorm(), p, q});
-        std::size_t parted_ways = 0;
-        for (const auto& [squared_length, p, q] : ways.found())
-            parted_ways += (on_i && parted(p, q, i)) || (on_j && parted(p, q, j));
-        return 2 * parted_ways > ways.found().size();
+        const std::size_t most = ways.found().size() / 2; // more are most of them
+        std::size_t parted_ways = 0, open_ways = 0;
+        for (const auto& [squared_length, p, q] : ways.found()) {
+            ++(parted(p, q, i, j) ? parted_ways : open_ways);
+            if (parted_ways > most) return true;
+            if (open_ways >= ways.found().size() - most) return false;
+        }
+        return false;
     }
 
     /// Does the sheet of a set go on beyond the plane of another that it would meet in a crease, beside that
@@ -134,12 +147,12 @@ public:
         // Points of the sheet near the crease: where along it, and how far beyond the other's plane.
         auto& near = at_.near;
         near.clear();
-        for (std::size_t k = 0; k < size(); ++k) {
-            if (!one_sheet(i, k)) continue;
+        for (const std::uint32_t k : sheet_of(i)) {
             for (std::size_t sample = first_sample(k); sample < first_sample(k + 1); ++sample) {
                 const Vec3& p = at_.samples[sample];
                 const double s = along | p, t = outward * (b.normal | (p - b.centroid));
-                if (std::abs(s - here) > far || std::abs(t) > most) continue;
+                // One branch, as neither can be foreseen.
+                if (int{std::abs(s - here) > far} | int{std::abs(t) > most}) continue;
                 if (std::abs(a.normal | (p - a.centroid)) > relations::smooth_gap * level_.voxel_size)
                     continue;
                 near.push_back({s, t, sample});
@@ -150,14 +163,12 @@ public:
         // normals have errors.
         auto& places = at_.places;
         places.clear();
-        for (std::size_t k = 0; k < size(); ++k) {
-            if (!one_sheet(j, k)) continue;
+        for (const std::uint32_t k : sheet_of(j))
             for (const Vec3& q : samples(k))
                 if (std::abs(a.normal | (q - a.centroid)) < far)
                     if (const double s = along | q;
                         std::abs(s - here) < far + step) // what is looked up below
                         places.emplace_back(s, outward * (b.normal | (q - b.centroid)));
-        }
         std::sort(places.begin(), places.end());
         const MiddleDiscs::Place middle{at_.samples.size() + i, a.centroid};
         unsigned beyond = 0, before = 0;
@@ -218,30 +229,37 @@ private:
         double& known = at_.spacings[i];
         if (known >= 0) return known;
         double points = 0, squares = 0;
-        Index scanned = 0, most = 0; // points of the sheet, of the fullest set
-        for (std::size_t j = 0; j < size(); ++j) {
-            most = std::max(most, set(j).count);
-            if (!one_sheet(i, j)) continue;
+        Index scanned = 0; // points of the sheet
+        for (const std::uint32_t j : sheet_of(i)) {
             const auto n = static_cast<double>(samples(j).size());
             points += n;
             squares += n * n;
             scanned += set(j).count;
         }
         // A wall that fills half of a voxel's width in three voxels has more than half; odd normals have not.
-        const double least = std::max(spacings::points_per_voxel, 0.5 * most);
+        const double least = std::max(spacings::points_per_voxel, 0.5 * most_points_);
         return known = scanned < least ? 0 : level_.voxel_size * std::sqrt(points / squares);
     }
 
-    /// Is the other set of this one's sheet: the same, or smooth with it?
-    bool one_sheet(std::size_t i, std::size_t j) {
-        std::uint8_t* const row = at_.one_sheet.data() + i * size();
+    /// The sets of a set's sheet: itself, and those smooth with it.
+    std::span<const std::uint32_t> sheet_of(std::size_t i) {
+        std::uint32_t* const sheet = at_.of_sheet.data() + i * (size() + 1);
         if (!at_.has_row[i]) {
-            for (std::size_t k = 0; k < size(); ++k)
+            std::uint8_t* const row = at_.one_sheet.data() + i * size();
+            *sheet = 0;
+            for (std::size_t k = 0; k < size(); ++k) {
                 row[k] = at_.has_row[k] ? at_.one_sheet[k * size() + i]
                                         : k == i || related_.smooth(set(i), set(k));
+                if (row[k]) sheet[++*sheet] = static_cast<std::uint32_t>(k);
+            }
             at_.has_row[i] = 1;
         }
-        return row[j];
+        return {sheet + 1, *sheet};
+    }
+
+    void add_facing(const NormalSet& from, const NormalSet& a, const NormalSet& b) {
+        at_.facing.push_back({VectorPair(a.normal, b.normal), VectorPair(a.centroid, b.centroid),
+                              Double2{from.normal | a.normal, from.normal | b.normal}});
     }
 
     /// The discs between a set and the nearest opposite sheet before it and behind it.
@@ -249,21 +267,28 @@ private:
         const NormalSet& a = set(i);
         const double h = level_.voxel_size;
         at_.facing.clear();
-        for (std::size_t j = 0; j < size(); ++j)
-            if (const double cosine = a.normal | set(j).normal; j != i && cosine < angles::opposed)
-                at_.facing.push_back({set(j).normal, set(j).centroid, cosine});
+        std::optional<std::size_t> odd;
+        for (std::size_t j = 0; j < size(); ++j) {
+            if (j == i || !opposed(a, set(j))) continue;
+            if (odd) add_facing(a, set(*odd), set(j));
+            odd = odd ? std::nullopt : std::optional(j);
+        }
+        if (odd) add_facing(a, set(*odd), set(*odd)); // twice: two at a time are looked at
         if (at_.facing.empty()) return;
         const double radius = spacings::beside * spacing(i);
         if (radius == 0) return;
+        const double widest = patches::widest * h, beside = sheets::beside * sheets::beside * h * h;
         for (const Vec3& p : samples(i)) {
-            double nearest[2] = {patches::widest * h, patches::widest * h}; // behind, before
-            for (const auto& [normal, centroid, cosine] : at_.facing) {
-                const double t = (normal | (centroid - p)) / cosine;
-                double& distance = nearest[t > 0];
-                if (std::abs(t) < distance
-                    && !((p + t * a.normal - centroid).sqrnorm() > sheets::beside * sheets::beside * h * h))
-                    distance = std::abs(t);
+            Double2 behind = Double2{} + widest, front = behind; // the nearest sheets
+            const VectorPair place(p, p), normal(a.normal, a.normal);
+            for (const auto& [facing, centroid, cosine] : at_.facing) {
+                const Double2 t = (facing | (centroid - place)) / cosine;
+                const VectorPair off = place + normal * t - centroid;
+                const Double2 distance = (off | off) > beside ? Double2{} + widest : max_lanes(t, -t);
+                front = min_lanes(t > 0 ? distance : front, front);
+                behind = min_lanes(t > 0 ? behind : distance, behind);
             }
+            const double nearest[2] = {std::min(behind[0], behind[1]), std::min(front[0], front[1])};
             for (unsigned before : {0u, 1u})
                 if (nearest[before] < patches::widest * h)
                     at_.discs.add({p + a.normal * ((before ? 0.5 : -0.5) * nearest[before]), a.normal, p,
@@ -277,6 +302,7 @@ private:
     const NormalSets& sets_;
     PatchScratch& at_;
     std::size_t own_ = 0;
+    Index most_points_ = 0; // of a set
 };
 
 /// Of each point of a set its patch: sampled points are connected that nothing parts, others belong with the

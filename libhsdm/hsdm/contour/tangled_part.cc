@@ -1,9 +1,11 @@
 #include "hsdm/contour/tangled_part.hh"
 
+#include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/part_of.hh"
 #include "hsdm/mesh/remove_facets.hh"
 
 #include <algorithm>
+#include <atomic>
 
 namespace hsdm {
 namespace {
@@ -24,28 +26,29 @@ TangledPart::TangledPart(const PolygonMesh& mesh, const std::vector<std::array<I
     std::sort(trouble.begin(), trouble.end(), [](const Box& a, const Box& b) { return a.lo[0] < b.lo[0]; });
     double widest = 0;
     for (const Box& box : trouble) widest = std::max(widest, box.hi[0] - box.lo[0]);
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+    facets_ = indices_where(mesh.facet_count(), chunks::usual, [&](Index f) {
         const Box box = box_of(mesh, f);
         const auto first = std::lower_bound(trouble.begin(), trouble.end(), box.lo[0] - nearby - widest,
                                             [](const Box& b, double x) { return b.lo[0] < x; });
         for (auto t = first; t != trouble.end() && t->lo[0] <= box.hi[0] + nearby; ++t)
-            if (overlap(*t, box, nearby)) {
-                facets_.push_back(static_cast<Index>(f));
-                break;
-            }
-    }
+            if (overlap(*t, box, nearby)) return true;
+        return false;
+    });
     part = part_of(mesh, facets_, &of_vertex_);
     // A vertex that has facets outside must stay: not all of its neighbours are known here.
     inner_.assign(part.vertex_count(), 1);
-    std::size_t next = 0;
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-        if (next < facets_.size() && facets_[next] == f) {
-            ++next;
-            continue;
+    for_chunks(mesh.facet_count(), chunks::usual, [&](std::size_t begin, std::size_t end, std::size_t) {
+        auto next = std::ranges::lower_bound(facets_, begin);
+        for (std::size_t f = begin; f < end; ++f) {
+            if (next != facets_.end() && *next == f) {
+                ++next;
+                continue;
+            }
+            for (Index v : mesh.facet(f))
+                if (of_vertex_[v] != no_index)
+                    std::atomic_ref(inner_[of_vertex_[v]]).store(0, std::memory_order_relaxed);
         }
-        for (Index v : mesh.facet(f))
-            if (of_vertex_[v] != no_index) inner_[of_vertex_[v]] = 0;
-    }
+    });
 }
 
 std::vector<Index> TangledPart::vertices() const {

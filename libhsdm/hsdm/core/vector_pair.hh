@@ -25,6 +25,9 @@ public:
         return {lanes_[1] * v[2] - lanes_[2] * v[1], lanes_[2] * v[0] - lanes_[0] * v[2],
                 lanes_[0] * v[1] - lanes_[1] * v[0]};
     }
+    VectorPair operator+(const VectorPair& v) const {
+        return {lanes_[0] + v[0], lanes_[1] + v[1], lanes_[2] + v[2]};
+    }
     VectorPair operator-(const VectorPair& v) const {
         return {lanes_[0] - v[0], lanes_[1] - v[1], lanes_[2] - v[2]};
     }

@@ -18,6 +18,7 @@
 namespace hsdm {
 namespace {
 
+using OpenMesh::EdgeHandle;
 using OpenMesh::FaceHandle;
 using OpenMesh::HalfedgeHandle;
 using OpenMesh::VertexHandle;
@@ -173,26 +174,42 @@ struct Selection {
     std::vector<Index> number; ///< per vertex of the mesh, its index among the vertices
 };
 
+/// The handles of all n elements that is_part() holds of, in order.
+template <class Handle, class Test>
+std::vector<Handle> selected(std::size_t n, const Test& is_part) {
+    return collected<Handle>(n, chunks::quick,
+                             [&](std::size_t begin, std::size_t end, std::vector<Handle>& found) {
+                                 for (std::size_t i = begin; i < end; ++i)
+                                     if (const Handle h(static_cast<int>(i)); is_part(h)) found.push_back(h);
+                             });
+}
+
+/// As OpenMesh's ranges skip elements.
+template <class Handle>
+bool is_skipped(const PolyMesh& mesh, Handle h) {
+    return mesh.status(h).deleted() || mesh.status(h).hidden();
+}
+
 Selection select(const PolyMesh& mesh) {
     Selection selection;
-    selection.number.assign(mesh.n_vertices(), no_index);
-    selection.vertices.reserve(mesh.n_vertices());
-    selection.faces.reserve(mesh.n_faces());
-    for (const auto v : mesh.vertices()) {
-        if (mesh.is_isolated(v)) continue;
-        selection.number[static_cast<std::size_t>(v.idx())] = static_cast<Index>(selection.vertices.size());
-        selection.vertices.push_back(v);
-    }
-    for (const auto f : mesh.faces()) selection.faces.push_back(f);
+    selection.vertices = selected<VertexHandle>(mesh.n_vertices(), [&](VertexHandle v) {
+        return !(mesh.has_vertex_status() && is_skipped(mesh, v)) && !mesh.is_isolated(v);
+    });
+    assign_large(selection.number, mesh.n_vertices(), no_index);
+    for_each_index(selection.vertices.size(), chunks::light, [&](Index v) {
+        selection.number[static_cast<std::size_t>(selection.vertices[v].idx())] = v;
+    });
+    selection.faces = selected<FaceHandle>(
+        mesh.n_faces(), [&](FaceHandle f) { return !(mesh.has_face_status() && is_skipped(mesh, f)); });
     return selection;
 }
 
 void read_facets(const PolyMesh& mesh, const Selection& selection, PolygonMesh& polygons) {
-    polygons.first.resize(selection.faces.size() + 1);
+    resize_unwritten(polygons.first, selection.faces.size() + 1);
     for_each_index(selection.faces.size(), chunks::quick,
                    [&](Index f) { polygons.first[f + 1] = corner_count(mesh, selection.faces[f]); });
     for (std::size_t f = 0; f < selection.faces.size(); ++f) polygons.first[f + 1] += polygons.first[f];
-    polygons.corners.resize(polygons.first.back());
+    resize_unwritten(polygons.corners, polygons.first.back());
     for_each_index(selection.faces.size(), chunks::quick, [&](Index f) {
         Index c = polygons.first[f];
         for (const auto v : mesh.fv_range(selection.faces[f]))
@@ -203,7 +220,7 @@ void read_facets(const PolyMesh& mesh, const Selection& selection, PolygonMesh& 
 template <class Value>
 VertexProperty read_property(std::string name, VertexProperty::Type type, const Selection& selection,
                              const Value& value) {
-    VertexProperty property{std::move(name), type, std::vector<double>(selection.vertices.size())};
+    VertexProperty property{std::move(name), type, unwritten_vector<double>(selection.vertices.size())};
     for_each_index(selection.vertices.size(), chunks::quick, [&](Index v) {
         property.values[v] =
             static_cast<double>(value(static_cast<std::size_t>(selection.vertices[v].idx())));
@@ -250,10 +267,15 @@ void read_properties(const PolyMesh& mesh, const Selection& selection, PolygonMe
 
 void read_marks(const PolyMesh& mesh, const Selection& selection, PolygonMesh& polygons) {
     if (!mesh.has_edge_status()) return;
-    for (const auto e : mesh.edges()) {
-        if (!mesh.status(e).feature()) continue;
-        const Index from = selection.number[static_cast<std::size_t>(e.v0().idx())];
-        const Index to = selection.number[static_cast<std::size_t>(e.v1().idx())];
+    const auto sharp = selected<EdgeHandle>(
+        mesh.n_edges(), [&](EdgeHandle e) { return mesh.status(e).feature() && !is_skipped(mesh, e); });
+    polygons.sharp_edges.reserve(sharp.size());
+    for (const EdgeHandle e : sharp) {
+        const auto number_of_end = [&](unsigned k) {
+            const VertexHandle v = mesh.to_vertex_handle(mesh.halfedge_handle(e, 1 - k));
+            return selection.number[static_cast<std::size_t>(v.idx())];
+        };
+        const Index from = number_of_end(0), to = number_of_end(1);
         polygons.sharp_edges.push_back({std::min(from, to), std::max(from, to)});
     }
 }
@@ -287,8 +309,8 @@ ToMeshResult to_mesh(const PolygonMesh& facets) {
 PolygonMesh to_polygons(const PolyMesh& mesh) {
     const Selection selection = select(mesh);
     PolygonMesh polygons;
-    polygons.positions.resize(selection.vertices.size());
-    if (mesh.has_vertex_normals()) polygons.normals.resize(selection.vertices.size());
+    resize_unwritten(polygons.positions, selection.vertices.size());
+    if (mesh.has_vertex_normals()) resize_unwritten(polygons.normals, selection.vertices.size());
     for_each_index(selection.vertices.size(), chunks::quick, [&](Index v) {
         polygons.positions[v] = mesh.point(selection.vertices[v]);
         if (!polygons.normals.empty()) polygons.normals[v] = mesh.normal(selection.vertices[v]);

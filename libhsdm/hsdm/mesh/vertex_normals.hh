@@ -41,7 +41,7 @@ OpenMesh::VProp<T> kept_vertex_property(Mesh& mesh, const char* name) {
         auto property = std::make_unique<OpenMesh::PropertyT<T>>(name, OpenMesh::get_type_name<T>());
         resize_large(property->data_vector(), mesh.n_vertices());
         mesh._add_vprop(property.get());
-        property.release(); // the mesh has it now
+        static_cast<void>(property.release()); // the mesh has it now
     }
     OpenMesh::VProp<T> property(mesh, name);
     mesh.property(property.getRawProperty()).set_persistent(true);

@@ -209,7 +209,7 @@ private:
         const std::vector<Index>& bent = result_.bent;
         std::vector<Vec3> renewed = unwritten_vector<Vec3>(bent.size());
         for_each_index(bent.size(), chunks::heavy, [&](Index b) { renewed[b] = normal_of(bent[b]); });
-        for (std::size_t b = 0; b < bent.size(); ++b) result_.normals[bent[b]] = renewed[b];
+        for_each_index(bent.size(), chunks::light, [&](Index b) { result_.normals[bent[b]] = renewed[b]; });
     }
 
     /// How many neighbours lie on the plane with that normal through the point, or on the parallel one

@@ -76,7 +76,7 @@ struct ScaleNoise {
     double deviation;
     bool is_small; ///< against the reach
 };
-ScaleNoise noise_at(const Scale& scale, const std::vector<Roughness>& sample) {
+ScaleNoise noise_at(const Scale& scale, std::span<const Roughness> sample) {
     std::vector<double> distances, relative; // to the reach
     for (const Roughness& r : sample) {
         distances.push_back(r.distance);
@@ -84,6 +84,19 @@ ScaleNoise noise_at(const Scale& scale, const std::vector<Roughness>& sample) {
     }
     return {scale.deviation * lower_third(std::move(distances)),
             lower_third(std::move(relative)) < scale.small};
+}
+
+/// Of samples, the `s`-th scale.
+ScaleNoise noise_at(std::size_t s, std::span<const NoiseSample> samples) {
+    std::vector<Roughness> sample;
+    for (const NoiseSample& of_point : samples) sample.push_back({of_point.distance[s], of_point.reach[s]});
+    return noise_at(scales()[s], sample);
+}
+
+void measure_at(std::size_t s, const Octree& octree, std::span<const Index> around, std::size_t i,
+                NoiseSample& sample) {
+    const Roughness found = roughness(octree, around, scales()[s].few, i);
+    sample.distance[s] = found.distance, sample.reach[s] = found.reach;
 }
 
 } // namespace
@@ -98,30 +111,29 @@ std::vector<NoiseSample> noise_samples(const Octree& octree, std::span<const Ind
     std::vector<NoiseSample> samples(points.size());
     for_each_index(points.size(), chunks::slow, [&](Index k) {
         samples[k].farthest = neighbors.reach[k];
-        for (std::size_t s = 0; s < scales().size(); ++s) {
-            const Roughness found = roughness(octree, neighbors.of(k), scales()[s].few, points[k]);
-            samples[k].distance[s] = found.distance, samples[k].reach[s] = found.reach;
-        }
+        for (std::size_t s = 0; s < scales().size(); ++s)
+            measure_at(s, octree, neighbors.of(k), points[k], samples[k]);
     });
     return samples;
 }
 
 std::optional<double> noise_deviation(std::span<const NoiseSample> samples) {
     for (std::size_t s = 0; s < scales().size(); ++s) {
-        std::vector<Roughness> sample;
-        for (const NoiseSample& of_point : samples)
-            sample.push_back({of_point.distance[s], of_point.reach[s]});
-        if (const ScaleNoise found = noise_at(scales()[s], sample); found.is_small) return found.deviation;
+        if (const ScaleNoise found = noise_at(s, samples); found.is_small) return found.deviation;
     }
     return std::nullopt;
 }
 
+std::vector<NoiseSample> noise_samples(const Octree& octree, const Neighbors& neighbors) {
+    return sampled(octree, [&](std::size_t i) {
+        NoiseSample sample{.farthest = neighbors.reach[i]};
+        measure_at(0, octree, neighbors.of(i), i, sample);
+        return sample;
+    });
+}
+
 double estimate_noise(const Octree& octree, const Neighbors& neighbors) {
-    return lower_third(sampled(octree, [&](std::size_t i) {
-        return neighbors.reach[i] > 0
-                   ? roughness(octree, neighbors.of(i), noise::nearest, i).distance / neighbors.reach[i]
-                   : 0;
-    }));
+    return estimate_noise(noise_samples(octree, neighbors));
 }
 
 double estimate_noise(std::span<const NoiseSample> samples) {
@@ -132,15 +144,17 @@ double estimate_noise(std::span<const NoiseSample> samples) {
 }
 
 double noise_deviation(const Octree& octree, const Neighbors& neighbors) {
-    double deviation = 0;
-    for (const Scale& scale : scales()) {
-        const ScaleNoise found = noise_at(scale, sampled(octree, [&](std::size_t i) {
-                                              return roughness(octree, neighbors.of(i), scale.few, i);
-                                          }));
-        deviation = found.deviation;
-        if (found.is_small) return deviation;
-    }
-    if (octree.size() < 4 * noise::fewest) return deviation; // the next round uses a quarter of them
+    return noise_deviation(octree, neighbors, noise_samples(octree, neighbors));
+}
+
+double noise_deviation(const Octree& octree, const Neighbors& neighbors,
+                       std::span<const NoiseSample> samples) {
+    if (const ScaleNoise found = noise_at(0, samples); found.is_small) return found.deviation;
+    const ScaleNoise found = noise_at(scales()[1], sampled(octree, [&](std::size_t i) {
+                                          return roughness(octree, neighbors.of(i), scales()[1].few, i);
+                                      }));
+    if (found.is_small || octree.size() < 4 * noise::fewest) // the next round uses a quarter of them
+        return found.deviation;
     const Octree thin = thinned(octree);
     return noise_deviation(thin, find_neighbors(thin));
 }

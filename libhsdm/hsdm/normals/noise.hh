@@ -21,15 +21,21 @@ double estimate_noise(const Octree& octree, const Neighbors& neighbors);
 /// wider than needed: the sides of a plate or a slit stay apart. O(n).
 double noise_deviation(const Octree& octree, const Neighbors& neighbors);
 
-/// The same of a cloud that is not in memory: of one of so many of its points, evenly taken in octree order.
+/// One of so many points is in a sample, evenly taken in octree order.
 std::size_t noise_stride(std::size_t points);
 struct NoiseSample {
     /// The distance from the plane of the 6 and of the 12 nearest, and how far the farthest of these is.
     std::array<double, 2> distance{}, reach{};
     double farthest = 0; ///< how far the farthest of all neighbours is
 };
-/// estimate_noise() by such a sample.
+/// estimate_noise() by such samples.
 double estimate_noise(std::span<const NoiseSample> samples);
+/// Of the 6 nearest alone, for both of what follows: they are sorted once.
+std::vector<NoiseSample> noise_samples(const Octree& octree, const Neighbors& neighbors);
+/// noise_deviation() by these and, where 6 do not tell, by what it takes more.
+double noise_deviation(const Octree& octree, const Neighbors& neighbors,
+                       std::span<const NoiseSample> samples);
+/// The same of a cloud that is not in memory.
 /// `neighbors`: of these points alone.
 std::vector<NoiseSample> noise_samples(const Octree& octree, std::span<const Index> points,
                                        const Neighbors& neighbors);

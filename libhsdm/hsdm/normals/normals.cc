@@ -1,22 +1,30 @@
 #include "hsdm/normals/normals.hh"
 
-#include "hsdm/core/interruption.hh"
+#include "hsdm/core/chunks.hh"
 #include "hsdm/normals/arcs.hh"
 #include "hsdm/normals/noise.hh"
 #include "hsdm/normals/vote_on_normals.hh"
-
-#include <algorithm>
 
 namespace hsdm {
 
 namespace {
 
-/// Neighbours in the number asked for, or that the noise calls for.
-Neighbors choose_neighbors(const Octree& octree, int count, Neighbors neighbors) {
-    if (count != 0) return find_neighbors(octree, {.count = count});
-    const int wanted = neighbors_for_noise(estimate_noise(octree, neighbors));
-    return wanted > neighborhoods::neighbors ? find_neighbors(octree, {.count = wanted})
-                                             : std::move(neighbors);
+/// Takes out noise, and finds neighbours in the number asked for or that the noise calls for, from the
+/// nearest ones. The noise is measured anew only where points or neighbours have changed since.
+Neighbors choose_neighbors(Octree& octree, Neighbors nearest, const NormalsOptions& options,
+                           EstimateOptions& estimate, SmoothReport& smoothed) {
+    std::vector<NoiseSample> samples = noise_samples(octree, nearest);
+    const double deviation = noise_deviation(octree, nearest, samples);
+    if (is_noisy(octree, deviation, options.smooth)) {
+        smoothed = smooth_known_noise(octree, deviation, nearest, options.smooth);
+        samples = noise_samples(octree, nearest);
+    }
+    if (options.neighbors != 0) return find_neighbors(octree, {.count = options.neighbors});
+    const double noise = estimate_noise(samples);
+    const int wanted = neighbors_for_noise(noise);
+    if (wanted > neighborhoods::neighbors) return find_neighbors(octree, {.count = wanted});
+    if (!estimate.noise) estimate.noise = noise;
+    return nearest;
 }
 
 } // namespace
@@ -31,13 +39,12 @@ NormalsReport make_normals(Octree& octree, const NormalsOptions& options) {
         if (orient.sensor) *orient.sensor += origin - octree.origin;
         for (Vec3& sensor : orient.viewpoints.sensors) sensor += origin - octree.origin;
     }
-    report.smoothed = smooth_noise(octree, nearest, options.smooth);
-    const Neighbors neighbors = choose_neighbors(octree, options.neighbors, std::move(nearest));
-    EstimatedNormals estimate = estimate_normals(octree, neighbors, options.estimate);
-    Orientation orientation;
+    EstimateOptions how = options.estimate;
+    const Neighbors neighbors = choose_neighbors(octree, std::move(nearest), options, how, report.smoothed);
+    EstimatedNormals estimate = estimate_normals(octree, neighbors, how);
     std::vector<Vec3> refined;
-    run_both([&] { orientation = orient_normals(octree, neighbors, estimate, orient); },
-             [&] { refined = refined_normals(octree, neighbors, estimate); });
+    const Orientation orientation = orient_normals(
+        octree, neighbors, estimate, orient, [&] { refined = refined_normals(octree, neighbors, estimate); });
     turn_normals(orientation, refined);
     estimate.normals = std::move(refined);
     report.orientation = orientation.report;
@@ -46,8 +53,9 @@ NormalsReport make_normals(Octree& octree, const NormalsOptions& options) {
     if (orientation.report.of_layers == 0) bend_to_arcs(octree, neighbors, estimate);
     report.noise = estimate.noise;
     report.bent = estimate.bent.size();
-    report.missing = static_cast<std::size_t>(std::count_if(estimate.normals.begin(), estimate.normals.end(),
-                                                            [](const Vec3& n) { return n.sqrnorm() == 0; }));
+    report.missing = indices_where(octree.size(), chunks::light, [&](Index i) {
+                         return estimate.normals[i].sqrnorm() == 0;
+                     }).size();
     octree.normals = std::move(estimate.normals);
     return report;
 }

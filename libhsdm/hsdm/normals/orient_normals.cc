@@ -166,15 +166,20 @@ std::vector<std::uint8_t> turns_of(const Patches& patches, const std::vector<std
 }
 
 Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate,
-                           const OrientOptions& options) {
+                           const OrientOptions& options, const std::function<void()>& meanwhile) {
     const Patches patches = build_patches(octree, neighbors, estimate);
     OutsideView view;
     std::vector<SignedEdge> edges;
     run_both([&] { view = view_outside(octree, patches, estimate_spacing(octree)); },
              [&] { edges = patch_evidence(octree, neighbors, estimate, patches); });
-    const PatchSigns signs =
-        sign_patches(patches, std::move(edges), view, seen_by_sensors(octree, patches, options.viewpoints),
-                     options, [&] { return read_as_layers(octree, neighbors, estimate, patches); });
+    const auto as_layers = [&] { return read_as_layers(octree, neighbors, estimate, patches); };
+    PatchSigns signs;
+    run_both(
+        [&] {
+            const std::vector<float> seen_by = seen_by_sensors(octree, patches, options.viewpoints);
+            signs = sign_patches(patches, std::move(edges), view, seen_by, options, as_layers);
+        },
+        meanwhile);
     return {turns_of(patches, signs.sign), signs.report};
 }
 

@@ -47,10 +47,12 @@ struct Orientation {
 
 /// Joins patches by the evidence of neighbouring points (patch_evidence) and of the empty space around and in
 /// between (view_outside), the strongest first. A component without a view of the outside, or with
-/// contradicting views, is turned towards the sensor, or so that its signed volume is positive. O(n log n) at
-/// worst.
-Orientation orient_normals(const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate,
-                           const OrientOptions& options = {});
+/// contradicting views, is turned towards the sensor, or so that its signed volume is positive. `meanwhile`
+/// is called once, by another thread if one is free, while signs are decided from all of that, which is not
+/// parallel. O(n log n) at worst.
+Orientation orient_normals(
+    const Octree& octree, const Neighbors& neighbors, const EstimatedNormals& estimate,
+    const OrientOptions& options = {}, const std::function<void()>& meanwhile = [] {});
 
 /// The last step of that, of all patches of a cloud: by the evidence between them, by what they see of the
 /// outside, and by the scanners (per patch, as in Viewpoints; none: empty). evidence_of_layers() is asked

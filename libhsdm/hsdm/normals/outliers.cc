@@ -8,14 +8,38 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace hsdm {
 namespace {
 
-double median(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+double at_rank(std::vector<double> values, std::size_t rank) {
+    const auto place = values.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::nth_element(values.begin(), place, values.end());
+    return *place;
+}
+
+/// Of many values a sample tells between which two the middle one lies; those few are put in order.
+double median(const std::vector<double>& values) {
+    constexpr std::size_t sampled = 1 << 12;
+    const std::size_t rank = values.size() / 2, stride = values.size() / sampled;
+    if (stride < 16) return at_rank(values, rank);
+    std::vector<double> sample;
+    for (std::size_t i = 0; i < values.size(); i += stride) sample.push_back(values[i]);
+    std::sort(sample.begin(), sample.end());
+    const double least = sample[sample.size() * 9 / 20], most = sample[sample.size() * 11 / 20];
+    std::vector<std::size_t> below(chunk_count(values.size(), chunks::light), 0);
+    std::vector<std::vector<double>> between(below.size());
+    for_chunks(values.size(), chunks::light, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+        for (std::size_t i = begin; i < end; ++i) {
+            below[chunk] += values[i] < least;
+            if (values[i] >= least && values[i] <= most) between[chunk].push_back(values[i]);
+        }
+    });
+    std::vector<double> middle = joined(between);
+    const std::size_t before = std::accumulate(below.begin(), below.end(), std::size_t{0});
+    if (rank < before || rank - before >= middle.size()) return at_rank(values, rank);
+    return at_rank(std::move(middle), rank - before);
 }
 
 /// The plane of a point's neighbours, without the point, relative to it.
@@ -33,10 +57,11 @@ double deviation_from(const PlaneFit& plane) {
 /// volume is no sign of an outlier. A sample tells.
 bool fill_volume(const Octree& octree, const Neighbors& neighbors, const OutlierOptions& options) {
     const std::size_t step = volume_stride(octree.size());
-    std::size_t volumes = 0, looked_at = 0;
-    for (std::size_t i = 0; i < octree.size(); i += step, ++looked_at)
-        volumes += fills_volume(octree, neighbors, i, options);
-    return 2 * volumes > looked_at;
+    const std::size_t looked_at = chunk_count(octree.size(), step);
+    const std::vector<Index> volumes = indices_where(looked_at, chunks::heavy, [&](Index k) {
+        return fills_volume(octree, neighbors, k * step, options);
+    });
+    return 2 * volumes.size() > looked_at;
 }
 
 /// Does a plane through the point and two of its neighbours hold many of the others? One does at the rims of
@@ -126,8 +151,7 @@ std::vector<std::uint8_t> outliers_by_distance(const Octree& octree, const Neigh
 Occurrences drop_outliers_by_distance(Octree& octree, Neighbors& neighbors, const OutlierOptions& options) {
     Occurrences total;
     for (int round = 0; round < options.rounds && neighbors.count > 0; ++round) {
-        std::vector<double> reach = copy_of_large(neighbors.reach);
-        const ReachOfAll all{median(reach), fill_volume(octree, neighbors, options)};
+        const ReachOfAll all{median(neighbors.reach), fill_volume(octree, neighbors, options)};
         const Occurrences some = remove_points(octree, outliers_by_distance(octree, neighbors, all, options));
         if (some.count == 0) break;
         total.add(some);

@@ -420,10 +420,14 @@ double smooth_points(Octree& octree, double noise) {
 }
 
 SmoothReport smooth_noise(Octree& octree, Neighbors& neighbors, const SmoothOptions& options) {
-    validate(options);
     const double noise = noise_deviation(octree, neighbors);
-    if (noise <= options.least_noise * estimate_spacing(octree)) return {};
-    return smooth_known_noise(octree, noise, neighbors, options);
+    return is_noisy(octree, noise, options) ? smooth_known_noise(octree, noise, neighbors, options)
+                                            : SmoothReport{};
+}
+
+bool is_noisy(const Octree& octree, double noise, const SmoothOptions& options) {
+    validate(options);
+    return !(noise <= options.least_noise * estimate_spacing(octree));
 }
 
 SmoothReport smooth_known_noise(Octree& octree, double noise, Neighbors& neighbors,

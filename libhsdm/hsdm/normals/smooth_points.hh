@@ -24,6 +24,9 @@ struct SmoothReport {
 /// Throws OptionError.
 SmoothReport smooth_noise(Octree& octree, Neighbors& neighbors, const SmoothOptions& options = {});
 
+/// Does it take out noise of that standard deviation (in the cloud's units)? Throws OptionError.
+bool is_noisy(const Octree& octree, double noise, const SmoothOptions& options = {});
+
 /// The same for a known standard deviation of the noise (> 0), however small. Points are moved with
 /// smooth_points; those that came to lie between sheets, farther from others than these from each other, are
 /// removed (twice, because some lie there in pairs). Normals stay with their points. `neighbors` becomes that

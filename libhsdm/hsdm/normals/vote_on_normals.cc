@@ -68,7 +68,7 @@ void vote_on_normals(const Octree& octree, const Neighbors& neighbors, Estimated
                             [&](Index j) { return (own | estimate.normals[j]) < angles::one_sheet; }))
                 settled[b] = Agreement(octree, neighbors, estimate, bent[b]).settled(own);
         });
-        for (std::size_t b = 0; b < bent.size(); ++b) estimate.normals[bent[b]] = settled[b];
+        for_each_index(bent.size(), chunks::light, [&](Index b) { estimate.normals[bent[b]] = settled[b]; });
     }
 }
 

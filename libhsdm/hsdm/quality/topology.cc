@@ -172,6 +172,18 @@ std::size_t count_duplicates(const PolygonMesh& mesh) {
     return count;
 }
 
+Box box_of_corners(const PolygonMesh& mesh) {
+    std::vector<Box> boxes(chunk_count(mesh.corners.size(), chunks::light));
+    for_chunks(mesh.corners.size(), chunks::light,
+               [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+                   for (std::size_t c = begin; c < end; ++c)
+                       boxes[chunk].add(mesh.positions[mesh.corners[c]]);
+               });
+    Box all;
+    for (const Box& box : boxes) all.add(box);
+    return all;
+}
+
 /// Sum of term(i) over 0 .. n - 1, the same bits for any number of threads.
 template <class Term>
 double chunked_sum(std::size_t n, Term term) {
@@ -218,8 +230,7 @@ bool has_no_area(std::span<const Vec3> ring) {
 
 /// About the centre of the box, so that a mesh far from the origin loses no digits.
 double signed_volume(const PolygonMesh& mesh) {
-    Box box;
-    for (Index v : mesh.corners) box.add(mesh.positions[v]);
+    const Box box = box_of_corners(mesh);
     const Vec3 centre = box.empty() ? Vec3(0, 0, 0) : box.lo + box.size() / 2;
     const Triangulation cut = triangulate(mesh);
     return chunked_sum(cut.size(), [&](std::size_t t) {
