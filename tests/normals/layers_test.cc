@@ -76,6 +76,18 @@ PointCloud misaligned(const support::Solid& solid, double spacings, std::uint64_
 
 } // namespace
 
+TEST_CASE("the sky corrects what layers say by themselves, it does not say it for them", "[normals]") {
+    for (const std::size_t told : {30u, 60u}) { // patches of the second sheet that are layers without the sky
+        TwoSheets sheets;
+        sheets.see(0, of_sheet + told, 1);
+        sheets.layers.skyward = sheets.layers.signs;
+        std::fill(sheets.layers.signs.sign.begin() + static_cast<std::ptrdiff_t>(of_sheet + told),
+                  sheets.layers.signs.sign.end(), std::int8_t{-1});
+        const std::size_t taken = take_layers(sheets.patches, sheets.layers, sheets.walls).points;
+        CHECK(taken == 5 * (2 * told > of_sheet ? of_sheet : told));
+    }
+}
+
 TEST_CASE("components of which nothing is turned keep their outward side, whatever they see", "[normals]") {
     TwoSheets sheets;
     const Index other = 2 * of_sheet; // a patch of its own, which sees the sky behind it

@@ -188,13 +188,12 @@ Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options) {
         if (open[c] == 0 && extent.is_thinner_than(options.layers)
             && extent.may_be_of(widest, options.layers, options.least_ratio))
             return true;
-        if (options.cavities && is_closed && open[c] == 0 && extent.faces_against(widest)
-            && extent.is_small_in(widest, 0, options.least_ratio)
-            && components.encloses(static_cast<Index>(of_most), static_cast<Index>(c)))
-            return true;
         const bool flat = sizes[c] <= options.most_flat && extent.is_thinner_than(options.flat);
         const std::size_t most_closed = flat ? options.most_flat : options.most_facets;
-        return may_go(sizes[c]) && sizes[c] <= (open[c] ? options.most_open : most_closed);
+        if (may_go(sizes[c]) && sizes[c] <= (open[c] ? options.most_open : most_closed)) return true;
+        return options.cavities && is_closed && open[c] == 0 && extent.faces_against(widest)
+               && extent.is_small_in(widest, 0, options.least_ratio)
+               && components.encloses(static_cast<Index>(of_most), static_cast<Index>(c));
     });
     return remove_components(mesh, none, small).facets;
 }

@@ -59,6 +59,13 @@ public:
     }
 
     bool at(std::size_t patch) const { return differ_[patch] != 0; }
+    /// Those of another reading where `takes(patch)`.
+    template <class Takes>
+    void take(const Differences& other, const Takes& takes) {
+        for_each_index(patches_.size(), chunks::light, [&](Index p) {
+            if (takes(p)) faces_[p] = other.faces_[p], differ_[p] = other.differ_[p];
+        });
+    }
     /// What those of each group see; group_of(patch) is its number.
     template <class GroupOf>
     std::vector<Views> views(std::size_t groups, const GroupOf& group_of) const {
@@ -79,9 +86,14 @@ private:
 
 SkyReading take_layers(const Patches& patches, const LayerReading& layers, Signs& walls) {
     const auto component_of = [&](std::size_t p) { return walls.component[p]; };
-    const std::vector<Views> unbiased =
-        Differences(patches, layers.sky, walls, layers.signs).views(walls.components, component_of);
-    const Differences differences(patches, layers.sky, walls, layers.skyward);
+    Differences differences(patches, layers.sky, walls, layers.signs);
+    const std::vector<Views> unbiased = differences.views(walls.components, component_of);
+    const Differences skyward(patches, layers.sky, walls, layers.skyward);
+    const std::vector<Views> with_sky = skyward.views(walls.components, component_of);
+    // The sky corrects what is known without it; where it turns more than as much again, it made all up.
+    differences.take(skyward, [&](std::size_t p) {
+        return 2 * unbiased[component_of(p)].points > with_sky[component_of(p)].points;
+    });
     DisjointSets joined(patches.size());
     for_each_in_order(layers.edges.size(), [&](std::size_t e) {
         const SignedEdge& edge = layers.edges[e];
