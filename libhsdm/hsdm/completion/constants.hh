@@ -85,9 +85,9 @@ inline constexpr double margin = 2;
 // slits.hh
 namespace hsdm::slits {
 
-/// ratio: of the sides of a rectangle that a loop is as slender as, or whose longer sides face as much one way
-/// and back, to be a slit, at least.
-/// Why: the ends of narrow pipes are borders, and few pipes are that flat.
+/// ratio: of the sides of a rectangle that a loop is as slender as, or whose longer sides face as much one
+/// way and back, to be a slit, at least. Why: the ends of narrow pipes are borders, and few pipes are that
+/// flat.
 inline constexpr double least_ratio = 6;
 
 /// edges: longer loops are no slits.
