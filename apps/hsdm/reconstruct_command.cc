@@ -271,13 +271,8 @@ private:
         };
     }
 
-    /// The same in bounded memory. Reading is part of the other phases.
-    std::vector<Report> make_in_tiles(const PointsInParts& points, const CloudFiles& cloud,
-                                      Clock::time_point start, ProgressBar& bar) {
-        arguments_.check_for_tiles(*tiles_);
-        const double read_seconds = seconds_since(start);
-        ReconstructOptions options = options_;
-        options.progress = shown_on(bar);
+    /// Those asked for, less the memory that points take already.
+    TileOptions tiles_beside(const PointsInParts& points, const CloudFiles& cloud) const {
         TileOptions tiles = *tiles_;
         const std::size_t held = points.in_memory() ? bytes_of_cloud(points.file().cloud) : 0;
         if (held >= tiles.memory)
@@ -285,6 +280,17 @@ private:
                         "its points take " + std::to_string(held / 1000000)
                             + " MB once they are read; of binary PLY files they need not be in memory");
         tiles.memory -= held;
+        return tiles;
+    }
+
+    /// The same in bounded memory. Reading is part of the other phases.
+    std::vector<Report> make_in_tiles(const PointsInParts& points, const CloudFiles& cloud,
+                                      Clock::time_point start, ProgressBar& bar) {
+        arguments_.check_for_tiles(*tiles_);
+        const double read_seconds = seconds_since(start);
+        ReconstructOptions options = options_;
+        options.progress = shown_on(bar);
+        TileOptions tiles = tiles_beside(points, cloud);
         OneRank alone;
         Ranks& ranks = ranks_ ? *ranks_ : alone;
         const PointParts parts = [&](const auto& visit) {

@@ -170,12 +170,12 @@ void KeptScratch::begin(const std::vector<Trait>& job) {
 
 void KeptScratch::refuse(const std::vector<Trait>& kept, const std::vector<Trait>& job) const {
     constexpr const char* advice = "; remove the folder to begin anew, or name another with --scratch";
-    for (std::size_t i = 0; i < std::min(kept.size(), job.size()); ++i)
-        if (kept[i].name != job[i].name)
-            break; // values of different things
-        else if (!(kept[i] == job[i]))
+    for (std::size_t i = 0; i < std::min(kept.size(), job.size()); ++i) {
+        if (kept[i].name != job[i].name) break; // values of different things
+        if (kept[i].value != job[i].value)
             throw Error(folder_, "is kept of a job with another " + kept[i].name + ": " + kept[i].value
                                      + ", and not " + job[i].value + advice);
+    }
     throw Error(folder_, std::string("is kept of a job of other files or options") + advice);
 }
 
