@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <sstream>
 
 using namespace hsdm;
 using namespace hsdm::test;
@@ -140,6 +141,39 @@ TEST_CASE("a job that is killed in any phase is gone on with", "[cli][tiles][slo
         std::filesystem::remove(job.folder / "new.ply");
     }
     CHECK(killed_late > 0);
+}
+
+TEST_CASE("what is told of files that are not read again is told all the same", "[cli][tiles]") {
+    const Folder folder;
+    std::filesystem::create_directory(folder / "scratch");
+    const PointCloud cloud = support::sample(support::torus(1, 0.3), {.points = 20000});
+    for (const char* name : {"a.xyz", "b.xyz"}) {
+        std::ostringstream text;
+        text << "nan 0 0 0 0 1\n";
+        const std::size_t first = name[0] == 'a' ? 0 : 10000;
+        for (std::size_t i = first; i < first + 10000; ++i)
+            text << cloud.positions[i] << ' ' << cloud.normals[i] << '\n';
+        folder.write(name, text.str());
+    }
+    const std::string call = "reconstruct a.xyz b.xyz --join --columns x,y,z,nx,ny,nz --depth 6 --memory 70M "
+                             "--scratch scratch --report report.json -o ";
+    const auto told = [&] {
+        const std::string report = read_file(folder / "report.json");
+        std::string lines;
+        std::istringstream in(report);
+        for (std::string line; std::getline(in, line);)
+            if (line.find("nonfinite") != std::string::npos || line.find("columns") != std::string::npos)
+                lines += line + '\n';
+        return lines;
+    };
+    REQUIRE(run(folder, call + "whole.ply").status == 0);
+    const std::string whole = told();
+    CHECK(whole.find("\"dropped_nonfinite\": 2") != std::string::npos);
+    CHECK(run(folder, call + "/dev/full --format ply --resume").status == 1);
+    REQUIRE(run(folder, call + "part.ply --resume").status == 0);
+    CHECK(read_file(folder / "report.json").find(" tiles were kept") != std::string::npos);
+    CHECK(told() == whole);
+    CHECK(read_file(folder / "part.ply") == read_file(folder / "whole.ply"));
 }
 
 TEST_CASE("a cloud that tiles refuse leaves nothing to go on with", "[cli][tiles]") {
