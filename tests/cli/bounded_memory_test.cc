@@ -155,7 +155,7 @@ TEST_CASE("what is told of files that are not read again is told all the same", 
             text << cloud.positions[i] << ' ' << cloud.normals[i] << '\n';
         folder.write(name, text.str());
     }
-    const std::string call = "reconstruct a.xyz b.xyz --join --columns x,y,z,nx,ny,nz --depth 6 --memory 70M "
+    const std::string call = "reconstruct a.xyz b.xyz --join --columns x,y,z,nx,ny,nz --depth 6 --memory 80M "
                              "--scratch scratch --report report.json -o ";
     const auto told = [&] {
         const std::string report = read_file(folder / "report.json");
