@@ -5,6 +5,7 @@
 #include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/io/join_points.hh"
+#include "hsdm/pipeline/kept_passes.hh"
 #include "hsdm/version.hh"
 
 #include <algorithm>
@@ -21,17 +22,33 @@ namespace {
 template <class T>
 using Names = std::vector<std::pair<std::string, T>>;
 
+const Names<Holes> words_of_holes{{"auto", Holes::automatic},
+                                  {"keep", Holes::keep},
+                                  {"close", Holes::close},
+                                  {"complete", Holes::complete}};
+const Names<Grid> words_of_grids{{"uniform", Grid::uniform}, {"adaptive", Grid::adaptive}};
+const Names<Method> words_of_methods{
+    {"auto", Method::automatic}, {"basic", Method::basic}, {"extended", Method::extended}};
+const Names<NormalSource> words_of_normals{
+    {"auto", NormalSource::automatic}, {"given", NormalSource::given}, {"estimate", NormalSource::estimate}};
+
+/// Empty: the value has none.
+template <class T>
+std::string word_of(const Names<T>& names, T value) {
+    for (const auto& [word, meaning] : names)
+        if (meaning == value) return word;
+    return {};
+}
+
 /// An option with a few named values.
 template <class T>
 CLI::Option* add_choice(CLI::App& app, const std::string& name, T& value, const Names<T>& names,
                         const std::string& help) {
     std::string list;
-    std::string fallback;
     std::vector<std::string> known;
     for (const auto& [word, meaning] : names) {
         list += (list.empty() ? "" : "|") + word;
         known.push_back(word);
-        if (meaning == value) fallback = word;
     }
     return app
         .add_option_function<std::string>(
@@ -43,7 +60,7 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, T& value, const 
             help)
         ->check(one_of(known))
         ->type_name(list)
-        ->default_str(fallback);
+        ->default_str(word_of(names, value));
 }
 
 constexpr int deepest = 16;
@@ -127,11 +144,7 @@ MaxError error_of(const std::string& text) {
 
 /// What becomes of the surface's holes, layers and small parts.
 void add_surface_options(CLI::App& app, ReconstructArguments& a, const std::string& method) {
-    add_choice<Holes>(app, "--holes", a.holes,
-                      {{"auto", Holes::automatic},
-                       {"keep", Holes::keep},
-                       {"close", Holes::close},
-                       {"complete", Holes::complete}},
+    add_choice<Holes>(app, "--holes", a.holes, words_of_holes,
                       "auto: close what is small against the sampling, and slits as narrow; keep: nothing; "
                       "complete: everything, by the surface "
                       "that is missing; close: everything, over the vertices of its border")
@@ -184,20 +197,16 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
         for (CLI::Option* other : resolutions)
             if (one != other) one->excludes(other);
     add_choice<Grid>(
-        app, "--grid", a.grid, {{"uniform", Grid::uniform}, {"adaptive", Grid::adaptive}},
+        app, "--grid", a.grid, words_of_grids,
         "adaptive without --max-error keeps a tenth of a voxel (default: uniform, with --max-error adaptive)")
         ->group(resolution);
 
     const std::string method = "Method";
     add_choice<Method>(
-        app, "--method", a.method,
-        {{"auto", Method::automatic}, {"basic", Method::basic}, {"extended", Method::extended}},
+        app, "--method", a.method, words_of_methods,
         "basic: from the positions alone; extended: with normals, given or estimated; auto: extended")
         ->group(method);
-    add_choice<NormalSource>(app, "--normals", a.normals,
-                             {{"auto", NormalSource::automatic},
-                              {"given", NormalSource::given},
-                              {"estimate", NormalSource::estimate}},
+    add_choice<NormalSource>(app, "--normals", a.normals, words_of_normals,
                              "where normals come from; auto: the file's if it has some, else estimated")
         ->group(method);
     add_surface_options(app, a, method);
@@ -228,7 +237,8 @@ void add_method_options(CLI::App& app, ReconstructArguments& a) {
         ->type_name("SIZE")
         ->group(method);
     app.add_option("--scratch", a.scratch,
-                   "the folder for these points, 48 bytes each (default: TMPDIR, or /tmp)")
+                   "the folder for these points, 48 bytes each, and 75 more while normals are estimated "
+                   "(default: TMPDIR, or /tmp)")
         ->type_name("DIR")
         ->group(method);
     app.add_flag("--resume", a.resume,
@@ -385,15 +395,15 @@ void ReconstructArguments::check_resume() const {
 }
 
 std::vector<KeptScratch::Trait> ReconstructArguments::job(const CloudFiles& cloud, int processes) const {
-    std::vector<KeptScratch::Trait> job{{"version of hsdm", version}};
+    std::vector<KeptScratch::Trait> job{{"version of hsdm", version}, {"build of hsdm", form_of_kept()}};
     for (const std::string& file : cloud.files) {
         std::error_code failed;
-        const std::string path = std::filesystem::absolute(file, failed).string();
+        const std::string path = std::filesystem::weakly_canonical(file, failed).string();
         os::FileStatus status;
         if (failed || !os::status_of(file, status)) throw Error(file, "cannot be looked at");
         job.push_back({"input", path});
-        job.push_back({"size of " + file, std::to_string(status.size) + " bytes"});
-        job.push_back({"time of " + file, std::to_string(status.modified) + " ns since 1970"});
+        job.push_back({"size of " + path, std::to_string(status.size) + " bytes"});
+        job.push_back({"time of " + path, std::to_string(status.modified) + " ns since 1970"});
     }
     const auto add = [&](const char* name, const std::string& value) {
         job.push_back({name, value.empty() ? "none" : value});
@@ -401,10 +411,10 @@ std::vector<KeptScratch::Trait> ReconstructArguments::job(const CloudFiles& clou
     add("number of processes", std::to_string(processes));
     add("--depth", depth ? std::to_string(*depth) : "");
     add("--voxel-size", voxel_size ? exact(*voxel_size) : "");
-    add("--normals", std::to_string(static_cast<int>(normals)));
-    add("--holes", std::to_string(static_cast<int>(holes)));
-    add("--method", std::to_string(static_cast<int>(method)));
-    add("--grid", std::to_string(static_cast<int>(grid)));
+    add("--normals", word_of(words_of_normals, normals));
+    add("--holes", word_of(words_of_holes, holes));
+    add("--method", word_of(words_of_methods, method));
+    add("--grid", word_of(words_of_grids, grid));
     add("--crease-degrees", exact(crease_degrees));
     add("--smoothing", std::to_string(smoothing));
     add("--input-format", read.format);

@@ -53,6 +53,8 @@ auto named(const CloudFiles& cloud, const Make& make) {
         return make();
     } catch (const OtherRankFailed&) { // all ranks say the same, and know it
         throw;
+    } catch (const RefusedInTiles& refusal) {
+        throw RefusedInTiles(cloud.name(), refusal.what());
     } catch (const Error& error) {
         const std::string_view what = error.what();
         if (std::ranges::any_of(cloud.files,
@@ -61,6 +63,29 @@ auto named(const CloudFiles& cloud, const Make& make) {
         throw Error(cloud.name(), error.what());
     } catch (const OptionError& error) {
         throw OptionError(words_of(error) + " (" + cloud.name() + ")");
+    }
+}
+
+/// Returns make(). If it throws, tells what stays of the job; nothing does of a cloud that tiles cannot do.
+template <class Make>
+auto with_kept_told(std::optional<KeptScratch>& kept, const Ranks& ranks, const Make& make) {
+    const auto tell = [&] {
+        if (kept && ranks.is_first())
+            complain("what is done stays in " + kept->folder()
+                     + (ranks.size() > 1 ? " and those beside it" : "")
+                     + "; the same command goes on with it, or remove it");
+    };
+    try {
+        return make();
+    } catch (const RefusedInTiles&) {
+        if (kept && ranks.size() == 1)
+            kept->remove();
+        else
+            tell();
+        throw;
+    } catch (...) {
+        tell();
+        throw;
     }
 }
 
@@ -246,13 +271,8 @@ private:
         };
     }
 
-    /// The same in bounded memory. Reading is part of the other phases.
-    std::vector<Report> make_in_tiles(const PointsInParts& points, const CloudFiles& cloud,
-                                      Clock::time_point start, ProgressBar& bar) {
-        arguments_.check_for_tiles(*tiles_);
-        const double read_seconds = seconds_since(start);
-        ReconstructOptions options = options_;
-        options.progress = shown_on(bar);
+    /// Those asked for, less the memory that points take already.
+    TileOptions tiles_beside(const PointsInParts& points, const CloudFiles& cloud) const {
         TileOptions tiles = *tiles_;
         const std::size_t held = points.in_memory() ? bytes_of_cloud(points.file().cloud) : 0;
         if (held >= tiles.memory)
@@ -260,6 +280,17 @@ private:
                         "its points take " + std::to_string(held / 1000000)
                             + " MB once they are read; of binary PLY files they need not be in memory");
         tiles.memory -= held;
+        return tiles;
+    }
+
+    /// The same in bounded memory. Reading is part of the other phases.
+    std::vector<Report> make_in_tiles(const PointsInParts& points, const CloudFiles& cloud,
+                                      Clock::time_point start, ProgressBar& bar) {
+        arguments_.check_for_tiles(*tiles_);
+        const double read_seconds = seconds_since(start);
+        ReconstructOptions options = options_;
+        options.progress = shown_on(bar);
+        TileOptions tiles = tiles_beside(points, cloud);
         OneRank alone;
         Ranks& ranks = ranks_ ? *ranks_ : alone;
         const PointParts parts = [&](const auto& visit) {
@@ -274,13 +305,17 @@ private:
             kept.emplace(arguments_.scratch, ranks.rank(), arguments_.job(cloud, ranks.size()));
             tiles.kept = &*kept;
         }
+        // Before there is a mesh in memory: what a run that goes on does not read is read for it.
+        const bool goes_on = kept && ranks.any(!kept->records().empty());
+        if (goes_on && ranks.is_first()) points.size();
+        PointFile read = goes_on ? notes_of_all(points, ranks) : PointFile();
         TileReport how;
-        PointFile read;
+        std::size_t kept_tiles = 0; // of all ranks
         const auto note = [&](Report& report) {
             note_reading(read, report);
             if (!arguments_.memory.empty()) report.options["memory"] = arguments_.memory;
             report.options["tiles"] = std::to_string(how.tiles);
-            if (how.went_on) report.options["resume"] = std::to_string(how.kept_tiles) + " tiles were kept";
+            if (how.went_on) report.options["resume"] = std::to_string(kept_tiles) + " tiles were kept";
             if (ranks_) {
                 report.options["ranks"] = std::to_string(ranks_->size());
                 report.ranks = std::move(how.ranks);
@@ -289,30 +324,33 @@ private:
             report.seconds.read = read_seconds;
             bar.show("write", 0.97);
         };
-        const auto notes_of = [&](const TileReport& report) {
-            if (report.went_on && ranks.is_first()) points.size(); // reads what was not read this time
-            return notes_of_all(points, ranks);
+        const auto hear_of_all = [&] {
+            if (!goes_on) read = notes_of_all(points, ranks);
+            kept_tiles = ranks.sum(how.kept_tiles);
         };
         std::vector<Report> made;
-        if (is_written_as_it_comes()) {
-            FlatReconstruction flat =
-                named(cloud, [&] { return reconstruct_flat_in_tiles(parts, options, tiles, ranks, &how); });
-            read = notes_of(how);
-            if (ranks.is_first()) { // which has all of it
-                note(flat.report);
-                write_as_it_comes(flat);
-                made.push_back(std::move(flat.report));
+        const auto make = [&] {
+            if (is_written_as_it_comes()) {
+                FlatReconstruction flat = named(
+                    cloud, [&] { return reconstruct_flat_in_tiles(parts, options, tiles, ranks, &how); });
+                hear_of_all();
+                if (ranks.is_first()) { // which has all of it
+                    note(flat.report);
+                    write_as_it_comes(flat);
+                    made.push_back(std::move(flat.report));
+                }
+            } else {
+                Reconstruction result =
+                    named(cloud, [&] { return reconstruct_in_tiles(parts, options, tiles, ranks, &how); });
+                hear_of_all();
+                if (ranks.is_first()) {
+                    note(result.report);
+                    write_one(cloud.name(), {}, result);
+                    made.push_back(std::move(result.report));
+                }
             }
-        } else {
-            Reconstruction result =
-                named(cloud, [&] { return reconstruct_in_tiles(parts, options, tiles, ranks, &how); });
-            read = notes_of(how);
-            if (ranks.is_first()) {
-                note(result.report);
-                write_one(cloud.name(), {}, result);
-                made.push_back(std::move(result.report));
-            }
-        }
+        };
+        with_kept_told(kept, ranks, make);
         if (kept) {
             ranks.any(false); // the mesh is written
             kept->remove();

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <sstream>
 
 using namespace hsdm;
 using namespace hsdm::test;
@@ -80,9 +81,15 @@ TEST_CASE("what was done before the disk was full is gone on with", "[cli][tiles
     CHECK(exists(job.folder / "scratch/hsdm-resume-0/log"));
     const CommandResult other = run(job.folder, call + "-o part.ply --holes keep");
     CHECK(other.status == 1);
-    CHECK(other.err.find("scratch/hsdm-resume-0: is kept of a job with another --holes")
-          != std::string::npos);
-    const CommandResult result = run(job.folder, call + "-o part.ply --threads 1");
+    CHECK(other.err
+          == "hsdm: scratch/hsdm-resume-0: is kept of a job with another --holes: auto, and not keep; remove "
+             "the "
+             "folder to begin anew, or name another with --scratch\n");
+    CHECK(failed.err.find("what is done stays in scratch/hsdm-resume-0;") != std::string::npos);
+    const CommandResult result = run(job.folder,
+                                     "reconstruct .././scan.ply --depth 7 --memory 100M --scratch . --resume "
+                                     "--report ../report.json -o ../part.ply --threads 1",
+                                     "cd scratch;");
     INFO(result.err);
     CHECK(result.status == 0);
     const std::string report = read_file(job.folder / "report.json");
@@ -102,7 +109,7 @@ TEST_CASE("a scan that has changed is not taken for the one that was begun", "[c
                                          + std::chrono::seconds(1));
     const CommandResult result = run(job.folder, call);
     CHECK(result.status == 1);
-    CHECK(result.err.find("is kept of a job with another time of scan.ply") != std::string::npos);
+    CHECK(result.err.find("is kept of a job with another time of /") != std::string::npos);
     CHECK(result.err.find("remove the folder") != std::string::npos);
 }
 
@@ -112,18 +119,75 @@ TEST_CASE("a job that is killed in any phase is gone on with", "[cli][tiles][slo
     const std::string one = read_file(job.folder / "one.ply");
     const std::string call =
         "reconstruct scan.ply --depth 7 --memory 130M --scratch scratch --resume -o new.ply ";
-    for (const char* phase : {"octree", "survey", "tiles", "whole", "error", "write"}) {
+    int killed_late = 0;
+    for (const std::string phase : {"octree", "survey", "tiles", "whole", "error", "write"}) {
         INFO(phase);
-        run(job.folder, call + "--progress always >out 2>err & command=$!; until grep -q " + phase
-                            + " err; do kill -0 $command 2>/dev/null || break; sleep 0.01; done; "
-                              "kill -KILL $command 2>/dev/null; wait $command");
-        const CommandResult result = run(job.folder, call);
+        const CommandResult first =
+            run(job.folder, call + "--progress always >out 2>err & command=$!; until grep -q " + phase
+                                + " err; do kill -0 $command 2>/dev/null || break; sleep 0.01; done; "
+                                  "kill -KILL $command 2>/dev/null; wait $command");
+        const bool killed = first.status == 128 + 9;
+        CHECK((killed || first.status == 0)); // it may have ended before
+        CHECK((exists(job.folder / "scratch/hsdm-resume-0/log") == killed || phase == "write"));
+        const CommandResult result = run(job.folder, call + "--report report.json");
         INFO(result.err);
         CHECK(result.status == 0);
         CHECK(read_file(job.folder / "new.ply") == one);
+        const bool went_on =
+            read_file(job.folder / "report.json").find(" tiles were kept") != std::string::npos;
+        if (phase != "octree" && phase != "write") CHECK(went_on == killed);
+        killed_late += killed && went_on;
         CHECK(job.left_nothing());
         std::filesystem::remove(job.folder / "new.ply");
     }
+    CHECK(killed_late > 0);
+}
+
+TEST_CASE("what is told of files that are not read again is told all the same", "[cli][tiles]") {
+    const Folder folder;
+    std::filesystem::create_directory(folder / "scratch");
+    const PointCloud cloud = support::sample(support::torus(1, 0.3), {.points = 20000});
+    for (const char* name : {"a.xyz", "b.xyz"}) {
+        std::ostringstream text;
+        text << "nan 0 0 0 0 1\n";
+        const std::size_t first = name[0] == 'a' ? 0 : 10000;
+        for (std::size_t i = first; i < first + 10000; ++i)
+            text << cloud.positions[i] << ' ' << cloud.normals[i] << '\n';
+        folder.write(name, text.str());
+    }
+    const std::string call = "reconstruct a.xyz b.xyz --join --columns x,y,z,nx,ny,nz --depth 6 --memory 80M "
+                             "--scratch scratch --report report.json -o ";
+    const auto told = [&] {
+        const std::string report = read_file(folder / "report.json");
+        std::string lines;
+        std::istringstream in(report);
+        for (std::string line; std::getline(in, line);)
+            if (line.find("nonfinite") != std::string::npos || line.find("columns") != std::string::npos)
+                lines += line + '\n';
+        return lines;
+    };
+    REQUIRE(run(folder, call + "whole.ply").status == 0);
+    const std::string whole = told();
+    CHECK(whole.find("\"dropped_nonfinite\": 2") != std::string::npos);
+    CHECK(run(folder, call + "/dev/full --format ply --resume").status == 1);
+    REQUIRE(run(folder, call + "part.ply --resume").status == 0);
+    CHECK(read_file(folder / "report.json").find(" tiles were kept") != std::string::npos);
+    CHECK(told() == whole);
+    CHECK(read_file(folder / "part.ply") == read_file(folder / "whole.ply"));
+}
+
+TEST_CASE("a cloud that tiles refuse leaves nothing to go on with", "[cli][tiles]") {
+    const Folder folder;
+    std::filesystem::create_directory(folder / "scratch");
+    support::write_ply(
+        folder / "scan.ply",
+        support::sample(support::torus(1, 0.3), {.points = 20000, .normals = false, .position_noise = 0.02}));
+    const CommandResult result = run(folder, "reconstruct scan.ply --depth 6 --memory 70M --scratch scratch "
+                                             "--resume -o part.ply");
+    CHECK(result.status == 1);
+    CHECK(result.err.find("this is not done in tiles") != std::string::npos);
+    CHECK(result.err.find("stays in") == std::string::npos);
+    CHECK(std::filesystem::is_empty(folder / "scratch"));
 }
 
 TEST_CASE("a signal in any phase of bounded memory leaves nothing", "[cli][tiles][slow]") {

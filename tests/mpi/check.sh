@@ -95,13 +95,23 @@ status=0
 by 3 scan.ply --depth 6 -o /dev/full --format ply --scratch scratch --resume --threads 1 || status=$?
 [ $status -eq 1 ] || fail "a full disk: status $status"
 [ "$(ls scratch | tr '\n' ' ')" = "hsdm-resume-0 hsdm-resume-1 hsdm-resume-2 " ] || fail "a full disk: nothing was kept"
+[ "$(grep -c 'what is done stays in scratch/hsdm-resume-0 and those beside it' err)" -eq 1 ] || fail "what stays is not told"
 status=0
 by 2 scan.ply --depth 6 -o ranks.ply --scratch scratch --resume --threads 1 || status=$?
 [ $status -ne 0 ] && grep -q "number of processes: 3, and not 2" err || fail "fewer processes went on: status $status"
+mv scratch/hsdm-resume-1 away
+for turn in 1 2; do # the second time there is a folder, with nothing in it
+    status=0
+    by 3 scan.ply --depth 6 -o ranks.ply --scratch scratch --resume --threads 1 || status=$?
+    [ $status -ne 0 ] && grep -q "rank 1 finds nothing in its hsdm-resume-1" err || fail "a rank lost its folder: status $status"
+done
+rm -r scratch/hsdm-resume-1
+mv away scratch/hsdm-resume-1
 by 3 scan.ply --depth 6 -o ranks.ply --scratch scratch --resume --threads 1 --report report.json ||
     fail "going on: status $?"
 cmp one.ply ranks.ply || fail "going on gives another mesh"
-grep -q '"resume": ".* tiles were kept"' report.json || fail "nothing was gone on with"
+kept=$(sed -n 's/.*"resume": "\([0-9]*\) tiles were kept".*/\1/p' report.json)
+[ "$kept" -ge 3 ] || fail "of three ranks $kept tiles were gone on with"
 [ -z "$(ls -A scratch)" ] || fail "scratch is left once the mesh is written"
 
 # A rank that is killed, or asked to end, at any time.

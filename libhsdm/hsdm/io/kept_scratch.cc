@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 namespace hsdm {
 namespace {
@@ -60,18 +61,21 @@ std::vector<KeptScratch::Trait> traits_of(const KeptScratch::Bytes& bytes) {
     return job;
 }
 
+/// Returns false if the file ends before. Throws Error where the disk fails: that is no end, and what comes
+/// after it must not be cut off.
+bool read_at(int log, std::size_t at, void* bytes, std::size_t count) {
+    const std::ptrdiff_t some = os::read_all_at(log, static_cast<char*>(bytes), count, at);
+    if (some < 0) throw Error("the log cannot be read: " + why() + "; nothing was changed");
+    return static_cast<std::size_t>(some) == count;
+}
+
 /// The record that begins there, if it is whole.
 std::optional<std::pair<Head, KeptScratch::Bytes>> record_at(int log, std::size_t at, std::size_t end) {
     Head head{};
-    if (end - at < sizeof head) return std::nullopt;
-    if (os::read_all_at(log, reinterpret_cast<char*>(&head), sizeof head, at)
-        != static_cast<std::ptrdiff_t>(sizeof head))
-        return std::nullopt;
+    if (end - at < sizeof head || !read_at(log, at, &head, sizeof head)) return std::nullopt;
     if (head.size > end - at - sizeof head) return std::nullopt;
     KeptScratch::Bytes bytes(head.size);
-    if (os::read_all_at(log, bytes.data(), bytes.size(), at + sizeof head)
-        != static_cast<std::ptrdiff_t>(bytes.size()))
-        return std::nullopt;
+    if (!read_at(log, at + sizeof head, bytes.data(), bytes.size())) return std::nullopt;
     if (hash_of(head.key, bytes) != head.hash) return std::nullopt;
     return std::pair(head, std::move(bytes));
 }
@@ -89,7 +93,8 @@ bool KeptScratch::is_there(const std::string& folder, int process) {
 
 KeptScratch::KeptScratch(const std::string& folder, int process, const std::vector<Trait>& job)
     : folder_(folder_of(folder, process)) {
-    open();
+    while (!open()) {
+    } // until there is none that is just removed
     try {
         read_log(job);
     } catch (...) {
@@ -102,7 +107,8 @@ KeptScratch::~KeptScratch() {
     if (log_ >= 0) os::close(log_);
 }
 
-void KeptScratch::open() {
+/// Returns false if another process has removed the log meanwhile.
+bool KeptScratch::open() {
     if (!os::make_folder(folder_) && errno != EEXIST)
         throw Error(folder_, "cannot be made: " + why() + "; --scratch names another folder");
     os::FileStatus status;
@@ -112,24 +118,38 @@ void KeptScratch::open() {
     const std::string path = path_of(log_name);
     log_ = os::open_to_append(path);
     if (log_ < 0 && errno == ENOENT) {
-        os::close(os::create(path, 0600));
-        log_ = os::open_to_append(path);
+        const int made = os::create(path, 0600);
+        if (made < 0 && (errno == ENOENT || errno == EEXIST)) return false;
+        if (made >= 0) os::close(made), log_ = os::open_to_append(path);
+        if (log_ < 0 && errno == ENOENT) return false;
     }
     if (log_ < 0) throw Error(path, "cannot be opened: " + why() + "; --scratch names another folder");
-    if (os::try_lock(log_)) return;
-    os::close(log_);
+    os::FileStatus own, named;
+    const bool locked = os::try_lock(log_);
+    if (locked && os::status_of(log_, own) && os::status_of_entry(path, named) && own.device == named.device
+        && own.inode == named.inode)
+        return true;
+    os::close(std::exchange(log_, -1));
+    if (locked) return false;
     throw Error(folder_, "another process works on what is kept here; --scratch names another folder");
 }
 
 void KeptScratch::read_log(const std::vector<Trait>& job) {
     os::FileStatus status;
     if (!os::status_of(log_, status)) throw Error(folder_, "cannot be read: " + why());
-    const auto first = record_at(log_, 0, status.size);
+    const auto record_from = [&](std::size_t at) {
+        try {
+            return record_at(log_, at, status.size);
+        } catch (const Error& error) {
+            throw Error(folder_, error.what());
+        }
+    };
+    const auto first = record_from(0);
     if (!first) return begin(job);
     const std::vector<Trait> kept = traits_of(first->second);
     if (kept != job) refuse(kept, job);
     end_ = sizeof(Head) + first->second.size();
-    while (const auto next = record_at(log_, end_, status.size)) {
+    while (const auto next = record_from(end_)) {
         records_.push_back({next->first.key, end_ + sizeof(Head), next->second.size()});
         end_ = records_.back().at + records_.back().size;
     }
@@ -150,10 +170,12 @@ void KeptScratch::begin(const std::vector<Trait>& job) {
 
 void KeptScratch::refuse(const std::vector<Trait>& kept, const std::vector<Trait>& job) const {
     constexpr const char* advice = "; remove the folder to begin anew, or name another with --scratch";
-    for (std::size_t i = 0; i < std::min(kept.size(), job.size()); ++i)
-        if (!(kept[i] == job[i]))
+    for (std::size_t i = 0; i < std::min(kept.size(), job.size()); ++i) {
+        if (kept[i].name != job[i].name) break; // values of different things
+        if (kept[i].value != job[i].value)
             throw Error(folder_, "is kept of a job with another " + kept[i].name + ": " + kept[i].value
                                      + ", and not " + job[i].value + advice);
+    }
     throw Error(folder_, std::string("is kept of a job of other files or options") + advice);
 }
 
@@ -194,7 +216,13 @@ std::string KeptScratch::new_name(const std::string& name) {
 
 bool KeptScratch::has_file(const std::string& name, std::size_t bytes) const {
     os::FileStatus status;
-    return os::status_of_entry(path_of(name), status) && status.size >= bytes;
+    if (os::status_of_entry(path_of(name), status)) return status.size >= bytes;
+    if (errno == ENOENT) return false;
+    throw Error(path_of(name), "cannot be looked at: " + why() + "; nothing was changed");
+}
+
+void KeptScratch::remove_file(const std::string& name) const {
+    os::remove(path_of(name));
 }
 
 void KeptScratch::remove_all_but(std::span<const std::string> names) const {

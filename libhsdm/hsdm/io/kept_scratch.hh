@@ -28,7 +28,7 @@ public:
 
     /// Makes the folder `hsdm-resume-PROCESS` in this one, or takes over what is there; a record that was
     /// not written to its end does not count. Throws Error if another process works there, if it is of a job
-    /// with other traits, of which it tells the first one, or if it cannot be made.
+    /// with other traits, of which it tells the first one, or if it cannot be made or read.
     KeptScratch(const std::string& folder, int process, const std::vector<Trait>& job);
     ~KeptScratch();
     KeptScratch(const KeptScratch&) = delete;
@@ -48,7 +48,9 @@ public:
 
     /// A file of the folder that there has not been yet: `NAME-NUMBER`.
     std::string new_name(const std::string& name);
-    bool has_file(const std::string& name, std::size_t bytes) const; ///< so many, or more
+    /// So many, or more. Throws Error if that cannot be told.
+    bool has_file(const std::string& name, std::size_t bytes) const;
+    void remove_file(const std::string& name) const;
     /// Removes all files but the log and these.
     void remove_all_but(std::span<const std::string> names) const;
     /// The job is done: nothing is left.
@@ -56,7 +58,7 @@ public:
 
 private:
     std::string path_of(const std::string& name) const { return folder_ + "/" + name; }
-    void open();
+    bool open();
     void read_log(const std::vector<Trait>& job);
     [[noreturn]] void refuse(const std::vector<Trait>& kept, const std::vector<Trait>& job) const;
     void append(const Bytes& bytes);

@@ -1,5 +1,10 @@
 #include "hsdm/pipeline/kept_passes.hh"
 
+#include "hsdm/errors.hh"
+#include "hsdm/normals/normals.hh"
+#include "hsdm/pipeline/survey.hh"
+#include "hsdm/pipeline/tile_piece.hh"
+
 #include <algorithm>
 #include <bit>
 #include <utility>
@@ -12,10 +17,24 @@ constexpr const char* pieces_name = "pieces";
 
 } // namespace
 
+std::string form_of_kept() {
+    constexpr int form = 1; // another one whenever something else is kept, or in another order
+    std::string text = std::to_string(form).append(":");
+    for (const std::size_t size :
+         {sizeof(Index), sizeof(PointRow), sizeof(Box), sizeof(ScratchPoints::Cell), sizeof(Occurrences),
+          sizeof(SetSizes), sizeof(NeighborOptions), sizeof(EstimateOptions), sizeof(NormalsReport),
+          sizeof(OrientReport), sizeof(VoxelRange), sizeof(FacetCounts), sizeof(Piece::Digest), sizeof(Piece),
+          sizeof(Survey), sizeof(PartComponents::Shared)})
+        text.append(" ").append(std::to_string(size));
+    return text;
+}
+
 KeptPasses::KeptPasses(KeptScratch* kept, Ranks& ranks) : kept_(kept), ranks_(ranks) {
     std::uint64_t common = passes_here();
-    for (const std::uint64_t of_one : ranks.gather(common)) common &= of_one;
+    const std::vector<std::uint64_t> of_all = ranks.gather(common);
+    for (const std::uint64_t of_one : of_all) common &= of_one;
     if (!kept_) return;
+    refuse_lost(of_all);
     done_ = static_cast<Pass>(std::bit_width(common) - (common > 0 ? 1 : 0));
     std::size_t after = 0;
     for (std::size_t r = 0; r < kept_->records().size(); ++r) {
@@ -32,6 +51,20 @@ KeptPasses::KeptPasses(KeptScratch* kept, Ranks& ranks) : kept_(kept), ranks_(ra
         used.push_back(std::move(kept_pass.points)), used.push_back(std::move(kept_pass.state));
     }
     kept_->remove_all_but(used);
+}
+
+/// A rank that has nothing has lost it if another one is past the first pass, which that one began once all
+/// had the first. All would begin anew.
+void KeptPasses::refuse_lost(const std::vector<std::uint64_t>& of_all) const {
+    const auto without = std::ranges::find(of_all, 0);
+    const auto is_past_first = [](std::uint64_t passes) {
+        return passes >> (static_cast<std::uint64_t>(Pass::sorted) + 1) != 0;
+    };
+    if (without == of_all.end() || std::ranges::none_of(of_all, is_past_first)) return;
+    const std::string rank = std::to_string(without - of_all.begin());
+    throw Error(kept_->folder(), "can only be gone on with by all ranks, and rank " + rank
+                                     + " finds nothing in its hsdm-resume-" + rank
+                                     + "; give it its --scratch, or remove the folders of all to begin anew");
 }
 
 /// A bit for each that can be gone on with.
@@ -54,10 +87,20 @@ void KeptPasses::note_tiles() {
         if (key <= last_pass) continue;
         const Bytes bytes = kept_->read(kept_->records()[r]);
         const auto end = ByteReader(bytes).take<std::size_t>();
-        if (!kept_->has_file(pieces_name, end)) break;
+        if (!kept_->has_file(pieces_name, end)) return cut_tiles(r);
         tiles_[key] = r;
         end_of_pieces_ = end;
     }
+}
+
+/// From that record on: what is written to the file from now on is not what they tell of.
+void KeptPasses::cut_tiles(std::size_t first) {
+    const bool cuts_pass = done_ != Pass::none && first <= last_;
+    const Bytes pass = cuts_pass ? kept_->read(kept_->records()[last_]) : Bytes();
+    kept_->cut(first);
+    if (!cuts_pass) return;
+    kept_->keep(static_cast<std::uint64_t>(done_), pass);
+    last_ = first;
 }
 
 KeptPasses::Kept KeptPasses::kept_at(std::size_t record) const {
@@ -81,7 +124,7 @@ KeptPasses::Bytes KeptPasses::state() const {
     return bytes;
 }
 
-void KeptPasses::keep(Pass pass, const ScratchCloud& cloud, const Bytes& state) {
+void KeptPasses::keep(Pass pass, ScratchCloud& cloud, const Bytes& state) {
     if (!kept_) return;
     cloud.flush_to_disk();
     const std::string name = kept_->new_name("state");
@@ -93,6 +136,7 @@ void KeptPasses::keep(Pass pass, const ScratchCloud& cloud, const Bytes& state) 
         put_vector(std::vector<char>(text.begin(), text.end()), bytes);
     put(cloud.bytes(), bytes), put(file.size(), bytes);
     kept_->keep(static_cast<std::uint64_t>(pass), bytes);
+    cloud.note_kept();
     ranks_.any(false); // once all have it, none goes back to the one before
     const std::vector<std::string> used{pieces_name, cloud.file_name(), name};
     kept_->remove_all_but(used);

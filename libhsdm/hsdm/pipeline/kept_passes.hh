@@ -22,13 +22,17 @@ enum class Pass : std::uint64_t {
     strays,     ///< outliers of a cloud with normals are left out
 };
 
+/// Tells builds apart that would read each other's state wrongly, as far as sizes do: a number of the form,
+/// and how many bytes what is kept as it lies in memory takes.
+std::string form_of_kept();
+
 /// Of a job that is kept, or of one that is not, which has done nothing.
 class KeptPasses {
 public:
     using Bytes = Ranks::Bytes;
 
     /// `kept`: null: nothing is. Agrees with all ranks on the last pass that each of them has; what comes
-    /// after it is forgotten. For all ranks at the same time.
+    /// after it is forgotten. For all ranks at the same time. Throws Error if one has lost what others have.
     KeptPasses(KeptScratch* kept, Ranks& ranks);
 
     bool is_kept() const { return kept_ != nullptr; }
@@ -37,7 +41,7 @@ public:
     /// What the last pass was kept with. done() is not none.
     Bytes state() const;
     /// Of all ranks at the same time. `cloud`: its points stay, those of clouds before are forgotten.
-    void keep(Pass pass, const ScratchCloud& cloud, const Bytes& state);
+    void keep(Pass pass, ScratchCloud& cloud, const Bytes& state);
 
     /// The record of a tile, if there is one.
     std::optional<Bytes> tile(std::uint64_t key) const;
@@ -53,7 +57,9 @@ private:
     };
     Kept kept_at(std::size_t record) const;
     std::uint64_t passes_here() const;
+    void refuse_lost(const std::vector<std::uint64_t>& of_all) const;
     void note_tiles();
+    void cut_tiles(std::size_t first);
 
     KeptScratch* kept_;
     Ranks& ranks_;

@@ -24,7 +24,8 @@ public:
           turned_(turned),
           known_(known),
           how_(how),
-          strays_(in.cloud, in.survey) {}
+          strays_(in.cloud, in.survey),
+          was_kept_(ranges.size(), 0) {}
 
     std::optional<std::vector<Piece>> pieces() {
         std::vector<Piece> pieces(ranges_.size());
@@ -44,6 +45,7 @@ public:
                 if (due[k]) ghost[k] *= 2, ++how_.widened;
             if (std::ranges::count(due, 1) == 0) due = due_by_sums(pieces);
         }
+        how_.kept_tiles = static_cast<std::size_t>(std::ranges::count(was_kept_, 1));
         return pieces;
     }
 
@@ -61,12 +63,15 @@ private:
         }
         cloud_.fetch(wanted);
         for (std::size_t k = 0; k < ranges_.size(); ++k)
-            if (due[k] && is_own(k)) pieces[k] = checked_piece(ranges_[k], ghost[k]);
+            if (due[k] && is_own(k)) pieces[k] = checked_piece(k, ghost[k]);
     }
 
-    Piece checked_piece(const VoxelRange& range, int ghost) {
+    Piece checked_piece(std::size_t tile, int ghost) {
+        const VoxelRange& range = ranges_[tile];
         const std::uint64_t key = key_of(range, ghost);
-        if (const auto record = in_.kept ? in_.kept->tile(key) : std::nullopt) return kept_piece(*record);
+        const auto record = in_.kept ? in_.kept->tile(key) : std::nullopt;
+        was_kept_[tile] = record.has_value();
+        if (record) return kept_piece(*record);
         const std::size_t far = strays_.far_cells().size();
         Piece piece = make_tile(range, ghost);
         for (const HandleWork& work : piece.counts.handle_work)
@@ -109,7 +114,6 @@ private:
         const auto ghost = reader.take<int>();
         const auto far = reader.take_vector<MortonCode>();
         if (!known_.outliers) strays_.put_off(far, ghost);
-        ++how_.kept_tiles;
         return in_.store->take_record(reader);
     }
 
@@ -222,6 +226,7 @@ private:
     TilesKnown& known_;
     TileReport& how_;
     StraySearch strays_;
+    std::vector<std::uint8_t> was_kept_; // of own tiles, as they are now
 };
 
 } // namespace

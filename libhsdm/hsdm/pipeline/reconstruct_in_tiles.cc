@@ -257,13 +257,14 @@ private:
 
     void estimate_normals(std::size_t group) {
         const auto left = tiles_.memory - std::min(tiles_.memory, bytes_of_program);
-        const CloudNormalsOptions how{
-            [&] { return plan(group); },
-            tiles_.ghost_voxels,
-            group,
-            left,
-            [&](bool sided, const Ranks::Bytes& begun) { keep(sided ? Pass::sided : Pass::cleaned, begun); },
-            std::exchange(normals_begun_, {})};
+        const std::function<void(bool, const Ranks::Bytes&)> keep_begun =
+            [&](bool sided, const Ranks::Bytes& begun) { keep(sided ? Pass::sided : Pass::cleaned, begun); };
+        const CloudNormalsOptions how{[&] { return plan(group); },
+                                      tiles_.ghost_voxels,
+                                      group,
+                                      left,
+                                      passes_.is_kept() ? keep_begun : nullptr,
+                                      std::exchange(normals_begun_, {})};
         const NormalsReport made = make_cloud_normals(*cloud_, *survey_, how);
         known_.outliers = made.outliers;
         report_.rejected["normals_near_creases"] = made.bent;

@@ -2,6 +2,7 @@
 // A reconstruction in bounded memory: the points lie sorted on disk and are worked through tile by tile. The
 // mesh is that of the run in one piece, bit for bit (docs/tiles.md).
 
+#include "hsdm/errors.hh"
 #include "hsdm/features/facet_features.hh"
 #include "hsdm/io/write_mesh.hh"
 #include "hsdm/point_view.hh"
@@ -11,6 +12,12 @@ namespace hsdm {
 
 class KeptScratch;
 class Ranks;
+
+/// Of a cloud that is not reconstructed in tiles whatever the memory, but can be in one piece.
+class RefusedInTiles : public Error {
+public:
+    using Error::Error;
+};
 
 struct TileOptions {
     static constexpr std::size_t no_bound = std::size_t{1} << 60;
@@ -34,7 +41,7 @@ struct TileReport {
     std::size_t points_read = 0;        ///< by this rank's tiles, what is round them too
     std::size_t scratch_bytes = 0;      ///< of this rank
     bool went_on = false;               ///< with passes that were kept
-    std::size_t kept_tiles = 0;         ///< of own_tiles, those that were
+    std::size_t kept_tiles = 0;         ///< of own_tiles, those that were in the end
     std::vector<Report::Rank> ranks{};  ///< what each did
 };
 
@@ -46,8 +53,8 @@ void check_options(const ReconstructOptions& options, const TileOptions& tiles);
 bool fits_in_one_piece(std::size_t points, const ReconstructOptions& options, std::size_t memory);
 
 /// As reconstruct() of the whole cloud, but that the report's `rejected` tells of the whole mesh alone.
-/// Throws Error also for a cloud of which not all that is needed is local, such as one without normals, and
-/// if the memory does not suffice; OptionError, Cancelled.
+/// Throws RefusedInTiles for a cloud of which not all that is needed is local, Error also if the memory does
+/// not suffice; OptionError, Cancelled.
 Reconstruction reconstruct_in_tiles(const PointParts& parts, const ReconstructOptions& options,
                                     const TileOptions& tiles, TileReport* how = nullptr);
 /// The same by several ranks, all at the same time; `parts` are those of this rank's part of the points, in

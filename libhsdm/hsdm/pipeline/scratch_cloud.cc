@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 namespace hsdm {
 namespace {
@@ -110,8 +111,8 @@ void join(const CloudExtent& next, CloudExtent& extent) {
 } // namespace
 
 void refuse_in_tiles(const std::string& what) {
-    throw Error(what
-                + "; this is not done in tiles, reconstruct it in one piece (by hsdm, without --memory)");
+    throw RefusedInTiles(
+        what + "; this is not done in tiles, reconstruct it in one piece (by hsdm, without --memory)");
 }
 
 CloudExtent measure_extent(const PointParts& parts, Ranks& ranks) {
@@ -179,6 +180,7 @@ ScratchCloud::ScratchCloud(ByteReader& bytes, const TileOptions& options, Ranks&
     const std::vector<char> name = bytes.take_vector<char>();
     place_ = {kept_->folder(), {name.begin(), name.end()}, bytes.take<std::size_t>()};
     scratch_ = std::make_unique<ScratchPoints>(place_, bytes, buffered_);
+    note_kept();
 }
 
 void ScratchCloud::put_state(Ranks::Bytes& bytes) const {
@@ -507,6 +509,7 @@ void ScratchCloud::rearrange(const Box& bounds, double extent, int depth, std::s
 void ScratchCloud::take(ScratchCloud&& next) {
     none_ = std::move(next.none_);
     depth_ = next.depth_, cell_depth_ = next.cell_depth_;
+    if (kept_ && !std::exchange(is_of_pass_, false)) kept_->remove_file(place_.name);
     scratch_ = std::move(next.scratch_), place_ = std::move(next.place_);
     has_normals_ = next.has_normals_;
     arranged_ = next.arranged_;

@@ -15,7 +15,7 @@ namespace hsdm {
 class KeptScratch;
 class PointExchange;
 
-/// Throws Error of a cloud that can be reconstructed, but not in tiles.
+/// Throws RefusedInTiles of a cloud that can be reconstructed, but not in tiles.
 [[noreturn]] void refuse_in_tiles(const std::string& what);
 
 /// What a pass over the points finds.
@@ -52,6 +52,8 @@ public:
     void put_state(Ranks::Bytes& bytes) const;
     const std::string& file_name() const { return place_.name; } ///< empty: it has none
     void flush_to_disk() const { scratch_->flush_to_disk(); }
+    /// The file is of a pass that is kept: it stays when the points go to another one.
+    void note_kept() { is_of_pass_ = true; }
     const std::string& scratch_folder() const { return place_.folder; }
     std::size_t version() const { return version_; } ///< another one each time that points change
 
@@ -139,6 +141,7 @@ private:
     std::size_t most_waiting_; // points
     KeptScratch* kept_;        // null: files have no names
     ScratchPlace place_;       // of this one's file
+    bool is_of_pass_ = false;  // that file
     std::size_t buffered_;     // bytes
     Ranks& ranks_;
     std::unique_ptr<ScratchPoints> scratch_;
