@@ -149,7 +149,7 @@ TEST_CASE("tiles whose pieces are lost are made again, and what is told of them 
     };
     const Run whole = run_with(1200);
     const std::string pieces = folder / "hsdm-resume-0/pieces";
-    const std::uintmax_t left = GENERATE(0, 7); // eighths
+    const auto left = static_cast<std::uintmax_t>(GENERATE(0, 7)); // eighths
     std::filesystem::resize_file(pieces, std::filesystem::file_size(pieces) * left / 8);
     const Run other = run_with(100000);
     check_same(whole, other);
