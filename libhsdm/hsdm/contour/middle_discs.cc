@@ -107,8 +107,7 @@ private:
 
     const Word* standing_ = nullptr;
     Vec3 normal_;
-    std::array<unsigned, 2> seen_{0,
-                                  0}; // sheets of walls, of gaps: 1 is the one whose front the way comes to
+    std::array<unsigned, 2> seen_{}; // sheets of walls, of gaps: 1 is the one whose front the way comes to
 };
 
 bool MiddleDiscs::part(const Place& p, const Place& q, std::span<const Surface> surfaces) {

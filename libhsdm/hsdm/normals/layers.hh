@@ -25,9 +25,9 @@ struct SkyReading {
 /// have it in front of the outermost alone, and of two that cross now the one is outermost, now the other:
 /// read as a wall one of them is turned away from the sky. Whether a component is of layers is asked of the
 /// signs that know nothing of the sky; if so, those that do are taken, unless they turn more than twice as
-/// many points. Regions of patches that differ are
-/// turned as a whole where that is clear. Without a clear view they stay, unless most points in question of
-/// their component are turned. `walls`: signs of the patches and maybe more nodes, turned in place. O(edges).
+/// many points. Regions of patches that differ are turned as a whole where that is clear. Without a clear
+/// view they stay, unless most points in question of their component are turned. `walls`: signs of the
+/// patches and maybe more nodes, turned in place. O(edges).
 SkyReading take_layers(const Patches& patches, const LayerReading& layers, Signs& walls);
 
 } // namespace hsdm
