@@ -164,6 +164,24 @@ TEST_CASE("tiles whose pieces are lost are made again, and what is told of them 
     CHECK(run_with(1200).how.kept_tiles == last.how.tiles);
 }
 
+TEST_CASE("a run that goes on tells its own options, not those of the one before", "[pipeline]") {
+    const PointCloud cloud = torus(true);
+    const ReconstructOptions options{.depth = 4};
+    ReconstructOptions others = options;
+    others.min_component.emplace().value = 3;
+    const support::Folder folder;
+    const auto run_with = [&](const ReconstructOptions& of_run) {
+        OneRank alone;
+        KeptScratch kept(folder / ".", 0, this_job);
+        return run_by(alone, cloud, of_run, &kept);
+    };
+    const Run first = run_with(others), second = run_with(options);
+    CHECK(first.report.options.contains("min-component"));
+    CHECK(second.how.went_on);
+    OneRank alone;
+    check_same(run_by(alone, cloud, options, nullptr), second);
+}
+
 TEST_CASE("wherever a run in tiles fails the next one goes on, whatever it has to find out",
           "[pipeline][slow]") {
     const bool normals = GENERATE(true, false);

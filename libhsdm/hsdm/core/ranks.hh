@@ -126,6 +126,11 @@ public:
         copy(values.data(), values.size() * sizeof(T));
         return values;
     }
+    /// A text that put_text() wrote.
+    std::string take_text() {
+        const std::vector<char> text = take_vector<char>();
+        return {text.begin(), text.end()};
+    }
     /// All that is left.
     template <class T>
     std::vector<T> take_rest() {
@@ -161,6 +166,10 @@ template <class T>
 void put_vector(const std::vector<T>& values, Ranks::Bytes& bytes) {
     put(std::uint64_t{values.size()}, bytes);
     append_bytes(std::span<const T>(values), bytes);
+}
+inline void put_text(const std::string& text, Ranks::Bytes& bytes) {
+    put(std::uint64_t{text.size()}, bytes);
+    append_bytes(text.data(), text.size(), bytes);
 }
 
 } // namespace hsdm

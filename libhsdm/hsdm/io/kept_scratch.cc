@@ -46,17 +46,15 @@ KeptScratch::Bytes with_head(std::uint64_t key, const KeptScratch::Bytes& bytes)
 
 KeptScratch::Bytes bytes_of_traits(const std::vector<KeptScratch::Trait>& job) {
     KeptScratch::Bytes bytes;
-    for (const KeptScratch::Trait& trait : job)
-        for (const std::string* text : {&trait.name, &trait.value})
-            put_vector(std::vector<char>(text->begin(), text->end()), bytes);
+    for (const KeptScratch::Trait& trait : job) put_text(trait.name, bytes), put_text(trait.value, bytes);
     return bytes;
 }
 
 std::vector<KeptScratch::Trait> traits_of(const KeptScratch::Bytes& bytes) {
     std::vector<KeptScratch::Trait> job;
     for (ByteReader reader(bytes); !reader.at_end();) {
-        const auto name = reader.take_vector<char>(), value = reader.take_vector<char>();
-        job.push_back({{name.begin(), name.end()}, {value.begin(), value.end()}});
+        std::string name = reader.take_text();
+        job.push_back({std::move(name), reader.take_text()});
     }
     return job;
 }

@@ -106,12 +106,8 @@ void KeptPasses::cut_tiles(std::size_t first) {
 KeptPasses::Kept KeptPasses::kept_at(std::size_t record) const {
     const Bytes bytes = kept_->read(kept_->records()[record]);
     ByteReader reader(bytes);
-    const auto take_text = [&] {
-        const auto text = reader.take_vector<char>();
-        return std::string(text.begin(), text.end());
-    };
     Kept kept;
-    kept.points = take_text(), kept.state = take_text();
+    kept.points = reader.take_text(), kept.state = reader.take_text();
     kept.bytes_of_points = reader.take<std::size_t>(), kept.bytes_of_state = reader.take<std::size_t>();
     return kept;
 }
@@ -132,8 +128,7 @@ void KeptPasses::keep(Pass pass, ScratchCloud& cloud, const Bytes& state) {
     file.append("what a pass has found", state);
     file.flush_to_disk();
     Bytes bytes;
-    for (const std::string& text : {cloud.file_name(), name})
-        put_vector(std::vector<char>(text.begin(), text.end()), bytes);
+    put_text(cloud.file_name(), bytes), put_text(name, bytes);
     put(cloud.bytes(), bytes), put(file.size(), bytes);
     kept_->keep(static_cast<std::uint64_t>(pass), bytes);
     cloud.note_kept();

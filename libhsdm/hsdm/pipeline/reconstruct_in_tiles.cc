@@ -144,6 +144,7 @@ public:
             run(Pass::normals, "normals", 0.12, report_.seconds.normals, [&] { estimate_normals(group); });
         run(Pass::resolution, "resolution", 0.15, report_.seconds.octree, [&] { choose_resolution(group); });
         phases_.run("tiles", 0.2, report_.seconds.facets, [&] { make_facets(group); });
+        note_options(estimates_, options_, report_); // this run's, whatever was kept
     }
 
     /// What finish(input, facets, report) makes of the facets; nothing on other ranks than the first.
@@ -188,13 +189,10 @@ private:
         put(known_.has_layers, bytes), put(known_.outliers.has_value(), bytes);
         put(known_.outliers.value_or(Occurrences()), bytes);
         put(report_.input.spacing, bytes);
-        const auto put_text = [&](const std::string& text) {
-            put_vector(std::vector<char>(text.begin(), text.end()), bytes);
-        };
         put(std::uint64_t{report_.options.size()}, bytes);
-        for (const auto& [name, value] : report_.options) put_text(name), put_text(value);
+        for (const auto& [name, value] : report_.options) put_text(name, bytes), put_text(value, bytes);
         put(std::uint64_t{report_.rejected.size()}, bytes);
-        for (const auto& [name, count] : report_.rejected) put_text(name), put(count, bytes);
+        for (const auto& [name, count] : report_.rejected) put_text(name, bytes), put(count, bytes);
         put_vector(normals, bytes);
         passes_.keep(pass, *cloud_, bytes);
     }
@@ -214,16 +212,12 @@ private:
         const auto outliers = reader.take<Occurrences>();
         if (has_outliers) known_.outliers = outliers;
         report_.input.spacing = reader.take<double>();
-        const auto take_text = [&] {
-            const auto text = reader.take_vector<char>();
-            return std::string(text.begin(), text.end());
-        };
         for (auto count = reader.take<std::uint64_t>(); count > 0; --count) {
-            std::string name = take_text();
-            report_.options[std::move(name)] = take_text();
+            std::string name = reader.take_text();
+            report_.options[std::move(name)] = reader.take_text();
         }
         for (auto count = reader.take<std::uint64_t>(); count > 0; --count) {
-            std::string name = take_text();
+            std::string name = reader.take_text();
             report_.rejected[std::move(name)] = reader.take<std::size_t>();
         }
         normals_begun_ = reader.take_vector<char>();
@@ -235,7 +229,6 @@ private:
         const bool given = extent.has_normals && options_.normals != NormalSource::estimate;
         estimates_ = !given;
         check_normals_of(extent);
-        note_options(estimates_, options_, report_);
         cloud_.emplace(parts, extent, depth, tiles_, ranks_, given);
     }
 

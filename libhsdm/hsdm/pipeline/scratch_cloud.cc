@@ -177,8 +177,8 @@ ScratchCloud::ScratchCloud(ByteReader& bytes, const TileOptions& options, Ranks&
     begins_ = bytes.take_vector<MortonCode>(), fetched_ = bytes.take_vector<MortonCode>();
     cells_ = bytes.take_vector<ScratchPoints::Cell>();
     left_out_ = bytes.take_vector<PointRow>();
-    const std::vector<char> name = bytes.take_vector<char>();
-    place_ = {kept_->folder(), {name.begin(), name.end()}, bytes.take<std::size_t>()};
+    std::string name = bytes.take_text();
+    place_ = {kept_->folder(), std::move(name), bytes.take<std::size_t>()};
     scratch_ = std::make_unique<ScratchPoints>(place_, bytes, buffered_);
     note_kept();
 }
@@ -191,7 +191,7 @@ void ScratchCloud::put_state(Ranks::Bytes& bytes) const {
     put_vector(begins_, bytes), put_vector(fetched_, bytes);
     put_vector(cells_, bytes);
     put_vector(left_out_, bytes);
-    put_vector(std::vector<char>(place_.name.begin(), place_.name.end()), bytes);
+    put_text(place_.name, bytes);
     put(scratch_->bytes(), bytes);
     scratch_->put_index(bytes);
 }
