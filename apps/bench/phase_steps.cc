@@ -152,8 +152,8 @@ void make_links(Work& w) {
         pair();
 }
 void make_vertices(Work& w) {
-    w.dual.duals = build_dual_vertices(w.dual.grid, w.dual.crossings, w.dual.links);
-    w.checksum += static_cast<double>(open_all_webs(w.dual));
+    w.dual.duals = build_dual_vertices(w.dual.grid, w.dual.crossings, w.sets, w.level.voxel_size, w.dual.links);
+    w.checksum += static_cast<double>(open_all_webs(w.sets, w.level.voxel_size, w.dual));
 }
 void place(Work& w) {
     w.vertices = place_vertices(w.dual, w.sets, relation_of(w));

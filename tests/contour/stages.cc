@@ -40,7 +40,7 @@ void Stages::pair() {
 }
 
 void Stages::place() {
-    duals = build_dual_vertices(grid, crossings, links);
+    duals = build_dual_vertices(grid, crossings, sets, h(), links);
     vertices = place_vertices(*this, sets, related);
 }
 

@@ -1,5 +1,6 @@
 #include "hsdm/contour/bevels.hh"
 
+#include "hsdm/contour/blunt_creases.hh"
 #include "hsdm/contour/constants.hh"
 #include "hsdm/contour/dual_vertices.hh"
 #include "hsdm/core/chunks.hh"
@@ -75,7 +76,9 @@ private:
     /// Does a set lie near a face, and its plane between two crossings and the tip where their planes meet
     /// there?
     bool is_cut_off(const Crossing& x, const Crossing& y, const LinkFace& face, const NormalSet& set) const {
-        if (!lies_between(x.normal, set.normal, y.normal)) return false;
+        if (!lies_between(x.normal, set.normal, y.normal)
+            || !is_flat_between(grid_, x, set, y, voxel_size_))
+            return false;
         const Vec3 from = crossing_position(grid_, x, 1), to = crossing_position(grid_, y, 1);
         const Vec3 centroid = set.centroid / voxel_size_;
         const Plane one(x.normal, from), other(y.normal, to), bevel(set.normal, centroid);
@@ -100,10 +103,18 @@ private:
 
 bool lies_between(const Vec3& a, const Vec3& c, const Vec3& b) {
     const double one = a | c, other = b | c;
-    if (std::max(one, other) > angles::one_sheet || std::min(one, other) < (a | b)) return false;
+    if (std::max(one, other) > angles::smooth || std::min(one, other) < (a | b)) return false;
     const Vec3 crease = a % b;
     const double along = crease | c; // as long as the crease's sine, if c were along it
     return along * along < (1 - angles::smooth * angles::smooth) * crease.sqrnorm();
+}
+
+bool is_flat_between(const GridPoints& grid, const Crossing& a, const NormalSet& set, const Crossing& b,
+                     double voxel_size) {
+    const Vec3 bend = b.normal - a.normal;
+    const double size = bend.norm();
+    const Vec3 way = crossing_position(grid, b, voxel_size) - crossing_position(grid, a, voxel_size);
+    return is_nearer_to_flat(set.turn, set.spread.along(bend / size), size, (way | bend) / size);
 }
 
 std::size_t mark_bevels(const GridPoints& grid, const Crossings& crossings, const NormalSets& sets,

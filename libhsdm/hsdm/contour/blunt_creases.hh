@@ -20,16 +20,23 @@ inline CreaseSample crease_sample(const NormalSet& set) {
     return {set.centroid, set.normal, static_cast<double>(set.count), set.turn, &set.spread};
 }
 
-/// May there be a crease, from the weighted sum of unit normals? Only saves time: that of two equal faces
-/// with bluntest_cosine between them is so long.
+/// May there be a crease, from the weighted sum of unit normals? Only saves time: where a fifth is of one of
+/// two faces with bluntest_cosine between them it is so long.
 inline bool is_bent(const Vec3& sum, double weight) {
-    return sum.norm() < 0.9914 * weight;
+    return sum.norm() < 0.9965 * weight;
 }
 
 struct BluntCrease {
     std::array<Vec3, 2> normals; ///< unit mean normals of the two faces
     bool is_convex = false;
 };
+
+/// Do normals turn less along a face than halfway to how they would on a round surface? `turn` is its
+/// NormalSet::turn and `extent` the variance of its points, both along the bend, over which normals change by
+/// `size` on a way of `way`.
+inline bool is_nearer_to_flat(double turn, double extent, double size, double way) {
+    return turn * way <= 0.5 * extent * size;
+}
 
 /// Do samples of one sheet lie on two faces that meet in a crease? Their normals fall into two groups with
 /// little scatter, each group lies on its own side of the line where the two planes meet, and normals turn

@@ -334,10 +334,10 @@ std::vector<EdgeCollapse> build_facets(const Octree& octree, const OctreeLevel& 
         pair();
     const auto cut_into_vertices = [&] {
         mark_bevels(dual.grid, dual.crossings, sets, h, dual.links);
-        dual.duals = build_dual_vertices(dual.grid, dual.crossings, dual.links);
+        dual.duals = build_dual_vertices(dual.grid, dual.crossings, sets, h, dual.links);
     };
     cut_into_vertices();
-    result.webs_opened = open_all_webs(dual);
+    result.webs_opened = open_all_webs(sets, h, dual);
     if (result.webs_opened > 0) cut_into_vertices(); // what partners changed lead over
     PlacedVertices vertices = place_vertices(dual, sets, related);
     extend_borders(dual, sets, vertices);

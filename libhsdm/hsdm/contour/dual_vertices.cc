@@ -96,8 +96,9 @@ struct Cut {
 /// the rim, else in a facet of the rim's own face, between the sides.
 class ChainCutter {
 public:
-    ChainCutter(const GridPoints& grid, const Crossings& crossings, const Links& links)
-        : grid_(grid), crossings_(crossings), links_(links) {}
+    ChainCutter(const GridPoints& grid, const Crossings& crossings, const NormalSets& sets, const Links& links,
+                double voxel_size)
+        : grid_(grid), crossings_(crossings), sets_(sets), links_(links), voxel_size_(voxel_size) {}
 
     void cut(const Chain& chain, Cut& result) {
         find_cuts(chain);
@@ -159,7 +160,7 @@ private:
         const auto corner = [&](std::size_t i) -> const Crossing& { return of(chain.corners[i % n]); };
         const auto link = [&](std::size_t i) -> const Link& { return links_.of(chain.way_on(i % n)); };
         const auto ends_after = [&](std::size_t i) {
-            return (corner(i).normal | corner(i + 1).normal) < angles::one_sheet;
+            return (corner(i).normal | corner(i + 1).normal) < angles::smooth;
         };
         std::size_t begin = 0;
         if (chain.closed) {
@@ -172,11 +173,17 @@ private:
             if (!ends_after(i)) continue;
             if (link(i).bevel) cuts_.push_back(2 * (i % n) + 1);
             const bool inner = chain.closed || first > 0;
+            const std::size_t middle = (first + i) / 2;
             if (inner && !link(i).bevel && !link(first + n - 1).bevel
-                && lies_between(corner(first + n - 1).normal, corner(first).normal, corner(i + 1).normal))
-                cuts_.push_back(2 * ((first + i) / 2 % n));
+                && is_bevel(corner(first + n - 1), corner(middle), corner(i + 1)))
+                cuts_.push_back(2 * (middle % n));
             first = i + 1;
         }
+    }
+
+    bool is_bevel(const Crossing& before, const Crossing& face, const Crossing& after) const {
+        return lies_between(before.normal, face.normal, after.normal)
+               && is_flat_between(grid_, before, sets_.sets[face.set], after, voxel_size_);
     }
 
     bool any_opposite(const Chain& chain) const {
@@ -242,7 +249,9 @@ private:
 
     const GridPoints& grid_;
     const Crossings& crossings_;
+    const NormalSets& sets_;
     const Links& links_;
+    double voxel_size_;
     std::vector<std::size_t> cuts_, length_, place_;
 };
 
@@ -319,12 +328,13 @@ CornerVoxel::CornerVoxel(const GridPoints& grid, const Crossings& crossings, Fac
     voxel = grid.voxels[edge / 3][octant];
 }
 
-DualVertices build_dual_vertices(const GridPoints& grid, const Crossings& crossings, const Links& links) {
+DualVertices build_dual_vertices(const GridPoints& grid, const Crossings& crossings, const NormalSets& sets,
+                                 double voxel_size, const Links& links) {
     const std::size_t n = crossings.crossings.size();
     std::vector<ChunkDualVertices> chunks(chunk_count(n, chunks::quick));
     for_chunks(n, chunks::quick, [&](std::size_t begin, std::size_t end, std::size_t c) {
         Chain chain(crossings, links);
-        ChainCutter cutter(grid, crossings, links);
+        ChainCutter cutter(grid, crossings, sets, links, voxel_size);
         Cut cut;
         for (auto x = static_cast<Index>(begin); x < end; ++x)
             for (const FacetCorner corner : corners_of_facet(x)) {

@@ -73,6 +73,7 @@ struct DualVertices {
 /// Walks the chains. A chain that passes both sides of a thin part is cut between them, at a rim link or in a
 /// facet of the rim's own face, so that each side has its own vertex; one that passes both edges of a narrow
 /// face at a link over it or in a facet of it. O(crossings), parallel.
-DualVertices build_dual_vertices(const GridPoints& grid, const Crossings& crossings, const Links& links);
+DualVertices build_dual_vertices(const GridPoints& grid, const Crossings& crossings, const NormalSets& sets,
+                                 double voxel_size, const Links& links);
 
 } // namespace hsdm

@@ -177,11 +177,11 @@ std::size_t open_webs(const Crossings& crossings, const DualVertices& duals, Lin
     return Webs(crossings, duals, links).open();
 }
 
-std::size_t open_all_webs(DualMesh& dual) {
+std::size_t open_all_webs(const NormalSets& sets, double voxel_size, DualMesh& dual) {
     std::size_t opened = 0;
     while (const std::size_t rows = open_webs(dual.crossings, dual.duals, dual.links)) {
         opened += rows;
-        dual.duals = build_dual_vertices(dual.grid, dual.crossings, dual.links);
+        dual.duals = build_dual_vertices(dual.grid, dual.crossings, sets, voxel_size, dual.links);
     }
     return opened;
 }

@@ -16,6 +16,6 @@ namespace hsdm {
 std::size_t open_webs(const Crossings& crossings, const DualVertices& duals, Links& links);
 
 /// Opens webs, and builds the dual vertices anew, until there are no more. Returns how many there were.
-std::size_t open_all_webs(DualMesh& dual);
+std::size_t open_all_webs(const NormalSets& sets, double voxel_size, DualMesh& dual);
 
 } // namespace hsdm
