@@ -48,14 +48,14 @@ TEST_CASE("a face lies between two others if it turns from both, and along their
         CHECK(lies_between(y, tilted(turn, 20), z));
         CHECK(!lies_between(y, tilted(turn, 35), z)); // as the third face of a corner
     }
-    for (const double turn : {-45.0, 0.0, 35.0, 55.0, 90.0, 135.0})
+    for (const double turn : {-45.0, 0.0, 24.0, 66.0, 90.0, 135.0})
         CHECK(!lies_between(y, tilted(turn, 0), z));
     CHECK(!lies_between(y, y, y));
     CHECK(!lies_between(y, z, -y));
 }
 
 TEST_CASE("chamfers of half a voxel and more keep both edges", "[contour]") {
-    for (const double turn : {45.0, 42.0})
+    for (const double turn : {45.0, 42.0, 36.0})
         for (const double width : {0.5, 0.75, 1.0})
             for (std::uint64_t seed = 1; seed <= 3; ++seed) {
                 INFO("turn " << turn << ", width " << width << ", seed " << seed);
@@ -68,9 +68,29 @@ TEST_CASE("chamfers of half a voxel and more keep both edges", "[contour]") {
                 CHECK(result.mesh.n_vertices() + result.mesh.n_faces() == result.mesh.n_edges() + 2);
                 CHECK(support::farthest_vertex(facets, bar.solid) < 0.25 * bar_voxel);
                 const support::Lines found = support::folds(result.mesh, turn / 2 * one_degree);
-                CHECK(support::share_near(bar.blunt, found, bar_voxel / 4) > 0.9);
-                CHECK(support::share_near(found, bar.all, bar_voxel / 4) > 0.9);
+                const double least = turn < 40 && width < 1 ? 0.8 : 0.9;
+                CHECK(support::share_near(bar.blunt, found, bar_voxel / 4) > least);
+                CHECK(support::share_near(found, bar.all, bar_voxel / 4) > least);
             }
+}
+
+TEST_CASE("fillets of half a voxel and more are no edges, chamfers as wide are", "[contour]") {
+    for (const double radius : {0.5, 0.75, 1.0}) {
+        double fillets = 0, chamfers = 0;
+        for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+            const auto marked = [&](const support::EdgedSolid& part, double tolerance) {
+                const support::EdgedSolid bar = support::placed(part, support::random_pose(seed));
+                const PolyMesh mesh = reconstruct(scan_of(bar, seed), {.voxel_size = bar_voxel}).mesh;
+                return support::share_near(bar.blunt, support::marked(mesh), tolerance * bar_voxel) / 4;
+            };
+            fillets += marked(support::filleted_bar(radius * bar_voxel), 0.25 + 0.8 * radius);
+            chamfers += marked(support::chamfered_bar(radius * bar_voxel, 45 * one_degree), 0.25);
+        }
+        INFO("radius " << radius << ": marked are " << fillets << " of fillets, " << chamfers
+                       << " of chamfers");
+        CHECK(fillets < 0.15);
+        CHECK(chamfers > 0.9);
+    }
 }
 
 TEST_CASE("chamfers of a cavity keep both edges, whichever way axes point", "[contour]") {
@@ -97,8 +117,9 @@ TEST_CASE("chamfers of a cavity keep both edges, whichever way axes point", "[co
 
 TEST_CASE("where no face lies between two nothing is marked, and no other vertex is made", "[contour]") {
     const support::Pose pose = support::random_pose(3);
-    for (const support::Solid& solid : {support::box({1, 0.8, 0.6}), support::sphere(0.5),
-                                        support::torus(0.5, 0.2), support::cylinder(0.2, 1)}) {
+    for (const support::Solid& solid :
+         {support::box({1, 0.8, 0.6}), support::sphere(0.5), support::torus(0.5, 0.2),
+          support::cylinder(0.2, 1), support::torus(0.5, 0.11), support::cylinder(0.1, 1)}) {
         Stages stages(solid.placed(pose), 6000, 4);
         CHECK(marked_in(stages) == 0);
         CHECK(stages.duals.after_cut.empty());

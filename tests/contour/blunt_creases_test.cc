@@ -99,7 +99,7 @@ bool is_crease(const std::vector<CreaseSample>& samples) {
 } // namespace
 
 TEST_CASE("two faces are told apart, each point is on its own, and a valley is no ridge", "[contour]") {
-    for (const double angle : {16 * degree, 25 * degree, 40 * degree, -16 * degree, -40 * degree})
+    for (const double angle : {13 * degree, 25 * degree, 40 * degree, -13 * degree, -40 * degree})
         for (std::uint64_t seed = 1; seed <= 20; ++seed) {
             const double at = 0.02 * static_cast<double>(seed) - 0.2;
             INFO("turn " << angle / degree << " degrees at " << at << ", seed " << seed);
@@ -169,8 +169,8 @@ TEST_CASE("noise of a few degrees does not hide a crease of thirty", "[contour]"
     CHECK(found > 90);
 }
 
-TEST_CASE("edges of prisms that turn by 36 to 60 degrees are sharp", "[contour][accuracy]") {
-    for (const int sides : {6, 8, 10}) {
+TEST_CASE("edges of prisms that turn by 15 to 60 degrees are sharp", "[contour][accuracy]") {
+    for (const int sides : {6, 8, 10, 16, 24}) {
         double bevel = 0, all = 0; // area of facets that lie between two faces
         std::size_t off = 0, count = 0;
         for (std::uint64_t seed = 1; seed <= 4; ++seed) {
@@ -196,7 +196,7 @@ TEST_CASE("edges of prisms that turn by 36 to 60 degrees are sharp", "[contour][
         }
         INFO(sides << " sides: " << bevel / all << " of the area bevelled, " << off << " of " << count
                    << " points off");
-        CHECK(bevel < 0.02 * all);
+        CHECK(bevel < (sides > 20 ? 0.05 : 0.02) * all);
         CHECK(off * 50 < count);
     }
 }

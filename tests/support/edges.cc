@@ -43,6 +43,20 @@ EdgedSolid chamfered_bar(double width, double turn) {
     return result;
 }
 
+EdgedSolid filleted_bar(double radius) {
+    const double in = 0.5 - radius, on = 0.5 - (1 - std::sqrt(0.5)) * radius;
+    EdgedSolid result{box({1, 2 * in, 1}) | box({1, 1, 2 * in}), 6, {}, {}};
+    for (int i = 0; i < 4; ++i) {
+        const Pose quarter = turned(Vec3(1, 0, 0), i * std::numbers::pi / 2);
+        Pose axis = turned(Vec3(0, 1, 0), std::numbers::pi / 2);
+        axis.shift = quarter.rotate(Vec3(0, in, in));
+        result.solid = result.solid | cylinder(radius, 1).placed(axis);
+        result.blunt.push_back({quarter.rotate(Vec3(-0.4, on, on)), quarter.rotate(Vec3(0.4, on, on))});
+    }
+    result.all = result.blunt;
+    return result;
+}
+
 EdgedSolid placed(const EdgedSolid& one, const Pose& pose) {
     EdgedSolid result{one.solid.placed(pose), one.area, one.blunt, one.all};
     for (Lines* lines : {&result.blunt, &result.all})
@@ -58,6 +72,13 @@ Lines folds(const PolyMesh& mesh, double angle) {
         if (angle_between(mesh.calc_face_normal(h.face()), mesh.calc_face_normal(h.opp().face())) > angle)
             found.push_back({mesh.point(h.from()), mesh.point(h.to())});
     }
+    return found;
+}
+
+Lines marked(const PolyMesh& mesh) {
+    Lines found;
+    for (const auto e : mesh.edges())
+        if (mesh.status(e).feature()) found.push_back({mesh.point(e.v0()), mesh.point(e.v1())});
     return found;
 }
 

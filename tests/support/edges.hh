@@ -26,11 +26,18 @@ EdgedSolid edged_prism(int sides);
 /// the edges of these faces.
 EdgedSolid chamfered_bar(double width, double turn);
 
+/// A bar of 1 x 1 x 1 whose four edges along x are rounded by a radius. Blunt are the lines in the middle of
+/// its fillets, which are no edges, without their ends.
+EdgedSolid filleted_bar(double radius);
+
 /// The same turned and shifted as a whole.
 EdgedSolid placed(const EdgedSolid& one, const Pose& pose);
 
 /// Edges of a mesh that fold it by more than an angle, in radians.
 Lines folds(const PolyMesh& mesh, double angle);
+
+/// Edges of a mesh that are marked as sharp.
+Lines marked(const PolyMesh& mesh);
 
 /// Share of the length of `these` that is near one of `those`.
 double share_near(const Lines& these, const Lines& those, double tolerance);

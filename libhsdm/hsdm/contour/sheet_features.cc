@@ -1,5 +1,6 @@
 #include "hsdm/contour/sheet_features.hh"
 
+#include "hsdm/contour/blunt_creases.hh"
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
@@ -140,6 +141,13 @@ public:
     const Vec3& sheet_normal(Index of_set, const Vec3& otherwise) const {
         return of_set != no_index ? sets_.sets[of_set].normal : otherwise;
     }
+    /// Are two sheets flat, if there are, rather than parts of a round surface that turns from one to the
+    /// other?
+    bool are_flat(Index one, Index other, std::span<const Index> voxels) const {
+        if (one == other || one == no_index || other == no_index) return true;
+        const NormalSet &a = sets_.sets[one], &b = sets_.sets[other];
+        return is_flat(a, b, voxels) && is_flat(b, a, voxels);
+    }
     /// Voxels of the vertices of two facets, ascending, each once.
     void voxels_of(Index f, Index g, std::vector<Index>& voxels) const {
         voxels.clear();
@@ -149,6 +157,23 @@ public:
     }
 
 private:
+    /// Is the set, or with noise what has its normal in these voxels, rather flat than round?
+    bool is_flat(const NormalSet& one, const NormalSet& other, std::span<const Index> voxels) const {
+        Vec3 bend = other.normal - one.normal;
+        const double size = bend.norm(), way = ((other.centroid - one.centroid) | bend) / size;
+        bend /= size;
+        if (is_nearer_to_flat(one.turn, one.spread.along(bend), size, way)) return true;
+        const double near = 1 - 0.5 * edge_hints::end_band * edge_hints::end_band * size * size;
+        double turn = 0, extent = 0;
+        for (const Index v : voxels)
+            for (const NormalSet& set : sets_.of_voxel(v)) {
+                if ((set.normal | one.normal) < near) continue;
+                turn += set.count * set.turn;
+                extent += set.count * set.spread.along(bend);
+            }
+        return is_nearer_to_flat(turn, extent, size, way);
+    }
+
     const OctreeLevel& level_;
     const NormalSets& sets_;
     const PolygonMesh& mesh_;
@@ -198,7 +223,7 @@ public:
         facets_.voxels_of(f, g, voxels_);
         points_.gather(fold, voxels_, a, b);
         if (points_.empty()) return EdgeHint::none;
-        const bool crease = points_.crease();
+        const bool crease = points_.crease() && facets_.are_flat(one, other, voxels_);
         ++(crease ? tally.sharp : tally.smooth);
         if (!crease) points_.count_tilted(tally.middle, tally.tilted);
         return crease ? EdgeHint::sharp : EdgeHint::smooth;

@@ -175,9 +175,9 @@ HSDM_TUNED double bent_spread = 0.45;
 HSDM_TUNED double clear_gain = 1.3;
 
 /// cosine: of normals of neighbours that are no sign of a crease.
-/// Why: 14 degrees; where planes are smeared over both faces those beside a crease differ by half of its
+/// Why: 8 degrees; where planes are smeared over both faces those beside a crease differ by half of its
 /// angle.
-HSDM_TUNED double differing_cosine = 0.97;
+HSDM_TUNED double differing_cosine = 0.99;
 
 /// points: by their weights, that a plane is fitted to at least.
 /// Why: three and a half: the point and two and a half others.
