@@ -51,7 +51,7 @@ inline constexpr double least_sine_squared = 0.01;
 namespace hsdm::blunt_creases {
 
 /// cosine: between the normals of two faces; of a smaller angle they are one.
-/// Why: 12 degrees: of edges that turn by 15, three deviations of noise below, nearly all are found.
+/// Why: 12 degrees: edges of 15 are found though noise tilts their faces.
 HSDM_TUNED double bluntest_cosine = 0.978;
 
 /// share: of the angle between the two faces, root mean square of normals within each.
