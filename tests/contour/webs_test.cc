@@ -45,7 +45,8 @@ std::size_t opened_by_twos(Stages& stages) {
         const std::size_t rows = open_webs(stages.crossings, stages.duals, stages.links);
         if (rows == 0) return opened;
         opened += rows;
-        stages.duals = build_dual_vertices(stages.grid, stages.crossings, stages.sets, stages.h(), stages.links);
+        stages.duals =
+            build_dual_vertices(stages.grid, stages.crossings, stages.sets, stages.h(), stages.links);
         CHECK(chains() == before + 2 * rows);
         CHECK(open_sides(stages.links) == open);
     }
