@@ -67,6 +67,7 @@ void note_counts(const DualContour& facets, Report& report) {
     report.rejected["vertices_drawn_in"] = facets.drawn_in;
     report.rejected["vertices_reached"] = facets.reached;
     report.rejected["corners_merged"] = facets.corners_merged;
+    report.rejected["flat_corners_merged"] = facets.flat_corners;
     report.rejected["edges_halved"] = facets.midpoints;
     report.rejected["doublets_merged"] = facets.doublets;
     report.rejected["facets_debris"] = facets.splinters.count;
