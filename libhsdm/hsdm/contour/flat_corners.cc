@@ -124,9 +124,12 @@ public:
         std::sort(pairs_.begin(), pairs_.end());
     }
 
-    /// Ascending.
-    auto of(Index v) const {
-        return std::ranges::equal_range(pairs_, v, {}, [](const Pair& pair) { return pair.first; });
+    /// Pairs of the vertex and a facet, by ascending facets.
+    std::span<const std::pair<Index, Index>> of(Index v) const {
+        const auto [first, last] =
+            std::equal_range(pairs_.begin(), pairs_.end(), Pair{v, 0},
+                             [](const Pair& one, const Pair& other) { return one.first < other.first; });
+        return {first, last};
     }
 
 private:
