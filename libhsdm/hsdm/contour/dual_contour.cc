@@ -278,7 +278,8 @@ MeshOfPart part_of_whole(const DualContourOptions& options, const DualContour& r
 Occurrences leave_out_splinters(const OctreeLevel& level, const DualContourOptions& options,
                                 std::size_t stage, DualContour& result) {
     SplinterOptions splinters = options.splinters;
-    splinters.flat *= level.voxel_size, splinters.layers *= level.voxel_size;
+    const double h = level.voxel_size;
+    splinters.flat *= h, splinters.layers *= h, splinters.least_area *= h * h;
     if (options.part.is_part()) {
         splinters.largest = options.largest[stage];
         result.components[stage] = components_of_part(part_of_whole(options, result), splinters.enough(),
