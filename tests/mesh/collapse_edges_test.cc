@@ -76,17 +76,28 @@ TEST_CASE("an edge of a closed surface becomes a vertex", "[mesh]") {
     CHECK(measure_topology(mesh).triangles == 4);
 }
 
+TEST_CASE("a quad collapses along its diagonal", "[mesh]") {
+    PolygonMesh mesh = grid_cube(4);
+    const std::size_t facets = mesh.facet_count();
+    const Index from = vertex_at(mesh, {1, 1, 4}), to = vertex_at(mesh, {2, 2, 4});
+    CHECK(collapse(mesh, std::array{EdgeCollapse{from, to, Vec3(2, 2, 4)}}) == 1);
+    CHECK(mesh.facet_count() == facets - 1);
+    CHECK(remove_isolated_vertices(mesh) == 1);
+    check_closed(mesh);
+    CHECK(measure_topology(mesh).triangles == 0);
+}
+
 TEST_CASE("an edge whose collapse would fold facets onto each other stays where it is", "[mesh]") {
     PolygonMesh tetrahedron = support::tetrahedron();
     PolygonMesh mesh = grid_cube(3);
     const EdgeCollapse side = first_side(mesh, 13);
-    const EdgeCollapse diagonal{side.from, mesh.facet(13)[2], side.position};
+    const EdgeCollapse far{side.from, vertex_at(mesh, {0, 0, 3}), side.position};
     const EdgeCollapse point{side.from, side.from, side.position};
     const EdgeCollapse turns_over{side.from, side.to, side.position + Vec3(2, 2, 2)};
     const PolygonMesh before = mesh, tetrahedron_before = tetrahedron;
 
     CHECK(collapse(tetrahedron, std::array{first_side(tetrahedron, 0)}) == 0);
-    CHECK(collapse(mesh, std::array{diagonal, point, turns_over}) == 0);
+    CHECK(collapse(mesh, std::array{far, point, turns_over}) == 0);
     CHECK(tetrahedron.corners == tetrahedron_before.corners);
     CHECK(tetrahedron.positions == tetrahedron_before.positions);
     CHECK(mesh.corners == before.corners);

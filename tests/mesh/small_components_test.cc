@@ -76,6 +76,15 @@ TEST_CASE("a few facets are no splinter where all components are small", "[mesh]
     CHECK(drop_splinters(none).count == 0);
 }
 
+TEST_CASE("components with less area than points can tell of are splinters beside any", "[mesh]") {
+    PolygonMesh mesh;
+    add_strip(mesh, 4); // of area 4, or less
+    add_strip(mesh, 120);
+    CHECK(drop_splinters(mesh, {.least_area = 0.1}).count == 0);
+    CHECK(drop_splinters(mesh, {.least_area = 5}).count == 4);
+    CHECK(drop_splinters(mesh, {.least_area = 500}).count == 0); // nothing is larger
+}
+
 TEST_CASE("components smaller than asked for are dropped, the largest never", "[mesh]") {
     CHECK(components_left({.least_facets = 0}) == 4);
     CHECK(components_left({.least_facets = 2}) == 4);

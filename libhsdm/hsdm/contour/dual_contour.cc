@@ -1,6 +1,7 @@
 #include "hsdm/contour/dual_contour.hh"
 
 #include "hsdm/contour/bevels.hh"
+#include "hsdm/contour/flat_corners.hh"
 #include "hsdm/contour/flat_facets.hh"
 #include "hsdm/contour/grid_signs.hh"
 #include "hsdm/contour/inner_tunnels.hh"
@@ -277,7 +278,8 @@ MeshOfPart part_of_whole(const DualContourOptions& options, const DualContour& r
 Occurrences leave_out_splinters(const OctreeLevel& level, const DualContourOptions& options,
                                 std::size_t stage, DualContour& result) {
     SplinterOptions splinters = options.splinters;
-    splinters.flat *= level.voxel_size, splinters.layers *= level.voxel_size;
+    const double h = level.voxel_size;
+    splinters.flat *= h, splinters.layers *= h, splinters.least_area *= h * h;
     if (options.part.is_part()) {
         splinters.largest = options.largest[stage];
         result.components[stage] = components_of_part(part_of_whole(options, result), splinters.enough(),
@@ -427,6 +429,7 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     std::vector<Index> far;
     const std::vector<EdgeCollapse> to_corners = build_facets(octree, level, sets, options, far, result);
     result.corners_merged = merge_corners(to_corners, result.mesh, result.classes);
+    result.flat_corners = collapse_flat_corners(sheets::plane_error * h, result.classes, result.mesh);
     result.splinters = leave_out_splinters(level, options, 0, result);
     // Links and splinters are found once, for as long as facets stay as they are.
     bool edited = false;

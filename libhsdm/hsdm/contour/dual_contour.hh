@@ -52,9 +52,10 @@ struct DualContour {
     std::size_t reached = 0;        ///< moves of vertices to points that stood out (reach_points)
     /// vertices merged into the vertex of the next voxel, which holds their corner (shared_corners)
     std::size_t corners_merged = 0;
-    std::size_t midpoints = 0; ///< vertices added so that no two mesh edges join the same two vertices
-    std::size_t doublets = 0;  ///< pairs of facets round one vertex merged into one facet
-    Occurrences splinters;     ///< facets of splinters, removed
+    std::size_t flat_corners = 0; ///< vertices merged into others on creases (collapse_flat_corners)
+    std::size_t midpoints = 0;    ///< vertices added so that no two mesh edges join the same two vertices
+    std::size_t doublets = 0;     ///< pairs of facets round one vertex merged into one facet
+    Occurrences splinters;        ///< facets of splinters, removed
     FillHolesCounts holes;
     UntangleCounts intersections;
     std::optional<FacetCells> cells; ///< the mesh's facets by voxel; empty if untangling moved vertices

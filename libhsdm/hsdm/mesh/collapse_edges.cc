@@ -130,9 +130,10 @@ private:
             const std::size_t at = find_in(ring, from), other = find_in(ring, to);
             if (other == ring.size()) continue;
             const std::size_t apart = at < other ? other - at : at - other;
-            if (apart != 1 && apart + 1 != ring.size()) return false;
-            ++both;
-            triangles += ring.size() == 3;
+            const bool is_diagonal = apart == 2 && ring.size() == 4; // cut there it is two triangles
+            if (!is_diagonal && apart != 1 && apart + 1 != ring.size()) return false;
+            both += is_diagonal ? 2 : 1;
+            triangles += is_diagonal ? 2 : ring.size() == 3;
         }
         if (both != 2) return false;
         const std::vector<Index> one = neighbours_of(from), other = neighbours_of(to);
@@ -151,11 +152,13 @@ private:
         changes_.clear();
         for (Index r : around) {
             RingVertices after = rings_[r];
-            const std::size_t at = find_in(after, from);
-            if (at < after.size() && find_in(after, to) < after.size())
-                after.erase(after.begin() + static_cast<std::ptrdiff_t>(at));
-            else
+            const std::size_t at = find_in(after, from), other = find_in(after, to);
+            if (at == after.size() || other == after.size())
                 std::replace(after.begin(), after.end(), from, to);
+            else if (at + 2 == other || other + 2 == at)
+                after.clear(); // a triangle, or a quad along its diagonal
+            else
+                after.erase(after.begin() + static_cast<std::ptrdiff_t>(at));
             // half of what it had: what was thin already does not refuse
             changes_.push_back({r, std::move(after), area_vector(mesh_, rings_[r]),
                                 std::min(edge_collapses::least_area, 0.5 * relative_area(rings_[r]))});

@@ -168,15 +168,18 @@ Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options) {
     const std::vector<std::size_t>& sizes = components.facets();
     const auto largest = static_cast<double>(options.largest > 0 ? options.largest : std::ranges::max(sizes));
     const std::size_t most = std::max({options.most_open, options.most_flat, options.most_facets});
-    const auto may_go = [&](std::size_t size) {
-        return size <= most && static_cast<double>(size) * options.least_ratio <= largest;
+    const auto may_go = [&](std::size_t size, double area) {
+        const auto facets = static_cast<double>(size);
+        return size <= most
+               && (facets * options.least_ratio <= largest
+                   || (area < options.least_area && facets < largest));
     };
     const bool looks_at_all = options.layers > 0 || options.cavities;
     if (!looks_at_all
-        && std::ranges::none_of(sizes, [&](std::size_t size) { return size > 0 && may_go(size); }))
+        && std::ranges::none_of(sizes, [&](std::size_t size) { return size > 0 && may_go(size, 0); }))
         return {};
-    const std::size_t looked_at = looks_at_all ? mesh.facet_count() : options.most_flat;
-    const std::vector<std::uint8_t> open = components.are_open(std::max(options.most_open, looked_at));
+    const std::size_t looked_at = looks_at_all ? mesh.facet_count() : most;
+    const std::vector<std::uint8_t> open = components.are_open(looked_at);
     const std::vector<Extent> extents = components.extents(looked_at);
     const auto of_most = std::ranges::max_element(extents, {}, &Extent::area) - extents.begin();
     Extent widest = extents[static_cast<std::size_t>(of_most)];
@@ -190,7 +193,8 @@ Occurrences drop_splinters(PolygonMesh& mesh, const SplinterOptions& options) {
             return true;
         const bool flat = sizes[c] <= options.most_flat && extent.is_thinner_than(options.flat);
         const std::size_t most_closed = flat ? options.most_flat : options.most_facets;
-        if (may_go(sizes[c]) && sizes[c] <= (open[c] ? options.most_open : most_closed)) return true;
+        if (may_go(sizes[c], extent.area) && sizes[c] <= (open[c] ? options.most_open : most_closed))
+            return true;
         return options.cavities && is_closed && open[c] == 0 && extent.faces_against(widest)
                && extent.is_small_in(widest, 0, options.least_ratio)
                && components.encloses(static_cast<Index>(of_most), static_cast<Index>(c));

@@ -28,6 +28,9 @@ struct SplinterOptions {
     /// Do closed cavities of the largest component go, too, if their area times `least_ratio` is at most its?
     /// Where there were none while the mesh had holes, they were seen through one of them.
     bool cavities = false;
+    /// In the mesh's units squared: components that would be splinters beside a larger one go beside any if
+    /// their area is less, as no points can tell of them. 0: none does.
+    double least_area = 0;
     /// least ratio of the facets of the largest component to those of a splinter
     double least_ratio = splinters::least_ratio;
     /// facets of the largest component, where the mesh is part of one that has it; 0: as it is in the mesh

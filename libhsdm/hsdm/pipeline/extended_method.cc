@@ -46,6 +46,7 @@ DualContourOptions options_for(const MethodInput& in, double spacing) {
         result.holes.max_diameter = std::max(holes::widest_in_spacings * spacing_in_voxels, holes::widest);
         result.holes.insist = true;
     }
+    result.splinters.least_area = points_of_plane * spacing_in_voxels * spacing_in_voxels;
     if (in.has_layers) result.splinters.layers = splinters::layers_in_spacings * spacing_in_voxels;
     return result;
 }
@@ -67,6 +68,7 @@ void note_counts(const DualContour& facets, Report& report) {
     report.rejected["vertices_drawn_in"] = facets.drawn_in;
     report.rejected["vertices_reached"] = facets.reached;
     report.rejected["corners_merged"] = facets.corners_merged;
+    report.rejected["flat_corners_merged"] = facets.flat_corners;
     report.rejected["edges_halved"] = facets.midpoints;
     report.rejected["doublets_merged"] = facets.doublets;
     report.rejected["facets_debris"] = facets.splinters.count;
