@@ -55,7 +55,7 @@ struct MinComponent {
 /// What a reconstruction is to do; the defaults suit most scans. Lengths are in the cloud's units.
 struct ReconstructOptions {
     /// Resolution: at most one of the three; by default the voxel follows from the points' spacing and
-    /// noise (choose_voxel).
+    /// noise (choose_voxel), finer where bores are narrow or the surface bends within it.
     std::optional<int> depth{};         ///< octree depth over the bounding cube, [1, 16]
     std::optional<double> voxel_size{}; ///< edge of a voxel in the cloud's units, > 0: kept exactly, the
                                         ///< bounding cube grows to the next power of two of it

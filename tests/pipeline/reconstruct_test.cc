@@ -356,6 +356,23 @@ TEST_CASE("voxels are three spacings wide, or twice the noise if that is more", 
     CHECK(noisy.mesh.closed);
 }
 
+TEST_CASE("voxels are finer where the surface bends within those of three spacings", "[pipeline]") {
+    const auto spacings_of = [](std::size_t points, double position_noise) {
+        const Report report =
+            reconstruct(support::sample(support::torus(1, 0.35),
+                                        {.points = points, .position_noise = position_noise}))
+                .report;
+        CHECK(report.mesh.genus == 1);
+        CHECK((report.options.at("resolution").find("bends") != std::string::npos)
+              == (report.grid.voxel_size < 2.9 * report.input.spacing));
+        return report.grid.voxel_size / report.input.spacing;
+    };
+    CHECK(spacings_of(6000, 0) == Approx(2.4).epsilon(0.001));
+    CHECK(spacings_of(6000, 0.008) == Approx(2.4).epsilon(0.001)); // a sixth of a spacing
+    CHECK(spacings_of(40000, 0) == Approx(3).epsilon(0.001));
+    CHECK(spacings_of(40000, 0.003) == Approx(3).epsilon(0.001));
+}
+
 TEST_CASE("given normals of mixed signs give the mesh of consistent ones, and are counted", "[pipeline]") {
     PointCloud cloud = support::sample(support::torus(1, 0.4), {.points = 8000});
     const ReconstructOptions options{.depth = 4};

@@ -126,9 +126,15 @@ TEST_CASE("ranks tell together what is small beside the largest part", "[pipelin
 }
 
 TEST_CASE("ranks choose the voxels together", "[pipeline][slow]") {
-    PointCloud cloud = bored_box();
-    cloud.positions.push_back({0.7, 0.5, 0.4}); // an outlier
-    cloud.normals.push_back({0, 0, 1});
+    PointCloud cloud;
+    SECTION("by the spacing without an outlier") {
+        cloud = bored_box();
+        cloud.positions.push_back({0.7, 0.5, 0.4});
+        cloud.normals.push_back({0, 0, 1});
+    }
+    SECTION("as the surface bends") {
+        cloud = support::sample(support::torus(1, 0.35), {.points = 11000});
+    }
     std::optional<Reconstruction> result;
     TileReport how;
     for (const std::string& failure : run_on(3, cloud, small_tiles(), result, how, std::nullopt))

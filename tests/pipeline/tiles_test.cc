@@ -223,6 +223,9 @@ TEST_CASE("tiles choose the voxels that one piece chooses", "[pipeline][slow]") 
     SECTION("by the spacing of noisy points") {
         cloud = support::sample(support::sphere(1), {.points = 20000, .position_noise = 0.012});
     }
+    SECTION("as the surface bends") {
+        cloud = support::sample(support::torus(1, 0.35), {.points = 11000});
+    }
     SECTION("as asked") {
         options.voxel_size = 0.037;
     }

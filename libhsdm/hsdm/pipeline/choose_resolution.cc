@@ -19,15 +19,23 @@ int fit_voxels(double voxel_size, const PlacedPoints& points) {
 
 int depth_by_spacing(const ReconstructOptions& options, const PlacedPoints& points, Report& report) {
     const double spacing = report.input.spacing, unit = points.frame.unit();
-    const VoxelChoice choice = choose_voxel(points.octree, spacing, points.noise, unit);
+    const auto voxel_of = [&](double spacings) {
+        return choose_voxel(points.octree, spacing, points.noise, unit, spacings);
+    };
+    const VoxelChoice choice = voxel_of(spacings::spacings_per_voxel);
     report.options["resolution"] = choice.reason;
     const int depth = fit_voxels(choice.size, points);
     if (method_for(options) != Method::extended) return depth;
+    if (voxel_of(resolution::adaptive_spacings).size >= choice.size) return depth;
+    const Detail detail = points.detail(depth);
+    if (!detail.cylinders && !detail.bends) return depth;
     const VoxelChoice finer =
-        choose_voxel(points.octree, spacing, points.noise, unit, resolution::adaptive_spacings);
-    if (finer.size >= choice.size || !points.has_narrow_cylinders(depth)) return depth;
+        voxel_of(detail.cylinders ? resolution::adaptive_spacings : resolution::bent_spacings);
+    const std::string voxel = text_of(choice.size * unit);
     report.options["resolution"] =
-        finer.reason + ", as bores or rods are under two voxels of " + text_of(choice.size * unit) + " wide";
+        finer.reason
+        + (detail.cylinders ? ", as bores or rods are under two voxels of " + voxel + " wide"
+                            : ", as the surface bends within voxels of " + voxel);
     return fit_voxels(finer.size, points);
 }
 

@@ -19,6 +19,12 @@ struct VoxelCube {
 /// of `unit` of the cloud's. Throws OptionError for one that is too large or too small for that cloud.
 VoxelCube cube_of_voxels(double voxel_size, double cloud_extent, double unit);
 
+/// What asks for finer voxels than the spacing.
+struct Detail {
+    bool cylinders = false; ///< are bores or rods under two voxels wide more than a detail?
+    bool bends = false;     ///< do facets of the voxels cut off more than noise leaves?
+};
+
 /// What has the points, in memory or elsewhere.
 struct PlacedPoints {
     const Octree& octree; ///< its box and its cube as they are at the time; the points may be missing
@@ -26,8 +32,7 @@ struct PlacedPoints {
     double noise = 0; ///< standard deviation, if it is large
     /// Puts the points in a cube about their box.
     std::function<void(const VoxelCube&)> rearrange;
-    /// Are bores or rods under two voxels of this depth wide more than a detail?
-    std::function<bool(int)> has_narrow_cylinders;
+    std::function<Detail(int)> detail; ///< of the voxels of a depth
 };
 
 /// Chooses the depth, in a cube that fits; enters in the report (which has the spacing) what it was chosen

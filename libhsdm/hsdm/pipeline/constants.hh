@@ -10,6 +10,14 @@ namespace hsdm::resolution {
 /// are four points a voxel.
 HSDM_TUNED double adaptive_spacings = 2;
 
+/// voxels: root mean square of what facets of the voxels cut off, from which on these are finer.
+/// Why: what nine points leave of noise of a tenth of the spacing is as much; flatter surfaces gain nothing.
+HSDM_TUNED double widest_chord = 0.01;
+
+/// spacings: edge of the voxels then.
+/// Why: six points a voxel, twice the three that a plane has parameters; facets cut off six tenths of that.
+HSDM_TUNED double bent_spacings = 2.4;
+
 /// share: of the voxels, that bores or rods narrower than two of them pass, if voxels are as fine as that.
 /// Why: a bore ten voxels long in a part of 20,000; where there is less of it the whole part is not made
 /// finer.

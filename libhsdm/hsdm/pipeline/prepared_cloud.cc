@@ -1,15 +1,13 @@
 #include "hsdm/pipeline/prepared_cloud.hh"
 
 #include "hsdm/contour/constants.hh"
-#include "hsdm/contour/sheet_widths.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/normals/noise.hh"
 #include "hsdm/normals/normals.hh"
 #include "hsdm/normals/steady_normals.hh"
 #include "hsdm/octree/far_outliers.hh"
 #include "hsdm/octree/spacing.hh"
-#include "hsdm/pipeline/choose_resolution.hh"
-#include "hsdm/pipeline/constants.hh"
+#include "hsdm/pipeline/cloud_detail.hh"
 #include "hsdm/pipeline/method.hh"
 #include "hsdm/pipeline/options.hh"
 #include "hsdm/pipeline/warnings.hh"
@@ -125,8 +123,7 @@ int PreparedCloud::choose_resolution(const ReconstructOptions& options) {
         looked_.reset();
         rearrange(octree, std::move(octree.positions), cube.extent);
     };
-    const PlacedPoints points{octree, frame, noise_, rearrange_in,
-                              [&](int depth) { return has_narrow_cylinders(depth); }};
+    const PlacedPoints points{octree, frame, noise_, rearrange_in, [&](int depth) { return detail(depth); }};
     return hsdm::choose_resolution(options, points, report);
 }
 
@@ -141,11 +138,10 @@ void PreparedCloud::smooth_for_depth(int depth, const Phases& phases) {
     }));
 }
 
-bool PreparedCloud::has_narrow_cylinders(int depth) {
+Detail PreparedCloud::detail(int depth) {
     looked_.emplace(Looked{extract_level(octree, depth), {}});
     looked_->sets = build_normal_sets(octree, looked_->level);
-    return static_cast<double>(count_narrow_cylinders(octree, looked_->level, looked_->sets))
-           > resolution::share_of_cylinders * static_cast<double>(looked_->level.size());
+    return detail_of(octree, looked_->level, looked_->sets);
 }
 
 OctreeLevel PreparedCloud::take_level(int depth, std::optional<NormalSets>& sets) {

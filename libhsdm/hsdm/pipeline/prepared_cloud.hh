@@ -6,6 +6,7 @@
 #include "hsdm/normals/mend_normals.hh"
 #include "hsdm/normals/smooth_points.hh"
 #include "hsdm/octree/octree.hh"
+#include "hsdm/pipeline/choose_resolution.hh"
 #include "hsdm/pipeline/input_cloud.hh"
 #include "hsdm/pipeline/phases.hh"
 
@@ -54,8 +55,8 @@ public:
     Report report; // lengths and box in the octree's units until the end
 
 private:
-    /// Are bores or rods under two voxels wide more than a detail?
-    bool has_narrow_cylinders(int depth);
+    /// What asks for finer voxels than those of this depth.
+    Detail detail(int depth);
 
     /// Enters outliers in the report, and measures spacing and size again, because outliers make a cloud look
     /// sparser and larger.
@@ -75,7 +76,7 @@ private:
 
     void note_smoothing(const SmoothReport& smoothed);
 
-    /// What has_narrow_cylinders() made, as long as it holds.
+    /// What detail() made, as long as it holds.
     struct Looked {
         OctreeLevel level;
         NormalSets sets;

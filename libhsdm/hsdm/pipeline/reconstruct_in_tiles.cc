@@ -5,6 +5,7 @@
 #include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/pipeline/choose_resolution.hh"
+#include "hsdm/pipeline/cloud_detail.hh"
 #include "hsdm/pipeline/cloud_distance.hh"
 #include "hsdm/pipeline/cloud_noise.hh"
 #include "hsdm/pipeline/cloud_normals.hh"
@@ -12,7 +13,6 @@
 #include "hsdm/pipeline/gather_pieces.hh"
 #include "hsdm/pipeline/kept_passes.hh"
 #include "hsdm/pipeline/make_tiles.hh"
-#include "hsdm/pipeline/narrow_cylinders.hh"
 #include "hsdm/pipeline/options.hh"
 #include "hsdm/pipeline/stray_search.hh"
 #include "hsdm/pipeline/tile_plan.hh"
@@ -279,8 +279,8 @@ private:
         const auto rearrange = [&](const VoxelCube& cube) {
             cloud_->rearrange(cloud_->bounds(), cube.extent, cube.depth, group);
         };
-        const auto is_narrow = [&](int) { return has_narrow_cylinders(*cloud_, plan(group), ghost); };
-        hsdm::choose_resolution(options_, {cloud_->no_points(), cloud_->frame(), noise, rearrange, is_narrow},
+        const auto detail = [&](int) { return detail_of(*cloud_, plan(group), ghost); };
+        hsdm::choose_resolution(options_, {cloud_->no_points(), cloud_->frame(), noise, rearrange, detail},
                                 report_);
         if (noise > relations::smooth_gap * cloud_->voxel_size())
             refuse_in_tiles("points are noisy, and would be moved onto their surface");
