@@ -1,6 +1,9 @@
 #include "hsdm/io/scratch_points.hh"
 
 #include "hsdm/core/interruption.hh"
+#include "hsdm/core/large_vector.hh"
+
+#include <algorithm>
 
 namespace hsdm {
 namespace {
@@ -62,9 +65,11 @@ std::vector<ScratchPoints::Cell> ScratchPoints::cells() const {
 void ScratchPoints::read(MortonCode cell, std::vector<PointRow>& points) const {
     const auto found = buckets_.find(cell);
     if (found == buckets_.end()) return;
+    const std::size_t needed = points.size() + found->second.points;
+    if (needed > points.capacity()) points.reserve(std::max(needed, 2 * points.size()));
     for (const Block& block : found->second.blocks) {
         const std::size_t at = points.size();
-        points.resize(at + block.points);
+        resize_unwritten(points, at + block.points);
         file_.read(block.offset, points.data() + at, block.points * sizeof(PointRow));
     }
 }

@@ -16,7 +16,7 @@ namespace hsdm {
 /// A point and its normal, as they came.
 using PointRow = std::array<double, 6>;
 
-/// Points by the cell that each lies in, in a file as ScratchBytes. Not for several threads.
+/// Points by the cell that each lies in, in a file as ScratchBytes. Only read() is for several threads.
 class ScratchPoints {
 public:
     /// `expected`: so many points are to come. `buffered`: bytes of memory that may be used, at least one

@@ -327,7 +327,7 @@ private:
         Octree octree = part.octree();
         octree.normals = std::move(estimate.normals);
         for (std::size_t i = part.begin(); i < part.end(); ++i) {
-            next_.add_with_normal(octree, i);
+            next_.add(octree, i);
             missing += octree.normals[i].sqrnorm() == 0;
         }
         bent += static_cast<std::size_t>(std::ranges::lower_bound(estimate.bent, part.end())
@@ -417,13 +417,12 @@ NormalsReport make_cloud_normals(ScratchCloud& cloud, CloudSurvey& survey,
         begun.report.orientation = begun.signs.report;
         keep(true);
     }
-    ScratchCloud next = cloud.without_points();
+    ScratchCloud next = cloud.without_normals_yet();
     SidedPass pass(begun.how, begun.signs, store, next);
     for_parts(cloud, survey.sums, ranges, [&](const CloudPart& part) { return pass.add(part); });
     NormalsReport report = begun.report;
     report.bent = cloud.ranks().sum(pass.bent), report.missing = cloud.ranks().sum(pass.missing);
-    cloud.take_with_normals(std::move(next));
-    survey = survey_cloud(cloud, survey.sums.points(), options.most_points);
+    cloud.take_sorted(std::move(next));
     return report;
 }
 

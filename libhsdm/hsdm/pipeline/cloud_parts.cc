@@ -5,10 +5,9 @@
 namespace hsdm {
 
 CloudPart::CloudPart(const ScratchCloud& cloud, std::span<const Survey::FirstPoint> first,
-                     const ScratchCloud::Surroundings& around, const std::vector<PointRow>& rows,
-                     std::vector<MortonCode> missing)
+                     const ScratchCloud::Surroundings& around, Octree octree, std::vector<MortonCode> missing)
     : around_(around),
-      octree_(cloud.octree_of(rows)),
+      octree_(std::move(octree)),
       cell_depth_(cloud.cell_depth()),
       missing_(std::move(missing)) {
     const int shift = 3 * (morton_levels - cloud.depth());
@@ -76,9 +75,8 @@ void for_parts(ScratchCloud& cloud, const Survey& sums, std::span<const VoxelRan
         std::vector<ScratchCloud::Surroundings> again;
         for (const auto& [range, ghost] : due) {
             std::vector<MortonCode> missing;
-            const std::vector<PointRow> rows = cloud.rows_of_cells(range, ghost, missing);
-            if (rows.empty()) continue;
-            const CloudPart part(cloud, first, {range, ghost}, rows, std::move(missing));
+            Octree octree = cloud.octree_of_cells(range, ghost, missing);
+            const CloudPart part(cloud, first, {range, ghost}, std::move(octree), std::move(missing));
             if (part.begin() == part.end() || work(part)) continue;
             if (2 * ghost > most_cells * cloud.cell_side())
                 refuse_in_tiles("what some points depend on is farther off than tiles see");

@@ -11,8 +11,7 @@ class CloudPart {
 public:
     /// `first`: of the whole. `missing`: cells with points that it has not, ascending.
     CloudPart(const ScratchCloud& cloud, std::span<const Survey::FirstPoint> first,
-              const ScratchCloud::Surroundings& around, const std::vector<PointRow>& rows,
-              std::vector<MortonCode> missing);
+              const ScratchCloud::Surroundings& around, Octree octree, std::vector<MortonCode> missing);
 
     const VoxelRange& range() const { return around_.range; }
     int ghost() const { return around_.ghost; } ///< voxels around it, or more
