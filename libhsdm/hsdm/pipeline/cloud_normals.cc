@@ -362,7 +362,8 @@ SignsOfAll find_signs(ScratchCloud& cloud, const CloudSurvey& survey, std::span<
     const EmptySpace space = space_of(cloud, survey.spacing, options.most_points);
     for (bool may_be_layers = false;; may_be_layers = true) {
         EvidencePass pass(how, space, survey.spacing, may_be_layers, options.memory, store);
-        for_parts(cloud, survey.sums, ranges, [&](const CloudPart& part) { return pass.add(part); });
+        for_parts(cloud, survey.sums, ranges, store.widths,
+                  [&](const CloudPart& part) { return pass.add(part); });
         if (auto signs =
                 signs_of_all(std::move(pass.evidence), space, may_be_layers, cloud.ranks(), options.memory))
             return std::move(*signs);
@@ -404,7 +405,7 @@ NormalsReport make_cloud_normals(ScratchCloud& cloud, CloudSurvey& survey,
         begun.is_sided = sided;
         if (options.keep) options.keep(sided, bytes_of_begun(begun));
     };
-    PartStore store(cloud);
+    PartStore store(cloud, options.ghost_voxels);
     if (options.begun.empty()) {
         begun.report.outliers = leave_outliers_out(cloud, survey, options.plan, options.most_points, store);
         begun.how = estimating(cloud, survey, options);
@@ -419,7 +420,8 @@ NormalsReport make_cloud_normals(ScratchCloud& cloud, CloudSurvey& survey,
     }
     ScratchCloud next = cloud.without_normals_yet();
     SidedPass pass(begun.how, begun.signs, store, next);
-    for_parts(cloud, survey.sums, ranges, [&](const CloudPart& part) { return pass.add(part); });
+    for_parts(cloud, survey.sums, ranges, store.widths,
+              [&](const CloudPart& part) { return pass.add(part); });
     NormalsReport report = begun.report;
     report.bent = cloud.ranks().sum(pass.bent), report.missing = cloud.ranks().sum(pass.missing);
     cloud.take_sorted(std::move(next));

@@ -1,6 +1,7 @@
 #include "hsdm/pipeline/cloud_parts.hh"
 
 #include <algorithm>
+#include <utility>
 
 namespace hsdm {
 
@@ -63,13 +64,20 @@ Index CloudPart::number(std::size_t point) const {
     return static_cast<Index>(cell.number + (point - cell.first));
 }
 
+int PartWidths::ghost_of(const VoxelRange& range, const ScratchCloud& cloud) {
+    if (std::exchange(version_, cloud.version()) != cloud.version()) ghost_.clear();
+    const auto found = ghost_.find({range.begin, range.end});
+    return found != ghost_.end() ? found->second : std::max(first_, cloud.cell_side());
+}
+
 void for_parts(ScratchCloud& cloud, const Survey& sums, std::span<const VoxelRange> ranges,
-               const std::function<bool(const CloudPart&)>& work) {
+               PartWidths& widths, const std::function<bool(const CloudPart&)>& work) {
     constexpr int most_cells = 32; // round a part, at any depth; up to 64 lie along the cube
     const std::vector<Survey::FirstPoint> first = sums.first_points();
     std::vector<ScratchCloud::Surroundings> due;
     for (const VoxelRange& range : ranges)
-        if (cloud.owner_of(range) == cloud.ranks().rank()) due.push_back({range, cloud.cell_side()});
+        if (cloud.owner_of(range) == cloud.ranks().rank())
+            due.push_back({range, widths.ghost_of(range, cloud)});
     while (cloud.ranks().any(!due.empty())) {
         cloud.fetch(due);
         std::vector<ScratchCloud::Surroundings> again;
@@ -77,7 +85,9 @@ void for_parts(ScratchCloud& cloud, const Survey& sums, std::span<const VoxelRan
             std::vector<MortonCode> missing;
             Octree octree = cloud.octree_of_cells(range, ghost, missing);
             const CloudPart part(cloud, first, {range, ghost}, std::move(octree), std::move(missing));
-            if (part.begin() == part.end() || work(part)) continue;
+            if (part.begin() == part.end()) continue;
+            widths.note(range, ghost);
+            if (work(part)) continue;
             if (2 * ghost > most_cells * cloud.cell_side())
                 refuse_in_tiles("what some points depend on is farther off than tiles see");
             again.push_back({range, 2 * ghost});
