@@ -201,6 +201,14 @@ MortonCode ScratchCloud::cell_of(const Vec3& relative) const {
     return code_at(relative, cube_extent()) >> 3 * (morton_levels - cell_depth_);
 }
 
+/// The cells of so many positions.
+template <class Place>
+std::vector<Index> ScratchCloud::cells_of(std::size_t count, const Place& place) const {
+    std::vector<Index> cells = unwritten_vector<Index>(count);
+    for_each_index(count, chunks::light, [&](Index i) { cells[i] = static_cast<Index>(cell_of(place(i))); });
+    return cells;
+}
+
 Vec3 ScratchCloud::relative_place(const PointRow& row) const {
     const Vec3 place(row[0], row[1], row[2]);
     return arranged_ ? place : place - origin();
@@ -260,11 +268,13 @@ void ScratchCloud::sort_points(const PointParts& parts) {
     PointExchange exchange(ranks_, most_waiting_, keep);
     std::size_t added = 0;
     parts([&](const PointView& part) {
+        const std::vector<Index> cells =
+            cells_of(part.size(), [&](Index i) { return vec3_at(part.positions, i) - origin(); });
         for_each_in_order(part.size(), [&](std::size_t i) {
             const Vec3 p = vec3_at(part.positions, i);
             const Vec3 n = has_normals_ ? vec3_at(part.normals, i) : Vec3(0, 0, 0);
             if (!is_finite(p)) return;
-            put_row({p[0], p[1], p[2], n[0], n[1], n[2]}, cell_of(p - origin()), exchange);
+            put_row({p[0], p[1], p[2], n[0], n[1], n[2]}, cells[i], exchange);
             ++added;
         });
     });
@@ -532,11 +542,12 @@ void ScratchCloud::rearrange(const Box& bounds, double extent, int depth, std::s
         next.scratch_->add(next.cell_of(next.relative_place(row)), row);
     });
     for_groups(most, [&](const Octree& part) {
+        const auto place = [&](std::size_t i) { return part.positions[i] + shift; };
+        const std::vector<Index> cells = next.cells_of(part.size(), place);
         for_each_in_order(part.size(), [&](std::size_t i) {
             PointRow row = row_at(part, i);
-            const Vec3 p = part.positions[i] + shift;
-            std::copy_n(p.data(), 3, row.begin());
-            next.put_row(row, next.cell_of(p), exchange);
+            std::copy_n(place(i).data(), 3, row.begin());
+            next.put_row(row, cells[i], exchange);
         });
     });
     exchange.finish();

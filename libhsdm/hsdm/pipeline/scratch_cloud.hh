@@ -125,6 +125,8 @@ private:
     void take(ScratchCloud&& next);
     /// The cell of a position relative to the cube.
     MortonCode cell_of(const Vec3& relative) const;
+    template <class Place>
+    std::vector<Index> cells_of(std::size_t count, const Place& place) const;
     Vec3 relative_place(const PointRow& row) const;
     /// What an octree is to have of a cell: all of its points, or these.
     struct CellRows {

@@ -25,32 +25,38 @@ public:
 
     void begin_range() { ++range_, sum_ = 0; }
 
-    double with(std::size_t cell) const {
-        double sum = sum_;
-        for_new(cell, [&](std::size_t around) { sum += share_ * points(around); });
-        return sum + (is_counted(cell) ? 1 - share_ : 1) * points(cell);
+    /// The sum with this cell, which add() adds.
+    double with(std::size_t cell) {
+        cell_ = cell;
+        new_.clear();
+        with_ = sum_ + (is_counted(cell) ? 1 - share_ : 1) * points(cell);
+        for_new([&](Index around) {
+            with_ += share_ * points(around);
+            new_.push_back(around);
+        });
+        return with_;
     }
 
-    void add(std::size_t cell) {
-        sum_ = with(cell);
-        for_new(cell, [&](std::size_t around) { counted_[around] = range_; });
-        counted_[cell] = range_;
+    void add() {
+        sum_ = with_;
+        for (const Index around : new_) counted_[around] = range_;
+        counted_[cell_] = range_;
     }
 
 private:
     double points(std::size_t cell) const { return static_cast<double>(cells_[cell].points); }
     bool is_counted(std::size_t cell) const { return counted_[cell] == range_; }
 
-    /// act(around) for the cells around one, as far as they are not counted yet.
+    /// act(around) for the cells around it, as far as they are not counted yet.
     template <class Act>
-    void for_new(std::size_t cell, const Act& act) const {
-        const VoxelCoord at = morton_decode(cells_[cell].code);
+    void for_new(const Act& act) const {
+        const VoxelCoord at = morton_decode(cells_[cell_].code);
         VoxelCoord c;
         for (c[2] = std::max(0, at[2] - reach_); c[2] <= std::min(last_, at[2] + reach_); ++c[2])
             for (c[1] = std::max(0, at[1] - reach_); c[1] <= std::min(last_, at[1] + reach_); ++c[1])
                 for (c[0] = std::max(0, at[0] - reach_); c[0] <= std::min(last_, at[0] + reach_); ++c[0])
                     if (const Index around = place_.find(morton_encode(c));
-                        around != no_index && around != cell && !is_counted(around))
+                        around != no_index && around != cell_ && !is_counted(around))
                         act(around);
     }
 
@@ -61,6 +67,9 @@ private:
     std::int32_t last_;
     int reach_;
     double share_, sum_ = 0; // of a cell's points, where it is around
+    std::size_t cell_ = 0;
+    double with_ = 0;
+    std::vector<Index> new_;
 };
 
 } // namespace
@@ -78,11 +87,13 @@ std::vector<VoxelRange> plan_tiles(std::span<const ScratchPoints::Cell> cells,
     for (std::size_t cell = 0; cell < cells.size(); ++cell) {
         Interruption::poll();
         const bool is_border = std::ranges::binary_search(options.borders, cells[cell].code);
-        if (cell > 0 && (is_border || size.with(cell) > static_cast<double>(options.most_points))) {
+        const bool is_large = size.with(cell) > static_cast<double>(options.most_points);
+        if (cell > 0 && (is_border || is_large)) {
             begins.push_back(cells[cell].code << 3 * shift);
             size.begin_range();
+            size.with(cell);
         }
-        size.add(cell);
+        size.add();
     }
     begins.push_back(MortonCode{1} << 3 * options.depth);
     std::vector<VoxelRange> ranges;
