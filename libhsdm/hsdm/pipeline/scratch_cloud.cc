@@ -445,6 +445,7 @@ Octree ScratchCloud::octree_of_cells(const VoxelRange& range, int ghost,
     for (const ScratchPoints::Cell& cell : cells_)
         if (!std::ranges::binary_search(near, cell.code)) missing.push_back(cell.code);
     std::vector<CellRows> parts;
+    parts.reserve(near.size());
     for (const MortonCode cell : near) parts.push_back({cell, true});
     return octree_of(std::move(parts));
 }
