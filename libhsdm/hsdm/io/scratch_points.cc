@@ -1,6 +1,11 @@
 #include "hsdm/io/scratch_points.hh"
 
+#include "hsdm/core/chunks.hh"
 #include "hsdm/core/interruption.hh"
+#include "hsdm/core/large_vector.hh"
+
+#include <algorithm>
+#include <utility>
 
 namespace hsdm {
 namespace {
@@ -12,12 +17,14 @@ constexpr const char* the_points = "the points";
 ScratchPoints::ScratchPoints(const ScratchPlace& place, std::size_t expected, std::size_t buffered)
     : file_(place), most_waiting_(buffered / sizeof(PointRow)) {
     file_.check_room(the_points, expected * sizeof(PointRow));
+    waiting_.reserve(std::min(expected, most_waiting_));
+    waiting_in_.reserve(std::min(expected, most_waiting_));
 }
 
 ScratchPoints::ScratchPoints(const ScratchPlace& place, ByteReader& index, std::size_t buffered)
     : file_(place), most_waiting_(buffered / sizeof(PointRow)) {
     for (auto cells = index.take<std::uint64_t>(); cells > 0; --cells) {
-        Bucket& bucket = buckets_[index.take<MortonCode>()];
+        Bucket& bucket = buckets_[bucket_of(index.take<MortonCode>())];
         bucket.points = index.take<std::size_t>();
         bucket.blocks = index.take_vector<Block>();
     }
@@ -25,46 +32,82 @@ ScratchPoints::ScratchPoints(const ScratchPlace& place, ByteReader& index, std::
 
 void ScratchPoints::put_index(std::vector<char>& bytes) const {
     put(std::uint64_t{buckets_.size()}, bytes);
-    for (const auto& [cell, bucket] : buckets_) {
-        put(cell, bytes), put(bucket.points, bytes);
-        put_vector(bucket.blocks, bytes);
+    for (const Cell& cell : cells()) {
+        put(cell.code, bytes), put(cell.points, bytes);
+        put_vector(find(cell.code)->blocks, bytes);
     }
 }
 
+Index ScratchPoints::bucket_of(MortonCode cell) {
+    if (cell >= bucket_of_.size()) bucket_of_.resize(cell + 1, no_index);
+    Index& bucket = bucket_of_[cell];
+    if (bucket == no_index) bucket = static_cast<Index>(buckets_.size()), buckets_.emplace_back();
+    return bucket;
+}
+
+const ScratchPoints::Bucket* ScratchPoints::find(MortonCode cell) const {
+    const Index bucket = cell < bucket_of_.size() ? bucket_of_[cell] : no_index;
+    return bucket == no_index ? nullptr : &buckets_[bucket];
+}
+
 void ScratchPoints::add(MortonCode cell, const PointRow& point) {
-    if (!last_ || cell != last_cell_) last_ = &buckets_[cell], last_cell_ = cell;
-    last_->waiting.push_back(point);
-    ++last_->points;
-    if (++waiting_ >= most_waiting_) flush();
+    const Index bucket = bucket_of(cell);
+    waiting_.push_back(point);
+    waiting_in_.push_back(bucket);
+    ++buckets_[bucket].points;
+    if (waiting_.size() >= most_waiting_) flush();
 }
 
 void ScratchPoints::finish() {
     flush();
+    waiting_ = {}, waiting_in_ = {};
+}
+
+/// A block for what waits of each cell, in the order of cells; returns their first places, per bucket.
+std::vector<Index> ScratchPoints::places_of_blocks() {
+    std::vector<Index> place(buckets_.size(), 0);
+    for (const Index bucket : waiting_in_) ++place[bucket];
+    Index next = 0;
+    for (const Index bucket : bucket_of_) {
+        if (bucket == no_index || place[bucket] == 0) continue;
+        const Index count = std::exchange(place[bucket], next);
+        buckets_[bucket].blocks.push_back({file_.size() + next * sizeof(PointRow), count});
+        next += count;
+    }
+    return place;
 }
 
 void ScratchPoints::flush() {
-    for (auto& [cell, bucket] : buckets_) {
+    constexpr std::size_t at_once = std::size_t{1}
+                                    << 15; // rows, that are put in order beside those that wait
+    std::vector<Index> place = places_of_blocks(), order = unwritten_vector<Index>(waiting_.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[place[waiting_in_[i]]++] = static_cast<Index>(i);
+    std::vector<PointRow> rows;
+    for (std::size_t begin = 0; begin < order.size(); begin += at_once) {
         Interruption::poll();
-        if (bucket.waiting.empty()) continue;
-        bucket.blocks.push_back({file_.append(the_points, bucket.waiting), bucket.waiting.size()});
-        bucket.waiting = std::vector<PointRow>();
+        rows.resize(std::min(at_once, order.size() - begin));
+        for_each_index(rows.size(), chunks::quick, [&](Index i) { rows[i] = waiting_[order[begin + i]]; });
+        file_.append(the_points, rows);
     }
-    waiting_ = 0;
+    waiting_.clear(), waiting_in_.clear();
 }
 
 std::vector<ScratchPoints::Cell> ScratchPoints::cells() const {
     std::vector<Cell> cells;
     cells.reserve(buckets_.size());
-    for (const auto& [code, bucket] : buckets_) cells.push_back({code, bucket.points});
+    for (MortonCode code = 0; code < bucket_of_.size(); ++code)
+        if (const Bucket* bucket = find(code)) cells.push_back({code, bucket->points});
     return cells;
 }
 
 void ScratchPoints::read(MortonCode cell, std::vector<PointRow>& points) const {
-    const auto found = buckets_.find(cell);
-    if (found == buckets_.end()) return;
-    for (const Block& block : found->second.blocks) {
+    const Bucket* const found = find(cell);
+    if (!found) return;
+    const std::size_t needed = points.size() + found->points;
+    if (needed > points.capacity()) points.reserve(std::max(needed, 2 * points.size()));
+    for (const Block& block : found->blocks) {
         const std::size_t at = points.size();
-        points.resize(at + block.points);
+        resize_unwritten(points, at + block.points);
         file_.read(block.offset, points.data() + at, block.points * sizeof(PointRow));
     }
 }

@@ -7,7 +7,6 @@
 #include "hsdm/types.hh"
 
 #include <array>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -16,7 +15,8 @@ namespace hsdm {
 /// A point and its normal, as they came.
 using PointRow = std::array<double, 6>;
 
-/// Points by the cell that each lies in, in a file as ScratchBytes. Not for several threads.
+/// Points by the cell that each lies in, in a file as ScratchBytes. The least memory is as large as the
+/// largest code of a cell. Only read() is for several threads.
 class ScratchPoints {
 public:
     /// `expected`: so many points are to come. `buffered`: bytes of memory that may be used, at least one
@@ -50,17 +50,20 @@ private:
         std::size_t offset, points;
     };
     struct Bucket {
-        std::vector<PointRow> waiting;
         std::vector<Block> blocks;
         std::size_t points = 0;
     };
+    Index bucket_of(MortonCode cell);
+    const Bucket* find(MortonCode cell) const;
+    std::vector<Index> places_of_blocks();
     void flush();
 
     ScratchBytes file_;
-    std::map<MortonCode, Bucket> buckets_;
-    std::size_t waiting_ = 0, most_waiting_;
-    Bucket* last_ = nullptr; // of the point before: the next one is often in the same
-    MortonCode last_cell_ = 0;
+    std::vector<Index> bucket_of_; // per cell, or no_index
+    std::vector<Bucket> buckets_;  // as they came
+    std::size_t most_waiting_;
+    std::vector<PointRow> waiting_;
+    std::vector<Index> waiting_in_; // buckets
 };
 
 } // namespace hsdm

@@ -162,15 +162,27 @@ std::size_t NormalSample::stride(std::size_t size) {
     return size / samples + 1;
 }
 
-bool NormalSample::holds(std::size_t i, std::size_t size) {
-    const std::size_t in_chunk = i % chunks::light, step = stride(size); // a chunk's first points may follow
-    if (in_chunk % step < 3) return true;                                // one of the chunk before
-    return in_chunk < 2;
+namespace {
+
+/// In a chunk the first of each stride is looked at, with its two successors; so the next chunk's first two
+/// are, too.
+constexpr std::size_t of_stride = 3;
+
+/// So many of a chunk's first points are in a sample of this stride.
+std::size_t held_of_first(std::size_t points, std::size_t stride) {
+    return points / stride * std::min(stride, of_stride) + std::min(points % stride, of_stride);
 }
 
-const NormalSample::Point& NormalSample::at(std::size_t i) const {
-    const auto found = std::lower_bound(number.begin(), number.end(), i);
-    return points[static_cast<std::size_t>(found - number.begin())];
+} // namespace
+
+bool NormalSample::holds(std::size_t i, std::size_t size) {
+    return i % chunks::light % stride(size) < of_stride;
+}
+
+const NormalSample::Point& NormalSample::at(std::size_t i, std::size_t size) const {
+    const std::size_t step = stride(size);
+    return points[i / chunks::light * held_of_first(chunks::light, step)
+                  + held_of_first(i % chunks::light, step)];
 }
 
 NormalConsistency check_normals(const Octree& octree) {
@@ -187,7 +199,7 @@ NormalConsistency check_normals(const Octree& octree, double spacing) {
 
 NormalConsistency check_normals(const NormalSample& sample, std::size_t size, double spacing) {
     return check_pairs(
-        size, [&](std::size_t i) -> const NormalSample::Point& { return sample.at(i); }, spacing);
+        size, [&](std::size_t i) -> const NormalSample::Point& { return sample.at(i, size); }, spacing);
 }
 
 std::size_t mend_normals(Octree& octree, OrientOptions options) {

@@ -44,13 +44,13 @@ struct NormalSample {
     struct Point {
         Vec3 position, normal; ///< as the octree has them
     };
-    std::vector<std::size_t> number; ///< in octree order, ascending
-    std::vector<Point> points;
+    std::vector<Point> points; ///< in octree order
 
     /// Is point `i` of a cloud of so many looked at?
     static bool holds(std::size_t i, std::size_t size);
     static std::size_t stride(std::size_t size); ///< from one to the next
-    const Point& at(std::size_t i) const;        ///< of the cloud, one that is looked at
+    /// Of a cloud of `size`, one that is looked at; the sample has all of them.
+    const Point& at(std::size_t i, std::size_t size) const;
 };
 /// The same of a sample of a cloud of `size` points of this spacing.
 NormalConsistency check_normals(const NormalSample& sample, std::size_t size, double spacing);

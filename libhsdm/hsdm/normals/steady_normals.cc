@@ -40,7 +40,7 @@ bool are_scattered(const Octree& octree) {
 }
 
 bool are_scattered(const NormalSample& sample, std::size_t size) {
-    const auto normal = [&](std::size_t i) -> const Vec3& { return sample.at(i).normal; };
+    const auto normal = [&](std::size_t i) -> const Vec3& { return sample.at(i, size).normal; };
     return median_angle(size, normal) > scattered_normals::least;
 }
 

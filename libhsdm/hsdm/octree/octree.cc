@@ -10,6 +10,7 @@
 
 #include <tbb/parallel_invoke.h>
 
+#include <atomic>
 #include <cmath>
 #include <span>
 #include <tuple>
@@ -128,15 +129,33 @@ int sort_by_cells(std::vector<MortonCode> codes, std::vector<std::uint64_t> keys
     return in_cell;
 }
 
+/// What orders points of one code.
+auto tie_of(const StridedSpan& positions, const StridedSpan& normals, Index i) {
+    const Vec3 p = vec3_at(positions, i);
+    const Vec3 n = normals.count == 0 ? zero : directed_or_zero(vec3_at(normals, i)); // NaN has no order
+    return std::tuple(p[0], p[1], p[2], n[0], n[1], n[2], i);
+}
+
+/// Do points come as order_points() would put them?
+bool are_in_order(const StridedSpan& positions, const StridedSpan& normals,
+                  const std::vector<MortonCode>& codes) {
+    std::atomic<bool> are = true;
+    for_chunks(codes.size(), chunks::light, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = std::max<std::size_t>(begin, 1); i < end && are; ++i)
+            if (codes[i - 1] > codes[i]
+                || (codes[i - 1] == codes[i]
+                    && tie_of(positions, normals, static_cast<Index>(i - 1))
+                           > tie_of(positions, normals, static_cast<Index>(i))))
+                are = false;
+    });
+    return are;
+}
+
 /// Orders the points of one cell by code, then position, then normal if there are some. `points`: space to
 /// work in.
 void order_cell(const StridedSpan& positions, const StridedSpan& normals, std::size_t begin, std::size_t end,
                 Order& order, std::vector<CodeIndex>& points) {
-    const auto key = [&](Index i) {
-        const Vec3 p = vec3_at(positions, i);
-        const Vec3 n = normals.count == 0 ? zero : directed_or_zero(vec3_at(normals, i)); // NaN has no order
-        return std::tuple(p[0], p[1], p[2], n[0], n[1], n[2], i);
-    };
+    const auto key = [&](Index i) { return tie_of(positions, normals, i); };
     points.clear();
     for (std::size_t i = begin; i < end; ++i) points.push_back({order.codes[i], order.source[i]});
     std::sort(points.begin(), points.end(), [&](const CodeIndex& a, const CodeIndex& b) {
@@ -301,12 +320,17 @@ void rearrange(Octree& octree, std::vector<Vec3> positions, double extent) {
     const double scale = cells / extent;
     std::vector<MortonCode> codes = std::move(octree.codes);
     resize_unwritten(codes, positions.size());
-    std::vector<std::uint64_t> keys = unwritten_vector<std::uint64_t>(positions.size());
-    for_each_index(keys.size(), chunks::light, [&](Index i) {
+    for_each_index(codes.size(), chunks::light, [&](Index i) {
         positions[i] += shift;
         codes[i] = code_of(positions[i], scale);
-        keys[i] = key_of(codes[i], i);
     });
+    if (are_in_order(rows_of(positions), rows_of(octree.normals), codes)) {
+        octree.codes = std::move(codes);
+        octree.positions = std::move(positions);
+        return;
+    }
+    std::vector<std::uint64_t> keys = unwritten_vector<std::uint64_t>(positions.size());
+    for_each_index(keys.size(), chunks::light, [&](Index i) { keys[i] = key_of(codes[i], i); });
     Order order =
         order_points(rows_of(positions), rows_of(octree.normals), std::move(codes), std::move(keys));
     octree.codes = std::move(order.codes);

@@ -327,7 +327,7 @@ private:
         Octree octree = part.octree();
         octree.normals = std::move(estimate.normals);
         for (std::size_t i = part.begin(); i < part.end(); ++i) {
-            next_.add_with_normal(octree, i);
+            next_.add(octree, i);
             missing += octree.normals[i].sqrnorm() == 0;
         }
         bent += static_cast<std::size_t>(std::ranges::lower_bound(estimate.bent, part.end())
@@ -362,7 +362,8 @@ SignsOfAll find_signs(ScratchCloud& cloud, const CloudSurvey& survey, std::span<
     const EmptySpace space = space_of(cloud, survey.spacing, options.most_points);
     for (bool may_be_layers = false;; may_be_layers = true) {
         EvidencePass pass(how, space, survey.spacing, may_be_layers, options.memory, store);
-        for_parts(cloud, survey.sums, ranges, [&](const CloudPart& part) { return pass.add(part); });
+        for_parts(cloud, survey.sums, ranges, store.widths,
+                  [&](const CloudPart& part) { return pass.add(part); });
         if (auto signs =
                 signs_of_all(std::move(pass.evidence), space, may_be_layers, cloud.ranks(), options.memory))
             return std::move(*signs);
@@ -404,7 +405,7 @@ NormalsReport make_cloud_normals(ScratchCloud& cloud, CloudSurvey& survey,
         begun.is_sided = sided;
         if (options.keep) options.keep(sided, bytes_of_begun(begun));
     };
-    PartStore store(cloud);
+    PartStore store(cloud, options.ghost_voxels);
     if (options.begun.empty()) {
         begun.report.outliers = leave_outliers_out(cloud, survey, options.plan, options.most_points, store);
         begun.how = estimating(cloud, survey, options);
@@ -417,13 +418,13 @@ NormalsReport make_cloud_normals(ScratchCloud& cloud, CloudSurvey& survey,
         begun.report.orientation = begun.signs.report;
         keep(true);
     }
-    ScratchCloud next = cloud.without_points();
+    ScratchCloud next = cloud.without_normals_yet();
     SidedPass pass(begun.how, begun.signs, store, next);
-    for_parts(cloud, survey.sums, ranges, [&](const CloudPart& part) { return pass.add(part); });
+    for_parts(cloud, survey.sums, ranges, store.widths,
+              [&](const CloudPart& part) { return pass.add(part); });
     NormalsReport report = begun.report;
     report.bent = cloud.ranks().sum(pass.bent), report.missing = cloud.ranks().sum(pass.missing);
-    cloud.take_with_normals(std::move(next));
-    survey = survey_cloud(cloud, survey.sums.points(), options.most_points);
+    cloud.take_sorted(std::move(next));
     return report;
 }
 

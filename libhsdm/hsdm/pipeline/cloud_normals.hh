@@ -20,9 +20,9 @@ struct CloudNormalsOptions {
 /// Leaves outliers out, fits the cube to what is left and gives all points normals: the same bits as in one
 /// piece. Each part is looked at with as much around it as its results depend on, which is followed up step
 /// by step (KnownPoints). Signs are of the whole: the first rank holds all patches, some 60 bytes a point,
-/// and the pairs of them, while it finds them. The survey becomes that of what is left, with normals. For all
-/// ranks at the same time. Throws Error where the points are to be moved because of noise or have neighbours
-/// farther off than tiles see, or where the patches do not fit the memory.
+/// and the pairs of them, while it finds them. The survey becomes that of what is left, as yet without
+/// normals. For all ranks at the same time. Throws Error where the points are to be moved because of noise or
+/// have neighbours farther off than tiles see, or where the patches do not fit the memory.
 NormalsReport make_cloud_normals(ScratchCloud& cloud, CloudSurvey& survey,
                                  const CloudNormalsOptions& options);
 

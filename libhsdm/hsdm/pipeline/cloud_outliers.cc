@@ -58,7 +58,7 @@ ReachOfAll reach_of_all(ScratchCloud& cloud, const Survey& sums, std::span<const
     std::size_t volumes = 0, looked_at = 0;
     const std::size_t step = volume_stride(sums.points());
     const int finest = sums.finest_leaves();
-    for_parts(cloud, sums, ranges, [&](const CloudPart& part) {
+    for_parts(cloud, sums, ranges, store.widths, [&](const CloudPart& part) {
         if (part.lacks_neighbors(NeighborOptions().count)) return false;
         const auto [neighbors, known] = PartNeighbors(part, finest, store);
         if (!known.all(part.begin(), part.end())) return false;
@@ -80,7 +80,7 @@ std::vector<PointRow> find_outliers(ScratchCloud& cloud, const Survey& sums,
     const ReachOfAll all = reach_of_all(cloud, sums, ranges, store);
     const int finest = sums.finest_leaves();
     std::vector<PointRow> rows;
-    for_parts(cloud, sums, ranges, [&](const CloudPart& part) {
+    for_parts(cloud, sums, ranges, store.widths, [&](const CloudPart& part) {
         if (part.lacks_neighbors(NeighborOptions().count)) return false;
         auto [neighbors, known] = PartNeighbors(part, finest, store);
         if (!known.all(part.begin(), part.end()) || !known.all_around(part.begin(), part.end())) return false;

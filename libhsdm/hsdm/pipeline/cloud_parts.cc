@@ -1,14 +1,14 @@
 #include "hsdm/pipeline/cloud_parts.hh"
 
 #include <algorithm>
+#include <utility>
 
 namespace hsdm {
 
 CloudPart::CloudPart(const ScratchCloud& cloud, std::span<const Survey::FirstPoint> first,
-                     const ScratchCloud::Surroundings& around, const std::vector<PointRow>& rows,
-                     std::vector<MortonCode> missing)
+                     const ScratchCloud::Surroundings& around, Octree octree, std::vector<MortonCode> missing)
     : around_(around),
-      octree_(cloud.octree_of(rows)),
+      octree_(std::move(octree)),
       cell_depth_(cloud.cell_depth()),
       missing_(std::move(missing)) {
     const int shift = 3 * (morton_levels - cloud.depth());
@@ -64,22 +64,30 @@ Index CloudPart::number(std::size_t point) const {
     return static_cast<Index>(cell.number + (point - cell.first));
 }
 
+int PartWidths::ghost_of(const VoxelRange& range, const ScratchCloud& cloud) {
+    if (std::exchange(version_, cloud.version()) != cloud.version()) ghost_.clear();
+    const auto found = ghost_.find({range.begin, range.end});
+    return found != ghost_.end() ? found->second : std::max(first_, cloud.cell_side());
+}
+
 void for_parts(ScratchCloud& cloud, const Survey& sums, std::span<const VoxelRange> ranges,
-               const std::function<bool(const CloudPart&)>& work) {
+               PartWidths& widths, const std::function<bool(const CloudPart&)>& work) {
     constexpr int most_cells = 32; // round a part, at any depth; up to 64 lie along the cube
     const std::vector<Survey::FirstPoint> first = sums.first_points();
     std::vector<ScratchCloud::Surroundings> due;
     for (const VoxelRange& range : ranges)
-        if (cloud.owner_of(range) == cloud.ranks().rank()) due.push_back({range, cloud.cell_side()});
+        if (cloud.owner_of(range) == cloud.ranks().rank())
+            due.push_back({range, widths.ghost_of(range, cloud)});
     while (cloud.ranks().any(!due.empty())) {
         cloud.fetch(due);
         std::vector<ScratchCloud::Surroundings> again;
         for (const auto& [range, ghost] : due) {
             std::vector<MortonCode> missing;
-            const std::vector<PointRow> rows = cloud.rows_of_cells(range, ghost, missing);
-            if (rows.empty()) continue;
-            const CloudPart part(cloud, first, {range, ghost}, rows, std::move(missing));
-            if (part.begin() == part.end() || work(part)) continue;
+            Octree octree = cloud.octree_of_cells(range, ghost, missing);
+            const CloudPart part(cloud, first, {range, ghost}, std::move(octree), std::move(missing));
+            if (part.begin() == part.end()) continue;
+            widths.note(range, ghost);
+            if (work(part)) continue;
             if (2 * ghost > most_cells * cloud.cell_side())
                 refuse_in_tiles("what some points depend on is farther off than tiles see");
             again.push_back({range, 2 * ghost});

@@ -4,6 +4,8 @@
 #include "hsdm/normals/known_points.hh"
 #include "hsdm/pipeline/cloud_survey.hh"
 
+#include <map>
+
 namespace hsdm {
 
 /// Whole cells of a cloud.
@@ -11,8 +13,7 @@ class CloudPart {
 public:
     /// `first`: of the whole. `missing`: cells with points that it has not, ascending.
     CloudPart(const ScratchCloud& cloud, std::span<const Survey::FirstPoint> first,
-              const ScratchCloud::Surroundings& around, const std::vector<PointRow>& rows,
-              std::vector<MortonCode> missing);
+              const ScratchCloud::Surroundings& around, Octree octree, std::vector<MortonCode> missing);
 
     const VoxelRange& range() const { return around_.range; }
     int ghost() const { return around_.ghost; } ///< voxels around it, or more
@@ -49,10 +50,26 @@ private:
     std::vector<Cell> cells_;
 };
 
+/// How many voxels it took around each range so that the part knew all, which the next pass begins with. Of a
+/// cloud as its points are; once they are others all is forgotten.
+class PartWidths {
+public:
+    /// `first`: voxels around a part that is not known; a cell at least.
+    explicit PartWidths(int first) : first_(first) {}
+
+    int ghost_of(const VoxelRange& range, const ScratchCloud& cloud);
+    void note(const VoxelRange& range, int ghost) { ghost_[{range.begin, range.end}] = ghost; }
+
+private:
+    int first_;
+    std::size_t version_ = 0; // of the points
+    std::map<std::pair<MortonCode, MortonCode>, int> ghost_;
+};
+
 /// work(part) of each of those ranges that are this rank's and have points; where it returns false, as not
 /// all that it needs is known, again with twice as much around it. For all ranks at the same time. Throws
 /// Error where that is wider than tiles see.
 void for_parts(ScratchCloud& cloud, const Survey& sums, std::span<const VoxelRange> ranges,
-               const std::function<bool(const CloudPart&)>& work);
+               PartWidths& widths, const std::function<bool(const CloudPart&)>& work);
 
 } // namespace hsdm

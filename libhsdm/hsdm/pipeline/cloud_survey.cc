@@ -9,10 +9,9 @@ namespace hsdm {
 
 namespace {
 
-Survey survey_of(const ScratchCloud& cloud, std::size_t expected, std::size_t before,
-                 std::size_t most_points) {
+Survey survey_of(ScratchCloud& cloud, std::size_t expected, std::size_t before, std::size_t most_points) {
     Survey sums(cloud.depth(), cloud.cell_depth(), expected, before);
-    cloud.for_groups(most_points, [&](const Octree& part) { sums.add(part); });
+    cloud.sort_in_cells(most_points, [&](const Octree& part) { sums.add(part); });
     const std::vector<std::uint64_t> points = cloud.ranks().gather(std::uint64_t{sums.points()});
     const auto here = points.begin() + cloud.ranks().rank();
     const std::size_t all = std::accumulate(points.begin(), points.end(), std::size_t{0}),
@@ -25,7 +24,7 @@ Survey survey_of(const ScratchCloud& cloud, std::size_t expected, std::size_t be
 
 } // namespace
 
-CloudSurvey survey_cloud(const ScratchCloud& cloud, std::size_t expected, std::size_t most_points) {
+CloudSurvey survey_cloud(ScratchCloud& cloud, std::size_t expected, std::size_t most_points) {
     Survey sums = survey_of(cloud, expected, cloud.points_before(), most_points);
     const double spacing = estimate_spacing(sums.counts(), cloud.cube_extent());
     return {std::move(sums), spacing};

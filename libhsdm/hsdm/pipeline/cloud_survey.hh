@@ -12,8 +12,9 @@ struct CloudSurvey {
 };
 
 /// Adds up all groups of at most so many points, of all ranks; twice if `expected` is not how many remain
-/// without duplicates, or other ranks have others than points_before() tells.
-CloudSurvey survey_cloud(const ScratchCloud& cloud, std::size_t expected, std::size_t most_points);
+/// without duplicates, or other ranks have others than points_before() tells. Has the points sorted in their
+/// cells.
+CloudSurvey survey_cloud(ScratchCloud& cloud, std::size_t expected, std::size_t most_points);
 
 /// Throws Error for a cloud of which PreparedCloud would move or drop points by what all of them are.
 void refuse_unfit_places(const CloudSurvey& survey, const ScratchCloud& cloud);

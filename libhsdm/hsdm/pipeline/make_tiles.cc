@@ -124,11 +124,9 @@ private:
     Piece make_tile(const VoxelRange& range, int ghost) {
         Piece piece;
         piece.range = range;
-        std::vector<PointRow> rows = cloud_.rows_of(range, ghost);
-        how_.points_read += rows.size();
-        if (rows.empty()) return piece;
-        const Octree octree = cloud_.octree_of(rows);
-        rows = std::vector<PointRow>();
+        const Octree octree = cloud_.octree_around(range, ghost);
+        how_.points_read += octree.size();
+        if (octree.size() == 0) return piece;
         if (!known_.outliers) strays_.add(octree, range, ghost);
         if (strays_.has_found()) return piece; // all are made again without them
         const OctreeLevel level = extract_level(octree, cloud_.depth());

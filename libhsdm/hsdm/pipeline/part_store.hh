@@ -4,7 +4,6 @@
 #include "hsdm/io/scratch_bytes.hh"
 #include "hsdm/pipeline/cloud_parts.hh"
 
-#include <map>
 #include <optional>
 
 namespace hsdm {
@@ -14,7 +13,9 @@ namespace hsdm {
 class PartStore {
 public:
     /// Nothing is kept on a disk with little room.
-    explicit PartStore(const ScratchCloud& cloud) : cloud_(cloud) {}
+    PartStore(const ScratchCloud& cloud, int first_ghost) : widths(first_ghost), cloud_(cloud) {}
+
+    PartWidths widths; ///< of the parts
 
     /// find_neighbors() of a part; where the same were found before, what that gave. Throws Error if the disk
     /// cannot be written or read.

@@ -278,14 +278,19 @@ private:
         report_.input.spacing = survey_->spacing;
         const auto rearrange = [&](const VoxelCube& cube) {
             cloud_->rearrange(cloud_->bounds(), cube.extent, cube.depth, group);
+            survey_of_cube(group);
         };
         const auto detail = [&](int) { return detail_of(*cloud_, plan(group), ghost); };
         hsdm::choose_resolution(options_, {cloud_->no_points(), cloud_->frame(), noise, rearrange, detail},
                                 report_);
         if (noise > relations::smooth_gap * cloud_->voxel_size())
             refuse_in_tiles("points are noisy, and would be moved onto their surface");
-        if (!options_.depth) // the spacing stays that of the cube before
-            survey_->sums = survey_cloud(*cloud_, survey_->sums.points(), group).sums;
+        if (options_.depth && estimates_) survey_of_cube(group); // with normals
+    }
+
+    /// The spacing stays that of the cube before.
+    void survey_of_cube(std::size_t group) {
+        survey_->sums = survey_cloud(*cloud_, survey_->sums.points(), group).sums;
     }
 
     /// All tiles; once more if normals point into the solid, as what is judged depends on the side.

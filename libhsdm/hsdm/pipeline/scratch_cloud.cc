@@ -172,7 +172,8 @@ ScratchCloud::ScratchCloud(ByteReader& bytes, const TileOptions& options, Ranks&
       buffered_(bytes_buffered(options)),
       ranks_(ranks) {
     none_.extent = bytes.take<double>(), none_.origin = bytes.take<Vec3>(), none_.bounds = bytes.take<Box>();
-    has_normals_ = bytes.take<bool>(), arranged_ = bytes.take<bool>();
+    has_normals_ = bytes.take<bool>();
+    arranged_ = bytes.take<bool>(), in_order_ = bytes.take<bool>();
     options_ = octree_options(has_normals_, extent_.box);
     begins_ = bytes.take_vector<MortonCode>(), fetched_ = bytes.take_vector<MortonCode>();
     cells_ = bytes.take_vector<ScratchPoints::Cell>();
@@ -187,7 +188,7 @@ void ScratchCloud::put_state(Ranks::Bytes& bytes) const {
     put_extent(extent_, bytes);
     put(depth_, bytes);
     put(none_.extent, bytes), put(none_.origin, bytes), put(none_.bounds, bytes);
-    for (const bool has : {has_normals_, arranged_}) put(has, bytes);
+    for (const bool is : {has_normals_, arranged_, in_order_}) put(is, bytes);
     put_vector(begins_, bytes), put_vector(fetched_, bytes);
     put_vector(cells_, bytes);
     put_vector(left_out_, bytes);
@@ -198,6 +199,14 @@ void ScratchCloud::put_state(Ranks::Bytes& bytes) const {
 
 MortonCode ScratchCloud::cell_of(const Vec3& relative) const {
     return code_at(relative, cube_extent()) >> 3 * (morton_levels - cell_depth_);
+}
+
+/// The cells of so many positions.
+template <class Place>
+std::vector<Index> ScratchCloud::cells_of(std::size_t count, const Place& place) const {
+    std::vector<Index> cells = unwritten_vector<Index>(count);
+    for_each_index(count, chunks::light, [&](Index i) { cells[i] = static_cast<Index>(cell_of(place(i))); });
+    return cells;
 }
 
 Vec3 ScratchCloud::relative_place(const PointRow& row) const {
@@ -259,11 +268,13 @@ void ScratchCloud::sort_points(const PointParts& parts) {
     PointExchange exchange(ranks_, most_waiting_, keep);
     std::size_t added = 0;
     parts([&](const PointView& part) {
+        const std::vector<Index> cells =
+            cells_of(part.size(), [&](Index i) { return vec3_at(part.positions, i) - origin(); });
         for_each_in_order(part.size(), [&](std::size_t i) {
             const Vec3 p = vec3_at(part.positions, i);
             const Vec3 n = has_normals_ ? vec3_at(part.normals, i) : Vec3(0, 0, 0);
             if (!is_finite(p)) return;
-            put_row({p[0], p[1], p[2], n[0], n[1], n[2]}, cell_of(p - origin()), exchange);
+            put_row({p[0], p[1], p[2], n[0], n[1], n[2]}, cells[i], exchange);
             ++added;
         });
     });
@@ -300,27 +311,51 @@ OctreeLevel ScratchCloud::no_voxels() const {
     return level;
 }
 
+/// The rows as they came, as one octree.
+Octree ScratchCloud::first_octree(const std::vector<CellRows>& parts, std::size_t points) const {
+    std::vector<PointRow> rows;
+    rows.reserve(points);
+    for (const CellRows& part : parts)
+        if (part.is_whole)
+            scratch_->read(part.cell, rows);
+        else
+            append_large(rows, part.rows);
+    PointView view;
+    view.positions = StridedSpan(rows.front().data(), rows.size(), sizeof(PointRow));
+    view.normals = StridedSpan(rows.front().data() + 3, rows.size(), sizeof(PointRow));
+    return build_octree(view, options_);
+}
+
 /// The rows of octrees as one, but for what they are in the cloud: nothing is rounded or merged.
-Octree ScratchCloud::arranged_octree(const std::vector<PointRow>& rows) const {
+Octree ScratchCloud::arranged_octree(const std::vector<CellRows>& parts, std::size_t points) const {
     Octree octree = none_;
-    std::vector<Vec3> positions = unwritten_vector<Vec3>(rows.size());
-    if (has_normals_) resize_unwritten(octree.normals, rows.size());
-    resize_unwritten(octree.source, rows.size());
-    for_each_index(rows.size(), chunks::light, [&](Index i) {
-        const PointRow& row = rows[i];
-        positions[i] = Vec3(row[0], row[1], row[2]);
-        if (has_normals_) octree.normals[i] = Vec3(row[3], row[4], row[5]);
-        octree.source[i] = i;
+    std::vector<Vec3> positions = unwritten_vector<Vec3>(points);
+    if (has_normals_) resize_unwritten(octree.normals, points);
+    resize_unwritten(octree.source, points);
+    for_each_task(parts.size(), [&](std::size_t k) {
+        const CellRows& part = parts[k];
+        std::vector<PointRow> whole;
+        if (part.is_whole) scratch_->read(part.cell, whole);
+        auto i = static_cast<Index>(part.first);
+        for (const PointRow& row : part.is_whole ? whole : part.rows) {
+            positions[i] = Vec3(row[0], row[1], row[2]);
+            if (has_normals_) octree.normals[i] = Vec3(row[3], row[4], row[5]);
+            octree.source[i] = i;
+            ++i;
+        }
     });
     hsdm::rearrange(octree, std::move(positions), octree.extent);
     return octree;
 }
 
-Octree ScratchCloud::octree_of(const std::vector<PointRow>& rows) const {
-    PointView view;
-    view.positions = StridedSpan(rows.front().data(), rows.size(), sizeof(PointRow));
-    view.normals = StridedSpan(rows.front().data() + 3, rows.size(), sizeof(PointRow));
-    Octree octree = arranged_ ? arranged_octree(rows) : build_octree(view, options_);
+Octree ScratchCloud::octree_of(std::vector<CellRows> parts) const {
+    std::size_t points = 0;
+    for (CellRows& part : parts) {
+        part.first = points;
+        points += part.is_whole ? points_of(part.cell) : part.rows.size();
+    }
+    if (points == 0) return none_;
+    Octree octree = arranged_ ? arranged_octree(parts, points) : first_octree(parts, points);
     if (!left_out_.empty()) {
         std::vector<std::uint8_t> marks = large_vector<std::uint8_t>(octree.size(), 0);
         for_each_index(octree.size(), chunks::usual,
@@ -373,53 +408,71 @@ VoxelRange ScratchCloud::cells_of(const VoxelRange& range) const {
     return {range.begin >> shift, range.end >> shift, cell_depth_, 0};
 }
 
-std::vector<PointRow> ScratchCloud::rows_of(const VoxelRange& range, int ghost) const {
-    std::vector<PointRow> rows, cell;
-    constexpr std::size_t remembered = 1 << 12; // voxels: those of a cell, or sixteen along an edge
-    std::vector<std::pair<MortonCode, bool>> is_near(remembered, {~MortonCode{0}, false});
+std::size_t ScratchCloud::points_of(MortonCode cell) const {
+    return std::ranges::lower_bound(cells_, cell, {}, &ScratchPoints::Cell::code)->points;
+}
+
+/// Points of a cell within so many voxels of the range.
+std::vector<PointRow> ScratchCloud::rows_near(MortonCode cell, const VoxelRange& range, int ghost) const {
+    std::vector<PointRow> rows;
+    scratch_->read(cell, rows);
     const int to_level = 3 * (morton_levels - depth_);
-    const VoxelRange of_cells = cells_of(range);
-    for (const MortonCode c : cells_near(of_cells, cells_within(ghost), cells_)) {
-        if (of_cells.holds(c)) {
-            scratch_->read(c, rows);
-            continue;
-        }
-        Interruption::poll();
-        cell.clear();
-        scratch_->read(c, cell);
-        for (const PointRow& row : cell) {
-            const MortonCode voxel = code_at(relative_place(row), cube_extent()) >> to_level;
-            auto& [code, near] = is_near[voxel % remembered];
-            if (code != voxel) code = voxel, near = range.is_near(morton_decode(voxel), ghost);
-            if (near) rows.push_back(row);
-        }
-    }
+    MortonCode voxel = ~MortonCode{0};
+    bool is_near = false; // that voxel; points that come in order are asked about voxel by voxel
+    std::erase_if(rows, [&](const PointRow& row) {
+        const MortonCode at = code_at(relative_place(row), cube_extent()) >> to_level;
+        if (at != voxel) voxel = at, is_near = range.is_near(morton_decode(voxel), ghost);
+        return !is_near;
+    });
     return rows;
 }
 
-std::vector<PointRow> ScratchCloud::rows_of_cells(const VoxelRange& range, int ghost,
-                                                  std::vector<MortonCode>& missing) const {
+Octree ScratchCloud::octree_around(const VoxelRange& range, int ghost) const {
+    const VoxelRange of_cells = cells_of(range);
+    std::vector<CellRows> parts;
+    for (const MortonCode cell : cells_near(of_cells, cells_within(ghost), cells_))
+        parts.push_back({cell, of_cells.holds(cell)});
+    for_each_task(parts.size(), [&](std::size_t k) {
+        if (!parts[k].is_whole) parts[k].rows = rows_near(parts[k].cell, range, ghost);
+    });
+    return octree_of(std::move(parts));
+}
+
+Octree ScratchCloud::octree_of_cells(const VoxelRange& range, int ghost,
+                                     std::vector<MortonCode>& missing) const {
     const std::vector<MortonCode> near = cells_near(cells_of(range), cells_within(ghost), cells_);
     missing.clear();
     for (const ScratchPoints::Cell& cell : cells_)
         if (!std::ranges::binary_search(near, cell.code)) missing.push_back(cell.code);
-    std::vector<PointRow> rows;
-    for (const MortonCode cell : near) scratch_->read(cell, rows);
-    return rows;
+    std::vector<CellRows> parts;
+    parts.reserve(near.size());
+    for (const MortonCode cell : near) parts.push_back({cell, true});
+    return octree_of(std::move(parts));
 }
 
 void ScratchCloud::for_groups(std::size_t most, const std::function<void(const Octree&)>& visit) const {
-    std::vector<PointRow> rows;
+    std::vector<CellRows> group;
+    std::size_t points = 0;
     const auto is_own = [&](const ScratchPoints::Cell& cell) { return owner(cell.code) == ranks_.rank(); };
     const auto first = std::ranges::find_if(cells_, is_own);
     for (auto c = first; c != cells_.end() && is_own(*c); ++c) {
-        scratch_->read(c->code, rows);
+        group.push_back({c->code, true});
+        points += c->points;
         const auto next = c + 1;
-        if (next != cells_.end() && is_own(*next) && rows.size() + next->points <= most) continue;
-        const Octree octree = octree_of(rows);
-        rows = std::vector<PointRow>();
-        visit(octree);
+        if (next != cells_.end() && is_own(*next) && points + next->points <= most) continue;
+        visit(octree_of(std::exchange(group, {})));
+        points = 0;
     }
+}
+
+void ScratchCloud::sort_in_cells(std::size_t most, const std::function<void(const Octree&)>& visit) {
+    if (in_order_) return for_groups(most, visit);
+    ScratchCloud next = without_points();
+    for_groups(most, [&](const Octree& part) {
+        for_each_in_order(part.size(), [&](std::size_t i) { next.add(part, i); });
+        visit(part);
+    });
+    take_sorted(std::move(next));
 }
 
 void ScratchCloud::for_tiles(std::span<const VoxelRange> ranges, int ghost,
@@ -429,11 +482,8 @@ void ScratchCloud::for_tiles(std::span<const VoxelRange> ranges, int ghost,
         if (owner_of(range) == ranks_.rank()) own.push_back({range, ghost});
     fetch(own);
     for (const Surroundings& tile : own) {
-        std::vector<PointRow> rows = rows_of(tile.range, ghost);
-        if (rows.empty()) continue;
-        const Octree octree = octree_of(rows);
-        rows = std::vector<PointRow>();
-        visit(octree, tile.range);
+        const Octree octree = octree_around(tile.range, ghost);
+        if (octree.size() > 0) visit(octree, tile.range);
     }
 }
 
@@ -493,11 +543,12 @@ void ScratchCloud::rearrange(const Box& bounds, double extent, int depth, std::s
         next.scratch_->add(next.cell_of(next.relative_place(row)), row);
     });
     for_groups(most, [&](const Octree& part) {
+        const auto place = [&](std::size_t i) { return part.positions[i] + shift; };
+        const std::vector<Index> cells = next.cells_of(part.size(), place);
         for_each_in_order(part.size(), [&](std::size_t i) {
             PointRow row = row_at(part, i);
-            const Vec3 p = part.positions[i] + shift;
-            std::copy_n(p.data(), 3, row.begin());
-            next.put_row(row, next.cell_of(p), exchange);
+            std::copy_n(place(i).data(), 3, row.begin());
+            next.put_row(row, cells[i], exchange);
         });
     });
     exchange.finish();
@@ -512,7 +563,7 @@ void ScratchCloud::take(ScratchCloud&& next) {
     if (kept_ && !std::exchange(is_of_pass_, false)) kept_->remove_file(place_.name);
     scratch_ = std::move(next.scratch_), place_ = std::move(next.place_);
     has_normals_ = next.has_normals_;
-    arranged_ = next.arranged_;
+    arranged_ = next.arranged_, in_order_ = next.in_order_;
     begins_ = std::move(next.begins_), cells_ = std::move(next.cells_);
     fetched_ = {}, left_out_ = {};
     ++version_;
@@ -526,18 +577,24 @@ PointRow ScratchCloud::row_at(const Octree& octree, std::size_t point) {
 
 ScratchCloud ScratchCloud::without_points() const {
     ScratchCloud next(*this, bounds(), cube_extent(), depth_);
-    next.has_normals_ = true;
     next.begins_ = begins_;
     return next;
 }
 
-void ScratchCloud::add_with_normal(const Octree& octree, std::size_t point) {
-    scratch_->add(cell_of(octree.positions[point]), row_at(octree, point));
+ScratchCloud ScratchCloud::without_normals_yet() const {
+    ScratchCloud next = without_points();
+    next.has_normals_ = true;
+    return next;
 }
 
-void ScratchCloud::take_with_normals(ScratchCloud&& next) {
+void ScratchCloud::add(const Octree& octree, std::size_t point) {
+    scratch_->add(octree.codes[point] >> 3 * (morton_levels - cell_depth_), row_at(octree, point));
+}
+
+void ScratchCloud::take_sorted(ScratchCloud&& next) {
     next.scratch_->finish();
     next.gather_cells();
+    next.in_order_ = true;
     take(std::move(next));
 }
 

@@ -66,8 +66,9 @@ public:
     int owner_of(const VoxelRange& range) const { return owner(cells_of(range).begin); }
     /// Where ranks begin that have cells, but for the first of them; ascending.
     std::vector<MortonCode> borders() const;
-    std::size_t points_before() const; ///< of ranks before this one, duplicates and those left out too
-    std::size_t points_here() const;   ///< the same of this rank
+    std::size_t points_before()
+        const; ///< of ranks before this one, those left out too, and duplicates until they are sorted
+    std::size_t points_here() const; ///< the same of this rank
     int depth() const { return depth_; }
     int cell_depth() const { return cell_depth_; }
     double cube_extent() const { return none_.extent; }
@@ -79,24 +80,26 @@ public:
     const Octree& no_points() const { return none_; }
     OctreeLevel no_voxels() const;
 
-    Octree octree_of(const std::vector<PointRow>& rows) const;
     /// A range and so many voxels around it.
     struct Surroundings {
         VoxelRange range;
         int ghost;
     };
-    /// Fetches what other ranks have of these, so that rows_of() knows it. For all ranks at the same time.
+    /// Fetches what other ranks have of these, so that octree_around() knows it. For all ranks at the same
+    /// time.
     void fetch(const std::vector<Surroundings>& wanted);
     /// The points of a range of this rank and of what was fetched around it.
-    std::vector<PointRow> rows_of(const VoxelRange& range, int ghost) const;
+    Octree octree_around(const VoxelRange& range, int ghost) const;
     /// Voxels along an edge of a cell.
     int cell_side() const { return 1 << (depth_ - cell_depth_); }
     /// All points of the cells that a range has and of those within so many voxels; `missing` become the
     /// other cells, ascending.
-    std::vector<PointRow> rows_of_cells(const VoxelRange& range, int ghost,
-                                        std::vector<MortonCode>& missing) const;
+    Octree octree_of_cells(const VoxelRange& range, int ghost, std::vector<MortonCode>& missing) const;
     /// visit(octree) of this rank's points, `most` or a cell's at a time, in Morton order.
     void for_groups(std::size_t most, const std::function<void(const Octree&)>& visit) const;
+    /// The same; points that do not come in the order of octrees go to a new file in which they do, so that
+    /// nothing has to sort them again. For all ranks at the same time.
+    void sort_in_cells(std::size_t most, const std::function<void(const Octree&)>& visit);
     /// visit(octree, range) of those of the ranges that are this rank's, with so many voxels around each; of
     /// ranges that have points. None may be of two ranks. For all ranks at the same time.
     void for_tiles(std::span<const VoxelRange> ranges, int ghost,
@@ -109,20 +112,35 @@ public:
     /// The box of the points that are not left out, in the cloud's coordinates. For all ranks.
     Box box_of_points(std::size_t most) const;
     static PointRow row_at(const Octree& octree, std::size_t point);
-    /// The same cube and cells of the same ranks, without points, which add_with_normal() gives it.
-    ScratchCloud without_points() const;
-    void add_with_normal(const Octree& octree, std::size_t point);
-    /// Has the points of another one from now on, all with normals. For all ranks at the same time.
-    void take_with_normals(ScratchCloud&& next);
+    /// The same cube and cells of the same ranks, for points with normals, which add() gives it: of a cell in
+    /// the order of octrees.
+    ScratchCloud without_normals_yet() const;
+    void add(const Octree& octree, std::size_t point);
+    /// Has the points of such a one from now on. For all ranks at the same time.
+    void take_sorted(ScratchCloud&& next);
 
 private:
     /// Without points yet: those of another one, in another cube.
     ScratchCloud(const ScratchCloud& before, const Box& bounds, double extent, int depth);
+    ScratchCloud without_points() const;
     void take(ScratchCloud&& next);
     /// The cell of a position relative to the cube.
     MortonCode cell_of(const Vec3& relative) const;
+    template <class Place>
+    std::vector<Index> cells_of(std::size_t count, const Place& place) const;
     Vec3 relative_place(const PointRow& row) const;
-    Octree arranged_octree(const std::vector<PointRow>& rows) const;
+    /// What an octree is to have of a cell: all of its points, or these.
+    struct CellRows {
+        MortonCode cell;
+        bool is_whole;
+        std::vector<PointRow> rows{};
+        std::size_t first = 0; // place of its first point, as far as cells come in order
+    };
+    Octree first_octree(const std::vector<CellRows>& parts, std::size_t points) const;
+    Octree arranged_octree(const std::vector<CellRows>& parts, std::size_t points) const;
+    Octree octree_of(std::vector<CellRows> parts) const;
+    std::size_t points_of(MortonCode cell) const;
+    std::vector<PointRow> rows_near(MortonCode cell, const VoxelRange& range, int ghost) const;
     /// By one of so many of this rank's points.
     void divide(std::span<const Vec3> sample, std::size_t stride);
     void divide(const ScratchCloud& before, const Vec3& shift, std::size_t most);
@@ -147,6 +165,7 @@ private:
     std::unique_ptr<ScratchPoints> scratch_;
     bool has_normals_ = true;
     bool arranged_ = false;          // rows are those of octrees, not as the points came
+    bool in_order_ = false;          // and those of a cell come in the order of octrees
     std::vector<MortonCode> begins_; // of the ranks' cells
     std::vector<ScratchPoints::Cell> cells_;
     std::vector<MortonCode> fetched_; // cells of others, ascending

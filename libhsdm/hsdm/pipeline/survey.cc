@@ -56,10 +56,8 @@ void Survey::sample(const Octree& part) {
     const std::size_t stride = place_stride(expected_);
     for_each_in_order(part.size(), [&](std::size_t i) {
         const std::size_t number = before_ + points_ + i;
-        if (part.has_normals() && NormalSample::holds(number, expected_)) {
-            normals_.number.push_back(number);
+        if (part.has_normals() && NormalSample::holds(number, expected_))
             normals_.points.push_back({part.positions[i], part.normals[i]});
-        }
         if (number % stride == 0) places_.push_back(part.positions[i]);
     });
 }
@@ -161,7 +159,6 @@ void Survey::put_sums(Ranks::Bytes& bytes) const {
     put(leaves_, bytes);
     put(sets_, bytes);
     put_vector(cells_, bytes);
-    put_vector(normals_.number, bytes);
     put_vector(normals_.points, bytes);
     put_vector(places_, bytes);
 }
@@ -193,7 +190,6 @@ void Survey::add_next(ByteReader& rank) {
     deep_.places += deep.places;
     sets_.points += sets.points, sets_.squares += sets.squares;
     append_large(cells_, rank.take_vector<Cell>());
-    append_large(normals_.number, rank.take_vector<std::size_t>());
     append_large(normals_.points, rank.take_vector<NormalSample::Point>());
     append_large(places_, rank.take_vector<Vec3>());
 }

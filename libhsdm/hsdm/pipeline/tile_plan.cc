@@ -1,12 +1,11 @@
 #include "hsdm/pipeline/tile_plan.hh"
 
 #include "hsdm/core/interruption.hh"
+#include "hsdm/core/morton_index.hh"
 #include "hsdm/octree/constants.hh"
 #include "hsdm/octree/octree.hh"
 
 #include <algorithm>
-#include <optional>
-#include <unordered_map>
 
 namespace hsdm {
 namespace {
@@ -14,52 +13,63 @@ namespace {
 /// The points of a range of cells and of those around, while it grows.
 class TileSize {
 public:
-    TileSize(const std::unordered_map<MortonCode, std::size_t>& points, const TilePlanOptions& options)
-        : points_(points), last_((1 << options.cell_depth) - 1) {
+    TileSize(std::span<const ScratchPoints::Cell> cells, const TilePlanOptions& options)
+        : cells_(cells), counted_(cells.size(), 0), last_((1 << options.cell_depth) - 1) {
         const int side = 1 << (options.depth - options.cell_depth);
         reach_ = (options.ghost_voxels + side - 1) / side;
         share_ = std::min(1.0, static_cast<double>(options.ghost_voxels) / side);
+        std::vector<MortonCode> codes;
+        for (const ScratchPoints::Cell& cell : cells) codes.push_back(cell.code);
+        place_.build(codes);
     }
 
-    double with(MortonCode cell) {
-        double sum = sum_;
-        for_new(cell, [&](MortonCode, std::size_t points, bool own) {
-            sum += (own ? 1 : share_) * static_cast<double>(points);
+    void begin_range() { ++range_, sum_ = 0; }
+
+    /// The sum with this cell, which add() adds.
+    double with(std::size_t cell) {
+        cell_ = cell;
+        new_.clear();
+        with_ = sum_ + (is_counted(cell) ? 1 - share_ : 1) * points(cell);
+        for_new([&](Index around) {
+            with_ += share_ * points(around);
+            new_.push_back(around);
         });
-        return sum;
+        return with_;
     }
 
-    void add(MortonCode cell) {
-        sum_ = with(cell);
-        for_new(cell, [&](MortonCode code, std::size_t, bool own) { seen_[code] |= own ? 2 : 1; });
+    void add() {
+        sum_ = with_;
+        for (const Index around : new_) counted_[around] = range_;
+        counted_[cell_] = range_;
     }
 
 private:
-    /// act(code, points, own) for a cell and those around it, as far as they are not counted that way yet.
+    double points(std::size_t cell) const { return static_cast<double>(cells_[cell].points); }
+    bool is_counted(std::size_t cell) const { return counted_[cell] == range_; }
+
+    /// act(around) for the cells around it, as far as they are not counted yet.
     template <class Act>
-    void for_new(MortonCode cell, const Act& act) const {
-        const VoxelCoord at = morton_decode(cell);
+    void for_new(const Act& act) const {
+        const VoxelCoord at = morton_decode(cells_[cell_].code);
         VoxelCoord c;
         for (c[2] = std::max(0, at[2] - reach_); c[2] <= std::min(last_, at[2] + reach_); ++c[2])
             for (c[1] = std::max(0, at[1] - reach_); c[1] <= std::min(last_, at[1] + reach_); ++c[1])
-                for (c[0] = std::max(0, at[0] - reach_); c[0] <= std::min(last_, at[0] + reach_); ++c[0]) {
-                    const MortonCode code = morton_encode(c);
-                    const auto points = points_.find(code);
-                    if (points == points_.end()) continue;
-                    const auto seen = seen_.find(code);
-                    const bool counted = seen != seen_.end();
-                    if (code == cell)
-                        act(code, points->second, true); // what was counted as around it is not much
-                    else if (!counted)
-                        act(code, points->second, false);
-                }
+                for (c[0] = std::max(0, at[0] - reach_); c[0] <= std::min(last_, at[0] + reach_); ++c[0])
+                    if (const Index around = place_.find(morton_encode(c));
+                        around != no_index && around != cell_ && !is_counted(around))
+                        act(around);
     }
 
-    const std::unordered_map<MortonCode, std::size_t>& points_;
-    std::unordered_map<MortonCode, int> seen_;
+    std::span<const ScratchPoints::Cell> cells_;
+    MortonIndex place_;
+    std::vector<std::size_t> counted_; // the last range that has each cell, or has it around it
+    std::size_t range_ = 0;
     std::int32_t last_;
     int reach_;
-    double share_, sum_ = 0;
+    double share_, sum_ = 0; // of a cell's points, where it is around
+    std::size_t cell_ = 0;
+    double with_ = 0;
+    std::vector<Index> new_;
 };
 
 } // namespace
@@ -71,20 +81,19 @@ int cell_depth_of(int depth) {
 std::vector<VoxelRange> plan_tiles(std::span<const ScratchPoints::Cell> cells,
                                    const TilePlanOptions& options) {
     const int shift = options.depth - options.cell_depth;
-    std::unordered_map<MortonCode, std::size_t> points;
-    for (const ScratchPoints::Cell& cell : cells) points[cell.code] = cell.points;
     std::vector<MortonCode> begins{0};
-    std::optional<TileSize> size(std::in_place, points, options);
-    bool empty = true;
-    for (const ScratchPoints::Cell& cell : cells) {
+    TileSize size(cells, options);
+    size.begin_range();
+    for (std::size_t cell = 0; cell < cells.size(); ++cell) {
         Interruption::poll();
-        const bool is_border = std::ranges::binary_search(options.borders, cell.code);
-        if (!empty && (is_border || size->with(cell.code) > static_cast<double>(options.most_points))) {
-            begins.push_back(cell.code << 3 * shift);
-            size.emplace(points, options);
+        const bool is_border = std::ranges::binary_search(options.borders, cells[cell].code);
+        const bool is_large = size.with(cell) > static_cast<double>(options.most_points);
+        if (cell > 0 && (is_border || is_large)) {
+            begins.push_back(cells[cell].code << 3 * shift);
+            size.begin_range();
+            size.with(cell);
         }
-        size->add(cell.code);
-        empty = false;
+        size.add();
     }
     begins.push_back(MortonCode{1} << 3 * options.depth);
     std::vector<VoxelRange> ranges;
