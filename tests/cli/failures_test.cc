@@ -97,7 +97,7 @@ TEST_CASE("the end of memory is told with file and phase, and the other inputs g
     // Needs far more than the limits, also where memory is managed otherwise.
     folder.write("large.xyz", xyz(sphere_scan(300000)));
     folder.write("small.xyz", xyz(sphere_scan(500)));
-    for (const char* megabytes : {"40", "55"}) {
+    for (const char* megabytes : {"40", "60"}) {
         const CommandResult result =
             run(folder,
                 "reconstruct large.xyz small.xyz --depth 3 --threads 2 --quiet --out-dir out --format om "
@@ -115,7 +115,7 @@ TEST_CASE("the end of memory is told with file and phase, and the other inputs g
     const std::string name = "large-with-a-name-that-no-small-string-holds.xyz";
     std::filesystem::rename(folder / "large.xyz", folder / name);
     const CommandResult alone = run(folder, "reconstruct " + name + " --depth 3 --threads 2 --quiet -o m.om",
-                                    "ulimit -v $((1024 * 55));");
+                                    "ulimit -v $((1024 * 60));");
     CHECK(alone.status == 1);
     CHECK(alone.err.starts_with("hsdm: " + name + ": out of memory in phase "));
     std::filesystem::rename(folder / name, folder / "large.xyz");

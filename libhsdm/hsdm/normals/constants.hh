@@ -174,19 +174,10 @@ HSDM_TUNED double bent_spread = 0.45;
 /// Why: a bent sheet without a crease gives its tilted planes up to 1.2 times more.
 HSDM_TUNED double clear_gain = 1.3;
 
-/// factor: the same where neighbours' normals differ by less than those beside a clear crease.
-/// Why: by trial; on a ring of nine spacings' radius planes that win by less tilt normals for nothing, by 0.1
-/// degrees.
-HSDM_TUNED double blunt_gain = 1.5;
-
-/// cosine: of normals of neighbours that differ as beside a clear crease.
+/// cosine: of normals of neighbours that are no sign of a crease.
 /// Why: 14 degrees; where planes are smeared over both faces those beside a crease differ by half of its
 /// angle.
 HSDM_TUNED double differing_cosine = 0.97;
-
-/// cosine: of normals of neighbours that are no sign of a crease.
-/// Why: 8 degrees: half of an edge's that turns by 16.
-HSDM_TUNED double alike_cosine = 0.99;
 
 /// points: by their weights, that a plane is fitted to at least.
 /// Why: three and a half: the point and two and a half others.

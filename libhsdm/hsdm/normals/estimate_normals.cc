@@ -230,12 +230,10 @@ private:
 
     Vec3 best_plane(Index i) const {
         const Vec3& own = result_.normals[i];
-        if (!renewal_.differs(i, estimation::alike_cosine)) return own;
-        const bool clear = renewal_.differs(i, estimation::differing_cosine);
+        if (!renewal_.differs(i, estimation::differing_cosine)) return own;
         const Neighborhood around(octree_, neighbors_, i);
         const double inverse = 1 / result_.tolerance[i];
-        double most =
-            (clear ? estimation::clear_gain : estimation::blunt_gain) * support(around, own, inverse);
+        double most = estimation::clear_gain * support(around, own, inverse);
         Planes planes;
         planes.inverse_tolerance = inverse;
         for (std::size_t k = 0; k < around.size(); ++k)
