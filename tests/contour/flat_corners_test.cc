@@ -82,6 +82,10 @@ TEST_CASE("vertices of creases and of bent ground stay") {
     Fold bent;
     bent.mesh.positions[11] += Vec3(0, 0, 0.3);
     CHECK(collapse_flat_corners(0.1, bent.classes, bent.mesh) == 0);
+    Fold bordered; // the ground ends at that vertex
+    bordered.mesh.corners.erase(bordered.mesh.corners.end() - 12, bordered.mesh.corners.end() - 4);
+    bordered.mesh.first.resize(bordered.mesh.first.size() - 2);
+    CHECK(collapse_flat_corners(0.1, bordered.classes, bordered.mesh) == 0);
     Fold smooth;
     smooth.classes.assign(smooth.classes.size(), VertexClass::smooth);
     CHECK(collapse_flat_corners(0.1, smooth.classes, smooth.mesh) == 0);

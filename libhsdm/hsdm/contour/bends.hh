@@ -19,7 +19,7 @@ struct BendSums {
 
 /// Of the sets in voxels that `counts` says yes to. The points of a set on a cylinder lie off their plane by
 /// 1 / sqrt(5) of its `turn`, in root mean square; so do facets of that length that lie amid the surface.
-/// Noise of the points does not count, as it does not turn normals one way. O(sets), parallel.
+/// Noise of positions does not count, as it does not turn normals one way. O(sets), parallel.
 BendSums measure_bends(const NormalSets& sets, double voxel_size, const std::function<bool(Index)>& counts);
 
 } // namespace hsdm

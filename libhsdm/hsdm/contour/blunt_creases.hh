@@ -20,8 +20,9 @@ inline CreaseSample crease_sample(const NormalSet& set) {
     return {set.centroid, set.normal, static_cast<double>(set.count), set.turn, &set.spread};
 }
 
-/// May there be a crease, from the weighted sum of unit normals? Only saves time: where a fifth is of one of
-/// two faces with bluntest_cosine between them it is so long.
+/// May there be a crease, from the weighted sum of unit normals? Saves time: of two faces with
+/// bluntest_cosine between them, one a fifth of both, the sum is so long. A smaller part of so blunt an edge
+/// is left out.
 inline bool is_bent(const Vec3& sum, double weight) {
     return sum.norm() < 0.9965 * weight;
 }

@@ -8,6 +8,7 @@
 #include "hsdm/mesh/manifold.hh"
 
 #include <algorithm>
+#include <cstdint>
 #include <tuple>
 
 namespace hsdm {
@@ -138,19 +139,23 @@ private:
 };
 
 /// Does the vertex move in the planes of the facets round it, and is none left with a corner too sharp or
-/// blunt?
+/// blunt? One of a border stays: what is between the border and the crease would be lost.
 bool may_go(const FlatCorner& c, const FacetsRound& facets, double tolerance, const PolygonMesh& mesh) {
     const Vec3 way = mesh.positions[c.to] - mesh.positions[c.from];
     std::vector<Vec3> ring;
+    std::int64_t open = 0; // vertices before it less those after it: all of them go out if facets go round
     for (const auto& [v, f] : facets.of(c.from)) {
+        const auto facet = mesh.facet(f);
         ring.clear();
-        for (const Index u : mesh.facet(f)) ring.push_back(mesh.positions[u]);
+        for (const Index u : facet) ring.push_back(mesh.positions[u]);
         if (std::abs(unit(area_vector(ring)) | way) > tolerance) return false;
+        const auto at = static_cast<std::size_t>(std::ranges::find(facet, c.from) - facet.begin());
+        open += std::int64_t{facet[(at + facet.size() - 1) % facet.size()]} - facet[(at + 1) % facet.size()];
         if (f == c.facets[0] || f == c.facets[1]) continue;
-        std::ranges::replace(ring, mesh.positions[c.from], mesh.positions[c.to]);
+        ring[at] = mesh.positions[c.to];
         if (least_sine(ring) <= quad_splitting::least_corner) return false;
     }
-    return true;
+    return open == 0;
 }
 
 /// Those of which no shorter one has one of their facets.

@@ -13,9 +13,9 @@ namespace hsdm {
 /// the other end of the edge between two triangles, goes into the one on the crease, which stays where it is;
 /// the quads round it then reach the crease. So does one of a crease into a corner. Not if the way leaves the
 /// plane of a facet round it by more than `tolerance` (the mesh's units), or one of them were left with a
-/// corner of less than 12 degrees or more than 168. Of those that share a facet the shortest way comes first.
-/// `classes`: per origin of a vertex. Returns how many vertices went. O(facets), parallel but for what
-/// changes.
+/// corner of less than 12 degrees or more than 168, or the vertex lies on a border. Of those that share a
+/// facet the shortest way comes first. `classes`: per origin of a vertex. Returns how many vertices went.
+/// O(facets); parallel until such corners are found.
 std::size_t collapse_flat_corners(double tolerance, std::span<const VertexClass> classes, PolygonMesh& mesh);
 
 } // namespace hsdm

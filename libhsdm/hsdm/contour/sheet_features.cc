@@ -141,12 +141,12 @@ public:
     const Vec3& sheet_normal(Index of_set, const Vec3& otherwise) const {
         return of_set != no_index ? sets_.sets[of_set].normal : otherwise;
     }
-    /// Are two sheets flat, if there are, rather than parts of a round surface that turns from one to the
-    /// other?
-    bool are_flat(Index one, Index other, std::span<const Index> voxels) const {
+    /// Are two sheets flat, if there are, rather than parts of a round surface that makes the fold?
+    bool are_flat(Index one, Index other, const Fold& fold, std::span<const Index> voxels) const {
         if (one == other || one == no_index || other == no_index) return true;
         const NormalSet &a = sets_.sets[one], &b = sets_.sets[other];
-        return is_flat(a, b, voxels) && is_flat(b, a, voxels);
+        const Vec3 way = b.centroid - a.centroid;
+        return is_flat(a, fold, way, voxels) && is_flat(b, fold, way, voxels);
     }
     /// Voxels of the vertices of two facets, ascending, each once.
     void voxels_of(Index f, Index g, std::vector<Index>& voxels) const {
@@ -158,10 +158,12 @@ public:
 
 private:
     /// Is the set, or with noise what has its normal in these voxels, rather flat than round?
-    bool is_flat(const NormalSet& one, const NormalSet& other, std::span<const Index> voxels) const {
-        Vec3 bend = other.normal - one.normal;
-        const double size = bend.norm(), way = ((other.centroid - one.centroid) | bend) / size;
+    bool is_flat(const NormalSet& one, const Fold& fold, const Vec3& from_one_to_other,
+                 std::span<const Index> voxels) const {
+        Vec3 bend = fold.to - fold.from;
+        const double size = bend.norm();
         bend /= size;
+        const double way = from_one_to_other | bend;
         if (is_nearer_to_flat(one.turn, one.spread.along(bend), size, way)) return true;
         const double near = 1 - 0.5 * edge_hints::end_band * edge_hints::end_band * size * size;
         double turn = 0, extent = 0;
@@ -223,7 +225,7 @@ public:
         facets_.voxels_of(f, g, voxels_);
         points_.gather(fold, voxels_, a, b);
         if (points_.empty()) return EdgeHint::none;
-        const bool crease = points_.crease() && facets_.are_flat(one, other, voxels_);
+        const bool crease = points_.crease() && facets_.are_flat(one, other, fold, voxels_);
         ++(crease ? tally.sharp : tally.smooth);
         if (!crease) points_.count_tilted(tally.middle, tally.tilted);
         return crease ? EdgeHint::sharp : EdgeHint::smooth;

@@ -15,7 +15,8 @@ struct ScratchPlace {
     std::size_t is_there{}; ///< so many bytes of that file, from the first on, hold what they should
 };
 
-/// Without a name nothing is left of the file, however the process ends. Not for several threads.
+/// Without a name nothing is left of the file, however the process ends. Not for several threads, but for
+/// read().
 class ScratchBytes {
 public:
     /// Throws Error if the file cannot be made, or opened where it is there.

@@ -11,18 +11,19 @@ namespace hsdm {
 namespace {
 
 constexpr const char* the_points = "the points";
+constexpr std::size_t bytes_waiting = sizeof(PointRow) + 2 * sizeof(Index); // with its bucket and its order
 
 } // namespace
 
 ScratchPoints::ScratchPoints(const ScratchPlace& place, std::size_t expected, std::size_t buffered)
-    : file_(place), most_waiting_(buffered / sizeof(PointRow)) {
+    : file_(place), most_waiting_(buffered / bytes_waiting) {
     file_.check_room(the_points, expected * sizeof(PointRow));
     waiting_.reserve(std::min(expected, most_waiting_));
     waiting_in_.reserve(std::min(expected, most_waiting_));
 }
 
 ScratchPoints::ScratchPoints(const ScratchPlace& place, ByteReader& index, std::size_t buffered)
-    : file_(place), most_waiting_(buffered / sizeof(PointRow)) {
+    : file_(place), most_waiting_(buffered / bytes_waiting) {
     for (auto cells = index.take<std::uint64_t>(); cells > 0; --cells) {
         Bucket& bucket = buckets_[bucket_of(index.take<MortonCode>())];
         bucket.points = index.take<std::size_t>();
@@ -60,7 +61,7 @@ void ScratchPoints::add(MortonCode cell, const PointRow& point) {
 
 void ScratchPoints::finish() {
     flush();
-    waiting_ = {}, waiting_in_ = {};
+    waiting_ = std::vector<PointRow>(), waiting_in_ = std::vector<Index>(); // {} would keep their memory
 }
 
 /// A block for what waits of each cell, in the order of cells; returns their first places, per bucket.

@@ -14,7 +14,7 @@
 namespace hsdm {
 namespace {
 
-/// Of a closed component.
+/// Of a component; the volume is that of a closed one.
 struct Extent {
     double area = 0, volume = 0; ///< negative: it faces inward, as the side of a cavity does
     Box box;

@@ -88,9 +88,9 @@ void for_parts(ScratchCloud& cloud, const Survey& sums, std::span<const VoxelRan
             if (part.begin() == part.end()) continue;
             widths.note(range, ghost);
             if (work(part)) continue;
-            if (2 * ghost > most_cells * cloud.cell_side())
-                refuse_in_tiles("what some points depend on is farther off than tiles see");
-            again.push_back({range, 2 * ghost});
+            const int widest = most_cells * cloud.cell_side();
+            if (ghost >= widest) refuse_in_tiles("what some points depend on is farther off than tiles see");
+            again.push_back({range, std::min(2 * ghost, widest)});
         }
         due = std::move(again);
     }

@@ -408,10 +408,6 @@ VoxelRange ScratchCloud::cells_of(const VoxelRange& range) const {
     return {range.begin >> shift, range.end >> shift, cell_depth_, 0};
 }
 
-std::size_t ScratchCloud::points_of(MortonCode cell) const {
-    return std::ranges::lower_bound(cells_, cell, {}, &ScratchPoints::Cell::code)->points;
-}
-
 /// Points of a cell within so many voxels of the range.
 std::vector<PointRow> ScratchCloud::rows_near(MortonCode cell, const VoxelRange& range, int ghost) const {
     std::vector<PointRow> rows;
@@ -424,6 +420,7 @@ std::vector<PointRow> ScratchCloud::rows_near(MortonCode cell, const VoxelRange&
         if (at != voxel) voxel = at, is_near = range.is_near(morton_decode(voxel), ghost);
         return !is_near;
     });
+    rows.shrink_to_fit(); // often a corner of the cell
     return rows;
 }
 
@@ -565,7 +562,7 @@ void ScratchCloud::take(ScratchCloud&& next) {
     has_normals_ = next.has_normals_;
     arranged_ = next.arranged_, in_order_ = next.in_order_;
     begins_ = std::move(next.begins_), cells_ = std::move(next.cells_);
-    fetched_ = {}, left_out_ = {};
+    fetched_ = std::vector<MortonCode>(), left_out_ = std::vector<PointRow>();
     ++version_;
 }
 

@@ -8,6 +8,7 @@
 #include "hsdm/pipeline/reconstruct_in_tiles.hh"
 #include "hsdm/pipeline/voxel_range.hh"
 
+#include <algorithm>
 #include <memory>
 
 namespace hsdm {
@@ -139,7 +140,9 @@ private:
     Octree first_octree(const std::vector<CellRows>& parts, std::size_t points) const;
     Octree arranged_octree(const std::vector<CellRows>& parts, std::size_t points) const;
     Octree octree_of(std::vector<CellRows> parts) const;
-    std::size_t points_of(MortonCode cell) const;
+    std::size_t points_of(MortonCode cell) const {
+        return std::ranges::lower_bound(cells_, cell, {}, &ScratchPoints::Cell::code)->points;
+    }
     std::vector<PointRow> rows_near(MortonCode cell, const VoxelRange& range, int ghost) const;
     /// By one of so many of this rank's points.
     void divide(std::span<const Vec3> sample, std::size_t stride);
