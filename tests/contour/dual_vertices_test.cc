@@ -172,7 +172,8 @@ TEST_CASE("three vertices and more of one closed chain have a cap, which runs ag
 TEST_CASE("dual vertices do not depend on the number of threads", "[contour]") {
     const Stages many(thin_plate(), 8000, 4);
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    const DualVertices single = build_dual_vertices(many.grid, many.crossings, many.sets, many.h(), many.links);
+    const DualVertices single =
+        build_dual_vertices(many.grid, many.crossings, many.sets, many.h(), many.links);
     CHECK(many.duals.corners == single.corners);
     CHECK(many.duals.first == single.first);
     CHECK(many.duals.of_corner == single.of_corner);
