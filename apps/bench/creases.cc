@@ -66,8 +66,9 @@ double marked_of(double radius, double voxel, NormalSource normals, double noise
 }
 
 /// With given normals, with estimated ones, with noise.
-constexpr std::array normal_columns{std::pair(NormalSource::given, 0.0), std::pair(NormalSource::estimate, 0.0),
-                             std::pair(NormalSource::given, 0.1)};
+constexpr std::array normal_columns{std::pair(NormalSource::given, 0.0),
+                                    std::pair(NormalSource::estimate, 0.0),
+                                    std::pair(NormalSource::given, 0.1)};
 
 void print_found(const support::EdgedSolid& part, double fold, double voxel, std::uint64_t poses) {
     for (const auto& [normals, noise] : normal_columns) {

@@ -152,7 +152,8 @@ void make_links(Work& w) {
         pair();
 }
 void make_vertices(Work& w) {
-    w.dual.duals = build_dual_vertices(w.dual.grid, w.dual.crossings, w.sets, w.level.voxel_size, w.dual.links);
+    w.dual.duals =
+        build_dual_vertices(w.dual.grid, w.dual.crossings, w.sets, w.level.voxel_size, w.dual.links);
     w.checksum += static_cast<double>(open_all_webs(w.sets, w.level.voxel_size, w.dual));
 }
 void place(Work& w) {

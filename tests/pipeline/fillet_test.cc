@@ -59,7 +59,10 @@ Part coarse_part(const support::Solid& solid, const support::SampleOptions& opti
     constexpr int depth = 6;
     Part part{build_octree(support::sample(solid, options)), {}, 0};
     const OctreeLevel level = extract_level(part.octree, depth);
-    const PolygonMesh fine = dual_contour(part.octree, level, build_normal_sets(part.octree, level)).mesh;
+    DualContourOptions how;
+    how.flat_corners = false; // as for every adaptive grid
+    const PolygonMesh fine =
+        dual_contour(part.octree, level, build_normal_sets(part.octree, level), how).mesh;
     part.error = share * part.octree.bounds.diagonal();
     part.coarse = simplify(fine, part.octree.positions, part.octree.extent, depth, {.max_error = part.error});
     for (Vec3& p : part.coarse.mesh.positions) p += part.octree.origin;

@@ -76,8 +76,7 @@ private:
     /// Does a set lie near a face, and its plane between two crossings and the tip where their planes meet
     /// there?
     bool is_cut_off(const Crossing& x, const Crossing& y, const LinkFace& face, const NormalSet& set) const {
-        if (!lies_between(x.normal, set.normal, y.normal)
-            || !is_flat_between(grid_, x, set, y, voxel_size_))
+        if (!lies_between(x.normal, set.normal, y.normal) || !is_flat_between(grid_, x, set, y, voxel_size_))
             return false;
         const Vec3 from = crossing_position(grid_, x, 1), to = crossing_position(grid_, y, 1);
         const Vec3 centroid = set.centroid / voxel_size_;

@@ -429,7 +429,8 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     std::vector<Index> far;
     const std::vector<EdgeCollapse> to_corners = build_facets(octree, level, sets, options, far, result);
     result.corners_merged = merge_corners(to_corners, result.mesh, result.classes);
-    result.flat_corners = collapse_flat_corners(sheets::plane_error * h, result.classes, result.mesh);
+    if (options.flat_corners)
+        result.flat_corners = collapse_flat_corners(sheets::plane_error * h, result.classes, result.mesh);
     result.splinters = leave_out_splinters(level, options, 0, result);
     // Links and splinters are found once, for as long as facets stay as they are.
     bool edited = false;

@@ -96,8 +96,8 @@ struct Cut {
 /// the rim, else in a facet of the rim's own face, between the sides.
 class ChainCutter {
 public:
-    ChainCutter(const GridPoints& grid, const Crossings& crossings, const NormalSets& sets, const Links& links,
-                double voxel_size)
+    ChainCutter(const GridPoints& grid, const Crossings& crossings, const NormalSets& sets,
+                const Links& links, double voxel_size)
         : grid_(grid), crossings_(crossings), sets_(sets), links_(links), voxel_size_(voxel_size) {}
 
     void cut(const Chain& chain, Cut& result) {

@@ -40,6 +40,7 @@ DualContourOptions options_for(const MethodInput& in, double spacing) {
     const double spacing_in_voxels = spacing / in.level.voxel_size;
     DualContourOptions result;
     result.fill = in.options.holes != Holes::keep;
+    result.flat_corners = !wants_adaptive(in.options); // strips of an adaptive grid keep to rows of voxels
     if (in.options.holes == Holes::close) {
         result.holes = every_hole;
     } else {
