@@ -429,8 +429,6 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     std::vector<Index> far;
     const std::vector<EdgeCollapse> to_corners = build_facets(octree, level, sets, options, far, result);
     result.corners_merged = merge_corners(to_corners, result.mesh, result.classes);
-    if (options.flat_corners)
-        result.flat_corners = collapse_flat_corners(sheets::plane_error * h, result.classes, result.mesh);
     result.splinters = leave_out_splinters(level, options, 0, result);
     // Links and splinters are found once, for as long as facets stay as they are.
     bool edited = false;
@@ -472,6 +470,10 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
     if (result.splinters.count + result.tunnels_opened > 0) remove_isolated_vertices(result.mesh);
     result.drawn_in = draw_in_spikes(octree, level, result.voxel, result.mesh);
     result.reached = reach_points(octree, level, result.voxel, far, result.mesh);
+    // After all that decides topology by numbers of facets, so that it is the same either way.
+    if (options.flat_corners)
+        result.flat_corners =
+            changed(collapse_flat_corners(sheets::plane_error * h, result.classes, result.mesh));
     changed(collapse_flat_facets(octree.origin, result.mesh));
     if (options.part.is_part())
         untangle_share(octree.origin, h, options, result);
