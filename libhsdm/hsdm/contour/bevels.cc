@@ -111,9 +111,8 @@ bool lies_between(const Vec3& a, const Vec3& c, const Vec3& b) {
 bool is_flat_between(const GridPoints& grid, const Crossing& a, const NormalSet& set, const Crossing& b,
                      double voxel_size) {
     const Vec3 bend = b.normal - a.normal;
-    const double size = bend.norm();
     const Vec3 way = crossing_position(grid, b, voxel_size) - crossing_position(grid, a, voxel_size);
-    return is_nearer_to_flat(set.turn, set.spread.along(bend / size), size, (way | bend) / size);
+    return is_nearer_to_flat(set.turn, set.spread.along(bend), way | bend);
 }
 
 std::size_t mark_bevels(const GridPoints& grid, const Crossings& crossings, const NormalSets& sets,

@@ -99,7 +99,7 @@ bool are_flat(std::span<const CreaseSample> samples, std::span<const std::uint8_
     const double weight = faces[0].weight + faces[1].weight;
     const double way = (faces[1].position - faces[0].position) | bend;
     return scatter <= std::pow(blunt_creases::most_scatter * size, 2) * weight
-           && is_nearer_to_flat(turn, extent, size, way);
+           && is_nearer_to_flat(turn, extent * size, way);
 }
 
 } // namespace

@@ -33,10 +33,10 @@ struct BluntCrease {
 };
 
 /// Do normals turn less along a face than halfway to how they would on a round surface? `turn` is its
-/// NormalSet::turn and `extent` the variance of its points, both along the bend, over which normals change by
-/// `size` on a way of `way`.
-inline bool is_nearer_to_flat(double turn, double extent, double size, double way) {
-    return turn * way <= 0.5 * extent * size;
+/// NormalSet::turn; `extent` the variance of its points and `way` the way from one face to the other, both
+/// along the difference of the two normals, not of unit length.
+inline bool is_nearer_to_flat(double turn, double extent, double way) {
+    return turn * way <= 0.5 * extent;
 }
 
 /// Do samples of one sheet lie on two faces that meet in a crease? Their normals fall into two groups with

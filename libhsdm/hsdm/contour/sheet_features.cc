@@ -160,12 +160,10 @@ private:
     /// Is the set, or with noise what has its normal in these voxels, rather flat than round?
     bool is_flat(const NormalSet& one, const Fold& fold, const Vec3& from_one_to_other,
                  std::span<const Index> voxels) const {
-        Vec3 bend = fold.to - fold.from;
-        const double size = bend.norm();
-        bend /= size;
+        const Vec3 bend = fold.to - fold.from;
         const double way = from_one_to_other | bend;
-        if (is_nearer_to_flat(one.turn, one.spread.along(bend), size, way)) return true;
-        const double near = 1 - 0.5 * edge_hints::end_band * edge_hints::end_band * size * size;
+        if (is_nearer_to_flat(one.turn, one.spread.along(bend), way)) return true;
+        const double near = 1 - 0.5 * edge_hints::end_band * edge_hints::end_band * bend.sqrnorm();
         double turn = 0, extent = 0;
         for (const Index v : voxels)
             for (const NormalSet& set : sets_.of_voxel(v)) {
@@ -173,7 +171,7 @@ private:
                 turn += set.count * set.turn;
                 extent += set.count * set.spread.along(bend);
             }
-        return is_nearer_to_flat(turn, extent, size, way);
+        return is_nearer_to_flat(turn, extent, way);
     }
 
     const OctreeLevel& level_;

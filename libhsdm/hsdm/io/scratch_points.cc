@@ -79,8 +79,7 @@ std::vector<Index> ScratchPoints::places_of_blocks() {
 }
 
 void ScratchPoints::flush() {
-    constexpr std::size_t at_once = std::size_t{1}
-                                    << 15; // rows, that are put in order beside those that wait
+    constexpr std::size_t at_once = 1u << 15; // rows that are put in order beside those that wait
     std::vector<Index> place = places_of_blocks(), order = unwritten_vector<Index>(waiting_.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[place[waiting_in_[i]]++] = static_cast<Index>(i);
     std::vector<PointRow> rows;

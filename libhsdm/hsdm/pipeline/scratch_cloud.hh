@@ -67,8 +67,8 @@ public:
     int owner_of(const VoxelRange& range) const { return owner(cells_of(range).begin); }
     /// Where ranks begin that have cells, but for the first of them; ascending.
     std::vector<MortonCode> borders() const;
-    std::size_t points_before()
-        const; ///< of ranks before this one, those left out too, and duplicates until they are sorted
+    /// Of ranks before this one, those left out too, and duplicates until they are sorted.
+    std::size_t points_before() const;
     std::size_t points_here() const; ///< the same of this rank
     int depth() const { return depth_; }
     int cell_depth() const { return cell_depth_; }
