@@ -24,45 +24,42 @@ struct MiddleDisc {
 /// others: on which sides of the discs a place lies and which stand on a surface is looked up once.
 class MiddleDiscs {
 public:
-    struct Place {
-        std::size_t number;
-        const Vec3& position;
-    };
     struct Surface {
         std::size_t number;
         const Vec3& normal;
     };
 
-    /// Without discs, for so many places and surfaces, all within a few voxels of one of these places.
-    void reset(std::size_t places, std::size_t surfaces, const Vec3& amid, double voxel_size);
-    /// Before the first question.
-    void add(const MiddleDisc& disc) { discs_.push_back(disc); }
-    bool empty() const { return discs_.empty(); }
+    /// Without discs. Places, which must outlive the questions, and so many surfaces, all within a few voxels
+    /// of `amid`.
+    void reset(std::span<const Vec3> places, std::size_t surfaces, const Vec3& amid, double voxel_size);
+    /// Discs seen from one sheet, of one normal. Before the first question.
+    void add(std::span<const MiddleDisc> discs);
 
     /// Does any wall or gap stand on a surface: across it rather than along it?
-    bool stand_on(const Surface& surface);
-    /// Does one that stands on a surface part two places on it?
-    bool part(const Place& p, const Place& q, const Surface& surface) { return part(p, q, {&surface, 1}); }
-    /// The same of any of these surfaces, two at most: what discs the way crosses is found once for both.
-    bool part(const Place& p, const Place& q, std::span<const Surface> surfaces);
+    bool stand_on(const Surface& surface) { return standing(surface) != nullptr; }
+    /// Does one that stands on one of these surfaces, two at most, part two places, by their numbers, on it?
+    bool part(std::size_t p, std::size_t q, std::span<const Surface> surfaces);
 
 private:
     using Word = std::uint64_t; ///< a bit for each of 64 discs
     class Question;
 
     void lay_out();
-    const Word* sides(const Place& place);
+    void lay_out(std::size_t disc);
+    const Word* sides(std::size_t place);
     const Word* standing(const Surface& surface);
 
     const DiscLanes& lanes_ = disc_lanes().front();
-    std::size_t place_count_ = 0, surface_count_ = 0;
+    std::span<const Vec3> places_;
+    std::size_t surface_count_ = 0;
     Vec3 amid_{0, 0, 0};
     double per_voxel_ = 0;
     std::vector<MiddleDisc> discs_;
-    std::size_t words_ = 0;    // of a row; 0: not laid out yet
-    std::vector<double> flat_; // of 64 discs six rows: of their normals and their middles
-    std::vector<float> near_;  // of 64 discs four rows: of their middles, from amid_, and radii, in voxels
-    std::vector<Word> gaps_;   // a row: those that are no walls
+    std::vector<std::size_t> first_of_sheet_; // discs seen from one sheet lie together
+    std::size_t words_ = 0;                   // of a row; 0: not laid out yet
+    std::vector<double> flat_;                // of 64 discs six rows: of their normals and their middles
+    std::vector<float> near_; // of 64 discs four rows: of their middles, from amid_, and radii, in voxels
+    std::vector<Word> gaps_;  // a row: those that are no walls
     std::vector<Word> sides_, standing_; // a row for each place, for each surface
     enum class Known : std::uint8_t { no, yes, none };
     std::vector<Known> has_sides_, has_standing_; // none: known that it has no bit

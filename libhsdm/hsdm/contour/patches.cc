@@ -13,16 +13,25 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <optional>
 
 namespace hsdm {
 namespace {
 
+/// The discs of walls and gaps, by the sets that bound these: those of set s are all[first[s]] ..
+/// all[first[s + 1]].
+struct SetDiscs {
+    std::vector<MiddleDisc> all;
+    std::vector<Index> first;
+};
+
 /// Working space of one thread.
 struct PatchScratch {
-    std::vector<Index> sets; // of the voxel and its neighbours, the voxel's own first
-    std::vector<Vec3> samples;
+    std::vector<Index> sets;   // of the voxel and its neighbours, the voxel's own first
+    std::vector<Index> voxels; // the voxel and its neighbours
+    std::vector<Vec3> samples; // then the centroids of the sets
     std::vector<Index> first_sample;
     std::vector<double> spacings;        // per set; below 0: not measured yet
     std::vector<std::uint8_t> one_sheet; // per set a row of all, from has_row on
@@ -33,7 +42,7 @@ struct PatchScratch {
         Double2 cosine;
     };
     std::vector<Facing> facing;
-    MiddleDiscs discs; // its places are the samples, then the centroids of the sets, which are its surfaces
+    MiddleDiscs discs;                             // its places are the samples, its surfaces the sets
     std::vector<std::pair<double, double>> places; // along a crease, and off its plane
     struct NearCrease {
         double along, beyond;
@@ -74,25 +83,33 @@ public:
                  const NormalSets& sets, PatchScratch& scratch)
         : octree_(octree), level_(level), related_(related), sets_(sets), at_(scratch) {}
 
-    /// False if no wall or gap is near.
-    bool gather(Index voxel, bool beside = false) {
+    void gather(Index voxel) {
         at_.sets.clear();
+        at_.voxels.clear();
         add_sets(voxel);
         own_ = at_.sets.size();
         for_neighbors(level_, voxel, [&](Index v) { add_sets(v); });
-        const bool opposed = any_opposed();
-        if (!opposed && !beside) return false;
-        take_samples();
-        at_.discs.reset(at_.samples.size() + size(), size(), set(0).centroid, level_.voxel_size);
+        at_.samples.clear();
         at_.spacings.assign(size(), -1);
         at_.has_row.assign(size(), 0);
         at_.one_sheet.resize(size() * size());
         at_.of_sheet.resize(size() * (size() + 1));
         most_points_ = 0;
         for (std::size_t i = 0; i < size(); ++i) most_points_ = std::max(most_points_, set(i).count);
-        if (!opposed) return false;
-        for (std::size_t i = 0; i < at_.sets.size(); ++i) add_discs(i);
-        return !at_.discs.empty();
+    }
+    /// Is a wall or gap near?
+    bool is_crowded(const SetDiscs& discs) const {
+        return std::ranges::any_of(at_.voxels, [&](Index v) {
+            return discs.first[sets_.first[v]] < discs.first[sets_.first[v + 1]];
+        });
+    }
+    /// What is asked of samples: of those of so many sets.
+    void lay_out(const SetDiscs& discs, std::size_t sampled) {
+        take_samples(sampled);
+        for (std::size_t i = 0; i < size(); ++i) at_.samples.push_back(set(i).centroid);
+        at_.discs.reset(at_.samples, size(), set(0).centroid, level_.voxel_size);
+        for (const Index s : at_.sets)
+            at_.discs.add({discs.all.data() + discs.first[s], discs.all.data() + discs.first[s + 1]});
     }
 
     std::size_t own() const { return own_; }
@@ -103,15 +120,25 @@ public:
         return {at_.samples.data() + at_.first_sample[i], at_.samples.data() + at_.first_sample[i + 1]};
     }
 
+    /// Appends the discs between an own set and the nearest opposite sheets before it and behind it.
+    void add_discs(std::size_t i, std::vector<MiddleDisc>& discs) {
+        find_facing(i);
+        if (at_.facing.empty()) return;
+        const double radius = spacings::beside * spacing(i);
+        if (radius == 0) return;
+        if (at_.samples.empty()) take_samples(own_);
+        for (const Vec3& p : samples(i)) add_discs_at(p, set(i).normal, radius, discs);
+    }
+
     /// Does a wall or gap stand on a set?
     bool has_standing(std::size_t i) const { return at_.discs.stand_on(surface(i)); }
     /// Does one of them part two samples, by their numbers, of a surface with the normal of a set?
     bool parted(std::size_t p, std::size_t q, std::size_t i) const {
-        return at_.discs.part({p, at_.samples[p]}, {q, at_.samples[q]}, surface(i));
+        return at_.discs.part(p, q, std::array{surface(i)});
     }
     /// The same of a surface with the normal of one set or of another.
     bool parted(std::size_t p, std::size_t q, std::size_t i, std::size_t j) const {
-        return at_.discs.part({p, at_.samples[p]}, {q, at_.samples[q]}, std::array{surface(i), surface(j)});
+        return at_.discs.part(p, q, std::array{surface(i), surface(j)});
     }
     std::size_t first_sample(std::size_t i) const { return at_.first_sample[i]; }
 
@@ -170,7 +197,7 @@ public:
                         std::abs(s - here) < far + step) // what is looked up below
                         places.emplace_back(s, outward * (b.normal | (q - b.centroid)));
         std::sort(places.begin(), places.end());
-        const MiddleDiscs::Place middle{at_.samples.size() + i, a.centroid};
+        const std::size_t middle = at_.first_sample.back() + i; // the centroid
         unsigned beyond = 0, before = 0;
         for (const auto& [s, t, sample] : near) {
             double lowest = most, highest = -most;
@@ -182,8 +209,7 @@ public:
             }
             if (lowest > highest) continue; // the other sheet is not there
             before += t < lowest - least;
-            beyond +=
-                t > highest + least && !at_.discs.part(middle, {sample, at_.samples[sample]}, surface(i));
+            beyond += t > highest + least && !parted(middle, sample, i);
         }
         return beyond >= points_of_plane && 2 * beyond >= before;
     }
@@ -192,6 +218,7 @@ private:
     MiddleDiscs::Surface surface(std::size_t i) const { return {i, set(i).normal}; }
 
     void add_sets(Index v) {
+        at_.voxels.push_back(v);
         for (Index s = sets_.first[v]; s < sets_.first[v + 1]; ++s) at_.sets.push_back(s);
     }
 
@@ -199,25 +226,25 @@ private:
         return (a.normal | b.normal) < angles::opposed;
     }
 
-    bool any_opposed() const {
-        for (std::size_t i = 0; i < size(); ++i)
-            for (std::size_t j = i + 1; j < size(); ++j)
-                if (opposed(set(i), set(j))) return true;
-        return false;
+    /// Of a set's points, from one sample to the next.
+    static Index sample_stride(const NormalSet& set) {
+        return static_cast<Index>(chunk_count(set.count, patches::most_samples));
+    }
+    static double sample_count(const NormalSet& set) {
+        return static_cast<double>(chunk_count(set.count, sample_stride(set)));
     }
 
-    /// At most so many points of each set, evenly taken in their order.
-    void take_samples() {
+    /// At most so many points of each of the first sets, evenly taken in their order.
+    void take_samples(std::size_t sets) {
         at_.samples.clear();
         at_.first_sample.assign(1, 0);
-        for (std::size_t i = 0; i < size(); ++i) {
+        for (std::size_t i = 0; i < sets; ++i) {
             const NormalSet& s = set(i);
-            const Index stride = (s.count + patches::most_samples - 1) / patches::most_samples;
             Index skipped = 0; // points of the set until the next sample
             for (Index k = level_.first_point[s.voxel]; k < level_.first_point[s.voxel + 1]; ++k) {
                 if (sets_.of_point[k] != at_.sets[i] || skipped-- > 0) continue;
                 at_.samples.push_back(octree_.positions[k]);
-                skipped = stride - 1;
+                skipped = sample_stride(s) - 1;
             }
             at_.first_sample.push_back(static_cast<Index>(at_.samples.size()));
         }
@@ -231,7 +258,7 @@ private:
         double points = 0, squares = 0;
         Index scanned = 0; // points of the sheet
         for (const std::uint32_t j : sheet_of(i)) {
-            const auto n = static_cast<double>(samples(j).size());
+            const double n = sample_count(set(j));
             points += n;
             squares += n * n;
             scanned += set(j).count;
@@ -262,10 +289,9 @@ private:
                               Double2{from.normal | a.normal, from.normal | b.normal}});
     }
 
-    /// The discs between a set and the nearest opposite sheet before it and behind it.
-    void add_discs(std::size_t i) {
+    /// The sets that face another, two at a time.
+    void find_facing(std::size_t i) {
         const NormalSet& a = set(i);
-        const double h = level_.voxel_size;
         at_.facing.clear();
         std::optional<std::size_t> odd;
         for (std::size_t j = 0; j < size(); ++j) {
@@ -274,26 +300,27 @@ private:
             odd = odd ? std::nullopt : std::optional(j);
         }
         if (odd) add_facing(a, set(*odd), set(*odd)); // twice: two at a time are looked at
-        if (at_.facing.empty()) return;
-        const double radius = spacings::beside * spacing(i);
-        if (radius == 0) return;
-        const double widest = patches::widest * h, beside = sheets::beside * sheets::beside * h * h;
-        for (const Vec3& p : samples(i)) {
-            Double2 behind = Double2{} + widest, front = behind; // the nearest sheets
-            const VectorPair place(p, p), normal(a.normal, a.normal);
-            for (const auto& [facing, centroid, cosine] : at_.facing) {
-                const Double2 t = (facing | (centroid - place)) / cosine;
-                const VectorPair off = place + normal * t - centroid;
-                const Double2 distance = (off | off) > beside ? Double2{} + widest : max_lanes(t, -t);
-                front = min_lanes(t > 0 ? distance : front, front);
-                behind = min_lanes(t > 0 ? behind : distance, behind);
-            }
-            const double nearest[2] = {std::min(behind[0], behind[1]), std::min(front[0], front[1])};
-            for (unsigned before : {0u, 1u})
-                if (nearest[before] < patches::widest * h)
-                    at_.discs.add({p + a.normal * ((before ? 0.5 : -0.5) * nearest[before]), a.normal, p,
-                                   radius * radius, before == 1});
+    }
+
+    /// The discs between a sheet at one of its points and the nearest opposite one behind it and before it.
+    void add_discs_at(const Vec3& p, const Vec3& normal, double radius,
+                      std::vector<MiddleDisc>& discs) const {
+        const double h = level_.voxel_size, widest = patches::widest * h,
+                     beside = sheets::beside * sheets::beside * h * h;
+        Double2 behind = Double2{} + widest, front = behind; // the nearest sheets
+        const VectorPair place(p, p), normals(normal, normal);
+        for (const auto& [facing, centroid, cosine] : at_.facing) {
+            const Double2 t = (facing | (centroid - place)) / cosine;
+            const VectorPair off = place + normals * t - centroid;
+            const Double2 distance = (off | off) > beside ? Double2{} + widest : max_lanes(t, -t);
+            front = min_lanes(t > 0 ? distance : front, front);
+            behind = min_lanes(t > 0 ? behind : distance, behind);
         }
+        const double nearest[2] = {std::min(behind[0], behind[1]), std::min(front[0], front[1])};
+        for (unsigned before : {0u, 1u})
+            if (nearest[before] < widest)
+                discs.push_back({p + normal * ((before ? 0.5 : -0.5) * nearest[before]), normal, p,
+                                 radius * radius, before == 1});
     }
 
     const Octree& octree_;
@@ -310,7 +337,8 @@ private:
 std::size_t connect_samples(const Neighborhood& around, std::size_t i, std::vector<std::uint8_t>& patch) {
     const auto samples = around.samples(i);
     const std::size_t first = around.first_sample(i);
-    patch.resize(samples.size());
+    patch.assign(samples.size(), 0);
+    if (!around.has_standing(i)) return 1;
     return label_components(
         samples.size(), [&](std::size_t k) -> std::uint8_t& { return patch[k]; },
         [&](std::size_t k, std::size_t j) { return !around.parted(first + k, first + j, i); });
@@ -343,7 +371,28 @@ private:
         std::vector<Index> of_point; ///< number within the voxel, or no_index
     };
 
+    SetDiscs find_discs(const std::vector<Index>& voxels) {
+        SetDiscs discs{{}, large_vector<Index>(sets_.sets.size() + 1)};
+        discs.all =
+            collected<MiddleDisc>(voxels.size(), chunks::heavy,
+                                  [&](std::size_t begin, std::size_t end, std::vector<MiddleDisc>& found) {
+                                      Neighborhood around(octree_, level_, related_, sets_, scratch_.local());
+                                      for (std::size_t k = begin; k < end; ++k) {
+                                          around.gather(voxels[k]);
+                                          for (std::size_t i = 0; i < around.own(); ++i) {
+                                              const std::size_t before = found.size();
+                                              around.add_discs(i, found);
+                                              discs.first[around.number(i) + 1] =
+                                                  static_cast<Index>(found.size() - before);
+                                          }
+                                      }
+                                  });
+        counts_to_first(discs.first);
+        return discs;
+    }
+
     void split() {
+        const SetDiscs discs = find_discs(with_neighbors(voxels_));
         std::vector<std::uint8_t> crowded(voxels_.size(), 0);
         std::vector<Split> splits =
             collected<Split>(voxels_.size(), chunks::heavy,
@@ -351,8 +400,10 @@ private:
                                  PatchScratch& scratch = scratch_.local();
                                  Neighborhood around(octree_, level_, related_, sets_, scratch);
                                  for (std::size_t k = begin; k < end; ++k) {
-                                     if (!around.gather(voxels_[k])) continue;
-                                     crowded[k] = 1;
+                                     around.gather(voxels_[k]);
+                                     crowded[k] = around.is_crowded(discs);
+                                     if (!crowded[k]) continue;
+                                     around.lay_out(discs, around.own());
                                      split_voxel(around, voxels_[k], found);
                                  }
                              });
@@ -454,33 +505,43 @@ private:
         sets_.first = std::move(first);
     }
 
-    /// Adds the voxels round those that are crowded: an edge before a face may lie in the next one.
-    void add_neighbors() {
-        std::vector<Index> all = voxels_;
-        for (const Index voxel : voxels_) for_neighbors(level_, voxel, [&](Index v) { all.push_back(v); });
-        std::sort(all.begin(), all.end());
-        all.erase(std::unique(all.begin(), all.end()), all.end());
-        voxels_ = std::move(all);
+    /// These voxels and those round them.
+    std::vector<Index> with_neighbors(const std::vector<Index>& voxels) const {
+        std::vector<std::uint8_t> marked(level_.size(), 0);
+        for_each_index(voxels.size(), chunks::usual, [&](Index k) {
+            const auto mark = [&](Index v) {
+                std::atomic_ref(marked[v]).store(1, std::memory_order_relaxed);
+            };
+            mark(voxels[k]);
+            for_neighbors(level_, voxels[k], mark);
+        });
+        return indices_where(level_.size(), chunks::light, [&](Index v) { return marked[v] != 0; });
+    }
+
+    /// Does one of two sheets go on beyond their crease? Of another voxel's it is asked there: it is known
+    /// best round its own.
+    static bool any_goes_on(Neighborhood& around, std::size_t i, std::size_t j, Relation relation) {
+        if (relation == Relation::smooth) return false;
+        return around.goes_on(i, j, relation) || (j < around.own() && around.goes_on(j, i, relation));
     }
 
     /// Pairs of related sets with a wall or gap between them.
     void note_apart() {
         using Pair = std::array<Index, 2>;
-        add_neighbors();
+        voxels_ = with_neighbors(voxels_); // an edge before a face may lie in the next one
+        const SetDiscs discs = find_discs(with_neighbors(voxels_));
         std::vector<Pair> pairs = collected<Pair>(
             voxels_.size(), chunks::heavy, [&](std::size_t begin, std::size_t end, std::vector<Pair>& found) {
                 PatchScratch& scratch = scratch_.local();
                 Neighborhood around(octree_, level_, related_, sets_, scratch);
                 for (std::size_t k = begin; k < end; ++k) {
-                    around.gather(voxels_[k], true);
+                    around.gather(voxels_[k]);
+                    around.lay_out(discs, around.size());
                     for (std::size_t i = 0; i < around.own(); ++i)
                         for (std::size_t j = i + 1; j < around.size(); ++j) {
                             const Relation relation = related_(around.set(i), around.set(j));
                             if (relation == Relation::none) continue;
-                            if (!around.apart(i, j)
-                                && (relation == Relation::smooth
-                                    || !(around.goes_on(i, j, relation) || around.goes_on(j, i, relation))))
-                                continue;
+                            if (!around.apart(i, j) && !any_goes_on(around, i, j, relation)) continue;
                             found.push_back({around.number(i), around.number(j)});
                             found.push_back({around.number(j), around.number(i)});
                         }
