@@ -163,6 +163,20 @@ TEST_CASE("an empty mesh has nothing of anything", "[topology]") {
 
 TEST_CASE("facet shape is 1 for squares and less for leaning and folded quads", "[topology]") {
     const FacetShape square = measure_shape(unit_cube());
+    PolygonMesh many; // more facets than are measured at once
+    constexpr Index wide = 600, high = 500;
+    for (Index y = 0; y <= high; ++y)
+        for (Index x = 0; x <= wide; ++x) many.positions.emplace_back(2.0 * x, 1.0 * y, 0);
+    for (Index y = 0; y < high; ++y)
+        for (Index x = 0; x < wide; ++x) {
+            const Index v = y * (wide + 1) + x;
+            many.add_facet(std::array{v, v + 1, v + wide + 2, v + wide + 1});
+        }
+    many.add_facet(std::array<Index, 3>{0, 1, wide + 1});
+    const FacetShape of_many = measure_shape(many);
+    CHECK(of_many.quad_share == 300000.0 / 300001);
+    CHECK(of_many.scaled_jacobian_min == 1);
+    CHECK(of_many.edge_length_mean == Approx(1.5).epsilon(1e-5));
     CHECK(square.quad_share == 1);
     CHECK(square.scaled_jacobian_min == Approx(1));
     CHECK(square.edge_length_mean == Approx(1));

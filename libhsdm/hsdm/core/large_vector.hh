@@ -69,6 +69,12 @@ std::vector<T> copy_of_large(const std::vector<T>& values) {
     return copy;
 }
 
+/// Empties vectors and frees their memory, which `= {}` does not.
+template <class... T>
+void release(std::vector<T>&... values) {
+    ((values = std::vector<T>()), ...);
+}
+
 /// Values that need neither a constructor nor a destructor to be there.
 template <class T>
 inline constexpr bool may_be_unwritten =

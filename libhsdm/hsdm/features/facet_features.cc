@@ -33,14 +33,13 @@ public:
     Finder(const PolygonMesh& facets, const FacetLinks& links, const FeatureOptions& options)
         : facets_(facets), links_(links), options_(options) {}
 
-    FacetFeatures find(FeatureHints&& hints, const NormalSmoothingOptions* smoothing) {
+    FacetFeatures find(FeatureHints&& hints) {
         hints_ = std::move(hints.sides);
         found_.corner_angle = options_.corner_angle;
         resize_large(found_.sharp, facets_.corners.size());
         mark();
-        hints_ = {};
+        release(hints_);
         classify();
-        if (smoothing) smooth(*smoothing);
         return std::move(found_);
     }
 
@@ -158,31 +157,6 @@ private:
         });
     }
 
-    void smooth(const NormalSmoothingOptions& options) {
-        std::vector<Vec3>& normals = found_.normals;
-        resize_large(normals, facets_.facet_count());
-        if (options.rounds == 0) {
-            for_each_index(normals.size(), chunks::quick,
-                           [&](Index f) { normals[f] = unit_or_zero(area_of(facets_, f)); });
-            return;
-        }
-        std::vector<double> area = large_vector<double>(normals.size());
-        FacetNeighbours neighbours;
-        neighbours.first = copy_of_large(facets_.first);
-        resize_large(neighbours.neighbour, facets_.corners.size());
-        for_each_index(normals.size(), chunks::quick, [&](Index f) {
-            const Vec3 whole = area_of(facets_, f);
-            area[f] = 0.5 * whole.norm();
-            normals[f] = unit_or_zero(whole);
-            Index slot = facets_.first[f];
-            for_sides(facets_, f, [&](Index c) {
-                neighbours.neighbour[slot++] = found_.sharp[c] ? no_index : across(c);
-            });
-        });
-        for (int round = 0; round < options.rounds; ++round)
-            filter_normals(neighbours, area, options.similarity_angle, options.settled_angle, normals);
-    }
-
     const PolygonMesh& facets_;
     const FacetLinks& links_;
     const FeatureOptions& options_;
@@ -193,10 +167,42 @@ private:
 } // namespace
 
 FacetFeatures find_facet_features(const PolygonMesh& facets, const FacetLinks& links, FeatureHints&& hints,
-                                  const FeatureOptions& options, const NormalSmoothingOptions* smoothing) {
+                                  const FeatureOptions& options) {
     validate(options);
-    if (smoothing) validate(*smoothing);
-    return Finder(facets, links, options).find(std::move(hints), smoothing);
+    return Finder(facets, links, options).find(std::move(hints));
+}
+
+FacetNormals normals_of(const PolygonMesh& facets) {
+    FacetNormals result{unwritten_vector<Vec3>(facets.facet_count()),
+                        unwritten_vector<double>(facets.facet_count())};
+    for_each_index(facets.facet_count(), chunks::quick, [&](Index f) {
+        const Vec3 whole = area_of(facets, f);
+        result.area[f] = 0.5 * whole.norm();
+        result.normals[f] = unit_or_zero(whole);
+    });
+    return result;
+}
+
+FacetNeighbours neighbours_of(const PolygonMesh& facets, const FacetLinks& links,
+                              std::span<const std::uint8_t> sharp) {
+    FacetNeighbours result;
+    result.first = copy_of_large(facets.first);
+    resize_unwritten(result.neighbour, facets.first.back());
+    for_each_index(facets.facet_count(), chunks::quick, [&](Index f) {
+        Index slot = facets.first[f];
+        for_sides(facets, f, [&](Index c) {
+            const Index twin = links.twin[c];
+            result.neighbour[slot++] = sharp[c] || twin == no_index ? no_index : links.facet[twin];
+        });
+    });
+    return result;
+}
+
+void smooth(FacetNormals& normals, const FacetNeighbours& neighbours, const NormalSmoothingOptions& options) {
+    validate(options);
+    for (int round = 0; round < options.rounds; ++round)
+        filter_normals(neighbours, normals.area, options.similarity_angle, options.settled_angle,
+                       normals.normals);
 }
 
 void FacetFan::add(Index end, Index facet, bool sharp) {

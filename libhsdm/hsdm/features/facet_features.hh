@@ -3,6 +3,7 @@
 // normals, bit for bit, as classify_features() and smooth_normals() give the mesh made of them.
 
 #include "hsdm/features/feature_options.hh"
+#include "hsdm/features/normal_filter.hh"
 #include "hsdm/features/sectors.hh"
 #include "hsdm/mesh/facet_links.hh"
 #include "hsdm/mesh/feature_hints.hh"
@@ -18,11 +19,24 @@ struct FacetFeatures {
     FeatureCounts counts;
 };
 
-/// `facets` must have one fan round each vertex, so that of `links` only facet, twin, side_out and open_in
-/// are read. Takes the hints. `smoothing`: null for no normals. O(corners), parallel; at most 80 bytes a
+/// The features, without normals. `facets` must have one fan round each vertex, so that of `links` only
+/// facet, twin, side_out and open_in are read. Takes the hints. O(corners), parallel; at most 60 bytes a
 /// facet beside the result.
 FacetFeatures find_facet_features(const PolygonMesh& facets, const FacetLinks& links, FeatureHints&& hints,
-                                  const FeatureOptions& options, const NormalSmoothingOptions* smoothing);
+                                  const FeatureOptions& options);
+
+/// The normals that are smoothed, and what they are weighted by. In steps, so that what one alone reads need
+/// not be in memory during the others.
+struct FacetNormals {
+    std::vector<Vec3> normals; ///< per facet, unit or (0, 0, 0)
+    std::vector<double> area;  ///< per facet
+};
+FacetNormals normals_of(const PolygonMesh& facets);
+/// Of all facets those across sides that are not sharp; reads `first` of the facets, facet and twin.
+FacetNeighbours neighbours_of(const PolygonMesh& facets, const FacetLinks& links,
+                              std::span<const std::uint8_t> sharp);
+/// Throws OptionError.
+void smooth(FacetNormals& normals, const FacetNeighbours& neighbours, const NormalSmoothingOptions& options);
 
 /// The facets round one vertex after the other, in the same memory: what VertexFanT is on a mesh.
 class FacetFan {

@@ -2,6 +2,8 @@
 
 #include "hsdm/core/chunks.hh"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <bit>
 #include <vector>
@@ -12,10 +14,12 @@ static_assert(std::endian::native == std::endian::little, "binary meshes are wri
 
 void write_chunks(AtomicFile& file, std::size_t count,
                   const std::function<void(std::string& out, std::size_t begin, std::size_t end)>& format) {
-    constexpr std::size_t chunk = 4096, chunks_at_once = 64;
-    std::vector<std::string> texts(std::min(chunks_at_once, (count + chunk - 1) / chunk));
+    constexpr std::size_t chunk = 4096;
+    // Few of a thread, so that they stay in its cache.
+    const std::size_t chunks_at_once = 4 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+    std::vector<std::string> texts(std::min(chunks_at_once, chunk_count(count, chunk)));
     for (std::size_t round = 0; round < count; round += chunk * chunks_at_once) {
-        const std::size_t chunks = std::min(chunks_at_once, (count - round + chunk - 1) / chunk);
+        const std::size_t chunks = std::min(chunks_at_once, chunk_count(count - round, chunk));
         for_each_task(chunks, [&](std::size_t i) {
             const std::size_t begin = round + i * chunk;
             texts[i].clear();

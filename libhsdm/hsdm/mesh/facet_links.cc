@@ -36,6 +36,8 @@ public:
         list_sides_out();
         if (is_contested()) accept_in_order();
         find_twins();
+        find_fan_starts();
+        release(out_); // twins say all the rest
         find_fans();
         return std::move(links_);
     }
@@ -138,13 +140,18 @@ private:
     /// The next side out of the same vertex around the fan, or no_index at its open end.
     Index rotate(Index c) const { return links_.twin[previous_side(facets_, links_.facet[c], c)]; }
 
-    /// Where to start rotating around the vertex so that the whole fan of the side is visited.
-    Index fan_start(Index v) const {
-        const auto sides = sides_out(v);
-        const auto open = std::find_if(sides.begin(), sides.end(), [&](std::uint64_t key) {
-            return links_.twin[side_of(key)] == no_index;
+    /// Per vertex of facets, where to start rotating so that the whole fan of the side is visited.
+    void find_fan_starts() {
+        links_.source = indices_where(facets_.vertex_count(), chunks::light,
+                                      [&](Index v) { return !sides_out(v).empty(); });
+        resize_unwritten(links_.side_out, links_.source.size());
+        for_each_index(links_.source.size(), chunks::quick, [&](Index i) {
+            const auto sides = sides_out(links_.source[i]);
+            const auto open = std::find_if(sides.begin(), sides.end(), [&](std::uint64_t key) {
+                return links_.twin[side_of(key)] == no_index;
+            });
+            links_.side_out[i] = side_of(open == sides.end() ? sides.front() : *open);
         });
-        return side_of(open == sides.end() ? sides.front() : *open);
     }
 
     /// Assigns the fan that starts with side c to the vertex; returns the number of its sides.
@@ -164,20 +171,16 @@ private:
     }
 
     void find_fans() {
-        links_.source = indices_where(facets_.vertex_count(), chunks::light,
-                                      [&](Index v) { return !sides_out(v).empty(); });
         const std::size_t count = links_.source.size();
         assign_large(links_.vertex, facets_.corners.size(), no_index);
-        resize_unwritten(links_.side_out, count);
         resize_unwritten(links_.open_in, count);
-        std::vector<char> several(count, 0);
-        for_each_index(count, chunks::quick, [&](Index i) {
+        const std::vector<Index> several = indices_where(count, chunks::quick, [&](Index i) {
             const Index v = links_.source[i];
-            several[i] = assign_fan(fan_start(v), i) < sides_out(v).size();
+            return assign_fan(links_.side_out[i], i) < first_out_[v + 1] - first_out_[v];
         });
-        for_each_in_order(count, [&](std::size_t i) {
-            if (several[i]) split_vertex(links_.source[i]);
-        });
+        if (several.empty()) return;
+        list_sides_out();
+        for (const Index i : several) split_vertex(links_.source[i]);
     }
 
     /// The first fan has its vertex already; each of the others gets a new one.

@@ -192,9 +192,7 @@ void turn(PolygonMesh& mesh, std::size_t f, FeatureHints& hints) {
     std::reverse(hints.sides.begin() + first, hints.sides.begin() + last - 1);
 }
 
-} // namespace
-
-std::size_t turn_outward(PolygonMesh& mesh, FacetLinks& links, FeatureHints& hints) {
+std::size_t turn_components(PolygonMesh& mesh, const FacetLinks& links, FeatureHints& hints) {
     ComponentVolumes components = find_components(mesh, links);
     const Triangulation cut = triangulate(mesh);
     measure_volumes(mesh, cut, components);
@@ -212,7 +210,16 @@ std::size_t turn_outward(PolygonMesh& mesh, FacetLinks& links, FeatureHints& hin
     for_each_in_order(mesh.facet_count(), [&](std::size_t f) {
         if (turns[components.of_facet[f]]) turn(mesh, f, hints), ++turned;
     });
-    if (turned > 0) links = link_facets(mesh);
+    return turned;
+}
+
+} // namespace
+
+std::size_t turn_outward(PolygonMesh& mesh, FacetLinks& links, FeatureHints& hints) {
+    const std::size_t turned = turn_components(mesh, links, hints);
+    if (turned == 0) return 0;
+    links = FacetLinks(); // its memory first
+    links = link_facets(mesh);
     return turned;
 }
 

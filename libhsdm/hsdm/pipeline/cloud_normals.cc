@@ -241,7 +241,7 @@ WholeEvidence whole_evidence(SideEvidence& all, SignsOfAll& result) {
         push_large(whole.seen, row.sights);
         push_large(whole.beside, row.beside);
     }
-    all.patches = {};
+    release(all.patches);
     for (Sights& sights : whole.seen)
         for (Sight& sight : sights)
             if (sight.patch != no_index) sight.patch = result.place(sight.patch);

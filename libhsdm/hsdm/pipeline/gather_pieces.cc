@@ -1,6 +1,7 @@
 #include "hsdm/pipeline/gather_pieces.hh"
 
 #include "hsdm/core/interruption.hh"
+#include "hsdm/core/large_vector.hh"
 
 #include <utility>
 
@@ -56,7 +57,7 @@ void gather_pieces(std::vector<Piece>& pieces, PieceStore& store,
             ByteReader reader(got);
             Piece& piece = pieces[reader.take<std::size_t>()];
             piece = taken_piece(reader);
-            got = {};
+            release(got);
             store.put(piece);
         }
     }

@@ -72,7 +72,7 @@ private:
         for (; next_run_ < runs_.size() && runs_[next_run_].owner == k; ++next_run_)
             number_foreign(runs_[next_run_]);
         append_large(mesh.positions, piece.positions);
-        piece.positions = {}, piece.codes = {};
+        release(piece.positions, piece.codes);
     }
 
     void number_foreign(const Run& run) {

@@ -1,5 +1,7 @@
 #include "hsdm/pipeline/piece_store.hh"
 
+#include "hsdm/core/large_vector.hh"
+
 namespace hsdm {
 namespace {
 
@@ -12,7 +14,7 @@ void PieceStore::put(Piece& piece) {
     const auto keep = [&](auto& values, std::size_t& count, std::size_t& at) {
         count = values.size();
         at = file_.append(the_pieces, values);
-        values = {};
+        release(values);
     };
     std::size_t firsts = 0, codes = 0;
     keep(piece.positions, place.vertices, place.positions_at);

@@ -63,7 +63,7 @@ std::size_t points_of_tile(const TileOptions& tiles, const Survey& sums, std::si
                     + std::to_string(finished / 1000000)
                     + " MB, which is held in memory; give --memory that much, or a smaller --depth or larger "
                       "--voxel-size"
-                    + (bytes_per_voxel > bytes_per_voxel_of_flat_mesh
+                    + (bytes_per_voxel > bytes_per_voxel_of_parked_mesh
                            ? "; PLY, OFF and STL without --features, --intersections and --strict take less"
                            : ""));
     const auto left = static_cast<double>(tiles.memory - std::min(tiles.memory, mesh + bytes_of_program));
@@ -151,9 +151,19 @@ public:
     template <class Finish>
     auto finish(TileReport& how, const Finish& finish) {
         how_.scratch_bytes = cloud_->bytes() + store_->bytes();
-        const std::size_t mesh = survey_->sums.voxels() * bytes_per_voxel_in_error;
+        const std::size_t voxels = survey_->sums.voxels();
+        const bool parks = bytes_per_voxel_ == bytes_per_voxel_of_parked_mesh
+                           && voxels * bytes_per_voxel_of_flat_mesh + bytes_of_program > tiles_.memory;
+        const ScratchPlace parking{tiles_.scratch};
+        const std::size_t mesh =
+            voxels * (parks ? bytes_per_voxel_parked_in_error : bytes_per_voxel_in_error);
         const double each = bytes_per_error_point(voxels_per_point(survey_->sums));
-        const WholeInput in{*cloud_, *survey_, options_, phases_, points_at_once(tiles_, mesh, each)};
+        const WholeInput in{*cloud_,
+                            *survey_,
+                            options_,
+                            phases_,
+                            points_at_once(tiles_, mesh, each),
+                            parks ? &parking : nullptr};
         decltype(finish(in, std::move(facets_), std::move(report_))) result;
         if (ranks_.is_first())
             result = finish(in, std::move(facets_), std::move(report_));
@@ -423,7 +433,7 @@ FlatReconstruction reconstruct_flat_in_tiles(const PointParts& parts, const Reco
 
 FlatReconstruction reconstruct_flat_in_tiles(const PointParts& parts, const ReconstructOptions& options,
                                              const TileOptions& tiles, Ranks& ranks, TileReport* how) {
-    return run_in_tiles(parts, options, tiles, ranks, how, bytes_per_voxel_of_flat_mesh, finish_whole_flat);
+    return run_in_tiles(parts, options, tiles, ranks, how, bytes_per_voxel_of_parked_mesh, finish_whole_flat);
 }
 
 Reconstruction reconstruct_in_tiles(const PointView& cloud, const ReconstructOptions& options,

@@ -157,7 +157,7 @@ ScratchCloud::ScratchCloud(const PointParts& parts, const CloudExtent& extent, i
     none_.bounds = extent.box;
     for (Vec3& place : extent_.sample) place -= origin();
     divide(extent_.sample, extent_.sample_stride);
-    extent_.sample = {};
+    release(extent_.sample);
     sort_points(parts);
     gather_cells();
 }

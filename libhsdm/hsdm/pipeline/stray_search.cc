@@ -45,7 +45,7 @@ StraySearch::Result StraySearch::leave_out(ScratchCloud& cloud, CloudSurvey& sur
     add_far_cells(cloud);
     refuse_many_strays(ranks.sum(strays_.size()));
     std::vector<PointRow> all = values_of_all(ranks, strays_);
-    strays_ = {};
+    release(strays_);
     if (all.empty()) return {};
     const auto place = [](const PointRow& row) { return Vec3(row[0], row[1], row[2]); };
     const auto in_order = [&](const PointRow& row) {

@@ -3,6 +3,7 @@
 #include "hsdm/contour/sheet_features.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/core/system.hh"
+#include "hsdm/io/parked_arrays.hh"
 #include "hsdm/mesh/turn_outward.hh"
 #include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/pipeline/cloud_distance.hh"
@@ -50,20 +51,29 @@ Occurrences measure_error(const WholeInput& in, const PolygonMesh& facets, Repor
     return off;
 }
 
-/// As drop_and_measure(); `relinked` is called where facets are left out.
+/// As drop_and_measure(); `relinked` is called where facets are left out, `park` for what may wait while the
+/// error is measured.
 void drop_small_and_measure(const WholeInput& in, const MethodInput& method, PolygonMesh& facets,
                             FeatureHints& hints, Report& report, const std::function<void()>& relinked,
-                            const std::function<void()>& note_connectivity) {
+                            const std::function<void()>& note_connectivity,
+                            const std::function<void(ParkedArrays&)>& park) {
     const bool measure = in.options.measure, drop = in.options.min_component.has_value();
+    const auto error = [&] {
+        ParkedArrays waiting(in.parking);
+        park(waiting);
+        const Occurrences left_out = measure_error(in, facets, report);
+        waiting.restore();
+        return left_out;
+    };
     Occurrences off; // of all components; those to be dropped are reported separately
     bool measured = drop && measure;
-    if (measured) off = measure_error(in, facets, report);
+    if (measured) off = error();
     if (drop && drop_small_components(method, facets, hints, report) > 0) measured = false, relinked();
     if (!measure) return;
     if (drop) in.cloud.ranks().of_first(!measured); // those that assist wait for it
     note_connectivity();
     if (!measured) {
-        const Occurrences left_out = measure_error(in, facets, report);
+        const Occurrences left_out = error();
         if (!drop) off = left_out;
     }
     note_dropped("points more than a voxel's diagonal off the mesh", off, in.cloud.frame(), report);
@@ -84,6 +94,7 @@ public:
 
     FlatReconstruction finish() {
         Report::Seconds& seconds = report_.seconds;
+        os::give_back_freed_memory();
         in_.phases.run("whole", 0.55, seconds.facets, [&] {
             check_facets(mesh(), report_);
             note_intersections(in_, intersections_, report_);
@@ -100,7 +111,8 @@ public:
                     note_connectivity();
                     keep_to_manifold();
                     os::give_back_freed_memory();
-                });
+                },
+                [&](ParkedArrays& waiting) { park_links(waiting); });
             if (!in_.options.measure) keep_to_manifold();
         });
         os::give_back_freed_memory();
@@ -142,26 +154,47 @@ private:
         }
         forget_vertices();
     }
-    void forget_vertices() { links().vertex = {}, links().source = {}, links().accepted = {}; }
+    void park_links(ParkedArrays& waiting) {
+        waiting.park(links().facet, links().twin, links().vertex, links().source, links().side_out,
+                     links().open_in, links().accepted, hints_.sides);
+    }
+    void forget_vertices() { release(links().vertex, links().source, links().accepted); }
 
     void face_outward() {
         // this rounds positions; only then can be told how facets face
         for (Vec3& p : mesh().positions) p += in_.cloud.origin();
-        report_.rejected["facets_turned"] = turn_outward(mesh(), links(), hints_);
+        ParkedArrays waiting(in_.parking);
+        waiting.park(links().facet, links().side_out, links().open_in);
+        const std::size_t turned = turn_outward(mesh(), links(), hints_);
+        if (turned == 0) waiting.restore(); // else the links are new
+        report_.rejected["facets_turned"] = turned;
         forget_vertices();
     }
 
     void find_features() {
         FeatureOptions options;
         options.crease_angle = in_.options.crease_angle;
-        const NormalSmoothingOptions smoothing{.rounds = in_.options.normal_smoothing};
-        result_.features = find_facet_features(mesh(), links(), std::move(hints_), options,
-                                               in_.options.vertex_normals ? &smoothing : nullptr);
+        result_.features = find_facet_features(mesh(), links(), std::move(hints_), options);
+        if (in_.options.vertex_normals) smooth_normals();
         const FeatureCounts& counts = result_.features.counts;
         report_.features.sharp_edges = counts.sharp_edges;
         report_.features.smooth_vertices = counts.smooth_vertices;
         report_.features.edge_vertices = counts.edge_vertices;
         report_.features.corner_vertices = counts.corner_vertices;
+    }
+
+    void smooth_normals() {
+        FacetNormals normals = normals_of(mesh());
+        ParkedArrays waiting(in_.parking);
+        waiting.park(mesh().positions, mesh().corners, links().side_out, links().open_in);
+        {
+            const FacetNeighbours neighbours = neighbours_of(mesh(), links(), result_.features.sharp);
+            waiting.park(links().facet, links().twin);
+            smooth(normals, neighbours, {.rounds = in_.options.normal_smoothing});
+        }
+        release(normals.area);
+        result_.features.normals = std::move(normals.normals);
+        waiting.restore();
     }
 
     const WholeInput& in_;
@@ -202,7 +235,7 @@ Reconstruction finish_whole(const WholeInput& in, WholeFacets&& facets, Report&&
                 [&](PolygonMesh& mesh, FacetKnowledge& known, Report& of) {
                     drop_small_and_measure(
                         in, method, mesh, known.hints, of, [&] { known.links.reset(); },
-                        [&] { note_topology(mesh, known.links, of); });
+                        [&] { note_topology(mesh, known.links, of); }, [](ParkedArrays&) {});
                 });
     return result;
 }

@@ -25,12 +25,14 @@ struct WholeInput {
     const ReconstructOptions& options;
     const Phases& phases;
     std::size_t group_points = 0; ///< at once, for the error
+    /// Where arrays of the mesh wait while nothing reads them; null: in memory.
+    const ScratchPlace* parking = nullptr;
 };
 
 /// What is left once there are facets: slits, what is unsound, the error, features. Throws Error if something
 /// was taken for granted of the whole that is not so; Cancelled.
 Reconstruction finish_whole(const WholeInput& in, WholeFacets&& facets, Report&& report);
-/// The same in flat arrays, of which at most 170 bytes a vertex are there at once.
+/// The same in flat arrays, of which at most 170 bytes a vertex are in memory at once, with parking 120.
 FlatReconstruction finish_whole_flat(const WholeInput& in, WholeFacets&& facets, Report&& report);
 
 } // namespace hsdm

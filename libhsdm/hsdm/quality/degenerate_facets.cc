@@ -71,6 +71,7 @@ Occurrences drop_degenerate_facets(PolygonMesh& mesh, const Vec3& origin, const 
     if (std::find(unsound.begin(), unsound.end(), 1) == unsound.end()) return {};
     const Occurrences dropped =
         remove_facets(mesh, hints.sides, [&](std::size_t f) { return unsound[f] != 0; });
+    links = FacetLinks(); // its memory first
     links = link_facets(mesh);
     return dropped;
 }
