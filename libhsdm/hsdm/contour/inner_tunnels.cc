@@ -5,6 +5,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
+#include "hsdm/mesh/part_of.hh"
 #include "hsdm/mesh/remove_facets.hh"
 
 #include <algorithm>
@@ -122,7 +123,7 @@ struct FacetRound {
 /// The facets round vertices.
 class Stars {
 public:
-    Stars(const PolygonMesh& mesh, std::span<const Index> vertices) : mesh_(mesh) {
+    Stars(const PolygonMesh& mesh, std::span<const Index> vertices) {
         std::vector<std::uint8_t> marked = large_vector<std::uint8_t>(mesh.vertex_count(), 0);
         for (const Index v : vertices) marked[v] = 1;
         for_each_in_order(mesh.facet_count(), [&](std::size_t f) {
@@ -143,31 +144,7 @@ public:
         return facets;
     }
 
-    /// The border of some facets, the way they run; empty if it is not one ring that passes no vertex twice.
-    std::vector<Index> ring(std::span<const Index> facets) const {
-        std::vector<std::array<Index, 2>> sides, border;
-        for (const Index f : facets) {
-            const auto corners = mesh_.facet(f);
-            for (std::size_t k = 0; k < corners.size(); ++k)
-                sides.push_back({corners[k], corners[(k + 1) % corners.size()]});
-        }
-        std::ranges::sort(sides);
-        for (const auto& [from, to] : sides)
-            if (!std::ranges::binary_search(sides, std::array{to, from})) border.push_back({from, to});
-        std::vector<Index> result;
-        for (Index at = border.empty() ? no_index : border[0][0]; result.size() < border.size();) {
-            const auto side = std::ranges::lower_bound(border, std::array<Index, 2>{at, 0});
-            if (side == border.end() || (*side)[0] != at || (side + 1 != border.end() && side[1][0] == at))
-                return {};
-            result.push_back(at);
-            at = (*side)[1];
-            if (at == result.front()) break;
-        }
-        return result.size() == border.size() ? result : std::vector<Index>();
-    }
-
 private:
-    const PolygonMesh& mesh_;
     std::vector<FacetRound> round_; // ascending
 };
 
@@ -220,11 +197,11 @@ struct TunnelEnd {
 };
 using TunnelEnds = std::array<TunnelEnd, 2>;
 
-TunnelEnd end_of(const Stars& stars, ChainVertices chain) {
+TunnelEnd end_of(const PolygonMesh& mesh, const Stars& stars, ChainVertices chain) {
     std::vector<Index> vertices(chain.end - chain.first);
     std::iota(vertices.begin(), vertices.end(), chain.first);
     TunnelEnd end{stars.facets_round(vertices), {}};
-    end.ring = stars.ring(end.facets);
+    end.ring = border_of(mesh, end.facets);
     return end;
 }
 
@@ -264,7 +241,7 @@ std::size_t open_inner_tunnels(std::span<const InnerTunnel> tunnels, PolygonMesh
     std::vector<TunnelEnds> ends;
     std::vector<Index> of_rings;
     for (const InnerTunnel& tunnel : tunnels) {
-        ends.push_back({end_of(stars, tunnel[0]), end_of(stars, tunnel[1])});
+        ends.push_back({end_of(mesh, stars, tunnel[0]), end_of(mesh, stars, tunnel[1])});
         for (const TunnelEnd& end : ends.back())
             of_rings.insert(of_rings.end(), end.ring.begin(), end.ring.end());
     }

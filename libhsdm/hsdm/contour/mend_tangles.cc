@@ -5,6 +5,7 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/collapse_edges.hh"
 #include "hsdm/mesh/facet_unions.hh"
+#include "hsdm/mesh/part_of.hh"
 #include "hsdm/mesh/remove_facets.hh"
 #include "hsdm/mesh/split_polygon.hh"
 #include "hsdm/quality/topology.hh"
@@ -36,31 +37,16 @@ public:
 
     /// The vertices of the border in order; `within` becomes the others. Empty if the facets are no disc.
     std::vector<Index> border(std::vector<Index>& within) const {
-        std::vector<std::array<Index, 2>> sides;
+        std::vector<Index> vertices;
         for (const Index f : facets_) {
             const auto ring = mesh_.facet(f);
-            for (std::size_t i = 0; i < ring.size(); ++i)
-                sides.push_back({ring[i], ring[(i + 1) % ring.size()]});
+            vertices.insert(vertices.end(), ring.begin(), ring.end());
         }
-        std::ranges::sort(sides);
-        std::vector<std::array<Index, 2>> outer;
-        std::vector<Index> vertices;
-        for (const auto& [a, b] : sides) {
-            vertices.push_back(a);
-            if (!std::ranges::binary_search(sides, std::array{b, a})) outer.push_back({a, b});
-        }
+        const std::size_t sides = vertices.size();
         sort_unique(vertices);
-        const std::size_t edges = (sides.size() + outer.size()) / 2;
-        if (vertices.size() + facets_.size() != edges + 1) return {};
-        std::vector<Index> loop;
-        for (Index at = outer.empty() ? no_index : outer[0][0]; loop.size() < outer.size();) {
-            const auto next = std::ranges::lower_bound(outer, std::array{at, Index(0)});
-            if (next == outer.end() || (*next)[0] != at) return {};
-            loop.push_back(at);
-            at = (*next)[1];
-            if (at == loop[0]) break;
-        }
-        if (loop.size() != outer.size()) return {};
+        const std::vector<Index> loop = border_of(mesh_, facets_);
+        const std::size_t edges = (sides + loop.size()) / 2;
+        if (loop.empty() || vertices.size() + facets_.size() != edges + 1) return {};
         std::vector<Index> sorted = loop;
         std::ranges::sort(sorted);
         within.clear();

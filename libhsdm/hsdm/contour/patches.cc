@@ -51,7 +51,7 @@ public:
     };
 
     void offer(const Way& way) {
-        if (count_ == patches::ways) {
+        if (count_ == nearest_asked) {
             if (!(way.squared_length < ways_[count_ - 1].squared_length)) return;
             --count_;
         }
@@ -62,7 +62,7 @@ public:
     std::span<const Way> found() const { return {ways_.data(), count_}; }
 
 private:
-    std::array<Way, patches::ways> ways_;
+    std::array<Way, nearest_asked> ways_;
     std::size_t count_ = 0;
 };
 
@@ -458,8 +458,7 @@ private:
     void add_neighbors() {
         std::vector<Index> all = voxels_;
         for (const Index voxel : voxels_) for_neighbors(level_, voxel, [&](Index v) { all.push_back(v); });
-        std::sort(all.begin(), all.end());
-        all.erase(std::unique(all.begin(), all.end()), all.end());
+        sort_unique(all);
         voxels_ = std::move(all);
     }
 

@@ -86,10 +86,6 @@ HSDM_TUNED double most_distance = 8;
 /// from point to point.
 HSDM_TUNED double most_angle = 0.79;
 
-/// share: of the distance of two points, that one may rise over the other's plane.
-/// Why: by trial; 20 degrees, the half of a bend of 40.
-HSDM_TUNED double most_rise = 0.35;
-
 } // namespace hsdm::normal_outliers
 
 // noise.hh, and what noise does not explain
@@ -144,10 +140,6 @@ HSDM_TUNED double steady_radius = 6;
 /// voxels: to a radius, of the sums over voxels that surroundings are.
 /// Why: by trial; one is too coarse for a round weight, three take three times as long.
 HSDM_TUNED std::int32_t reach = 2;
-
-/// rounds: of moving all points onto their planes, with the noise that the moves say.
-/// Why: bounds the work.
-inline constexpr int most_rounds = 4;
 
 /// share: of the noise that was thought; found less, all is done again.
 /// Why: by trial; a twentieth makes no difference.
@@ -319,10 +311,6 @@ HSDM_TUNED double least = 0.14;
 // mend_normals.hh
 namespace hsdm::contradictions {
 
-/// sine: of the rise of a chord out of a plane that both points are on.
-/// Why: 12 degrees; by trial.
-inline constexpr double flattest = 0.2;
-
 /// sine: added to noise.deviations times the mean rise of flat pairs; what rises less is on one plane.
 /// Why: half a degree, for clouds without noise.
 inline constexpr double added_rise = 0.01;
@@ -333,12 +321,8 @@ inline constexpr double added_rise = 0.01;
 inline constexpr std::size_t flat_per_steep = 10;
 
 /// pairs: that contradict each other at least.
-/// Why: by trial; outliers cause some.
-inline constexpr std::size_t fewest = 10;
-
-/// pairs: opposed ones on one plane, of normals that were estimated, that leave their sides in doubt.
 /// Why: a point is in four pairs, so that one stray does not make five.
-inline constexpr std::size_t fewest_of_estimated = 5;
+inline constexpr std::size_t fewest = 5;
 
 /// pairs: flat ones to each that is opposed.
 /// Why: 0.05 %; measured clouds with right normals have less than 0.02 %.

@@ -1,6 +1,7 @@
 #include "hsdm/simplify/developable_regions.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/parallel_sort.hh"
 #include "hsdm/simplify/constants.hh"
 
@@ -54,7 +55,7 @@ DevelopableRegion grow(const FacetField& field, Index seed, const std::vector<In
     region.axis.cosine = region.axis.direction | field.mean_normal[seed];
     seen[seed] = 1;
     NormalSum normals;
-    std::size_t refit = developable::first_refit;
+    std::size_t refit = flat_ground::least_facets;
     for (std::size_t next = 0; next < region.facets.size(); ++next) {
         if (next % chunks::quick == 0) Interruption::poll();
         const Index f = region.facets[next];
@@ -100,7 +101,7 @@ std::vector<DevelopableRegion> find_developable_regions(const FacetField& field,
             return;
         regions.push_back(std::move(region));
         for (Index f : trimmed)
-            if (++trims[f] <= developable::most_trims) seen[f] = 0; // free for another region
+            if (++trims[f] <= repeats::twice) seen[f] = 0; // free for another region
     });
     return regions;
 }
