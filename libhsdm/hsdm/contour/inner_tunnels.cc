@@ -5,9 +5,9 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
-#include "hsdm/mesh/facets_at.hh"
 #include "hsdm/mesh/part_of.hh"
 #include "hsdm/mesh/remove_facets.hh"
+#include "hsdm/mesh/vertex_neighbors.hh"
 
 #include <algorithm>
 #include <iterator>

@@ -5,10 +5,10 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/collapse_edges.hh"
 #include "hsdm/mesh/facet_unions.hh"
-#include "hsdm/mesh/facets_at.hh"
 #include "hsdm/mesh/part_of.hh"
 #include "hsdm/mesh/remove_facets.hh"
 #include "hsdm/mesh/split_polygon.hh"
+#include "hsdm/mesh/vertex_neighbors.hh"
 #include "hsdm/quality/topology.hh"
 
 #include <algorithm>

@@ -4,8 +4,8 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/mesh/area_vector.hh"
-#include "hsdm/mesh/facets_at.hh"
 #include "hsdm/mesh/part_of.hh"
+#include "hsdm/mesh/vertex_neighbors.hh"
 #include "hsdm/spatial/self_intersections.hh"
 
 #include <algorithm>
