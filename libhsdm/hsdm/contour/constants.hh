@@ -207,6 +207,15 @@ HSDM_TUNED int longest_outline = 20;
 
 } // namespace hsdm::pairing
 
+// dual_vertices.hh
+namespace hsdm::cuts {
+
+/// voxels: a narrower face between two sides is none; one vertex serves both its creases.
+/// Why: by trial; as small as the noise of a crossing.
+inline constexpr double least_width = 0.05;
+
+} // namespace hsdm::cuts
+
 // place_vertices.hh
 namespace hsdm::placement {
 
@@ -224,8 +233,7 @@ HSDM_TUNED double least_singular = 0.003;
 /// Why: below least_singular, so that it outweighs no plane.
 HSDM_TUNED double hold = 0.002;
 
-/// voxels: half the least distance between two sides cut apart; a face between them that is narrower than
-/// that distance is none, and one vertex serves both its creases.
+/// voxels: half the least distance between two sides cut apart.
 /// Why: by trial; facets between them keep an area.
 HSDM_TUNED double side_gap = 0.02;
 

@@ -207,7 +207,7 @@ private:
         for (std::size_t step = 1; step < steps; ++step) {
             const std::size_t off = 2 * step > steps ? 2 * step - steps : steps - 2 * step;
             const std::size_t corner = (i + step) % n;
-            if (off < best_off && width(chain.corners[corner], a, b) > 2 * placement::side_gap)
+            if (off < best_off && width(chain.corners[corner], a, b) > cuts::least_width)
                 best = 2 * corner, best_off = off;
         }
         return best;

@@ -70,6 +70,10 @@ namespace hsdm::spikes {
 /// Why: half of a voxel's diagonal: a vertex whose voxel the sampling missed has points beside it.
 inline constexpr double farthest = 0.87;
 
+/// rounds: half of the way to the mean of the neighbours in each.
+/// Why: bounds the work; where there are points to come near to, ten are enough.
+inline constexpr int rounds = 30;
+
 } // namespace hsdm::spikes
 
 // which holes dual_contour.hh closes

@@ -2,7 +2,6 @@
 
 #include "hsdm/contour/constants.hh"
 #include "hsdm/core/chunks.hh"
-#include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/vertex_neighbors.hh"
 #include "hsdm/octree/constants.hh"
@@ -76,7 +75,7 @@ std::size_t draw_in_spikes(const Octree& octree, const OctreeLevel& level, std::
     for (const Index v : far) marked[v] = 1;
     const VertexNeighbors neighbors(mesh, marked);
     std::vector<Vec3> moved;
-    for (int round = 0; round < enough_rounds && !far.empty(); ++round) {
+    for (int round = 0; round < spikes::rounds && !far.empty(); ++round) {
         moved.resize(far.size());
         for_each_index(far.size(), chunks::heavy, [&](Index i) {
             const auto beside = neighbors.of(far[i]);

@@ -64,8 +64,7 @@ HSDM_TUNED double flat_spread = 0.03;
 /// width beyond.
 HSDM_TUNED double core_share = 0.25;
 
-/// facets: of the core of flat ground at least; of a developable region where its axis is fitted for the first
-/// time, and again whenever there are twice as many.
+/// facets: of the core of flat ground at least.
 /// Why: by trial; as many as surroundings have, fewer have no surroundings of their own.
 HSDM_TUNED std::size_t least_facets = 30;
 
@@ -97,6 +96,10 @@ HSDM_TUNED double most_deviation = 0.01;
 /// share: of a cylinder's deviation that a cone's must not exceed.
 /// Why: by trial; a cone fits always better, having one parameter more.
 HSDM_TUNED double cone_share = 0.3;
+
+/// facets: when the axis is fitted for the first time, and again whenever there are twice as many.
+/// Why: as many as surroundings have, roughly: what comes sooner was fitted there.
+HSDM_TUNED std::size_t first_refit = 40;
 
 } // namespace hsdm::developable
 

@@ -55,7 +55,7 @@ DevelopableRegion grow(const FacetField& field, Index seed, const std::vector<In
     region.axis.cosine = region.axis.direction | field.mean_normal[seed];
     seen[seed] = 1;
     NormalSum normals;
-    std::size_t refit = flat_ground::least_facets;
+    std::size_t refit = developable::first_refit;
     for (std::size_t next = 0; next < region.facets.size(); ++next) {
         if (next % chunks::quick == 0) Interruption::poll();
         const Index f = region.facets[next];
