@@ -172,7 +172,8 @@ HSDM_TUNED std::size_t most_facets = 24;
 HSDM_TUNED double settled_share = 1e-3;
 
 /// share: of the tolerance: what may be off a plane or a line that is called flat or straight, or may have
-/// grown without being looked at again, and by which a neighbour may miss the planes more than the vertex itself and stand for it.
+/// grown without being looked at again, and by which a neighbour may miss the planes more than the vertex
+/// itself and stand for it.
 /// Why: 0.035 of the error: what is cut anew there costs no error worth to be told.
 HSDM_TUNED double straight_share = 0.1;
 
