@@ -47,9 +47,8 @@ FacetsAt::FacetsAt(const PolygonMesh& mesh, std::span<const std::uint8_t> wanted
 }
 
 std::span<const Index> FacetsAt::of(Index vertex) const {
-    const auto corners = std::ranges::equal_range(vertices_, vertex);
-    return std::span(facets_).subspan(static_cast<std::size_t>(corners.begin() - vertices_.begin()),
-                                      corners.size());
+    const auto [first, last] = std::equal_range(vertices_.begin(), vertices_.end(), vertex);
+    return {facets_.begin() + (first - vertices_.begin()), facets_.begin() + (last - vertices_.begin())};
 }
 
 std::vector<Index> FacetsAt::of_any(std::span<const Index> vertices) const {
