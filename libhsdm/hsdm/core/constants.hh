@@ -4,6 +4,8 @@
 
 #include "hsdm/core/tuned.hh"
 
+#include <cstddef>
+
 // Of all places that ask whether two directions are one surface's, along each other, or opposite: one answer
 // each. What asks for another angle has it in its own folder, with its reason.
 namespace hsdm::angles {
