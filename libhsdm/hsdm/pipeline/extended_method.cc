@@ -72,7 +72,7 @@ void note_counts(const DualContour& facets, Report& report) {
     report.rejected["flat_corners_merged"] = facets.flat_corners;
     report.rejected["edges_halved"] = facets.midpoints;
     report.rejected["doublets_merged"] = facets.doublets;
-    report.rejected["facets_debris"] = facets.splinters.count;
+    report.rejected["facets_of_splinters"] = facets.splinters.count;
     note_repairs(facets.holes, facets.manifold, report);
     report.rejected["intersections_removed"] = facets.intersections.before - facets.intersections.after;
     report.rejected["intersections_left"] = facets.intersections.after;
