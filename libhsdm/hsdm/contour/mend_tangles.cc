@@ -32,7 +32,8 @@ public:
 
     /// The vertices of the border in order; `within` becomes the others. Empty if the facets are no disc.
     std::vector<Index> border(std::vector<Index>& within) const {
-        const std::vector<Index> all = vertices(), loop = border_of(mesh_, facets_);
+        const std::vector<Index> all = vertices();
+        std::vector<Index> loop = border_of(mesh_, facets_);
         std::size_t sides = 0;
         for (const Index f : facets_) sides += mesh_.facet(f).size();
         const std::size_t edges = (sides + loop.size()) / 2;
