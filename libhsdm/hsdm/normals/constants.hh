@@ -307,6 +307,10 @@ HSDM_TUNED double least = 0.14;
 // mend_normals.hh
 namespace hsdm::contradictions {
 
+/// sine: of the rise of a chord out of a plane that both points are on.
+/// Why: 12 degrees; by trial.
+inline constexpr double flattest = 0.2;
+
 /// sine: added to noise.deviations times the mean rise of flat pairs; what rises less is on one plane.
 /// Why: half a degree, for clouds without noise.
 inline constexpr double added_rise = 0.01;
@@ -317,8 +321,12 @@ inline constexpr double added_rise = 0.01;
 inline constexpr std::size_t flat_per_steep = 10;
 
 /// pairs: that contradict each other at least.
+/// Why: by trial; outliers cause some.
+inline constexpr std::size_t fewest = 10;
+
+/// pairs: opposed ones on one plane, of normals that were estimated, that leave their sides in doubt.
 /// Why: a point is in four pairs, so that one stray does not make five.
-inline constexpr std::size_t fewest = 5;
+inline constexpr std::size_t fewest_of_estimated = 5;
 
 /// pairs: flat ones to each that is opposed.
 /// Why: 0.05 %; measured clouds with right normals have less than 0.02 %.

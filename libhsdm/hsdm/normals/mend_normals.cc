@@ -29,7 +29,8 @@ Pair compare(const NormalSample::Point& one, const NormalSample::Point& other, d
     if (n.sqrnorm() == 0 || m.sqrnorm() == 0 || length == 0 || length > farthest) return {};
     const double rise_n = (n | d) / length, rise_m = (m | d) / length;
     const double rise = std::max(std::abs(rise_n), std::abs(rise_m));
-    if (std::abs(cosine) > angles::smooth && rise < patches::steepest) return {Pair::flat, cosine < 0, rise};
+    if (std::abs(cosine) > angles::smooth && rise < contradictions::flattest)
+        return {Pair::flat, cosine < 0, rise};
     if (cosine > angles::smooth) return {Pair::steep, false, rise};
     const double mirrored = cosine - 2 * rise_n * rise_m; // see patch_evidence
     if (std::abs(cosine) < angles::facing && std::abs(mirrored) > angles::facing)
@@ -150,7 +151,7 @@ void NormalConsistency::operator+=(const NormalConsistency& other) {
 }
 
 Occurrences doubtful_sides(const Octree& octree, const NormalConsistency& consistency, bool estimated) {
-    const bool in_doubt = estimated ? consistency.flat_opposed >= contradictions::fewest
+    const bool in_doubt = estimated ? consistency.flat_opposed >= contradictions::fewest_of_estimated
                                     : consistency.flat_opposed > 0 && consistency.doubtful();
     if (!in_doubt) return {};
     return {consistency.flat_opposed, octree.positions[consistency.first_opposed]};
