@@ -160,7 +160,7 @@ double noise_deviation(const Octree& octree, const Neighbors& neighbors,
 }
 
 int neighbors_for_noise(double noise) {
-    return noise < noise::rough ? neighborhoods::neighbors : noise < 2 * noise::rough ? 32 : 64;
+    return noise < noise::rough ? neighborhoods::neighbors : noise < noise::very_rough ? 32 : 64;
 }
 
 } // namespace hsdm
