@@ -55,7 +55,7 @@ std::optional<BoreWall> wall_of(const std::vector<BorderSide>& sides) {
     if (!(length > 0)) return {};
     wall.centre /= length;
     const PlaneFit fit = fit_plane(normals);
-    if (fit.normal.sqrnorm() == 0 || fit.variance > bores::most_slope * bores::most_slope) return {};
+    if (fit.normal.sqrnorm() == 0 || fit.variance > angles::half_of_sheet * angles::half_of_sheet) return {};
     wall.axis = fit.normal;
     double inward = 0;
     for (const BorderSide& side : sides) {

@@ -52,11 +52,6 @@ inline constexpr double hold = 1e-12;
 /// matrix take some 2 KB a vertex: 100 MB.
 inline constexpr std::size_t most_bending = 50000;
 
-/// rounds: of stopping vertices that fairing would take through the mesh or another part of the patch, each
-/// with twice as many rings around them.
-/// Why: bounds the work; of the scans of docs/completion.md none takes more than two.
-inline constexpr int most_stops = 5;
-
 /// points along each side of a cell of a patch: nine to a voxel, as three spacings to a voxel have.
 inline constexpr int samples = 3;
 
@@ -98,10 +93,6 @@ inline constexpr std::size_t most_edges = 4096;
 
 // bores.hh
 namespace hsdm::bores {
-
-/// sine: of the slope of a bore's wall to its axis, root mean square over the facets beside its border.
-/// Why: 20 degrees: half of what normals of one sheet may differ by, as noise and conical bores do.
-inline constexpr double most_slope = 0.35;
 
 /// share: of a bore's radius, that its axis may miss the centre of the other end by, and the radii differ.
 /// Why: two ends placed by chance on faces a few radii wide miss each other's quarter in 99 of 100.

@@ -75,10 +75,6 @@ inline constexpr double widest = 1.5;
 /// Why: four by four in a voxel.
 inline constexpr unsigned most_samples = 16;
 
-/// ways: the shortest ones between two sets, of which most must be parted.
-/// Why: by trial.
-inline constexpr std::size_t ways = 8;
-
 /// spacings: from the crease that a sheet may go on beyond, to the points of it that tell so.
 /// Why: a sheet that goes on has its next points there; those of the ground behind a wall are farther.
 inline constexpr double goes_on_within = 1.5;
@@ -242,7 +238,8 @@ HSDM_TUNED double hold = 0.002;
 HSDM_TUNED double side_gap = 0.02;
 
 /// voxels: how far outside its voxel a vertex may lie where no other can be in its way; planes that meet
-/// farther outside say nothing, and the sheet alone decides.
+/// farther outside say nothing, and the sheet alone decides. Half as far where nothing guards it but the
+/// facets around.
 /// Why: half the next voxel; farther off that one's other half would have a vertex of its own.
 HSDM_TUNED double farthest_out = 0.5;
 
@@ -254,10 +251,6 @@ HSDM_TUNED double clear_corner = 0.03;
 /// Why: by trial; stricter than a corner's, as such creases are many and moving is worth little where they
 /// are vague.
 HSDM_TUNED double clear_crease = 0.01;
-
-/// voxels: how far outside its voxel such a vertex may lie.
-/// Why: by trial, half of farthest_out: nothing guards it but the facets around.
-HSDM_TUNED double crease_out = 0.25;
 
 /// crossings: weight of one point of the voxel's own sets in least squares.
 /// Why: by trial; a crossing is a mean over some points.

@@ -16,6 +16,7 @@
 #include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/doublets.hh"
+#include "hsdm/mesh/part_of.hh"
 #include "hsdm/spatial/self_intersections.hh"
 
 #include <algorithm>
@@ -205,24 +206,6 @@ private:
     std::vector<Quad> round_;
 };
 
-/// The facets of all parts, one part after the other.
-PolygonMesh joined_facets(const std::vector<PolygonMesh>& parts) {
-    PolygonMesh mesh;
-    std::vector<std::size_t> corner(parts.size() + 1, 0), facet(parts.size() + 1, 0);
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        corner[i + 1] = corner[i] + parts[i].corners.size();
-        facet[i + 1] = facet[i] + parts[i].facet_count();
-    }
-    resize_unwritten(mesh.corners, corner.back());
-    resize_large(mesh.first, facet.back() + 1);
-    for_each_task(parts.size(), [&](std::size_t i) {
-        std::ranges::copy(parts[i].corners, mesh.corners.begin() + static_cast<std::ptrdiff_t>(corner[i]));
-        for (std::size_t f = 0; f < parts[i].facet_count(); ++f)
-            mesh.first[facet[i] + f + 1] = static_cast<Index>(corner[i]) + parts[i].first[f + 1];
-    });
-    return mesh;
-}
-
 /// The facets round all crossed grid edges, then the strips at rims and the caps of dual vertices.
 PolygonMesh facets_of(const DualMesh& dual, const Midpoints& midpoints, const PlacedVertices& vertices) {
     const Crossings& crossings = dual.crossings;
@@ -238,7 +221,8 @@ PolygonMesh facets_of(const DualMesh& dual, const Midpoints& midpoints, const Pl
         FacetBuilder strip_builder(dual, midpoints, vertices, parts[chunks + chunk]);
         for (Index x = crossings.first[begin]; x < crossings.first[end]; ++x) strip_builder.add_strips(x);
     });
-    PolygonMesh mesh = joined_facets(parts);
+    PolygonMesh mesh;
+    append_facets(mesh, parts);
     for (const std::vector<Index>& cap : dual.duals.caps) mesh.add_facet(cap);
     return mesh;
 }
@@ -436,23 +420,17 @@ DualContour dual_contour(const Octree& octree, const OctreeLevel& level, const N
         if (count > 0) result.links.reset(), edited = true;
         return count;
     };
-    const auto cut = [&](std::size_t stage) {
-        HandlesOfPart part{options.part, options.facets_of_whole};
-        const std::size_t handles = cut_handles(octree, level, sets, result.voxel, result.mesh, result.links,
-                                                options.part.is_part() ? &part : nullptr);
-        result.handles_cut += handles;
-        result.handle_work[stage] = part.own;
-        edited |= handles > 0;
-    };
-    cut(0);
-    const std::size_t again = result.handle_work[0].last; // in the whole, if not here
-    result.handle_work[1] = {1, again, again};
+    HandlesOfPart part{options.part, options.facets_of_whole};
+    result.handles_cut = cut_handles(octree, level, sets, result.voxel, result.mesh, result.links,
+                                     options.part.is_part() ? &part : nullptr);
+    result.handle_work = part.own;
+    edited |= result.handles_cut > 0;
     if (options.fill) {
         FillHolesOptions holes = options.holes;
         holes.max_diameter *= h;
         if (!result.links) result.links = link_facets(result.mesh);
         result.holes = fill_holes(result.mesh, *result.links, holes);
-        if (changed(result.holes.closed) > 0) cut(1); // those of which a hole was a side
+        changed(result.holes.closed);
     }
     result.doublets = changed(merge_doublets(
         result.mesh, [&](Index v) { return result.classes[result.mesh.origin[v]] == VertexClass::smooth; }));

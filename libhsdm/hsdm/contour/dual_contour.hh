@@ -65,7 +65,7 @@ struct DualContour {
     ManifoldCounts manifold;         ///< what make_manifold still had to mend at the end
     std::array<PartComponents, 2> components;   ///< with DualContourOptions::part
     TangleCounts tangles;                       ///< in the place of `intersections`
-    std::array<HandleWork, 2> handle_work;      ///< before holes are filled and after it
+    HandleWork handle_work;                     ///< the same: of own rings
     double misfit_placed = 0, misfit_moved = 0; ///< with RelaxOptions::part_of_whole: see there
 };
 

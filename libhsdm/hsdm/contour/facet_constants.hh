@@ -27,10 +27,6 @@ namespace hsdm::handles {
 /// Why: a vertex lies on its sets' planes, a facet's middle not farther off than it is bent.
 inline constexpr double agreeing_gap = 0.5;
 
-/// points: nearest to a facet, that are asked whether they face its way.
-/// Why: eight lie within one and a half spacings; one of them may stand at a crease.
-inline constexpr std::size_t witnesses = 8;
-
 /// share: of the facets beside a ring, that no points speak for.
 /// Why: a web has four sides, above, below and at its ends, and below at least there are no points.
 inline constexpr double least_contradicted = 0.25;

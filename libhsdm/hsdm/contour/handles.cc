@@ -331,8 +331,7 @@ private:
         for (const Index side : sides_)
             for (const Index c : {side, links_.twin[side]})
                 for (const Index v : mesh_.facet(facet_of(c))) beside.push_back(v);
-        std::sort(beside.begin(), beside.end());
-        beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
+        sort_unique(beside);
         double sum = 0, count = 0;
         for (const Index v : beside) {
             const std::vector<Index> other = vicinity.ring_at(v);

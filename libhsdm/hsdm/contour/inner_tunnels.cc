@@ -5,7 +5,9 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/core/large_vector.hh"
+#include "hsdm/mesh/part_of.hh"
 #include "hsdm/mesh/remove_facets.hh"
+#include "hsdm/mesh/vertex_neighbors.hh"
 
 #include <algorithm>
 #include <iterator>
@@ -113,64 +115,6 @@ bool is_free(const Ring& a, const Ring& b, Index voxel, const OctreeLevel& level
     return way.is_surrounded();
 }
 
-/// A vertex and a facet that has it.
-struct FacetRound {
-    Index vertex, facet;
-    auto operator<=>(const FacetRound&) const = default;
-};
-
-/// The facets round vertices.
-class Stars {
-public:
-    Stars(const PolygonMesh& mesh, std::span<const Index> vertices) : mesh_(mesh) {
-        std::vector<std::uint8_t> marked = large_vector<std::uint8_t>(mesh.vertex_count(), 0);
-        for (const Index v : vertices) marked[v] = 1;
-        for_each_in_order(mesh.facet_count(), [&](std::size_t f) {
-            for (const Index v : mesh.facet(f))
-                if (marked[v]) round_.push_back({v, static_cast<Index>(f)});
-        });
-        std::ranges::sort(round_);
-    }
-
-    /// Those of some vertices, ascending.
-    std::vector<Index> facets_round(std::span<const Index> vertices) const {
-        std::vector<Index> facets;
-        for (const Index v : vertices)
-            for (auto r = std::ranges::lower_bound(round_, FacetRound{v, 0});
-                 r != round_.end() && r->vertex == v; ++r)
-                facets.push_back(r->facet);
-        sort_unique(facets);
-        return facets;
-    }
-
-    /// The border of some facets, the way they run; empty if it is not one ring that passes no vertex twice.
-    std::vector<Index> ring(std::span<const Index> facets) const {
-        std::vector<std::array<Index, 2>> sides, border;
-        for (const Index f : facets) {
-            const auto corners = mesh_.facet(f);
-            for (std::size_t k = 0; k < corners.size(); ++k)
-                sides.push_back({corners[k], corners[(k + 1) % corners.size()]});
-        }
-        std::ranges::sort(sides);
-        for (const auto& [from, to] : sides)
-            if (!std::ranges::binary_search(sides, std::array{to, from})) border.push_back({from, to});
-        std::vector<Index> result;
-        for (Index at = border.empty() ? no_index : border[0][0]; result.size() < border.size();) {
-            const auto side = std::ranges::lower_bound(border, std::array<Index, 2>{at, 0});
-            if (side == border.end() || (*side)[0] != at || (side + 1 != border.end() && side[1][0] == at))
-                return {};
-            result.push_back(at);
-            at = (*side)[1];
-            if (at == result.front()) break;
-        }
-        return result.size() == border.size() ? result : std::vector<Index>();
-    }
-
-private:
-    const PolygonMesh& mesh_;
-    std::vector<FacetRound> round_; // ascending
-};
-
 /// Joins two rings by facets that go on along both, where the sum of squared lengths between them is least.
 class Sleeve {
 public:
@@ -220,17 +164,17 @@ struct TunnelEnd {
 };
 using TunnelEnds = std::array<TunnelEnd, 2>;
 
-TunnelEnd end_of(const Stars& stars, ChainVertices chain) {
+TunnelEnd end_of(const PolygonMesh& mesh, const FacetsAt& facets, ChainVertices chain) {
     std::vector<Index> vertices(chain.end - chain.first);
     std::iota(vertices.begin(), vertices.end(), chain.first);
-    TunnelEnd end{stars.facets_round(vertices), {}};
-    end.ring = stars.ring(end.facets);
+    TunnelEnd end{facets.of_any(vertices), {}};
+    end.ring = border_of(mesh, end.facets);
     return end;
 }
 
 /// Have two rings of vertices a facet in common? Then the surface leads from one to the other as it is.
-bool meet(const Stars& rings, std::span<const Index> one, std::span<const Index> other) {
-    const std::vector<Index> a = rings.facets_round(one), b = rings.facets_round(other);
+bool meet(const FacetsAt& at, std::span<const Index> one, std::span<const Index> other) {
+    const std::vector<Index> a = at.of_any(one), b = at.of_any(other);
     std::vector<Index> both;
     std::ranges::set_intersection(a, b, std::back_inserter(both));
     return !both.empty();
@@ -256,26 +200,26 @@ std::vector<InnerTunnel> find_inner_tunnels(const DualMesh& dual, const OctreeLe
 
 std::size_t open_inner_tunnels(std::span<const InnerTunnel> tunnels, PolygonMesh& mesh) {
     if (tunnels.empty()) return 0;
-    std::vector<Index> vertices;
+    std::vector<std::uint8_t> of_chains = large_vector<std::uint8_t>(mesh.vertex_count(), 0),
+                              of_rings = of_chains;
     for (const InnerTunnel& tunnel : tunnels)
         for (const ChainVertices& chain : tunnel)
-            for (Index v = chain.first; v < chain.end; ++v) vertices.push_back(v);
-    const Stars stars(mesh, vertices);
+            for (Index v = chain.first; v < chain.end; ++v) of_chains[v] = 1;
+    const FacetsAt at_chains(mesh, of_chains);
     std::vector<TunnelEnds> ends;
-    std::vector<Index> of_rings;
     for (const InnerTunnel& tunnel : tunnels) {
-        ends.push_back({end_of(stars, tunnel[0]), end_of(stars, tunnel[1])});
+        ends.push_back({end_of(mesh, at_chains, tunnel[0]), end_of(mesh, at_chains, tunnel[1])});
         for (const TunnelEnd& end : ends.back())
-            of_rings.insert(of_rings.end(), end.ring.begin(), end.ring.end());
+            for (const Index v : end.ring) of_rings[v] = 1;
     }
-    const Stars rings(mesh, of_rings);
+    const FacetsAt at_rings(mesh, of_rings);
     std::size_t opened = 0;
     PolygonMesh tubes;
     std::vector<std::uint8_t> taken = large_vector<std::uint8_t>(mesh.facet_count(), 0);
     for (TunnelEnds& pair : ends) {
         auto& [one, other] = pair;
         const auto is_taken = [&](Index f) { return taken[f] != 0; };
-        if (one.ring.size() < 3 || other.ring.size() < 3 || meet(rings, one.ring, other.ring)
+        if (one.ring.size() < 3 || other.ring.size() < 3 || meet(at_rings, one.ring, other.ring)
             || std::ranges::any_of(one.facets, is_taken) || std::ranges::any_of(other.facets, is_taken))
             continue;
         for (const TunnelEnd& end : pair)

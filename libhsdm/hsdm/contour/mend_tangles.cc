@@ -5,8 +5,10 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/mesh/collapse_edges.hh"
 #include "hsdm/mesh/facet_unions.hh"
+#include "hsdm/mesh/part_of.hh"
 #include "hsdm/mesh/remove_facets.hh"
 #include "hsdm/mesh/split_polygon.hh"
+#include "hsdm/mesh/vertex_neighbors.hh"
 #include "hsdm/quality/topology.hh"
 
 #include <algorithm>
@@ -23,52 +25,38 @@ public:
     FacetDisc(const PolygonMesh& mesh, Index facet) : mesh_(mesh), facets_{facet} {}
 
     /// Adds the facets that have a vertex in common with it.
-    void grow(const std::vector<std::vector<Index>>& facets_at) {
-        const std::vector<Index> before = facets_;
-        for (const Index f : before)
-            for (const Index v : mesh_.facet(f))
-                facets_.insert(facets_.end(), facets_at[v].begin(), facets_at[v].end());
-        sort_unique(facets_);
-    }
+    void grow(const FacetsAt& at) { facets_ = at.of_any(vertices()); }
 
     bool has(Index f) const { return std::ranges::binary_search(facets_, f); }
     std::size_t size() const { return facets_.size(); }
 
     /// The vertices of the border in order; `within` becomes the others. Empty if the facets are no disc.
     std::vector<Index> border(std::vector<Index>& within) const {
-        std::vector<std::array<Index, 2>> sides;
-        for (const Index f : facets_) {
-            const auto ring = mesh_.facet(f);
-            for (std::size_t i = 0; i < ring.size(); ++i)
-                sides.push_back({ring[i], ring[(i + 1) % ring.size()]});
-        }
-        std::ranges::sort(sides);
-        std::vector<std::array<Index, 2>> outer;
-        std::vector<Index> vertices;
-        for (const auto& [a, b] : sides) {
-            vertices.push_back(a);
-            if (!std::ranges::binary_search(sides, std::array{b, a})) outer.push_back({a, b});
-        }
-        sort_unique(vertices);
-        const std::size_t edges = (sides.size() + outer.size()) / 2;
-        if (vertices.size() + facets_.size() != edges + 1) return {};
-        std::vector<Index> loop;
-        for (Index at = outer.empty() ? no_index : outer[0][0]; loop.size() < outer.size();) {
-            const auto next = std::ranges::lower_bound(outer, std::array{at, Index(0)});
-            if (next == outer.end() || (*next)[0] != at) return {};
-            loop.push_back(at);
-            at = (*next)[1];
-            if (at == loop[0]) break;
-        }
-        if (loop.size() != outer.size()) return {};
+        const std::vector<Index> all = vertices();
+        std::vector<Index> loop = border_of(mesh_, facets_);
+        std::size_t sides = 0;
+        for (const Index f : facets_) sides += mesh_.facet(f).size();
+        const std::size_t edges = (sides + loop.size()) / 2;
+        if (loop.empty() || all.size() + facets_.size() != edges + 1) return {};
         std::vector<Index> sorted = loop;
         std::ranges::sort(sorted);
         within.clear();
-        std::ranges::set_difference(vertices, sorted, std::back_inserter(within));
+        std::ranges::set_difference(all, sorted, std::back_inserter(within));
         return loop;
     }
 
 private:
+    /// Ascending.
+    std::vector<Index> vertices() const {
+        std::vector<Index> result;
+        for (const Index f : facets_) {
+            const auto ring = mesh_.facet(f);
+            result.insert(result.end(), ring.begin(), ring.end());
+        }
+        sort_unique(result);
+        return result;
+    }
+
     const PolygonMesh& mesh_;
     std::vector<Index> facets_; // ascending
 };
@@ -178,14 +166,12 @@ private:
     /// Fills the border of a disc of facets round a tangle anew, over its vertices alone.
     bool refill_a_disc() {
         const PolygonMesh& mesh = around_.part;
-        std::vector<std::vector<Index>> facets_at(mesh.vertex_count());
-        for (Index f = 0; f < mesh.facet_count(); ++f)
-            for (const Index v : mesh.facet(f)) facets_at[v].push_back(f);
+        const FacetsAt at(mesh, std::vector<std::uint8_t>(mesh.vertex_count(), 1));
         std::vector<FacetDisc> discs;
         for (const Index f : tangled_facets()) discs.emplace_back(mesh, f);
         for (int ring = 0; ring < untangling::refilled_rings; ++ring)
             for (FacetDisc& disc : discs) {
-                disc.grow(facets_at);
+                disc.grow(at);
                 if (disc.size() <= untangling::most_refilled && refill(disc)) return true;
             }
         return false;

@@ -5,42 +5,13 @@
 #include "hsdm/core/constants.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/part_of.hh"
+#include "hsdm/mesh/vertex_neighbors.hh"
 #include "hsdm/spatial/self_intersections.hh"
 
 #include <algorithm>
 
 namespace hsdm {
 namespace {
-
-/// The facets at marked vertices.
-class FacetsAt {
-public:
-    FacetsAt(const PolygonMesh& mesh, const std::vector<std::uint8_t>& vertices) {
-        for (Index f = 0; f < mesh.facet_count(); ++f)
-            for (Index v : mesh.facet(f))
-                if (vertices[v]) pairs_.emplace_back(v, f);
-        std::sort(pairs_.begin(), pairs_.end());
-    }
-
-    template <class Test>
-    bool all_of(Index vertex, const Test& test) const {
-        auto it = std::lower_bound(pairs_.begin(), pairs_.end(), std::pair{vertex, Index{0}});
-        for (; it != pairs_.end() && it->first == vertex; ++it)
-            if (!test(it->second)) return false;
-        return true;
-    }
-
-    /// All of them, ascending, each once.
-    std::vector<Index> facets() const {
-        std::vector<Index> result;
-        for (const auto& [vertex, facet] : pairs_) result.push_back(facet);
-        sort_unique(result);
-        return result;
-    }
-
-private:
-    std::vector<std::pair<Index, Index>> pairs_; // vertex and facet
-};
 
 /// How well a facet faces along one of two normals: the least cosine of its triangles with the nearer normal.
 /// The triangles fan out from the corner for which that is largest, because a quad with three corners on a
@@ -106,9 +77,9 @@ private:
     /// Facets that share vertices with facets at wanted vertices.
     std::vector<Index> facets_beside() const {
         std::vector<std::uint8_t> beside(wanted_.size(), 0);
-        for (Index f : at_.facets())
+        for (Index f : at_.all())
             for (Index v : mesh_.facet(f)) beside[v] = 1;
-        return FacetsAt(mesh_, beside).facets();
+        return FacetsAt(mesh_, beside).all();
     }
 
     bool take_back(std::size_t i) {
@@ -140,7 +111,7 @@ private:
     }
 
     bool suits_all(std::size_t i) {
-        return at_.all_of(on_creases_[i].dual, [&](Index f) { return suits(f, i); });
+        return std::ranges::all_of(at_.of(on_creases_[i].dual), [&](Index f) { return suits(f, i); });
     }
 
     /// Does a facet pass the test with vertex i on its crease: other vertices not too close, normal hardly

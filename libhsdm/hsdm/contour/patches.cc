@@ -60,7 +60,7 @@ public:
     };
 
     void offer(const Way& way) {
-        if (count_ == patches::ways) {
+        if (count_ == nearest_asked) {
             if (!(way.squared_length < ways_[count_ - 1].squared_length)) return;
             --count_;
         }
@@ -71,7 +71,7 @@ public:
     std::span<const Way> found() const { return {ways_.data(), count_}; }
 
 private:
-    std::array<Way, patches::ways> ways_;
+    std::array<Way, nearest_asked> ways_;
     std::size_t count_ = 0;
 };
 

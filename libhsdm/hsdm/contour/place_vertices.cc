@@ -203,7 +203,7 @@ public:
             const Vec3 unclamped = solution.position;
             result.is_clamped[dual] = keep_inside(solution);
             if (result.is_clamped[dual] && faces.count == 2
-                && meet(2, solution, unclamped, placement::crease_out, placement::clear_crease)) {
+                && meet(2, solution, unclamped, placement::farthest_out / 2, placement::clear_crease)) {
                 on_creases.push_back({dual, unclamped, {faces.normals[0], faces.normals[1]}});
             }
         }
@@ -243,7 +243,7 @@ private:
             faces.normals[static_cast<std::size_t>(faces.count++)] = crease.normals[1];
         }
         const Vec3 meeting = least_squares(problem_, faces.count).position;
-        return is_inside(meeting, problem_, -placement::crease_out) ? faces : sheets;
+        return is_inside(meeting, problem_, -placement::farthest_out / 2) ? faces : sheets;
     }
 
     bool gather(Index dual) {

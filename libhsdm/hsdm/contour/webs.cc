@@ -1,5 +1,7 @@
 #include "hsdm/contour/webs.hh"
 
+#include "hsdm/core/chunks.hh"
+
 #include <algorithm>
 #include <deque>
 
@@ -129,8 +131,7 @@ private:
             return std::adjacent_find(list.begin(), list.end()) != list.end();
         };
         if (repeats(row_)) return false;
-        std::sort(ends_.begin(), ends_.end());
-        ends_.erase(std::unique(ends_.begin(), ends_.end()), ends_.end());
+        sort_unique(ends_);
         if (std::count_if(ends_.begin(), ends_.end(), is_one) != 2) return false;
         met_.clear();
         for (const Chains& chains : ends_)

@@ -2,6 +2,7 @@
 
 #include "hsdm/contour/constants.hh"
 #include "hsdm/contour/surrounding.hh"
+#include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/spatial/point_triangle.hh"
@@ -88,7 +89,7 @@ bool Witnesses::speak_for(Index f) {
     const Index own = voxel_of(facet[0]);
     gather(own, centre);
     for_neighbors(level_, own, [&](Index v) { gather(v, centre); });
-    const std::size_t count = std::min(near_.size(), handles::witnesses);
+    const std::size_t count = std::min(near_.size(), nearest_asked);
     std::partial_sort(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(count), near_.end());
     std::size_t agree = 0;
     for (std::size_t k = 0; k < count; ++k)
@@ -107,8 +108,7 @@ std::vector<Index> Witnesses::voxels_at(std::span<const Index> ring) const {
         all.push_back(voxel_of(v));
         for_neighbors(level_, voxel_of(v), [&](Index w) { all.push_back(w); });
     }
-    std::ranges::sort(all);
-    all.erase(std::unique(all.begin(), all.end()), all.end());
+    sort_unique(all);
     return all;
 }
 

@@ -4,6 +4,8 @@
 
 #include "hsdm/core/tuned.hh"
 
+#include <cstddef>
+
 // Of all places that ask whether two directions are one surface's, along each other, or opposite: one answer
 // each. What asks for another angle has it in its own folder, with its reason.
 namespace hsdm::angles {
@@ -12,6 +14,11 @@ namespace hsdm::angles {
 /// Why: 40 degrees, beyond the 35 that a set may spread to (sets.cluster_angle): sets beside each other on
 /// round ground of a voxel and a half's radius are one sheet. Flatter creases lie within a sheet.
 HSDM_TUNED double one_sheet = 0.77;
+
+/// sine: of half the angle between normals of one sheet: how far a chord may rise out of a plane, or a round
+/// wall's facet slope to its axis.
+/// Why: 20 degrees, the half of a bend of 40.
+HSDM_TUNED double half_of_sheet = 0.35;
 
 /// cosine: normals closer than this lie on one smooth piece of a surface; a fold is none, a crease is.
 /// Why: 26 degrees, under the 35 of a sharp edge; facets of a round part of two voxels' radius differ by
@@ -55,6 +62,11 @@ inline constexpr unsigned points_of_plane = 3;
 /// points: or pairs of sets, at least, that say one thing.
 /// Why: a single one may be a stray, or wrong.
 inline constexpr unsigned two_agree = 2;
+
+/// points: nearest to a facet, that are asked whether they face its way; shortest ways between two sets, that
+/// are asked whether something parts them.
+/// Why: eight points lie within one and a half spacings; one of them may stand at a crease.
+inline constexpr std::size_t nearest_asked = 8;
 
 /// rounds: of whatever is repeated until a round changes nothing.
 /// Why: bounds the work; what is left after so many is rare, and told or mended elsewhere.

@@ -14,6 +14,10 @@ PolygonMesh part_of(const PolygonMesh& mesh, const std::vector<Index>& facets,
 /// The facets, positions and origins of a large mesh again, without properties and normals.
 PolygonMesh copy_of(const PolygonMesh& mesh);
 
+/// The border of some facets, the way they run, from its least vertex on; empty if it is not one ring that
+/// passes no vertex twice. O(f log f) for f facets.
+std::vector<Index> border_of(const PolygonMesh& mesh, const std::vector<Index>& facets);
+
 /// Appends the facets of parts, one part after the other, to a mesh whose vertices theirs are. Parallel.
 void append_facets(PolygonMesh& mesh, const std::vector<PolygonMesh>& parts);
 

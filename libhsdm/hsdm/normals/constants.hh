@@ -86,10 +86,6 @@ HSDM_TUNED double most_distance = 8;
 /// from point to point.
 HSDM_TUNED double most_angle = 0.79;
 
-/// share: of the distance of two points, that one may rise over the other's plane.
-/// Why: by trial; 20 degrees, the half of a bend of 40.
-HSDM_TUNED double most_rise = 0.35;
-
 } // namespace hsdm::normal_outliers
 
 // noise.hh, and what noise does not explain
@@ -144,10 +140,6 @@ HSDM_TUNED double steady_radius = 6;
 /// voxels: to a radius, of the sums over voxels that surroundings are.
 /// Why: by trial; one is too coarse for a round weight, three take three times as long.
 HSDM_TUNED std::int32_t reach = 2;
-
-/// rounds: of moving all points onto their planes, with the noise that the moves say.
-/// Why: bounds the work.
-inline constexpr int most_rounds = 4;
 
 /// share: of the noise that was thought; found less, all is done again.
 /// Why: by trial; a twentieth makes no difference.

@@ -68,7 +68,7 @@ struct NormalOutlierOptions {
     /// radians: largest angle between normals of one plane (45 degrees)
     double most_angle = normal_outliers::most_angle;
     /// largest height of a neighbour over the point's plane, in distances between the two
-    double most_rise = normal_outliers::most_rise;
+    double most_rise = angles::half_of_sheet;
 };
 
 /// The level on which sparse voxels are looked for.

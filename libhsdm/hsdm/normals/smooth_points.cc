@@ -404,12 +404,12 @@ void validate(const SmoothOptions& options) {
 double smooth_points(Octree& octree, double noise) {
     const double spacing = estimate_spacing(octree);
     MovedPoints moved;
-    for (int round = 0; round < smoothing::most_rounds; ++round) {
+    for (int round = 0; round < enough_rounds; ++round) {
         const Smoothing smoothing(spacing, noise);
         moved = smoothing.onto_planes(octree.positions);
         const double found = noise_of_moves(octree.positions, moved.positions);
         const bool again = found > 0 && found <= smoothing::clearly_less * noise;
-        if (!again || round + 1 == smoothing::most_rounds) {
+        if (!again || round + 1 == enough_rounds) {
             noise = centred(octree, spacing, again ? found : noise, smoothing, moved);
             break;
         }

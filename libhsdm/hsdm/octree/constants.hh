@@ -42,17 +42,9 @@ namespace hsdm::far_points {
 /// Why: two percent: more garbage than scanners make.
 inline constexpr std::size_t one_outer_in = 50;
 
-/// boxes: that hold most points, across the cloud's box; of fewer nothing is far away. Also across the widest
-/// gap that is tried as a cut first.
+/// boxes: that hold most points, across the cloud's box; of fewer nothing is far away. A quarter of it lies
+/// between that box and a point that is far away. Also across the widest gap that is tried as a cut first.
 /// Why: 4096: the octree's 21 levels still have nine for such a box.
 inline constexpr double boxes_across = 1 << 12;
-
-/// boxes: between a point that is far away and the box of most.
-/// Why: 1024: by trial.
-inline constexpr double margin = 1 << 10;
-
-/// points: of a part, far from all else though it is.
-/// Why: eight voxels of a surface, by eight points each.
-inline constexpr std::size_t fewest_of_part = 64;
 
 } // namespace hsdm::far_points

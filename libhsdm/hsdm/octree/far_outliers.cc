@@ -12,6 +12,11 @@
 namespace hsdm {
 namespace {
 
+/// Points of a part, far from all else though it is: eight voxels of a surface.
+std::size_t fewest_of_part() {
+    return static_cast<std::size_t>(8 * spacings::points_per_voxel);
+}
+
 /// The box of all but the outer two percent of a sample along each axis.
 Box box_of_most(const Octree& octree, const PointView& cloud) {
     constexpr std::size_t samples = 1 << 12;
@@ -62,7 +67,7 @@ void spare_parts(const Places& places, std::vector<std::uint8_t>& far) {
         for (std::size_t begin = 0, end = 0; begin < places.size(); begin = end) {
             while (end < places.size() && places[end].first >> shift == places[begin].first >> shift) ++end;
             const Index count = marked[end] - marked[begin];
-            if (count < far_points::fewest_of_part) continue;
+            if (count < fewest_of_part()) continue;
             const auto place = [&](MortonCode first) { // place of the first point whose code is not below
                 return std::partition_point(places.begin(), places.end(),
                                             [&](const auto& p) { return p.first >> shift_around < first; });
@@ -133,7 +138,7 @@ std::size_t mark_scraps(const Octree& octree, const PointView& cloud, const Clou
     marks.assign(points.size(), 0);
     for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {
         while (end < points.size() && points[end].first == points[begin].first) ++end;
-        if (end - begin >= far_points::fewest_of_part) continue;
+        if (end - begin >= fewest_of_part()) continue;
         for (std::size_t i = begin; i < end; ++i) marks[points[i].second] = 1;
         count += end - begin;
     }
@@ -162,7 +167,7 @@ Occurrences drop_far_outliers(Octree& octree, const PointView& cloud, CloudFrame
     for (std::size_t i = 0; i < far.size(); ++i) {
         const Vec3 p = vec3_at(cloud.positions, octree.source[i]);
         const Vec3 below = core.lo - p, above = p - core.hi;
-        far[i] = std::max(below.max(), above.max()) > far_points::margin * extent;
+        far[i] = std::max(below.max(), above.max()) > far_points::boxes_across / 4 * extent;
     }
     spare_parts(octree, far);
     Occurrences discarded = remove_points(octree, far);

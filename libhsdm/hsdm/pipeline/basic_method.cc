@@ -21,13 +21,7 @@ void note_counts(const BasicFacets::Counts& counts, Report& report) {
     report.rejected["hit_test"] = counts.hit_test;
     report.rejected["distance_criterion"] = counts.distance_criterion;
     report.rejected["angle_comparison"] = counts.angle_comparison;
-    report.rejected["holes_closed"] = counts.holes.closed;
-    report.rejected["holes_refused"] = counts.holes.refused;
-    report.rejected["facets_degenerate"] = counts.manifold.degenerate;
-    report.rejected["facets_cancelled"] = counts.manifold.cancelled;
-    report.rejected["facets_duplicate"] = counts.manifold.duplicates;
-    report.rejected["edges_opened"] = counts.manifold.opened_edges;
-    report.rejected["vertices_split"] = counts.manifold.split_vertices;
+    note_repairs(counts.holes, counts.manifold, report);
     report.rejected["vertices_isolated"] = counts.manifold.isolated_vertices;
 }
 

@@ -72,16 +72,10 @@ void note_counts(const DualContour& facets, Report& report) {
     report.rejected["flat_corners_merged"] = facets.flat_corners;
     report.rejected["edges_halved"] = facets.midpoints;
     report.rejected["doublets_merged"] = facets.doublets;
-    report.rejected["facets_debris"] = facets.splinters.count;
-    report.rejected["holes_closed"] = facets.holes.closed;
-    report.rejected["holes_refused"] = facets.holes.refused;
-    report.rejected["facets_degenerate"] = facets.manifold.degenerate;
-    report.rejected["facets_cancelled"] = facets.manifold.cancelled;
-    report.rejected["facets_duplicate"] = facets.manifold.duplicates;
-    report.rejected["edges_opened"] = facets.manifold.opened_edges;
+    report.rejected["facets_of_splinters"] = facets.splinters.count;
+    note_repairs(facets.holes, facets.manifold, report);
     report.rejected["intersections_removed"] = facets.intersections.before - facets.intersections.after;
     report.rejected["intersections_left"] = facets.intersections.after;
-    report.rejected["vertices_split"] = facets.manifold.split_vertices;
 }
 
 /// The level's sets as they come; those that have been made already if layers need not be merged.
@@ -430,7 +424,7 @@ void FacetCounts::operator+=(const FacetCounts& other) {
     middle += other.middle, tilted += other.tilted;
     misfit_placed += other.misfit_placed, misfit_moved += other.misfit_moved;
     tangles += other.tangles;
-    for (std::size_t i = 0; i < handle_work.size(); ++i) handle_work[i] += other.handle_work[i];
+    handle_work += other.handle_work;
     facets += other.facets;
 }
 

@@ -35,7 +35,7 @@ struct FacetCounts {
     std::size_t middle = 0, tilted = 0;         ///< as in SheetFeatures, of edges of own facets
     double misfit_placed = 0, misfit_moved = 0; ///< as in DualContour, of own voxels
     TangleCounts tangles;                       ///< as in DualContour
-    std::array<HandleWork, 2> handle_work;      ///< as in DualContour
+    HandleWork handle_work;                     ///< as in DualContour
     std::size_t facets = 0;                     ///< own ones
 
     void operator+=(const FacetCounts& other);

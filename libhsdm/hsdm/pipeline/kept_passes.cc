@@ -18,7 +18,7 @@ constexpr const char* pieces_name = "pieces";
 } // namespace
 
 std::string form_of_kept() {
-    constexpr int form = 2; // another one whenever something else is kept, or in another order
+    constexpr int form = 3; // another one whenever something else is kept, or in another order
     std::string text = std::to_string(form).append(":");
     for (const std::size_t size :
          {sizeof(Index), sizeof(PointRow), sizeof(Box), sizeof(ScratchPoints::Cell), sizeof(Occurrences),

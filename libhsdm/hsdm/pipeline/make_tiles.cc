@@ -74,8 +74,7 @@ private:
         if (record) return kept_piece(*record);
         const std::size_t far = strays_.far_cells().size();
         Piece piece = make_tile(range, ghost);
-        for (const HandleWork& work : piece.counts.handle_work)
-            if (!work.is_complete) refuse_handles();
+        if (!piece.counts.handle_work.is_complete) refuse_handles();
         if (in_.store) in_.store->put(piece);
         if (in_.kept && in_.kept->is_kept() && !strays_.has_found()) keep(piece, key, ghost, far);
         return piece;
@@ -166,8 +165,7 @@ private:
     /// Tiles to be made once more since sums over all tell something that these were not made by.
     std::vector<std::uint8_t> due_by_sums(const std::vector<Piece>& pieces) {
         const FacetCounts sums = counts_of_all(pieces);
-        for (const HandleWork& work : sums.handle_work)
-            if (!work.fits(sums.facets)) refuse_handles();
+        if (!sums.handle_work.fits(sums.facets)) refuse_handles();
         std::vector<std::uint8_t> due(pieces.size(), 0);
         if (must_go_back(sums) || must_use_largest(pieces))
             std::ranges::fill(due, std::uint8_t{1});

@@ -7,6 +7,7 @@
 #include "hsdm/mesh/facet_links.hh"
 #include "hsdm/mesh/feature_hints.hh"
 #include "hsdm/mesh/fill_holes.hh"
+#include "hsdm/mesh/manifold.hh"
 #include "hsdm/normals/orient_normals.hh"
 #include "hsdm/octree/octree.hh"
 #include "hsdm/pipeline/phases.hh"
@@ -48,6 +49,9 @@ struct FacetKnowledge {
 /// Adds an entry to the report's list, unless nothing was dropped. `discarded.first` lies in the frame.
 void note_dropped(const std::string& what, const Occurrences& discarded, const CloudFrame& frame,
                   Report& report);
+
+/// What closing holes and make_manifold did, as both methods report it.
+void note_repairs(const FillHolesCounts& holes, const ManifoldCounts& manifold, Report& report);
 
 /// Adds the boundary loops of a mesh to the report's list. `origin` is the mesh's, in the frame.
 void note_loops(const PolygonMesh& mesh, const BoundaryLoops& loops, bool completed, const Vec3& origin,

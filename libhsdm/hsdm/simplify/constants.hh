@@ -27,10 +27,6 @@ HSDM_TUNED double vertex_share = 2;
 /// Why: with a voxel 1.4 times the error was found between places on sparse clouds.
 HSDM_TUNED double place_spacing = 0.5;
 
-/// rounds: of looking for what is wrong and subdividing or keeping there.
-/// Why: bounds the work.
-inline constexpr int rounds = 24;
-
 /// members: of the leaves below that are joined to parts, facets of a vertex that flips give facets or that
 /// may go; what has more stays as it is.
 /// Why: bounds the work, which grows with the square; eight children of eight parts each.
@@ -76,10 +72,6 @@ HSDM_TUNED std::size_t least_facets = 30;
 /// Why: by trial; less looks at facets again and again, more takes them out of order.
 inline constexpr double stale = 1.3;
 
-/// share: of the core's tolerance; growth by less does not count.
-/// Why: by trial, as above.
-inline constexpr double stale_height = 0.1;
-
 } // namespace hsdm::flat_ground
 
 // developable_regions.hh
@@ -108,10 +100,6 @@ HSDM_TUNED double cone_share = 0.3;
 /// facets: when the axis is fitted for the first time, and again whenever there are twice as many.
 /// Why: as many as surroundings have, roughly: what comes sooner was fitted there.
 HSDM_TUNED std::size_t first_refit = 40;
-
-/// trims: of a facet, after which no other region gets it.
-/// Why: bounds the work.
-inline constexpr int most_trims = 2;
 
 } // namespace hsdm::developable
 
@@ -183,8 +171,9 @@ HSDM_TUNED std::size_t most_facets = 24;
 /// Why: far below what is seen, far above rounding.
 HSDM_TUNED double settled_share = 1e-3;
 
-/// share: of the tolerance: what may be off a plane or a line that is called flat or straight, and by which a
-/// neighbour may miss the planes more than the vertex itself and stand for it.
+/// share: of the tolerance: what may be off a plane or a line that is called flat or straight, or may have
+/// grown without being looked at again, and by which a neighbour may miss the planes more than the vertex
+/// itself and stand for it.
 /// Why: 0.035 of the error: what is cut anew there costs no error worth to be told.
 HSDM_TUNED double straight_share = 0.1;
 

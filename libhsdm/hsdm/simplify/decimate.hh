@@ -2,6 +2,7 @@
 // Decimates the mesh over the leaves: leaves are cubes, but flat ground, straight creases and cylinders need
 // fewer vertices than there are leaves.
 
+#include "hsdm/core/constants.hh"
 #include "hsdm/simplify/constants.hh"
 #include "hsdm/simplify/mesh_checks.hh"
 #include "hsdm/simplify/quadric.hh"
@@ -17,7 +18,7 @@ struct ClusteredMesh {
 struct DecimateOptions {
     FaultCounts faults; ///< of the clustered mesh
     /// rounds of undoing collapses that cause faults, >= 1
-    int rounds = bounds::rounds;
+    int rounds = enough_rounds;
 };
 
 struct DecimatedMesh {

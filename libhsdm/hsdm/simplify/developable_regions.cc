@@ -1,6 +1,7 @@
 #include "hsdm/simplify/developable_regions.hh"
 
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/constants.hh"
 #include "hsdm/core/parallel_sort.hh"
 #include "hsdm/simplify/constants.hh"
 
@@ -100,7 +101,7 @@ std::vector<DevelopableRegion> find_developable_regions(const FacetField& field,
             return;
         regions.push_back(std::move(region));
         for (Index f : trimmed)
-            if (++trims[f] <= developable::most_trims) seen[f] = 0; // free for another region
+            if (++trims[f] <= repeats::twice) seen[f] = 0; // free for another region
     });
     return regions;
 }

@@ -107,7 +107,7 @@ private:
             const double height = f == seed ? 0 : std::abs(growing.plane().height(field_.centre[f]));
             if (height > flat_ground::core_share * tolerance_) continue;
             if (height > flat_ground::stale * before
-                             + flat_ground::stale_height * flat_ground::core_share * tolerance_) {
+                             + collapses::straight_share * flat_ground::core_share * tolerance_) {
                 waiting.push({height, f});
                 continue;
             }

@@ -2,6 +2,7 @@
 // Sections 3.4.1 and 3.4.2 on an adaptive grid: as few facets as possible, built over the leaves of a
 // balanced octree, within an error bound. See docs/adaptive.md.
 
+#include "hsdm/core/constants.hh"
 #include "hsdm/quality/distance.hh"
 #include "hsdm/simplify/cell_tree.hh"
 #include "hsdm/simplify/constants.hh"
@@ -14,7 +15,7 @@ struct SimplifyOptions {
     double max_error = 0;
     /// rounds of looking for faults and subdividing leaves there, and in each step of decimation of undoing
     /// collapses, >= 1
-    int rounds = bounds::rounds;
+    int rounds = enough_rounds;
     bool measure = true; ///< else `to_fine` stays zero
 };
 
