@@ -518,11 +518,10 @@ private:
         return indices_where(level_.size(), chunks::light, [&](Index v) { return marked[v] != 0; });
     }
 
-    /// Does one of two sheets go on beyond their crease? Of another voxel's it is asked there: it is known
-    /// best round its own.
+    /// Does one of two sheets go on beyond their crease?
     static bool any_goes_on(Neighborhood& around, std::size_t i, std::size_t j, Relation relation) {
-        if (relation == Relation::smooth) return false;
-        return around.goes_on(i, j, relation) || (j < around.own() && around.goes_on(j, i, relation));
+        return relation != Relation::smooth
+               && (around.goes_on(i, j, relation) || around.goes_on(j, i, relation));
     }
 
     /// Pairs of related sets with a wall or gap between them.
