@@ -127,20 +127,23 @@ bool Witnesses::deny(std::span<const Index> ring) const {
     if (!(axis.sqrnorm() > 0) || has_completed(voxels)) return false;
     const Tube tube(mesh_, ring, reach, axis);
     const double farthest = tube.width() + handles::beside_ring * level_.voxel_size;
-    double below = -reach, above = reach; // the stretch
-    std::vector<double> across;
+    double below = -reach, above = reach;      // the stretch
+    std::array<std::vector<double>, 2> across; // by the way they face
     for_points(voxels, [&](Index p) {
         const Vec3& at = octree_.positions[p];
         const double along = tube.along(at);
-        if (std::abs(octree_.normals[p] | tube.axis()) >= angles::halfway) {
-            if (tube.holds(at)) across.push_back(along);
+        const double cosine = octree_.normals[p] | tube.axis();
+        if (std::abs(cosine) >= angles::halfway) {
+            if (tube.holds(at)) across[cosine > 0].push_back(along);
         } else if (tube.out_to(at).norm() < farthest) {
             (along < 0 ? below : above) = along < 0 ? std::max(below, along) : std::min(above, along);
         }
     });
-    const auto amiss = std::ranges::count_if(across, [&](double t) { return t > below && t < above; });
+    const auto has_sheet = [&](const std::vector<double>& places) {
+        return std::ranges::any_of(places, [&](double t) { return t > below && t < above; });
+    };
     const double h = spacing(points_in(voxels), voxels.size());
-    return amiss >= two_agree && above - below > h
+    return has_sheet(across[0]) && has_sheet(across[1]) && above - below > h
            && tube.length() * (above - below) > handles::least_missing * h * h;
 }
 

@@ -19,9 +19,10 @@ public:
     /// Do at least two of the eight points nearest to a facet face its way?
     bool speak_for(Index facet);
 
-    /// Do points say that a ring of vertices is none of the part's? Two or more face along its axis, within
-    /// it, and the stretch of the axis that they stand in holds no point of a bore or rod, though some should
-    /// lie there: a tunnel passes a wall like that, and a bridge a gap.
+    /// Do points say that a ring of vertices is none of the part's? Some face along its axis, within it, one
+    /// way and the other, and the stretch of the axis that they stand in holds no point of a bore or rod,
+    /// though some should lie there: a tunnel passes a wall like that, and a bridge a gap. At the mouth of a
+    /// bore all face one way.
     bool deny(std::span<const Index> ring) const;
 
     /// Do points on all sides of a ring of vertices face its axis, or all face away from it? So they do in a
