@@ -31,19 +31,13 @@ inline constexpr double agreeing_gap = 0.5;
 /// Why: a web has four sides, above, below and at its ends, and below at least there are no points.
 inline constexpr double least_contradicted = 0.25;
 
-/// share: of a ring's width that points across it are looked for in.
-/// Why: by trial; beside a ring that goes round a hole of the part lie the hole's own points, outside of
-/// seven tenths if the ring is no rounder than a square.
-inline constexpr double share_of_ring = 0.7;
+/// points: that should lie on a stretch of a bore or rod and do not, so that it is none.
+/// Why: chance leaves so much free once in 400 times; next to points that stand across it, seldom enough.
+inline constexpr double least_missing = 6;
 
-/// points: of a sheet across a ring, for each that says otherwise.
-/// Why: where a suite's handles were wrong, one in four at most said otherwise; round true ones they were
-/// more than half.
-inline constexpr std::size_t across_per_other = 4;
-
-/// voxels: from a point to a facet that serves it.
+/// voxels: from a ring to the points beside it, as far out from its axis.
 /// Why: by trial; facets lie nearer, but for those beside a rim or corner that was not found.
-inline constexpr double served_within = 0.25;
+inline constexpr double beside_ring = 0.25;
 
 /// edges: from a vertex to the farthest of a ring through it.
 /// Why: a web that one voxel decides has rings of four to six edges; half as many more for those of several.
@@ -58,8 +52,9 @@ inline constexpr std::size_t far = 4096;
 inline constexpr std::size_t fewest_of_part = 216;
 
 /// facets: looked at for each of the mesh, in all; after that no more rings are looked for.
-/// Why: bounds the time where normals are at random.
-inline constexpr std::size_t most_work = 32;
+/// Why: bounds the time where normals are at random; two rounds of all vertices, parts of narrow slots need
+/// one.
+inline constexpr std::size_t most_work = 128;
 
 } // namespace hsdm::handles
 

@@ -39,6 +39,25 @@ bool is_contradicted(const PolygonMesh& mesh, Index f, const NormalSets& sets, s
     return any;
 }
 
+/// Do two sets of a voxel face apart or each other, as the sides of a wall or gap do?
+bool has_wall(std::span<const NormalSet> sets) {
+    for (std::size_t i = 1; i < sets.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if ((sets[i].normal | sets[j].normal) <= -angles::halfway) return true;
+    return false;
+}
+
+/// Per voxel whether a wall or gap passes it, between several vertices: what joins its two sides there may
+/// not be the part's.
+std::vector<std::uint8_t> voxels_of_walls(const NormalSets& sets, std::span<const Index> voxel,
+                                          const PolygonMesh& mesh) {
+    std::vector<std::uint8_t> result(sets.first.size() - 1, 0);
+    for (const Index origin : mesh.origin) result[voxel[origin]] += result[voxel[origin]] < 2;
+    for_each_index(result.size(), chunks::usual,
+                   [&](Index v) { result[v] = result[v] > 1 && has_wall(sets.of_voxel(v)); });
+    return result;
+}
+
 /// The vertices and facets within a few edges of a vertex, and the rings of edges among them.
 class Vicinity {
 public:
@@ -200,11 +219,13 @@ public:
         : mesh_(mesh),
           known_links_(links),
           part_(part),
+          sets_(sets),
           voxel_(voxel),
           witnesses_(octree, level, voxel, mesh),
           work_(work),
           most_work_(handles::most_work * std::max(mesh.facet_count(), part ? part->facets : 0)) {
         const double voxel_size = level.voxel_size;
+        has_wall_ = voxels_of_walls(sets, voxel, mesh);
         assign_large(contradicted_, mesh.facet_count(), 0);
         for_each_index(mesh.facet_count(), chunks::quick, [&](Index f) {
             contradicted_[f] = is_contradicted(mesh, f, sets, voxel, voxel_size);
@@ -246,8 +267,18 @@ private:
 
     Index facet_of(Index side) const { return links_.facet[side]; }
 
-    /// Those of facets that no set speaks for, and where two edges of a facet meet that are shorter together
-    /// than a narrow ring is across: where points are as dense as in the fullest voxel at the facet.
+    /// Does the facet face aside from a set of a voxel that a wall or gap passes?
+    bool joins_wall(std::size_t f, Index v) const {
+        if (!has_wall_[v]) return false;
+        const Vec3 area = area_vector(mesh_, mesh_.facet(f));
+        const double most = angles::halfway * area.norm();
+        return std::ranges::any_of(sets_.of_voxel(v),
+                                   [&](const NormalSet& set) { return std::abs(set.normal | area) < most; });
+    }
+
+    /// Those of facets that join the sides of walls and gaps, or that no set speaks for, and where two edges
+    /// of a facet meet that are shorter together than a narrow ring is across: where points are as dense as
+    /// in the fullest voxel at the facet.
     std::vector<Index> doubtful_vertices() const {
         const auto add = [&](std::size_t begin, std::size_t end, std::vector<Index>& found) {
             for (std::size_t f = begin; f < end; ++f) {
@@ -261,7 +292,8 @@ private:
                 double before = length(n - 1);
                 for (std::size_t i = 0; i < n; ++i) {
                     const double after = length(i);
-                    if (contradicted_[f] || before + after < 2 * spacing) found.push_back(facet[i]);
+                    if (contradicted_[f] || joins_wall(f, voxel_at(facet[i])) || before + after < 2 * spacing)
+                        found.push_back(facet[i]);
                     before = after;
                 }
             }
@@ -293,10 +325,13 @@ private:
     void look_at(Index root, Vicinity& vicinity) {
         const std::vector<Index> ring = vicinity.ring_at(root);
         const double share = share_contradicted(vicinity, ring);
-        if (share < 0 || bounds()) return;
-        if ((witnesses_.is_narrow(ring) || witnesses_.span(ring)
-             || (share >= handles::least_contradicted && are_contradicted_beside(vicinity, ring)))
-            && !witnesses_.surround(ring))
+        if (share < 0) return;
+        const bool is_denied = witnesses_.deny(ring), is_narrow = !is_denied && witnesses_.is_narrow(ring);
+        const bool is_contradicted = share >= handles::least_contradicted;
+        if (!(is_denied || is_narrow || is_contradicted) || bounds())
+            return; // to look behind it takes longest
+        if (is_denied
+            || ((is_narrow || are_contradicted_beside(vicinity, ring)) && !witnesses_.surround(ring)))
             keep(vicinity, ring);
     }
 
@@ -456,12 +491,14 @@ private:
     PolygonMesh& mesh_;
     std::optional<FacetLinks>& known_links_;
     HandlesOfPart* part_;
+    const NormalSets& sets_;
     std::span<const Index> voxel_;
     Witnesses witnesses_;
     std::size_t& work_; // facets looked at, in all rounds
     std::size_t most_work_, own_work_ = 0;
     bool cuts_own_ = false;
     FacetLinks links_;
+    std::vector<std::uint8_t> has_wall_;     // per voxel: passed by a wall or gap
     std::vector<std::uint8_t> contradicted_; // per facet
     std::vector<std::uint8_t> touched_;      // per vertex, near a ring that is to be cut
     std::vector<std::uint8_t> seen_;         // per facet, the side of the ring it is on, from 1

@@ -5,31 +5,40 @@
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/mesh/area_vector.hh"
-#include "hsdm/spatial/point_triangle.hh"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace hsdm {
-namespace {
 
-/// The tube round the axis of a ring of vertices, narrower than the ring itself.
+/// The tube that a ring of vertices makes along an axis.
 class Tube {
 public:
-    Tube(const PolygonMesh& mesh, std::span<const Index> ring, double reach) : reach_(reach) {
+    /// About the ring's own axis, unless another is given.
+    Tube(const PolygonMesh& mesh, std::span<const Index> ring, double reach, const Vec3& axis = Vec3(0, 0, 0))
+        : reach_(reach) {
         std::vector<Vec3> corners;
         for (const Index v : ring) corners.push_back(mesh.positions[v]);
         for (const Vec3& p : corners) centre_ += p;
         centre_ /= static_cast<double>(ring.size());
-        axis_ = unit(area_vector(corners));
+        axis_ = unit(axis.sqrnorm() > 0 ? axis : area_vector(corners));
         const Vec3 out = corners[0] - centre_;
         across_[0] = unit(out - (out | axis_) * axis_);
         across_[1] = axis_ % across_[0];
         for (const Vec3& p : corners) outline_.push_back(on_disc(p));
     }
 
+    double reach() const { return reach_; }
+    /// Of the ring, seen along the axis.
+    double length() const {
+        double sum = 0;
+        for (std::size_t i = 0; i < outline_.size(); ++i) {
+            const auto &a = outline_[i], &b = outline_[(i + 1) % outline_.size()];
+            sum += std::hypot(a[0] - b[0], a[1] - b[1]);
+        }
+        return sum;
+    }
     const Vec3& axis() const { return axis_; }
     double along(const Vec3& p) const { return (p - centre_) | axis_; }
     double angle_of(const Vec3& p) const { return turn_of(p - centre_); }
@@ -46,12 +55,11 @@ public:
     bool holds(const Vec3& p) const {
         if (std::abs(along(p)) > reach_) return false;
         const auto [x, y] = on_disc(p);
-        const double u = x / handles::share_of_ring, v = y / handles::share_of_ring;
         bool inside = false; // a ray from there crosses the outline an odd number of times
         for (std::size_t i = 0; i < outline_.size(); ++i) {
             const auto& a = outline_[i];
             const auto& b = outline_[(i + 1) % outline_.size()];
-            if ((a[1] > v) != (b[1] > v) && u < a[0] + (b[0] - a[0]) * (v - a[1]) / (b[1] - a[1]))
+            if ((a[1] > y) != (b[1] > y) && x < a[0] + (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1]))
                 inside = !inside;
         }
         return inside;
@@ -67,19 +75,6 @@ private:
     std::array<Vec3, 2> across_;
     std::vector<std::array<double, 2>> outline_; ///< of the ring, about its centre
 };
-
-/// Squared distance of a point to a facet, as a fan of triangles.
-double squared_distance(const PolygonMesh& mesh, std::span<const Index> facet, const Vec3& p) {
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 1; i + 1 < facet.size(); ++i) {
-        const PreparedTriangle triangle(mesh.positions[facet[0]], mesh.positions[facet[i]],
-                                        mesh.positions[facet[i + 1]]);
-        least = std::min(least, triangle.nearest(p).squared_distance);
-    }
-    return least;
-}
-
-} // namespace
 
 bool Witnesses::speak_for(Index f) {
     const auto facet = mesh_.facet(f);
@@ -112,43 +107,60 @@ std::vector<Index> Witnesses::voxels_at(std::span<const Index> ring) const {
     return all;
 }
 
-bool Witnesses::span(std::span<const Index> ring) {
-    const Tube tube(mesh_, ring, surrounding::reach_along * level_.voxel_size);
-    std::array<std::vector<Index>, 2> facing; // away from the ring's disc, towards it
-    std::size_t aside = 0;
-    for (const Index v : voxels_at(ring))
-        for (Index p = level_.first_point[v]; p < level_.first_point[v + 1]; ++p) {
-            const Vec3& at = octree_.positions[p];
-            if (octree_.source[p] == no_index || !tube.holds(at)) continue;
-            const double cosine = octree_.normals[p] | tube.axis();
-            if (std::abs(cosine) < angles::halfway)
-                ++aside;
-            else
-                facing[(cosine > 0) != (tube.along(at) > 0)].push_back(p);
+Vec3 Witnesses::axis_across(const Tube& tube, std::span<const Index> voxels) const {
+    Vec3 sum(0, 0, 0);
+    std::size_t count = 0;
+    for_points(voxels, [&](Index p) {
+        const Vec3& normal = octree_.normals[p];
+        const double cosine = normal | tube.axis();
+        if (std::abs(cosine) < angles::halfway || !tube.holds(octree_.positions[p])) return;
+        sum += cosine > 0 ? normal : -normal;
+        ++count;
+    });
+    return count >= two_agree ? sum : Vec3(0, 0, 0);
+}
+
+bool Witnesses::deny(std::span<const Index> ring) const {
+    const double reach = surrounding::reach_along * level_.voxel_size;
+    const std::vector<Index> voxels = voxels_at(ring);
+    const Vec3 axis = axis_across(Tube(mesh_, ring, reach), voxels); // the ring may stand askew
+    if (!(axis.sqrnorm() > 0) || has_completed(voxels)) return false;
+    const Tube tube(mesh_, ring, reach, axis);
+    const double farthest = tube.width() + handles::beside_ring * level_.voxel_size;
+    double below = -reach, above = reach;      // the stretch
+    std::array<std::vector<double>, 2> across; // by the way they face
+    for_points(voxels, [&](Index p) {
+        const Vec3& at = octree_.positions[p];
+        const double along = tube.along(at);
+        const double cosine = octree_.normals[p] | tube.axis();
+        if (std::abs(cosine) >= angles::halfway) {
+            if (tube.holds(at)) across[cosine > 0].push_back(along);
+        } else if (tube.out_to(at).norm() < farthest) {
+            (along < 0 ? below : above) = along < 0 ? std::max(below, along) : std::min(above, along);
         }
-    const std::vector<Index>& most = facing[facing[0].size() < facing[1].size()];
-    const std::size_t others = aside + std::min(facing[0].size(), facing[1].size());
-    if (most.size() < points_of_plane || handles::across_per_other * others > most.size()) return false;
-    const auto unserved = std::ranges::count_if(most, [&](Index p) { return !is_served(p); });
-    return 2 * static_cast<std::size_t>(unserved) >= most.size();
+    });
+    const auto has_sheet = [&](const std::vector<double>& places) {
+        return std::ranges::any_of(places, [&](double t) { return t > below && t < above; });
+    };
+    const double h = spacing(points_in(voxels), voxels.size());
+    return has_sheet(across[0]) && has_sheet(across[1]) && above - below > h
+           && tube.length() * (above - below) > handles::least_missing * h * h;
 }
 
 bool Witnesses::surround(std::span<const Index> ring) const {
     const Tube tube(mesh_, ring, surrounding::reach_along * level_.voxel_size);
-    const double farthest = tube.width() + handles::served_within * level_.voxel_size;
+    const double farthest = tube.width() + handles::beside_ring * level_.voxel_size;
     std::array<std::vector<double>, 2> places, normals; // of those that face the axis, that face away from it
-    for (const Index v : voxels_at(ring))
-        for (Index p = level_.first_point[v]; p < level_.first_point[v + 1]; ++p) {
-            const Vec3 out = tube.out_to(octree_.positions[p]);
-            const double length = out.norm();
-            if (octree_.source[p] == no_index || !(length > 0) || length > farthest
-                || std::abs(tube.along(octree_.positions[p])) > surrounding::reach_along * level_.voxel_size)
-                continue;
-            const double cosine = (octree_.normals[p] | out) / length;
-            if (std::abs(cosine) < angles::halfway) continue;
-            places[cosine > 0].push_back(tube.angle_of(octree_.positions[p]));
-            normals[cosine > 0].push_back(tube.turn_of(octree_.normals[p]));
-        }
+    for_points(voxels_at(ring), [&](Index p) {
+        const Vec3 out = tube.out_to(octree_.positions[p]);
+        const double length = out.norm();
+        if (!(length > 0) || length > farthest || std::abs(tube.along(octree_.positions[p])) > tube.reach())
+            return;
+        const double cosine = (octree_.normals[p] | out) / length;
+        if (std::abs(cosine) < angles::halfway) return;
+        places[cosine > 0].push_back(tube.angle_of(octree_.positions[p]));
+        normals[cosine > 0].push_back(tube.turn_of(octree_.normals[p]));
+    });
     const std::size_t most = places[0].size() < places[1].size();
     return places[most].size() >= 2 * points_of_plane && wide_gaps(places[most]) == 0
            && wide_gaps(normals[most]) < 2; // else the two sides of a wall or gap
@@ -157,10 +169,22 @@ bool Witnesses::surround(std::span<const Index> ring) const {
 bool Witnesses::is_narrow(std::span<const Index> ring) const {
     const double width = Tube(mesh_, ring, 0).width();
     if (width >= level_.voxel_size) return false; // no voxel around is empty
-    std::size_t points = 0;
     const std::vector<Index> voxels = voxels_at(ring);
+    return width < spacing(points_in(voxels), voxels.size());
+}
+
+bool Witnesses::has_completed(std::span<const Index> voxels) const {
+    return std::ranges::any_of(voxels, [&](Index v) {
+        const auto begin = octree_.source.begin();
+        return std::find(begin + level_.first_point[v], begin + level_.first_point[v + 1], no_index)
+               != begin + level_.first_point[v + 1];
+    });
+}
+
+std::size_t Witnesses::points_in(std::span<const Index> voxels) const {
+    std::size_t points = 0;
     for (const Index v : voxels) points += level_.first_point[v + 1] - level_.first_point[v];
-    return width < spacing(points, voxels.size());
+    return points;
 }
 
 double Witnesses::spacing_at(Index vertex) const {
@@ -170,32 +194,6 @@ double Witnesses::spacing_at(Index vertex) const {
 
 double Witnesses::spacing(std::size_t points, std::size_t voxels) const {
     return level_.voxel_size * std::sqrt(static_cast<double>(voxels) / static_cast<double>(points));
-}
-
-bool Witnesses::is_served(Index point) {
-    if (!corners_of_voxel_) {
-        std::vector<Index> voxels = large_vector<Index>(mesh_.corners.size());
-        for (std::size_t c = 0; c < voxels.size(); ++c) voxels[c] = voxel_of(mesh_.corners[c]);
-        corners_of_voxel_.emplace(voxels, level_.size());
-    }
-    const Vec3 &at = octree_.positions[point], &normal = octree_.normals[point];
-    const double farthest = handles::served_within * level_.voxel_size;
-    const auto serves = [&](Index corner) {
-        const auto next = std::upper_bound(mesh_.first.begin(), mesh_.first.end(), corner);
-        const auto facet = mesh_.facet(static_cast<std::size_t>(next - mesh_.first.begin()) - 1);
-        const Vec3 area = area_vector(mesh_, facet);
-        return (area | normal) > angles::facing * area.norm()
-               && squared_distance(mesh_, facet, at) < farthest * farthest;
-    };
-    bool served = false;
-    const auto look = [&](Index v) {
-        for (const Index c : corners_of_voxel_->of(v)) served = served || serves(c);
-    };
-    const auto after = std::upper_bound(level_.first_point.begin(), level_.first_point.end(), point);
-    const auto own = static_cast<Index>(after - level_.first_point.begin() - 1);
-    look(own);
-    for_neighbors(level_, own, look);
-    return served;
 }
 
 } // namespace hsdm

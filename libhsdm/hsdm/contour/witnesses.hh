@@ -2,13 +2,12 @@
 // What measured points say of facets, and of rings of edges that may be cut. Completed points (those without
 // a source) are guesses, by what the facets did not say: they are not asked.
 
-#include "hsdm/core/groups.hh"
 #include "hsdm/octree/octree.hh"
 #include "hsdm/polygon_mesh.hh"
 
-#include <optional>
-
 namespace hsdm {
+
+class Tube; // round a ring of vertices
 
 class Witnesses {
 public:
@@ -20,10 +19,11 @@ public:
     /// Do at least two of the eight points nearest to a facet face its way?
     bool speak_for(Index facet);
 
-    /// Do points make a sheet across a ring of vertices, all facing one way along its axis, where no facet
-    /// serves them? A tunnel passes a wall like that, and a bridge a gap; inside a hole of the part or round
-    /// a rod points face away from the axis.
-    bool span(std::span<const Index> ring);
+    /// Do points say that a ring of vertices is none of the part's? Some face along its axis, within it, one
+    /// way and the other, and the stretch of the axis that they stand in holds no point of a bore or rod,
+    /// though some should lie there: a tunnel passes a wall like that, and a bridge a gap. At the mouth of a
+    /// bore all face one way.
+    bool deny(std::span<const Index> ring) const;
 
     /// Do points on all sides of a ring of vertices face its axis, or all face away from it? So they do in a
     /// bore and round a rod. A web or tunnel that is none lacks the points of one side at least, or they are
@@ -42,15 +42,24 @@ private:
     void gather(Index voxel, const Vec3& centre);
     /// The voxels of the ring's vertices and those round them, each once.
     std::vector<Index> voxels_at(std::span<const Index> ring) const;
-    /// Does a facet near the point lie on it and face its way?
-    bool is_served(Index point);
+    /// Calls f for each measured point of the voxels.
+    template <class F>
+    void for_points(std::span<const Index> voxels, F&& f) const {
+        for (const Index v : voxels)
+            for (Index p = level_.first_point[v]; p < level_.first_point[v + 1]; ++p)
+                if (octree_.source[p] != no_index) f(p);
+    }
+    /// Are there completed points, where no scanner saw any?
+    bool has_completed(std::span<const Index> voxels) const;
+    std::size_t points_in(std::span<const Index> voxels) const;
+    /// The mean direction of the normals of points in a ring that face along its axis; 0 if less than two do.
+    Vec3 axis_across(const Tube& tube, std::span<const Index> voxels) const;
 
     const Octree& octree_;
     const OctreeLevel& level_;
     std::span<const Index> voxel_;
     const PolygonMesh& mesh_;
     std::vector<std::pair<double, Index>> near_;
-    std::optional<Groups> corners_of_voxel_; ///< made when first needed
 };
 
 } // namespace hsdm
