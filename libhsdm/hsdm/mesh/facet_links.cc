@@ -62,7 +62,7 @@ private:
         resize_unwritten(links_.accepted, facets_.facet_count());
         resize_unwritten(links_.facet, facets_.corners.size());
         for_each_index(facets_.facet_count(), chunks::quick, [&](Index f) {
-            links_.accepted[f] = is_proper(facets_.facet(f), facets_.vertex_count());
+            links_.accepted[f] = static_cast<char>(is_proper(facets_.facet(f), facets_.vertex_count()));
             for (Index c = facets_.first[f]; c < facets_.first[f + 1]; ++c) links_.facet[c] = f;
         });
         count_rejected();
@@ -117,7 +117,7 @@ private:
             bool free = true;
             for (Index c = facets_.first[f]; c < facets_.first[f + 1]; ++c)
                 free = free && !taken[slot(start(c), end(c))];
-            links_.accepted[f] = free;
+            links_.accepted[f] = static_cast<char>(free);
             if (!free) return;
             for (Index c = facets_.first[f]; c < facets_.first[f + 1]; ++c) taken[slot(start(c), end(c))] = 1;
         });
