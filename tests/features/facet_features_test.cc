@@ -56,9 +56,9 @@ TEST_CASE("features of facets are those of their half-edge mesh, bit for bit", "
     smooth_normals(mesh, smoothing);
 
     FacetFeatures found = find_facet_features(facets, links, FeatureHints(hints), {});
-    FacetNormals normals_of_facets = normals_of(facets);
-    smooth(normals_of_facets, neighbours_of(facets, links, found.sharp), smoothing);
-    found.normals = std::move(normals_of_facets.normals);
+    FacetNormals of_facets = facet_normals(facets);
+    smooth_facet_normals(of_facets, neighbours_of(facets, links, found.sharp), smoothing);
+    found.normals = std::move(of_facets.normals);
     CHECK(found.counts == counts);
     CHECK(counts.corner_vertices > 0);
     const OpenMesh::VProp<std::uint8_t> classes(mesh, vertex_class_property),

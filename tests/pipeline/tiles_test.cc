@@ -114,6 +114,7 @@ TEST_CASE("tiles in flat arrays give the same files, whatever the cloud", "[pipe
     if (open != turned) tiles.memory = 1; // what nothing reads waits on scratch
     const FlatReconstruction flat = reconstruct_flat_in_tiles(parts, options, tiles, &how);
     CHECK(how.tiles > 1);
+    CHECK(how.parks == (open != turned));
     const PolygonMesh polygons = to_polygons(whole.mesh);
     for (const bool ascii : {false, true})
         for (const MeshFormat format : {MeshFormat::ply, MeshFormat::off, MeshFormat::stl}) {

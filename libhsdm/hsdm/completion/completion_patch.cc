@@ -337,7 +337,7 @@ void fair_unless(CompletionPatch& patch, Wrong&& wrong) {
     for (int round = 0, rings = 1;; ++round, rings *= 2) {
         fairing.move();
         const std::vector<Index> stopped = wrong(net);
-        if (stopped.empty() || round == enough_rounds) return;
+        if (stopped.empty() || round + 1 == enough_rounds) return;
         fairing.stop(stopped, rings);
         patch.net.positions = net;
     }

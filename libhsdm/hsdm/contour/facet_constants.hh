@@ -32,11 +32,13 @@ inline constexpr double agreeing_gap = 0.5;
 inline constexpr double least_contradicted = 0.25;
 
 /// points: that should lie on a stretch of a bore or rod and do not, so that it is none.
-/// Why: chance leaves so much free once in 400 times; next to points that stand across it, seldom enough.
+/// Why: chance leaves so much free once in 400 times, where two sheets share the voxels once in 20; next to
+/// points that stand across it, seldom enough.
 inline constexpr double least_missing = 6;
 
-/// voxels: from a ring to the points beside it, as far out from its axis.
-/// Why: by trial; facets lie nearer, but for those beside a rim or corner that was not found.
+/// voxels: out from a ring, seen along its axis, within which points are of the bore or rod that it goes
+/// round.
+/// Why: by trial; facets lie nearer to their points, but for those beside a rim or corner that was not found.
 inline constexpr double beside_ring = 0.25;
 
 /// edges: from a vertex to the farthest of a ring through it.

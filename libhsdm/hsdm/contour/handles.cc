@@ -39,7 +39,7 @@ bool is_contradicted(const PolygonMesh& mesh, Index f, const NormalSets& sets, s
     return any;
 }
 
-/// Do two sets of a voxel face apart or each other, as the sides of a wall or gap do?
+/// Do two sets of a voxel face apart or each other, more than across, as the sides of a wall or gap do?
 bool has_wall(std::span<const NormalSet> sets) {
     for (std::size_t i = 1; i < sets.size(); ++i)
         for (std::size_t j = 0; j < i; ++j)

@@ -31,14 +31,15 @@ struct HandlesOfPart {
 };
 
 /// Cuts the mesh along short rings of edges that do not bound a small part of their own, and closes both
-/// sides, where points pass across the ring, or none speak for a quarter of the facets beside it, nor of
-/// those beside the rings next to it on average, or its vertices are nearer to its axis than points to each
-/// other (Witnesses). A bridge through the air is taken away like that, and a tunnel filled. Each cut raises
-/// the Euler characteristic by two, so it comes to an end. A 2-manifold remains one; vertices are copied with
-/// their origins, `voxel` is per origin. Returns how many rings were cut. O(facets): rings are looked for
-/// near facets that no set of their vertices' voxels agrees with and where two short edges of a facet meet,
-/// and no more once that has taken so much work. Serial but for the first look at all facets. `links` are the
-/// mesh's if they are known; they are found if needed, and none are left once the mesh has changed.
+/// sides, where points pass across the ring and are missing along it, or none speak for a quarter of the
+/// facets beside it, nor of those beside the rings next to it on average, or its vertices are nearer to its
+/// axis than points to each other (Witnesses). A bridge through the air is taken away like that, and a tunnel
+/// filled. Each cut raises the Euler characteristic by two, so it comes to an end. A 2-manifold remains one;
+/// vertices are copied with their origins, `voxel` is per origin. Returns how many rings were cut. O(facets):
+/// rings are looked for near facets that no set of their vertices' voxels agrees with, that face aside from
+/// one where a wall or gap passes, and where two short edges of a facet meet, and no more once that has taken
+/// so much work. Serial but for the first look at all facets. `links` are the mesh's if they are known; they
+/// are found if needed, and none are left once the mesh has changed.
 std::size_t cut_handles(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
                         std::span<const Index> voxel, PolygonMesh& mesh, std::optional<FacetLinks>& links,
                         HandlesOfPart* part = nullptr);

@@ -23,7 +23,12 @@ namespace {
 /// The discs of walls and gaps, by the sets that bound these: those of set s are all[first[s]] ..
 /// all[first[s + 1]].
 struct SetDiscs {
-    std::vector<MiddleDisc> all;
+    struct Disc {
+        Vec3 point; // of the set
+        double off; // from there to the disc's middle, along the set's normal: ahead are gaps
+        double radius;
+    };
+    std::vector<Disc> all;
     std::vector<Index> first;
 };
 
@@ -42,6 +47,7 @@ struct PatchScratch {
         Double2 cosine;
     };
     std::vector<Facing> facing;
+    std::vector<MiddleDisc> of_set;
     MiddleDiscs discs;                             // its places are the samples, its surfaces the sets
     std::vector<std::pair<double, double>> places; // along a crease, and off its plane
     struct NearCrease {
@@ -108,8 +114,15 @@ public:
         take_samples(sampled);
         for (std::size_t i = 0; i < size(); ++i) at_.samples.push_back(set(i).centroid);
         at_.discs.reset(at_.samples, size(), set(0).centroid, level_.voxel_size);
-        for (const Index s : at_.sets)
-            at_.discs.add({discs.all.data() + discs.first[s], discs.all.data() + discs.first[s + 1]});
+        for (const Index s : at_.sets) {
+            const Vec3& normal = sets_.sets[s].normal;
+            at_.of_set.clear();
+            for (Index d = discs.first[s]; d < discs.first[s + 1]; ++d) {
+                const auto& [point, off, radius] = discs.all[d];
+                at_.of_set.push_back({point + normal * off, normal, point, radius * radius, off > 0});
+            }
+            at_.discs.add(at_.of_set);
+        }
     }
 
     std::size_t own() const { return own_; }
@@ -121,7 +134,7 @@ public:
     }
 
     /// Appends the discs between an own set and the nearest opposite sheets before it and behind it.
-    void add_discs(std::size_t i, std::vector<MiddleDisc>& discs) {
+    void add_discs(std::size_t i, std::vector<SetDiscs::Disc>& discs) {
         find_facing(i);
         if (at_.facing.empty()) return;
         const double radius = spacings::beside * spacing(i);
@@ -304,7 +317,7 @@ private:
 
     /// The discs between a sheet at one of its points and the nearest opposite one behind it and before it.
     void add_discs_at(const Vec3& p, const Vec3& normal, double radius,
-                      std::vector<MiddleDisc>& discs) const {
+                      std::vector<SetDiscs::Disc>& discs) const {
         const double h = level_.voxel_size, widest = patches::widest * h,
                      beside = sheets::beside * sheets::beside * h * h;
         Double2 behind = Double2{} + widest, front = behind; // the nearest sheets
@@ -317,10 +330,8 @@ private:
             behind = min_lanes(t > 0 ? behind : distance, behind);
         }
         const double nearest[2] = {std::min(behind[0], behind[1]), std::min(front[0], front[1])};
-        for (unsigned before : {0u, 1u})
-            if (nearest[before] < widest)
-                discs.push_back({p + normal * ((before ? 0.5 : -0.5) * nearest[before]), normal, p,
-                                 radius * radius, before == 1});
+        if (nearest[0] < widest) discs.push_back({p, -0.5 * nearest[0], radius});
+        if (nearest[1] < widest) discs.push_back({p, 0.5 * nearest[1], radius});
     }
 
     const Octree& octree_;
@@ -373,20 +384,18 @@ private:
 
     SetDiscs find_discs(const std::vector<Index>& voxels) {
         SetDiscs discs{{}, large_vector<Index>(sets_.sets.size() + 1)};
-        discs.all =
-            collected<MiddleDisc>(voxels.size(), chunks::heavy,
-                                  [&](std::size_t begin, std::size_t end, std::vector<MiddleDisc>& found) {
-                                      Neighborhood around(octree_, level_, related_, sets_, scratch_.local());
-                                      for (std::size_t k = begin; k < end; ++k) {
-                                          around.gather(voxels[k]);
-                                          for (std::size_t i = 0; i < around.own(); ++i) {
-                                              const std::size_t before = found.size();
-                                              around.add_discs(i, found);
-                                              discs.first[around.number(i) + 1] =
-                                                  static_cast<Index>(found.size() - before);
-                                          }
-                                      }
-                                  });
+        const auto look = [&](std::size_t begin, std::size_t end, std::vector<SetDiscs::Disc>& found) {
+            Neighborhood around(octree_, level_, related_, sets_, scratch_.local());
+            for (std::size_t k = begin; k < end; ++k) {
+                around.gather(voxels[k]);
+                for (std::size_t i = 0; i < around.own(); ++i) {
+                    const std::size_t before = found.size();
+                    around.add_discs(i, found);
+                    discs.first[around.number(i) + 1] = static_cast<Index>(found.size() - before);
+                }
+            }
+        };
+        discs.all = collected<SetDiscs::Disc>(voxels.size(), chunks::heavy, look);
         counts_to_first(discs.first);
         return discs;
     }

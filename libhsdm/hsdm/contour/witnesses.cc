@@ -13,7 +13,7 @@
 namespace hsdm {
 
 /// The tube that a ring of vertices makes along an axis.
-class Tube {
+class Witnesses::Tube {
 public:
     /// About the ring's own axis, unless another is given.
     Tube(const PolygonMesh& mesh, std::span<const Index> ring, double reach, const Vec3& axis = Vec3(0, 0, 0))

@@ -7,8 +7,6 @@
 
 namespace hsdm {
 
-class Tube; // round a ring of vertices
-
 class Witnesses {
 public:
     /// All must outlive it; `voxel` is per origin of the mesh's vertices. The mesh's facets may not change.
@@ -37,6 +35,8 @@ public:
     double spacing_at(Index vertex) const;
 
 private:
+    class Tube; // round a ring of vertices
+
     double spacing(std::size_t points, std::size_t voxels) const;
     Index voxel_of(Index vertex) const { return voxel_[mesh_.origin[vertex]]; }
     void gather(Index voxel, const Vec3& centre);

@@ -65,10 +65,11 @@ inline constexpr unsigned two_agree = 2;
 
 /// points: nearest to a facet, that are asked whether they face its way; shortest ways between two sets, that
 /// are asked whether something parts them.
-/// Why: eight points lie within one and a half spacings; one of them may stand at a crease.
+/// Why: eight points lie within one and a half spacings; one of them may stand at a crease. So many ways end
+/// at more than two points of either set.
 inline constexpr std::size_t nearest_asked = 8;
 
-/// rounds: of whatever is repeated until a round changes nothing.
+/// rounds: of whatever is repeated until it is settled.
 /// Why: bounds the work; what is left after so many is rare, and told or mended elsewhere.
 inline constexpr int enough_rounds = 16;
 

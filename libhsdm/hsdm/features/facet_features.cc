@@ -172,7 +172,7 @@ FacetFeatures find_facet_features(const PolygonMesh& facets, const FacetLinks& l
     return Finder(facets, links, options).find(std::move(hints));
 }
 
-FacetNormals normals_of(const PolygonMesh& facets) {
+FacetNormals facet_normals(const PolygonMesh& facets) {
     FacetNormals result{unwritten_vector<Vec3>(facets.facet_count()),
                         unwritten_vector<double>(facets.facet_count())};
     for_each_index(facets.facet_count(), chunks::quick, [&](Index f) {
@@ -198,7 +198,8 @@ FacetNeighbours neighbours_of(const PolygonMesh& facets, const FacetLinks& links
     return result;
 }
 
-void smooth(FacetNormals& normals, const FacetNeighbours& neighbours, const NormalSmoothingOptions& options) {
+void smooth_facet_normals(FacetNormals& normals, const FacetNeighbours& neighbours,
+                          const NormalSmoothingOptions& options) {
     validate(options);
     for (int round = 0; round < options.rounds; ++round)
         filter_normals(neighbours, normals.area, options.similarity_angle, options.settled_angle,

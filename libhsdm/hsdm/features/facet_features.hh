@@ -31,12 +31,13 @@ struct FacetNormals {
     std::vector<Vec3> normals; ///< per facet, unit or (0, 0, 0)
     std::vector<double> area;  ///< per facet
 };
-FacetNormals normals_of(const PolygonMesh& facets);
+FacetNormals facet_normals(const PolygonMesh& facets);
 /// Of all facets those across sides that are not sharp; reads `first` of the facets, facet and twin.
 FacetNeighbours neighbours_of(const PolygonMesh& facets, const FacetLinks& links,
                               std::span<const std::uint8_t> sharp);
 /// Throws OptionError.
-void smooth(FacetNormals& normals, const FacetNeighbours& neighbours, const NormalSmoothingOptions& options);
+void smooth_facet_normals(FacetNormals& normals, const FacetNeighbours& neighbours,
+                          const NormalSmoothingOptions& options);
 
 /// The facets round one vertex after the other, in the same memory: what VertexFanT is on a mesh.
 class FacetFan {

@@ -17,12 +17,15 @@ public:
     explicit ParkedArrays(const ScratchPlace* place) {
         if (place) file_.emplace(*place);
     }
+    ParkedArrays(const ParkedArrays&) = delete;
+    ParkedArrays& operator=(const ParkedArrays&) = delete;
 
     /// Writes arrays to scratch and gives their memory back. They must outlive this. Throws Error if the disk
-    /// is full.
+    /// has no room for all.
     template <class... T>
     void park(std::vector<T>&... arrays) {
         if (!file_) return;
+        file_->check_room(what_, (... + (arrays.size() * sizeof(T))));
         (park_one(arrays), ...);
         os::give_back_freed_memory();
     }
@@ -35,7 +38,7 @@ public:
 private:
     template <class T>
     void park_one(std::vector<T>& values) {
-        const std::size_t count = values.size(), at = file_->append("arrays of the mesh", values);
+        const std::size_t count = values.size(), at = file_->append(what_, values);
         release(values);
         reads_.emplace_back([this, at, count, &values] {
             resize_unwritten(values, count);
@@ -43,6 +46,7 @@ private:
         });
     }
 
+    static constexpr const char* what_ = "arrays of the mesh that wait";
     std::optional<ScratchBytes> file_;
     std::vector<std::function<void()>> reads_;
 };

@@ -44,7 +44,8 @@ inline constexpr std::size_t one_outer_in = 50;
 
 /// boxes: that hold most points, across the cloud's box; of fewer nothing is far away. A quarter of it lies
 /// between that box and a point that is far away. Also across the widest gap that is tried as a cut first.
-/// Why: 4096: the octree's 21 levels still have nine for such a box.
+/// Why: 4096: the octree's 21 levels still have nine for such a box. A quarter: an outlier on either side,
+/// and as far again between.
 inline constexpr double boxes_across = 1 << 12;
 
 } // namespace hsdm::far_points

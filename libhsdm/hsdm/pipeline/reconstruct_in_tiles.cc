@@ -154,6 +154,7 @@ public:
         const std::size_t voxels = survey_->sums.voxels();
         const bool parks = bytes_per_voxel_ == bytes_per_voxel_of_parked_mesh
                            && voxels * bytes_per_voxel_of_flat_mesh + bytes_of_program > tiles_.memory;
+        how_.parks = parks;
         const ScratchPlace parking{tiles_.scratch};
         const std::size_t mesh =
             voxels * (parks ? bytes_per_voxel_parked_in_error : bytes_per_voxel_in_error);

@@ -40,6 +40,7 @@ struct TileReport {
     std::size_t own_tiles = 0;          ///< of all, this rank's
     std::size_t points_read = 0;        ///< by this rank's tiles, what is round them too
     std::size_t scratch_bytes = 0;      ///< of this rank
+    bool parks = false;                 ///< arrays of the mesh waited on scratch while nothing read them
     bool went_on = false;               ///< with passes that were kept
     std::size_t kept_tiles = 0;         ///< of own_tiles, those that were in the end
     std::vector<Report::Rank> ranks{};  ///< what each did

@@ -106,7 +106,7 @@ public:
         os::give_back_freed_memory();
         in_.phases.run("error", 0.6, seconds.error, [&] {
             drop_small_and_measure(
-                in_, method_, mesh(), hints_, report_, [&] { links() = link_facets(mesh()); },
+                in_, method_, mesh(), hints_, report_, [&] { relink(); },
                 [&] {
                     note_connectivity();
                     keep_to_manifold();
@@ -154,6 +154,10 @@ private:
         }
         forget_vertices();
     }
+    void relink() {
+        links() = FacetLinks(); // its memory first
+        links() = link_facets(mesh());
+    }
     void park_links(ParkedArrays& waiting) {
         waiting.park(links().facet, links().twin, links().vertex, links().source, links().side_out,
                      links().open_in, links().accepted, hints_.sides);
@@ -184,13 +188,13 @@ private:
     }
 
     void smooth_normals() {
-        FacetNormals normals = normals_of(mesh());
+        FacetNormals normals = facet_normals(mesh());
         ParkedArrays waiting(in_.parking);
-        waiting.park(mesh().positions, mesh().corners, links().side_out, links().open_in);
-        {
+        if (in_.options.normal_smoothing > 0) {
+            waiting.park(mesh().positions, mesh().corners, links().side_out, links().open_in);
             const FacetNeighbours neighbours = neighbours_of(mesh(), links(), result_.features.sharp);
             waiting.park(links().facet, links().twin);
-            smooth(normals, neighbours, {.rounds = in_.options.normal_smoothing});
+            smooth_facet_normals(normals, neighbours, {.rounds = in_.options.normal_smoothing});
         }
         release(normals.area);
         result_.features.normals = std::move(normals.normals);
