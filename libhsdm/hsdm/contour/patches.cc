@@ -35,7 +35,6 @@ struct SetDiscs {
 /// Working space of one thread.
 struct PatchScratch {
     std::vector<Index> sets;   // of the voxel and its neighbours, the voxel's own first
-    std::vector<Index> voxels; // the voxel and its neighbours
     std::vector<Vec3> samples; // then the centroids of the sets
     std::vector<Index> first_sample;
     std::vector<double> spacings;        // per set; below 0: not measured yet
@@ -91,7 +90,6 @@ public:
 
     void gather(Index voxel) {
         at_.sets.clear();
-        at_.voxels.clear();
         add_sets(voxel);
         own_ = at_.sets.size();
         for_neighbors(level_, voxel, [&](Index v) { add_sets(v); });
@@ -105,9 +103,7 @@ public:
     }
     /// Is a wall or gap near?
     bool is_crowded(const SetDiscs& discs) const {
-        return std::ranges::any_of(at_.voxels, [&](Index v) {
-            return discs.first[sets_.first[v]] < discs.first[sets_.first[v + 1]];
-        });
+        return std::ranges::any_of(at_.sets, [&](Index s) { return discs.first[s] < discs.first[s + 1]; });
     }
     /// What is asked of samples: of those of so many sets.
     void lay_out(const SetDiscs& discs, std::size_t sampled) {
@@ -231,7 +227,6 @@ private:
     MiddleDiscs::Surface surface(std::size_t i) const { return {i, set(i).normal}; }
 
     void add_sets(Index v) {
-        at_.voxels.push_back(v);
         for (Index s = sets_.first[v]; s < sets_.first[v + 1]; ++s) at_.sets.push_back(s);
     }
 
@@ -382,6 +377,7 @@ private:
         std::vector<Index> of_point; ///< number within the voxel, or no_index
     };
 
+    /// Those of all sets of these voxels, ascending.
     SetDiscs find_discs(const std::vector<Index>& voxels) {
         SetDiscs discs{{}, large_vector<Index>(sets_.sets.size() + 1)};
         const auto look = [&](std::size_t begin, std::size_t end, std::vector<SetDiscs::Disc>& found) {
