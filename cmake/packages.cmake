@@ -61,12 +61,17 @@ macro(hsdm_debian_package group name section summary description depends)
   install(FILES cmake/debian/lintian-overrides DESTINATION share/lintian/overrides RENAME ${name} COMPONENT ${first})
 endmacro()
 
+# What is loaded when it is asked for dpkg-shlibdeps does not see: libzip.
+file(REAL_PATH ${ZIP_LIBRARY} zip_file)
+execute_process(COMMAND dpkg-query -S ${zip_file} OUTPUT_VARIABLE zip_package COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX REPLACE ":.*" "" zip_package "${zip_package}")
+
 set(CPACK_COMPONENTS_ALL)
 hsdm_debian_package(hsdm hsdm graphics "scanned points to CAD-ready meshes"
   "This is the command, with the modules that it loads, manual pages and\ncompletions for bash, zsh and fish."
   "${soname_package} (= ${full_version})" runtime modules)
 hsdm_debian_package(library ${soname_package} libs "scanned points to CAD-ready meshes, shared library"
-  "This is the library that the command and other programs use." "" library)
+  "This is the library that the command and other programs use." "${zip_package}" library)
 hsdm_debian_package(dev libhsdm-dev libdevel "scanned points to CAD-ready meshes, development files"
   "These are the headers, the packages for CMake and pkg-config, and\nexamples."
   "${soname_package} (= ${full_version}), libopenmesh-dev, libtbb-dev" development examples)

@@ -19,7 +19,7 @@ class ShortestWays {
 public:
     struct Way {
         double squared_length;
-        std::size_t p, q;
+        std::uint32_t p, q;
     };
 
     /// Would a way as long be taken?
@@ -43,7 +43,7 @@ private:
 double squared_distance(const Vec3& p, const Box& box) {
     Vec3 off;
     for (std::size_t axis = 0; axis < 3; ++axis)
-        off[axis] = std::max({0.0, box.lo[axis] - p[axis], p[axis] - box.hi[axis]});
+        off[axis] = std::max(0.0, std::max(box.lo[axis] - p[axis], p[axis] - box.hi[axis]));
     return off.sqrnorm();
 }
 
@@ -210,9 +210,9 @@ bool PatchNeighborhood::apart(std::size_t i, std::size_t j) {
     if (!at_.discs.stand_on(surface(i)) && !at_.discs.stand_on(surface(j))) return false;
     take_samples();
     ShortestWays ways;
-    for (std::size_t p = first_sample(i); p < first_sample(i + 1); ++p)
+    for (std::uint32_t p = first_sample(i); p < first_sample(i + 1); ++p)
         if (ways.wants(squared_distance(at_.samples[p], at_.boxes[j])))
-            for (std::size_t q = first_sample(j); q < first_sample(j + 1); ++q)
+            for (std::uint32_t q = first_sample(j); q < first_sample(j + 1); ++q)
                 ways.offer({(at_.samples[q] - at_.samples[p]).sqrnorm(), p, q});
     Box box;
     for (const auto& [squared_length, p, q] : ways.found()) {

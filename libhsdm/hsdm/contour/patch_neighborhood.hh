@@ -89,7 +89,7 @@ private:
     struct Crease;
 
     MiddleDiscs::Surface surface(std::size_t i) const { return {i, set(i).normal}; }
-    std::size_t first_sample(std::size_t i) const { return at_.first_sample[i]; }
+    Index first_sample(std::size_t i) const { return at_.first_sample[i]; }
     std::span<const Vec3> samples(std::size_t i) const {
         return {at_.samples.data() + first_sample(i), at_.samples.data() + first_sample(i + 1)};
     }
