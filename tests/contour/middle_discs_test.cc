@@ -4,21 +4,22 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <array>
 
 using namespace hsdm;
 
 namespace {
 
-struct Sheet {
+struct SeenSheet {
     Vec3 normal;
     std::vector<SeenDisc> discs;
 };
 
 /// The same question, of one disc after the other.
-bool part_one_by_one(const std::vector<Sheet>& sheets, const Vec3& p, const Vec3& q, const Vec3& normal) {
+bool part_one_by_one(const std::vector<SeenSheet>& sheets, const Vec3& p, const Vec3& q, const Vec3& normal) {
     std::array<std::array<bool, 2>, 2> seen{};
-    for (const Sheet& sheet : sheets)
+    for (const SeenSheet& sheet : sheets)
         for (const SeenDisc& disc : sheet.discs) {
             if (std::abs(normal | sheet.normal) > angles::halfway) continue;
             const Vec3 middle = disc.point + sheet.normal * disc.off;
@@ -50,7 +51,7 @@ TEST_CASE("discs part the places that they part one by one, in any unit and anyw
             Box everywhere;
             for (const Vec3& place : places) everywhere.add(place);
             MiddleDiscs discs;
-            std::vector<Sheet> all;
+            std::vector<SeenSheet> all;
             for (int twice = 0; twice < 2; ++twice) { // what is known of the first ones is forgotten
                 discs.reset(normals.size(), amid, voxel);
                 all.clear();
@@ -61,7 +62,7 @@ TEST_CASE("discs part the places that they part one by one, in any unit and anyw
                                                     random.uniform(-0.7, 0.7) * voxel,
                                                     (0.6 + random.uniform(-0.4, 0.4)) * voxel});
                 }
-                for (const Sheet& sheet : all) discs.add(sheet.normal, sheet.discs);
+                for (const SeenSheet& sheet : all) discs.add(sheet.normal, sheet.discs);
                 discs.set_places(places);
             }
             std::size_t parted = 0, standing = 0;

@@ -55,7 +55,9 @@ struct PatchScratch {
 };
 
 /// What lies round one voxel: the sets of the 27 voxels, samples of their points, and the discs of walls and
-/// gaps. Sets go by their numbers in it, those of the voxel itself first. `samples` are of all of them.
+/// gaps. Sets go by their numbers in it, those of the voxel itself first. All of them must have samples,
+/// those of the voxel itself where only discs are made. What a question needs is found when it is first
+/// asked.
 class PatchNeighborhood {
 public:
     PatchNeighborhood(const Octree& octree, const OctreeLevel& level, const RelationTest& related,

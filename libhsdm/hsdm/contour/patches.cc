@@ -40,16 +40,17 @@ private:
         std::vector<Index> of_point; ///< number within the voxel, or no_index
     };
 
-    PatchNeighborhood around(const SetSamples& samples) {
+    PatchNeighborhood neighborhood(const SetSamples& samples) {
         return {octree_, level_, related_, sets_, samples, scratch_.local()};
     }
 
-    /// What `find(k, i, found)` appends for the i-th set of the k-th of these voxels, which must ascend.
-    template <class T, class Find>
-    OfSets<T> of_sets(const std::vector<Index>& voxels, Find&& begin_chunk) {
+    /// What find(voxel, i, found) appends for the i-th set of each of these voxels, which must ascend; of
+    /// other sets nothing. `make_find` makes one for a chunk.
+    template <class T, class MakeFind>
+    OfSets<T> of_sets(const std::vector<Index>& voxels, MakeFind&& make_find) {
         OfSets<T> result{{}, large_vector<Index>(sets_.sets.size() + 1)};
         const auto look = [&](std::size_t begin, std::size_t end, std::vector<T>& found) {
-            auto find = begin_chunk();
+            auto find = make_find();
             for (std::size_t k = begin; k < end; ++k) {
                 const Index first = sets_.first[voxels[k]], last = sets_.first[voxels[k] + 1];
                 for (Index s = first; s < last; ++s) {
@@ -72,10 +73,11 @@ private:
     }
     SetDiscs find_discs(const std::vector<Index>& voxels, const SetSamples& samples) {
         return of_sets<SeenDisc>(voxels, [&] {
-            return [around = around(samples)](Index voxel, Index i, std::vector<SeenDisc>& found) mutable {
-                if (i == 0) around.gather(voxel);
-                around.add_discs(i, found);
-            };
+            return
+                [around = neighborhood(samples)](Index voxel, Index i, std::vector<SeenDisc>& found) mutable {
+                    if (i == 0) around.gather(voxel);
+                    around.add_discs(i, found);
+                };
         });
     }
 
@@ -87,7 +89,7 @@ private:
         std::vector<Split> splits =
             collected<Split>(voxels_.size(), chunks::heavy,
                              [&](std::size_t begin, std::size_t end, std::vector<Split>& found) {
-                                 PatchNeighborhood around = this->around(samples);
+                                 PatchNeighborhood around = neighborhood(samples);
                                  for (std::size_t k = begin; k < end; ++k) {
                                      around.gather(voxels_[k]);
                                      crowded[k] = around.is_crowded(discs);
@@ -225,7 +227,7 @@ private:
         const SetDiscs discs = find_discs(near, samples);
         std::vector<Pair> pairs = collected<Pair>(
             voxels_.size(), chunks::heavy, [&](std::size_t begin, std::size_t end, std::vector<Pair>& found) {
-                PatchNeighborhood around = this->around(samples);
+                PatchNeighborhood around = neighborhood(samples);
                 for (std::size_t k = begin; k < end; ++k) {
                     around.gather(voxels_[k]);
                     around.place_discs(discs);
