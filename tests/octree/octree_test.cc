@@ -139,6 +139,22 @@ TEST_CASE("neighbour offsets are 6 faces, 12 edges, 8 corners, each once", "[oct
     }
 }
 
+TEST_CASE("the voxels round one are those found at its coordinates", "[octree]") {
+    const Octree octree = build_octree(random_cloud(3000, 13));
+    for (const int depth : {0, 1, 2, 4, 7, morton_levels}) {
+        const OctreeLevel level = extract_level(octree, depth);
+        for (Index v = 0; v < level.size(); ++v) {
+            const VoxelCoord c = level.coord(v);
+            std::vector<Index> expected, found;
+            for (const VoxelCoord& o : neighbor_offsets)
+                if (const Index w = level.find({c[0] + o[0], c[1] + o[1], c[2] + o[2]}); w != no_index)
+                    expected.push_back(w);
+            for_neighbors(level, v, [&](Index w) { found.push_back(w); });
+            REQUIRE(found == expected);
+        }
+    }
+}
+
 TEST_CASE("a centred cube has the cloud's box in its middle and holds every point", "[octree]") {
     const PointCloud cloud = random_cloud(5000, 12);
     const Octree octree = build_octree(cloud, {.placement = CubePlacement::centred});

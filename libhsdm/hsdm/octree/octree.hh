@@ -120,6 +120,8 @@ public:
     /// The voxel at a coordinate, or no_index where none is occupied or the coordinate lies outside. O(1).
     Index find(const VoxelCoord& c) const;
     Index find(MortonCode code) const { return index_.find(code); }
+    /// What the index knows of the 64 codes of this number, to look up several.
+    const MortonIndex::Block& block_at(MortonCode number) const { return index_.block_at(number); }
     /// Call it for several codes before the first find(), so that their cache misses overlap.
     void prefetch(MortonCode code) const { index_.prefetch(code); }
 
@@ -140,12 +142,46 @@ std::vector<Index> first_points(const Octree& octree, int depth);
 /// Offsets of the 6 face, 12 edge and 8 corner neighbours: 6-, 18- and 26-adjacency is the first 6, 18, 26.
 extern const std::array<VoxelCoord, 26> neighbor_offsets;
 
+/// The voxels round one voxel: blocks of the index, eight at most, are looked up once.
+class VoxelsAround {
+public:
+    VoxelsAround(const OctreeLevel& level, Index voxel) : level_(level) {
+        const MortonCode code = level.codes[voxel];
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            const MortonCode bits =
+                morton_encode(axis == 0 ? ~0u : 0, axis == 1 ? ~0u : 0, axis == 2 ? ~0u : 0)
+                & ((MortonCode{1} << 3 * level.depth) - 1);
+            const MortonCode here = code & bits;
+            along_[axis] = {here == 0 ? outside : morton_down(code, axis) & bits, here,
+                            here == bits ? outside : morton_up(code, axis) & bits};
+        }
+    }
+    /// The voxel at an offset of -1, 0 or 1 along each axis, or no_index.
+    Index find(const VoxelCoord& offset) {
+        MortonCode code = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            code |= along_[axis][static_cast<std::size_t>(offset[axis] + 1)];
+        if (code >= outside) return no_index;
+        const MortonCode number = code / MortonIndex::cells;
+        const MortonIndex::Block*& block = blocks_[number % blocks_.size()];
+        if (block == nullptr) block = &level_.block_at(number);
+        return block->find(code);
+    }
+
+private:
+    static constexpr MortonCode outside = MortonCode{1} << 63;
+
+    const OctreeLevel& level_;
+    std::array<std::array<MortonCode, 3>, 3> along_;    // of the code, the bits of each axis at each offset
+    std::array<const MortonIndex::Block*, 8> blocks_{}; // by the last bit of each axis, in which those differ
+};
+
 /// visit(voxel) for the occupied ones of the 26 round a voxel, in the order of neighbor_offsets.
 template <class Visit>
 void for_neighbors(const OctreeLevel& level, Index voxel, const Visit& visit) {
-    const VoxelCoord c = level.coord(voxel);
+    VoxelsAround around(level, voxel);
     for (const VoxelCoord& o : neighbor_offsets)
-        if (const Index v = level.find({c[0] + o[0], c[1] + o[1], c[2] + o[2]}); v != no_index) visit(v);
+        if (const Index v = around.find(o); v != no_index) visit(v);
 }
 
 } // namespace hsdm
