@@ -160,7 +160,7 @@ public:
     Index find(const VoxelCoord& offset) {
         MortonCode code = 0;
         for (std::size_t axis = 0; axis < 3; ++axis)
-            code |= along_[axis][static_cast<std::size_t>(offset[axis] + 1)];
+            code |= along_[axis][1 + static_cast<std::size_t>(offset[axis])];
         if (code >= outside) return no_index;
         const MortonCode number = code / MortonIndex::cells;
         const MortonIndex::Block*& block = blocks_[number % blocks_.size()];
