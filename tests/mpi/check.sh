@@ -40,6 +40,19 @@ done
 by 3 scan.ply -o ranks.ply --scratch scratch --threads 1 || fail "no depth: status $?"
 cmp one-chosen.ply ranks.ply || fail "3 processes choose another voxel"
 
+# All write their part of the file.
+for how in "mesh.ply" "mesh.ply --ascii" "mesh.ply --plain" "mesh.off" "mesh.stl" "mesh.stl --ascii"; do
+    set -- $how
+    "$hsdm" reconstruct scan.ply --depth 6 -o one-$1 ${2-} --quiet
+    for count in 1 2 3 5; do
+        by $count scan.ply --depth 6 -o $1 ${2-} --scratch scratch --threads 1 --report report.json ||
+            fail "$how by $count: status $?"
+        cmp one-$1 $1 || fail "$how is another by $count"
+        [ $count -eq 1 ] || grep -q '"by_all_ranks": true' report.json || fail "$how was not written by all $count"
+    done
+    rm $1
+done
+
 # Several scans of one thing, binary and text: part of the points in each, and in a folder.
 mkdir scans
 "$generate" part --points 20000 --seed 2 -o scans/a.ply
