@@ -42,7 +42,9 @@ struct Parcel {
     }
 };
 
-/// By MPI-IO. Open until the process ends if it is not closed: closing waits for all ranks.
+/// By MPI-IO. Open until the process ends if it is not closed: closing waits for all ranks. Each writes
+/// alone, as of MPI_File_write_at_all() of Open MPI 4.1 the others never return where one finds the disk
+/// full.
 class MpiFile final : public SharedFile {
 public:
     explicit MpiFile(MPI_File file) : file_(file) {}
@@ -50,12 +52,12 @@ public:
     std::string write_at(std::uint64_t offset, std::string_view bytes) override {
         const int count = static_cast<int>(bytes.size());
         MPI_Status status;
-        const int error = MPI_File_write_at_all(file_, static_cast<MPI_Offset>(offset), bytes.data(), count,
-                                                MPI_CHAR, &status);
+        const int error =
+            MPI_File_write_at(file_, static_cast<MPI_Offset>(offset), bytes.data(), count, MPI_CHAR, &status);
         if (error != MPI_SUCCESS) return words_of(error);
         int written = 0;
         MPI_Get_count(&status, MPI_CHAR, &written);
-        return written == count ? std::string() : "only a part was taken; is the disk full?";
+        return written == count ? std::string() : "not all was taken; free some space and run again";
     }
     std::string close() override {
         const int synced = MPI_File_sync(file_), closed = MPI_File_close(&file_);

@@ -1,5 +1,6 @@
 #include "hsdm/io/write_by_ranks.hh"
 
+#include "hsdm/core/chunks.hh"
 #include "hsdm/core/interruption.hh"
 #include "hsdm/core/system.hh"
 #include "hsdm/io/float_precision.hh"
@@ -67,14 +68,13 @@ public:
     void write_elements(std::size_t count,
                         const std::function<PolygonMesh(std::size_t begin, std::size_t end)>& stretch,
                         const std::function<std::string(const PolygonMesh&)>& format) {
+        const std::size_t each = of_rank(count), at_once = each * static_cast<std::size_t>(ranks_.size());
         const auto of_round = [&](std::size_t begin) {
             std::vector<Ranks::Bytes> out(static_cast<std::size_t>(ranks_.size()));
-            for (std::size_t r = 0; ranks_.is_first() && r < out.size() && begin < count; ++r)
-                out[r] = bytes_of_stretch(stretch(begin, std::min(count, begin + of_rank()))),
-                begin += of_rank();
+            for (std::size_t r = 0; ranks_.is_first() && r < out.size() && begin < count; ++r, begin += each)
+                out[r] = bytes_of_stretch(stretch(begin, std::min(count, begin + each)));
             return out;
         };
-        const std::size_t at_once = of_rank() * static_cast<std::size_t>(ranks_.size());
         std::vector<Ranks::Bytes> out = of_round(0);
         for (std::size_t begin = 0; begin < count; begin += at_once) {
             Interruption::poll();
@@ -90,11 +90,12 @@ public:
     }
 
 private:
-    /// What the first rank has of all of them at once is some 25 MB, and as much again of the next round; a
-    /// rank's own is enough for its threads.
-    std::size_t of_rank() const {
+    /// Elements of a rank at once. What the first one has for all of them is some 25 MB, and as much again
+    /// for the next round; of very many ranks each has enough to be worth a message.
+    std::size_t of_rank(std::size_t count) const {
         constexpr std::size_t of_all = std::size_t{1} << 18, fewest = 4096;
-        return std::max(fewest, of_all / static_cast<std::size_t>(ranks_.size()));
+        const auto ranks = static_cast<std::size_t>(ranks_.size());
+        return std::min(std::max(fewest, of_all / ranks), chunk_count(count, ranks));
     }
 
     void write(const std::string& text) {
