@@ -18,6 +18,7 @@
 #include "hsdm/io/output_target.hh"
 #include "hsdm/io/points_in_parts.hh"
 #include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/pipeline/kept_passes.hh"
 #include "hsdm/pipeline/measure.hh"
 #include "hsdm/pipeline/work_of_ranks.hh"
 
@@ -303,6 +304,7 @@ private:
             throw Error(cloud.name(), "is not the same to all processes; put it where all of them see it");
         std::optional<KeptScratch> kept;
         if (arguments_.resume) {
+            refuse_moved(arguments_.scratch, ranks);
             kept.emplace(arguments_.scratch, ranks.rank(), arguments_.job(cloud, ranks.size()));
             tiles.kept = &*kept;
         }

@@ -358,6 +358,11 @@ bool try_lock(int descriptor) noexcept {
     return ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
 }
 
+std::string host_name() {
+    char name[256] = {};
+    return ::gethostname(name, sizeof name - 1) == 0 ? name : "";
+}
+
 std::int64_t process_id() noexcept {
     return ::getpid();
 }

@@ -84,6 +84,7 @@ bool lock(int descriptor) noexcept;
 bool try_lock(int descriptor) noexcept;
 
 std::int64_t process_id() noexcept;
+std::string host_name(); ///< of the machine; empty if that cannot be told
 std::uint32_t effective_user() noexcept;
 bool is_terminal(int descriptor) noexcept;
 /// Of the whole process so far, in bytes.
