@@ -239,8 +239,8 @@ public:
         std::vector<double> squared = large_vector<double>(far_.size(), Box::inf);
         std::vector<Index> due = all_of(far_.size());
         while (ranks.any(!due.empty())) {
-            std::vector<MortonCode> codes;
-            for (const Index i : due) codes.push_back(codes_[i]);
+            std::vector<MortonCode> codes(due.size());
+            std::ranges::transform(due, codes.begin(), [&](Index i) { return codes_[i]; });
             std::vector<Ranks::Bytes> out(static_cast<std::size_t>(ranks.size()));
             out.front() = bytes_of(cells_of(codes, shift_));
             ranks.exchange(std::move(out));
