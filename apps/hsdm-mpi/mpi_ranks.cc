@@ -50,14 +50,19 @@ public:
     explicit MpiFile(MPI_File file) : file_(file) {}
 
     std::string write_at(std::uint64_t offset, std::string_view bytes) override {
-        const int count = static_cast<int>(bytes.size());
-        MPI_Status status;
-        const int error =
-            MPI_File_write_at(file_, static_cast<MPI_Offset>(offset), bytes.data(), count, MPI_CHAR, &status);
-        if (error != MPI_SUCCESS) return words_of(error);
-        int written = 0;
-        MPI_Get_count(&status, MPI_CHAR, &written);
-        return written == count ? std::string() : "not all was taken; free some space and run again";
+        while (!bytes.empty()) {
+            const int count = static_cast<int>(std::min<std::uint64_t>(bytes.size(), most_bytes));
+            MPI_Status status;
+            const int error = MPI_File_write_at(file_, static_cast<MPI_Offset>(offset), bytes.data(), count,
+                                                MPI_CHAR, &status);
+            if (error != MPI_SUCCESS) return words_of(error);
+            int written = 0;
+            MPI_Get_count(&status, MPI_CHAR, &written);
+            if (written != count) return "not all was taken; free some space and run again";
+            bytes.remove_prefix(static_cast<std::size_t>(count));
+            offset += static_cast<std::uint64_t>(count);
+        }
+        return {};
     }
     std::string close() override {
         const int synced = MPI_File_sync(file_), closed = MPI_File_close(&file_);
