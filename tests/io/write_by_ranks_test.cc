@@ -112,7 +112,7 @@ TEST_CASE("ranks write the file that one writes, in each format", "[io]") {
     }
 }
 
-TEST_CASE("ranks write a mesh of more vertices than they have at once", "[io]") {
+TEST_CASE("ranks write a mesh of more vertices than they have at once", "[io][slow]") {
     const PolygonMesh mesh = some_mesh(220, true, 0);
     REQUIRE(mesh.vertex_count() > std::size_t{1} << 18);
     check_same_file(3, mesh, MeshFormat::ply, {});
