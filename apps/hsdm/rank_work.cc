@@ -18,7 +18,8 @@ std::string work_line(std::size_t rank, const Report::Rank& work) {
     std::snprintf(text, sizeof text, ", %.2f s of work, %.2f s waited, ", work.seconds, work.seconds_waited);
     return "rank      " + std::to_string(rank) + ": " + counted(work.points, "point", "points") + " in "
            + counted(work.tiles, "tile", "tiles") + text + megabytes(work.bytes_sent) + " sent, "
-           + megabytes(work.peak_memory_bytes) + " of memory at peak\n";
+           + megabytes(work.peak_memory_bytes) + " of memory at peak, " + megabytes(work.scratch_bytes)
+           + " of scratch\n";
 }
 
 } // namespace

@@ -18,7 +18,9 @@
 #include "hsdm/io/output_target.hh"
 #include "hsdm/io/points_in_parts.hh"
 #include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/pipeline/kept_passes.hh"
 #include "hsdm/pipeline/measure.hh"
+#include "hsdm/pipeline/work_of_ranks.hh"
 
 #include <chrono>
 #include <filesystem>
@@ -302,6 +304,7 @@ private:
             throw Error(cloud.name(), "is not the same to all processes; put it where all of them see it");
         std::optional<KeptScratch> kept;
         if (arguments_.resume) {
+            refuse_moved(arguments_.scratch, ranks);
             kept.emplace(arguments_.scratch, ranks.rank(), arguments_.job(cloud, ranks.size()));
             tiles.kept = &*kept;
         }
@@ -334,11 +337,9 @@ private:
                 FlatReconstruction flat = named(
                     cloud, [&] { return reconstruct_flat_in_tiles(parts, options, tiles, ranks, &how); });
                 hear_of_all();
-                if (ranks.is_first()) { // which has all of it
-                    note(flat.report);
-                    write_as_it_comes(flat);
-                    made.push_back(std::move(flat.report));
-                }
+                note(flat.report);
+                write_as_it_comes(flat, ranks);
+                if (ranks.is_first()) made.push_back(std::move(flat.report));
             } else {
                 Reconstruction result =
                     named(cloud, [&] { return reconstruct_in_tiles(parts, options, tiles, ranks, &how); });
@@ -366,17 +367,20 @@ private:
                && arguments_.features.empty() && !arguments_.intersections && !arguments_.strict;
     }
 
-    void write_as_it_comes(FlatReconstruction& flat) const {
+    /// By all ranks, of which the first has all of it.
+    void write_as_it_comes(FlatReconstruction& flat, Ranks& ranks) const {
         Report& report = flat.report;
         auto start = Clock::now();
-        if (!arguments_.report.empty()) measure_details(flat.mesh, report.mesh);
+        const WorkOfRanks work(ranks);
+        if (!arguments_.report.empty() && ranks.is_first()) measure_details(flat.mesh, report.mesh);
         report.seconds.error += seconds_since(start);
         set_phase("write");
         start = Clock::now();
         const MeshTarget to = target(report);
-        report.written =
-            report_of(to, write_flat(to.mesh, flat, to.format, to.plain, {to.ascii, to.unit, to.recentre}));
+        report.written = report_of(
+            to, write_flat(to.mesh, flat, to.format, to.plain, {to.ascii, to.unit, to.recentre}, ranks));
         report.seconds.write = seconds_since(start);
+        work.add_to(report.ranks);
     }
 
     static std::size_t bytes_of_cloud(const PointCloud& cloud) {

@@ -205,6 +205,7 @@ Report::Written report_of(const MeshTarget& target, const WrittenMesh& written) 
     told.text_for_precision = written.text_for_precision;
     told.moved_by_floats = written.moved_by_floats;
     told.shift = written.shift;
+    told.by_all_ranks = written.by_all_ranks;
     return told;
 }
 

@@ -176,6 +176,9 @@ std::string details_of(const Report& r) {
         if (count > 0) out << "rejected  " << stage << ": " << grouped(count) << "\n";
     out << "memory    " << grouped(r.peak_memory_bytes / 1000000) << " MB at most, " << r.threads
         << " threads\n";
+    if (r.scratch_bytes > 0)
+        out << "scratch   " << grouped(r.scratch_bytes / 1000000) << " MB at most, "
+            << grouped(r.scratch_bytes_written / 1000000) << " MB written\n";
     return std::move(out).take();
 }
 

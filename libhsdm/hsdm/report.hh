@@ -138,6 +138,7 @@ struct Report {
         bool text_for_precision = false; ///< STL as text, since floats would move vertices too far
         double moved_by_floats = 0;      ///< of STL: how far they would, over the diagonal
         Vec3 shift{0, 0, 0};             ///< what its coordinates are less than the cloud's
+        bool by_all_ranks = false;       ///< each of them wrote a part of it
     };
     std::optional<Written> written; ///< set by the command
 
@@ -155,18 +156,21 @@ struct Report {
             total = 0;    ///< all of it; of reconstruct_levels() by level, phase 1 with the first
     } seconds;            ///< how long it took
 
-    /// One of several processes that made the mesh together, up to its being written.
+    /// One of several processes that made and wrote the mesh together.
     struct Rank {
         std::size_t points = 0,     ///< of the part of space that it worked on
             tiles = 0;              ///< that it made
         double seconds = 0,         ///< of its work
             seconds_waited = 0;     ///< for others and for what they sent, beside these
         std::size_t bytes_sent = 0, ///< to others
-            peak_memory_bytes = 0;  ///< of the whole process so far
+            peak_memory_bytes = 0,  ///< of the whole process so far
+            scratch_bytes = 0;      ///< the same of what was on disk at once
     };
     std::vector<Rank> ranks; ///< set by hsdm-mpi; by their numbers
 
     std::size_t peak_memory_bytes = 0; ///< of the whole process so far
+    std::size_t scratch_bytes = 0,     ///< in tiles: the same of what was on disk at once
+        scratch_bytes_written = 0;     ///< and of all that was written there
     int threads = 0;                   ///< at most so many threads worked
     std::string failure;               ///< why there is no mesh (see reconstruct_levels); empty: there is one
 };

@@ -40,6 +40,19 @@ done
 by 3 scan.ply -o ranks.ply --scratch scratch --threads 1 || fail "no depth: status $?"
 cmp one-chosen.ply ranks.ply || fail "3 processes choose another voxel"
 
+# All write their part of the file.
+for how in "mesh.ply" "mesh.ply --ascii" "mesh.ply --plain" "mesh.off" "mesh.stl" "mesh.stl --ascii"; do
+    set -- $how
+    "$hsdm" reconstruct scan.ply --depth 6 -o one-$1 ${2-} --quiet
+    for count in 1 2 3 5; do
+        by $count scan.ply --depth 6 -o $1 ${2-} --scratch scratch --threads 1 --report report.json ||
+            fail "$how by $count: status $?"
+        cmp one-$1 $1 || fail "$how is another by $count"
+        [ $count -eq 1 ] || grep -q '"by_all_ranks": true' report.json || fail "$how was not written by all $count"
+    done
+    rm $1
+done
+
 # Several scans of one thing, binary and text: part of the points in each, and in a folder.
 mkdir scans
 "$generate" part --points 20000 --seed 2 -o scans/a.ply
@@ -113,6 +126,25 @@ cmp one.ply ranks.ply || fail "going on gives another mesh"
 kept=$(sed -n 's/.*"resume": "\([0-9]*\) tiles were kept".*/\1/p' report.json)
 [ "$kept" -ge 3 ] || fail "of three ranks $kept tiles were gone on with"
 [ -z "$(ls -A scratch)" ] || fail "scratch is left once the mesh is written"
+
+# Scratch of its own for each, as on machines of their own: those that come back in another order begin nothing anew.
+mkdir a b a/s b/s
+# apart FIRST SECOND FILE: by two processes in these folders
+apart() {
+    of_one="reconstruct $folder/scan.ply --depth 6 -o $3 --format ply --scratch s --resume --threads 1"
+    timeout 60 "$mpirun" -n 1 --wdir "$folder/$1" "$hsdm_mpi" $of_one : -n 1 --wdir "$folder/$2" "$hsdm_mpi" $of_one \
+        >out 2>err
+}
+status=0
+apart a b /dev/full || status=$?
+[ $status -eq 1 ] && [ -d a/s/hsdm-resume-0 ] && [ -d b/s/hsdm-resume-1 ] || fail "scratch of its own: status $status"
+status=0
+apart b a "$folder/ranks.ply" || status=$?
+[ $status -eq 1 ] && [ "$(grep -c 'has no hsdm-resume-0, which rank 1 on' err)" -eq 1 ] || fail "machines in another order: status $status"
+apart a b apart.ply || fail "machines in the same order: status $?"
+cmp one.ply a/apart.ply || fail "machines that do not see one folder write another mesh"
+[ -z "$(ls -A a/s)$(ls -A b/s)" ] && [ "$(ls b)" = s ] || fail "files are left on a machine"
+rm -r a b
 
 # A rank that is killed, or asked to end, at any time.
 "$generate" part --points 300000 -o long.ply

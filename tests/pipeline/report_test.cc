@@ -24,7 +24,8 @@ TEST_CASE("the report tells what each of several processes did, and how evenly",
                              {"seconds", 0.5},
                              {"seconds_waited", 1.25},
                              {"bytes_sent", 64},
-                             {"peak_memory_bytes", 1 << 21}}));
+                             {"peak_memory_bytes", 1 << 21},
+                             {"scratch_bytes", 0}}));
     CHECK(json["imbalance"] == 1.5);
 }
 

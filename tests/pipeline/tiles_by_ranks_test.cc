@@ -143,6 +143,29 @@ TEST_CASE("ranks choose the voxels together", "[pipeline][slow]") {
     check_same_by_ranks(reconstruct(cloud, {}), *result);
 }
 
+TEST_CASE("ranks measure points that are far from all facets they were sent", "[pipeline]") {
+    PointCloud cloud = bored_box();
+    PointCloud small = support::sample(support::box({0.1, 0.1, 0.1}), {.points = 600}); // is dropped
+    for (Vec3& p : small.positions) p += Vec3(2, 1.5, 1);
+    cloud.positions.insert(cloud.positions.end(), small.positions.begin(), small.positions.end());
+    cloud.normals.insert(cloud.normals.end(), small.normals.begin(), small.normals.end());
+    const ReconstructOptions options{.depth = 6, .min_component = MinComponent{0.1, true}, .threads = 2};
+    const Reconstruction whole = reconstruct(cloud, options);
+    CHECK(whole.report.error.points_to_mesh_max > 1);
+    for (const int count : {2, 3}) {
+        std::optional<Reconstruction> result;
+        for (const std::string& failure : support::run_ranks(count, [&](Ranks& ranks) {
+                 Reconstruction made =
+                     reconstruct_in_tiles(support::share_of(cloud, ranks), options, small_tiles(), ranks);
+                 if (ranks.is_first()) result.emplace(std::move(made));
+             }))
+            CHECK(failure.empty());
+        REQUIRE(result);
+        check_same_by_ranks(whole, *result);
+        CHECK(whole.report.error.points_to_mesh_rms == result->report.error.points_to_mesh_rms);
+    }
+}
+
 TEST_CASE("ranks that no cell is left for have nothing to do", "[pipeline][slow]") {
     PointCloud cloud = bored_box();
     for (std::size_t i = 0; i < 60000; ++i) { // most points in one cell

@@ -2,6 +2,7 @@
 #include "hsdm/errors.hh"
 #include "hsdm/io/kept_scratch.hh"
 #include "hsdm/mesh/to_mesh.hh"
+#include "hsdm/pipeline/kept_passes.hh"
 #include "hsdm/pipeline/reconstruct_in_tiles.hh"
 #include "support/check.hh"
 #include "support/folder.hh"
@@ -260,6 +261,33 @@ TEST_CASE("what is kept of another job, or by another process, is told apart", "
     CHECK(kept.records().back().key == 9);
     kept.remove();
     CHECK(std::filesystem::is_empty(folder / "."));
+}
+
+TEST_CASE("ranks that come back on other machines are told which, and begin nothing anew", "[pipeline]") {
+    const support::Folder folder;
+    const auto on = [&](const std::vector<std::string>& machines) {
+        return support::run_ranks(static_cast<int>(machines.size()), [&](Ranks& ranks) {
+            refuse_moved(folder / machines[static_cast<std::size_t>(ranks.rank())], ranks);
+        });
+    };
+    for (const char* machine : {"a", "b", "c", "d"}) std::filesystem::create_directory(folder / machine);
+    CHECK(on({"a", "b"}) == std::vector<std::string>(2)); // nothing was begun
+    for (const auto& [machine, rank] : {std::pair("a", 0), {"b", 1}, {"c", 2}})
+        KeptScratch(folder / machine, rank, this_job).keep(1, {});
+    CHECK(KeptScratch::processes_in(folder / "b") == std::vector{1});
+    CHECK(on({"a", "b", "c"}) == std::vector<std::string>(3));
+    for (const std::string& why : on({"b", "a", "c"})) {
+        CHECK(why.find("rank 0 on ") != std::string::npos);
+        CHECK(why.find("has no hsdm-resume-0, which rank 1 on ") != std::string::npos);
+        CHECK(why.find("mpirun --host") != std::string::npos);
+    }
+    for (const std::string& why : on({"a", "c"}))
+        CHECK(why.find("hsdm-resume-2 of more processes") != std::string::npos);
+    CHECK(on({"c"})[0].find("of more processes") != std::string::npos);
+    CHECK(on({"a", "b", "d"}) == std::vector<std::string>(3)); // KeptPasses knows whether it is lost
+    KeptScratch(folder / "d", 0, this_job).keep(1, {});
+    for (const int rank : {1, 2}) KeptScratch(folder / "d", rank, this_job).keep(1, {});
+    CHECK(on({"d", "d", "d"}) == std::vector<std::string>(3)); // a folder that all see
 }
 
 TEST_CASE("of two that open and remove what is kept each has it for itself", "[pipeline]") {

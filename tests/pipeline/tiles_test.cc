@@ -115,6 +115,9 @@ TEST_CASE("tiles in flat arrays give the same files, whatever the cloud", "[pipe
     const FlatReconstruction flat = reconstruct_flat_in_tiles(parts, options, tiles, &how);
     CHECK(how.tiles > 1);
     CHECK(how.parks == (open != turned));
+    CHECK(flat.report.scratch_bytes >= 48 * cloud.size());
+    CHECK(flat.report.scratch_bytes_written >= flat.report.scratch_bytes);
+    CHECK(whole.report.scratch_bytes == 0);
     const PolygonMesh polygons = to_polygons(whole.mesh);
     for (const bool ascii : {false, true})
         for (const MeshFormat format : {MeshFormat::ply, MeshFormat::off, MeshFormat::stl}) {

@@ -17,9 +17,12 @@ struct Table {
 
 class RankThread final : public Ranks {
 public:
-    RankThread(Table& table, int rank) : table_(table), rank_(rank) {}
+    RankThread(Table& table, int rank, const OpenShared& open) : table_(table), rank_(rank), open_(open) {}
     int rank() const override { return rank_; }
     int size() const override { return static_cast<int>(table_.given.size()); }
+    std::unique_ptr<SharedFile> open_shared(const std::string& path) override {
+        return open_ ? open_(rank_, path) : Ranks::open_shared(path);
+    }
 
 private:
     std::vector<Bytes> gather_bytes(const Bytes& own) override {
@@ -39,21 +42,25 @@ private:
 
     Table& table_;
     int rank_;
+    const OpenShared& open_;
 };
 
 } // namespace
 
-std::vector<std::string> run_ranks(int count, const std::function<void(Ranks&)>& work) {
-    return run_ranks_apart(count, [&](Ranks& ranks) { ranks.together([&] { work(ranks); }); });
+std::vector<std::string> run_ranks(int count, const std::function<void(Ranks&)>& work,
+                                   const OpenShared& open) {
+    return run_ranks_apart(
+        count, [&](Ranks& ranks) { ranks.together([&] { work(ranks); }); }, open);
 }
 
-std::vector<std::string> run_ranks_apart(int count, const std::function<void(Ranks&)>& work) {
+std::vector<std::string> run_ranks_apart(int count, const std::function<void(Ranks&)>& work,
+                                         const OpenShared& open) {
     Table table(count);
     std::vector<std::string> failures(static_cast<std::size_t>(count));
     std::vector<std::thread> threads;
     for (int r = 0; r < count; ++r)
         threads.emplace_back([&, r] {
-            RankThread ranks(table, r);
+            RankThread ranks(table, r, open);
             try {
                 work(ranks);
             } catch (const std::exception& error) {

@@ -6,12 +6,17 @@
 
 namespace hsdm::support {
 
+/// How a rank opens a file that all write.
+using OpenShared = std::function<std::unique_ptr<SharedFile>(int rank, const std::string& path)>;
+
 /// Runs work(ranks) for so many ranks, each on a thread of its own, all within together(). Returns by rank
-/// what() of the exception that came out of it, or "".
-std::vector<std::string> run_ranks(int count, const std::function<void(Ranks&)>& work);
+/// what() of the exception that came out of it, or "". `open`: instead of by positioned writes.
+std::vector<std::string> run_ranks(int count, const std::function<void(Ranks&)>& work,
+                                   const OpenShared& open = {});
 
 /// The same without together().
-std::vector<std::string> run_ranks_apart(int count, const std::function<void(Ranks&)>& work);
+std::vector<std::string> run_ranks_apart(int count, const std::function<void(Ranks&)>& work,
+                                         const OpenShared& open = {});
 
 /// A rank's part of the points: every so-manieth, so that all of space has some of all.
 PointParts share_of(const PointCloud& cloud, const Ranks& ranks);

@@ -1,6 +1,7 @@
 #pragma once
 // Processes that work on one thing together, each at a part of it, and what they tell each other.
 
+#include "hsdm/core/shared_file.hh"
 #include "hsdm/errors.hh"
 
 #include <cstddef>
@@ -55,6 +56,9 @@ public:
     /// What the first rank gives.
     bool of_first(bool own);
     Bytes of_first(Bytes&& own);
+
+    /// An existing file, for all ranks at the same time; null on a rank that cannot write it.
+    virtual std::unique_ptr<SharedFile> open_shared(const std::string& path) { return open_positioned(path); }
 
     std::size_t bytes_sent() const { return bytes_sent_; }    ///< to other ranks so far
     double seconds_waited() const { return seconds_waited_; } ///< for others and for what they sent

@@ -296,6 +296,19 @@ bool write_all(int descriptor, std::string_view bytes) noexcept {
     return true;
 }
 
+bool write_all_at(int descriptor, std::string_view bytes, std::uint64_t offset) noexcept {
+    while (!bytes.empty()) {
+        const ssize_t count = ::pwrite(descriptor, bytes.data(), std::min(bytes.size(), std::size_t{1} << 30),
+                                       static_cast<off_t>(offset));
+        if (count < 0 && errno == EINTR) continue;
+        if (count == 0) errno = EIO;
+        if (count <= 0) return false;
+        bytes.remove_prefix(static_cast<std::size_t>(count));
+        offset += static_cast<std::uint64_t>(count);
+    }
+    return true;
+}
+
 bool flush_to_disk(int descriptor) noexcept {
     return ::fsync(descriptor) == 0;
 }
@@ -343,6 +356,11 @@ bool lock(int descriptor) noexcept {
 
 bool try_lock(int descriptor) noexcept {
     return ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+}
+
+std::string host_name() {
+    char name[256] = {};
+    return ::gethostname(name, sizeof name - 1) == 0 ? name : "";
 }
 
 std::int64_t process_id() noexcept {

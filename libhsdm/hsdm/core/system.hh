@@ -65,6 +65,7 @@ std::ptrdiff_t read_all_at(int descriptor, char* bytes, std::size_t count, std::
 std::ptrdiff_t write(int descriptor, const char* bytes, std::size_t count) noexcept;
 /// All of the bytes, in as many turns as that takes.
 bool write_all(int descriptor, std::string_view bytes) noexcept;
+bool write_all_at(int descriptor, std::string_view bytes, std::uint64_t offset) noexcept;
 bool flush_to_disk(int descriptor) noexcept;
 bool resize(int descriptor, std::uint64_t size) noexcept;
 /// Sets space aside, without a change of size. Done where the file system cannot.
@@ -83,6 +84,7 @@ bool lock(int descriptor) noexcept;
 bool try_lock(int descriptor) noexcept;
 
 std::int64_t process_id() noexcept;
+std::string host_name(); ///< of the machine; empty if that cannot be told
 std::uint32_t effective_user() noexcept;
 bool is_terminal(int descriptor) noexcept;
 /// Of the whole process so far, in bytes.

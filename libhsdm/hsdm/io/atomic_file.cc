@@ -121,6 +121,21 @@ void AtomicFile::write(std::string_view bytes) {
     if (!os::write_all(descriptor_, bytes)) fail("cannot write");
 }
 
+/// Opened anew, which has a network's file system ask how large the file has become.
+void AtomicFile::check_size(std::uint64_t bytes) const {
+    const int opened = os::open_to_read(temporary_);
+    os::FileStatus status;
+    const bool is_known = opened >= 0 && os::status_of(opened, status);
+    const int error = errno;
+    if (opened >= 0) os::close(opened);
+    errno = error;
+    if (!is_known) fail("cannot be checked");
+    if (status.size != bytes)
+        throw Error(spoken_name(path_), "has " + std::to_string(status.size) + " bytes, and not the "
+                                            + std::to_string(bytes)
+                                            + " that all processes have written; do all see one disk?");
+}
+
 void AtomicFile::commit() {
     FileRegistry& registry = FileRegistry::of_process();
     if (temporary_.empty()) {

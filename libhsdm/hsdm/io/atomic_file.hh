@@ -3,6 +3,7 @@
 
 #include "hsdm/io/output_target.hh"
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -33,6 +34,10 @@ public:
 
     /// Throws Error, e.g. when the disk is full.
     void write(std::string_view bytes);
+    /// Where other processes may write what this one does not; empty for what is written directly.
+    const std::string& shared_name() const { return temporary_; }
+    /// Throws Error unless the temporary has so many bytes: others have written all that they should.
+    void check_size(std::uint64_t bytes) const;
     /// Flushes to the disk and puts the file in place; throws Error. To be called once, last.
     void commit();
 

@@ -9,12 +9,14 @@
 namespace hsdm {
 
 /// Lengths are taken in the frame's unit, since their squares must be numbers.
-double moved_by_floats(std::span<const Vec3> positions) {
-    const Box box = bounds_of(positions);
+double moved_by_floats(std::span<const Vec3> positions, const Vec3& shift) {
+    Box box = bounds_of(positions);
+    box.lo -= shift, box.hi -= shift; // no rounding changes which is the least
     const double unit = CloudFrame(box).unit();
     const double diagonal = (box.hi / unit - box.lo / unit).norm();
     double most = 0;
-    for (const Vec3& p : positions) {
+    for (const Vec3& position : positions) {
+        const Vec3 p = position - shift;
         Vec3 moved;
         for (unsigned k = 0; k < 3; ++k)
             moved[k] = (static_cast<double>(static_cast<float>(p[k])) - p[k]) / unit;

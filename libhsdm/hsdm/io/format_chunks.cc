@@ -29,4 +29,19 @@ void write_chunks(AtomicFile& file, std::size_t count,
     }
 }
 
+std::string
+formatted(std::size_t count,
+          const std::function<void(std::string& out, std::size_t begin, std::size_t end)>& format) {
+    constexpr std::size_t chunk = 1024; // some for each thread of what one rank of many has at once
+    std::vector<std::string> texts(chunk_count(count, chunk));
+    for_each_task(texts.size(),
+                  [&](std::size_t i) { format(texts[i], i * chunk, std::min(count, (i + 1) * chunk)); });
+    std::size_t bytes = 0;
+    for (const std::string& text : texts) bytes += text.size();
+    std::string all;
+    all.reserve(bytes);
+    for (const std::string& text : texts) all += text;
+    return all;
+}
+
 } // namespace hsdm

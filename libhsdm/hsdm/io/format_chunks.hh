@@ -2,11 +2,13 @@
 // Text and bytes of many alike elements, made in parallel and written in order.
 
 #include "hsdm/io/atomic_file.hh"
+#include "hsdm/types.hh"
 
 #include <charconv>
 #include <cstddef>
 #include <cstring>
 #include <functional>
+#include <span>
 #include <string>
 #include <type_traits>
 
@@ -29,9 +31,20 @@ void append_bytes(std::string& out, Number value) {
     out.append(bytes, sizeof value);
 }
 
+/// A facet's line in OFF and in text PLY.
+inline void append_polygon(std::string& out, std::span<const Index> corners) {
+    append_number(out, corners.size());
+    for (const Index v : corners) append_number(out += ' ', v);
+    out += '\n';
+}
+
 /// Calls format(out, begin, end) on consecutive pieces of 0 .. count, in parallel, and writes what they
 /// appended in the order of the pieces. Holds at most a few megabytes of it at once.
 void write_chunks(AtomicFile& file, std::size_t count,
                   const std::function<void(std::string& out, std::size_t begin, std::size_t end)>& format);
+/// The same in memory, all at once.
+std::string
+formatted(std::size_t count,
+          const std::function<void(std::string& out, std::size_t begin, std::size_t end)>& format);
 
 } // namespace hsdm

@@ -1,6 +1,7 @@
 #include "hsdm/io/kept_scratch.hh"
 
 #include "hsdm/core/hash.hh"
+#include "hsdm/core/number_of.hh"
 #include "hsdm/core/ranks.hh"
 #include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
@@ -10,12 +11,14 @@
 #include <cstring>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 namespace hsdm {
 namespace {
 
 constexpr const char* log_name = "log";
+constexpr const char* folder_name = "hsdm-resume-"; // and the number of the process
 
 /// Before the bytes of each record; that of the first one, which tells the job, has no key.
 struct Head {
@@ -79,10 +82,21 @@ std::optional<std::pair<Head, KeptScratch::Bytes>> record_at(int log, std::size_
 }
 
 std::string folder_of(const std::string& folder, int process) {
-    return (std::filesystem::path(folder) / ("hsdm-resume-" + std::to_string(process))).string();
+    return (std::filesystem::path(folder) / (folder_name + std::to_string(process))).string();
 }
 
 } // namespace
+
+std::vector<int> KeptScratch::processes_in(const std::string& folder) {
+    std::vector<int> processes;
+    os::for_each_name(folder.empty() ? "." : folder, [&](const std::string_view name) {
+        if (!name.starts_with(folder_name)) return;
+        const auto process = number_of<int>(std::string(name.substr(std::strlen(folder_name))));
+        if (process && *process >= 0) processes.push_back(*process);
+    });
+    std::ranges::sort(processes);
+    return processes;
+}
 
 bool KeptScratch::is_there(const std::string& folder, int process) {
     os::FileStatus status;

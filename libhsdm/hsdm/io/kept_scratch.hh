@@ -34,6 +34,8 @@ public:
     KeptScratch(const KeptScratch&) = delete;
     KeptScratch& operator=(const KeptScratch&) = delete;
 
+    /// The processes that something in this folder was kept for, in order.
+    static std::vector<int> processes_in(const std::string& folder);
     /// Is there something that was kept for this process?
     static bool is_there(const std::string& folder, int process);
 

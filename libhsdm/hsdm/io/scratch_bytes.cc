@@ -5,6 +5,7 @@
 #include "hsdm/io/file_registry.hh"
 #include "hsdm/io/scratch_file.hh"
 
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -16,11 +17,23 @@ std::string failure() {
     return std::strerror(errno);
 }
 
+std::atomic<std::size_t> written{0}, held{0}, most_held{0};
+
+void note_held(std::size_t bytes) {
+    const std::size_t now = held.fetch_add(bytes) + bytes;
+    for (std::size_t most = most_held; now > most && !most_held.compare_exchange_weak(most, now);) {
+    }
+}
+
 std::string in_megabytes(std::size_t bytes) {
     return std::to_string((bytes + 999999) / 1000000) + " MB";
 }
 
 } // namespace
+
+ScratchUse scratch_use() {
+    return {written, most_held};
+}
 
 ScratchBytes::ScratchBytes(const ScratchPlace& place)
     : folder_(place.folder.empty() ? temporary_folder() : place.folder) {
@@ -46,6 +59,7 @@ void ScratchBytes::open(const std::string& path, std::size_t is_there) {
     os::FileStatus status;
     if (os::status_of(file_, status) && status.size >= is_there && os::resize(file_, is_there)) {
         size_ = is_there;
+        note_held(size_);
         return;
     }
     os::close(file_);
@@ -53,6 +67,7 @@ void ScratchBytes::open(const std::string& path, std::size_t is_there) {
 }
 
 ScratchBytes::~ScratchBytes() {
+    held -= size_;
     os::close(file_);
 }
 
@@ -76,6 +91,8 @@ std::size_t ScratchBytes::append(const char* what, const void* bytes, std::size_
         throw Error(folder_, std::string(what) + " cannot be written to scratch after " + in_megabytes(size_)
                                  + ": " + failure() + "; --scratch names another folder");
     size_ += count;
+    written += count;
+    note_held(count);
     return size_ - count;
 }
 

@@ -15,6 +15,13 @@ struct ScratchPlace {
     std::size_t is_there{}; ///< so many bytes of that file, from the first on, hold what they should
 };
 
+/// Of all files of the process so far.
+struct ScratchUse {
+    std::size_t written = 0; ///< bytes, whatever became of them
+    std::size_t most = 0;    ///< bytes in files at once
+};
+ScratchUse scratch_use();
+
 /// Without a name nothing is left of the file, however the process ends. Not for several threads, but for
 /// read().
 class ScratchBytes {

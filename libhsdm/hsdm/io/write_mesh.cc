@@ -2,6 +2,7 @@
 
 #include "hsdm/errors.hh"
 #include "hsdm/io/float_precision.hh"
+#include "hsdm/io/mesh_document.hh"
 #include "hsdm/io/mesh_writers.hh"
 #include "hsdm/io/text.hh"
 
@@ -10,10 +11,8 @@
 #include <filesystem>
 
 namespace hsdm {
-namespace {
 
-/// Checks what all writers below rely on.
-void check(const std::string& path, const PolygonMesh& mesh) {
+void check_consistent(const std::string& path, const PolygonMesh& mesh) {
     const std::size_t n = mesh.vertex_count();
     for (Index v : mesh.corners)
         if (v >= n)
@@ -28,6 +27,8 @@ void check(const std::string& path, const PolygonMesh& mesh) {
                                   + property.name + "' for " + std::to_string(n)
                                   + " vertices; the mesh is inconsistent");
 }
+
+namespace {
 
 /// Of formats that have no empty mesh.
 void check_facets(const std::string& path, const PolygonMesh& mesh, const MeshFormatInfo& info) {
@@ -78,11 +79,26 @@ MeshFormat mesh_format(const std::string& path) {
     throw Error(path, "no mesh format has the extension '" + extension + "'; use " + known);
 }
 
+WrittenMesh precision_of(std::span<const Vec3> positions, const Vec3& shift, MeshFormat format, bool ascii) {
+    WrittenMesh written;
+    written.shift = shift;
+    if (format != MeshFormat::stl) return written;
+    written.moved_by_floats = moved_by_floats(positions, shift);
+    written.text_for_precision = !ascii && written.moved_by_floats > most_moved_by_floats;
+    return written;
+}
+
+void check_as_it_comes(const std::string& path, MeshFormat format) {
+    if (!is_document(format))
+        throw Error(path, std::string(info_of(format).title)
+                              + " cannot be written as it comes; PLY, OFF and STL can");
+}
+
 namespace {
 
 WrittenMesh write_as_it_is(const std::string& path, const PolygonMesh& mesh, const VertexRows& rows,
                            MeshFormat format, const WriteOptions& options) {
-    WrittenMesh written;
+    const WrittenMesh written = precision_of(mesh.positions, {0, 0, 0}, format, options.ascii);
     if (format == MeshFormat::om) {
         write_polygons_om(path, mesh);
         return written;
@@ -90,16 +106,12 @@ WrittenMesh write_as_it_is(const std::string& path, const PolygonMesh& mesh, con
     AtomicFile file(path);
     switch (format) {
     case MeshFormat::off:
-        write_off(file, mesh);
-        break;
     case MeshFormat::stl:
-        written.moved_by_floats = moved_by_floats(mesh.positions);
-        written.text_for_precision = !options.ascii && written.moved_by_floats > most_moved_by_floats;
-        write_stl(file, mesh, options.ascii || written.text_for_precision);
+    case MeshFormat::ply: {
+        const bool ascii = options.ascii || written.text_for_precision;
+        write_document(file, document_of(format, counts_of(mesh), rows, ascii), mesh, rows);
         break;
-    case MeshFormat::ply:
-        write_ply(file, mesh, rows, options.ascii);
-        break;
+    }
     case MeshFormat::obj:
         write_obj(file, mesh);
         break;
@@ -118,7 +130,7 @@ WrittenMesh write_as_it_is(const std::string& path, const PolygonMesh& mesh, con
 
 WrittenMesh write_checked(const std::string& path, const PolygonMesh& mesh, const VertexRows& rows,
                           MeshFormat format, const WriteOptions& options) {
-    check(path, mesh);
+    check_consistent(path, mesh);
     check_facets(path, mesh, info_of(format));
     if (!options.recentre) return write_as_it_is(path, mesh, rows, format, options);
     PolygonMesh near = mesh;
@@ -138,9 +150,7 @@ WrittenMesh write_mesh(const std::string& path, const PolygonMesh& mesh, MeshFor
 
 WrittenMesh write_mesh(const std::string& path, const PolygonMesh& mesh, const VertexRows& rows,
                        MeshFormat format, const WriteOptions& options) {
-    if (format != MeshFormat::ply && format != MeshFormat::off && format != MeshFormat::stl)
-        throw Error(path, std::string(info_of(format).title)
-                              + " cannot be written as it comes; PLY, OFF and STL can");
+    check_as_it_comes(path, format);
     return write_checked(path, mesh, rows, format, options);
 }
 

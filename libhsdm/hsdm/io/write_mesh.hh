@@ -64,6 +64,7 @@ struct WrittenMesh {
     bool text_for_precision = false; ///< STL as text though binary was asked for: floats are too coarse
     double moved_by_floats = 0;      ///< STL: how far floats would move a vertex, over the diagonal
     Vec3 shift{0, 0, 0};             ///< what was taken off all positions for `recentre`
+    bool by_all_ranks = false;       ///< each wrote a part of it
 };
 
 /// The format a file name's extension asks for. Throws Error naming the extensions known.

@@ -1,7 +1,6 @@
 #include "hsdm/io/format_chunks.hh"
+#include "hsdm/io/mesh_document.hh"
 #include "hsdm/io/mesh_writers.hh"
-
-#include <algorithm>
 
 namespace hsdm {
 namespace {
@@ -22,37 +21,20 @@ const char* type_name(Type type) {
     return "";
 }
 
-std::size_t largest_facet(const PolygonMesh& mesh) {
-    std::size_t largest = 0;
-    for (std::size_t f = 0; f < mesh.facet_count(); ++f) largest = std::max(largest, mesh.facet(f).size());
-    return largest;
+bool has_short_counts(const MeshCounts& counts) {
+    return counts.largest_facet < 256;
 }
 
-std::string header(const PolygonMesh& mesh, const VertexRows& rows, bool ascii) {
+std::string header(const MeshCounts& counts, const VertexRows& rows, bool ascii) {
     std::string h = std::string("ply\nformat ") + (ascii ? "ascii" : "binary_little_endian") + " 1.0\n";
-    h += "comment hsdm\nelement vertex " + std::to_string(mesh.vertex_count()) + "\n";
+    h += "comment hsdm\nelement vertex " + std::to_string(counts.vertices) + "\n";
     for (const char* name : {"x", "y", "z"}) h += std::string("property double ") + name + "\n";
     if (rows.normals)
         for (const char* name : {"nx", "ny", "nz"}) h += std::string("property double ") + name + "\n";
     for (const auto& [name, type] : rows.columns)
         h += std::string("property ") + type_name(type) + " " + name + "\n";
-    h += "element face " + std::to_string(mesh.facet_count()) + "\nproperty list ";
-    return h + (largest_facet(mesh) < 256 ? "uchar" : "uint") + " uint vertex_indices\nend_header\n";
-}
-
-/// Calls put(value) with the value in the property's own type.
-template <class Put>
-void with_type(Type type, double value, const Put& put) {
-    switch (type) {
-    case Type::uint8:
-        return put(static_cast<std::uint8_t>(value));
-    case Type::int32:
-        return put(static_cast<std::int32_t>(value));
-    case Type::float32:
-        return put(static_cast<float>(value));
-    case Type::float64:
-        return put(value);
-    }
+    h += "element face " + std::to_string(counts.facets) + "\nproperty list ";
+    return h + (has_short_counts(counts) ? "uchar" : "uint") + " uint vertex_indices\nend_header\n";
 }
 
 /// Calls put(number) for all numbers of vertices begin .. end - 1, and end_row() after each vertex.
@@ -72,39 +54,37 @@ void put_vertices(const PolygonMesh& mesh, const VertexRows& rows, std::size_t b
     }
 }
 
-void write_ascii(AtomicFile& file, const PolygonMesh& mesh, const VertexRows& rows) {
-    write_chunks(file, mesh.vertex_count(), [&](std::string& out, std::size_t begin, std::size_t end) {
+void describe_ascii(MeshDocument& document) {
+    document.vertices = [](std::string& out, const PolygonMesh& mesh, const VertexRows& rows,
+                           std::size_t begin, std::size_t end) {
         const auto put = [&](auto value) {
             append_number(out, value);
             out += ' ';
         };
         put_vertices(mesh, rows, begin, end, put, [&] { out.back() = '\n'; });
-    });
-    write_chunks(file, mesh.facet_count(), [&](std::string& out, std::size_t begin, std::size_t end) {
-        for (std::size_t f = begin; f < end; ++f) {
-            append_number(out, mesh.facet(f).size());
-            for (Index v : mesh.facet(f)) append_number(out += ' ', v);
-            out += '\n';
-        }
-    });
+    };
+    document.facets = [](std::string& out, const PolygonMesh& mesh, std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) append_polygon(out, mesh.facet(f));
+    };
 }
 
-void write_binary(AtomicFile& file, const PolygonMesh& mesh, const VertexRows& rows) {
-    write_chunks(file, mesh.vertex_count(), [&](std::string& out, std::size_t begin, std::size_t end) {
+void describe_binary(MeshDocument& document, bool short_counts) {
+    document.vertices = [](std::string& out, const PolygonMesh& mesh, const VertexRows& rows,
+                           std::size_t begin, std::size_t end) {
         put_vertices(
             mesh, rows, begin, end, [&](auto value) { append_bytes(out, value); }, [] {});
-    });
-    const bool short_count = largest_facet(mesh) < 256;
-    write_chunks(file, mesh.facet_count(), [&](std::string& out, std::size_t begin, std::size_t end) {
+    };
+    document.facets = [short_counts](std::string& out, const PolygonMesh& mesh, std::size_t begin,
+                                     std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) {
             const auto corners = static_cast<std::uint32_t>(mesh.facet(f).size());
-            if (short_count)
+            if (short_counts)
                 append_bytes(out, static_cast<std::uint8_t>(corners));
             else
                 append_bytes(out, corners);
             for (Index v : mesh.facet(f)) append_bytes(out, v);
         }
-    });
+    };
 }
 
 } // namespace
@@ -124,12 +104,14 @@ VertexRows rows_of(const PolygonMesh& mesh) {
     return rows;
 }
 
-void write_ply(AtomicFile& file, const PolygonMesh& mesh, const VertexRows& rows, bool ascii) {
-    file.write(header(mesh, rows, ascii));
+MeshDocument ply_document(const MeshCounts& counts, const VertexRows& rows, bool ascii) {
+    MeshDocument document;
+    document.head = header(counts, rows, ascii);
     if (ascii)
-        write_ascii(file, mesh, rows);
+        describe_ascii(document);
     else
-        write_binary(file, mesh, rows);
+        describe_binary(document, has_short_counts(counts));
+    return document;
 }
 
 } // namespace hsdm

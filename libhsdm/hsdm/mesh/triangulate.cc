@@ -88,6 +88,12 @@ void cut(const std::vector<Vec3>& positions, std::span<const Index> facet, Trian
 
 } // namespace
 
+void append_triangles(const PolygonMesh& mesh, std::size_t facet, std::vector<Triangle>& triangles) {
+    const std::size_t before = triangles.size(), corners = mesh.facet(facet).size();
+    triangles.resize(before + (corners < 3 ? 0 : corners - 2));
+    cut(mesh.positions, mesh.facet(facet), triangles.data() + before);
+}
+
 Triangulation triangulate(const PolygonMesh& mesh) {
     const std::size_t facets = mesh.facet_count();
     Triangulation result;

@@ -25,6 +25,9 @@ struct Triangulation {
 /// nor number of threads, changes the cut of a facet.
 Triangulation triangulate(const PolygonMesh& mesh);
 
+/// The same of one facet, appended.
+void append_triangles(const PolygonMesh& mesh, std::size_t facet, std::vector<Triangle>& triangles);
+
 /// The facet of each triangle.
 std::vector<Index> facet_of_triangle(const Triangulation& triangulation);
 

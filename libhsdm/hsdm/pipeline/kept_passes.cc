@@ -1,5 +1,6 @@
 #include "hsdm/pipeline/kept_passes.hh"
 
+#include "hsdm/core/system.hh"
 #include "hsdm/errors.hh"
 #include "hsdm/normals/normals.hh"
 #include "hsdm/pipeline/survey.hh"
@@ -15,6 +16,49 @@ namespace {
 constexpr auto last_pass = static_cast<std::uint64_t>(Pass::strays);
 constexpr const char* pieces_name = "pieces";
 
+/// On a machine, in the folder for scratch: the ranks that something was kept for.
+struct SeenByRank {
+    std::string host;
+    std::vector<int> processes;
+};
+
+bool sees(const SeenByRank& one, int process) {
+    return std::ranges::binary_search(one.processes, process);
+}
+
+/// The machines that have what each rank needs, in the order of ranks; empty if some is nowhere.
+std::string hosts_in_order(const std::vector<SeenByRank>& seen) {
+    std::string hosts;
+    for (int r = 0; r < static_cast<int>(seen.size()); ++r) {
+        const auto one =
+            std::ranges::find_if(seen, [&](const SeenByRank& of_rank) { return sees(of_rank, r); });
+        if (one == seen.end()) return {};
+        hosts += (r > 0 ? "," : "") + one->host;
+    }
+    return hosts;
+}
+
+/// Of a rank that finds nothing, if there is something for it elsewhere, or for more ranks than there are.
+void refuse_moved(const std::string& folder, const std::vector<SeenByRank>& seen, int rank) {
+    const SeenByRank& own = seen[static_cast<std::size_t>(rank)];
+    const std::string name = "hsdm-resume-" + std::to_string(rank);
+    const auto other = std::ranges::find_if(seen, [&](const SeenByRank& one) { return sees(one, rank); });
+    if (other != seen.end()) {
+        const std::string hosts = hosts_in_order(seen);
+        throw Error(folder, "rank " + std::to_string(rank) + " on " + own.host + " has no " + name
+                                + ", which rank " + std::to_string(other - seen.begin()) + " on "
+                                + other->host + " has; run on the same machines in the same order"
+                                + (hosts.empty() ? "" : " (mpirun --host " + hosts + ")")
+                                + ", or remove the folders of all to begin anew");
+    }
+    if (!own.processes.empty() && own.processes.back() >= static_cast<int>(seen.size()))
+        throw Error(folder,
+                    "rank " + std::to_string(rank) + " on " + own.host + " has no " + name
+                        + ", but hsdm-resume-" + std::to_string(own.processes.back())
+                        + " of more processes; run as many as before, on the same machines in the same "
+                          "order, or remove the folders of all to begin anew");
+}
+
 } // namespace
 
 std::string form_of_kept() {
@@ -27,6 +71,21 @@ std::string form_of_kept() {
           sizeof(Survey), sizeof(PartComponents::Shared)})
         text.append(" ").append(std::to_string(size));
     return text;
+}
+
+void refuse_moved(const std::string& folder, Ranks& ranks) {
+    Ranks::Bytes bytes;
+    put_text(os::host_name(), bytes);
+    put_vector(KeptScratch::processes_in(folder), bytes);
+    std::vector<SeenByRank> seen;
+    for (const Ranks::Bytes& got : ranks.gather(bytes)) {
+        ByteReader reader(got);
+        SeenByRank& of_rank = seen.emplace_back();
+        of_rank.host = reader.take_text();
+        of_rank.processes = reader.take_vector<int>();
+    }
+    for (int r = 0; r < ranks.size(); ++r)
+        if (!sees(seen[static_cast<std::size_t>(r)], r)) refuse_moved(folder, seen, r);
 }
 
 KeptPasses::KeptPasses(KeptScratch* kept, Ranks& ranks) : kept_(kept), ranks_(ranks) {

@@ -26,6 +26,11 @@ enum class Pass : std::uint64_t {
 /// and how many bytes what is kept as it lies in memory takes.
 std::string form_of_kept();
 
+/// To be called by all ranks before any of them makes a KeptScratch in this folder, which each has for itself
+/// or all see. Throws Error where one has nothing and what it needs lies on another machine, or is of more
+/// ranks: they would begin anew.
+void refuse_moved(const std::string& folder, Ranks& ranks);
+
 /// Of a job that is kept, or of one that is not, which has done nothing.
 class KeptPasses {
 public:

@@ -17,6 +17,7 @@
 #include "hsdm/pipeline/stray_search.hh"
 #include "hsdm/pipeline/tile_plan.hh"
 #include "hsdm/pipeline/whole_of_tiles.hh"
+#include "hsdm/pipeline/work_of_ranks.hh"
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -92,34 +93,6 @@ void note_cloud(const ScratchCloud& cloud, const CloudSurvey& survey, std::size_
     note_dropped("points off every surface", outliers, cloud.frame(), report);
 }
 
-/// What each rank does from now on.
-class RankWork {
-public:
-    explicit RankWork(Ranks& ranks) : ranks_(ranks) {}
-
-    std::vector<Report::Rank> of_all(const ScratchCloud& cloud, std::size_t own_tiles) const {
-        Report::Rank own;
-        own.points = cloud.points_here();
-        own.tiles = own_tiles;
-        own.seconds_waited = ranks_.seconds_waited() - waited_;
-        own.seconds = std::chrono::duration<double>(Clock::now() - start_).count() - own.seconds_waited;
-        own.bytes_sent = ranks_.bytes_sent() - sent_;
-        own.peak_memory_bytes = os::peak_memory();
-        Ranks::Bytes bytes;
-        put(own, bytes);
-        std::vector<Report::Rank> all;
-        for (const Ranks::Bytes& got : ranks_.gather(bytes))
-            all.push_back(ByteReader(got).take<Report::Rank>());
-        return all;
-    }
-
-private:
-    Ranks& ranks_;
-    Clock::time_point start_ = Clock::now();
-    double waited_ = ranks_.seconds_waited();
-    std::size_t sent_ = ranks_.bytes_sent();
-};
-
 /// A run up to the facets of the whole, which the first rank gets, and what finishing them needs.
 class TiledRun {
 public:
@@ -150,10 +123,9 @@ public:
     /// What finish(input, facets, report) makes of the facets; nothing on other ranks than the first.
     template <class Finish>
     auto finish(TileReport& how, const Finish& finish) {
-        how_.scratch_bytes = cloud_->bytes() + store_->bytes();
         const std::size_t voxels = survey_->sums.voxels();
         const bool parks = bytes_per_voxel_ == bytes_per_voxel_of_parked_mesh
-                           && voxels * bytes_per_voxel_of_flat_mesh + bytes_of_program > tiles_.memory;
+                           && bytes_of_flat_finish(facets_.mesh) + bytes_of_program > tiles_.memory;
         how_.parks = parks;
         const ScratchPlace parking{tiles_.scratch};
         const std::size_t mesh =
@@ -173,8 +145,10 @@ public:
             if (options_.min_component && ranks_.of_first(false)) // small components are out now
                 assist_cloud_distance(*cloud_, in.group_points);
         }
-        how_.ranks = work_.of_all(*cloud_, how_.own_tiles);
+        how_.ranks = work_.of_all({.points = cloud_->points_here(), .tiles = how_.own_tiles});
         how = how_;
+        result.report.scratch_bytes = scratch_use().most;
+        result.report.scratch_bytes_written = scratch_use().written;
         result.report.seconds.total = std::chrono::duration<double>(Clock::now() - start_).count();
         return result;
     }
@@ -349,7 +323,7 @@ private:
     const ReconstructOptions& options_;
     const TileOptions& tiles_;
     Ranks& ranks_;
-    const RankWork work_;
+    const WorkOfRanks work_;
     const Phases phases_;
     const std::size_t bytes_per_voxel_;
     Report report_;

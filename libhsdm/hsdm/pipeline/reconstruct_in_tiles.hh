@@ -39,7 +39,6 @@ struct TileReport {
     std::size_t tiles = 0, widened = 0; ///< and those made again with more around them
     std::size_t own_tiles = 0;          ///< of all, this rank's
     std::size_t points_read = 0;        ///< by this rank's tiles, what is round them too
-    std::size_t scratch_bytes = 0;      ///< of this rank
     bool parks = false;                 ///< arrays of the mesh waited on scratch while nothing read them
     bool went_on = false;               ///< with passes that were kept
     std::size_t kept_tiles = 0;         ///< of own_tiles, those that were in the end
@@ -88,5 +87,8 @@ FlatReconstruction reconstruct_flat_in_tiles(const PointParts& parts, const Reco
 /// also for formats that cannot be written as they come.
 WrittenMesh write_flat(const std::string& path, const FlatReconstruction& flat, MeshFormat format, bool plain,
                        const WriteOptions& options = {});
+/// The same by all ranks, each a part of it (write_mesh_by_ranks()); only the first has the reconstruction.
+WrittenMesh write_flat(const std::string& path, const FlatReconstruction& flat, MeshFormat format, bool plain,
+                       const WriteOptions& options, Ranks& ranks);
 
 } // namespace hsdm

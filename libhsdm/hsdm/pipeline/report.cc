@@ -162,6 +162,7 @@ void fill(JsonText& json, const std::vector<Report::Rank>& ranks) {
         json.member("seconds_waited", rank.seconds_waited);
         json.member("bytes_sent", rank.bytes_sent);
         json.member("peak_memory_bytes", rank.peak_memory_bytes);
+        json.member("scratch_bytes", rank.scratch_bytes);
         json.end();
     }
     json.end();
@@ -174,6 +175,7 @@ void fill(JsonText& json, const Report::Written& written) {
     json.member("text_for_precision", written.text_for_precision);
     json.member("moved_by_floats", written.moved_by_floats);
     json.member("shift", written.shift);
+    if (written.by_all_ranks) json.member("by_all_ranks", true);
     json.end();
 }
 
@@ -232,6 +234,10 @@ std::string to_json(const Report& report) {
         json.member("imbalance", imbalance_of(report.ranks));
     }
     json.member("peak_memory_bytes", report.peak_memory_bytes);
+    if (report.scratch_bytes > 0) {
+        json.member("scratch_bytes", report.scratch_bytes);
+        json.member("scratch_bytes_written", report.scratch_bytes_written);
+    }
     json.member("threads", report.threads);
     json.end();
     return std::move(json).take();

@@ -244,6 +244,15 @@ Reconstruction finish_whole(const WholeInput& in, WholeFacets&& facets, Report&&
     return result;
 }
 
+/// While normals are smoothed: the mesh, its links but for those that are forgotten by then, which sides are
+/// sharp, normals before and after a round, areas and neighbours.
+std::size_t bytes_of_flat_finish(const PolygonMesh& mesh) {
+    const std::size_t of_vertex = sizeof(Vec3) + 2 * sizeof(Index);
+    const std::size_t of_side = 3 * sizeof(Index) + sizeof(std::uint8_t) + sizeof(Index);
+    const std::size_t of_facet = sizeof(Index) + 2 * sizeof(Vec3) + sizeof(double) + sizeof(Index);
+    return mesh.vertex_count() * of_vertex + mesh.corners.size() * of_side + mesh.facet_count() * of_facet;
+}
+
 FlatReconstruction finish_whole_flat(const WholeInput& in, WholeFacets&& facets, Report&& report) {
     return FlatFinish(in, std::move(facets), std::move(report)).finish();
 }

@@ -32,7 +32,9 @@ struct WholeInput {
 /// What is left once there are facets: slits, what is unsound, the error, features. Throws Error if something
 /// was taken for granted of the whole that is not so; Cancelled.
 Reconstruction finish_whole(const WholeInput& in, WholeFacets&& facets, Report&& report);
-/// The same in flat arrays, of which at most 170 bytes a vertex are in memory at once, with parking 120.
+/// Of these facets, what the next one has in memory at most without parking: some 165 bytes a vertex.
+std::size_t bytes_of_flat_finish(const PolygonMesh& mesh);
+/// The same in flat arrays; with parking at most 120 bytes a vertex are in memory at once.
 FlatReconstruction finish_whole_flat(const WholeInput& in, WholeFacets&& facets, Report&& report);
 
 } // namespace hsdm

@@ -1,3 +1,4 @@
+#include "hsdm/io/write_by_ranks.hh"
 #include "hsdm/mesh/vertex_normals.hh"
 #include "hsdm/pipeline/reconstruct_in_tiles.hh"
 
@@ -39,6 +40,11 @@ VertexRows rows_of(const FlatReconstruction& flat) {
 WrittenMesh write_flat(const std::string& path, const FlatReconstruction& flat, MeshFormat format, bool plain,
                        const WriteOptions& options) {
     return write_mesh(path, flat.mesh, plain ? VertexRows() : rows_of(flat), format, options);
+}
+
+WrittenMesh write_flat(const std::string& path, const FlatReconstruction& flat, MeshFormat format, bool plain,
+                       const WriteOptions& options, Ranks& ranks) {
+    return write_mesh_by_ranks(path, flat.mesh, plain ? VertexRows() : rows_of(flat), format, options, ranks);
 }
 
 } // namespace hsdm
