@@ -93,6 +93,15 @@ void dilate(const LatticePlace& place, int radius, std::vector<MortonCode>& code
     }
 }
 
+std::vector<MortonCode> all_points(const LatticePlace& place) {
+    std::vector<MortonCode> codes;
+    for (int z = 0; z <= place.last[2]; ++z)
+        for (int y = 0; y <= place.last[1]; ++y)
+            for (int x = 0; x <= place.last[0]; ++x) codes.push_back(morton_encode(VoxelCoord{x, y, z}));
+    parallel_sort_unique(codes);
+    return codes;
+}
+
 Lattice build_lattice(const LatticePlace& place, std::vector<MortonCode> codes, const PolygonMesh& mesh) {
     Lattice lattice{place, std::move(codes), {}, {}, {}, {}};
     lattice.index.build(lattice.codes);
