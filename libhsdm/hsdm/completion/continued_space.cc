@@ -120,21 +120,34 @@ ContinuedSpace::ContinuedSpace(const PolygonMesh& mesh, const BoundaryLoops& bor
     if (!std::ranges::any_of(std::views::iota(std::size_t{0}, open.size()),
                              [&](std::size_t i) { return open[i] > closed[i]; }))
         return;
+    take_cells(lattice, open, closed);
+}
+
+void ContinuedSpace::take_cells(const Lattice& lattice, const std::vector<std::uint8_t>& open,
+                                const std::vector<std::uint8_t>& closed) {
     const VoxelCoord& last = place_.last;
     outside_.assign(number_of(place_, {0, 0, last[2]}), 1);
     continued_.assign(outside_.size(), 0);
-    for_each_in_order(lattice.size(), [&](std::size_t i) {
-        const VoxelCoord c = lattice.coord(static_cast<Index>(i));
-        for (int corner = 0; corner < 8; ++corner) {
-            const VoxelCoord cell{c[0] - (corner & 1), c[1] - (corner >> 1 & 1), c[2] - (corner >> 2)};
+    const auto around = [&](Index point, unsigned but, const auto& visit) {
+        for (unsigned corner = 0; corner < 8; ++corner) {
+            if (but < 3 && (corner >> but & 1) != 0) continue;
+            VoxelCoord cell = lattice.coord(point);
             bool is_cell = true;
-            for (unsigned k = 0; k < 3; ++k) is_cell = is_cell && cell[k] >= 0 && cell[k] < last[k];
-            if (!is_cell) continue;
-            const std::size_t at = number_of(place_, cell);
-            outside_[at] &= open[i];
-            continued_[at] |= open[i] > closed[i];
+            for (unsigned k = 0; k < 3; ++k) {
+                cell[k] -= static_cast<int>(corner >> k & 1);
+                is_cell = is_cell && cell[k] >= 0 && cell[k] < last[k];
+            }
+            if (is_cell) visit(number_of(place_, cell));
         }
-    });
+    };
+    for (Index i = 0; i < lattice.size(); ++i)
+        around(i, 3, [&](std::size_t cell) {
+            outside_[cell] &= open[i];
+            continued_[cell] |= open[i] > closed[i];
+        });
+    // A wall thinner than a cell has all corners outside.
+    for (const LatticeHit& hit : lattice.hits)
+        around(hit.edge / 3, hit.edge % 3, [&](std::size_t cell) { outside_[cell] = 0; });
 }
 
 bool ContinuedSpace::holds(const Vec3& place) const {

@@ -22,8 +22,12 @@ public:
     bool holds(const Vec3& place) const;
 
 private:
+    void take_cells(const Lattice& lattice, const std::vector<std::uint8_t>& open,
+                    const std::vector<std::uint8_t>& closed);
+
     LatticePlace place_;
-    std::vector<std::uint8_t> outside_, continued_; ///< per cell, x fastest: are all corners, is one?
+    std::vector<std::uint8_t> outside_,
+        continued_; ///< per cell, x fastest: are all corners, and no mesh; is one?
 };
 
 } // namespace hsdm
