@@ -150,4 +150,9 @@ inline constexpr double most_cells = 48;
 /// Why: a square bore goes on for as much as ten times its width in place of two lids.
 inline constexpr double wall_cost = 0.05;
 
+/// cells: of the grid, that space is deep behind its lids, at least, to be opened.
+/// Why: the least surface of a grid stands a cell off here or there; what is no deeper than its two sides is
+/// a face that stands elsewhere, not a bore.
+inline constexpr double least_depth = 2;
+
 } // namespace hsdm::continuing

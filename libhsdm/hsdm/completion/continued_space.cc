@@ -4,6 +4,7 @@
 #include "hsdm/completion/continued_walls.hh"
 #include "hsdm/contour/minimum_cut.hh"
 #include "hsdm/core/chunks.hh"
+#include "hsdm/core/disjoint_sets.hh"
 #include "hsdm/core/parallel_sort.hh"
 
 #include <algorithm>
@@ -98,6 +99,32 @@ std::vector<std::uint8_t> least_surface(const Lattice& lattice, const std::vecto
     return outside;
 }
 
+/// Leaves open what is as deep as `continuing::least_depth` beyond the least surface without walls, in the
+/// mean of each connected part.
+void keep_deep(const Lattice& lattice, const std::vector<std::uint8_t>& closed,
+               std::vector<std::uint8_t>& open) {
+    DisjointSets parts(lattice.size());
+    std::vector<double> size(lattice.size()), lid(lattice.size());
+    const auto opens = [&](Index i) { return open[i] > closed[i]; };
+    const auto for_each_edge = [&](const auto& visit) {
+        for (Index i = 0; i < lattice.size(); ++i)
+            for (unsigned k = 0; k < 3; ++k)
+                if (const Index other = lattice.next[i][k];
+                    other != no_index && lattice.on_edge(3 * std::size_t{i} + k).empty())
+                    visit(i, other);
+    };
+    for_each_edge([&](Index i, Index k) {
+        if (opens(i) && opens(k)) parts.join(i, k);
+    });
+    for_each_edge([&](Index i, Index k) {
+        if (open[i] != 0 && open[k] != 0 && opens(i) != opens(k)) ++lid[parts.find(opens(i) ? i : k)];
+    });
+    for (Index i = 0; i < lattice.size(); ++i) size[parts.find(i)] += opens(i);
+    for (Index i = 0; i < lattice.size(); ++i)
+        if (const Index part = parts.find(i); opens(i) && size[part] < continuing::least_depth * lid[part])
+            open[i] = 0; // parts stay as they were found
+}
+
 std::size_t number_of(const LatticePlace& place, const VoxelCoord& c) {
     const auto size = [&](unsigned k) { return static_cast<std::size_t>(place.last[k]); };
     return static_cast<std::size_t>(c[0])
@@ -114,9 +141,9 @@ ContinuedSpace::ContinuedSpace(const PolygonMesh& mesh, const BoundaryLoops& bor
     const std::vector<std::uint8_t> along_walls = confirmed(lattice, walls);
     if (std::ranges::count(along_walls, 0) == std::ssize(along_walls)) return;
     const std::vector<std::int8_t> side = known_sides(lattice);
-    const std::vector<std::uint8_t> open = least_surface(lattice, side, along_walls),
-                                    closed = least_surface(lattice, side,
-                                                           std::vector<std::uint8_t>(along_walls.size()));
+    const std::vector<std::uint8_t> none(along_walls.size()), closed = least_surface(lattice, side, none);
+    std::vector<std::uint8_t> open = least_surface(lattice, side, along_walls);
+    keep_deep(lattice, closed, open);
     if (!std::ranges::any_of(std::views::iota(std::size_t{0}, open.size()),
                              [&](std::size_t i) { return open[i] > closed[i]; }))
         return;
