@@ -103,17 +103,10 @@ inline constexpr double most_miss = 0.25;
 // continued_walls.hh, continued_space.hh
 namespace hsdm::continuing {
 
-/// voxels: so far around a side of the border its surrounding is looked at, up to creases.
+/// voxels: so far around a side of the border its surrounding is looked at, up to creases; as much of the
+/// border lies on a plane, at least, for its normal to count.
 /// Why: what shows of a bore's wall is often no deeper; less than two rings of facets tell no bend.
 inline constexpr double reach = 4;
-
-/// voxels squared: of a surrounding with less area nothing is told.
-/// Why: a strip two voxels wide, as long as the reach, less what the border's notches take.
-inline constexpr double least_area = 4;
-
-/// cosine of 26 degrees: facets that differ by more lie on two walls.
-/// Why: blunter edges than 25 degrees are seldom; noise of half a voxel tilts facets by less.
-inline constexpr double one_wall = 0.9;
 
 /// radians a voxel: a wall that bends by less is straight. Why: 48 voxels on, where the farthest wall may
 /// end, it is off by a fifth of its length.
@@ -121,23 +114,6 @@ inline constexpr double most_bend = 0.01;
 
 /// cosine of 8 degrees: directions that differ by less are one.
 inline constexpr double one_direction = 0.99;
-
-/// voxels: of the border that lies on a plane, at least, for its normal to count.
-/// Why: one side is ragged; the edge of a bore three voxels wide is as long.
-inline constexpr double least_length = 3;
-
-/// sine of 30 degrees: planes that meet at less tell no axis.
-/// Why: noise of a normal turns what they have in common by twice as much.
-inline constexpr double least_sine = 0.5;
-
-/// sine of 17 degrees: the slope of a wall to its axis, at most.
-inline constexpr double wall = 0.3;
-
-/// sine of 45 degrees: faces less askew to an axis are entered by it.
-inline constexpr double face = 0.7;
-
-/// sine of 12 degrees: a side of a wall that leads less along an axis does not go on along it.
-inline constexpr double least_lead = 0.2;
 
 /// share: of a loop's length that lies on walls of an axis, at least.
 /// Why: one wall of a square bore is a quarter of its edge; two or more tell a bore.

@@ -9,7 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
+#include <utility>
 
 namespace hsdm {
 namespace {
@@ -31,19 +31,20 @@ LatticePlace place_for(const PolygonMesh& mesh, double voxel_size) {
     return place;
 }
 
-std::vector<std::uint8_t> facing_on_edges(const Lattice& lattice, const PolygonMesh& walls) {
-    const Lattice across = build_lattice(lattice.place, lattice.codes, walls);
-    std::vector<std::uint8_t> facing(3 * lattice.size());
-    for (const LatticeHit& hit : across.hits)
-        if (const double d = hit.normal[hit.edge % 3]; d != 0) facing[hit.edge] |= d > 0 ? up : down;
-    return facing;
+/// How the surface between an edge's lower point and its upper one faces, of which one lies outside.
+Facing facing_between(bool lower_is_outside) {
+    return lower_is_outside ? down : up;
 }
 
 /// Per edge, which walls pass there of which others that come from the far end pass it or one beside it.
-std::vector<std::uint8_t> confirmed(const Lattice& lattice, const ContinuedWalls& walls) {
-    const std::vector<std::uint8_t> along = facing_on_edges(lattice, walls.along),
-                                    against = facing_on_edges(lattice, walls.against);
-    std::vector<std::uint8_t> result(along.size());
+std::vector<std::uint8_t> confirmed_walls(const Lattice& lattice, const PolygonMesh& mesh,
+                                          const BoundaryLoops& border, double voxel_size) {
+    std::vector<std::uint8_t> along(3 * lattice.size()), against(along.size()), result(along.size());
+    for_each_continued_wall(mesh, border, voxel_size, [&](const PolygonMesh& walls, bool is_along) {
+        for (const LatticeHit& hit : find_hits(lattice, walls))
+            if (const double d = hit.normal[hit.edge % 3]; d != 0)
+                (is_along ? along : against)[hit.edge] |= facing_between(d < 0);
+    });
     for_each_index(result.size(), chunks::light, [&](std::size_t e) {
         if ((along[e] | against[e]) == 0) return;
         unsigned one = along[e], other = against[e];
@@ -72,6 +73,15 @@ std::vector<std::int8_t> known_sides(const Lattice& lattice) {
     return side;
 }
 
+/// Visits the edges that the mesh does not pass: visit(edge, lower point, upper point).
+template <class Visit>
+void for_each_free_edge(const Lattice& lattice, const Visit& visit) {
+    for (std::size_t e = 0; e < 3 * lattice.size(); ++e) {
+        const Index lower = static_cast<Index>(e / 3), upper = lattice.next[lower][e % 3];
+        if (upper != no_index && lattice.on_edge(e).empty()) visit(e, lower, upper);
+    }
+}
+
 /// The least surface between what is known to be inside and outside: per grid point, is it outside? Surfaces
 /// along walls cost `continuing::wall_cost` of their area.
 std::vector<std::uint8_t> least_surface(const Lattice& lattice, const std::vector<std::int8_t>& side,
@@ -81,17 +91,15 @@ std::vector<std::uint8_t> least_surface(const Lattice& lattice, const std::vecto
     std::vector<Index> number(lattice.size(), no_index);
     for (std::size_t i = 0; i < unknown.size(); ++i) number[unknown[i]] = static_cast<Index>(i);
     LabelCosts costs(unknown.size()); // label 1: outside
-    for (std::size_t e = 0; e < 3 * lattice.size(); ++e) {
-        const Index a = static_cast<Index>(e / 3), b = lattice.next[a][e % 3];
-        if (b == no_index || (side[a] != 0 && side[b] != 0) || !lattice.on_edge(e).empty()) continue;
+    for_each_free_edge(lattice, [&](std::size_t e, Index a, Index b) {
         const auto cost = [&](Facing facing) { return (walls[e] & facing) != 0 ? continuing::wall_cost : 1; };
         if (side[a] == 0 && side[b] == 0)
             costs.add(number[a], number[b], {{{0, cost(up)}, {cost(down), 0}}});
         else if (side[a] == 0)
             costs.add(number[a], side[b] > 0 ? cost(up) : 0, side[b] < 0 ? cost(down) : 0);
-        else
+        else if (side[b] == 0)
             costs.add(number[b], side[a] > 0 ? cost(down) : 0, side[a] < 0 ? cost(up) : 0);
-    }
+    });
     const std::vector<std::uint8_t> labels = cheapest_labels(costs);
     std::vector<std::uint8_t> outside(lattice.size());
     for_each_index(outside.size(), chunks::light,
@@ -99,30 +107,41 @@ std::vector<std::uint8_t> least_surface(const Lattice& lattice, const std::vecto
     return outside;
 }
 
-/// Leaves open what is as deep as `continuing::least_depth` beyond the least surface without walls, in the
-/// mean of each connected part.
-void keep_deep(const Lattice& lattice, const std::vector<std::uint8_t>& closed,
-               std::vector<std::uint8_t>& open) {
-    DisjointSets parts(lattice.size());
-    std::vector<double> size(lattice.size()), lid(lattice.size());
-    const auto opens = [&](Index i) { return open[i] > closed[i]; };
-    const auto for_each_edge = [&](const auto& visit) {
-        for (Index i = 0; i < lattice.size(); ++i)
-            for (unsigned k = 0; k < 3; ++k)
-                if (const Index other = lattice.next[i][k];
-                    other != no_index && lattice.on_edge(3 * std::size_t{i} + k).empty())
-                    visit(i, other);
-    };
-    for_each_edge([&](Index i, Index k) {
-        if (opens(i) && opens(k)) parts.join(i, k);
+/// A connected part of what opens, in grid points and edges.
+struct OpenedPart {
+    double points = 0;
+    double lids = 0;              ///< of the least surface without walls, which it takes away
+    double walls = 0, others = 0; ///< what bounds it in their place
+
+    bool is_evident() const { return points >= continuing::least_depth * lids && walls > others; }
+};
+
+/// Leaves open what is deep behind its lids and bounded by walls, most of it, in each connected part; is
+/// there any?
+bool keep_evident(const Lattice& lattice, const std::vector<std::uint8_t>& closed,
+                  const std::vector<std::uint8_t>& walls, std::vector<std::uint8_t>& open) {
+    const std::vector<std::uint8_t> all = open;
+    const auto opens = [&](Index i) { return all[i] > closed[i]; };
+    DisjointSets sets(lattice.size());
+    std::vector<OpenedPart> parts(lattice.size());
+    for_each_free_edge(lattice, [&](std::size_t, Index a, Index b) {
+        if (opens(a) && opens(b)) sets.join(a, b);
     });
-    for_each_edge([&](Index i, Index k) {
-        if (open[i] != 0 && open[k] != 0 && opens(i) != opens(k)) ++lid[parts.find(opens(i) ? i : k)];
+    for_each_free_edge(lattice, [&](std::size_t e, Index a, Index b) {
+        if (opens(a) == opens(b)) return;
+        const auto [inner, other] = opens(a) ? std::pair(a, b) : std::pair(b, a);
+        OpenedPart& part = parts[sets.find(inner)];
+        const bool on_wall = (walls[e] & facing_between(inner == a)) != 0;
+        ++(all[other] != 0 ? part.lids : on_wall ? part.walls : part.others);
     });
-    for (Index i = 0; i < lattice.size(); ++i) size[parts.find(i)] += opens(i);
-    for (Index i = 0; i < lattice.size(); ++i)
-        if (const Index part = parts.find(i); opens(i) && size[part] < continuing::least_depth * lid[part])
-            open[i] = 0; // parts stay as they were found
+    for (Index i = 0; i < lattice.size(); ++i) parts[sets.find(i)].points += opens(i);
+    bool any = false;
+    for (Index i = 0; i < lattice.size(); ++i) {
+        if (!opens(i)) continue;
+        open[i] = parts[sets.find(i)].is_evident();
+        any = any || open[i] != 0;
+    }
+    return any;
 }
 
 std::size_t number_of(const LatticePlace& place, const VoxelCoord& c) {
@@ -135,19 +154,13 @@ std::size_t number_of(const LatticePlace& place, const VoxelCoord& c) {
 
 ContinuedSpace::ContinuedSpace(const PolygonMesh& mesh, const BoundaryLoops& border, double voxel_size)
     : place_(place_for(mesh, voxel_size)) {
-    const ContinuedWalls walls = continued_walls(mesh, border, voxel_size);
-    if (walls.along.facet_count() == 0 || walls.against.facet_count() == 0) return;
     const Lattice lattice = build_lattice(place_, all_points(place_), mesh);
-    const std::vector<std::uint8_t> along_walls = confirmed(lattice, walls);
-    if (std::ranges::count(along_walls, 0) == std::ssize(along_walls)) return;
+    const std::vector<std::uint8_t> walls = confirmed_walls(lattice, mesh, border, voxel_size);
+    if (std::ranges::count(walls, 0) == std::ssize(walls)) return;
     const std::vector<std::int8_t> side = known_sides(lattice);
-    const std::vector<std::uint8_t> none(along_walls.size()), closed = least_surface(lattice, side, none);
-    std::vector<std::uint8_t> open = least_surface(lattice, side, along_walls);
-    keep_deep(lattice, closed, open);
-    if (!std::ranges::any_of(std::views::iota(std::size_t{0}, open.size()),
-                             [&](std::size_t i) { return open[i] > closed[i]; }))
-        return;
-    take_cells(lattice, open, closed);
+    const std::vector<std::uint8_t> none(walls.size()), closed = least_surface(lattice, side, none);
+    std::vector<std::uint8_t> open = least_surface(lattice, side, walls);
+    if (keep_evident(lattice, closed, walls, open)) take_cells(lattice, open, closed);
 }
 
 void ContinuedSpace::take_cells(const Lattice& lattice, const std::vector<std::uint8_t>& open,

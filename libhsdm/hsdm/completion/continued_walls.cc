@@ -78,9 +78,6 @@ public:
         reach(facet, number);
         Vec3 sum(0, 0, 0);
         for (const Index f : reached_) sum += area_of(f);
-        const double area = 0.5 * sum.norm();
-        if (!(area > continuing::least_area * voxel_size_ * voxel_size_))
-            return {Shape::bent, unit(area_of(facet)), {0, 0, 0}};
         Turning turning(unit(sum));
         Vec3 centre(0, 0, 0);
         for (const Index f : reached_) centre += middle_of(f) / static_cast<double>(reached_.size());
@@ -108,7 +105,7 @@ private:
                 for (const Index corner : corners_.of(v)) {
                     const Index f = facet_[corner];
                     if (seen_[f] == number || (middle_of(f) - from).sqrnorm() > far * far) continue;
-                    if ((unit(area) | unit(area_of(f))) < continuing::one_wall) continue;
+                    if ((unit(area) | unit(area_of(f))) < angles::smooth) continue;
                     seen_[f] = number;
                     reached_.push_back(f);
                 }
@@ -146,9 +143,9 @@ struct SweptSide {
     bool goes_on(const Vec3& axis) const {
         const double slope = normal | axis;
         const Vec3 beyond = normal % (to - from);
-        return slope < -continuing::face
-               || (std::abs(slope) < continuing::wall
-                   && (beyond | axis) > continuing::least_lead * beyond.norm());
+        return slope < -angles::halfway
+               || (std::abs(slope) < angles::half_of_sheet
+                   && (beyond | axis) > angles::half_of_sheet * beyond.norm());
     }
 };
 
@@ -162,22 +159,20 @@ std::vector<Vec3> axes_of(const std::vector<SweptSide>& sides, const std::vector
         if (around[i].shape == Shape::flat) normals.add(around[i].normal, sides[i].length(), false);
         if (around[i].shape == Shape::ruled) axes.add(around[i].ruling, sides[i].length(), true);
     }
-    std::erase_if(normals.sums,
-                  [&](const auto& n) { return n.second < continuing::least_length * voxel_size; });
+    std::erase_if(normals.sums, [&](const auto& n) { return n.second < continuing::reach * voxel_size; });
     for (std::size_t i = 0; i < normals.sums.size(); ++i)
         for (std::size_t k = 0; k < i; ++k) {
             const auto& [one, weight] = normals.sums[i];
             const auto& [other, other_weight] = normals.sums[k];
             const Vec3 common = unit(one) % unit(other);
-            if (common.norm() > continuing::least_sine)
-                axes.add(unit(common), std::min(weight, other_weight), true);
+            if (common.norm() > angles::halfway) axes.add(unit(common), std::min(weight, other_weight), true);
         }
     std::vector<Vec3> result;
     for (const auto& [sum, weight] : axes.sums) {
         const Vec3 axis = unit(sum);
         double on_walls = 0;
         for (const SweptSide& side : sides)
-            if (std::abs(side.normal | axis) < continuing::wall) on_walls += side.length();
+            if (std::abs(side.normal | axis) < angles::half_of_sheet) on_walls += side.length();
         if (on_walls >= continuing::least_walls * length) result.push_back(axis);
     }
     return result;
@@ -199,8 +194,8 @@ bool leads_along(const Vec3& way) {
 
 } // namespace
 
-ContinuedWalls continued_walls(const PolygonMesh& mesh, const BoundaryLoops& border, double voxel_size) {
-    ContinuedWalls walls;
+void for_each_continued_wall(const PolygonMesh& mesh, const BoundaryLoops& border, double voxel_size,
+                             const std::function<void(const PolygonMesh&, bool)>& visit) {
     Surroundings surroundings(mesh, voxel_size);
     Box box;
     for (const Vec3& p : mesh.positions) box.add(p);
@@ -215,12 +210,13 @@ ContinuedWalls continued_walls(const PolygonMesh& mesh, const BoundaryLoops& bor
                              around.back().normal});
         }
         for (const Vec3& axis : axes_of(sides, around, voxel_size))
-            for (const Vec3& way : {axis, -axis})
+            for (const Vec3& way : {axis, -axis}) {
+                PolygonMesh walls;
                 for (const SweptSide& side : sides)
-                    if (side.goes_on(way))
-                        add_swept(side, way * far, leads_along(way) ? walls.along : walls.against);
+                    if (side.goes_on(way)) add_swept(side, way * far, walls);
+                visit(walls, leads_along(way));
+            }
     }
-    return walls;
 }
 
 } // namespace hsdm

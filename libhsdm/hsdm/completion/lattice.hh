@@ -56,6 +56,10 @@ std::vector<MortonCode> all_points(const LatticePlace& place);
 /// facets), parallel; the same for any number of threads.
 Lattice build_lattice(const LatticePlace& place, std::vector<MortonCode> codes, const PolygonMesh& mesh);
 
+/// Where a mesh passes the edges of a lattice that was built with another, in no order that matters, and the
+/// same for any number of threads. O(facets + hits).
+std::vector<LatticeHit> find_hits(const Lattice& lattice, const PolygonMesh& mesh);
+
 /// Calls visit(grid point, distance) for the points next to where the mesh passes an edge: the distance from
 /// the plane there, in grid steps, negative behind it. Of an edge that it passes more than once each end has
 /// the hit next to it.
