@@ -63,7 +63,7 @@ std::vector<std::int8_t> known_sides(const Lattice& lattice) {
     std::vector<std::int8_t> side(lattice.size());
     std::vector<double> nearest(lattice.size(), Box::inf);
     for_each_index(lattice.size(), chunks::light, [&](Index i) {
-        side[i] = std::ranges::find(lattice.next[i], no_index) != lattice.next[i].end();
+        side[i] = std::ranges::find(lattice.next[i], no_index) != lattice.next[i].end() ? 1 : 0;
     });
     for_each_beside(lattice, [&](Index point, double distance) {
         if (std::abs(distance) >= nearest[point]) return;
