@@ -108,12 +108,20 @@ namespace hsdm::continuing {
 /// Why: what shows of a bore's wall is often no deeper; less than two rings of facets tell no bend.
 inline constexpr double reach = 4;
 
+/// voxels squared: of a surrounding with less area nothing is told.
+/// Why: a strip two voxels wide, as long as the reach, less what the border's notches take.
+inline constexpr double least_area = 4;
+
 /// radians a voxel: a wall that bends by less is straight. Why: 48 voxels on, where the farthest wall may
 /// end, it is off by a fifth of its length.
 inline constexpr double most_bend = 0.01;
 
 /// cosine of 8 degrees: directions that differ by less are one.
 inline constexpr double one_direction = 0.99;
+
+/// sine of 17 degrees: the slope of a wall to its axis, at most.
+/// Why: over two ends' reach it is off by a third of that; drafts are less.
+inline constexpr double wall = 0.3;
 
 /// share: of a loop's length that lies on walls of an axis, at least.
 /// Why: one wall of a square bore is a quarter of its edge; two or more tell a bore.

@@ -78,6 +78,9 @@ public:
         reach(facet, number);
         Vec3 sum(0, 0, 0);
         for (const Index f : reached_) sum += area_of(f);
+        const double area = 0.5 * sum.norm();
+        if (!(area > continuing::least_area * voxel_size_ * voxel_size_))
+            return {Shape::bent, unit(area_of(facet)), {0, 0, 0}};
         Turning turning(unit(sum));
         Vec3 centre(0, 0, 0);
         for (const Index f : reached_) centre += middle_of(f) / static_cast<double>(reached_.size());
@@ -144,7 +147,7 @@ struct SweptSide {
         const double slope = normal | axis;
         const Vec3 beyond = normal % (to - from);
         return slope < -angles::halfway
-               || (std::abs(slope) < angles::half_of_sheet
+               || (std::abs(slope) < continuing::wall
                    && (beyond | axis) > angles::half_of_sheet * beyond.norm());
     }
 };
@@ -172,7 +175,7 @@ std::vector<Vec3> axes_of(const std::vector<SweptSide>& sides, const std::vector
         const Vec3 axis = unit(sum);
         double on_walls = 0;
         for (const SweptSide& side : sides)
-            if (std::abs(side.normal | axis) < angles::half_of_sheet) on_walls += side.length();
+            if (std::abs(side.normal | axis) < continuing::wall) on_walls += side.length();
         if (on_walls >= continuing::least_walls * length) result.push_back(axis);
     }
     return result;
