@@ -103,8 +103,7 @@ inline constexpr double most_miss = 0.25;
 // continued_walls.hh, continued_space.hh
 namespace hsdm::continuing {
 
-/// voxels: so far around a side of the border its surrounding is looked at, up to creases; as much of the
-/// border lies on a plane, at least, for its normal to count.
+/// voxels: so far around a side of the border its surrounding is looked at, up to creases.
 /// Why: what shows of a bore's wall is often no deeper; less than two rings of facets tell no bend.
 inline constexpr double reach = 4;
 
@@ -118,6 +117,18 @@ inline constexpr double most_bend = 0.01;
 
 /// cosine of 8 degrees: directions that differ by less are one.
 inline constexpr double one_direction = 0.99;
+
+/// voxels: of the border that lies on a plane, at least, for its normal to count.
+/// Why: one side is ragged; the edge of a bore three voxels wide is as long.
+inline constexpr double least_length = 3;
+
+/// sine of 30 degrees: planes that meet at less tell no axis.
+/// Why: noise of a normal turns what they have in common by twice as much.
+inline constexpr double least_sine = 0.5;
+
+/// sine of 12 degrees: a side of a wall that leads less along an axis does not go on along it.
+/// Why: half of what a ragged border's sides turn by; at a right angle to the border it is one.
+inline constexpr double least_lead = 0.2;
 
 /// sine of 17 degrees: the slope of a wall to its axis, at most.
 /// Why: over two ends' reach it is off by a third of that; drafts are less.

@@ -148,7 +148,7 @@ struct SweptSide {
         const Vec3 beyond = normal % (to - from);
         return slope < -angles::halfway
                || (std::abs(slope) < continuing::wall
-                   && (beyond | axis) > angles::half_of_sheet * beyond.norm());
+                   && (beyond | axis) > continuing::least_lead * beyond.norm());
     }
 };
 
@@ -162,13 +162,15 @@ std::vector<Vec3> axes_of(const std::vector<SweptSide>& sides, const std::vector
         if (around[i].shape == Shape::flat) normals.add(around[i].normal, sides[i].length(), false);
         if (around[i].shape == Shape::ruled) axes.add(around[i].ruling, sides[i].length(), true);
     }
-    std::erase_if(normals.sums, [&](const auto& n) { return n.second < continuing::reach * voxel_size; });
+    std::erase_if(normals.sums,
+                  [&](const auto& n) { return n.second < continuing::least_length * voxel_size; });
     for (std::size_t i = 0; i < normals.sums.size(); ++i)
         for (std::size_t k = 0; k < i; ++k) {
             const auto& [one, weight] = normals.sums[i];
             const auto& [other, other_weight] = normals.sums[k];
             const Vec3 common = unit(one) % unit(other);
-            if (common.norm() > angles::halfway) axes.add(unit(common), std::min(weight, other_weight), true);
+            if (common.norm() > continuing::least_sine)
+                axes.add(unit(common), std::min(weight, other_weight), true);
         }
     std::vector<Vec3> result;
     for (const auto& [sum, weight] : axes.sums) {
