@@ -260,7 +260,8 @@ void append_wall(const PolygonMesh& wall, PolygonMesh& walls) {
     for (Index v = first; v < walls.vertex_count(); v += 3) walls.add_facet(std::array{v, v + 1, v + 2});
 }
 
-/// Per bore, does its wall meet that of another one, or the border of something else that enters it?
+/// Per bore, does its wall meet that of another one, or the border of something else that enters it: one half
+/// as long as its own, at least, most of which lies on it? Layers of scans have small ones all over.
 std::vector<std::uint8_t> met_bores(const std::vector<FoundBore>& bores, const PolygonMesh& mesh,
                                     const BoundaryLoops& loops, double voxel_size) {
     std::vector<std::uint8_t> met(bores.size()), closed(loops.size());
@@ -275,10 +276,15 @@ std::vector<std::uint8_t> met_bores(const std::vector<FoundBore>& bores, const P
         if (bore_of[one] != bore_of[other]) met[bore_of[one]] = met[bore_of[other]] = 1;
     const MeshDistance distance(walls);
     for (std::size_t l = 0; l < loops.size(); ++l) {
+        if (closed[l] != 0) continue;
+        std::vector<Index> near; // bores, one per vertex that has one
         Index hint = no_index;
-        for (const Index v : closed[l] != 0 ? std::span<const Index>() : loops[l])
+        for (const Index v : loops[l])
             if (const Index t = distance.triangle_within(mesh.positions[v], voxel_size, hint); t != no_index)
-                met[bore_of[distance.facet_of(t)]] = 1;
+                near.push_back(bore_of[distance.facet_of(t)]);
+        if (2 * near.size() < loops[l].size()) continue;
+        for (const Index b : near)
+            if (2 * loops[l].size() >= loops[bores[b].loops[0]].size()) met[b] = 1;
     }
     return met;
 }
