@@ -55,6 +55,13 @@ Completed complete(const PointCloud& cloud, double voxel,
     return completed;
 }
 
+/// Mean distance of vertices.
+double mean_off(const PolygonMesh& mesh, const Solid& solid) {
+    double sum = 0;
+    for (const Vec3& p : mesh.positions) sum += std::abs(solid.distance(p));
+    return sum / static_cast<double>(mesh.vertex_count());
+}
+
 } // namespace
 
 TEST_CASE("what is missing of a sphere is completed, marked and listed", "[completion]") {
@@ -289,6 +296,29 @@ TEST_CASE("a bore of whose wall the ends alone were seen goes through, however l
     }
 }
 
+TEST_CASE("bores that cross, and one that ends in a slot, go through though their middle was not seen",
+          "[completion]") {
+    const double half_pi = 0.5 * std::numbers::pi, radius = 0.22;
+    const Solid one = cylinder(radius, 4).placed(turned({0, 1, 0}, half_pi)),
+                other = cylinder(radius, 4).placed(turned({1, 0, 0}, half_pi)), slot = box({0.4, 4, 1});
+    const Solid block = box({2, 2, 1.2});
+    struct Case {
+        Solid solid, gone;
+        long euler;
+    };
+    for (const Case& c : {Case{block - one - other, one | other, -4},
+                          Case{block - one - slot.placed({.shift = {0, 0, 0.5}}), one, -2}}) {
+        const PointCloud cloud =
+            partial_scan(c.solid, {.points = 60000, .normals = false}, [&](const Vec3& p) {
+                return c.gone.distance(p) < 0.01 && std::max(std::abs(p[0]), std::abs(p[1])) < 0.75;
+            });
+        const Completed completed = complete(cloud, 0.05);
+        CHECK(completed.report.mesh.components == 1);
+        CHECK(completed.report.mesh.euler == c.euler);
+        CHECK(mean_off(completed.mesh, c.solid) < 0.01);
+    }
+}
+
 TEST_CASE(
     "a wall no thicker than four deviations of the noise comes out as a wall, not as a sheet that is closed "
     "behind",
@@ -305,8 +335,6 @@ TEST_CASE(
         CHECK(faults(mesh).empty());
         CHECK(result.report.mesh.closed);
         CHECK(result.report.mesh.components == 1);
-        double sum = 0;
-        for (const Vec3& p : mesh.positions) sum += std::abs(angle.distance(p));
-        CHECK(sum / static_cast<double>(mesh.positions.size()) < 0.5 * sigma);
+        CHECK(mean_off(mesh, angle) < 0.5 * sigma);
     }
 }

@@ -3,13 +3,15 @@
 #include "hsdm/completion/constants.hh"
 #include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/area_vector.hh"
 #include "hsdm/normals/plane_fit.hh"
+#include "hsdm/spatial/mesh_distance.hh"
+#include "hsdm/spatial/self_intersections.hh"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <initializer_list>
 #include <optional>
 #include <utility>
 
@@ -245,21 +247,57 @@ bool is_mostly(const std::function<bool(const Vec3&)>& empty, const PolygonMesh&
     return 2 * count > wall.facet_count();
 }
 
+/// A wall and the loops that it closes.
+struct FoundBore {
+    PolygonMesh wall;
+    std::vector<Index> loops;
+};
+
+/// Adds the vertices and triangles of a wall, each of which has its own.
+void append_wall(const PolygonMesh& wall, PolygonMesh& walls) {
+    const auto first = static_cast<Index>(walls.vertex_count());
+    append_large(walls.positions, wall.positions);
+    for (Index v = first; v < walls.vertex_count(); v += 3) walls.add_facet(std::array{v, v + 1, v + 2});
+}
+
+/// Per bore, does its wall meet that of another one, or the border of something else that enters it: one half
+/// as long as its own, at least, most of which lies on it? Layers of scans have small ones all over.
+std::vector<std::uint8_t> met_bores(const std::vector<FoundBore>& bores, const PolygonMesh& mesh,
+                                    const BoundaryLoops& loops, double voxel_size) {
+    std::vector<std::uint8_t> met(bores.size()), closed(loops.size());
+    PolygonMesh walls;
+    std::vector<Index> bore_of; // per triangle
+    for (std::size_t b = 0; b < bores.size(); ++b) {
+        append_wall(bores[b].wall, walls);
+        bore_of.resize(walls.facet_count(), static_cast<Index>(b));
+        for (const Index l : bores[b].loops) closed[l] = 1;
+    }
+    for (const auto& [one, other] : find_self_intersections(walls).facet_pairs)
+        if (bore_of[one] != bore_of[other]) met[bore_of[one]] = met[bore_of[other]] = 1;
+    const MeshDistance distance(walls);
+    for (std::size_t l = 0; l < loops.size(); ++l) {
+        if (closed[l] != 0) continue;
+        std::vector<Index> near; // bores, one per vertex that has one
+        Index hint = no_index;
+        for (const Index v : loops[l])
+            if (const Index t = distance.triangle_within(mesh.positions[v], voxel_size, hint); t != no_index)
+                near.push_back(bore_of[distance.facet_of(t)]);
+        if (2 * near.size() < loops[l].size()) continue;
+        for (const Index b : near)
+            if (2 * loops[l].size() >= loops[bores[b].loops[0]].size()) met[b] = 1;
+    }
+    return met;
+}
+
 } // namespace
 
 Bores find_bores(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size,
                  const std::function<bool(const Vec3&)>& empty) {
     std::vector<LoopEnds> found(loops.size());
     for_each_task(loops.size(), [&](std::size_t l) { found[l] = ends_of(mesh, loops, l); });
-    Bores result;
-    const auto take = [&](const PolygonMesh& wall, std::initializer_list<Index> closed) {
-        if (empty && is_mostly(empty, wall)) return;
-        result.loops.insert(result.loops.end(), closed);
-        const auto first = static_cast<Index>(result.walls.vertex_count());
-        result.walls.positions.insert(result.walls.positions.end(), wall.positions.begin(),
-                                      wall.positions.end());
-        for (Index v = first; v < result.walls.vertex_count(); v += 3)
-            result.walls.add_facet(std::array{v, v + 1, v + 2});
+    std::vector<FoundBore> bores;
+    const auto take = [&](PolygonMesh wall, std::vector<Index> closed) {
+        if (!empty || !is_mostly(empty, wall)) bores.push_back({std::move(wall), std::move(closed)});
     };
     std::vector<BoreEnd> ends;
     for (std::size_t l = 0; l < loops.size(); ++l) {
@@ -270,7 +308,7 @@ Bores find_bores(const PolygonMesh& mesh, const BoundaryLoops& loops, double vox
         std::ranges::reverse(row);
         PolygonMesh wall;
         RuledWall(mesh, vertices_of(loops[l], there), std::move(row), found[l].axis).add_to(wall, voxel_size);
-        take(wall, {static_cast<Index>(l)});
+        take(std::move(wall), {static_cast<Index>(l)});
     }
     const std::vector<std::size_t> nearest = nearest_of(ends);
     for (std::size_t i = 0; i < ends.size(); ++i) {
@@ -278,7 +316,15 @@ Bores find_bores(const PolygonMesh& mesh, const BoundaryLoops& loops, double vox
         if (k == ends.size() || k < i || nearest[k] != i) continue;
         PolygonMesh wall;
         join_ends(mesh, loops, ends[i], ends[k], voxel_size, wall);
-        take(wall, {ends[i].loop, ends[k].loop});
+        take(std::move(wall), {ends[i].loop, ends[k].loop});
+    }
+    Bores result;
+    if (bores.empty()) return result;
+    const std::vector<std::uint8_t> met = met_bores(bores, mesh, loops, voxel_size);
+    for (std::size_t b = 0; b < bores.size(); ++b) {
+        if (met[b] != 0) continue;
+        append_wall(bores[b].wall, result.walls);
+        append_large(result.loops, bores[b].loops);
     }
     return result;
 }

@@ -17,6 +17,8 @@ struct Bores {
 /// blind ends that point at each other so exactly are less likely than one bore. A loop whose sides are the
 /// two ends, as strips of the wall were seen between them, is closed alike. What lies between two ends is
 /// ruled; where that is `empty` for the most part, as scanners looked through it, the ends are two holes.
+/// Bores whose walls meet, or have most of another loop on them, are left: there something else enters
+/// (continued_space.hh).
 /// `mesh`: facets outward. O(loops ^ 2 + their length).
 Bores find_bores(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size,
                  const std::function<bool(const Vec3&)>& empty = {});

@@ -3,6 +3,7 @@
 #include "hsdm/completion/bores.hh"
 #include "hsdm/completion/completion_patch.hh"
 #include "hsdm/completion/constants.hh"
+#include "hsdm/completion/continued_space.hh"
 #include "hsdm/completion/slits.hh"
 #include "hsdm/core/check_option.hh"
 #include "hsdm/core/large_vector.hh"
@@ -75,8 +76,13 @@ struct JoinedMesh {
 
 /// Adds points of the surface that closes a mesh, facets outward.
 void add_completing(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size, Passing passing,
-                    const KnownSpace& space, CompletedPoints& points) {
+                    const KnownSpace& seen, CompletedPoints& points) {
     if (loops.size() == 0) return;
+    const ContinuedSpace continued =
+        seen.outside ? ContinuedSpace(mesh, loops, voxel_size) : ContinuedSpace();
+    KnownSpace space = seen;
+    if (!continued.empty())
+        space.holds = [&](const Vec3& p) { return (seen.holds && seen.holds(p)) || continued.holds(p); };
     CompletionPatch patch = completion_patch(completion_field(mesh, loops, voxel_size, space), mesh, loops);
     if (passing == Passing::stopped)
         fair_beside(mesh, patch, space);

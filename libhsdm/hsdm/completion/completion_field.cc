@@ -8,16 +8,6 @@
 namespace hsdm {
 namespace {
 
-/// Grid points of the coarsest level: all.
-std::vector<MortonCode> all_points(const LatticePlace& place) {
-    std::vector<MortonCode> codes;
-    for (int z = 0; z <= place.last[2]; ++z)
-        for (int y = 0; y <= place.last[1]; ++y)
-            for (int x = 0; x <= place.last[0]; ++x) codes.push_back(morton_encode(VoxelCoord{x, y, z}));
-    sort_unique(codes);
-    return codes;
-}
-
 /// The places of all levels, the coarsest first.
 std::vector<LatticePlace> places(const Box& box, double spacing) {
     const double extent = box.extent(), room = completing::margin * extent;
@@ -62,20 +52,12 @@ double interpolated(const CompletionField& coarse, const VoxelCoord& fine) {
 void hold_beside_mesh(CompletionField& field) {
     const Lattice& lattice = field.lattice;
     std::vector<double> nearest(lattice.size(), Box::inf);
-    const auto hold = [&](Index point, double t, double across) {
-        if (point == no_index || t * std::abs(across) >= nearest[point]) return;
-        nearest[point] = t * std::abs(across);
+    for_each_beside(lattice, [&](Index point, double distance) {
+        if (std::abs(distance) >= nearest[point]) return;
+        nearest[point] = std::abs(distance);
         field.known[point] = Known::beside_mesh;
-        field.value[point] = std::copysign(nearest[point] * lattice.place.spacing, across);
-    };
-    for (std::size_t h = 0; h < lattice.hits.size(); ++h) {
-        const LatticeHit& hit = lattice.hits[h];
-        const double across = hit.normal[hit.edge % 3];
-        const Index lower = hit.edge / 3;
-        if (h == 0 || lattice.hits[h - 1].edge != hit.edge) hold(lower, hit.t, -across);
-        if (h + 1 == lattice.hits.size() || lattice.hits[h + 1].edge != hit.edge)
-            hold(lattice.next[lower][hit.edge % 3], 1 - hit.t, across);
-    }
+        field.value[point] = distance * lattice.place.spacing;
+    });
 }
 
 /// Solves for the values that nobody knows: each the mean of those around it.

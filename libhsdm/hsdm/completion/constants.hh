@@ -99,3 +99,55 @@ namespace hsdm::bores {
 inline constexpr double most_miss = 0.25;
 
 } // namespace hsdm::bores
+
+// continued_walls.hh, continued_space.hh
+namespace hsdm::continuing {
+
+/// voxels: so far around a side of the border its surrounding is looked at, up to creases.
+/// Why: what shows of a bore's wall is often no deeper; less than two rings of facets tell no bend.
+inline constexpr double reach = 4;
+
+/// voxels squared: of a surrounding with less area nothing is told.
+/// Why: a strip two voxels wide, as long as the reach, less what the border's notches take.
+inline constexpr double least_area = 4;
+
+/// radians a voxel: a wall that bends by less is straight. Why: 48 voxels on, where the farthest wall may
+/// end, it is off by a fifth of its length.
+inline constexpr double most_bend = 0.01;
+
+/// cosine of 8 degrees: directions that differ by less are one.
+inline constexpr double one_direction = 0.99;
+
+/// voxels: of the border that lies on a plane, at least, for its normal to count.
+/// Why: one side is ragged; the edge of a bore three voxels wide is as long.
+inline constexpr double least_length = 3;
+
+/// sine of 30 degrees: planes that meet at less tell no axis.
+/// Why: noise of a normal turns what they have in common by twice as much.
+inline constexpr double least_sine = 0.5;
+
+/// sine of 12 degrees: a side of a wall that leads less along an axis does not go on along it.
+/// Why: half of what a ragged border's sides turn by; at a right angle to the border it is one.
+inline constexpr double least_lead = 0.2;
+
+/// sine of 17 degrees: the slope of a wall to its axis, at most.
+/// Why: over two ends' reach it is off by a third of that; drafts are less.
+inline constexpr double wall = 0.3;
+
+/// share: of a loop's length that lies on walls of an axis, at least.
+/// Why: one wall of a square bore is a quarter of its edge; two or more tell a bore.
+inline constexpr double least_walls = 0.3;
+
+/// cells along the mesh, at most: bounds the work of a cut to 140,000 grid points.
+inline constexpr double most_cells = 48;
+
+/// share: of its area that a surface along walls costs.
+/// Why: a square bore goes on for as much as ten times its width in place of two lids.
+inline constexpr double wall_cost = 0.05;
+
+/// cells: of the grid, that space is deep behind its lids, at least, to be opened.
+/// Why: the least surface of a grid stands a cell off here or there; what is no deeper than its two sides is
+/// a face that stands elsewhere, not a bore.
+inline constexpr double least_depth = 2;
+
+} // namespace hsdm::continuing

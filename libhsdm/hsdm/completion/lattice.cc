@@ -56,25 +56,13 @@ private:
     std::vector<LatticeHit>& hits_;
 };
 
-std::vector<LatticeHit> find_hits(const Lattice& lattice, const PolygonMesh& mesh) {
-    std::vector<LatticeHit> hits = collected<LatticeHit>(
-        mesh.facet_count(), chunks::usual,
-        [&](std::size_t begin, std::size_t end, std::vector<LatticeHit>& part) {
-            TriangleHits triangles(lattice, part);
-            const auto at = [&](Index vertex) { return lattice.place.local(mesh.positions[vertex]); };
-            for (std::size_t f = begin; f < end; ++f) {
-                const auto corners = mesh.facet(f);
-                for (std::size_t c = 2; c < corners.size(); ++c)
-                    triangles.add({at(corners[0]), at(corners[c - 1]), at(corners[c])});
-            }
-        });
+void sort_hits(std::vector<LatticeHit>& hits) {
     parallel_sort(hits, [](const LatticeHit& a, const LatticeHit& b) {
         const auto key = [](const LatticeHit& h) {
             return std::tuple(h.edge, h.t, h.normal[0], h.normal[1], h.normal[2]);
         };
         return key(a) < key(b);
     });
-    return hits;
 }
 
 } // namespace
@@ -93,6 +81,29 @@ void dilate(const LatticePlace& place, int radius, std::vector<MortonCode>& code
     }
 }
 
+std::vector<MortonCode> all_points(const LatticePlace& place) {
+    std::vector<MortonCode> codes;
+    for (int z = 0; z <= place.last[2]; ++z)
+        for (int y = 0; y <= place.last[1]; ++y)
+            for (int x = 0; x <= place.last[0]; ++x) codes.push_back(morton_encode(VoxelCoord{x, y, z}));
+    parallel_sort_unique(codes);
+    return codes;
+}
+
+std::vector<LatticeHit> find_hits(const Lattice& lattice, const PolygonMesh& mesh) {
+    return collected<LatticeHit>(
+        mesh.facet_count(), chunks::usual,
+        [&](std::size_t begin, std::size_t end, std::vector<LatticeHit>& part) {
+            TriangleHits triangles(lattice, part);
+            const auto at = [&](Index vertex) { return lattice.place.local(mesh.positions[vertex]); };
+            for (std::size_t f = begin; f < end; ++f) {
+                const auto corners = mesh.facet(f);
+                for (std::size_t c = 2; c < corners.size(); ++c)
+                    triangles.add({at(corners[0]), at(corners[c - 1]), at(corners[c])});
+            }
+        });
+}
+
 Lattice build_lattice(const LatticePlace& place, std::vector<MortonCode> codes, const PolygonMesh& mesh) {
     Lattice lattice{place, std::move(codes), {}, {}, {}, {}};
     lattice.index.build(lattice.codes);
@@ -105,6 +116,7 @@ Lattice build_lattice(const LatticePlace& place, std::vector<MortonCode> codes, 
         }
     });
     lattice.hits = find_hits(lattice, mesh);
+    sort_hits(lattice.hits);
     assign_large(lattice.first_hit, 3 * lattice.size() + 1, Index(0));
     for (const LatticeHit& hit : lattice.hits) ++lattice.first_hit[hit.edge + 1];
     counts_to_first(lattice.first_hit);

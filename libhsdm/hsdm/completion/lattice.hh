@@ -49,8 +49,30 @@ struct Lattice {
 /// Adds the codes within `radius` steps along each axis, inside the lattice. Ascending, each once.
 void dilate(const LatticePlace& place, int radius, std::vector<MortonCode>& codes);
 
+/// All grid points of a lattice. Ascending.
+std::vector<MortonCode> all_points(const LatticePlace& place);
+
 /// The lattice of these grid points (ascending, each once) and where a mesh passes its edges. O(points +
 /// facets), parallel; the same for any number of threads.
 Lattice build_lattice(const LatticePlace& place, std::vector<MortonCode> codes, const PolygonMesh& mesh);
+
+/// Where a mesh passes the edges of a lattice that was built with another, in no order that matters, and the
+/// same for any number of threads. O(facets + hits).
+std::vector<LatticeHit> find_hits(const Lattice& lattice, const PolygonMesh& mesh);
+
+/// Calls visit(grid point, distance) for the points next to where the mesh passes an edge: the distance from
+/// the plane there, in grid steps, negative behind it. Of an edge that it passes more than once each end has
+/// the hit next to it.
+template <class Visit>
+void for_each_beside(const Lattice& lattice, Visit&& visit) {
+    for (std::size_t h = 0; h < lattice.hits.size(); ++h) {
+        const LatticeHit& hit = lattice.hits[h];
+        const double across = hit.normal[hit.edge % 3];
+        const Index lower = hit.edge / 3, upper = lattice.next[lower][hit.edge % 3];
+        if (h == 0 || lattice.hits[h - 1].edge != hit.edge) visit(lower, -hit.t * across);
+        if (upper != no_index && (h + 1 == lattice.hits.size() || lattice.hits[h + 1].edge != hit.edge))
+            visit(upper, (1 - hit.t) * across);
+    }
+}
 
 } // namespace hsdm
