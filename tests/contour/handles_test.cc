@@ -3,6 +3,7 @@
 #include "hsdm/contour/dual_contour.hh"
 #include "hsdm/contour/handles.hh"
 #include "hsdm/contour/witnesses.hh"
+#include "hsdm/mesh/area_vector.hh"
 #include "hsdm/mesh/remove_facets.hh"
 #include "hsdm/quality/topology.hh"
 #include "hsdm/reconstruct.hh"
@@ -86,6 +87,16 @@ std::array<Index, 4> bridge_with_ring(PolygonMesh& mesh, std::size_t from, std::
     return ring;
 }
 
+/// The facets that have a vertex of a ring.
+std::vector<Index> facets_at(const PolygonMesh& mesh, std::span<const Index> ring) {
+    std::vector<Index> facets;
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f)
+        if (std::ranges::any_of(mesh.facet(f),
+                                [&](Index v) { return std::ranges::find(ring, v) != ring.end(); }))
+            facets.push_back(static_cast<Index>(f));
+    return facets;
+}
+
 /// Two boxes that face each other across a gap, bridged, and the ring round the bridge's middle.
 struct BridgedBoxes {
     Stages stages;
@@ -101,7 +112,8 @@ struct BridgedBoxes {
         ring = bridge_with_ring(mesh, quad_at(mesh, -0.07), quad_at(mesh, 0.07));
         for (Vec3& p : mesh.positions) p -= stages.octree.origin;
     }
-    Witnesses witnesses() const { return {stages.octree, stages.level, part.voxel, mesh}; }
+    std::vector<Index> beside() const { return facets_at(mesh, ring); }
+    Witnesses witnesses() const { return {stages.octree, stages.level, stages.sets, part.voxel, mesh}; }
 };
 
 } // namespace
@@ -138,7 +150,8 @@ TEST_CASE("points across a ring of edges deny it where none lie as on a rod or i
     for (const bool turned_normals : {false, true}) {
         const BridgedBoxes boxes(turned_normals, 3); // the gap is 0.85 voxels wide
         const auto is_denied = [&](const Octree& octree) {
-            return Witnesses(octree, boxes.stages.level, boxes.part.voxel, boxes.mesh).deny(boxes.ring);
+            return Witnesses(octree, boxes.stages.level, boxes.stages.sets, boxes.part.voxel, boxes.mesh)
+                .deny(boxes.ring);
         };
         const Octree& octree = boxes.stages.octree;
         CHECK(is_denied(octree));
@@ -176,20 +189,28 @@ TEST_CASE("points surround the axis of a ring round a rod or in a bore, not that
         }
         PolygonMesh mesh = part.mesh;
         mesh.origin = indices_below(mesh.vertex_count());
-        CHECK(Witnesses(rod.octree, rod.level, part.voxel, mesh).surround(ring));
+        const Witnesses witnesses(rod.octree, rod.level, rod.sets, part.voxel, mesh);
+        CHECK(witnesses.surround(ring));
+        CHECK(witnesses.are_missing_across(ring, facets_at(mesh, ring))); // nothing stands across it
         Octree half = rod.octree; // as if nothing were known of one side
         for (std::size_t i = 0; i < half.size(); ++i)
             if (pose.to_local(half.positions[i] + half.origin)[0] < 0) half.source[i] = no_index;
-        CHECK_FALSE(Witnesses(half, rod.level, part.voxel, mesh).surround(ring));
+        CHECK_FALSE(Witnesses(half, rod.level, rod.sets, part.voxel, mesh).surround(ring));
         Octree wall = rod.octree; // as if the points lay on the two sides of a wall
         for (std::size_t i = 0; i < wall.size(); ++i) {
             const bool behind = pose.to_local(wall.positions[i] + wall.origin)[0] < 0;
             wall.normals[i] = pose.rotate({behind != turned_normals ? -1.0 : 1.0, 0, 0});
         }
-        CHECK_FALSE(Witnesses(wall, rod.level, part.voxel, mesh).surround(ring));
+        CHECK_FALSE(Witnesses(wall, rod.level, rod.sets, part.voxel, mesh).surround(ring));
 
         const BridgedBoxes boxes(turned_normals, 3);
         CHECK_FALSE(boxes.witnesses().surround(boxes.ring));
+        CHECK_FALSE(boxes.witnesses().are_missing_across(boxes.ring, boxes.beside()));
+        Octree aside = boxes.stages.octree; // as if nothing stood on one side of the gap
+        for (std::size_t i = 0; i < aside.size(); ++i)
+            if (aside.positions[i][0] + aside.origin[0] > 0) aside.normals[i] = Vec3(0, 1, 0);
+        CHECK(Witnesses(aside, boxes.stages.level, boxes.stages.sets, boxes.part.voxel, boxes.mesh)
+                  .are_missing_across(boxes.ring, boxes.beside()));
     }
 }
 
@@ -202,15 +223,18 @@ TEST_CASE("measured points speak for a bridge, completed ones do not", "[contour
     bridge(mesh, quad_at(mesh, -0.07), quad_at(mesh, 0.07));
     for (Vec3& p : mesh.positions) p -= stages.octree.origin;
     const PolygonMesh bridged = mesh;
-    // Every second point at the bridge's ends faces away from its axis, as if it were on its sides.
+    const double half_width = 0.5 * stages.level.voxel_size;
+    // Every second point at the bridge's ends lies on its sides, and faces away from its axis.
     Octree octree = stages.octree;
     std::vector<std::size_t> beside;
     for (std::size_t i = 0; i < octree.size(); i += 2) {
         Vec3 away = octree.positions[i] + octree.origin;
         if (std::abs(away[0]) > 0.1) continue;
+        const double along = away[0];
         away[0] = 0;
         if (away.norm() > 0.2) continue;
         octree.normals[i] = away.normalized();
+        octree.positions[i] = Vec3(along, 0, 0) + half_width * octree.normals[i] - octree.origin;
         beside.push_back(i);
     }
     REQUIRE(beside.size() > 20);
@@ -232,11 +256,19 @@ TEST_CASE("a ring narrower than points are apart is cut, in full view of them", 
     for (const Index v : ring) middle += 0.25 * mesh.positions[v];
     for (const Index v : ring) mesh.positions[v] += 0.9 * (middle - mesh.positions[v]);
     CHECK(boxes.witnesses().is_narrow(ring));
-    Octree speaking = stages.octree; // for every facet of the bridge
-    for (std::size_t i = 0; i < speaking.size(); ++i) {
-        Vec3 away = speaking.positions[i] + speaking.origin;
-        away[0] = 0;
-        if (i % 2 == 0 && away.norm() > 0) speaking.normals[i] = away.normalized();
+    // For every facet of the bridge, every second point: near its ends, so that none surround the ring.
+    Octree speaking = stages.octree;
+    const std::vector<Index> beside = boxes.beside();
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < speaking.size(); i += 2) {
+        const Vec3 from = speaking.positions[i] - middle;
+        if (std::abs(from[0]) > 0.1 || from.norm() > 0.2) continue;
+        const auto facet = mesh.facet(beside[count++ % beside.size()]);
+        Vec3 end(0, 0, 0);
+        for (const Index v : facet)
+            if (std::ranges::find(ring, v) == ring.end()) end += 0.5 * mesh.positions[v];
+        speaking.positions[i] = 0.5 * (centroid(mesh, facet) + end);
+        speaking.normals[i] = unit(area_vector(mesh, facet));
     }
     std::optional<FacetLinks> links;
     CHECK(cut_handles(speaking, stages.level, stages.sets, boxes.part.voxel, mesh, links) == 1);

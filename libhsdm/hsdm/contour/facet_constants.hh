@@ -41,6 +41,16 @@ inline constexpr double least_missing = 6;
 /// Why: by trial; facets lie nearer to their points, but for those beside a rim or corner that was not found.
 inline constexpr double beside_ring = 0.25;
 
+/// voxels: off the plane of a point, the middle of a facet that it speaks for.
+/// Why: facets of a part lie that near to their points, but for those beside a rim or corner that was not
+/// found; the sides of a bridge or tunnel lie aside of what faces their way. Half of it does as well, and
+/// twice as much tells no more than the way points face.
+inline constexpr double speaking_gap = 0.1;
+
+/// spacings: round a place on a sheet, within which a point of the sheet lies.
+/// Why: chance leaves a disc of that radius free once in a thousand times.
+inline constexpr double beside_place = 1.5;
+
 /// edges: from a vertex to the farthest of a ring through it.
 /// Why: a web that one voxel decides has rings of four to six edges; half as many more for those of several.
 inline constexpr int reach = 4;

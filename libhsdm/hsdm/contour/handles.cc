@@ -221,7 +221,7 @@ public:
           part_(part),
           sets_(sets),
           voxel_(voxel),
-          witnesses_(octree, level, voxel, mesh),
+          witnesses_(octree, level, sets, voxel, mesh),
           work_(work),
           most_work_(handles::most_work * std::max(mesh.facet_count(), part ? part->facets : 0)) {
         const double voxel_size = level.voxel_size;
@@ -331,8 +331,18 @@ private:
         if (!(is_denied || is_narrow || is_contradicted) || bounds())
             return; // to look behind it takes longest
         if (is_denied
-            || ((is_narrow || are_contradicted_beside(vicinity, ring)) && !witnesses_.surround(ring)))
+            || ((is_narrow || are_contradicted_beside(vicinity, ring)) && !witnesses_.surround(ring)
+                && !witnesses_.are_missing_across(ring, facets_beside(vicinity, ring))))
             keep(vicinity, ring);
+    }
+
+    /// The facets on both sides of a ring, each as often as it has an edge of it.
+    std::vector<Index> facets_beside(const Vicinity& vicinity, const std::vector<Index>& ring) {
+        list_sides(vicinity, ring);
+        std::vector<Index> facets;
+        for (const Index side : sides_)
+            for (const Index c : {side, links_.twin[side]}) facets.push_back(facet_of(c));
+        return facets;
     }
 
     /// The ring's sides, on its left; false if one has none on its right, or another ring has come near.
@@ -361,11 +371,9 @@ private:
     /// Is what holds for a ring true of those round the vertices beside it, on average? A hole or rod of the
     /// part is spoken for along most of its length.
     bool are_contradicted_beside(Vicinity& vicinity, const std::vector<Index>& ring) {
-        list_sides(vicinity, ring);
         std::vector<Index> beside;
-        for (const Index side : sides_)
-            for (const Index c : {side, links_.twin[side]})
-                for (const Index v : mesh_.facet(facet_of(c))) beside.push_back(v);
+        for (const Index f : facets_beside(vicinity, ring))
+            for (const Index v : mesh_.facet(f)) beside.push_back(v);
         sort_unique(beside);
         double sum = 0, count = 0;
         for (const Index v : beside) {

@@ -40,6 +40,7 @@ public:
         return sum;
     }
     const Vec3& axis() const { return axis_; }
+    const Vec3& centre() const { return centre_; }
     double along(const Vec3& p) const { return (p - centre_) | axis_; }
     double angle_of(const Vec3& p) const { return turn_of(p - centre_); }
     double turn_of(const Vec3& d) const { return std::atan2(d | across_[1], d | across_[0]); }
@@ -86,10 +87,21 @@ bool Witnesses::speak_for(Index f) {
     for_neighbors(level_, own, [&](Index v) { gather(v, centre); });
     const std::size_t count = std::min(near_.size(), nearest_asked);
     std::partial_sort(near_.begin(), near_.begin() + static_cast<std::ptrdiff_t>(count), near_.end());
+    const double gap = handles::speaking_gap * level_.voxel_size;
     std::size_t agree = 0;
-    for (std::size_t k = 0; k < count; ++k)
-        agree += (octree_.normals[near_[k].second] | normal) > angles::facing;
+    for (std::size_t k = 0; k < count; ++k) {
+        const Index p = near_[k].second;
+        agree += (octree_.normals[p] | normal) > angles::facing
+                 && std::abs(octree_.normals[p] | (octree_.positions[p] - centre))
+                        < std::max(gap, thickness_at(p));
+    }
     return agree >= two_agree;
+}
+
+double Witnesses::thickness_at(Index point) const {
+    const Index set = sets_.of_point[point];
+    if (set == no_index) return 0;
+    return std::sqrt(std::max(0.0, sets_.sets[set].spread.along(sets_.sets[set].normal)));
 }
 
 void Witnesses::gather(Index v, const Vec3& centre) {
@@ -164,6 +176,42 @@ bool Witnesses::surround(std::span<const Index> ring) const {
     const std::size_t most = places[0].size() < places[1].size();
     return places[most].size() >= 2 * points_of_plane && wide_gaps(places[most]) == 0
            && wide_gaps(normals[most]) < 2; // else the two sides of a wall or gap
+}
+
+bool Witnesses::has_sheets(const Tube& tube, std::span<const Index> voxels, const Vec3& place, double beside,
+                           bool facing) const {
+    double first = tube.reach(), last = -tube.reach(); // along the axis; the last faces the other way
+    for_points(voxels, [&](Index p) {
+        const double cosine = octree_.normals[p] | tube.axis();
+        if (std::abs(cosine) < angles::halfway) return;
+        const Vec3 off = octree_.positions[p] - place;
+        const double along = off | tube.axis();
+        if (std::abs(along) > tube.reach() || !((off - along * tube.axis()).norm() < beside)) return;
+        if ((cosine > 0) == facing)
+            first = std::min(first, along);
+        else
+            last = std::max(last, along);
+    });
+    return first < last;
+}
+
+bool Witnesses::are_missing_across(std::span<const Index> ring, std::span<const Index> beside) const {
+    // The ring may lie at one end of what it goes round.
+    const Tube tube(mesh_, ring, 2 * surrounding::reach_along * level_.voxel_size);
+    double away = 0;
+    for (const Index f : beside)
+        away += area_vector(mesh_, mesh_.facet(f)) | tube.out_to(centroid(mesh_, mesh_.facet(f)));
+    const std::vector<Index> voxels = voxels_at(ring);
+    if (has_completed(voxels)) return false;
+    const double h = spacing(points_in(voxels), voxels.size());
+    double bare = 0;
+    for (std::size_t i = 0; i < ring.size(); ++i) { // triangles from the middle to the ring's edges
+        const Vec3 &a = mesh_.positions[ring[i]], &b = mesh_.positions[ring[(i + 1) % ring.size()]];
+        const Vec3 place = (a + b + tube.centre()) / 3;
+        if (!has_sheets(tube, voxels, place, handles::beside_place * h, away > 0))
+            bare += ((a - tube.centre()) % (b - tube.centre())).norm(); // of both discs
+    }
+    return bare > handles::least_missing * h * h;
 }
 
 bool Witnesses::is_narrow(std::span<const Index> ring) const {

@@ -2,7 +2,7 @@
 // What measured points say of facets, and of rings of edges that may be cut. Completed points (those without
 // a source) are guesses, by what the facets did not say: they are not asked.
 
-#include "hsdm/octree/octree.hh"
+#include "hsdm/contour/normal_sets.hh"
 #include "hsdm/polygon_mesh.hh"
 
 namespace hsdm {
@@ -10,11 +10,11 @@ namespace hsdm {
 class Witnesses {
 public:
     /// All must outlive it; `voxel` is per origin of the mesh's vertices. The mesh's facets may not change.
-    Witnesses(const Octree& octree, const OctreeLevel& level, std::span<const Index> voxel,
-              const PolygonMesh& mesh)
-        : octree_(octree), level_(level), voxel_(voxel), mesh_(mesh) {}
+    Witnesses(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
+              std::span<const Index> voxel, const PolygonMesh& mesh)
+        : octree_(octree), level_(level), sets_(sets), voxel_(voxel), mesh_(mesh) {}
 
-    /// Do at least two of the eight points nearest to a facet face its way?
+    /// Do at least two of the eight points nearest to a facet face its way, and lie in its plane?
     bool speak_for(Index facet);
 
     /// Do points say that a ring of vertices is none of the part's? Some face along its axis, within it, one
@@ -27,6 +27,12 @@ public:
     /// bore and round a rod. A web or tunnel that is none lacks the points of one side at least, or they are
     /// those of the two sides of one wall or gap, and face two opposite ways.
     bool surround(std::span<const Index> ring) const;
+
+    /// Do points lack on the two discs that would close the mesh if it were cut along a ring, as many as
+    /// should lie there? They would be parts of sheets that stand across it: of those that face each other
+    /// across a gap where the facets beside the ring face away from its axis, as round a rod, and else of
+    /// those of a wall, which face apart. Not where points were completed: there, none are missing.
+    bool are_missing_across(std::span<const Index> ring, std::span<const Index> beside) const;
 
     /// Do the vertices of a ring lie nearer to its axis than points around to each other?
     bool is_narrow(std::span<const Index> ring) const;
@@ -49,6 +55,11 @@ private:
             for (Index p = level_.first_point[v]; p < level_.first_point[v + 1]; ++p)
                 if (octree_.source[p] != no_index) f(p);
     }
+    /// Do sheets stand across a tube at `place`, within `beside` of it, that face each other or apart?
+    bool has_sheets(const Tube& tube, std::span<const Index> voxels, const Vec3& place, double beside,
+                    bool facing) const;
+    /// How far off a plane through a point its sheet is, by its bend and noise.
+    double thickness_at(Index point) const;
     /// Are there completed points, where no scanner saw any?
     bool has_completed(std::span<const Index> voxels) const;
     std::size_t points_in(std::span<const Index> voxels) const;
@@ -57,6 +68,7 @@ private:
 
     const Octree& octree_;
     const OctreeLevel& level_;
+    const NormalSets& sets_;
     std::span<const Index> voxel_;
     const PolygonMesh& mesh_;
     std::vector<std::pair<double, Index>> near_;
