@@ -63,7 +63,10 @@ endmacro()
 
 # What is loaded when it is asked for dpkg-shlibdeps does not see: libzip.
 file(REAL_PATH ${ZIP_LIBRARY} zip_file)
-execute_process(COMMAND dpkg-query -S ${zip_file} OUTPUT_VARIABLE zip_package COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND dpkg-query -S ${zip_file} OUTPUT_VARIABLE zip_package RESULT_VARIABLE zip_status ERROR_QUIET)
+if(NOT zip_status EQUAL 0)
+  message(WARNING "${zip_file} is of no Debian package: the package of the library will not depend on libzip")
+endif()
 string(REGEX REPLACE ":.*" "" zip_package "${zip_package}")
 
 set(CPACK_COMPONENTS_ALL)

@@ -260,8 +260,9 @@ void append_wall(const PolygonMesh& wall, PolygonMesh& walls) {
     for (Index v = first; v < walls.vertex_count(); v += 3) walls.add_facet(std::array{v, v + 1, v + 2});
 }
 
-/// Per bore, does its wall meet that of another one, or the border of something else that enters it: one half
-/// as long as its own, at least, most of which lies on it? Layers of scans have small ones all over.
+/// Per bore, does its wall meet that of another one, or the border of something else that enters it: one of
+/// half as many edges as its own, at least, most of which lies on it? Layers of scans have small ones all
+/// over.
 std::vector<std::uint8_t> met_bores(const std::vector<FoundBore>& bores, const PolygonMesh& mesh,
                                     const BoundaryLoops& loops, double voxel_size) {
     std::vector<std::uint8_t> met(bores.size()), closed(loops.size());
@@ -282,9 +283,13 @@ std::vector<std::uint8_t> met_bores(const std::vector<FoundBore>& bores, const P
         for (const Index v : loops[l])
             if (const Index t = distance.triangle_within(mesh.positions[v], voxel_size, hint); t != no_index)
                 near.push_back(bore_of[distance.facet_of(t)]);
-        if (2 * near.size() < loops[l].size()) continue;
-        for (const Index b : near)
-            if (2 * loops[l].size() >= loops[bores[b].loops[0]].size()) met[b] = 1;
+        std::ranges::sort(near);
+        for (auto at = near.begin(); at != near.end();) {
+            const auto end = std::upper_bound(at, near.end(), *at);
+            const bool is_most = 2 * (end - at) >= std::ssize(loops[l]);
+            if (is_most && 2 * loops[l].size() >= loops[bores[*at].loops[0]].size()) met[*at] = 1;
+            at = end;
+        }
     }
     return met;
 }

@@ -78,6 +78,7 @@ struct JoinedMesh {
 void add_completing(const PolygonMesh& mesh, const BoundaryLoops& loops, double voxel_size, Passing passing,
                     const KnownSpace& seen, CompletedPoints& points) {
     if (loops.size() == 0) return;
+    // Where facets face inward what goes on from them is no bore of the part.
     const ContinuedSpace continued =
         seen.outside ? ContinuedSpace(mesh, loops, voxel_size) : ContinuedSpace();
     KnownSpace space = seen;

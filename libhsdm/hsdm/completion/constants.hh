@@ -111,11 +111,12 @@ inline constexpr double reach = 4;
 /// Why: a strip two voxels wide, as long as the reach, less what the border's notches take.
 inline constexpr double least_area = 4;
 
-/// radians a voxel: a wall that bends by less is straight. Why: 48 voxels on, where the farthest wall may
-/// end, it is off by a fifth of its length.
+/// radians a voxel: a wall that bends by less is straight. Why: 48 voxels on it is off by a fifth of its
+/// length; what ends farther away than that is confirmed from there, or does not count.
 inline constexpr double most_bend = 0.01;
 
-/// cosine of 8 degrees: directions that differ by less are one.
+/// cosine of 8 degrees: directions that differ by less are one. Why: that much the normals of few facets err;
+/// faces of a part differ by more.
 inline constexpr double one_direction = 0.99;
 
 /// voxels: of the border that lies on a plane, at least, for its normal to count.

@@ -26,8 +26,8 @@ private:
                     const std::vector<std::uint8_t>& closed);
 
     LatticePlace place_;
-    std::vector<std::uint8_t> outside_,
-        continued_; ///< per cell, x fastest: are all corners, and no mesh; is one?
+    std::vector<std::uint8_t> outside_; ///< per cell, x fastest: are all corners outside, and no mesh in it?
+    std::vector<std::uint8_t> continued_; ///< per cell: does a corner lie in continued space?
 };
 
 } // namespace hsdm

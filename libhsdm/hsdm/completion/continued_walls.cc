@@ -1,8 +1,11 @@
 #include "hsdm/completion/continued_walls.hh"
 
 #include "hsdm/completion/constants.hh"
+#include "hsdm/core/chunks.hh"
 #include "hsdm/core/constants.hh"
 #include "hsdm/core/groups.hh"
+#include "hsdm/core/interruption.hh"
+#include "hsdm/core/large_vector.hh"
 #include "hsdm/mesh/area_vector.hh"
 
 #include <algorithm>
@@ -67,10 +70,11 @@ class Surroundings {
 public:
     Surroundings(const PolygonMesh& mesh, double voxel_size)
         : mesh_(mesh), voxel_size_(voxel_size), seen_(mesh.facet_count(), no_index) {
-        std::vector<Index> vertex;
-        for (Index f = 0; f < mesh.facet_count(); ++f)
-            for (const Index v : mesh.facet(f)) vertex.push_back(v), facet_.push_back(f);
-        corners_ = Groups(vertex, mesh.vertex_count());
+        reserve_large(facet_, mesh.corners.size());
+        for_each_in_order(mesh.facet_count(), [&](std::size_t f) {
+            facet_.insert(facet_.end(), mesh.facet(f).size(), static_cast<Index>(f));
+        });
+        corners_ = Groups(mesh.corners, mesh.vertex_count());
     }
 
     /// `number` tells this call from all others. O(facets within the reach).
@@ -91,11 +95,7 @@ public:
 
 private:
     Vec3 area_of(Index f) const { return area_vector(mesh_, mesh_.facet(f)); }
-    Vec3 middle_of(Index f) const {
-        Vec3 sum(0, 0, 0);
-        for (const Index v : mesh_.facet(f)) sum += mesh_.positions[v];
-        return sum / static_cast<double>(mesh_.facet(f).size());
-    }
+    Vec3 middle_of(Index f) const { return centroid(mesh_, mesh_.facet(f)); }
     /// Facets within the reach that none of the edges between turns by more than one sheet does.
     void reach(Index facet, Index number) {
         reached_ = {facet};
@@ -190,11 +190,32 @@ void add_swept(const SweptSide& side, const Vec3& way, PolygonMesh& walls) {
     walls.add_facet(std::array{first, first + 2, first + 3});
 }
 
-/// Is it the one of an axis's two directions that counts as along it?
-bool leads_along(const Vec3& way) {
-    for (unsigned k = 0; k < 2; ++k)
-        if (std::abs(way[k]) > 0.5) return way[k] > 0; // one of three components is more than 0.57
-    return way[2] > 0;
+/// Is it the one of an axis's two directions that counts as along it, that of the axis nearest to it?
+bool leads_along(const Vec3& way, const Directions& axes) {
+    const auto off = [&](const auto& axis) { return -std::abs(unit(axis.first) | way); };
+    return (std::ranges::min_element(axes.sums, {}, off)->first | way) > 0;
+}
+
+/// A loop's sides, and the axes along which it goes on.
+struct SweptLoop {
+    std::vector<SweptSide> sides;
+    std::vector<Vec3> axes;
+};
+
+SweptLoop swept_loop(const PolygonMesh& mesh, const BoundaryLoops& border, std::size_t l, double voxel_size,
+                     Surroundings& surroundings) {
+    SweptLoop loop;
+    std::vector<Surrounding> around;
+    for (Index i = border.begin[l]; i < border.begin[l + 1]; ++i) {
+        Interruption::poll();
+        const Index next = i + 1 < border.begin[l + 1] ? i + 1 : border.begin[l];
+        around.push_back(surroundings.of(border.facets[i], i));
+        loop.sides.push_back({mesh.positions[border.vertices[i]], mesh.positions[border.vertices[next]],
+                              around.back().normal});
+    }
+    loop.axes = axes_of(loop.sides, around, voxel_size);
+    if (loop.axes.empty()) release(loop.sides);
+    return loop;
 }
 
 } // namespace
@@ -205,23 +226,20 @@ void for_each_continued_wall(const PolygonMesh& mesh, const BoundaryLoops& borde
     Box box;
     for (const Vec3& p : mesh.positions) box.add(p);
     const double far = box.size().norm();
+    std::vector<SweptLoop> loops;
+    Directions axes; // of all loops: what is along one has one sign
     for (std::size_t l = 0; l < border.size(); ++l) {
-        std::vector<SweptSide> sides;
-        std::vector<Surrounding> around;
-        for (Index i = border.begin[l]; i < border.begin[l + 1]; ++i) {
-            const Index next = i + 1 < border.begin[l + 1] ? i + 1 : border.begin[l];
-            around.push_back(surroundings.of(border.facets[i], i));
-            sides.push_back({mesh.positions[border.vertices[i]], mesh.positions[border.vertices[next]],
-                             around.back().normal});
-        }
-        for (const Vec3& axis : axes_of(sides, around, voxel_size))
+        loops.push_back(swept_loop(mesh, border, l, voxel_size, surroundings));
+        for (const Vec3& axis : loops.back().axes) axes.add(axis, 1, true);
+    }
+    for (const SweptLoop& loop : loops)
+        for (const Vec3& axis : loop.axes)
             for (const Vec3& way : {axis, -axis}) {
                 PolygonMesh walls;
-                for (const SweptSide& side : sides)
+                for (const SweptSide& side : loop.sides)
                     if (side.goes_on(way)) add_swept(side, way * far, walls);
-                visit(walls, leads_along(way));
+                visit(walls, leads_along(way, axes));
             }
-    }
 }
 
 } // namespace hsdm

@@ -12,7 +12,8 @@ namespace hsdm {
 /// its axis (of any two ways that are opposite about one does) or not. A loop has an axis where the mesh
 /// beside it is straight: along the ruling of a round wall, or along what two planes have in common. All of
 /// its sides go on along it that lie on walls of the axis and lead along it, or on faces that it enters.
-/// `mesh`: facets outward. O(facets + border * (facets within `continuing::reach` + axes)).
+/// `mesh`: facets outward. O(facets + border * (facets within
+/// `continuing::reach` + axes)).
 void for_each_continued_wall(const PolygonMesh& mesh, const BoundaryLoops& border, double voxel_size,
                              const std::function<void(const PolygonMesh& walls, bool along)>& visit);
 

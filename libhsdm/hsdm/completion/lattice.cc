@@ -32,8 +32,11 @@ private:
         };
         const auto [u_lo, u_hi] = range(u);
         const auto [v_lo, v_hi] = range(v);
-        for (int i = u_lo; i <= u_hi; ++i)
-            for (int k = v_lo; k <= v_hi; ++k) {
+        for (int i = u_lo; i <= u_hi; ++i) {
+            const auto [lowest, highest] = reach_at(i, u, v, p);
+            const int k_lo = static_cast<int>(std::max<double>(v_lo, std::floor(lowest) - 1)),
+                      k_hi = static_cast<int>(std::min<double>(v_hi, std::ceil(highest) + 1));
+            for (int k = k_lo; k <= k_hi; ++k) {
                 std::array<double, 3> weight;
                 for (unsigned j = 0; j < 3; ++j) {
                     const Vec3 &a = p[(j + 1) % 3], &b = p[(j + 2) % 3];
@@ -50,6 +53,26 @@ private:
                 const Index point = lattice_.find(lower);
                 if (point != no_index) hits_.push_back({3 * point + axis, at - std::floor(at), normal});
             }
+        }
+    }
+
+    /// From where to where along v the triangle lies at a place along u; of sides that hardly lead along u
+    /// all.
+    static std::pair<double, double> reach_at(double at, unsigned u, unsigned v,
+                                              const std::array<Vec3, 3>& p) {
+        std::pair<double, double> reach(Box::inf, -Box::inf);
+        const auto add = [&](double place) {
+            reach.first = std::min(reach.first, place), reach.second = std::max(reach.second, place);
+        };
+        for (unsigned j = 0; j < 3; ++j) {
+            const Vec3 &a = p[j], &b = p[(j + 1) % 3];
+            if (const auto [lo, hi] = std::minmax(a[u], b[u]); at < lo || at > hi) continue;
+            if (std::abs(b[u] - a[u]) < 1e-6) // nothing that rounding could blur
+                add(a[v]), add(b[v]);
+            else
+                add(a[v] + (at - a[u]) / (b[u] - a[u]) * (b[v] - a[v]));
+        }
+        return reach;
     }
 
     const Lattice& lattice_;

@@ -178,37 +178,47 @@ bool Witnesses::surround(std::span<const Index> ring) const {
            && wide_gaps(normals[most]) < 2; // else the two sides of a wall or gap
 }
 
-bool Witnesses::has_sheets(const Tube& tube, std::span<const Index> voxels, const Vec3& place, double beside,
-                           bool facing) const {
-    double first = tube.reach(), last = -tube.reach(); // along the axis; the last faces the other way
+auto Witnesses::sheets_across(const Tube& tube, std::span<const Index> voxels, bool facing) const
+    -> std::vector<Across> {
+    std::vector<Across> result;
     for_points(voxels, [&](Index p) {
         const double cosine = octree_.normals[p] | tube.axis();
-        if (std::abs(cosine) < angles::halfway) return;
-        const Vec3 off = octree_.positions[p] - place;
+        if (std::abs(cosine) >= angles::halfway)
+            result.push_back({octree_.positions[p], (cosine > 0) == facing});
+    });
+    return result;
+}
+
+bool Witnesses::has_sheets(const Tube& tube, std::span<const Across> across, const Vec3& place,
+                           double beside) {
+    double first = tube.reach(), last = -tube.reach(); // along the axis
+    for (const auto& [at, is_first] : across) {
+        const Vec3 off = at - place;
         const double along = off | tube.axis();
-        if (std::abs(along) > tube.reach() || !((off - along * tube.axis()).norm() < beside)) return;
-        if ((cosine > 0) == facing)
+        if (std::abs(along) > tube.reach() || !((off - along * tube.axis()).norm() < beside)) continue;
+        if (is_first)
             first = std::min(first, along);
         else
             last = std::max(last, along);
-    });
+    }
     return first < last;
 }
 
 bool Witnesses::are_missing_across(std::span<const Index> ring, std::span<const Index> beside) const {
+    const std::vector<Index> voxels = voxels_at(ring);
+    if (has_completed(voxels)) return false;
     // The ring may lie at one end of what it goes round.
     const Tube tube(mesh_, ring, 2 * surrounding::reach_along * level_.voxel_size);
     double away = 0;
     for (const Index f : beside)
         away += area_vector(mesh_, mesh_.facet(f)) | tube.out_to(centroid(mesh_, mesh_.facet(f)));
-    const std::vector<Index> voxels = voxels_at(ring);
-    if (has_completed(voxels)) return false;
+    const std::vector<Across> across = sheets_across(tube, voxels, away > 0);
     const double h = spacing(points_in(voxels), voxels.size());
     double bare = 0;
     for (std::size_t i = 0; i < ring.size(); ++i) { // triangles from the middle to the ring's edges
         const Vec3 &a = mesh_.positions[ring[i]], &b = mesh_.positions[ring[(i + 1) % ring.size()]];
         const Vec3 place = (a + b + tube.centre()) / 3;
-        if (!has_sheets(tube, voxels, place, handles::beside_place * h, away > 0))
+        if (!has_sheets(tube, across, place, handles::beside_place * h))
             bare += ((a - tube.centre()) % (b - tube.centre())).norm(); // of both discs
     }
     return bare > handles::least_missing * h * h;

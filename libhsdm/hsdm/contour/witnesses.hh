@@ -55,9 +55,16 @@ private:
             for (Index p = level_.first_point[v]; p < level_.first_point[v + 1]; ++p)
                 if (octree_.source[p] != no_index) f(p);
     }
-    /// Do sheets stand across a tube at `place`, within `beside` of it, that face each other or apart?
-    bool has_sheets(const Tube& tube, std::span<const Index> voxels, const Vec3& place, double beside,
-                    bool facing) const;
+    /// A point of a sheet across a tube: does it face as the first of two along the axis should?
+    struct Across {
+        Vec3 at;
+        bool is_first;
+    };
+    /// Those of the voxels. `facing`: of two sheets that face each other, rather than apart.
+    std::vector<Across> sheets_across(const Tube& tube, std::span<const Index> voxels, bool facing) const;
+    /// Do two of them stand across a tube at `place`, within `beside` of it, first and last?
+    static bool has_sheets(const Tube& tube, std::span<const Across> across, const Vec3& place,
+                           double beside);
     /// How far off a plane through a point its sheet is, by its bend and noise.
     double thickness_at(Index point) const;
     /// Are there completed points, where no scanner saw any?

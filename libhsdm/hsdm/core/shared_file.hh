@@ -17,10 +17,10 @@ public:
     SharedFile(const SharedFile&) = delete;
     SharedFile& operator=(const SharedFile&) = delete;
 
-    /// Writes this rank's bytes, maybe none. Returns why they cannot be written, or "": others are at it, so
-    /// that nothing may be thrown on the way.
+    /// Writes this rank's bytes, maybe none, by itself. Returns why they cannot be written, or "".
     virtual std::string write_at(std::uint64_t offset, std::string_view bytes) = 0;
-    /// Returns once the disk has what this rank wrote, or why it does not.
+    /// Returns once the disk has what this rank wrote, or why it does not. Waits for all others, which must
+    /// call it, too: only once no rank has failed.
     virtual std::string close() = 0;
 };
 

@@ -8,6 +8,7 @@
 #include "hsdm/io/mesh_document.hh"
 #include "hsdm/io/mesh_stretch.hh"
 #include "hsdm/io/mesh_writers.hh"
+#include "hsdm/io/output_target.hh"
 
 #include <algorithm>
 #include <optional>
@@ -85,6 +86,7 @@ public:
     }
 
     void close() {
+        ranks_.any(false); // who could not write tells so: closing waits for all
         refuse(file_.close());
         ranks_.any(false);
     }
@@ -166,9 +168,12 @@ WrittenMesh write_mesh_by_ranks(const std::string& path, const PolygonMesh& mesh
         check_consistent(path, mesh);
         const Vec3 shift = options.recentre ? recentring_shift(mesh.positions) : Vec3(0, 0, 0);
         written = precision_of(mesh.positions, shift, format, options.ascii);
-        temporary.emplace(path);
-        const std::string& name = temporary->shared_name();
-        own = {name, inode_of(name), format, options.ascii || written.text_for_precision, counts_of(mesh)};
+        own = {"", {}, format, options.ascii || written.text_for_precision, counts_of(mesh)};
+        if (find_target(path).kind == OutputTarget::Kind::file) { // others cannot be opened twice
+            temporary.emplace(path);
+            own.name = temporary->shared_name();
+            own.inode = inode_of(own.name);
+        }
     }
     const FileOfAll file = told_by_first(own, ranks);
     const std::unique_ptr<SharedFile> shared = opened_by_all(file, ranks);
@@ -177,9 +182,10 @@ WrittenMesh write_mesh_by_ranks(const std::string& path, const PolygonMesh& mesh
         return ranks.is_first() ? write_mesh(path, mesh, rows, format, options) : written;
     }
     StretchWriter writer(*shared, path, ranks);
+    const VertexRows told = file.format == MeshFormat::ply ? rows : VertexRows(); // OFF has positions alone
     const std::uint64_t size =
-        write_stretches(writer, document_of(file.format, file.counts, rows, file.ascii), file.counts, mesh,
-                        rows, written.shift);
+        write_stretches(writer, document_of(file.format, file.counts, told, file.ascii), file.counts, mesh,
+                        told, written.shift);
     if (ranks.is_first()) temporary->check_size(size), temporary->commit();
     written.by_all_ranks = true;
     return written;

@@ -124,8 +124,9 @@ public:
     template <class Finish>
     auto finish(TileReport& how, const Finish& finish) {
         const std::size_t voxels = survey_->sums.voxels();
-        const bool parks = bytes_per_voxel_ == bytes_per_voxel_of_parked_mesh
-                           && bytes_of_flat_finish(facets_.mesh) + bytes_of_program > tiles_.memory;
+        const bool parks =
+            bytes_per_voxel_ == bytes_per_voxel_of_parked_mesh
+            && ranks_.of_first(bytes_of_flat_finish(facets_.mesh) + bytes_of_program > tiles_.memory);
         how_.parks = parks;
         const ScratchPlace parking{tiles_.scratch};
         const std::size_t mesh =

@@ -10,12 +10,12 @@
 namespace hsdm {
 
 /// Bytes, measured (docs/tiles.md): of a point of the survey; of a voxel while there are pieces, which lie on
-/// disk; in the end, as a half-edge mesh with all properties or in flat arrays, in memory or as far as they
-/// are read, and of these while the error is measured; and of what is there before.
+/// disk; in the end, as a half-edge mesh with all properties or in flat arrays, as far as they are read, and
+/// of these while the error is measured, in memory or as far as they are read; and of what is there before.
 inline constexpr std::size_t bytes_per_point = 260, bytes_per_voxel_of_pieces = 10,
-                             bytes_per_voxel_of_mesh = 660, bytes_per_voxel_of_flat_mesh = 170,
-                             bytes_per_voxel_of_parked_mesh = 130, bytes_per_voxel_in_error = 130,
-                             bytes_per_voxel_parked_in_error = 65, bytes_of_program = std::size_t{64} << 20;
+                             bytes_per_voxel_of_mesh = 660, bytes_per_voxel_of_parked_mesh = 130,
+                             bytes_per_voxel_in_error = 130, bytes_per_voxel_parked_in_error = 65,
+                             bytes_of_program = std::size_t{64} << 20;
 
 /// The same of a tile's point, and of one whose distance is measured, with what is made of its voxel.
 inline double bytes_per_tile_point(double voxels_per_point) {
