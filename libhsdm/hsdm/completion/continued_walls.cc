@@ -190,10 +190,15 @@ void add_swept(const SweptSide& side, const Vec3& way, PolygonMesh& walls) {
     walls.add_facet(std::array{first, first + 2, first + 3});
 }
 
-/// Is it the one of an axis's two directions that counts as along it, that of the axis nearest to it?
+/// Is it the one of an axis's two directions that counts as along it? Ways that are about one have one
+/// answer, that of the axis nearest to them; axes that are not far apart have one as well but for few, so
+/// that walls do not confirm others of their own end.
 bool leads_along(const Vec3& way, const Directions& axes) {
     const auto off = [&](const auto& axis) { return -std::abs(unit(axis.first) | way); };
-    return (std::ranges::min_element(axes.sums, {}, off)->first | way) > 0;
+    const Vec3 axis = unit(std::ranges::min_element(axes.sums, {}, off)->first);
+    unsigned decides = 0;
+    while (decides < 2 && std::abs(axis[decides]) <= 0.5) ++decides; // one of three is more than 0.57
+    return (axis[decides] > 0) == ((axis | way) > 0);
 }
 
 /// A loop's sides, and the axes along which it goes on.
