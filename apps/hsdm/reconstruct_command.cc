@@ -15,6 +15,7 @@
 #include "hsdm/errors.hh"
 #include "hsdm/io/join_points.hh"
 #include "hsdm/io/json_text.hh"
+#include "hsdm/io/mesh_document.hh"
 #include "hsdm/io/output_target.hh"
 #include "hsdm/io/points_in_parts.hh"
 #include "hsdm/mesh/to_mesh.hh"
@@ -362,9 +363,8 @@ private:
 
     /// Is nothing wanted of the mesh that takes a half-edge mesh?
     bool is_written_as_it_comes() const {
-        const MeshFormat format = target({}).format;
-        return (format == MeshFormat::ply || format == MeshFormat::off || format == MeshFormat::stl)
-               && arguments_.features.empty() && !arguments_.intersections && !arguments_.strict;
+        return is_document(target({}).format) && arguments_.features.empty() && !arguments_.intersections
+               && !arguments_.strict;
     }
 
     /// By all ranks, of which the first has all of it.

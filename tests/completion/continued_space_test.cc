@@ -78,18 +78,24 @@ TEST_CASE("walls that lead apart, go on from one side or are a step long open no
 
 TEST_CASE("walls go on where they lead, facing as they do, from both ends against each other",
           "[completion]") {
-    const PolygonMesh mesh = bored_disc(3);
-    int visits[2] = {0, 0};
-    for_each_continued_wall(mesh, boundary_loops(mesh), step, [&](const PolygonMesh& walls, bool along) {
-        visits[along] += walls.facet_count() > 0;
-        for (std::size_t f = 0; f < walls.facet_count(); ++f) {
-            const auto t = walls.facet(f);
-            const Vec3 &p = walls.positions[t[0]], &q = walls.positions[t[1]], &r = walls.positions[t[2]];
-            const Vec3 middle = (p + q + r) / 3, normal = ((q - p) % (r - p)).normalized();
-            CHECK(std::hypot(middle[0], middle[1]) == Approx(0.6).margin(0.05));
-            CHECK((normal | Vec3(middle[0], middle[1], 0)) < 0);
-        }
-    });
-    CHECK(visits[0] == 1);
-    CHECK(visits[1] == 1);
+    // Upright, and askew to 30 degrees, where neither of two components of the axis is the greater by much.
+    for (const double tilt : {0.0, std::numbers::pi / 6}) {
+        const Pose pose = support::turned({0, 1, 0}, tilt, {0, 0, 0});
+        const PolygonMesh mesh = bored_disc(3, 0, pose);
+        Vec3 ways[2] = {{0, 0, 0}, {0, 0, 0}};
+        for_each_continued_wall(mesh, boundary_loops(mesh), step, [&](const PolygonMesh& walls, bool along) {
+            if (walls.facet_count() == 0) return;
+            CHECK(ways[along] == Vec3(0, 0, 0)); // one of each
+            ways[along] = (walls.positions[2] - walls.positions[1]).normalized();
+            for (std::size_t f = 0; f < walls.facet_count(); ++f) {
+                const auto t = walls.facet(f);
+                const Vec3 p = pose.to_local(walls.positions[t[0]]), q = pose.to_local(walls.positions[t[1]]),
+                           r = pose.to_local(walls.positions[t[2]]);
+                const Vec3 middle = (p + q + r) / 3, normal = ((q - p) % (r - p)).normalized();
+                CHECK(std::hypot(middle[0], middle[1]) == Approx(0.6).margin(0.05));
+                CHECK((normal | Vec3(middle[0], middle[1], 0)) < 0);
+            }
+        });
+        CHECK((ways[0] | ways[1]) == Approx(-1));
+    }
 }

@@ -113,7 +113,7 @@ struct BridgedBoxes {
         for (Vec3& p : mesh.positions) p -= stages.octree.origin;
     }
     std::vector<Index> beside() const { return facets_at(mesh, ring); }
-    Witnesses witnesses() const { return {stages.octree, stages.level, stages.sets, part.voxel, mesh}; }
+    Witnesses witnesses() const { return {stages.octree, stages.level, part.voxel, mesh}; }
 };
 
 } // namespace
@@ -150,8 +150,7 @@ TEST_CASE("points across a ring of edges deny it where none lie as on a rod or i
     for (const bool turned_normals : {false, true}) {
         const BridgedBoxes boxes(turned_normals, 3); // the gap is 0.85 voxels wide
         const auto is_denied = [&](const Octree& octree) {
-            return Witnesses(octree, boxes.stages.level, boxes.stages.sets, boxes.part.voxel, boxes.mesh)
-                .deny(boxes.ring);
+            return Witnesses(octree, boxes.stages.level, boxes.part.voxel, boxes.mesh).deny(boxes.ring);
         };
         const Octree& octree = boxes.stages.octree;
         CHECK(is_denied(octree));
@@ -189,19 +188,19 @@ TEST_CASE("points surround the axis of a ring round a rod or in a bore, not that
         }
         PolygonMesh mesh = part.mesh;
         mesh.origin = indices_below(mesh.vertex_count());
-        const Witnesses witnesses(rod.octree, rod.level, rod.sets, part.voxel, mesh);
+        const Witnesses witnesses(rod.octree, rod.level, part.voxel, mesh);
         CHECK(witnesses.surround(ring));
         CHECK(witnesses.are_missing_across(ring, facets_at(mesh, ring))); // nothing stands across it
         Octree half = rod.octree; // as if nothing were known of one side
         for (std::size_t i = 0; i < half.size(); ++i)
             if (pose.to_local(half.positions[i] + half.origin)[0] < 0) half.source[i] = no_index;
-        CHECK_FALSE(Witnesses(half, rod.level, rod.sets, part.voxel, mesh).surround(ring));
+        CHECK_FALSE(Witnesses(half, rod.level, part.voxel, mesh).surround(ring));
         Octree wall = rod.octree; // as if the points lay on the two sides of a wall
         for (std::size_t i = 0; i < wall.size(); ++i) {
             const bool behind = pose.to_local(wall.positions[i] + wall.origin)[0] < 0;
             wall.normals[i] = pose.rotate({behind != turned_normals ? -1.0 : 1.0, 0, 0});
         }
-        CHECK_FALSE(Witnesses(wall, rod.level, rod.sets, part.voxel, mesh).surround(ring));
+        CHECK_FALSE(Witnesses(wall, rod.level, part.voxel, mesh).surround(ring));
 
         const BridgedBoxes boxes(turned_normals, 3);
         CHECK_FALSE(boxes.witnesses().surround(boxes.ring));
@@ -209,7 +208,7 @@ TEST_CASE("points surround the axis of a ring round a rod or in a bore, not that
         Octree aside = boxes.stages.octree; // as if nothing stood on one side of the gap
         for (std::size_t i = 0; i < aside.size(); ++i)
             if (aside.positions[i][0] + aside.origin[0] > 0) aside.normals[i] = Vec3(0, 1, 0);
-        CHECK(Witnesses(aside, boxes.stages.level, boxes.stages.sets, boxes.part.voxel, boxes.mesh)
+        CHECK(Witnesses(aside, boxes.stages.level, boxes.part.voxel, boxes.mesh)
                   .are_missing_across(boxes.ring, boxes.beside()));
     }
 }

@@ -1,12 +1,17 @@
 #include "hsdm/io/write_by_ranks.hh"
 
+#include "hsdm/io/mesh_writers.hh"
 #include "support/folder.hh"
 #include "support/meshes.hh"
 #include "support/rank_threads.hh"
 
 #include <catch2/catch.hpp>
 
+#include <atomic>
 #include <cmath>
+#include <future>
+
+#include <sys/stat.h>
 
 using namespace hsdm;
 
@@ -31,21 +36,6 @@ PolygonMesh some_mesh(Index n, bool with_rows, double far) {
     return mesh;
 }
 
-VertexRows rows_like(const PolygonMesh& mesh) {
-    VertexRows rows;
-    rows.normals = !mesh.normals.empty();
-    for (const VertexProperty& property : mesh.properties)
-        rows.columns.emplace_back(property.name, property.type);
-    rows.fill = [&mesh](std::size_t begin, std::size_t end, std::vector<Vec3>& normals,
-                        std::vector<double>& values) {
-        for (std::size_t v = begin; v < end; ++v) {
-            if (!mesh.normals.empty()) normals.push_back(mesh.normals[v]);
-            for (const VertexProperty& property : mesh.properties) values.push_back(property.values[v]);
-        }
-    };
-    return rows;
-}
-
 PolygonMesh bare(const PolygonMesh& mesh) {
     PolygonMesh facets;
     facets.positions = mesh.positions, facets.corners = mesh.corners, facets.first = mesh.first;
@@ -60,9 +50,9 @@ std::vector<std::string> write_by(int count, const std::string& path, const Poly
     return support::run_ranks(
         count,
         [&](Ranks& ranks) {
-            const WrittenMesh of_rank = write_mesh_by_ranks(path, ranks.is_first() ? facets : PolygonMesh(),
-                                                            ranks.is_first() ? rows_like(mesh) : VertexRows(),
-                                                            format, options, ranks);
+            const WrittenMesh of_rank =
+                write_mesh_by_ranks(path, ranks.is_first() ? facets : PolygonMesh(),
+                                    ranks.is_first() ? rows_of(mesh) : VertexRows(), format, options, ranks);
             if (ranks.is_first()) written = of_rank;
         },
         open);
@@ -70,7 +60,7 @@ std::vector<std::string> write_by(int count, const std::string& path, const Poly
 
 void check_same_file(int count, const PolygonMesh& mesh, MeshFormat format, const WriteOptions& options) {
     const support::Folder folder;
-    const WrittenMesh one = write_mesh(folder / "one", bare(mesh), rows_like(mesh), format, options);
+    const WrittenMesh one = write_mesh(folder / "one", bare(mesh), rows_of(mesh), format, options);
     WrittenMesh all;
     for (const std::string& failure : write_by(count, folder / "all", mesh, format, options, all))
         CHECK(failure.empty());
@@ -96,6 +86,24 @@ public:
 private:
     std::unique_ptr<SharedFile> file_;
     std::string failure_;
+};
+
+/// A file that has no room for the end of text.
+class FileWithoutEnd final : public SharedFile {
+public:
+    FileWithoutEnd(std::unique_ptr<SharedFile> file, std::atomic<int>& closed)
+        : file_(std::move(file)), closed_(closed) {}
+    std::string write_at(std::uint64_t offset, std::string_view bytes) override {
+        return bytes.starts_with("endsolid") ? "no space for the end" : file_->write_at(offset, bytes);
+    }
+    std::string close() override {
+        ++closed_;
+        return file_->close();
+    }
+
+private:
+    std::unique_ptr<SharedFile> file_;
+    std::atomic<int>& closed_;
 };
 
 } // namespace
@@ -146,6 +154,34 @@ TEST_CASE("what one rank cannot write ends all, and the file before stays", "[io
     CHECK(folder.names() == std::set<std::string>{"mesh.ply"});
 }
 
+TEST_CASE("no rank closes a file whose last line another one cannot write", "[io]") {
+    const support::Folder folder;
+    std::atomic<int> closed = 0; // each would wait for all
+    const support::OpenShared open = [&](int, const std::string& name) {
+        return std::make_unique<FileWithoutEnd>(open_positioned(name), closed);
+    };
+    WrittenMesh written;
+    const PolygonMesh mesh = some_mesh(9, true, 0);
+    for (const std::string& failure :
+         write_by(3, folder / "mesh.stl", mesh, MeshFormat::stl, {.ascii = true}, written, open))
+        CHECK(failure.find("no space for the end") != std::string::npos);
+    CHECK(closed == 0);
+    CHECK(folder.names().empty());
+}
+
+TEST_CASE("a pipe gets the mesh from the first rank, once", "[io]") {
+    const support::Folder folder;
+    const std::string pipe = folder / "pipe";
+    REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+    const PolygonMesh mesh = some_mesh(9, true, 0);
+    write_mesh(folder / "one", bare(mesh), rows_of(mesh), MeshFormat::ply);
+    std::future<std::string> read = std::async(std::launch::async, [&] { return support::read_file(pipe); });
+    WrittenMesh written;
+    for (const std::string& failure : write_by(2, pipe, mesh, MeshFormat::ply, {}, written))
+        CHECK(failure.empty());
+    CHECK(read.get() == support::read_file(folder / "one"));
+}
+
 TEST_CASE("the first rank writes alone what the others do not see", "[io]") {
     const support::Folder folder;
     const PolygonMesh mesh = some_mesh(9, true, 0);
@@ -156,7 +192,7 @@ TEST_CASE("the first rank writes alone what the others do not see", "[io]") {
     for (const std::string& failure : write_by(3, folder / "all", mesh, MeshFormat::ply, {}, written, open))
         CHECK(failure.empty());
     CHECK_FALSE(written.by_all_ranks);
-    write_mesh(folder / "one", bare(mesh), rows_like(mesh), MeshFormat::ply);
+    write_mesh(folder / "one", bare(mesh), rows_of(mesh), MeshFormat::ply);
     CHECK(support::read_file(folder / "one") == support::read_file(folder / "all"));
     for (const std::string& failure : write_by(2, "/dev/null", mesh, MeshFormat::ply, {}, written))
         CHECK(failure.empty());

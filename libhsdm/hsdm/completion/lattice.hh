@@ -57,7 +57,7 @@ std::vector<MortonCode> all_points(const LatticePlace& place);
 Lattice build_lattice(const LatticePlace& place, std::vector<MortonCode> codes, const PolygonMesh& mesh);
 
 /// Where a mesh passes the edges of a lattice that was built with another, in no order that matters, and the
-/// same for any number of threads. O(facets + hits), and for each facet the grid lines that its extent meets.
+/// same for any number of threads. O(facets + hits), and for each facet the rows of the grid that it passes.
 std::vector<LatticeHit> find_hits(const Lattice& lattice, const PolygonMesh& mesh);
 
 /// Calls visit(grid point, distance) for the points next to where the mesh passes an edge: the distance from

@@ -221,7 +221,7 @@ public:
           part_(part),
           sets_(sets),
           voxel_(voxel),
-          witnesses_(octree, level, sets, voxel, mesh),
+          witnesses_(octree, level, voxel, mesh),
           work_(work),
           most_work_(handles::most_work * std::max(mesh.facet_count(), part ? part->facets : 0)) {
         const double voxel_size = level.voxel_size;

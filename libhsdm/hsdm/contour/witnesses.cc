@@ -92,16 +92,9 @@ bool Witnesses::speak_for(Index f) {
     for (std::size_t k = 0; k < count; ++k) {
         const Index p = near_[k].second;
         agree += (octree_.normals[p] | normal) > angles::facing
-                 && std::abs(octree_.normals[p] | (octree_.positions[p] - centre))
-                        < std::max(gap, thickness_at(p));
+                 && std::abs(octree_.normals[p] | (octree_.positions[p] - centre)) < gap;
     }
     return agree >= two_agree;
-}
-
-double Witnesses::thickness_at(Index point) const {
-    const Index set = sets_.of_point[point];
-    if (set == no_index) return 0;
-    return std::sqrt(std::max(0.0, sets_.sets[set].spread.along(sets_.sets[set].normal)));
 }
 
 void Witnesses::gather(Index v, const Vec3& centre) {

@@ -2,7 +2,7 @@
 // What measured points say of facets, and of rings of edges that may be cut. Completed points (those without
 // a source) are guesses, by what the facets did not say: they are not asked.
 
-#include "hsdm/contour/normal_sets.hh"
+#include "hsdm/octree/octree.hh"
 #include "hsdm/polygon_mesh.hh"
 
 namespace hsdm {
@@ -10,9 +10,9 @@ namespace hsdm {
 class Witnesses {
 public:
     /// All must outlive it; `voxel` is per origin of the mesh's vertices. The mesh's facets may not change.
-    Witnesses(const Octree& octree, const OctreeLevel& level, const NormalSets& sets,
-              std::span<const Index> voxel, const PolygonMesh& mesh)
-        : octree_(octree), level_(level), sets_(sets), voxel_(voxel), mesh_(mesh) {}
+    Witnesses(const Octree& octree, const OctreeLevel& level, std::span<const Index> voxel,
+              const PolygonMesh& mesh)
+        : octree_(octree), level_(level), voxel_(voxel), mesh_(mesh) {}
 
     /// Do at least two of the eight points nearest to a facet face its way, and lie in its plane?
     bool speak_for(Index facet);
@@ -65,8 +65,6 @@ private:
     /// Do two of them stand across a tube at `place`, within `beside` of it, first and last?
     static bool has_sheets(const Tube& tube, std::span<const Across> across, const Vec3& place,
                            double beside);
-    /// How far off a plane through a point its sheet is, by its bend and noise.
-    double thickness_at(Index point) const;
     /// Are there completed points, where no scanner saw any?
     bool has_completed(std::span<const Index> voxels) const;
     std::size_t points_in(std::span<const Index> voxels) const;
@@ -75,7 +73,6 @@ private:
 
     const Octree& octree_;
     const OctreeLevel& level_;
-    const NormalSets& sets_;
     std::span<const Index> voxel_;
     const PolygonMesh& mesh_;
     std::vector<std::pair<double, Index>> near_;

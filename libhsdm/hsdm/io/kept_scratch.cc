@@ -82,10 +82,14 @@ std::optional<std::pair<Head, KeptScratch::Bytes>> record_at(int log, std::size_
 }
 
 std::string folder_of(const std::string& folder, int process) {
-    return (std::filesystem::path(folder) / (folder_name + std::to_string(process))).string();
+    return (std::filesystem::path(folder) / KeptScratch::name_of(process)).string();
 }
 
 } // namespace
+
+std::string KeptScratch::name_of(int process) {
+    return folder_name + std::to_string(process);
+}
 
 std::vector<int> KeptScratch::processes_in(const std::string& folder) {
     std::vector<int> processes;

@@ -34,6 +34,7 @@ public:
     KeptScratch(const KeptScratch&) = delete;
     KeptScratch& operator=(const KeptScratch&) = delete;
 
+    static std::string name_of(int process); ///< of its folder in this one
     /// The processes that something in this folder was kept for, in order.
     static std::vector<int> processes_in(const std::string& folder);
     /// Is there something that was kept for this process?

@@ -41,7 +41,7 @@ std::string hosts_in_order(const std::vector<SeenByRank>& seen) {
 /// Of a rank that finds nothing, if there is something for it elsewhere, or for more ranks than there are.
 void refuse_moved(const std::string& folder, const std::vector<SeenByRank>& seen, int rank) {
     const SeenByRank& own = seen[static_cast<std::size_t>(rank)];
-    const std::string name = "hsdm-resume-" + std::to_string(rank);
+    const std::string name = KeptScratch::name_of(rank);
     const auto other = std::ranges::find_if(seen, [&](const SeenByRank& one) { return sees(one, rank); });
     if (other != seen.end()) {
         const std::string hosts = hosts_in_order(seen);
@@ -53,8 +53,8 @@ void refuse_moved(const std::string& folder, const std::vector<SeenByRank>& seen
     }
     if (!own.processes.empty() && own.processes.back() >= static_cast<int>(seen.size()))
         throw Error(folder,
-                    "rank " + std::to_string(rank) + " on " + own.host + " has no " + name
-                        + ", but hsdm-resume-" + std::to_string(own.processes.back())
+                    "rank " + std::to_string(rank) + " on " + own.host + " has no " + name + ", but "
+                        + KeptScratch::name_of(own.processes.back())
                         + " of more processes; run as many as before, on the same machines in the same "
                           "order, or remove the folders of all to begin anew");
 }
@@ -120,9 +120,9 @@ void KeptPasses::refuse_lost(const std::vector<std::uint64_t>& of_all) const {
         return passes >> (static_cast<std::uint64_t>(Pass::sorted) + 1) != 0;
     };
     if (without == of_all.end() || std::ranges::none_of(of_all, is_past_first)) return;
-    const std::string rank = std::to_string(without - of_all.begin());
-    throw Error(kept_->folder(), "can only be gone on with by all ranks, and rank " + rank
-                                     + " finds nothing in its hsdm-resume-" + rank
+    const auto rank = static_cast<int>(without - of_all.begin());
+    throw Error(kept_->folder(), "can only be gone on with by all ranks, and rank " + std::to_string(rank)
+                                     + " finds nothing in its " + KeptScratch::name_of(rank)
                                      + "; give it its --scratch, or remove the folders of all to begin anew");
 }
 
