@@ -15,7 +15,6 @@
 #include "hsdm/errors.hh"
 #include "hsdm/io/join_points.hh"
 #include "hsdm/io/json_text.hh"
-#include "hsdm/io/mesh_document.hh"
 #include "hsdm/io/output_target.hh"
 #include "hsdm/io/points_in_parts.hh"
 #include "hsdm/mesh/to_mesh.hh"
@@ -363,8 +362,7 @@ private:
 
     /// Is nothing wanted of the mesh that takes a half-edge mesh?
     bool is_written_as_it_comes() const {
-        return is_document(target({}).format) && arguments_.features.empty() && !arguments_.intersections
-               && !arguments_.strict;
+        return arguments_.features.empty() && !arguments_.intersections && !arguments_.strict;
     }
 
     /// By all ranks, of which the first has all of it.

@@ -69,7 +69,9 @@ std::string zip_file(const std::vector<std::pair<std::string, std::string>>& mem
     if (!deflated) return stored(members);
     const support::Folder folder;
     AtomicFile file(folder / "a.zip");
-    io::write_zip(file, folder / "a.zip", members);
+    std::vector<std::pair<std::string, LongText>> texts;
+    for (const auto& [name, content] : members) texts.emplace_back(name, LongText()).second.add(content);
+    io::write_zip(file, folder / "a.zip", texts);
     file.commit();
     return support::read_file(folder / "a.zip");
 }

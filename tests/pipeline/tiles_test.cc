@@ -1,5 +1,7 @@
 #include "hsdm/errors.hh"
+#include "hsdm/io/float_precision.hh"
 #include "hsdm/io/points_in_parts.hh"
+#include "hsdm/io/write_om.hh"
 #include "hsdm/mesh/to_mesh.hh"
 #include "hsdm/pipeline/reconstruct_in_tiles.hh"
 #include "support/check.hh"
@@ -87,6 +89,22 @@ std::string refusal(const PointCloud& cloud, const TileOptions& tiles) {
     return "";
 }
 
+/// .om has the mesh's own properties, in their order.
+void write_as_command_does(const std::string& path, PolyMesh mesh, MeshFormat format, bool plain,
+                           const WriteOptions& write) {
+    PolygonMesh polygons = to_polygons(mesh);
+    if (plain) polygons.normals.clear(), polygons.properties.clear(), polygons.sharp_edges.clear();
+    if (plain || format != MeshFormat::om) {
+        write_mesh(path, polygons, format, write);
+        return;
+    }
+    if (write.recentre) {
+        const Vec3 shift = recentring_shift(polygons.positions);
+        for (const auto v : mesh.vertices()) mesh.set_point(v, mesh.point(v) - shift);
+    }
+    write_om(path, mesh);
+}
+
 } // namespace
 
 TEST_CASE("tiles give the mesh of the run in one piece, bit for bit", "[pipeline][slow]") {
@@ -105,6 +123,8 @@ TEST_CASE("tiles in flat arrays give the same files, whatever the cloud", "[pipe
     PointCloud cloud = scan_for_tiles(open);
     if (turned)
         for (Vec3& n : cloud.normals) n = -n;
+    if (turned)
+        for (Vec3& p : cloud.positions) p += Vec3(4096, -512, 65536);
     const support::Folder folder;
     const ReconstructOptions options{.depth = 6};
     const Reconstruction whole = reconstruct(cloud, options);
@@ -118,16 +138,16 @@ TEST_CASE("tiles in flat arrays give the same files, whatever the cloud", "[pipe
     CHECK(flat.report.scratch_bytes >= 48 * cloud.size());
     CHECK(flat.report.scratch_bytes_written >= flat.report.scratch_bytes);
     CHECK(whole.report.scratch_bytes == 0);
-    const PolygonMesh polygons = to_polygons(whole.mesh);
-    for (const bool ascii : {false, true})
-        for (const MeshFormat format : {MeshFormat::ply, MeshFormat::off, MeshFormat::stl}) {
-            INFO(info_of(format).name);
-            const WriteOptions write{.ascii = ascii, .recentre = ascii};
-            write_mesh(folder / "a", polygons, format, write);
-            write_flat(folder / "b", flat, format, false, write);
-            CHECK(support::read_file(folder / "a") == support::read_file(folder / "b"));
-        }
-    CHECK_THROWS_AS(write_flat(folder / "c", flat, MeshFormat::obj, false), Error);
+    for (const bool plain : {false, true})
+        for (const bool ascii : {false, true})
+            for (const MeshFormatInfo& format : mesh_formats()) {
+                INFO(format.name << (plain ? ", plain" : "") << (ascii ? ", text, less a shift" : ""));
+                const WriteOptions write{.ascii = ascii, .unit = LengthUnit::inch, .recentre = ascii};
+                write_as_command_does(folder / "a", whole.mesh, format.format, plain, write);
+                write_flat(folder / "b", flat, format.format, plain, write);
+                CHECK((support::read_file(folder / "a")
+                       == support::read_file(folder / "b"))); // not told: megabytes
+            }
     CHECK(folder.names() == std::set<std::string>{"a", "b"});
     const Report &one = whole.report, &other = flat.report;
     CHECK(one.mesh.euler == other.mesh.euler);

@@ -121,6 +121,10 @@ void AtomicFile::write(std::string_view bytes) {
     if (!os::write_all(descriptor_, bytes)) fail("cannot write");
 }
 
+void AtomicFile::write_at(std::uint64_t offset, std::string_view bytes) {
+    if (!os::write_all_at(descriptor_, bytes, offset)) fail("cannot write");
+}
+
 /// Opened anew, which has a network's file system ask how large the file has become.
 void AtomicFile::check_size(std::uint64_t bytes) const {
     const int opened = os::open_to_read(temporary_);

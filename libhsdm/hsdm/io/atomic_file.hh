@@ -34,6 +34,10 @@ public:
 
     /// Throws Error, e.g. when the disk is full.
     void write(std::string_view bytes);
+    /// Whether bytes can be written out of their order.
+    bool seeks() const { return !temporary_.empty(); }
+    /// Where it seeks. Not to be mixed with write(), which goes on where it was. Throws Error.
+    void write_at(std::uint64_t offset, std::string_view bytes);
     /// Where other processes may write what this one does not; empty for what is written directly.
     const std::string& shared_name() const { return temporary_; }
     /// Throws Error unless the temporary has so many bytes: others have written all that they should.

@@ -17,21 +17,31 @@ MeshCounts counts_of(const PolygonMesh& mesh) {
 }
 
 bool is_document(MeshFormat format) {
-    return format == MeshFormat::ply || format == MeshFormat::off || format == MeshFormat::stl;
+    return format == MeshFormat::ply || format == MeshFormat::off || format == MeshFormat::stl
+           || format == MeshFormat::obj;
+}
+
+VertexRows rows_held(MeshFormat format, const VertexRows& rows) {
+    VertexRows held;
+    if (format == MeshFormat::ply) held = rows;
+    if (format == MeshFormat::obj) held.normals = rows.normals, held.fill = rows.fill;
+    return held;
 }
 
 MeshDocument document_of(MeshFormat format, const MeshCounts& counts, const VertexRows& rows, bool ascii) {
     if (format == MeshFormat::off) return off_document(counts);
     if (format == MeshFormat::stl) return stl_document(counts, ascii);
+    if (format == MeshFormat::obj) return obj_document(rows.normals);
     return ply_document(counts, rows, ascii);
 }
 
-void write_document(AtomicFile& file, const MeshDocument& document, const PolygonMesh& mesh,
-                    const VertexRows& rows) {
+void write_document(AtomicFile& file, MeshFormat format, const PolygonMesh& mesh, const VertexRows& rows,
+                    bool ascii) {
+    const MeshDocument document = document_of(format, counts_of(mesh), rows_held(format, rows), ascii);
     file.write(document.head);
-    if (document.vertices)
+    for (const MeshDocument::OfVertices& row : document.vertices)
         write_chunks(file, mesh.vertex_count(), [&](std::string& out, std::size_t begin, std::size_t end) {
-            document.vertices(out, mesh, rows, begin, end);
+            row(out, mesh, rows, begin, end);
         });
     write_chunks(file, mesh.facet_count(), [&](std::string& out, std::size_t begin, std::size_t end) {
         document.facets(out, mesh, begin, end);

@@ -1,5 +1,5 @@
 #pragma once
-// Files that are a row of vertices and a row of facets: each element's bytes follow from that element alone,
+// Files that are rows of vertices and a row of facets: each element's bytes follow from that element alone,
 // so that any stretch can be made by itself, by any process.
 
 #include "hsdm/io/atomic_file.hh"
@@ -15,11 +15,11 @@ struct MeshCounts {
 MeshCounts counts_of(const PolygonMesh& mesh);
 
 struct MeshDocument {
+    /// Appends something of vertices begin .. end - 1.
+    using OfVertices = std::function<void(std::string& out, const PolygonMesh&, const VertexRows&,
+                                          std::size_t begin, std::size_t end)>;
     std::string head{}, tail{};
-    /// Appends vertices begin .. end - 1; null where a file has none.
-    std::function<void(std::string& out, const PolygonMesh&, const VertexRows&, std::size_t begin,
-                       std::size_t end)>
-        vertices{};
+    std::vector<OfVertices> vertices{}; ///< each of all vertices, one row after the other
     /// Appends facets begin .. end - 1.
     std::function<void(std::string& out, const PolygonMesh&, std::size_t begin, std::size_t end)> facets{};
     bool facets_have_places = false; ///< made of positions, and not of the numbers of vertices
@@ -29,13 +29,17 @@ MeshDocument off_document(const MeshCounts& counts);
 /// Of `rows` only what there is.
 MeshDocument ply_document(const MeshCounts& counts, const VertexRows& rows, bool ascii);
 MeshDocument stl_document(const MeshCounts& counts, bool ascii);
+MeshDocument obj_document(bool normals);
 
 bool is_document(MeshFormat format);
-/// One of these three.
+/// What of the rows a file of the format holds.
+VertexRows rows_held(MeshFormat format, const VertexRows& rows);
+/// One of these four.
 MeshDocument document_of(MeshFormat format, const MeshCounts& counts, const VertexRows& rows, bool ascii);
 
-void write_document(AtomicFile& file, const MeshDocument& document, const PolygonMesh& mesh,
-                    const VertexRows& rows);
+/// All of it.
+void write_document(AtomicFile& file, MeshFormat format, const PolygonMesh& mesh, const VertexRows& rows,
+                    bool ascii);
 
 /// Calls put(value) with the value in the property's own type.
 template <class Put>

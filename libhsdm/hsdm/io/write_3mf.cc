@@ -1,12 +1,10 @@
 // 3MF, core specification 1.3: a ZIP archive with the mesh as XML. Decimals hold doubles in it.
 
 #include "hsdm/io/format_chunks.hh"
+#include "hsdm/io/long_text.hh"
 #include "hsdm/io/mesh_writers.hh"
 #include "hsdm/io/zip_archive.hh"
 #include "hsdm/mesh/triangulate.hh"
-#include "hsdm/quality/topology.hh"
-
-#include <algorithm>
 
 namespace hsdm {
 namespace {
@@ -40,19 +38,22 @@ const char* unit_word(LengthUnit unit) {
     }
 }
 
-void append_vertices(const PolygonMesh& mesh, std::string& xml) {
-    for (const Vec3& p : mesh.positions) {
+void append_vertices(std::string& xml, const PolygonMesh& mesh, std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
         for (unsigned k = 0; k < 3; ++k) {
             xml += k == 0 ? "<vertex x=\"" : k == 1 ? "\" y=\"" : "\" z=\"";
-            append_number(xml, p[k]);
+            append_number(xml, mesh.positions[v][k]);
         }
         xml += "\"/>\n";
     }
 }
 
-/// What takes no area is no triangle of the format, which wants three different vertices.
-void append_triangles(const Triangulation& cut, std::string& xml) {
-    for (const Triangle& t : cut.triangles) {
+/// Of facets begin .. end - 1. What takes no area is no triangle of the format, which wants three different
+/// vertices.
+void append_triangle_lines(std::string& xml, const PolygonMesh& mesh, std::size_t begin, std::size_t end) {
+    std::vector<Triangle> cut;
+    for (std::size_t f = begin; f < end; ++f) append_triangles(mesh, f, cut);
+    for (const Triangle& t : cut) {
         if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
         for (std::size_t k = 0; k < 3; ++k) {
             xml += k == 0 ? "<triangle v1=\"" : k == 1 ? "\" v2=\"" : "\" v3=\"";
@@ -62,31 +63,44 @@ void append_triangles(const Triangulation& cut, std::string& xml) {
     }
 }
 
-std::string model_of(const PolygonMesh& mesh, LengthUnit unit) {
+/// The mesh must outlive it.
+LongText model_of(const PolygonMesh& mesh, bool closed, LengthUnit unit) {
     // What is open is no body to be printed, but a surface.
-    const char* const type = measure_topology(mesh).closed() ? "model" : "surface";
-    std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"";
-    xml += unit_word(unit);
-    xml += "\" xml:lang=\"en-US\" xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n"
-           "<metadata name=\"Application\">hsdm</metadata>\n<resources>\n<object id=\"1\" type=\"";
-    xml += type;
-    xml += "\">\n<mesh>\n<vertices>\n";
-    append_vertices(mesh, xml);
-    xml += "</vertices>\n<triangles>\n";
-    append_triangles(triangulate(mesh), xml);
-    xml += "</triangles>\n</mesh>\n</object>\n</resources>\n<build>\n<item "
-           "objectid=\"1\"/>\n</build>\n</model>\n";
-    return xml;
+    const char* const type = closed ? "model" : "surface";
+    std::string head = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"";
+    head += unit_word(unit);
+    head += "\" xml:lang=\"en-US\" xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n"
+            "<metadata name=\"Application\">hsdm</metadata>\n<resources>\n<object id=\"1\" type=\"";
+    head += type;
+    head += "\">\n<mesh>\n<vertices>\n";
+    LongText model;
+    model.add(std::move(head));
+    model.add(mesh.vertex_count(), [&mesh](std::string& out, std::size_t begin, std::size_t end) {
+        append_vertices(out, mesh, begin, end);
+    });
+    model.add("</vertices>\n<triangles>\n");
+    model.add(mesh.facet_count(), [&mesh](std::string& out, std::size_t begin, std::size_t end) {
+        append_triangle_lines(out, mesh, begin, end);
+    });
+    model.add("</triangles>\n</mesh>\n</object>\n</resources>\n<build>\n<item "
+              "objectid=\"1\"/>\n</build>\n</model>\n");
+    return model;
+}
+
+LongText text_of(const char* text) {
+    LongText all;
+    all.add(text);
+    return all;
 }
 
 } // namespace
 
-void write_3mf(AtomicFile& file, const std::string& path, const PolygonMesh& mesh, LengthUnit unit) {
-    // Not as a list of members, out of which the model would be copied.
-    std::vector<std::pair<std::string, std::string>> members{{"[Content_Types].xml", content_types},
-                                                             {"_rels/.rels", relationships}};
-    members.emplace_back("3D/3dmodel.model", model_of(mesh, unit));
-    io::write_zip(file, path, members);
+void write_3mf(AtomicFile& file, const std::string& path, const PolygonMesh& mesh, bool closed,
+               LengthUnit unit) {
+    io::write_zip(file, path,
+                  {{"[Content_Types].xml", text_of(content_types)},
+                   {"_rels/.rels", text_of(relationships)},
+                   {"3D/3dmodel.model", model_of(mesh, closed, unit)}});
 }
 
 } // namespace hsdm

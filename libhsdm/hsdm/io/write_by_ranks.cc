@@ -21,20 +21,22 @@ struct FileOfAll {
     std::string name;        ///< of the temporary; empty: the first rank writes alone
     std::uint64_t inode = 0; ///< which tells it from one of that name on another machine
     MeshFormat format = MeshFormat::ply;
-    bool ascii = false;
+    bool ascii = false, normals = false;
     MeshCounts counts{};
 };
 
 FileOfAll told_by_first(const FileOfAll& own, Ranks& ranks) {
     Ranks::Bytes bytes;
     put_text(own.name, bytes);
-    put(own.inode, bytes), put(own.format, bytes), put(own.ascii, bytes), put(own.counts, bytes);
+    put(own.inode, bytes), put(own.format, bytes), put(own.ascii, bytes), put(own.normals, bytes);
+    put(own.counts, bytes);
     const Ranks::Bytes told = ranks.of_first(std::move(bytes));
     ByteReader reader(told);
     FileOfAll file;
     file.name = reader.take_text();
     file.inode = reader.take<std::uint64_t>();
-    file.format = reader.take<MeshFormat>(), file.ascii = reader.take<bool>();
+    file.format = reader.take<MeshFormat>(), file.ascii = reader.take<bool>(),
+    file.normals = reader.take<bool>();
     file.counts = reader.take<MeshCounts>();
     return file;
 }
@@ -124,7 +126,7 @@ private:
 std::uint64_t write_stretches(StretchWriter& writer, const MeshDocument& document, const MeshCounts& counts,
                               const PolygonMesh& mesh, const VertexRows& rows, const Vec3& shift) {
     writer.write_of_first(document.head);
-    if (document.vertices)
+    for (const MeshDocument::OfVertices& row : document.vertices)
         writer.write_elements(
             counts.vertices,
             [&](std::size_t begin, std::size_t end) {
@@ -134,7 +136,7 @@ std::uint64_t write_stretches(StretchWriter& writer, const MeshDocument& documen
                 const VertexRows own = rows_of(stretch);
                 return formatted(stretch.vertex_count(),
                                  [&](std::string& out, std::size_t begin, std::size_t end) {
-                                     document.vertices(out, stretch, own, begin, end);
+                                     row(out, stretch, own, begin, end);
                                  });
             });
     std::optional<PlacedStretches> placed;
@@ -157,18 +159,20 @@ std::uint64_t write_stretches(StretchWriter& writer, const MeshDocument& documen
 
 } // namespace
 
-WrittenMesh write_mesh_by_ranks(const std::string& path, const PolygonMesh& mesh, const VertexRows& rows,
-                                MeshFormat format, const WriteOptions& options, Ranks& ranks) {
-    if (ranks.size() == 1) return write_mesh(path, mesh, rows, format, options);
+WrittenMesh write_mesh_by_ranks(const std::string& path, const LinkedMesh& linked, MeshFormat format,
+                                const WriteOptions& options, Ranks& ranks) {
     WrittenMesh written;
+    const auto alone = [&] { return ranks.is_first() ? write_mesh(path, linked, format, options) : written; };
+    if (ranks.size() == 1 || !is_document(format)) return alone();
+    const PolygonMesh& mesh = linked.facets;
     std::optional<AtomicFile> temporary;
     FileOfAll own;
     if (ranks.is_first()) {
-        check_as_it_comes(path, format);
         check_consistent(path, mesh);
         const Vec3 shift = options.recentre ? recentring_shift(mesh.positions) : Vec3(0, 0, 0);
         written = precision_of(mesh.positions, shift, format, options.ascii);
-        own = {"", {}, format, options.ascii || written.text_for_precision, counts_of(mesh)};
+        own.format = format, own.ascii = options.ascii || written.text_for_precision;
+        own.normals = rows_held(format, linked.rows).normals, own.counts = counts_of(mesh);
         if (find_target(path).kind == OutputTarget::Kind::file) { // others cannot be opened twice
             temporary.emplace(path);
             own.name = temporary->shared_name();
@@ -179,10 +183,11 @@ WrittenMesh write_mesh_by_ranks(const std::string& path, const PolygonMesh& mesh
     const std::unique_ptr<SharedFile> shared = opened_by_all(file, ranks);
     if (!shared) {
         temporary.reset();
-        return ranks.is_first() ? write_mesh(path, mesh, rows, format, options) : written;
+        return alone();
     }
     StretchWriter writer(*shared, path, ranks);
-    const VertexRows told = file.format == MeshFormat::ply ? rows : VertexRows(); // OFF has positions alone
+    VertexRows told = rows_held(file.format, linked.rows);
+    told.normals = file.normals; // which rows there are is the same for all
     const std::uint64_t size =
         write_stretches(writer, document_of(file.format, file.counts, told, file.ascii), file.counts, mesh,
                         told, written.shift);

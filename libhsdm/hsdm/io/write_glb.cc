@@ -4,8 +4,7 @@
 #include "hsdm/io/float_precision.hh"
 #include "hsdm/io/format_chunks.hh"
 #include "hsdm/io/mesh_writers.hh"
-#include "hsdm/mesh/split_creases.hh"
-#include "hsdm/mesh/triangulate.hh"
+#include "hsdm/io/split_mesh.hh"
 
 #include <nlohmann/json.hpp>
 
@@ -25,30 +24,45 @@ constexpr int array_buffer = 34962, element_array_buffer = 34963;
 constexpr std::uint32_t chunk_json = 0x4e4f534a, chunk_binary = 0x004e4942;
 
 struct GlbMesh {
-    PolygonMesh mesh; ///< in whose vertices at creases are there once for each side
+    const SplitMesh& mesh;
     Vec3 shift{0, 0, 0};
     double scale = 1; ///< metres in a unit
-    Triangulation triangles;
-    std::array<const VertexProperty*, 4> colors{}; ///< red, green, blue; alpha may be missing
+    std::size_t triangles = 0;
+    bool has_normals = false, has_colors = false;
 
-    std::size_t size() const { return mesh.vertex_count(); }
-    bool has_normals() const { return !mesh.normals.empty(); }
-    bool has_colors() const { return colors[0] && colors[1] && colors[2]; }
+    std::size_t size() const { return mesh.vertices(); }
+    std::array<float, 3> place(const Vec3& position) const {
+        std::array<float, 3> at;
+        for (unsigned k = 0; k < 3; ++k) at[k] = static_cast<float>((position[k] - shift[k]) * scale);
+        return at;
+    }
 };
 
-const VertexProperty* find_color(const PolygonMesh& mesh, const char* name) {
-    const auto found = std::ranges::find(mesh.properties, name, &VertexProperty::name);
-    const bool is_color = found != mesh.properties.end() && found->type == VertexProperty::Type::uint8;
-    return is_color ? &*found : nullptr;
+/// Red, green, blue and alpha, which may be missing.
+using Colors = std::array<const VertexProperty*, 4>;
+
+Colors colors_of(const PolygonMesh& mesh) {
+    Colors colors;
+    std::ranges::transform(color_properties, colors.begin(), [&](const char* name) {
+        const auto found = std::ranges::find(mesh.properties, name, &VertexProperty::name);
+        const bool is_color = found != mesh.properties.end() && found->type == VertexProperty::Type::uint8;
+        return is_color ? &*found : nullptr;
+    });
+    return colors;
 }
 
-GlbMesh prepare(const PolygonMesh& mesh, LengthUnit unit) {
-    GlbMesh glb;
-    glb.mesh = split_creases(mesh);
+/// `positions` and `triangles`: of the mesh before it was cut.
+GlbMesh prepare(const SplitMesh& mesh, std::span<const Vec3> positions, std::size_t triangles,
+                LengthUnit unit) {
+    GlbMesh glb{mesh};
     if (unit != LengthUnit::none) glb.scale = metres_of(unit);
-    if (moved_by_floats(mesh.positions) > most_moved_by_floats) glb.shift = recentring_shift(mesh.positions);
-    glb.triangles = triangulate(glb.mesh);
-    for (std::size_t i = 0; i < 4; ++i) glb.colors[i] = find_color(glb.mesh, color_properties[i]);
+    if (moved_by_floats(positions) > most_moved_by_floats) glb.shift = recentring_shift(positions);
+    glb.triangles = triangles;
+    mesh.show_vertices(0, 0, [&](const PolygonMesh& none, std::size_t, std::size_t) {
+        const Colors colors = colors_of(none);
+        glb.has_normals = mesh.has_normals();
+        glb.has_colors = colors[0] && colors[1] && colors[2];
+    });
     return glb;
 }
 
@@ -56,18 +70,11 @@ GlbMesh prepare(const PolygonMesh& mesh, LengthUnit unit) {
 void check_lengths(const GlbMesh& glb, const std::string& path) {
     using Floats = std::numeric_limits<float>;
     double largest = 0;
-    for (const Vec3& p : glb.mesh.positions) largest = std::max(largest, (p - glb.shift).max_abs());
+    for (const Vec3& p : glb.mesh.positions()) largest = std::max(largest, (p - glb.shift).max_abs());
     const double farthest = std::max(largest, glb.shift.max_abs()) * glb.scale;
     largest *= glb.scale;
     if (farthest > double{Floats::max()} || (largest > 0 && largest < double{Floats::min()}))
         throw Error(path, "cannot write: lengths beyond a float; write PLY");
-}
-
-std::array<float, 3> position_of(const GlbMesh& glb, std::size_t v) {
-    std::array<float, 3> at;
-    for (unsigned k = 0; k < 3; ++k)
-        at[k] = static_cast<float>((glb.mesh.positions[v][k] - glb.shift[k]) * glb.scale);
-    return at;
 }
 
 /// Colours of a scan are those of a screen, the format's are proportional to light. In 16 bits none of the
@@ -101,8 +108,8 @@ void add_bounds(const GlbMesh& glb, Json& accessor) {
     std::array<float, 3> least, most;
     least.fill(std::numeric_limits<float>::max());
     most.fill(std::numeric_limits<float>::lowest());
-    for (std::size_t v = 0; v < glb.size(); ++v) {
-        const auto at = position_of(glb, v);
+    for (const Vec3& p : glb.mesh.positions()) {
+        const auto at = glb.place(p);
         for (unsigned k = 0; k < 3; ++k) {
             least[k] = std::min(least[k], at[k]);
             most[k] = std::max(most[k], at[k]);
@@ -117,13 +124,12 @@ Json json_of(const GlbMesh& glb, std::size_t& bytes) {
     Json attributes;
     attributes["POSITION"] = layout.add(glb.size(), 12, array_buffer, type_float, "VEC3");
     add_bounds(glb, layout.accessors[0]);
-    if (glb.has_normals())
-        attributes["NORMAL"] = layout.add(glb.size(), 12, array_buffer, type_float, "VEC3");
-    if (glb.has_colors()) {
+    if (glb.has_normals) attributes["NORMAL"] = layout.add(glb.size(), 12, array_buffer, type_float, "VEC3");
+    if (glb.has_colors) {
         attributes["COLOR_0"] = layout.add(glb.size(), 8, array_buffer, type_uint16, "VEC4");
         layout.accessors.back()["normalized"] = true;
     }
-    const int indices = layout.add(3 * glb.triangles.size(), 4, element_array_buffer, type_uint32, "SCALAR");
+    const int indices = layout.add(3 * glb.triangles, 4, element_array_buffer, type_uint32, "SCALAR");
     bytes = layout.bytes;
 
     // The format's y points up, a scan's z: the outer node turns one into the other, by a quarter about x.
@@ -148,33 +154,36 @@ Json json_of(const GlbMesh& glb, std::size_t& bytes) {
 
 void write_arrays(AtomicFile& file, const GlbMesh& glb) {
     const auto write_vertices = [&](auto put) {
-        write_chunks(file, glb.size(), [&](std::string& out, std::size_t begin, std::size_t end) {
-            for (std::size_t v = begin; v < end; ++v) put(out, v);
+        write_chunks(file, glb.mesh.elements(), [&](std::string& out, std::size_t begin, std::size_t end) {
+            glb.mesh.show_vertices(begin, end,
+                                   [&](const PolygonMesh& mesh, std::size_t first, std::size_t last) {
+                                       const Colors colors = colors_of(mesh);
+                                       for (std::size_t v = first; v < last; ++v) put(out, mesh, colors, v);
+                                   });
         });
     };
-    write_vertices([&](std::string& out, std::size_t v) {
-        for (const float x : position_of(glb, v)) append_bytes(out, x);
+    write_vertices([&](std::string& out, const PolygonMesh& mesh, const Colors&, std::size_t v) {
+        for (const float x : glb.place(mesh.positions[v])) append_bytes(out, x);
     });
-    if (glb.has_normals())
-        write_vertices([&](std::string& out, std::size_t v) {
-            for (const double x : glb.mesh.normals[v]) append_bytes(out, static_cast<float>(x));
+    if (glb.has_normals)
+        write_vertices([](std::string& out, const PolygonMesh& mesh, const Colors&, std::size_t v) {
+            for (const double x : mesh.normals[v]) append_bytes(out, static_cast<float>(x));
         });
-    if (glb.has_colors())
-        write_vertices([&](std::string& out, std::size_t v) {
-            for (std::size_t i = 0; i < 3; ++i) append_bytes(out, light_of(glb.colors[i]->values[v]));
-            const double alpha = glb.colors[3] ? glb.colors[3]->values[v] : 255;
+    if (glb.has_colors)
+        write_vertices([](std::string& out, const PolygonMesh&, const Colors& colors, std::size_t v) {
+            for (std::size_t i = 0; i < 3; ++i) append_bytes(out, light_of(colors[i]->values[v]));
+            const double alpha = colors[3] ? colors[3]->values[v] : 255;
             append_bytes(out, static_cast<std::uint16_t>(std::lround(alpha * 257)));
         });
-    write_chunks(file, glb.triangles.size(), [&](std::string& out, std::size_t begin, std::size_t end) {
-        for (std::size_t t = begin; t < end; ++t)
-            for (const Index v : glb.triangles.triangles[t]) append_bytes(out, v);
+    write_chunks(file, glb.mesh.facets(), [&](std::string& out, std::size_t begin, std::size_t end) {
+        std::vector<Triangle> triangles;
+        glb.mesh.append_triangles(begin, end, triangles);
+        for (const Triangle& corners : triangles)
+            for (const Index v : corners) append_bytes(out, v);
     });
 }
 
-} // namespace
-
-void write_glb(AtomicFile& file, const std::string& path, const PolygonMesh& mesh, LengthUnit unit) {
-    const GlbMesh glb = prepare(mesh, unit);
+void write_split(AtomicFile& file, const std::string& path, const GlbMesh& glb) {
     check_lengths(glb, path);
     std::size_t bytes = 0;
     std::string json = json_of(glb, bytes).dump();
@@ -193,6 +202,18 @@ void write_glb(AtomicFile& file, const std::string& path, const PolygonMesh& mes
     append_bytes(head, chunk_binary);
     file.write(head);
     write_arrays(file, glb);
+}
+
+} // namespace
+
+void write_glb(AtomicFile& file, const std::string& path, const PolygonMesh& mesh, LengthUnit unit) {
+    const WholeSplitMesh split(mesh);
+    write_split(file, path, prepare(split, mesh.positions, counts_of(mesh).triangles, unit));
+}
+
+void write_glb(AtomicFile& file, const std::string& path, const LinkedMesh& mesh, LengthUnit unit) {
+    const SplitStretches split(mesh);
+    write_split(file, path, prepare(split, mesh.facets.positions, counts_of(mesh.facets).triangles, unit));
 }
 
 } // namespace hsdm

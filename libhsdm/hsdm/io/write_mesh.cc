@@ -5,6 +5,7 @@
 #include "hsdm/io/mesh_document.hh"
 #include "hsdm/io/mesh_writers.hh"
 #include "hsdm/io/text.hh"
+#include "hsdm/quality/topology.hh"
 
 #include <algorithm>
 #include <array>
@@ -28,17 +29,13 @@ void check_consistent(const std::string& path, const PolygonMesh& mesh) {
                                   + " vertices; the mesh is inconsistent");
 }
 
-namespace {
-
-/// Of formats that have no empty mesh.
-void check_facets(const std::string& path, const PolygonMesh& mesh, const MeshFormatInfo& info) {
-    if (info.format != MeshFormat::glb && info.format != MeshFormat::mf3) return;
+void check_facets(const std::string& path, const PolygonMesh& mesh, MeshFormat format) {
+    if (format != MeshFormat::glb && format != MeshFormat::mf3) return;
     for (std::size_t f = 0; f < mesh.facet_count(); ++f)
         if (mesh.facet(f).size() >= 3) return;
-    throw Error(path, "cannot write: no facets, which " + std::string(info.title) + " wants; write PLY");
+    throw Error(path,
+                "cannot write: no facets, which " + std::string(info_of(format).title) + " wants; write PLY");
 }
-
-} // namespace
 
 std::span<const MeshFormatInfo> mesh_formats() {
     static constexpr std::array<MeshFormatInfo, 7> all{{
@@ -88,70 +85,37 @@ WrittenMesh precision_of(std::span<const Vec3> positions, const Vec3& shift, Mes
     return written;
 }
 
-void check_as_it_comes(const std::string& path, MeshFormat format) {
-    if (!is_document(format))
-        throw Error(path, std::string(info_of(format).title)
-                              + " cannot be written as it comes; PLY, OFF and STL can");
-}
-
-namespace {
-
-WrittenMesh write_as_it_is(const std::string& path, const PolygonMesh& mesh, const VertexRows& rows,
-                           MeshFormat format, const WriteOptions& options) {
-    const WrittenMesh written = precision_of(mesh.positions, {0, 0, 0}, format, options.ascii);
-    if (format == MeshFormat::om) {
-        write_polygons_om(path, mesh);
-        return written;
+WrittenMesh write_checked(const std::string& path, const PolygonMesh& facets, MeshFormat format,
+                          const WriteOptions& options,
+                          const std::function<void(const PolygonMesh& facets, bool ascii)>& write) {
+    check_consistent(path, facets);
+    check_facets(path, facets, format);
+    PolygonMesh near;
+    const Vec3 shift = options.recentre ? recentring_shift(facets.positions) : Vec3(0, 0, 0);
+    if (shift != Vec3(0, 0, 0)) {
+        near = facets;
+        for (Vec3& p : near.positions) p -= shift;
     }
-    AtomicFile file(path);
-    switch (format) {
-    case MeshFormat::off:
-    case MeshFormat::stl:
-    case MeshFormat::ply: {
-        const bool ascii = options.ascii || written.text_for_precision;
-        write_document(file, document_of(format, counts_of(mesh), rows, ascii), mesh, rows);
-        break;
-    }
-    case MeshFormat::obj:
-        write_obj(file, mesh);
-        break;
-    case MeshFormat::glb:
-        write_glb(file, path, mesh, options.unit);
-        break;
-    case MeshFormat::mf3:
-        write_3mf(file, path, mesh, options.unit);
-        break;
-    case MeshFormat::om:
-        break; // done above
-    }
-    file.commit();
-    return written;
-}
-
-WrittenMesh write_checked(const std::string& path, const PolygonMesh& mesh, const VertexRows& rows,
-                          MeshFormat format, const WriteOptions& options) {
-    check_consistent(path, mesh);
-    check_facets(path, mesh, info_of(format));
-    if (!options.recentre) return write_as_it_is(path, mesh, rows, format, options);
-    PolygonMesh near = mesh;
-    const Vec3 shift = recentring_shift(mesh.positions);
-    for (Vec3& p : near.positions) p -= shift;
-    WrittenMesh written = write_as_it_is(path, near, rows, format, options);
+    const PolygonMesh& written_facets = near.positions.empty() ? facets : near;
+    WrittenMesh written = precision_of(written_facets.positions, {0, 0, 0}, format, options.ascii);
+    write(written_facets, options.ascii || written.text_for_precision);
     written.shift = shift;
     return written;
 }
 
-} // namespace
-
 WrittenMesh write_mesh(const std::string& path, const PolygonMesh& mesh, MeshFormat format,
                        const WriteOptions& options) {
-    return write_checked(path, mesh, rows_of(mesh), format, options);
-}
-
-WrittenMesh write_mesh(const std::string& path, const PolygonMesh& mesh, const VertexRows& rows,
-                       MeshFormat format, const WriteOptions& options) {
-    check_as_it_comes(path, format);
-    return write_checked(path, mesh, rows, format, options);
+    return write_checked(path, mesh, format, options, [&](const PolygonMesh& facets, bool ascii) {
+        if (format == MeshFormat::om) return write_polygons_om(path, facets);
+        AtomicFile file(path);
+        if (format == MeshFormat::glb)
+            write_glb(file, path, facets, options.unit);
+        else if (format == MeshFormat::mf3)
+            write_3mf(file, path, facets, measure_topology(facets).closed(), options.unit);
+        else
+            write_document(file, format, facets, rows_of(facets), ascii);
+        file.commit();
+    });
 }
 
 void write_text(const std::string& path, const std::string& text) {

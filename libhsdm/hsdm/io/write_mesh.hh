@@ -88,11 +88,6 @@ struct VertexRows {
     std::function<void(std::size_t, std::size_t, std::vector<Vec3>&, std::vector<double>&)> fill{};
 };
 
-/// The same of a mesh without normals and properties, with those of `rows` where the format is PLY: OFF and
-/// STL have none. Throws Error for other formats.
-WrittenMesh write_mesh(const std::string& path, const PolygonMesh& mesh, const VertexRows& rows,
-                       MeshFormat format, const WriteOptions& options = {});
-
 /// Writes `text` to a file under the same promise; "-" is standard output. Throws Error.
 void write_text(const std::string& path, const std::string& text);
 

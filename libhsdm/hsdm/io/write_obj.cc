@@ -1,35 +1,46 @@
 #include "hsdm/io/format_chunks.hh"
-#include "hsdm/io/mesh_writers.hh"
+#include "hsdm/io/mesh_document.hh"
 
 namespace hsdm {
 namespace {
 
-void write_vectors(AtomicFile& file, const char* keyword, const std::vector<Vec3>& vectors) {
-    write_chunks(file, vectors.size(), [&](std::string& out, std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end; ++v) {
-            out += keyword;
-            for (unsigned k = 0; k < 3; ++k) append_number(out += ' ', vectors[v][k]);
-            out += '\n';
-        }
-    });
+void append_vector(std::string& out, const char* keyword, const Vec3& vector) {
+    out += keyword;
+    for (const double x : vector) append_number(out += ' ', x);
+    out += '\n';
+}
+
+void append_positions(std::string& out, const PolygonMesh& mesh, const VertexRows&, std::size_t begin,
+                      std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) append_vector(out, "v", mesh.positions[v]);
+}
+
+void append_normals(std::string& out, const PolygonMesh&, const VertexRows& rows, std::size_t begin,
+                    std::size_t end) {
+    std::vector<Vec3> normals;
+    std::vector<double> values;
+    rows.fill(begin, end, normals, values);
+    for (const Vec3& normal : normals) append_vector(out, "vn", normal);
 }
 
 } // namespace
 
-void write_obj(AtomicFile& file, const PolygonMesh& mesh) {
-    write_vectors(file, "v", mesh.positions);
-    write_vectors(file, "vn", mesh.normals);
-    const bool normals = !mesh.normals.empty();
-    write_chunks(file, mesh.facet_count(), [&](std::string& out, std::size_t begin, std::size_t end) {
+MeshDocument obj_document(bool normals) {
+    MeshDocument document;
+    document.vertices.emplace_back(append_positions);
+    if (normals) document.vertices.emplace_back(append_normals);
+    document.facets = [normals](std::string& out, const PolygonMesh& mesh, std::size_t begin,
+                                std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) {
             out += 'f';
-            for (Index v : mesh.facet(f)) {
+            for (const Index v : mesh.facet(f)) {
                 append_number(out += ' ', v + 1u);
                 if (normals) append_number(out += "//", v + 1u);
             }
             out += '\n';
         }
-    });
+    };
+    return document;
 }
 
 } // namespace hsdm

@@ -1,9 +1,9 @@
 #include "hsdm/io/write_om.hh"
 
 #include "hsdm/errors.hh"
+#include "hsdm/io/linked_exporter.hh"
 #include "hsdm/io/mesh_writers.hh"
 #include "hsdm/mesh/to_mesh.hh"
-#include "hsdm/mesh/vertex_normals.hh"
 
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <OpenMesh/Core/System/omstream.hh>
@@ -69,9 +69,7 @@ private:
     std::exception_ptr failure_;
 };
 
-} // namespace
-
-void write_om(const std::string& path, const PolyMesh& mesh) {
+void write_om(const std::string& path, OpenMesh::IO::BaseExporter& exporter) {
     using OpenMesh::IO::Options;
     Options options(Options::Binary);
     options += Options::VertexNormal;
@@ -84,11 +82,23 @@ void write_om(const std::string& path, const PolyMesh& mesh) {
         static std::mutex one_at_a_time; // the log is the process's
         const std::lock_guard held(one_at_a_time);
         const QuietLog quiet;
-        return OpenMesh::IO::write_mesh(mesh, stream, ".om", options);
+        return OpenMesh::IO::IOManager().write(stream, ".om", exporter, options);
     }();
     buffer.finish();
     if (!written) throw Error(path, "OpenMesh could not write this mesh as .om; write OFF or PLY instead");
     file.commit();
+}
+
+} // namespace
+
+void write_om(const std::string& path, const PolyMesh& mesh) {
+    OpenMesh::IO::ExporterT<PolyMesh> exporter(mesh);
+    write_om(path, exporter);
+}
+
+void write_om(const std::string& path, const LinkedMesh& mesh) {
+    LinkedExporter exporter(mesh);
+    write_om(path, exporter);
 }
 
 void write_polygons_om(const std::string& path, const PolygonMesh& mesh) {

@@ -2,6 +2,7 @@
 // ZIP archives, by libzip: members read from memory, archives written to a file.
 
 #include "hsdm/io/atomic_file.hh"
+#include "hsdm/io/long_text.hh"
 #include "hsdm/io/source_bytes.hh"
 
 #include <memory>
@@ -40,9 +41,10 @@ private:
     std::vector<std::string> names_;
 };
 
-/// Writes an archive of members, each a name and its content, deflated; the same bytes at any time. Throws
-/// Error.
+/// Writes an archive of members, each a name and its content, deflated; the same bytes at any time. Of a
+/// content no more than a stretch is in memory, and of the archive nothing, but where the file is no file
+/// that can be gone back in. Throws Error, Cancelled.
 void write_zip(AtomicFile& file, const std::string& path,
-               const std::vector<std::pair<std::string, std::string>>& members);
+               const std::vector<std::pair<std::string, LongText>>& members);
 
 } // namespace hsdm::io

@@ -117,31 +117,29 @@ void write_geometry(const PolygonMesh& facets, const FacetLinks& links, PolyMesh
     });
 }
 
-bool is_normal_component(const VertexProperty& property) {
-    for (std::size_t i = 0; i < 9; ++i)
-        if (property.name == vertex_normal_component(i)) return true;
-    return false;
+/// Which of the nine numbers of `hsdm_normals` it is; nine if none.
+std::size_t normal_component(const VertexProperty& property) {
+    std::size_t i = 0;
+    while (i < 9 && property.name != vertex_normal_component(i)) ++i;
+    return i;
 }
 
-void write_vertex_normals(const PolygonMesh& facets, const FacetLinks& links, PolyMesh& mesh) {
-    for (std::size_t i = 0; i < 9; ++i)
-        for (const VertexProperty& component : facets.properties) {
-            if (component.name != vertex_normal_component(i)
-                || component.values.size() != facets.vertex_count())
-                continue;
-            auto property = kept_vertex_property<NormalTriple<Vec3>>(mesh, vertex_normals_property);
-            auto& values = mesh.property(property.getRawProperty()).data_vector();
-            for_each_index(links.source.size(), chunks::quick,
-                           [&](Index v) { values[v][i / 3][i % 3] = component.values[links.source[v]]; });
-        }
+void write_normal_component(const VertexProperty& component, std::size_t i, const FacetLinks& links,
+                            PolyMesh& mesh) {
+    auto property = kept_vertex_property<NormalTriple<Vec3>>(mesh, vertex_normals_property);
+    auto& values = mesh.property(property.getRawProperty()).data_vector();
+    for_each_index(links.source.size(), chunks::quick,
+                   [&](Index v) { values[v][i / 3][i % 3] = component.values[links.source[v]]; });
 }
 
 void write_properties(const PolygonMesh& facets, const FacetLinks& links, PolyMesh& mesh) {
     for (const VertexProperty& property : facets.properties) {
-        if (property.values.size() != facets.vertex_count() || is_normal_component(property)) continue;
-        set_vertex_property(property, links.source, mesh);
+        if (property.values.size() != facets.vertex_count()) continue;
+        if (const std::size_t i = normal_component(property); i < 9)
+            write_normal_component(property, i, links, mesh);
+        else
+            set_vertex_property(property, links.source, mesh);
     }
-    write_vertex_normals(facets, links, mesh);
 }
 
 /// Sets the feature bits; see to_mesh().

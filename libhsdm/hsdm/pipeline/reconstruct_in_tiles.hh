@@ -75,7 +75,7 @@ struct FlatReconstruction {
     Report report;
 };
 
-/// The same of a mesh that is to be written as PLY, OFF or STL, in a quarter of the memory a voxel.
+/// The same of a mesh that is to be written, in a quarter of the memory a voxel.
 FlatReconstruction reconstruct_flat_in_tiles(const PointParts& parts, const ReconstructOptions& options,
                                              const TileOptions& tiles, TileReport* how = nullptr);
 /// The same by several ranks, as reconstruct_in_tiles().
@@ -83,8 +83,7 @@ FlatReconstruction reconstruct_flat_in_tiles(const PointParts& parts, const Reco
                                              const TileOptions& tiles, Ranks& ranks,
                                              TileReport* how = nullptr);
 
-/// Writes what write_mesh() writes of the Reconstruction. `plain`: positions and facets only. Throws Error,
-/// also for formats that cannot be written as they come.
+/// Writes what write_mesh() writes of the Reconstruction. `plain`: positions and facets only. Throws Error.
 WrittenMesh write_flat(const std::string& path, const FlatReconstruction& flat, MeshFormat format, bool plain,
                        const WriteOptions& options = {});
 /// The same by all ranks, each a part of it (write_mesh_by_ranks()); only the first has the reconstruction.

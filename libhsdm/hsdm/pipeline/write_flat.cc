@@ -35,16 +35,27 @@ VertexRows rows_of(const FlatReconstruction& flat) {
     return rows;
 }
 
+/// Act on the mesh as writers take it.
+WrittenMesh with_linked(const FlatReconstruction& flat, bool plain,
+                        const std::function<WrittenMesh(const LinkedMesh&)>& act) {
+    const VertexRows rows = plain ? VertexRows() : rows_of(flat);
+    const auto sharp = plain ? std::span<const std::uint8_t>() : std::span(flat.features.sharp);
+    return act({flat.mesh, flat.links, sharp, rows});
+}
+
 } // namespace
 
 WrittenMesh write_flat(const std::string& path, const FlatReconstruction& flat, MeshFormat format, bool plain,
                        const WriteOptions& options) {
-    return write_mesh(path, flat.mesh, plain ? VertexRows() : rows_of(flat), format, options);
+    return with_linked(flat, plain,
+                       [&](const LinkedMesh& mesh) { return write_mesh(path, mesh, format, options); });
 }
 
 WrittenMesh write_flat(const std::string& path, const FlatReconstruction& flat, MeshFormat format, bool plain,
                        const WriteOptions& options, Ranks& ranks) {
-    return write_mesh_by_ranks(path, flat.mesh, plain ? VertexRows() : rows_of(flat), format, options, ranks);
+    return with_linked(flat, plain, [&](const LinkedMesh& mesh) {
+        return write_mesh_by_ranks(path, mesh, format, options, ranks);
+    });
 }
 
 } // namespace hsdm

@@ -1,0 +1,43 @@
+#pragma once
+// A mesh in flat arrays whose sides know their twins: what the formats that tell of edges are written from
+// where a half-edge mesh would be too large.
+
+#include "hsdm/io/write_mesh.hh"
+#include "hsdm/mesh/facet_links.hh"
+
+namespace hsdm {
+
+/// One fan of facets round each vertex, none without. All must outlive it.
+struct LinkedMesh {
+    const PolygonMesh& facets; ///< positions and facets alone
+    const FacetLinks& links;   ///< of which facet, twin, side_out and open_in are read
+    /// Per side whether its edge is sharp, for both sides of an edge alike; or empty.
+    std::span<const std::uint8_t> sharp;
+    const VertexRows& rows;
+
+    bool is_sharp(std::size_t side) const { return !sharp.empty() && sharp[side] != 0; }
+    /// Calls visit(side) for the sides that start at a vertex, from the one behind the border if there is
+    /// one.
+    template <class Visit>
+    void for_sides_from(Index vertex, const Visit& visit) const {
+        const auto next = [&](Index side) { return next_side(facets, links.facet[side], side); };
+        const Index open = links.open_in[vertex];
+        const Index begin = open == no_index ? links.side_out[vertex] : next(open);
+        Index side = begin;
+        do {
+            visit(side);
+            const Index twin = links.twin[side];
+            if (twin == no_index) return;
+            side = next(twin);
+        } while (side != begin);
+    }
+};
+
+/// Writes what write_mesh() writes of that mesh with the normals, the properties and the sharp edges, to the
+/// same bytes, in any format; of PLY, OFF, STL and OBJ the facets and rows alone are read. Beside the mesh it
+/// holds some megabytes, and for GLB a number a vertex, for .om an eighth of a byte a side. Throws Error, as
+/// write_mesh().
+WrittenMesh write_mesh(const std::string& path, const LinkedMesh& mesh, MeshFormat format,
+                       const WriteOptions& options = {});
+
+} // namespace hsdm
