@@ -65,7 +65,7 @@ std::size_t points_of_tile(const TileOptions& tiles, const Survey& sums, std::si
                     + " MB, which is held in memory; give --memory that much, or a smaller --depth or larger "
                       "--voxel-size"
                     + (bytes_per_voxel > bytes_per_voxel_of_parked_mesh
-                           ? "; PLY, OFF and STL without --features, --intersections and --strict take less"
+                           ? "; without --features, --intersections and --strict it takes less"
                            : ""));
     const auto left = static_cast<double>(tiles.memory - std::min(tiles.memory, mesh + bytes_of_program));
     return static_cast<std::size_t>(left / bytes_per_tile_point(voxels_per_point(sums)));
